@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use std::ops::Range;
 
 /// What the seeds gave, plane by plane.
-struct Plane {
+struct PlaneTally {
     name: String,
     p_values: Vec<f64>,
     chi2: Vec<f64>,
@@ -22,19 +22,22 @@ struct Plane {
 
 /// Batches that are not independent, as p takes them to be.
 #[derive(Clone, Copy)]
-enum Fault {
+enum DependenceFault {
     /// The second half of the batches holds the photons of the first.
     SharedPhotons,
     /// The last batch is the first, counted twice.
     CountedTwice,
 }
 
-const FAULTS: [(Fault, &str); 2] = [
+const FAULTS: [(DependenceFault, &str); 2] = [
     (
-        Fault::SharedPhotons,
+        DependenceFault::SharedPhotons,
         "half of the batches sharing the photons of the others",
     ),
-    (Fault::CountedTwice, "one batch of 64 counted twice"),
+    (
+        DependenceFault::CountedTwice,
+        "one batch of 64 counted twice",
+    ),
 ];
 
 /// Compares `fig9b` at `photons` over seeds, and judges the statistics.
@@ -46,7 +49,7 @@ pub(crate) fn calibration(seeds: Range<u64>, photons: u64, sampling: Sampling) -
     let count = seeds.end - seeds.start;
     let plants = count >= 1000 && seeds.start == 1;
     let faults = FAULTS.iter().filter(|_| plants);
-    let faults: Vec<Option<Fault>> = faults.map(|(fault, _)| Some(*fault)).collect();
+    let faults: Vec<Option<DependenceFault>> = faults.map(|(fault, _)| Some(*fault)).collect();
     let scene = sampled(fig9b(photons, 1), sampling);
     let all = sample(seeds, &scene, &[&[None], &faults[..]].concat());
     let seeds = count;
@@ -68,15 +71,15 @@ pub(crate) fn calibration(seeds: Range<u64>, photons: u64, sampling: Sampling) -
 }
 
 /// The measurement with batches that are not independent.
-fn planted(measurement: &Measurement, fault: Fault) -> Measurement {
+fn planted(measurement: &Measurement, fault: DependenceFault) -> Measurement {
     let batches: Vec<&Batch> = measurement.batches().collect();
     let mut planted = Measurement::new(measurement.planes().to_vec());
     for (i, batch) in batches.iter().enumerate() {
         let half = batches.len() / 2;
         let copied = match fault {
-            Fault::SharedPhotons => i % half,
-            Fault::CountedTwice if i + 1 == batches.len() => 0,
-            Fault::CountedTwice => i,
+            DependenceFault::SharedPhotons => i % half,
+            DependenceFault::CountedTwice if i + 1 == batches.len() => 0,
+            DependenceFault::CountedTwice => i,
         };
         let copy = Batch {
             index: batch.index,
@@ -88,7 +91,11 @@ fn planted(measurement: &Measurement, fault: Fault) -> Measurement {
 }
 
 /// What the seeds give with each of the faults, or without.
-fn sample(seeds: Range<u64>, scene: &Scene, faults: &[Option<Fault>]) -> Vec<Vec<Plane>> {
+fn sample(
+    seeds: Range<u64>,
+    scene: &Scene,
+    faults: &[Option<DependenceFault>],
+) -> Vec<Vec<PlaneTally>> {
     let predictions = predicted(scene, None);
     let bar = progress(seeds.end - seeds.start, "seeds");
     let reports: Vec<Vec<Vec<PlaneReport>>> = seeds
@@ -99,7 +106,7 @@ fn sample(seeds: Range<u64>, scene: &Scene, faults: &[Option<Fault>]) -> Vec<Vec
     bar.end();
     let plane = |fault: usize, i: usize| {
         let of_plane = || reports.iter().map(move |r| &r[fault][i]);
-        Plane {
+        PlaneTally {
             name: reports[0][fault][i].name.clone(),
             p_values: of_plane().filter_map(|r| r.p_value).collect(),
             chi2: of_plane().filter_map(|r| r.chi2_per_dof).collect(),
@@ -118,12 +125,12 @@ fn reports(
     mut scene: Scene,
     seed: u64,
     predictions: &[Prediction],
-    faults: &[Option<Fault>],
+    faults: &[Option<DependenceFault>],
 ) -> Vec<Vec<PlaneReport>> {
     scene.run.seed = seed;
     let sound = traced(&scene);
     let test = Test::of(&scene);
-    let with = |fault: &Option<Fault>| {
+    let with = |fault: &Option<DependenceFault>| {
         let planted = fault.map(|fault| planted(&sound, fault));
         let measurement = planted.as_ref().unwrap_or(&sound);
         let report = |(i, prediction)| {
@@ -136,7 +143,7 @@ fn reports(
     faults.iter().map(with).collect()
 }
 
-fn judge(planes: &[Plane], seeds: u64, scene: &Scene, scale: f64) -> Section {
+fn judge(planes: &[PlaneTally], seeds: u64, scene: &Scene, scale: f64) -> Section {
     let mut rows = Vec::new();
     let all: Vec<f64> = planes
         .iter()

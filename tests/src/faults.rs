@@ -107,7 +107,7 @@ pub(crate) fn planted_elsewhere(photons: u64, seed: u64) -> Section {
     }
 }
 
-type Faults = Vec<(&'static str, Box<Predict>)>;
+type PlantedFaults = Vec<(&'static str, Box<Predict>)>;
 
 /// A prediction from a chain that was tampered with; `None` where that changes nothing.
 fn chained(change: impl Fn(&mut Chain) + 'static) -> Box<Predict> {
@@ -118,7 +118,7 @@ fn chained(change: impl Fn(&mut Chain) + 'static) -> Box<Predict> {
     })
 }
 
-fn elsewhere() -> Vec<(&'static str, Faults)> {
+fn elsewhere() -> Vec<(&'static str, PlantedFaults)> {
     let scaled = |which: fn(&Parameter) -> bool, factor: f64| {
         chained(move |c: &mut Chain| {
             if let Some(p) = c.parameters().into_iter().find(which) {

@@ -133,19 +133,19 @@ enum Command {
     /// What theory and the tracers share, against a second implementation of it; exit code 1 if they differ or a planted fault is not seen.
     Second,
     /// Mutated scenes, meshes, pictures and stored stages as input of the program; exit code 1 if it does not bear one.
-    Hostile(hostile::Options),
+    Hostile(hostile::HostileOptions),
     /// The program killed, started twice at once and on full disks; exit code 1 if it leaves a broken result or loses a file.
-    Kills(kills::Options),
+    Kills(kills::KillOptions),
     /// Random scenes of the whole vocabulary; exit code 1 after a panic, a hang or a wrong verdict.
-    Wild(wild::Options),
+    Wild(wild::WildOptions),
     /// Random scenes that break one assumption of theory, predicted all the same; exit code 1 if photons never reject one.
-    Assumptions(assumptions::Options),
+    Assumptions(assumptions::AssumptionOptions),
     /// Small objects in the light of random scenes; exit code 1 if photons reject a prediction.
     Small(wild::SmallOptions),
     /// Random scenes whose light several surfaces send on; exit code 1 if photons reject a prediction.
     Several(wild::SmallOptions),
     /// Measured parameters and slopes of random scenes in stated errors, and what predictions cost; exit code 1 if errors are not those made.
-    Pulls(pulls::Options),
+    Pulls(pulls::PullOptions),
     /// The main scene: every plane, noise floors, calibration and planted faults; into docs/validation.md.
     Main,
     /// The whole of docs/validation.md: `main`, `table1`, `shading` and `claims`, and every row of the paper's Table 1.

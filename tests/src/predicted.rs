@@ -13,7 +13,7 @@ const BUDGET: Budget = Budget {
 
 /// Behind specular surfaces.
 pub(crate) fn traced(
-    view: &Observed<rays::System>,
+    view: &Observed<rays::SpecularSystem>,
     window: &Window,
     grid: &SliceGrid,
 ) -> Predicted {
@@ -23,7 +23,7 @@ pub(crate) fn traced(
 
 /// Behind specular surfaces, by a chain.
 pub(crate) fn linear(
-    view: &Observed<rays::System>,
+    view: &Observed<rays::SpecularSystem>,
     window: &Window,
     grid: &SliceGrid,
     map: &SpectrumMap<4>,
@@ -34,7 +34,7 @@ pub(crate) fn linear(
 
 /// Behind a surface with a BRDF: as it is, and by a chain.
 pub(crate) fn scattered(
-    view: &Observed<scattering::System>,
+    view: &Observed<scattering::ScatteringSystem>,
     plane: &VirtualPlane,
     chain: &ReflectionChain,
 ) -> [Slices; 2] {

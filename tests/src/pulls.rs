@@ -22,7 +22,7 @@ use std::path::PathBuf;
 
 /// Which scenes are measured, and with how many photons.
 #[derive(Debug, clap::Args)]
-pub(crate) struct Options {
+pub(crate) struct PullOptions {
     /// Scenes.
     #[arg(long, default_value_t = 300)]
     scenes: u64,
@@ -73,7 +73,7 @@ struct Cost {
 }
 
 /// Measures and predicts all scenes.
-pub(crate) fn pulls(options: &Options) -> io::Result<Vec<Section>> {
+pub(crate) fn pulls(options: &PullOptions) -> io::Result<Vec<Section>> {
     let bar = progress(options.scenes, "scenes");
     let (mut pulls, mut costs) = (Vec::new(), Vec::new());
     for number in options.first..options.first + options.scenes {
@@ -105,7 +105,7 @@ pub(crate) fn pulls(options: &Options) -> io::Result<Vec<Section>> {
 
 /// A scene of the hunt for wrong scenes and one of those for nets by turns; `None` where it is not
 /// sound.
-fn drawn(options: &Options, number: u64) -> io::Result<Option<Scene>> {
+fn drawn(options: &PullOptions, number: u64) -> io::Result<Option<Scene>> {
     let folder = tempfile::tempdir()?;
     let file = if number.is_multiple_of(2) {
         wild::scene(options.seed, number, options.photons, folder.path()).ok()
@@ -240,7 +240,7 @@ fn cpu_seconds() -> io::Result<f64> {
 /// The pulls of each group in a row.
 fn grouped(
     pulls: &[Pull],
-    options: &Options,
+    options: &PullOptions,
     title: &str,
     group: impl Fn(&Pull) -> String,
     is_judged: bool,

@@ -8,7 +8,7 @@ use etendue_scene::Scene;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// A scene of the suite, run.
-struct Outcome {
+struct SuiteRun {
     scene: Scene,
     planes: Vec<PlaneComparison>,
     /// p of photons against backward rays; `None` where there are none.
@@ -26,7 +26,7 @@ pub(crate) fn suite(photons: Option<u64>) -> Vec<Section> {
         .collect();
     let planes = scenes.iter().map(|scene| scene.planes.len()).sum();
     let level = sidak(ALPHA, planes);
-    let outcomes: Vec<Outcome> = scenes.into_iter().map(|scene| run(scene, level)).collect();
+    let outcomes: Vec<SuiteRun> = scenes.into_iter().map(|scene| run(scene, level)).collect();
     vec![
         table(&outcomes, planes, level),
         occluders(&outcomes),
@@ -35,7 +35,7 @@ pub(crate) fn suite(photons: Option<u64>) -> Vec<Section> {
     ]
 }
 
-fn run(scene: Scene, level: f64) -> Outcome {
+fn run(scene: Scene, level: f64) -> SuiteRun {
     let measurement = traced(&scene);
     let reference = traced_backwards(&scene);
     let predictions = predicted(&scene, reference.as_ref());
@@ -47,14 +47,14 @@ fn run(scene: Scene, level: f64) -> Outcome {
             .p_value
     };
     let planes = 0..scene.planes.len();
-    Outcome {
+    SuiteRun {
         planes: planes.clone().map(at).collect(),
         backward: planes.map(against).collect(),
         scene,
     }
 }
 
-fn table(outcomes: &[Outcome], planes: usize, level: f64) -> Section {
+fn table(outcomes: &[SuiteRun], planes: usize, level: f64) -> Section {
     let rows = outcomes.iter().flat_map(|outcome| {
         let planes = outcome.planes.iter().zip(&outcome.backward);
         planes.map(|(plane, p)| row(&outcome.scene, &plane.report, *p, level))
@@ -113,12 +113,12 @@ fn row(scene: &Scene, report: &PlaneReport, backward: Option<f64>, level: f64) -
     Row::new(cells, checks)
 }
 
-fn outcome<'a>(outcomes: &'a [Outcome], name: &str) -> Option<&'a Outcome> {
+fn outcome<'a>(outcomes: &'a [SuiteRun], name: &str) -> Option<&'a SuiteRun> {
     outcomes.iter().find(|o| o.scene.name == name)
 }
 
 /// Two occluders that block everything together, and a lot of light alone (Durand et al. 2005, Fig. 7).
-fn occluders(outcomes: &[Outcome]) -> Section {
+fn occluders(outcomes: &[SuiteRun]) -> Section {
     let mut rows = Vec::new();
     let at = |name: &str| {
         outcome(outcomes, name)?
@@ -211,7 +211,7 @@ fn travels(operator: &etendue_theory::Operator) -> bool {
 }
 
 /// H of the light that leaves the receiver under blockers of three sizes (Durand et al. 2005, Fig. 9).
-fn high_frequencies(outcomes: &[Outcome]) -> Section {
+fn high_frequencies(outcomes: &[SuiteRun]) -> Section {
     let shares = |name: &str| {
         let leaving = outcome(outcomes, name)?
             .planes
@@ -258,7 +258,7 @@ fn high_frequencies(outcomes: &[Outcome]) -> Section {
 }
 
 /// The white furnace: radiance times the configuration factor of the light, in closed form.
-fn furnace(outcomes: &[Outcome]) -> Section {
+fn furnace(outcomes: &[SuiteRun]) -> Section {
     let mut rows = Vec::new();
     if let Some(outcome) = outcome(outcomes, "furnace") {
         let (plane, compared) = (&outcome.scene.planes[0], &outcome.planes[0]);

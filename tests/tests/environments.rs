@@ -7,7 +7,7 @@ use etendue_compare::{Residuals, system};
 use etendue_field::{Light, Orientation, ProjectionGrid, Quantity};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::{Measurement, measure};
-use etendue_theory::rays::System;
+use etendue_theory::rays::SpecularSystem;
 use etendue_theory::{Budget, Model, Observed, Predicted};
 use etendue_trace::Tracer;
 use glam::{DQuat, DVec3};
@@ -22,7 +22,7 @@ const PHOTONS: u64 = 1 << 22;
 /// Planes that are true are rejected with this probability in all.
 const ALPHA: f64 = 0.01;
 
-type Fault = (&'static str, fn(&mut Observed<System>));
+type Fault = (&'static str, fn(&mut Observed<SpecularSystem>));
 
 /// A scene file of the repository, with fewer photons.
 fn scene(name: &str) -> Scene {
@@ -34,7 +34,7 @@ fn scene(name: &str) -> Scene {
     scene
 }
 
-fn predicted(scene: &Scene, plane: usize, fault: fn(&mut Observed<System>)) -> Predicted {
+fn predicted(scene: &Scene, plane: usize, fault: fn(&mut Observed<SpecularSystem>)) -> Predicted {
     let plane = &scene.planes[plane];
     let mut view = system(scene, plane).unwrap();
     fault(&mut view);
@@ -45,7 +45,7 @@ fn predicted(scene: &Scene, plane: usize, fault: fn(&mut Observed<System>)) -> P
 /// Photons accept the prediction of a plane, and reject each fault.
 fn tells(scene: &Scene, photons: &Measurement, name: &str, faults: &[Fault]) {
     let plane = scene.planes.iter().position(|p| p.name == name).unwrap();
-    let p = |fault: fn(&mut Observed<System>)| {
+    let p = |fault: fn(&mut Observed<SpecularSystem>)| {
         let found = predicted(scene, plane, fault);
         let residuals = Residuals::between(photons, plane, &found.slices, &found.replicates);
         residuals.p_value(scene.run.seed).unwrap()
@@ -59,33 +59,33 @@ fn tells(scene: &Scene, photons: &Measurement, name: &str, faults: &[Fault]) {
 }
 
 /// The axes of a surface turned about its normal, by half a turn.
-fn turned_round(view: &mut Observed<System>) {
+fn turned_round(view: &mut Observed<SpecularSystem>) {
     let frame = &mut view.plane.frame;
     (frame.x, frame.y) = (-frame.x, -frame.y);
 }
 
 /// A hollow sphere for a convex one.
-fn hollow(view: &mut Observed<System>) {
+fn hollow(view: &mut Observed<SpecularSystem>) {
     let patch = view.plane.patch.as_mut().unwrap();
     patch.curvature = patch.curvature.map(|k| -k);
 }
 
 /// A sphere that is a hundredth more curved.
-fn more_curved(view: &mut Observed<System>) {
+fn more_curved(view: &mut Observed<SpecularSystem>) {
     let patch = view.plane.patch.as_mut().unwrap();
     patch.curvature = patch.curvature.map(|k| 1.01 * k);
 }
 
-fn without_cosine(view: &mut Observed<System>) {
+fn without_cosine(view: &mut Observed<SpecularSystem>) {
     view.plane.quantity = Quantity::Radiance;
 }
 
-fn mirrored(view: &mut Observed<System>) {
+fn mirrored(view: &mut Observed<SpecularSystem>) {
     view.plane.orientation = Orientation::Mirrored;
 }
 
 /// The environment turned by a degree.
-fn turned_light(view: &mut Observed<System>) {
+fn turned_light(view: &mut Observed<SpecularSystem>) {
     let Light::Environment { environment } = &mut view.system.light else {
         panic!("an environment");
     };
@@ -94,7 +94,7 @@ fn turned_light(view: &mut Observed<System>) {
     (frame.x, frame.y, frame.d) = (turn * frame.x, turn * frame.y, turn * frame.d);
 }
 
-fn without_masks(view: &mut Observed<System>) {
+fn without_masks(view: &mut Observed<SpecularSystem>) {
     view.system.layers.clear();
 }
 

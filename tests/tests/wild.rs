@@ -393,7 +393,7 @@ fn by_specular(scene: &Scene, plane: usize, like: Prediction) -> Prediction {
 fn by_rays(
     scene: &Scene,
     plane: usize,
-    view: &Observed<rays::System>,
+    view: &Observed<rays::SpecularSystem>,
     like: Prediction,
 ) -> Prediction {
     let plane = &scene.planes[plane];
@@ -405,7 +405,7 @@ fn by_rays(
 
 fn by_scattering(
     scene: &Scene,
-    view: &Observed<scattering::System>,
+    view: &Observed<scattering::ScatteringSystem>,
     like: Prediction,
 ) -> Prediction {
     let grid = like.slices.grid;

@@ -3,8 +3,8 @@
 use crate::criterion::shaded;
 use crate::cutoffs::Cutoffs;
 use crate::metric::Metric;
-use crate::reconstruct::{Fit, Sample, reconstruct};
-use crate::visible::{Surface, Visible};
+use crate::reconstruct::{SampleFit, ShadedSample, reconstruct};
+use crate::visible::{SeenSurface, Visible};
 use etendue_paths::{Nearness, Paths};
 use etendue_world::Camera;
 use rayon::prelude::*;
@@ -23,7 +23,7 @@ pub(crate) fn nearness(
     progress: &(dyn Fn(u64) + Sync),
 ) -> Vec<Nearness> {
     let [w, h] = visible.size.map(|n| n.div_ceil(STEP));
-    let samples: Vec<Sample> = (0..w * h)
+    let samples: Vec<ShadedSample> = (0..w * h)
         .into_par_iter()
         .filter_map(|i| {
             let at = [i % w, i / w].map(|i| (i as f64 + 0.5) * STEP as f64);
@@ -33,15 +33,15 @@ pub(crate) fn nearness(
             let nearest = seen.distance() * pixel_angle(camera);
             let Nearness { reflected, shadow } =
                 paths.nearness(&seen, rays, nearest, seed, i as u64);
-            Some(Sample {
+            Some(ShadedSample {
                 at,
                 metric: Metric::even((STEP as f64).powi(-2)),
-                surface: Surface::new(paths, &seen, cutoffs),
+                surface: SeenSurface::new(paths, &seen, cutoffs),
                 value: [reflected, shadow],
             })
         })
         .collect();
-    let places = reconstruct(visible, &samples, Fit::Mean);
+    let places = reconstruct(visible, &samples, SampleFit::Mean);
     visible.pixels(|pixel| {
         let range = visible.range(pixel);
         let of_shaded = visible.of_pixel(pixel).iter().zip(&places[range]);

@@ -19,11 +19,11 @@ fn eighth(x: f64) -> f64 {
 }
 
 /// A point of the picture, pixels to the right and down from its top left.
-pub(crate) type At = [f64; 2];
+pub(crate) type PixelPosition = [f64; 2];
 
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Point {
-    pub(crate) at: At,
+pub(crate) struct PicturePoint {
+    pub(crate) at: PixelPosition,
     pub(crate) metric: Metric,
 }
 
@@ -33,7 +33,7 @@ pub(crate) fn blue_noise(
     wide: usize,
     count: usize,
     seed: u64,
-) -> Vec<Point> {
+) -> Vec<PicturePoint> {
     let candidates = candidates(metrics, wide, count, seed);
     let mut is_kept = vec![true; candidates.len()];
     let mut crowd = Crowd::new(&candidates, wide, metrics.len() / wide.max(1));
@@ -52,7 +52,12 @@ pub(crate) fn blue_noise(
 
 /// Random points by the density. They are independent of each other: more even ones would be less crowded where they are dense, and elimination would
 /// leave too many there.
-fn candidates(metrics: &[Option<Metric>], wide: usize, count: usize, seed: u64) -> Vec<Point> {
+fn candidates(
+    metrics: &[Option<Metric>],
+    wide: usize,
+    count: usize,
+    seed: u64,
+) -> Vec<PicturePoint> {
     let mut total = 0.0;
     let summed: Vec<f64> = metrics
         .iter()
@@ -68,7 +73,7 @@ fn candidates(metrics: &[Option<Metric>], wide: usize, count: usize, seed: u64) 
         let [at, x, y, _] = words(seed, Stream::Jitter, i as u64, 0).map(unit);
         let pixel = summed.partition_point(|sum| *sum <= at * total);
         let metric = (*metrics.get(pixel)?)?;
-        Some(Point {
+        Some(PicturePoint {
             at: [(pixel % wide) as f64 + x, (pixel / wide) as f64 + y],
             metric,
         })
@@ -82,31 +87,31 @@ struct Crowd {
     /// Neighbours of each, with what they add to its weight.
     neighbours: Vec<Vec<(u32, f64)>>,
     weights: Vec<f64>,
-    queue: BinaryHeap<Entry>,
+    queue: BinaryHeap<Candidate>,
 }
 
 /// A candidate with a weight that it had once; weights only shrink.
 #[derive(Clone, Copy, Debug)]
-struct Entry {
+struct Candidate {
     weight: f64,
     index: u32,
 }
 
-impl PartialEq for Entry {
+impl PartialEq for Candidate {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
 
-impl Eq for Entry {}
+impl Eq for Candidate {}
 
-impl PartialOrd for Entry {
+impl PartialOrd for Candidate {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl Ord for Entry {
+impl Ord for Candidate {
     fn cmp(&self, other: &Self) -> Ordering {
         let by_weight = self.weight.total_cmp(&other.weight);
         by_weight.then(other.index.cmp(&self.index))
@@ -119,12 +124,12 @@ fn largest_radius() -> f64 {
 }
 
 impl Crowd {
-    fn new(points: &[Point], wide: usize, high: usize) -> Self {
+    fn new(points: &[PicturePoint], wide: usize, high: usize) -> Self {
         let most = 2.0 * largest_radius();
         // Candidates that chance has put close together do not crowd their region as a whole (Yuksel 2015, Eq. 4).
         let kept = (CANDIDATES as f64).recip();
         let least = most * (1.0 - kept * kept.sqrt()) * 0.65;
-        let grid = Grid::new(points, wide, high);
+        let grid = PointGrid::new(points, wide, high);
         let of = |i: usize| {
             let point = &points[i];
             let mut found = Vec::new();
@@ -147,7 +152,7 @@ impl Crowd {
             .iter()
             .map(|near| near.iter().map(|(_, weight)| weight).sum())
             .collect();
-        let entries = weights.iter().zip(0..).map(|(weight, index)| Entry {
+        let entries = weights.iter().zip(0..).map(|(weight, index)| Candidate {
             weight: *weight,
             index,
         });
@@ -169,7 +174,7 @@ impl Crowd {
             if weight >= entry.weight {
                 return Some(index);
             }
-            self.queue.push(Entry { weight, ..entry });
+            self.queue.push(Candidate { weight, ..entry });
         }
     }
 
@@ -182,7 +187,7 @@ impl Crowd {
 
 /// Which points are in which square of the picture.
 #[derive(Debug)]
-struct Grid {
+struct PointGrid {
     cells: Vec<Vec<u32>>,
     size: [usize; 2],
 }
@@ -190,8 +195,8 @@ struct Grid {
 /// Pixels along a square.
 const CELL: usize = 3;
 
-impl Grid {
-    fn new(points: &[Point], wide: usize, high: usize) -> Self {
+impl PointGrid {
+    fn new(points: &[PicturePoint], wide: usize, high: usize) -> Self {
         let size = [wide, high].map(|n| n / CELL + 1);
         let mut cells = vec![Vec::new(); size[0] * size[1]];
         for (point, index) in points.iter().zip(0..) {
@@ -202,7 +207,7 @@ impl Grid {
     }
 
     /// The points of all squares that a distance from a point reaches.
-    fn near(&self, point: &Point, radius: f64, mut found: impl FnMut(u32)) {
+    fn near(&self, point: &PicturePoint, radius: f64, mut found: impl FnMut(u32)) {
         let reach = point.metric.reach(radius);
         let [columns, rows] = [0, 1].map(|k: usize| {
             let at = |side: f64| cell(point.at[k] + side * reach[k], self.size[k]);
@@ -231,7 +236,7 @@ fn cell(at: f64, cells: usize) -> usize {
 mod tests {
     use super::*;
 
-    fn nearest(points: &[Point], i: usize) -> f64 {
+    fn nearest(points: &[PicturePoint], i: usize) -> f64 {
         let others = points.iter().enumerate().filter(|(j, _)| *j != i);
         let squares = others.map(|(_, other)| {
             let step = [0, 1].map(|k: usize| other.at[k] - points[i].at[k]);
@@ -246,7 +251,7 @@ mod tests {
         let even = vec![Some(Metric::even(0.05)); 100 * 80];
         let points = blue_noise(&even, 100, 400, 3);
         assert_eq!(points.len(), 400);
-        let inside = |at: At| at[0] > 5.0 && at[0] < 95.0 && at[1] > 5.0 && at[1] < 75.0;
+        let inside = |at: PixelPosition| at[0] > 5.0 && at[0] < 95.0 && at[1] > 5.0 && at[1] < 75.0;
         let all = (0..points.len()).filter(|i| inside(points[*i].at));
         let closest = all
             .map(|i| nearest(&points, i))
@@ -275,7 +280,7 @@ mod tests {
             // A window, so that the edge of the picture is no signal.
             let hann = |x: f64| 1.0 - libm::cos(std::f64::consts::TAU * x / 100.0);
             let [mut re, mut im, mut all] = [0.0; 3];
-            for Point { at, .. } in &points {
+            for PicturePoint { at, .. } in &points {
                 let weight = hann(at[0]) * hann(at[1]);
                 let phase = std::f64::consts::TAU * (frequency[0] * at[0] + frequency[1] * at[1]);
                 let (sin, cos) = libm::sincos(phase);

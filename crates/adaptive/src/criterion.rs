@@ -7,7 +7,7 @@
 //! printed, the equations are functions of the larger curvature, and alike in all directions.
 
 use crate::metric::Metric;
-use crate::visible::{OFFSETS, Place, Surface, Visible};
+use crate::visible::{OFFSETS, SeenPlace, SeenSurface, Visible};
 use etendue_paths::Nearness;
 use etendue_theory::shading::Criterion;
 use glam::DVec3;
@@ -21,7 +21,8 @@ pub(crate) fn criterion(
     let places = visible.of_pixel(pixel);
     let first = places.iter().find_map(shaded)?;
     let [right, down] = steps(places, first.shape);
-    let turned = |step: &Step| step.axis + nearness.reflected * across(step.position, first.axis);
+    let turned =
+        |step: &PixelStep| step.axis + nearness.reflected * across(step.position, first.axis);
     let lobe = of_columns(turned(&right), turned(&down)).times(first.cutoff * first.cutoff);
     let shadow = of_columns(right.position, down.position).times(nearness.shadow * nearness.shadow);
     Some(lobe.plus(shadow))
@@ -71,7 +72,7 @@ pub(crate) fn curvature(visible: &Visible, pixel: [usize; 2]) -> f64 {
 }
 
 /// The larger principal curvature by how normals turn from pixel to pixel.
-fn bend(steps: &[Step; 2]) -> f64 {
+fn bend(steps: &[PixelStep; 2]) -> f64 {
     let [a, b] = steps;
     let lengths = of_columns(a.position, b.position);
     let turns = Metric {
@@ -92,7 +93,7 @@ fn bend(steps: &[Step; 2]) -> f64 {
 }
 
 /// The surface of a place, if light is scattered there at all.
-pub(crate) fn shaded(place: &Place) -> Option<&Surface> {
+pub(crate) fn shaded(place: &SeenPlace) -> Option<&SeenSurface> {
     place
         .surface
         .as_ref()
@@ -101,18 +102,18 @@ pub(crate) fn shaded(place: &Place) -> Option<&Surface> {
 
 /// How things change from one pixel to the next.
 #[derive(Clone, Copy, Debug, Default)]
-struct Step {
+struct PixelStep {
     axis: DVec3,
     normal: DVec3,
     position: DVec3,
 }
 
 /// Steps to the right and down: slopes of the plane through the places of a pixel, when all are on one shape.
-fn steps(places: &[Place], shape: usize) -> [Step; 2] {
-    let mut steps = [Step::default(); 2];
+fn steps(places: &[SeenPlace], shape: usize) -> [PixelStep; 2] {
+    let mut steps = [PixelStep::default(); 2];
     for (place, offset) in places.iter().zip(OFFSETS) {
         let Some(surface) = shaded(place).filter(|surface| surface.shape == shape) else {
-            return [Step::default(); 2];
+            return [PixelStep::default(); 2];
         };
         for (step, at) in steps.iter_mut().zip(offset) {
             // The offsets are orthogonal, and the squares of each sum to 5/16.

@@ -1,14 +1,14 @@
 //! The ways to spend shading samples, from a camera to a picture.
 
 use crate::blockers::nearness;
-use crate::blue_noise::{Point, blue_noise};
+use crate::blue_noise::{PicturePoint, blue_noise};
 use crate::criterion::{criterion, curvature, printed, shaded};
 use crate::cutoffs::Cutoffs;
 use crate::density::{scaled, to_power, wanted};
 use crate::metric::Metric;
-use crate::reconstruct::{Fit, Sample, reconstruct};
+use crate::reconstruct::{SampleFit, ShadedSample, reconstruct};
 use crate::shading::Shader;
-use crate::visible::{FOUR, Surface, Visible, at};
+use crate::visible::{FOUR, SeenSurface, Visible, at};
 use etendue_paths::Paths;
 use etendue_world::Camera;
 
@@ -123,7 +123,7 @@ pub fn render(
         each: plan.each,
         seed: plan.seed,
     };
-    let mut work = Work {
+    let mut work = AdaptiveRun {
         visible: &visible,
         shader,
         plan,
@@ -135,7 +135,7 @@ pub fn render(
     work.picture(samples)
 }
 
-struct Work<'a> {
+struct AdaptiveRun<'a> {
     visible: &'a Visible,
     shader: Shader<'a>,
     plan: &'a Plan,
@@ -144,9 +144,9 @@ struct Work<'a> {
     layers: Layers,
 }
 
-impl Work<'_> {
+impl AdaptiveRun<'_> {
     /// All samples of the method, each with the metric of all.
-    fn samples(&mut self) -> Vec<Sample> {
+    fn samples(&mut self) -> Vec<ShadedSample> {
         let even = self.visible.pixels(|pixel| {
             let places = self.visible.of_pixel(pixel);
             let is_shaded = places.iter().any(|place| shaded(place).is_some());
@@ -200,7 +200,7 @@ impl Work<'_> {
         let both = sums(&first, &then);
         self.told(&both);
         let all = pilot.into_iter().chain(later);
-        all.map(|(sample, _)| Sample {
+        all.map(|(sample, _)| ShadedSample {
             metric: both[pixel_of(sample.at, self.visible.size)].unwrap_or(sample.metric),
             ..sample
         })
@@ -208,20 +208,20 @@ impl Work<'_> {
     }
 
     /// The square of the relative error that planes through one half of the samples have at the other half, noise taken off, about each pixel.
-    fn missed(&self, samples: &[(Sample, f64)]) -> Vec<f64> {
+    fn missed(&self, samples: &[(ShadedSample, f64)]) -> Vec<f64> {
         let lights = samples.iter().map(|(sample, _)| sample.light(sample.value));
         let dark = 0.01 * lights.sum::<f64>() / samples.len().max(1) as f64;
         let mut found = Vec::new();
         for half in 0..2 {
             // In the order of pixels, so that both halves are everywhere.
             let of = |odd: usize| samples.iter().skip(odd).step_by(2);
-            let sparse: Vec<Sample> = of(half)
-                .map(|(sample, _)| Sample {
+            let sparse: Vec<ShadedSample> = of(half)
+                .map(|(sample, _)| ShadedSample {
                     metric: sample.metric.times(0.5),
                     ..*sample
                 })
                 .collect();
-            let values = reconstruct(self.visible, &sparse, Fit::Plane);
+            let values = reconstruct(self.visible, &sparse, SampleFit::Plane);
             for (sample, noise) in of(1 - half) {
                 let pixel = pixel_at(sample.at, self.visible.size);
                 let mut near = self.visible.range(pixel);
@@ -235,14 +235,14 @@ impl Work<'_> {
                 let [here, fitted] = [sample.value, value].map(|value| sample.light(value));
                 let square = (here - fitted).powi(2) - noise;
                 let scale = 0.5 * (here * here + fitted * fitted) + dark * dark;
-                found.push(Sample {
+                found.push(ShadedSample {
                     metric: sample.metric.times(WIDER.powi(-2)),
                     value: [square / scale, 0.0],
                     ..*sample
                 });
             }
         }
-        let places = reconstruct(self.visible, &found, Fit::Mean);
+        let places = reconstruct(self.visible, &found, SampleFit::Mean);
         self.visible.pixels(|pixel| {
             let mut of = places[self.visible.range(pixel)].iter().flatten();
             of.next().map_or(0.0, |value| value[0])
@@ -284,7 +284,7 @@ impl Work<'_> {
         squared.iter().map(wanted_of).collect()
     }
 
-    fn points(&self, metrics: &[Option<Metric>], count: f64, round: u64) -> Vec<Point> {
+    fn points(&self, metrics: &[Option<Metric>], count: f64, round: u64) -> Vec<PicturePoint> {
         (self.stage)(Stage::Samples, 1);
         #[expect(
             clippy::cast_possible_truncation,
@@ -296,14 +296,14 @@ impl Work<'_> {
         blue_noise(metrics, self.visible.size[0], count, seed)
     }
 
-    fn shaded(&self, points: &[Point], first: u64) -> Vec<(Sample, f64)> {
+    fn shaded(&self, points: &[PicturePoint], first: u64) -> Vec<(ShadedSample, f64)> {
         (self.stage)(Stage::Shading, points.len());
         self.shader.shade(points, first, self.progress)
     }
 
     /// The standard deviation of samples about each pixel over their mean, noise taken off.
-    fn contrast(&mut self, samples: &[(Sample, f64)]) -> Vec<f64> {
-        let wider: Vec<Sample> = samples
+    fn contrast(&mut self, samples: &[(ShadedSample, f64)]) -> Vec<f64> {
+        let wider: Vec<ShadedSample> = samples
             .iter()
             .map(|(sample, noise)| {
                 // Textures are no contrast of what has one part: their factor is put back later.
@@ -317,14 +317,14 @@ impl Work<'_> {
                 } else {
                     noise / (factors[1] * factors[1])
                 };
-                Sample {
+                ShadedSample {
                     metric: sample.metric.times(WIDER.powi(-2)),
                     value: [light, light * light - noise],
                     ..*sample
                 }
             })
             .collect();
-        let places = reconstruct(self.visible, &wider, Fit::Mean);
+        let places = reconstruct(self.visible, &wider, SampleFit::Mean);
         let found = self.visible.pixels(|pixel| {
             let mut of = places[self.visible.range(pixel)].iter().flatten();
             let spread = |[mean, square]: &[f64; 2]| [*mean, (square - mean * mean).max(0.0)];
@@ -351,16 +351,16 @@ impl Work<'_> {
     }
 
     /// The picture that samples make.
-    fn picture(mut self, mut samples: Vec<Sample>) -> Rendered {
+    fn picture(mut self, mut samples: Vec<ShadedSample>) -> Rendered {
         (self.stage)(Stage::Reconstruction, 1);
-        let mut values = reconstruct(self.visible, &samples, Fit::Plane);
+        let mut values = reconstruct(self.visible, &samples, SampleFit::Plane);
         let added = self.fill(&mut values, &mut samples);
         let [w, h] = self.visible.size;
         let radiance = self.visible.pixels(|pixel| {
             let places = self.visible.of_pixel(pixel).iter();
             let light = places.zip(&values[self.visible.range(pixel)]);
             let light = light.map(|(place, value)| match (place.surface, value) {
-                (Some(Surface { factors, .. }), Some(value)) => {
+                (Some(SeenSurface { factors, .. }), Some(value)) => {
                     place.emitted + factors[0] * value[0] + factors[1] * value[1]
                 }
                 _ => place.emitted,
@@ -382,16 +382,16 @@ impl Work<'_> {
     }
 
     /// Shades one place of each small patch that no sample is near, and gives its value to the patch.
-    fn fill(&self, values: &mut [Option<[f64; 2]>], samples: &mut Vec<Sample>) -> usize {
+    fn fill(&self, values: &mut [Option<[f64; 2]>], samples: &mut Vec<ShadedSample>) -> usize {
         let wide = self.visible.size[0];
-        let mut added: Vec<Sample> = Vec::new();
+        let mut added: Vec<ShadedSample> = Vec::new();
         for (i, value) in values.iter_mut().enumerate() {
             let Some(surface) = shaded(&self.visible.places[i]).filter(|_| value.is_none()) else {
                 continue;
             };
             let pixel = i / FOUR;
             let at = at([pixel % wide, pixel / wide], i % FOUR);
-            let is_near = |sample: &&Sample| {
+            let is_near = |sample: &&ShadedSample| {
                 let far = [0, 1].map(|k: usize| (sample.at[k] - at[k]).abs());
                 sample.surface.shape == surface.shape && far[0] < PATCH && far[1] < PATCH
             };
@@ -399,7 +399,7 @@ impl Work<'_> {
                 *value = Some(near.value);
                 continue;
             }
-            let point = Point {
+            let point = PicturePoint {
                 at,
                 metric: Metric::even(PATCH.powi(-2)),
             };

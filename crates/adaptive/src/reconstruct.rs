@@ -1,24 +1,24 @@
 //! What lies between samples: at each place a plane is fitted to the samples about it, those alike in shape, normal and position counting most (a bilateral
 //! filter, Tomasi and Manduchi 1998, whose width is that of the samples' metric, as Durand et al. 2005, section 6.2, have it).
 
-use crate::blue_noise::At;
+use crate::blue_noise::PixelPosition;
 use crate::criterion::shaded;
 use crate::metric::Metric;
-use crate::visible::{FOUR, Surface, Visible, at};
+use crate::visible::{FOUR, SeenSurface, Visible, at};
 use rayon::prelude::*;
 use std::ops::Range;
 
 /// A value at a place of the picture.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Sample {
-    pub(crate) at: At,
+pub(crate) struct ShadedSample {
+    pub(crate) at: PixelPosition,
     pub(crate) metric: Metric,
-    pub(crate) surface: Surface,
+    pub(crate) surface: SeenSurface,
     /// Of base and lobe.
     pub(crate) value: [f64; 2],
 }
 
-impl Sample {
+impl ShadedSample {
     /// The light of a value of base and lobe, with the factors of the surface.
     pub(crate) fn light(&self, value: [f64; 2]) -> f64 {
         let [base, lobe] = self.surface.factors;
@@ -43,7 +43,7 @@ const BAND: usize = 8;
 
 /// How a value is found from samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Fit {
+pub(crate) enum SampleFit {
     /// Their mean.
     Mean,
     /// A plane through them.
@@ -53,8 +53,8 @@ pub(crate) enum Fit {
 /// The values at all places; `None` where nothing is shaded or no sample is near.
 pub(crate) fn reconstruct(
     visible: &Visible,
-    samples: &[Sample],
-    fit: Fit,
+    samples: &[ShadedSample],
+    fit: SampleFit,
 ) -> Vec<Option<[f64; 2]>> {
     let bands = visible.size[1].div_ceil(BAND);
     let of = |band: usize| Band::new(visible, band).filled(samples, fit);
@@ -63,27 +63,27 @@ pub(crate) fn reconstruct(
 
 /// Sums over samples at one place, of positions from there in units of the metric.
 #[derive(Clone, Copy, Debug)]
-struct Sums {
+struct LocalSums {
     weight: f64,
     x: [f64; 2],
     xx: [f64; 3],
-    values: [Values; 2],
+    values: [ValueSums; 2],
 }
 
 /// The sums of one value.
 #[derive(Clone, Copy, Debug)]
-struct Values {
+struct ValueSums {
     value: f64,
     xv: [f64; 2],
     range: [f64; 2],
 }
 
-impl Sums {
+impl LocalSums {
     const ZERO: Self = Self {
         weight: 0.0,
         x: [0.0; 2],
         xx: [0.0; 3],
-        values: [Values {
+        values: [ValueSums {
             value: 0.0,
             xv: [0.0; 2],
             range: [f64::INFINITY, f64::NEG_INFINITY],
@@ -105,15 +105,15 @@ impl Sums {
         }
     }
 
-    fn values(&self, fit: Fit) -> Option<[f64; 2]> {
+    fn values(&self, fit: SampleFit) -> Option<[f64; 2]> {
         (self.weight > 0.0).then(|| match fit {
-            Fit::Mean => self.values.map(|of| of.value / self.weight),
-            Fit::Plane => self.values.map(|of| self.plane(&of)),
+            SampleFit::Mean => self.values.map(|of| of.value / self.weight),
+            SampleFit::Plane => self.values.map(|of| self.plane(&of)),
         })
     }
 
     /// The plane through a value, where the place is.
-    fn plane(&self, of: &Values) -> f64 {
+    fn plane(&self, of: &ValueSums) -> f64 {
         // About the mean of positions, with as much spread added as makes the slope of few samples small.
         let [x, y] = self.x.map(|x| x / self.weight);
         let mean = of.value / self.weight;
@@ -133,7 +133,7 @@ struct Band<'a> {
     visible: &'a Visible,
     first_row: usize,
     rows: usize,
-    sums: Vec<Sums>,
+    sums: Vec<LocalSums>,
 }
 
 impl<'a> Band<'a> {
@@ -144,15 +144,15 @@ impl<'a> Band<'a> {
             visible,
             first_row,
             rows,
-            sums: vec![Sums::ZERO; FOUR * rows * visible.size[0]],
+            sums: vec![LocalSums::ZERO; FOUR * rows * visible.size[0]],
         }
     }
 
-    fn filled(mut self, samples: &[Sample], fit: Fit) -> Vec<Option<[f64; 2]>> {
+    fn filled(mut self, samples: &[ShadedSample], fit: SampleFit) -> Vec<Option<[f64; 2]>> {
         let first = self.visible.range([0, self.first_row]).start;
         let places = &self.visible.places[first..][..self.sums.len()];
         for reach in REACHES {
-            let is_empty = |sums: &Sums| sums.weight <= 0.0;
+            let is_empty = |sums: &LocalSums| sums.weight <= 0.0;
             let missing: Vec<bool> = places
                 .iter()
                 .zip(&self.sums)
@@ -169,7 +169,7 @@ impl<'a> Band<'a> {
     }
 
     /// Adds a sample to all places it reaches.
-    fn splat(&mut self, sample: &Sample, radius: f64, missing: &[bool]) {
+    fn splat(&mut self, sample: &ShadedSample, radius: f64, missing: &[bool]) {
         let size = self.visible.size;
         let reach = sample.metric.reach(radius);
         let [columns, rows] = [0, 1].map(|k: usize| {
@@ -204,7 +204,7 @@ impl<'a> Band<'a> {
 }
 
 /// How unlike two places of a shape are, in squares of standard deviations.
-fn unlike(place: &Surface, sample: &Surface) -> f64 {
+fn unlike(place: &SeenSurface, sample: &SeenSurface) -> f64 {
     let turned = (place.normal - sample.normal).length_squared() / (NORMALS * NORMALS);
     let between = sample.position - place.position;
     let length = between.length_squared();

@@ -1,9 +1,9 @@
 //! Shading samples: paths from a point of a picture.
 
-use crate::blue_noise::Point;
+use crate::blue_noise::PicturePoint;
 use crate::cutoffs::Cutoffs;
-use crate::reconstruct::Sample;
-use crate::visible::Surface;
+use crate::reconstruct::ShadedSample;
+use crate::visible::SeenSurface;
 use etendue_paths::Paths;
 use etendue_world::Camera;
 use rayon::prelude::*;
@@ -24,11 +24,11 @@ impl Shader<'_> {
     /// `first` + i to the random numbers.
     pub(crate) fn shade(
         &self,
-        points: &[Point],
+        points: &[PicturePoint],
         first: u64,
         progress: &(dyn Fn(u64) + Sync),
-    ) -> Vec<(Sample, f64)> {
-        let of = |(i, point): (usize, &Point)| {
+    ) -> Vec<(ShadedSample, f64)> {
+        let of = |(i, point): (usize, &PicturePoint)| {
             let found = self.one(point, first + i as u64);
             progress(1);
             found
@@ -36,19 +36,19 @@ impl Shader<'_> {
         points.par_iter().enumerate().filter_map(of).collect()
     }
 
-    pub(crate) fn one(&self, point: &Point, number: u64) -> Option<(Sample, f64)> {
+    pub(crate) fn one(&self, point: &PicturePoint, number: u64) -> Option<(ShadedSample, f64)> {
         let seen = self
             .paths
             .view(&self.camera.look(point.at, [0.0; 2]))
             .surface?;
-        let surface = Surface::new(self.paths, &seen, self.cutoffs);
+        let surface = SeenSurface::new(self.paths, &seen, self.cutoffs);
         if surface.cutoff <= 0.0 {
             return None;
         }
         let (parts, variance) = self.paths.shade(&seen, self.each, self.seed, number);
         let [base, lobe] = surface.factors;
         let without = |part: f64, factor: f64| if factor > 0.0 { part / factor } else { 0.0 };
-        let sample = Sample {
+        let sample = ShadedSample {
             at: point.at,
             metric: point.metric,
             surface,

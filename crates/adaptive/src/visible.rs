@@ -29,19 +29,19 @@ pub(crate) struct Visible {
     /// Pixels in a row, and rows.
     pub(crate) size: [usize; 2],
     /// Those of a pixel after each other, pixels in rows from the top.
-    pub(crate) places: Vec<Place>,
+    pub(crate) places: Vec<SeenPlace>,
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
+pub(crate) struct SeenPlace {
     /// What sources themselves send, W m⁻² sr⁻¹.
     pub(crate) emitted: f64,
-    pub(crate) surface: Option<Surface>,
+    pub(crate) surface: Option<SeenSurface>,
 }
 
 /// A surface where it is seen.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Surface {
+pub(crate) struct SeenSurface {
     pub(crate) shape: usize,
     pub(crate) position: DVec3,
     /// On the side that is seen.
@@ -56,7 +56,7 @@ pub(crate) struct Surface {
     pub(crate) factors: [f64; 2],
 }
 
-impl Surface {
+impl SeenSurface {
     pub(crate) fn new(paths: &Paths, seen: &SurfaceHit, cutoffs: &Cutoffs) -> Self {
         let reflects = paths.reflects(seen);
         let has_lobe = matches!(reflects, Reflects::Lobe(_) | Reflects::Mirror);
@@ -88,12 +88,14 @@ impl Visible {
         let row = |row: usize| {
             let place = |i: usize| {
                 let view = paths.view(&camera.look(at([i / FOUR, row], i % FOUR), [0.0; 2]));
-                Place {
+                SeenPlace {
                     emitted: view.emitted,
-                    surface: view.surface.map(|seen| Surface::new(paths, &seen, cutoffs)),
+                    surface: view
+                        .surface
+                        .map(|seen| SeenSurface::new(paths, &seen, cutoffs)),
                 }
             };
-            let places: Vec<Place> = (0..FOUR * w).map(place).collect();
+            let places: Vec<SeenPlace> = (0..FOUR * w).map(place).collect();
             progress(w as u64);
             places
         };
@@ -104,7 +106,7 @@ impl Visible {
     }
 
     /// The places of a pixel.
-    pub(crate) fn of_pixel(&self, [column, row]: [usize; 2]) -> &[Place] {
+    pub(crate) fn of_pixel(&self, [column, row]: [usize; 2]) -> &[SeenPlace] {
         &self.places[self.range([column, row])]
     }
 

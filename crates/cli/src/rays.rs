@@ -5,7 +5,7 @@ use crate::print::{deliver, say};
 
 use etendue_field::tidy;
 use etendue_rays::mcpl::{McplFile, PHOTON};
-use etendue_rays::tm25::{Header, Tm25File};
+use etendue_rays::tm25::{Tm25File, Tm25Header};
 use etendue_rays::{Format, MEMORY, MEMORY_FREE, RayFile, RaySet, Wavelengths, convert, gz};
 use etendue_scene::{read_file, shown};
 use etendue_store::Failure;
@@ -127,7 +127,7 @@ fn power(file: &RayFile, set: &RaySet) -> String {
     let stated = |flux: f32, unit: &str| {
         (!flux.is_nan()).then(|| format!("{} {unit}", tidy(f64::from(flux))))
     };
-    let Header {
+    let Tm25Header {
         radiant_flux,
         luminous_flux,
         ..
@@ -202,7 +202,7 @@ fn of_tm25(file: &Tm25File) -> Vec<(&'static str, String)> {
             .trim_end()
             .to_owned(),
     ));
-    let texts = Header::TEXTS.into_iter().zip(&header.texts);
+    let texts = Tm25Header::TEXTS.into_iter().zip(&header.texts);
     let texts = texts.chain([("additional text", &header.additional_text)]);
     for (name, content) in texts.filter(|(_, content)| !content.is_empty()) {
         rows.push((name, text(content.as_bytes())));

@@ -5,7 +5,7 @@
 mod common;
 
 use common::call;
-use etendue_explorer::{CELLS, Key, Plane, Setup, scene};
+use etendue_explorer::{CELLS, PathPlace, Setting, Setup, scene};
 use etendue_field::{Complex, Projection, Slices};
 use ndarray::{Array2, Array3};
 use ndarray_npy::NpzReader;
@@ -13,7 +13,7 @@ use std::fs::{self, File};
 use std::path::Path;
 
 /// What the command predicts at a plane.
-fn predicted(folder: &Path, plane: Plane) -> (Array3<Complex>, Array2<f64>) {
+fn predicted(folder: &Path, plane: PathPlace) -> (Array3<Complex>, Array2<f64>) {
     let path = folder.join(plane.name()).join("prediction.npz");
     let mut file = NpzReader::new(File::open(path).unwrap()).unwrap();
     (
@@ -53,16 +53,16 @@ fn numbers_are_those_of_the_saved_scene() {
         fs::write(folder.path().join(format!("{name}.ron")), scene(&setup)).unwrap();
         let output = call(folder.path(), &format!("predict {name}.ron --out {name}"));
         assert_eq!(output.status.code(), Some(0), "{output:?}");
-        for plane in Plane::all(&setup) {
+        for plane in PathPlace::all(&setup) {
             let command = predicted(&folder.path().join(&name), plane);
             let closed = (plane.spectrum(&setup), plane.field(&setup, CELLS));
             let followed = plane.followed(&setup);
             let off = apart(followed.as_ref().unwrap_or(&closed), &command);
             // The same sums; where frames differ by rounding, its digits.
             assert!(off < 1e-12, "{text}, {}: {off:e}", plane.name());
-            if plane == Plane::Arrived {
+            if plane == PathPlace::Arrived {
                 let mut moved = setup.clone();
-                moved.set(Key::Travel, setup.get(Key::Travel) + 1e-9);
+                moved.set(Setting::Travel, setup.get(Setting::Travel) + 1e-9);
                 let off = apart(
                     &(plane.spectrum(&moved), plane.field(&moved, CELLS)),
                     &command,

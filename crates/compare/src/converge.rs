@@ -78,7 +78,7 @@ pub fn converge(
 /// the sums over rays that it is read from.
 fn by_rays(
     scene: &Scene,
-    whole: &Observed<rays::System>,
+    whole: &Observed<rays::SpecularSystem>,
     e: f64,
     over: Over<'_>,
 ) -> Option<[f64; 2]> {
@@ -96,7 +96,11 @@ fn by_rays(
 
 /// The error where several surfaces scatter: the difference of the chain, a sum over the same paths
 /// with an error of its own of a few per cent.
-fn by_paths(whole: &Observed<reflections::System>, e: f64, over: Over<'_>) -> Option<f64> {
+fn by_paths(
+    whole: &Observed<reflections::ReflectionSystem>,
+    e: f64,
+    over: Over<'_>,
+) -> Option<f64> {
     let view = Observed {
         system: whole.system.shrunk(e)?,
         plane: whole.plane,

@@ -7,8 +7,8 @@ use crate::verdict::Verdict;
 use etendue_field::{Light, Profile, Shape, Slices, Window};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
-use etendue_theory::geometry::{Edition, Map, Matrix};
-use etendue_theory::rays::{self, System};
+use etendue_theory::geometry::{AffineMap, Edition, Matrix};
+use etendue_theory::rays::{self, SpecularSystem};
 use etendue_theory::{Observed, Over, Predicted};
 use ndarray::Array3;
 use serde::{Deserialize, Serialize};
@@ -97,7 +97,7 @@ impl FirstOrderChain {
 impl FirstOrder {
     pub(crate) fn new(
         scene: &Scene,
-        view: &Observed<System>,
+        view: &Observed<SpecularSystem>,
         over: Over<'_>,
         exact: &Predicted,
     ) -> Option<Self> {
@@ -192,7 +192,7 @@ impl FirstOrder {
 /// The covariance after the chain and the window of a Gaussian as wide as the light. Inverses of
 /// covariances add up in a product of Gaussians, and a map takes them to A⁻ᵀ S⁻¹ A⁻¹. `None` for an
 /// environment, which has no width.
-fn propagated(system: &System, chain: &Matrix<4>, window: &Window) -> Option<Matrix<4>> {
+fn propagated(system: &SpecularSystem, chain: &Matrix<4>, window: &Window) -> Option<Matrix<4>> {
     if matches!(system.light, Light::Environment { .. }) {
         return None;
     }
@@ -216,11 +216,11 @@ fn propagated(system: &System, chain: &Matrix<4>, window: &Window) -> Option<Mat
         None if light.is_distant() => [a, b, narrow[2], narrow[3]],
         None => [narrow[0], narrow[1], a, b],
     };
-    let mut inverse = Map::linear(*chain).spectral_covariance(&diagonal(inverse))?;
+    let mut inverse = AffineMap::linear(*chain).spectral_covariance(&diagonal(inverse))?;
     for (row, v) in window.iter().enumerate() {
         inverse[row][row] += 1.0 / v;
     }
-    Some(Map::linear(inverse).inverse()?.matrix)
+    Some(AffineMap::linear(inverse).inverse()?.matrix)
 }
 
 /// The variance of the Gaussian with the profile's curvature at its centre. For a box it is the

@@ -48,14 +48,14 @@ pub struct FullRadialComparison {
 /// U (1 − Σa²) = Σ_r D_r·(2 Σ_(s≠r) S_s) + (2α − 1) Σ_(r≠s) D_r·D_s.
 ///
 /// If the prediction is true, each D_r is as likely as its negative, whatever the others and S are (docs/theory.md (45)).
-struct Difference {
+struct BinDifference {
     /// 2 Σ_(s≠r) D_r·S_s/(1 − Σa²) of each group.
     linear: Vec<f64>,
     /// 2 (2α − 1) D_r·D_s/(1 − Σa²), row by row for s < r.
     pairs: Vec<f64>,
 }
 
-impl Difference {
+impl BinDifference {
     /// From the products of the spectra of a bin: those of groups with the shares `a`, and those of the prediction.
     fn new(products: ArrayView2<'_, f64>, a: &[f64]) -> Self {
         let n = a.len();
@@ -157,7 +157,8 @@ pub(crate) fn compared(
     );
     let products = bins.products(&spectra);
     let each = || products.outer_iter();
-    let differences: Vec<Difference> = each().map(|of| Difference::new(of, &shares)).collect();
+    let differences: Vec<BinDifference> =
+        each().map(|of| BinDifference::new(of, &shares)).collect();
     let power = each().map(|of| match predicted {
         PredictedField::Exact { .. } => of[[n, n]],
         PredictedField::Sampled(_) => crossed(of, n),
@@ -177,13 +178,13 @@ pub(crate) fn compared(
 
 /// Every number of the differences of all bins.
 fn report(
-    differences: &[Difference],
+    differences: &[BinDifference],
     (power, sigma): (&Array2<f64>, &Array2<f64>),
     alias_free: Option<&Array2<f64>>,
     seed: u64,
 ) -> FullRadialReport {
     // Bins without noise, such as all of a dark field, have nothing to be tested.
-    let noisy: Vec<(&Difference, f64)> = differences
+    let noisy: Vec<(&BinDifference, f64)> = differences
         .iter()
         .map(|bin| (bin, bin.variance()))
         .filter(|(_, variance)| *variance > 0.0)
@@ -271,7 +272,7 @@ mod tests {
     fn terms_add_up_to_the_difference_of_both_powers() {
         for exact in [true, false] {
             let (products, shares, expected) = products(exact);
-            let difference = Difference::new(products.view(), &shares);
+            let difference = BinDifference::new(products.view(), &shares);
             let found = difference.with_signs(&[1.0; 4]);
             assert!((found - expected).abs() < 1e-14, "{found} {expected}"); // rounding
         }
@@ -280,7 +281,7 @@ mod tests {
     #[test]
     fn the_variance_is_that_over_all_signs() {
         let (products, shares, _) = products(false);
-        let difference = Difference::new(products.view(), &shares);
+        let difference = BinDifference::new(products.view(), &shares);
         let all = (0..16).map(|bits: u32| {
             let signs = [0, 1, 2, 3].map(|r| if bits >> r & 1 == 0 { 1.0 } else { -1.0 });
             difference.with_signs(&signs).powi(2)

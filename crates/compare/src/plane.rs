@@ -88,7 +88,7 @@ pub fn compare(
         }
         None => (estimate.variance, None, predicted.radial_power()),
     };
-    let sides = Compared {
+    let sides = ComparedSides {
         measurement,
         index,
         prediction,
@@ -121,7 +121,7 @@ pub fn compare(
 }
 
 /// Both sides of a comparison, and what is between them.
-struct Compared<'a> {
+struct ComparedSides<'a> {
     measurement: &'a Measurement,
     index: usize,
     prediction: &'a Prediction,
@@ -136,7 +136,7 @@ struct Compared<'a> {
 }
 
 /// What a comparison comes to.
-struct Judged {
+struct Judgement {
     agreement: Agreement,
     p_value: Option<f64>,
     first_order: Option<FirstOrderReport>,
@@ -145,8 +145,8 @@ struct Judged {
     open: Option<String>,
 }
 
-impl Compared<'_> {
-    fn judged(&self, test: &Test) -> Judged {
+impl ComparedSides<'_> {
+    fn judged(&self, test: &Test) -> Judgement {
         let agreement = Agreement::new(self.residuals, self.variance, self.predicted);
         let p_value = self.residuals.p_value(test.seed);
         let agrees = if self.predicted.is_dark() {
@@ -170,7 +170,7 @@ impl Compared<'_> {
         let first_order =
             first_order.map(|f| f.report(self.measurement, self.index, exact, test.seed));
         let has_wrong_map = first_order.as_ref().map(|f| f.verdict) == Some(Verdict::Fail);
-        Judged {
+        Judgement {
             agreement,
             p_value,
             first_order,
@@ -317,7 +317,7 @@ impl Compared<'_> {
         batches.any(|batch| batch.tally.inside == 0) || replicates.any(Slices::is_dark)
     }
 
-    fn report(&self, judged: &Judged) -> Result<PlaneReport, TooFewBatches> {
+    fn report(&self, judged: &Judgement) -> Result<PlaneReport, TooFewBatches> {
         let plane = &self.measurement.planes()[self.index];
         let tally = self.measurement.tally(self.index);
         let (grid, prediction) = (&plane.grid, self.prediction);

@@ -2,15 +2,15 @@
 
 use crate::chain::stands_before;
 use etendue_field::{Light, Mask, Orientation, Patch, Side, Specular, VirtualPlane};
-use etendue_scene::{BlockerLayer, Event, Hit, Object, PatchObject, Scene, PathSurface};
+use etendue_scene::{BlockerLayer, Event, Hit, Object, PatchObject, Scene, Surface};
 use etendue_theory::geometry::Edition;
-use etendue_theory::rays::{SpecularSurface, Plane, System};
+use etendue_theory::rays::{Plane, SpecularSurface, SpecularSystem};
 use etendue_theory::{Observed, Obstacle, ObstacleForm, reflections, scattering};
 
 /// The light, masks and specular surfaces through which rays reach a plane, and the plane. `None`
 /// where light comes from a ray file, and where a surface is not specular.
 #[must_use]
-pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<System>> {
+pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<SpecularSystem>> {
     if matches!(scene.light, Light::Rays { .. }) {
         return None;
     }
@@ -40,7 +40,7 @@ pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<System>> {
             Object::Surface(_) => None,
         })
         .collect();
-    let system = System {
+    let system = SpecularSystem {
         light: scene.light.clone(),
         layers: layers_before(scene, plane),
         obstacles: beside_the_path(scene),
@@ -69,7 +69,10 @@ fn seen_from(event: Specular, back: bool) -> Specular {
 /// The light, the masks and the surface with a BRDF before a plane, and the plane. `None` where the
 /// plane is not on the second leg, where the first surface has no BRDF, and where light comes from a ray file.
 #[must_use]
-pub fn scattered(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<scattering::System>> {
+pub fn scattered(
+    scene: &Scene,
+    plane: &VirtualPlane,
+) -> Option<Observed<scattering::ScatteringSystem>> {
     // A plane on the next surface has that one's coordinates.
     let is_on_next = plane.side == Side::Before && plane.orientation != Orientation::Orthogonal;
     if plane.leg != 1 || is_on_next || matches!(scene.light, Light::Rays { .. }) {
@@ -82,7 +85,7 @@ pub fn scattered(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<scatter
     let Event::Reflects(reflectance) = &object.event else {
         return None;
     };
-    let system = scattering::System {
+    let system = scattering::ScatteringSystem {
         light: scene.light.clone(),
         layers: layers_before(scene, plane),
         obstacles: beside_the_path(scene),
@@ -102,7 +105,7 @@ pub fn scattered(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<scatter
 pub(crate) fn reflected(
     scene: &Scene,
     plane: &VirtualPlane,
-) -> Option<Observed<reflections::System>> {
+) -> Option<Observed<reflections::ReflectionSystem>> {
     if matches!(scene.light, Light::Environment { .. } | Light::Rays { .. }) {
         return None;
     }
@@ -127,7 +130,7 @@ pub(crate) fn reflected(
     let later =
         later.filter(|hit| scene.path.ends_at(visited).map(|end| end.object) != Some(hit.object));
     obstacles.extend(later.map(|hit| as_obstacle(scene, hit.object)));
-    let system = reflections::System {
+    let system = reflections::ReflectionSystem {
         light: scene.light.clone(),
         obstacles,
         surfaces,
@@ -161,7 +164,7 @@ fn visited_surface(scene: &Scene, hit: &Hit) -> Option<reflections::PathSurface>
             Some(of(*patch, None, interaction))
         }
         Object::Surface(i) => {
-            let PathSurface {
+            let Surface {
                 frame,
                 size,
                 albedo,

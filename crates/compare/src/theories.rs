@@ -5,7 +5,7 @@ use crate::system::{scattered, system};
 use etendue_field::{Mask, Orientation, VirtualPlane};
 use etendue_scene::{BlockerLayer, Scene};
 use etendue_theory::{
-    Budget, Chain, Model, Observed, Over, Parameter, Work, rays, reflections, scattering,
+    Budget, Chain, Model, Observed, Over, Parameter, PredictionWork, rays, reflections, scattering,
 };
 
 /// The theories of a windowed light field.
@@ -14,11 +14,11 @@ pub enum Theory {
     /// Light between parallel planes, in closed form or by quadrature over a flat receiver.
     Parallel(Chain),
     /// Rays followed through smooth specular surfaces, or through pictures.
-    Specular(Box<Observed<rays::System>>),
+    Specular(Box<Observed<rays::SpecularSystem>>),
     /// Light that one smooth surface reflects by a BRDF.
-    Scattering(Box<Observed<scattering::System>>),
+    Scattering(Box<Observed<scattering::ScatteringSystem>>),
     /// Light that several surfaces send on in turn, or one past its own shadow or its edges.
-    Reflections(Box<Observed<reflections::System>>),
+    Reflections(Box<Observed<reflections::ReflectionSystem>>),
     /// None: another measurement takes its place.
     None,
 }
@@ -75,20 +75,20 @@ impl Theory {
     }
 
     /// What a prediction of its model takes.
-    pub(crate) fn work(&self, over: Over<'_>, budget: Budget) -> Work {
+    pub(crate) fn work(&self, over: Over<'_>, budget: Budget) -> PredictionWork {
         match self {
             Self::Parallel(chain) => chain.work(over, budget),
             Self::Specular(view) => view.work(over, budget),
             Self::Scattering(view) => view.work(over, budget),
             Self::Reflections(view) => view.work(over, budget),
-            Self::None => Work::none(),
+            Self::None => PredictionWork::none(),
         }
     }
 }
 
 /// The system of specular surfaces that leads to a plane behind one or on one, or of light that
 /// goes through pictures.
-fn followed(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<rays::System>> {
+fn followed(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<rays::SpecularSystem>> {
     let across = plane.orientation == Orientation::Orthogonal;
     if !scene.light.is_picture() && plane.leg == 0 && across {
         return None;

@@ -49,7 +49,7 @@ impl TwoSamples {
     /// When the arrays have other shapes than the grid.
     #[must_use]
     pub fn new(grid: &SliceGrid, a: &Sample, b: &Sample) -> Self {
-        let sums = Sums::new(grid, a, b);
+        let sums = FrequencySums::new(grid, a, b);
         let norm = sums.norms[0].max(sums.norms[1]).sqrt();
         let relative = |square: f64| {
             if norm > 0.0 {
@@ -95,7 +95,7 @@ impl TwoSamples {
 
 /// Sums over the independent frequencies.
 #[derive(Debug, Default)]
-struct Sums {
+struct FrequencySums {
     /// Frequencies with noise.
     count: usize,
     /// Σ|A − B|²/(σ_A² + σ_B²).
@@ -112,7 +112,7 @@ struct Sums {
     without_noise: bool,
 }
 
-impl Sums {
+impl FrequencySums {
     fn new(grid: &SliceGrid, a: &Sample, b: &Sample) -> Self {
         let largest = |sample: &Sample| sample.mean.iter().map(|s| modulus(*s)).fold(0.0, f64::max);
         let rounding = ROUNDING * largest(a).max(largest(b));

@@ -5,7 +5,7 @@ use crate::budget::budget;
 use etendue_field::{ProjectionGrid, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::PROJECTION_BINS;
-use etendue_theory::Work;
+use etendue_theory::PredictionWork;
 use std::fmt;
 
 /// The largest number of steps of the predictions of a scene, about ten minutes of one core.
@@ -17,7 +17,7 @@ const MOST_BYTES: f64 = 1e9;
 #[derive(Clone, Debug, PartialEq)]
 pub struct TooMuchWork {
     plane: String,
-    work: Work,
+    work: PredictionWork,
     /// Steps of all planes counted so far.
     total: f64,
 }
@@ -96,9 +96,13 @@ pub fn seconds(scene: &Scene, theories: &[Applicability]) -> [f64; 2] {
 }
 
 /// What the prediction of a plane takes.
-pub(crate) fn of(scene: &Scene, plane: &VirtualPlane, applicability: &Applicability) -> Work {
+pub(crate) fn of(
+    scene: &Scene,
+    plane: &VirtualPlane,
+    applicability: &Applicability,
+) -> PredictionWork {
     if applicability.dark.is_some() {
-        return Work::none();
+        return PredictionWork::none();
     }
     let picture = ProjectionGrid::new(&plane.window, PROJECTION_BINS);
     let over = (&plane.window, &plane.grid, &picture);

@@ -1,7 +1,7 @@
 //! The numbers of `docs/explorer.html`: a page on which light, blockers, travel and a receiver are
 //! dragged, and each light field and spectrum along the path is seen to change.
 //!
-//! A [`Setup`] holds what can be set. A [`Plane`] is a place on the path: its light field and its
+//! A [`Setup`] holds what can be set. A [`PathPlace`] is a place on the path: its light field and its
 //! spectrum are those of [`etendue_theory`], between parallel planes the very numbers that
 //! `etendue predict` gives for the scene that [`scene`] writes. On a curved glossy receiver they
 //! are first-order, without the cosine, and rays are followed off the sphere when asked.
@@ -18,6 +18,6 @@ mod ron;
 mod setup;
 
 pub use parts::{CELLS, grid, lobe};
-pub use plane::Plane;
+pub use plane::PathPlace;
 pub use ron::scene;
-pub use setup::{Entry, Key, Setup, TABLE};
+pub use setup::{Setting, SettingEntry, Setup, TABLE};

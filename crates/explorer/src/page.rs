@@ -1,6 +1,6 @@
 //! What the page calls.
 
-use crate::{CELLS, Key, Plane, Setup, TABLE, grid, lobe, scene};
+use crate::{CELLS, PathPlace, Setting, Setup, TABLE, grid, lobe, scene};
 use etendue_theory::shading::Criterion;
 use wasm_bindgen::prelude::wasm_bindgen;
 
@@ -28,7 +28,7 @@ impl Explorer {
     /// Takes every other frequency, where the window needs no more, and larger cells: what is
     /// moving need not be as fine, and each number stays as exact as it was.
     pub fn coarsen(&mut self) {
-        for key in [Key::RhoStep, Key::NuStep] {
+        for key in [Setting::RhoStep, Setting::NuStep] {
             self.setup.set(key, 2.0 * self.setup.get(key));
         }
         self.cells = CELLS / 2;
@@ -71,15 +71,15 @@ impl Explorer {
     /// The names of the planes, one to a line; a * before those that take long.
     #[must_use]
     pub fn planes(&self) -> String {
-        let all = Plane::all(&self.setup).into_iter();
-        let shown = |p: Plane| format!("{}{}", if p.is_slow() { "*" } else { "" }, p.name());
+        let all = PathPlace::all(&self.setup).into_iter();
+        let shown = |p: PathPlace| format!("{}{}", if p.is_slow() { "*" } else { "" }, p.name());
         all.map(shown).collect::<Vec<_>>().join("\n")
     }
 
     /// The light field at a plane: cells along x, along u, then the values, u fastest.
     #[must_use]
     pub fn field(&self, plane: usize) -> Vec<f64> {
-        let values = Plane::all(&self.setup)[plane]
+        let values = PathPlace::all(&self.setup)[plane]
             .field(&self.setup, self.cells)
             .values;
         values.iter().copied().collect()
@@ -88,7 +88,7 @@ impl Explorer {
     /// Its spectrum at azimuth 0, for ρ ≥ 0: real and imaginary parts by turns, ν fastest.
     #[must_use]
     pub fn spectrum(&self, plane: usize) -> Vec<f64> {
-        let slices = Plane::all(&self.setup)[plane].spectrum(&self.setup);
+        let slices = PathPlace::all(&self.setup)[plane].spectrum(&self.setup);
         slices
             .half
             .iter()
@@ -100,7 +100,7 @@ impl Explorer {
     /// where they are exact already.
     #[must_use]
     pub fn follow(&self, plane: usize) -> Vec<f64> {
-        let plane = Plane::all(&self.setup)[plane];
+        let plane = PathPlace::all(&self.setup)[plane];
         let Some((slices, field)) = plane.followed(&self.setup) else {
             return Vec::new();
         };
@@ -118,8 +118,8 @@ impl Explorer {
         let half = |key| self.setup.get(key);
         vec![
             self.cells as f64,
-            half(Key::WindowX),
-            half(Key::WindowU),
+            half(Setting::WindowX),
+            half(Setting::WindowU),
             grid.rho.half as f64,
             grid.rho.spacing,
             grid.nu.half as f64,
@@ -134,11 +134,11 @@ impl Explorer {
     pub fn criterion(&self) -> Vec<f64> {
         let get = |key| self.setup.get(key);
         let criterion = Criterion {
-            curvature: get(Key::Curvature),
+            curvature: get(Setting::Curvature),
             incidence: 0.0,
             outgoing: 0.0,
             distance: 1.0,
-            blocker_distance: Some(get(Key::Travel) - get(Key::Distance)),
+            blocker_distance: Some(get(Setting::Travel) - get(Setting::Distance)),
             lobe_cutoff: lobe(&self.setup).cutoff(0.99),
             environment_cutoff: 0.0,
         };

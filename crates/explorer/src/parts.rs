@@ -1,6 +1,6 @@
 //! The light, blockers, lobe, window and frequencies of a setup.
 
-use crate::setup::{Key, Setup};
+use crate::setup::{Setting, Setup};
 use etendue_field::{FrequencyAxis, Light, Profile, Rectangle, Shape, SliceGrid, Window, whole};
 use etendue_theory::shading::Lobe;
 use etendue_transform::random::{self, Stream};
@@ -17,7 +17,7 @@ const MAX_FREQUENCIES: usize = 160;
 pub(crate) fn square(setup: &Setup) -> Light {
     let square = Rectangle {
         center: [0.0; 2],
-        size: [setup.get(Key::Width); 2],
+        size: [setup.get(Setting::Width); 2],
     };
     Light::Area {
         shape: Shape::Rectangle(square),
@@ -30,7 +30,7 @@ pub(crate) fn square(setup: &Setup) -> Light {
 #[must_use]
 pub fn lobe(setup: &Setup) -> Lobe {
     Lobe::Phong {
-        exponent: setup.get(Key::Exponent),
+        exponent: setup.get(Setting::Exponent),
     }
 }
 
@@ -47,7 +47,7 @@ pub(crate) fn place(i: u32, count: u32) -> f64 {
     reason = "1 to 41"
 )]
 pub(crate) fn count(setup: &Setup) -> u32 {
-    setup.get(Key::Count).round() as u32
+    setup.get(Setting::Count).round() as u32
 }
 
 /// The seed of the jitter.
@@ -58,15 +58,16 @@ pub(crate) fn count(setup: &Setup) -> u32 {
     reason = "0 to 2³²"
 )]
 pub(crate) fn seed(setup: &Setup) -> u64 {
-    setup.get(Key::Seed).round() as u64
+    setup.get(Setting::Seed).round() as u64
 }
 
 /// The blockers, from the central ray.
 pub(crate) fn shapes(setup: &Setup) -> Vec<Shape> {
     let count = count(setup);
-    let [pitch, fill, jitter] = [Key::Pitch, Key::Fill, Key::Jitter].map(|key| setup.get(key));
-    let middle = -setup.get(Key::Position);
-    if !setup.is(Key::Squares) {
+    let [pitch, fill, jitter] =
+        [Setting::Pitch, Setting::Fill, Setting::Jitter].map(|key| setup.get(key));
+    let middle = -setup.get(Setting::Position);
+    if !setup.is(Setting::Squares) {
         let slat = |i| Rectangle {
             center: [middle + place(i, count) * pitch, 0.0],
             size: [fill * pitch, SLAT],
@@ -90,14 +91,14 @@ pub(crate) fn shapes(setup: &Setup) -> Vec<Shape> {
 /// The window of all planes.
 #[must_use]
 pub(crate) fn window(setup: &Setup) -> Window {
-    let [x, u] = [Key::WindowX, Key::WindowU].map(|key| Profile::Hann(setup.get(key)));
+    let [x, u] = [Setting::WindowX, Setting::WindowU].map(|key| Profile::Hann(setup.get(key)));
     Window { x, y: x, u, v: u }
 }
 
 /// Their frequencies.
 #[must_use]
 pub fn grid(setup: &Setup) -> SliceGrid {
-    let axis = |most: Key, step: Key, half_width: Key| {
+    let axis = |most: Setting, step: Setting, half_width: Setting| {
         // Never wider than the window asks for.
         let spacing = setup.get(step).min(0.5 / setup.get(half_width));
         let half = whole((setup.get(most) / spacing - 1e-9).ceil()).min(MAX_FREQUENCIES);
@@ -105,7 +106,7 @@ pub fn grid(setup: &Setup) -> SliceGrid {
     };
     SliceGrid {
         azimuths: 1,
-        rho: axis(Key::RhoMax, Key::RhoStep, Key::WindowX),
-        nu: axis(Key::NuMax, Key::NuStep, Key::WindowU),
+        rho: axis(Setting::RhoMax, Setting::RhoStep, Setting::WindowX),
+        nu: axis(Setting::NuMax, Setting::NuStep, Setting::WindowU),
     }
 }

@@ -1,10 +1,10 @@
 //! Planes along the path.
 
-use crate::setup::{Key, Setup};
+use crate::setup::{Setting, Setup};
 
 /// A place on the path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Plane {
+pub enum PathPlace {
     /// At the light.
     Light,
     /// Before the blockers.
@@ -25,12 +25,12 @@ pub enum Plane {
     Glossy,
 }
 
-impl Plane {
+impl PathPlace {
     /// Those of a scene, in the order of light.
     #[must_use]
     pub fn all(setup: &Setup) -> Vec<Self> {
         let mut all = vec![Self::Light, Self::Travelled, Self::Blocked, Self::Arrived];
-        all.extend(if setup.is(Key::Glossy) {
+        all.extend(if setup.is(Setting::Glossy) {
             vec![Self::Curved, Self::Blurred, Self::Glossy]
         } else {
             vec![Self::Irradiance, Self::Diffuse]

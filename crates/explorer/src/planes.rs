@@ -1,15 +1,15 @@
 //! Spectra and light fields at the planes along the path: each a call of `etendue_theory`.
 
 use crate::parts::{grid, lobe, shapes, square, window};
-use crate::plane::Plane;
+use crate::plane::PathPlace;
 use crate::rays;
-use crate::setup::{Key, Setup};
+use crate::setup::{Setting, Setup};
 use etendue_field::{Mask, Projection, ProjectionGrid, Slices};
 use etendue_theory::{
     Chain, Operator, Source, blurred_projection, blurred_slices, projection, slices,
 };
 
-impl Plane {
+impl PathPlace {
     /// The slice at azimuth 0.
     #[must_use]
     pub fn spectrum(self, setup: &Setup) -> Slices {
@@ -20,7 +20,7 @@ impl Plane {
                 let chain = imaged(setup, if self == Self::Glossy { 2.0 } else { 1.0 });
                 let mut found = blurred_slices(&chain, &lobe(setup), &window, &grid);
                 // Straight back (x, u) is (−x, −u), and the albedo stays behind.
-                let albedo = setup.get(Key::Albedo);
+                let albedo = setup.get(Setting::Albedo);
                 found.half.mapv_inplace(|value| value.conj() * albedo);
                 found
             }
@@ -44,7 +44,7 @@ impl Plane {
                 let mut found = blurred_projection(&chain, &lobe(setup), &window, &cells);
                 found.values.invert_axis(ndarray::Axis(0));
                 found.values.invert_axis(ndarray::Axis(1));
-                found.values *= setup.get(Key::Albedo);
+                found.values *= setup.get(Setting::Albedo);
                 found
             }
             _ => projection(&self.chain(setup), &window, &cells),
@@ -61,13 +61,13 @@ impl Plane {
 
     /// What light meets before it arrives here, between parallel planes.
     fn chain(self, setup: &Setup) -> Chain {
-        let (blockers, receiver) = (setup.get(Key::Distance), setup.get(Key::Travel));
+        let (blockers, receiver) = (setup.get(Setting::Distance), setup.get(Setting::Travel));
         let mut operators = Vec::new();
         if self != Self::Light {
             operators.push(travel("light", "blockers", blockers));
         }
         if !matches!(self, Self::Light | Self::Travelled) {
-            if setup.get(Key::Fill) > 0.0 {
+            if setup.get(Setting::Fill) > 0.0 {
                 operators.push(Operator::Visibility {
                     name: "blockers".to_owned(),
                     mask: Mask::Opaque {
@@ -85,7 +85,7 @@ impl Plane {
             operators.push(Operator::Cosine { name: name() });
         }
         if self == Self::Diffuse {
-            let albedo = setup.get(Key::Albedo);
+            let albedo = setup.get(Setting::Albedo);
             operators.push(Operator::Diffuse {
                 name: name(),
                 albedo,
@@ -111,8 +111,8 @@ fn travel(from: &str, to: &str, distance: f64) -> Operator {
 
 /// The light that arrives at the receiver, its slopes moved by some times curvature times position.
 fn imaged(setup: &Setup, times: f64) -> Chain {
-    let chain = Plane::Arrived.chain(setup);
-    let power = times * setup.get(Key::Curvature);
+    let chain = PathPlace::Arrived.chain(setup);
+    let power = times * setup.get(Setting::Curvature);
     chain
         .imaged(power)
         .expect("an even light and opaque blockers")

@@ -1,8 +1,8 @@
 //! The curved glossy receiver as it is: rays followed off a sphere, as `etendue predict` does it.
 
 use crate::parts::{CELLS, grid, shapes, square, window};
-use crate::plane::Plane;
-use crate::setup::{Key, Setup};
+use crate::plane::PathPlace;
+use crate::setup::{Setting, Setup};
 use etendue_field::{
     Brdf, Frame, Fresnel, Lobe, Mask, Orientation, Patch, ProjectionGrid, Quantity, Reflectance,
     SliceGrid,
@@ -22,7 +22,7 @@ pub(crate) const APERTURE: f64 = 0.6;
 pub(crate) const AZIMUTHS: usize = 2;
 
 /// The light field at a plane on a glossy receiver by nets of rays; `None` for other planes.
-pub(crate) fn followed(plane: Plane, setup: &Setup) -> Option<Predicted> {
+pub(crate) fn followed(plane: PathPlace, setup: &Setup) -> Option<Predicted> {
     let window = window(setup);
     let grid = SliceGrid {
         azimuths: AZIMUTHS,
@@ -33,8 +33,8 @@ pub(crate) fn followed(plane: Plane, setup: &Setup) -> Option<Predicted> {
     let (light, layers) = (square(setup), layers(setup));
     let patch = patch(setup);
     match plane {
-        Plane::Curved => {
-            let system = rays::System {
+        PathPlace::Curved => {
+            let system = rays::SpecularSystem {
                 light,
                 layers,
                 obstacles: Vec::new(),
@@ -43,13 +43,13 @@ pub(crate) fn followed(plane: Plane, setup: &Setup) -> Option<Predicted> {
             let plane = seen(&patch, Orientation::LocalNormals, true);
             Some(Observed { system, plane }.predict(&[], over, BUDGET))
         }
-        Plane::Blurred | Plane::Glossy => {
-            let orientation = if plane == Plane::Glossy {
+        PathPlace::Blurred | PathPlace::Glossy => {
+            let orientation = if plane == PathPlace::Glossy {
                 Orientation::Orthogonal
             } else {
                 Orientation::LocalNormals
             };
-            let system = scattering::System {
+            let system = scattering::ScatteringSystem {
                 light,
                 layers,
                 obstacles: Vec::new(),
@@ -65,30 +65,30 @@ pub(crate) fn followed(plane: Plane, setup: &Setup) -> Option<Predicted> {
 }
 
 fn layers(setup: &Setup) -> Vec<(f64, Mask)> {
-    if setup.get(Key::Fill) <= 0.0 {
+    if setup.get(Setting::Fill) <= 0.0 {
         return Vec::new();
     }
     let mask = Mask::Opaque {
         shapes: shapes(setup),
         half_planes: Vec::new(),
     };
-    vec![(setup.get(Key::Distance), mask)]
+    vec![(setup.get(Setting::Distance), mask)]
 }
 
 /// The receiver in the frame at the light, turned to it.
 fn patch(setup: &Setup) -> Patch {
-    let vertex = DVec3::Z * setup.get(Key::Travel);
+    let vertex = DVec3::Z * setup.get(Setting::Travel);
     Patch {
         frame: Frame::new(vertex, DVec3::NEG_Z, DVec3::X).expect("axes at right angles"),
-        curvature: [setup.get(Key::Curvature); 3],
+        curvature: [setup.get(Setting::Curvature); 3],
         aperture: APERTURE,
     }
 }
 
 fn reflectance(setup: &Setup) -> Reflectance {
-    let exponent = setup.get(Key::Exponent);
+    let exponent = setup.get(Setting::Exponent);
     let lobe = Lobe::Phong { exponent };
-    Brdf::new(lobe, setup.get(Key::Albedo), Fresnel::White).into()
+    Brdf::new(lobe, setup.get(Setting::Albedo), Fresnel::White).into()
 }
 
 /// A plane where the central ray meets the receiver; straight back X is turned round.

@@ -1,9 +1,9 @@
 //! The scene as a file for `etendue run`.
 
 use crate::parts::{SLAT, count, grid, place, seed};
-use crate::plane::Plane;
+use crate::plane::PathPlace;
 use crate::rays::{APERTURE, AZIMUTHS};
-use crate::setup::{Key, Setup};
+use crate::setup::{Setting, Setup};
 use etendue_field::FrequencyAxis;
 use std::fmt::Write;
 
@@ -14,10 +14,14 @@ const PHOTONS: u64 = 4_194_304;
 #[must_use]
 pub fn scene(setup: &Setup) -> String {
     let get = |key| setup.get(key);
-    let (x, distance, end) = (get(Key::Position), get(Key::Distance), get(Key::Travel));
+    let (x, distance, end) = (
+        get(Setting::Position),
+        get(Setting::Distance),
+        get(Setting::Travel),
+    );
     let grid = grid(setup);
     let axis = |axis: &FrequencyAxis| format!("(max: {}, spacing: {})", axis.max(), axis.spacing);
-    let planes: Vec<String> = Plane::all(setup)
+    let planes: Vec<String> = PathPlace::all(setup)
         .into_iter()
         .map(|p| plane(p, setup))
         .collect();
@@ -38,25 +42,26 @@ pub fn scene(setup: &Setup) -> String {
 )
 ",
         fragment = setup.fragment(),
-        side = get(Key::Width),
+        side = get(Setting::Width),
         blockers = blockers(setup, distance),
         receiver = receiver(setup, x, end),
         planes = planes.join("\n"),
-        window_x = get(Key::WindowX),
-        window_u = get(Key::WindowU),
+        window_x = get(Setting::WindowX),
+        window_u = get(Setting::WindowU),
         rho = axis(&grid.rho),
         nu = axis(&grid.nu),
     )
 }
 
 fn blockers(setup: &Setup, distance: f64) -> String {
-    let [pitch, fill, jitter] = [Key::Pitch, Key::Fill, Key::Jitter].map(|key| setup.get(key));
+    let [pitch, fill, jitter] =
+        [Setting::Pitch, Setting::Fill, Setting::Jitter].map(|key| setup.get(key));
     let count = count(setup);
     if fill <= 0.0 {
         return String::new();
     }
     let head = format!("name: \"blockers\", center: (0, 0, {distance})");
-    if setup.is(Key::Squares) {
+    if setup.is(Setting::Squares) {
         let seed = seed(setup);
         return format!(
             "    blockers: [
@@ -79,13 +84,13 @@ fn blockers(setup: &Setup, distance: f64) -> String {
 }
 
 fn receiver(setup: &Setup, x: f64, end: f64) -> String {
-    let albedo = setup.get(Key::Albedo);
-    if !setup.is(Key::Glossy) {
+    let albedo = setup.get(Setting::Albedo);
+    if !setup.is(Setting::Glossy) {
         return format!(
             "Rectangle(name: \"receiver\", center: ({x}, 0, {end}), size: (6, 6), albedo: {albedo})"
         );
     }
-    let [curvature, exponent] = [Key::Curvature, Key::Exponent].map(|key| setup.get(key));
+    let [curvature, exponent] = [Setting::Curvature, Setting::Exponent].map(|key| setup.get(key));
     let form = if curvature.abs() > 0.0 {
         format!("Sphere({curvature})")
     } else {
@@ -99,20 +104,20 @@ fn receiver(setup: &Setup, x: f64, end: f64) -> String {
 }
 
 /// A plane; beside blockers that are not there it stands where they would be.
-fn plane(plane: Plane, setup: &Setup) -> String {
-    let distance = setup.get(Key::Distance);
-    let are_there = setup.get(Key::Fill) > 0.0;
+fn plane(plane: PathPlace, setup: &Setup) -> String {
+    let distance = setup.get(Setting::Distance);
+    let are_there = setup.get(Setting::Fill) > 0.0;
     let before_receiver = "at: Before(\"receiver\")";
     let place = match plane {
-        Plane::Light => "at: Emission".to_owned(),
-        Plane::Travelled if are_there => "at: Before(\"blockers\")".to_owned(),
-        Plane::Blocked if are_there => "at: After(\"blockers\")".to_owned(),
-        Plane::Travelled | Plane::Blocked => format!("at: Distance({distance})"),
-        Plane::Arrived => before_receiver.to_owned(),
-        Plane::Irradiance => format!("{before_receiver}, quantity: DifferentialIrradiance"),
-        Plane::Curved => format!("{before_receiver}, orientation: LocalNormals"),
-        Plane::Blurred => "at: After(\"receiver\"), orientation: LocalNormals".to_owned(),
-        Plane::Diffuse | Plane::Glossy => "at: After(\"receiver\")".to_owned(),
+        PathPlace::Light => "at: Emission".to_owned(),
+        PathPlace::Travelled if are_there => "at: Before(\"blockers\")".to_owned(),
+        PathPlace::Blocked if are_there => "at: After(\"blockers\")".to_owned(),
+        PathPlace::Travelled | PathPlace::Blocked => format!("at: Distance({distance})"),
+        PathPlace::Arrived => before_receiver.to_owned(),
+        PathPlace::Irradiance => format!("{before_receiver}, quantity: DifferentialIrradiance"),
+        PathPlace::Curved => format!("{before_receiver}, orientation: LocalNormals"),
+        PathPlace::Blurred => "at: After(\"receiver\"), orientation: LocalNormals".to_owned(),
+        PathPlace::Diffuse | PathPlace::Glossy => "at: After(\"receiver\")".to_owned(),
     };
     format!("        (name: \"{}\", {place}),", plane.name())
 }

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 /// A number that can be set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Key {
+pub enum Setting {
     /// Side of the square light, metres.
     Width,
     /// Where the light stands beside the middle of the blockers, metres.
@@ -49,9 +49,9 @@ pub enum Key {
 
 /// A key with its name in URLs, its words and its range.
 #[derive(Clone, Copy, Debug)]
-pub struct Entry {
+pub struct SettingEntry {
     /// Which number.
-    pub key: Key,
+    pub key: Setting,
     /// Its name in URLs.
     pub name: &'static str,
     /// What the page calls it; empty where the page has no slider for it.
@@ -67,14 +67,14 @@ pub struct Entry {
 }
 
 const fn entry(
-    key: Key,
+    key: Setting,
     name: &'static str,
     [label, unit]: [&'static str; 2],
     range: [f64; 2],
     step: f64,
     default: f64,
-) -> Entry {
-    Entry {
+) -> SettingEntry {
+    SettingEntry {
         key,
         name,
         label,
@@ -85,10 +85,10 @@ const fn entry(
     }
 }
 
-/// All of them, in the order of [`Key`].
-pub const TABLE: [Entry; 20] = [
+/// All of them, in the order of [`Setting`].
+pub const TABLE: [SettingEntry; 20] = [
     entry(
-        Key::Width,
+        Setting::Width,
         "width",
         ["width", "m"],
         [0.01, 0.4],
@@ -96,7 +96,7 @@ pub const TABLE: [Entry; 20] = [
         0.06,
     ),
     entry(
-        Key::Position,
+        Setting::Position,
         "position",
         ["position", "m"],
         [-0.2, 0.2],
@@ -104,7 +104,7 @@ pub const TABLE: [Entry; 20] = [
         0.0,
     ),
     entry(
-        Key::Travel,
+        Setting::Travel,
         "travel",
         ["travel", "m"],
         [0.3, 2.0],
@@ -112,29 +112,43 @@ pub const TABLE: [Entry; 20] = [
         1.0,
     ),
     entry(
-        Key::Distance,
+        Setting::Distance,
         "at",
         ["distance", "m"],
         [0.05, 1.98],
         0.01,
         0.5,
     ),
-    entry(Key::Pitch, "pitch", ["pitch", "m"], [0.03, 0.4], 0.002, 0.1),
-    entry(Key::Fill, "fill", ["fill", ""], [0.0, 0.9], 0.01, 0.5),
-    entry(Key::Count, "count", ["number", ""], [1.0, 41.0], 1.0, 21.0),
-    entry(Key::Squares, "squares", ["", ""], [0.0, 1.0], 1.0, 0.0),
-    entry(Key::Jitter, "jitter", ["", ""], [0.0, 1.0], 0.01, 0.0),
     entry(
-        Key::Seed,
+        Setting::Pitch,
+        "pitch",
+        ["pitch", "m"],
+        [0.03, 0.4],
+        0.002,
+        0.1,
+    ),
+    entry(Setting::Fill, "fill", ["fill", ""], [0.0, 0.9], 0.01, 0.5),
+    entry(
+        Setting::Count,
+        "count",
+        ["number", ""],
+        [1.0, 41.0],
+        1.0,
+        21.0,
+    ),
+    entry(Setting::Squares, "squares", ["", ""], [0.0, 1.0], 1.0, 0.0),
+    entry(Setting::Jitter, "jitter", ["", ""], [0.0, 1.0], 0.01, 0.0),
+    entry(
+        Setting::Seed,
         "seed",
         ["", ""],
         [0.0, 4_294_967_295.0],
         1.0,
         1.0,
     ),
-    entry(Key::Glossy, "glossy", ["", ""], [0.0, 1.0], 1.0, 0.0),
+    entry(Setting::Glossy, "glossy", ["", ""], [0.0, 1.0], 1.0, 0.0),
     entry(
-        Key::Curvature,
+        Setting::Curvature,
         "curvature",
         ["curvature", "1/m"],
         [-0.8, 1.5],
@@ -142,18 +156,32 @@ pub const TABLE: [Entry; 20] = [
         0.5,
     ),
     entry(
-        Key::Exponent,
+        Setting::Exponent,
         "exponent",
         ["lobe, n", ""],
         [5.0, 2000.0],
         0.0,
         200.0,
     ),
-    entry(Key::Albedo, "albedo", ["", ""], [0.01, 1.0], 0.01, 0.5),
-    entry(Key::WindowX, "window_x", ["", "m"], [0.01, 5.0], 0.01, 0.2),
-    entry(Key::WindowU, "window_u", ["", ""], [0.01, 1.0], 0.01, 0.25),
+    entry(Setting::Albedo, "albedo", ["", ""], [0.01, 1.0], 0.01, 0.5),
     entry(
-        Key::RhoMax,
+        Setting::WindowX,
+        "window_x",
+        ["", "m"],
+        [0.01, 5.0],
+        0.01,
+        0.2,
+    ),
+    entry(
+        Setting::WindowU,
+        "window_u",
+        ["", ""],
+        [0.01, 1.0],
+        0.01,
+        0.25,
+    ),
+    entry(
+        Setting::RhoMax,
         "rho_max",
         ["", "1/m"],
         [0.1, 1000.0],
@@ -161,15 +189,22 @@ pub const TABLE: [Entry; 20] = [
         40.0,
     ),
     entry(
-        Key::RhoStep,
+        Setting::RhoStep,
         "rho_step",
         ["", "1/m"],
         [0.01, 100.0],
         0.01,
         1.25,
     ),
-    entry(Key::NuMax, "nu_max", ["", ""], [0.1, 1000.0], 0.1, 32.0),
-    entry(Key::NuStep, "nu_step", ["", ""], [0.01, 100.0], 0.01, 1.0),
+    entry(Setting::NuMax, "nu_max", ["", ""], [0.1, 1000.0], 0.1, 32.0),
+    entry(
+        Setting::NuStep,
+        "nu_step",
+        ["", ""],
+        [0.01, 100.0],
+        0.01,
+        1.0,
+    ),
 ];
 
 /// The numbers of a scene.
@@ -192,37 +227,37 @@ const CLEARANCE: f64 = 0.02;
 impl Setup {
     /// A number.
     #[must_use]
-    pub fn get(&self, key: Key) -> f64 {
+    pub fn get(&self, key: Setting) -> f64 {
         self.values[key as usize]
     }
 
     /// Whether one of those that are 0 or 1 is set.
     #[must_use]
-    pub fn is(&self, key: Key) -> bool {
+    pub fn is(&self, key: Setting) -> bool {
         self.get(key) > 0.5
     }
 
     /// Sets a number as near to a value as its range, and the scene, let it.
-    pub fn set(&mut self, key: Key, value: f64) {
-        let Entry {
+    pub fn set(&mut self, key: Setting, value: f64) {
+        let SettingEntry {
             range: [low, high],
             default,
             ..
         } = TABLE[key as usize];
         let value = if value.is_finite() { value } else { default };
         self.values[key as usize] = value.clamp(low, high);
-        let most = self.get(Key::Travel) - CLEARANCE;
-        let distance = self.get(Key::Distance).min(most);
-        self.values[Key::Distance as usize] = distance;
+        let most = self.get(Setting::Travel) - CLEARANCE;
+        let distance = self.get(Setting::Distance).min(most);
+        self.values[Setting::Distance as usize] = distance;
         // Squares never overlap.
-        let room = 1.0 - self.get(Key::Fill);
-        let jitter = self.get(Key::Jitter).min(room);
-        self.values[Key::Jitter as usize] = jitter;
+        let room = 1.0 - self.get(Setting::Fill);
+        let jitter = self.get(Setting::Jitter).min(room);
+        self.values[Setting::Jitter as usize] = jitter;
     }
 
     /// The key with a name.
     #[must_use]
-    pub fn named(name: &str) -> Option<Key> {
+    pub fn named(name: &str) -> Option<Setting> {
         let mut table = TABLE.iter();
         table
             .find(|entry| entry.name == name)
@@ -235,7 +270,7 @@ impl Setup {
         let mut text = String::new();
         for entry in TABLE {
             let value = self.get(entry.key);
-            if entry.key == Key::Width || value.to_bits() != entry.default.to_bits() {
+            if entry.key == Setting::Width || value.to_bits() != entry.default.to_bits() {
                 let between = if text.is_empty() { "" } else { "&" };
                 // Writing to a string does not fail.
                 let _ = write!(text, "{between}{}={value}", entry.name);
@@ -275,9 +310,9 @@ mod tests {
     fn fragments_come_back() {
         let mut setup = Setup::default();
         assert_eq!(setup.fragment(), "width=0.06");
-        setup.set(Key::Travel, 1.7);
-        setup.set(Key::Distance, 1.2);
-        setup.set(Key::Width, 0.1 + 0.2);
+        setup.set(Setting::Travel, 1.7);
+        setup.set(Setting::Distance, 1.2);
+        setup.set(Setting::Width, 0.1 + 0.2);
         assert_eq!(
             setup.fragment(),
             "width=0.30000000000000004&travel=1.7&at=1.2"
@@ -292,9 +327,9 @@ mod tests {
     #[test]
     fn blockers_stay_before_the_receiver_and_apart() {
         let mut setup = Setup::default();
-        setup.set(Key::Travel, 0.4);
-        assert!(setup.get(Key::Distance) < 0.4);
-        setup.set(Key::Jitter, 0.9);
-        assert!(setup.get(Key::Jitter) <= 0.5);
+        setup.set(Setting::Travel, 0.4);
+        assert!(setup.get(Setting::Distance) < 0.4);
+        setup.set(Setting::Jitter, 0.9);
+        assert!(setup.get(Setting::Jitter) <= 0.5);
     }
 }

@@ -9,7 +9,7 @@ use crate::sizes::{FAINT, HEAD_TEXT, INK, LABEL_TEXT, SOFT, TICK, TICK_TEXT};
 use crate::svg::{Anchor, Area, Stroke, Svg, Text};
 use crate::text::width;
 use etendue_field::Side;
-use place::{Name, names, number_places};
+use place::{SegmentName, names, number_places};
 
 const BODY: &str = "#b9b9b9";
 
@@ -22,19 +22,19 @@ const NAME_ROW: f64 = 17.0;
 
 /// A section laid out in an area of the drawing.
 #[derive(Debug)]
-pub(crate) struct Cut<'a> {
+pub(crate) struct SectionLayout<'a> {
     section: &'a Section,
     area: Area,
     /// The part of the area x is drawn in: below the names, above the numbers of the planes.
     plot: Area,
     z: Axis,
     x: Axis,
-    names: Vec<Name>,
+    names: Vec<SegmentName>,
     /// Horizontal place of each plane's number.
     planes: Vec<f64>,
 }
 
-impl<'a> Cut<'a> {
+impl<'a> SectionLayout<'a> {
     /// Height of ticks and label of the z axis, above the area.
     pub(crate) const AXIS: f64 = 46.0;
     /// Height of a plane's heading: number, name, distance.

@@ -44,7 +44,7 @@ pub struct Guide {
 
 /// A row of pictures that share colors.
 #[derive(Debug)]
-pub(crate) struct Row<'b, 'a> {
+pub(crate) struct PictureRow<'b, 'a> {
     /// Its name.
     pub(crate) name: &'b str,
     /// Name and unit beside the color bar, markup.
@@ -56,7 +56,7 @@ pub(crate) struct Row<'b, 'a> {
     pub(crate) cells: Vec<(&'b Picture<'a>, &'b [Guide])>,
 }
 
-impl Row<'_, '_> {
+impl PictureRow<'_, '_> {
     /// Whether the color bar of this row is that of another.
     fn has_bar_of(&self, other: &Self) -> bool {
         self.bar == other.bar && self.scale == other.scale && self.shared == other.shared
@@ -106,7 +106,7 @@ const GUIDE_DASH: &str = "4 5";
 
 /// A column in its place.
 #[derive(Clone, Copy, Debug)]
-struct Place {
+struct PlacedColumn {
     column: usize,
     left: f64,
 }
@@ -119,13 +119,13 @@ pub(crate) fn inner(style: &Style) -> f64 {
 /// Rows of pictures laid out for a page.
 #[derive(Debug)]
 pub(crate) struct Grid<'b, 'a> {
-    rows: Vec<Row<'b, 'a>>,
+    rows: Vec<PictureRow<'b, 'a>>,
     style: Style,
     /// Width of a picture.
     pub(crate) side: f64,
     /// Height of a picture over its width.
     shape: f64,
-    blocks: Vec<Vec<Place>>,
+    blocks: Vec<Vec<PlacedColumn>>,
 }
 
 impl<'b, 'a> Grid<'b, 'a> {
@@ -133,7 +133,12 @@ impl<'b, 'a> Grid<'b, 'a> {
     ///
     /// # Panics
     /// When a row has not a picture for each column.
-    pub(crate) fn new(rows: Vec<Row<'b, 'a>>, columns: usize, least: f64, style: &Style) -> Self {
+    pub(crate) fn new(
+        rows: Vec<PictureRow<'b, 'a>>,
+        columns: usize,
+        least: f64,
+        style: &Style,
+    ) -> Self {
         // Of one block, and of several, which would make a long page.
         const MAX_SIDES: [f64; 2] = [190.0, 112.0];
         for row in &rows {
@@ -169,14 +174,14 @@ impl<'b, 'a> Grid<'b, 'a> {
         grid
     }
 
-    fn places(&self, columns: std::ops::Range<usize>) -> Vec<Place> {
+    fn places(&self, columns: std::ops::Range<usize>) -> Vec<PlacedColumn> {
         let mut left = LEFT;
         let first = columns.start;
         let place = |column| {
             if column > first {
                 left += self.side + self.gap(column);
             }
-            Place { column, left }
+            PlacedColumn { column, left }
         };
         columns.map(place).collect()
     }
@@ -187,7 +192,7 @@ impl<'b, 'a> Grid<'b, 'a> {
     }
 
     /// Whether a picture has another y axis than its neighbour on the left.
-    fn differs(row: &Row<'_, '_>, column: usize) -> bool {
+    fn differs(row: &PictureRow<'_, '_>, column: usize) -> bool {
         row.cells[column].0.y != row.cells[column - 1].0.y
     }
 
@@ -276,7 +281,13 @@ impl<'b, 'a> Grid<'b, 'a> {
     }
 
     /// The pictures of a row and its name; returns the colors of its bar.
-    fn row(&self, svg: &mut Svg, index: usize, places: &[Place], y: f64) -> Result<Shading, Error> {
+    fn row(
+        &self,
+        svg: &mut Svg,
+        index: usize,
+        places: &[PlacedColumn],
+        y: f64,
+    ) -> Result<Shading, Error> {
         let row = &self.rows[index];
         let highest = self.peak(index);
         let mut bar = row.shading(if row.shared { highest } else { 1.0 }, &self.style);

@@ -4,7 +4,7 @@ use crate::axis::{Axis, Quantity, minus};
 use crate::bar;
 use crate::color::Scale;
 use crate::figure::{Error, Figure, csv_text, decimal};
-use crate::grid::{Grid, LEFT, Picture, RIGHT, Row, inner};
+use crate::grid::{Grid, LEFT, Picture, PictureRow, RIGHT, inner};
 use crate::panel::Panel;
 use crate::sizes::{FAINT, HEAD_TEXT, INK, SOFT, THEORY_COLOR, TICK_TEXT};
 use crate::style::Style;
@@ -121,10 +121,10 @@ pub fn plate(plate: &Plate<'_>, style: &Style) -> Result<Figure, Error> {
     })
 }
 
-fn row<'b, 'a>(row: &'b PlateRow<'a>) -> Row<'b, 'a> {
+fn row<'b, 'a>(row: &'b PlateRow<'a>) -> PictureRow<'b, 'a> {
     let Quantity { name, unit } = row.quantity.clone();
     let cells = row.pictures.iter();
-    Row {
+    PictureRow {
         name: row.name,
         bar: if row.shared {
             [name, unit]

@@ -1,6 +1,6 @@
 //! Drawing of the scene cut along the central ray, with the names of its planes.
 
-use crate::cut::Cut;
+use crate::cut::SectionLayout;
 use crate::figure::{Error, Figure, csv_text, decimal};
 use crate::section::{Section, SegmentKind, World};
 use crate::svg::{Area, Svg};
@@ -18,16 +18,16 @@ impl Section {
         if let Some(other) = &self.other {
             let area = Area {
                 x,
-                y: top + Cut::AXIS,
+                y: top + SectionLayout::AXIS,
                 width,
                 height: OTHER,
             };
-            Cut::new(other, area).draw(svg);
+            SectionLayout::new(other, area).draw(svg);
             top = area.bottom();
         }
         Area {
             x,
-            y: top + Cut::AXIS,
+            y: top + SectionLayout::AXIS,
             width,
             height,
         }
@@ -49,7 +49,7 @@ pub fn section(section: &Section, title: &str, note: &str) -> Result<Figure, Err
     let mut svg = Svg::default();
     let top = svg.title(LEFT, inner, title, note);
     let area = section.draw_above(&mut svg, [LEFT, top], [inner, HEIGHT]);
-    let cut = Cut::new(section, area);
+    let cut = SectionLayout::new(section, area);
     cut.draw(&mut svg);
     let pitch = inner / section.planes.len().max(1) as f64;
     let heads = area.bottom() + LEADERS;
@@ -61,7 +61,7 @@ pub fn section(section: &Section, title: &str, note: &str) -> Result<Figure, Err
     let bottom = if section.planes.is_empty() {
         area.bottom() + 10.0
     } else {
-        heads + Cut::HEADING
+        heads + SectionLayout::HEADING
     };
     Ok(Figure {
         svg: svg.finish(area.right() + 20.0, bottom),

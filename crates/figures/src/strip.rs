@@ -3,7 +3,7 @@
 use crate::axis::Quantity;
 use crate::bar;
 use crate::color::{Colors, Scale, hex};
-use crate::cut::Cut;
+use crate::cut::SectionLayout;
 use crate::figure::{Error, Figure, csv_text, decimal};
 use crate::grid::{GAPS, GUIDE, Grid, Guide, LEFT, Picture, RIGHT, inner};
 use crate::plate::feet;
@@ -57,7 +57,7 @@ pub struct Strip<'a> {
 
 /// A row of pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Row {
+enum PictureRow {
     LightField,
     Across,
     Spectrum,
@@ -67,7 +67,7 @@ enum Row {
     OffChain,
 }
 
-impl Row {
+impl PictureRow {
     /// Those of a strip.
     fn of(strip: &Strip<'_>) -> Vec<Self> {
         let predicted = strip
@@ -157,7 +157,7 @@ pub fn strip(strip: &Strip<'_>, style: &Style) -> Result<Figure, Error> {
     let mut unseen = Svg::default();
     let drawn = if style.scene { &mut svg } else { &mut unseen };
     let area = strip.section.draw_above(drawn, [LEFT, top], [inner, CUT]);
-    let cut = Cut::new(strip.section, area);
+    let cut = SectionLayout::new(strip.section, area);
     cut.draw(drawn);
     let mut bottom = if style.scene { area.bottom() } else { top };
     let verdicts = strip.columns.iter().filter(|_| style.verdicts);
@@ -177,7 +177,7 @@ pub fn strip(strip: &Strip<'_>, style: &Style) -> Result<Figure, Error> {
             }
             cut.heading(&mut svg, column, [middle, heads], room);
         }
-        bottom = grid.draw(&mut svg, block, heads + Cut::HEADING)?;
+        bottom = grid.draw(&mut svg, block, heads + SectionLayout::HEADING)?;
         bottom = feet(&mut svg, &verdicts, &grid, block, bottom);
     }
     let bottom = keys(&mut svg, strip, &grid, [LEFT + inner, bottom], style);
@@ -189,30 +189,30 @@ pub fn strip(strip: &Strip<'_>, style: &Style) -> Result<Figure, Error> {
 
 /// The pictures under the cut.
 fn grid<'b, 'a>(strip: &'b Strip<'a>, style: &Style) -> Grid<'b, 'a> {
-    let row = |row: Row| {
+    let row = |row: PictureRow| {
         let cell = |column: &'b Column<'a>| {
             let guides = match row {
-                Row::Spectrum | Row::Predicted => &column.guides[..],
+                PictureRow::Spectrum | PictureRow::Predicted => &column.guides[..],
                 _ => &[],
             };
             (row.picture(column), guides)
         };
-        crate::grid::Row {
+        crate::grid::PictureRow {
             name: row.name(),
-            bar: if row == Row::OffChain {
+            bar: if row == PictureRow::OffChain {
                 ["|*S* − chain|".to_owned(), "% of the peak".to_owned()]
             } else {
                 ["of each peak".to_owned(), String::new()]
             },
             scale: match row {
-                Row::LightField | Row::Across | Row::OffChain => Scale::Linear,
+                PictureRow::LightField | PictureRow::Across | PictureRow::OffChain => Scale::Linear,
                 _ => Scale::Decibel { floor: strip.floor },
             },
-            shared: row == Row::OffChain,
+            shared: row == PictureRow::OffChain,
             cells: strip.columns.iter().map(cell).collect(),
         }
     };
-    let rows = Row::of(strip).into_iter().map(row).collect();
+    let rows = PictureRow::of(strip).into_iter().map(row).collect();
     // Two stand side by side on the narrowest page.
     let half = 0.5 * (inner(style) - GAPS[1]);
     Grid::new(rows, strip.columns.len(), MIN_WIDTH.min(half), style)
@@ -272,7 +272,7 @@ fn numbers(strip: &Strip<'_>) -> Result<String, Error> {
             Some(plane) => (plane.name.clone(), decimal(&plane.distance)),
             None => ((index + 1).to_string(), String::new()),
         };
-        for row in Row::of(strip) {
+        for row in PictureRow::of(strip) {
             let Picture { x, y, values } = row.picture(column);
             let (columns, lines) = values.dim();
             let heads = [x, y].map(|axis| axis.quantity.heading());

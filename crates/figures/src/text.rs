@@ -4,21 +4,21 @@ use crate::sizes::LEAST_TEXT;
 
 /// A stretch of text in one style.
 #[derive(Clone, Debug, PartialEq)]
-struct Run {
+struct TextRun {
     text: String,
     italic: bool,
-    level: Level,
+    level: TextLevel,
 }
 
 /// Where a run stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Level {
+enum TextLevel {
     Below,
     Line,
     Above,
 }
 
-impl Level {
+impl TextLevel {
     /// How far below the line, relative to the size of the text.
     fn depth(self) -> f64 {
         match self {
@@ -37,13 +37,13 @@ const SCRIPT_SIZE: f64 = 0.72;
 /// Scripts are shifted by `dy` rather than `baseline-shift`, which some browsers do not know.
 pub(crate) fn spans(markup: &str, size: f64) -> String {
     let mut content = String::new();
-    let mut level = Level::Line;
+    let mut level = TextLevel::Line;
     for run in runs(markup) {
         let mut attributes = String::new();
         if run.italic {
             attributes += " font-style=\"italic\"";
         }
-        if run.level != Level::Line {
+        if run.level != TextLevel::Line {
             let size = (size * SCRIPT_SIZE).max(LEAST_TEXT);
             attributes += &format!(" font-size=\"{size:.2}\"");
         }
@@ -140,7 +140,7 @@ fn advance(c: char) -> f64 {
 }
 
 /// Markup cut into runs; unpaired marks are plain text.
-fn runs(markup: &str) -> Vec<Run> {
+fn runs(markup: &str) -> Vec<TextRun> {
     let mut runs = Vec::new();
     let mut rest = markup;
     while let Some((before, run, after)) = next_mark(rest) {
@@ -152,29 +152,29 @@ fn runs(markup: &str) -> Vec<Run> {
     runs
 }
 
-fn push(runs: &mut Vec<Run>, text: &str) {
+fn push(runs: &mut Vec<TextRun>, text: &str) {
     if !text.is_empty() {
-        runs.push(Run {
+        runs.push(TextRun {
             text: text.to_owned(),
             italic: false,
-            level: Level::Line,
+            level: TextLevel::Line,
         });
     }
 }
 
 /// The first complete mark: the text before it, its run, and what follows.
-fn next_mark(text: &str) -> Option<(&str, Run, &str)> {
+fn next_mark(text: &str) -> Option<(&str, TextRun, &str)> {
     let kinds = [
-        ("*", "*", true, Level::Line),
-        ("_{", "}", false, Level::Below),
-        ("^{", "}", false, Level::Above),
+        ("*", "*", true, TextLevel::Line),
+        ("_{", "}", false, TextLevel::Below),
+        ("^{", "}", false, TextLevel::Above),
     ];
     kinds
         .into_iter()
         .filter_map(|(open, close, italic, level)| {
             let (before, tail) = text.split_once(open)?;
             let (inner, after) = tail.split_once(close)?;
-            let run = Run {
+            let run = TextRun {
                 text: inner.to_owned(),
                 italic,
                 level,

@@ -45,7 +45,7 @@ pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused
     let mut world = World::default();
     if let Some(document) = container::read(&bytes, &place, &report) {
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-        let mut reader = reader::Reader::new(&document, &files, &report, place, folder);
+        let mut reader = reader::GltfReader::new(&document, &files, &report, place, folder);
         reader.color = options.color;
         world = reader.world();
     }

@@ -6,14 +6,14 @@ use glam::{DMat3, DVec2, DVec3};
 
 /// A mesh on its way to [`Triangles`].
 #[derive(Debug)]
-pub(crate) struct Parts {
+pub(crate) struct MeshParts {
     pub(crate) vertices: Vec<DVec3>,
     pub(crate) corners: Vec<[u32; 3]>,
     pub(crate) normals: Option<Vec<DVec3>>,
     pub(crate) uvs: Option<Vec<DVec2>>,
 }
 
-impl From<DetailedMesh> for Parts {
+impl From<DetailedMesh> for MeshParts {
     fn from(mesh: DetailedMesh) -> Self {
         Self {
             vertices: mesh.vertices,
@@ -24,7 +24,7 @@ impl From<DetailedMesh> for Parts {
     }
 }
 
-impl Parts {
+impl MeshParts {
     /// About how much memory it takes.
     pub(crate) fn bytes(&self) -> u64 {
         let vertex = size_of::<[DVec3; 2]>() + size_of::<DVec2>();

@@ -76,7 +76,7 @@ fn read(
     let (objects, ids) = (tree.objects, tree.ids);
     let mut world = World::default();
     if !objects.is_empty() {
-        let reader = reader::Reader::new(&objects, &ids, files, &report, options.color);
+        let reader = reader::MitsubaReader::new(&objects, &ids, files, &report, options.color);
         world = reader.world();
         leftover::tell(&objects, &report);
     }

@@ -31,7 +31,8 @@ pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused
     drop(bytes);
     let report = Report::default();
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-    let reader = reader::Reader::new(&files, &report, Place::whole(&name), folder, options.color);
+    let reader =
+        reader::ObjReader::new(&files, &report, Place::whole(&name), folder, options.color);
     let world = reader.world(read);
     report.finish(world)
 }

@@ -96,7 +96,7 @@ fn read(
     }
     let scene = build::Builder::new(files, &report, path).build(text, name);
     let folder = path.parent().unwrap_or(path).to_owned();
-    let reader = reader::Reader::new(&scene, files, &report, options.color, folder);
+    let reader = reader::PbrtReader::new(&scene, files, &report, options.color, folder);
     let world = reader.world(&whole);
     leftover::tell(&scene, &report);
     report.finish(world)

@@ -20,7 +20,7 @@ pub(crate) struct Pictures {
 
 /// How levels of a picture go with light.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Curve {
+pub(crate) enum TransferCurve {
     /// As sRGB has them.
     Srgb,
     /// They are in proportion to light.
@@ -38,7 +38,11 @@ impl Pictures {
         color: Color,
         raw: bool,
     ) -> Result<Arc<Raster>, String> {
-        let curve = if raw { Curve::Linear } else { Curve::Srgb };
+        let curve = if raw {
+            TransferCurve::Linear
+        } else {
+            TransferCurve::Srgb
+        };
         self.read_by(files, path, color, curve)
     }
 
@@ -48,7 +52,7 @@ impl Pictures {
         files: &Files,
         path: &Path,
         color: Color,
-        curve: Curve,
+        curve: TransferCurve,
     ) -> Result<Arc<Raster>, String> {
         let key = (path.to_owned(), curve.exponent().to_bits());
         if let Some(known) = self.known.get(&key) {
@@ -60,7 +64,7 @@ impl Pictures {
     }
 }
 
-impl Curve {
+impl TransferCurve {
     /// Tells curves apart; 0 for that of sRGB.
     fn exponent(self) -> f64 {
         match self {
@@ -71,7 +75,7 @@ impl Curve {
     }
 }
 
-fn read(files: &Files, path: &Path, color: Color, curve: Curve) -> Result<Raster, String> {
+fn read(files: &Files, path: &Path, color: Color, curve: TransferCurve) -> Result<Raster, String> {
     let bytes = files.read(path)?;
     let channels = decode(path, &bytes)?;
     if !channels.values.iter().all(|v| v.abs() <= MAX_NUMBER) {
@@ -80,8 +84,8 @@ fn read(files: &Files, path: &Path, color: Color, curve: Curve) -> Result<Raster
         ));
     }
     let linear = |v: f64| match curve {
-        Curve::Srgb if channels.are_levels => linear(v),
-        Curve::Gamma(exponent) if channels.are_levels => libm::pow(v, exponent),
+        TransferCurve::Srgb if channels.are_levels => linear(v),
+        TransferCurve::Gamma(exponent) if channels.are_levels => libm::pow(v, exponent),
         _ => v,
     };
     let grey = channels.count == 1;

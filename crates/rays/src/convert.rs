@@ -115,7 +115,7 @@ fn note_unit(set: &RaySet, what: &str, notes: &mut Vec<String>) {
 
 /// The rays as a TM-25 file, in f32.
 fn to_tm25(set: &RaySet, notes: &mut Vec<String>) -> Result<Tm25File, Fault> {
-    let mut header = tm25::Header::default();
+    let mut header = tm25::Tm25Header::default();
     let total = single(set.total_power());
     match set.unit {
         PowerUnit::Lumen => {
@@ -174,10 +174,10 @@ fn single(value: f64) -> f32 {
 
 /// The rays as photons of an MCPL file, in f64.
 fn to_mcpl(set: &RaySet, notes: &mut Vec<String>) -> Result<McplFile, Fault> {
-    let mut header = mcpl::Header {
+    let mut header = mcpl::McplHeader {
         universal_pdg: Some(mcpl::PHOTON),
         source: b"Etendue".to_vec(),
-        ..mcpl::Header::default()
+        ..mcpl::McplHeader::default()
     };
     let first = set.powers.first().copied().filter(|&p| p > 0.0);
     header.universal_weight =

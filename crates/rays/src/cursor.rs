@@ -3,13 +3,13 @@
 use crate::Fault;
 
 /// Where reading is.
-pub(crate) struct Cursor<'a> {
+pub(crate) struct ByteCursor<'a> {
     bytes: &'a [u8],
     at: usize,
     little: bool,
 }
 
-impl<'a> Cursor<'a> {
+impl<'a> ByteCursor<'a> {
     pub(crate) fn new(bytes: &'a [u8], at: usize, little: bool) -> Self {
         Self { bytes, at, little }
     }

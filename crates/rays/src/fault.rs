@@ -4,7 +4,7 @@ use std::fmt;
 
 /// Where in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum FilePosition {
     /// The file as a whole.
     File,
     /// An offset from the beginning of the file, unpacked; the first byte is 0.
@@ -17,24 +17,24 @@ pub enum Place {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub struct Fault {
     /// Where.
-    pub place: Place,
+    pub place: FilePosition,
     /// What stands there, and what may.
     pub message: String,
 }
 
 impl Fault {
     pub(crate) fn file(message: impl Into<String>) -> Self {
-        let (place, message) = (Place::File, message.into());
+        let (place, message) = (FilePosition::File, message.into());
         Self { place, message }
     }
 
     pub(crate) fn byte(at: usize, message: impl Into<String>) -> Self {
-        let (place, message) = (Place::Byte(at as u64), message.into());
+        let (place, message) = (FilePosition::Byte(at as u64), message.into());
         Self { place, message }
     }
 
     pub(crate) fn ray(index: usize, message: impl Into<String>) -> Self {
-        let (place, message) = (Place::Ray(index as u64), message.into());
+        let (place, message) = (FilePosition::Ray(index as u64), message.into());
         Self { place, message }
     }
 }
@@ -42,9 +42,9 @@ impl Fault {
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.place {
-            Place::File => write!(f, "{}", self.message),
-            Place::Byte(at) => write!(f, "byte {at}: {}", self.message),
-            Place::Ray(index) => write!(f, "ray {index} (the first is 0): {}", self.message),
+            FilePosition::File => write!(f, "{}", self.message),
+            FilePosition::Byte(at) => write!(f, "byte {at}: {}", self.message),
+            FilePosition::Ray(index) => write!(f, "ray {index} (the first is 0): {}", self.message),
         }
     }
 }

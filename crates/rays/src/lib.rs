@@ -37,7 +37,7 @@ mod set;
 pub mod tm25;
 
 pub use convert::{Converted, convert};
-pub use fault::{Fault, Place};
+pub use fault::{Fault, FilePosition};
 pub use file::{Format, MEMORY, MEMORY_FREE, RayFile};
 pub use npy::npy_header;
 pub use set::{PHOTON_ENERGY_LENGTH, PowerUnit, RaySet, Wavelengths};

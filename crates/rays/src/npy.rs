@@ -1,7 +1,7 @@
 //! Rays as an array of NumPy: f64 [rays, 8] in C order, the columns x, y, z (m), kx, ky, kz, power and wavelength (m, NaN where it is not known).
 //! Read are such files, and those of 7 columns without wavelength; the unit of power is not stated in them.
 
-use crate::cursor::Cursor;
+use crate::cursor::ByteCursor;
 use crate::set::{length, unit};
 use crate::{Fault, PowerUnit, RaySet, Wavelengths};
 
@@ -67,7 +67,7 @@ pub(crate) fn read(bytes: &[u8]) -> Result<RaySet, Fault> {
         );
         return Err(Fault::byte(start, message));
     }
-    let mut cursor = Cursor::new(bytes, start, true);
+    let mut cursor = ByteCursor::new(bytes, start, true);
     let mut set = RaySet {
         positions: Vec::with_capacity(rays),
         directions: Vec::with_capacity(rays),
@@ -96,7 +96,7 @@ pub(crate) fn read(bytes: &[u8]) -> Result<RaySet, Fault> {
 
 /// Where numbers begin, and how many rows and columns there are.
 fn shape(bytes: &[u8]) -> Result<(usize, usize, usize), Fault> {
-    let mut cursor = Cursor::new(bytes, 0, true);
+    let mut cursor = ByteCursor::new(bytes, 0, true);
     if !cursor
         .take(8, "the signature of NPY")?
         .starts_with(b"\x93NUMPY\x01")

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use etendue_rays::mcpl::{Header, McplFile, PHOTON, Particle, stat_sum_comment};
+use etendue_rays::mcpl::{McplFile, McplHeader, PHOTON, Particle, stat_sum_comment};
 use etendue_rays::tm25::{self, Flags, SpectrumType, Tm25File};
 use etendue_rays::{
     Fault, Format, PHOTON_ENERGY_LENGTH, PowerUnit, RayFile, RaySet, Wavelengths, convert, gz,
@@ -98,7 +98,7 @@ fn unusual_texts_and_fluxes_have_notes() {
 fn mcpl_keeps_every_option() {
     for options in 0..64_u32 {
         let on = |bit: u32| options >> bit & 1 == 1;
-        let header = Header {
+        let header = McplHeader {
             little_endian: on(0),
             user_flags: on(1),
             polarisation: on(2),
@@ -108,7 +108,7 @@ fn mcpl_keeps_every_option() {
             source: b"test".to_vec(),
             comments: vec![b"c".to_vec(), stat_sum_comment("n", 7.0).unwrap()],
             blobs: vec![(b"k".to_vec(), vec![0, 255])],
-            ..Header::default()
+            ..McplHeader::default()
         };
         let particle = |i: u32| Particle {
             position_cm: [0.5, f64::from(i), -1.0],
@@ -142,7 +142,7 @@ fn mcpl_keeps_every_option() {
 
 #[test]
 fn tm25_keeps_every_column() {
-    let header = tm25::Header {
+    let header = tm25::Tm25Header {
         spectrum_type: SpectrumType::None,
         flags: Flags {
             radiant_flux: true,
@@ -155,7 +155,7 @@ fn tm25_keeps_every_column() {
         extra_columns: vec!["time".to_owned()],
         additional_text: "more".to_owned(),
         text_room: 8,
-        ..tm25::Header::default()
+        ..tm25::Tm25Header::default()
     };
     assert_eq!(header.columns(), 18);
     let mut ray: Vec<f32> = (0..18_u8).map(f32::from).collect();
@@ -174,7 +174,7 @@ fn tm25_keeps_every_column() {
 
 #[test]
 fn tm25_of_lumens_and_a_spectrum_per_ray() {
-    let header = tm25::Header {
+    let header = tm25::Tm25Header {
         spectrum_type: SpectrumType::SpectrumPerRay,
         luminous_flux: 8.0,
         radiant_flux: 2.0,
@@ -184,7 +184,7 @@ fn tm25_of_lumens_and_a_spectrum_per_ray() {
             ..Flags::default()
         },
         spectra: vec![vec![[400.0, 1.0]], vec![[500.0, 0.5], [600.0, 1.0]]],
-        ..tm25::Header::default()
+        ..tm25::Tm25Header::default()
     };
     let ray = |spectrum| vec![0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 8.0, spectrum];
     let file = Tm25File::new(header.clone(), ray(2.0)).unwrap();

@@ -3,7 +3,7 @@
 mod cut;
 mod world;
 
-use cut::Cut;
+use cut::CuttingPlane;
 use etendue_field::VirtualPlane;
 use etendue_figures::{Section, Segment, SegmentKind};
 use etendue_scene::Scene;
@@ -15,8 +15,8 @@ pub(crate) fn cross_section<'a>(
     planes: impl Iterator<Item = &'a VirtualPlane>,
 ) -> Section {
     let planes: Vec<&VirtualPlane> = planes.collect();
-    let cut = Cut { scene, axis: 0 }.section(&planes);
-    let other = Cut { scene, axis: 1 }.section(&planes);
+    let cut = CuttingPlane { scene, axis: 0 }.section(&planes);
+    let other = CuttingPlane { scene, axis: 1 }.section(&planes);
     Section {
         other: (!alike(&cut, &other)).then(|| Box::new(other)),
         world: world::world(scene, &planes),

@@ -1,6 +1,6 @@
 //! The explorer beside the results of a run whose scene it knows, and the link to it.
 
-use etendue_explorer::{Key, Setup, scene};
+use etendue_explorer::{Setting, Setup, scene};
 use etendue_field::Profile;
 use etendue_scene::{
     BlockersFile, EventFile, FormFile, LightFile, LobeFile, SceneFile, ShapeFile, SurfaceFile,
@@ -120,21 +120,21 @@ fn setup(file: &SceneFile) -> Option<Setup> {
     let spacing = |axis: &etendue_scene::AxisFile, half: f64| axis.spacing.unwrap_or(0.5 / half);
     let (rho, nu) = (&file.frequencies.rho, &file.frequencies.nu);
     for (key, value) in [
-        (Key::Travel, place(surface)[2]),
-        (Key::Width, size[0]),
-        (Key::Position, center[0]),
-        (Key::WindowX, x),
-        (Key::WindowU, u),
-        (Key::RhoMax, rho.max),
-        (Key::RhoStep, spacing(rho, x)),
-        (Key::NuMax, nu.max),
-        (Key::NuStep, spacing(nu, u)),
+        (Setting::Travel, place(surface)[2]),
+        (Setting::Width, size[0]),
+        (Setting::Position, center[0]),
+        (Setting::WindowX, x),
+        (Setting::WindowU, u),
+        (Setting::RhoMax, rho.max),
+        (Setting::RhoStep, spacing(rho, x)),
+        (Setting::NuMax, nu.max),
+        (Setting::NuStep, spacing(nu, u)),
     ] {
         setup.set(key, value);
     }
     reflection(surface, &mut setup)?;
     match &file.blockers[..] {
-        [] => setup.set(Key::Fill, 0.0),
+        [] => setup.set(Setting::Fill, 0.0),
         [blockers] => stopped(blockers, &mut setup)?,
         _ => return None,
     }
@@ -151,7 +151,7 @@ fn place(surface: &SurfaceFile) -> [f64; 3] {
 
 fn reflection(surface: &SurfaceFile, setup: &mut Setup) -> Option<()> {
     match surface {
-        SurfaceFile::Rectangle { albedo, .. } => setup.set(Key::Albedo, *albedo),
+        SurfaceFile::Rectangle { albedo, .. } => setup.set(Setting::Albedo, *albedo),
         SurfaceFile::Smooth {
             form,
             event: EventFile::Reflects { brdf, .. },
@@ -160,15 +160,15 @@ fn reflection(surface: &SurfaceFile, setup: &mut Setup) -> Option<()> {
             let LobeFile::Phong(exponent) = brdf.lobe else {
                 return None;
             };
-            setup.set(Key::Glossy, 1.0);
-            setup.set(Key::Exponent, exponent);
-            setup.set(Key::Albedo, brdf.albedo);
+            setup.set(Setting::Glossy, 1.0);
+            setup.set(Setting::Exponent, exponent);
+            setup.set(Setting::Albedo, brdf.albedo);
             let curvature = match form {
                 FormFile::Plane => 0.0,
                 FormFile::Sphere(curvature) => *curvature,
                 _ => return None,
             };
-            setup.set(Key::Curvature, curvature);
+            setup.set(Setting::Curvature, curvature);
         }
         _ => return None,
     }
@@ -181,10 +181,10 @@ fn reflection(surface: &SurfaceFile, setup: &mut Setup) -> Option<()> {
 )]
 fn stopped(blockers: &BlockersFile, setup: &mut Setup) -> Option<()> {
     let mut set = |distance: f64, count: usize, pitch: f64, fill: f64| {
-        setup.set(Key::Distance, distance);
-        setup.set(Key::Count, count as f64);
-        setup.set(Key::Pitch, pitch);
-        setup.set(Key::Fill, fill);
+        setup.set(Setting::Distance, distance);
+        setup.set(Setting::Count, count as f64);
+        setup.set(Setting::Pitch, pitch);
+        setup.set(Setting::Fill, fill);
     };
     match blockers {
         BlockersFile::JitteredSquares {
@@ -197,9 +197,9 @@ fn stopped(blockers: &BlockersFile, setup: &mut Setup) -> Option<()> {
             ..
         } => {
             set(center[2], count[0] as usize, *pitch, *fill);
-            setup.set(Key::Squares, 1.0);
-            setup.set(Key::Jitter, *jitter);
-            setup.set(Key::Seed, *seed as f64);
+            setup.set(Setting::Squares, 1.0);
+            setup.set(Setting::Jitter, *jitter);
+            setup.set(Setting::Seed, *seed as f64);
         }
         BlockersFile::Shapes { center, shapes, .. } => {
             let [ShapeFile::Rectangle { center: a, size }, .., last] = &shapes[..] else {

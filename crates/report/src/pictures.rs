@@ -29,7 +29,7 @@ use etendue_store::arrays::{radial_z, z};
 use ndarray::Array2;
 use std::cmp::Ordering;
 use std::path::Path;
-use words::Words;
+use words::CoordinateNames;
 
 /// Lowest level of a spectrum's colors, in decibels below its peak.
 const FLOOR: f64 = -50.0;
@@ -54,7 +54,7 @@ pub fn plane(
     at: &VirtualPlane,
     plane: &PlaneComparison,
 ) -> Result<(), Failure> {
-    let words = Words::of(at);
+    let words = CoordinateNames::of(at);
     let name = &plane.report.name;
     let note = format!("{made_from}; {}", verdict_line(plane));
     let measured = &plane.projection.mean;
@@ -264,7 +264,7 @@ fn column<'a>(
     compared: &'a PlaneComparison,
 ) -> Column<'a> {
     let projection = &compared.projection.mean;
-    let words = Words::of(plane);
+    let words = CoordinateNames::of(plane);
     let [x, u] = words.projection_axes(&projection.grid);
     let [rho, nu] = words.frequency_axes(&compared.measured.grid);
     Column {

@@ -27,51 +27,55 @@ pub(crate) fn steps(path: &str) -> Vec<&str> {
 /// The value at a path, or the innermost around it that is written.
 pub(crate) fn find<'a>(text: &'a str, path: &str) -> Option<Place<'a>> {
     let steps = steps(path);
-    let mut found: Option<Found> = None;
-    let mut levels = vec![Level::new(Some(0), true)];
-    let mut tokens = Tokens { text, at: 0 }.peekable();
+    let mut found: Option<InnermostValue> = None;
+    let mut levels = vec![OpenBracket::new(Some(0), true)];
+    let mut tokens = RonTokens { text, at: 0 }.peekable();
     while let Some(token) = tokens.next() {
         let depth = levels.len();
         let level = levels.last_mut()?;
         match token.kind {
-            Kind::Comma => {
-                *level = Level {
+            ValueKind::Comma => {
+                *level = OpenBracket {
                     index: level.index + 1,
-                    ..Level::new(level.at, level.named)
+                    ..OpenBracket::new(level.at, level.named)
                 }
             }
-            Kind::Close => {
+            ValueKind::Close => {
                 // A bracket too many closes nothing.
                 levels.truncate((depth - 1).max(1));
             }
-            Kind::Colon => {}
-            Kind::Word if tokens.next_if(|next| next.kind == Kind::Colon).is_some() => {
+            ValueKind::Colon => {}
+            ValueKind::Word
+                if tokens
+                    .next_if(|next| next.kind == ValueKind::Colon)
+                    .is_some() =>
+            {
                 // In JSON names stand in quotes.
                 level.key = Some(text[token.start..token.end].trim_matches('"'));
                 continue;
             }
-            Kind::Word | Kind::Open => {
+            ValueKind::Word | ValueKind::Open => {
                 let is_named = level.value.is_some();
                 let at = level.value.unwrap_or_else(|| level.child(&steps));
                 level.value = Some(at);
                 let best = found.as_ref().map(|found| found.steps);
                 if let Some(steps) = at.filter(|at| best.is_none_or(|best| *at > best)) {
-                    let Token { start, end, .. } = token;
-                    found = Some(Found {
+                    let RonToken { start, end, .. } = token;
+                    found = Some(InnermostValue {
                         steps,
                         start,
                         end,
                         depth,
                     });
                 }
-                if token.kind == Kind::Open {
-                    levels.push(Level::new(at, is_named));
+                if token.kind == ValueKind::Open {
+                    levels.push(OpenBracket::new(at, is_named));
                 }
             }
         }
         if let Some(found) = &mut found {
             let depth = levels.len();
-            if depth < found.depth || (depth == found.depth && token.kind == Kind::Comma) {
+            if depth < found.depth || (depth == found.depth && token.kind == ValueKind::Comma) {
                 break;
             }
             found.end = token.end;
@@ -88,7 +92,7 @@ pub(crate) fn find<'a>(text: &'a str, path: &str) -> Option<Place<'a>> {
 }
 
 /// The innermost value found so far.
-struct Found {
+struct InnermostValue {
     /// Steps of the path that lead to it.
     steps: usize,
     start: usize,
@@ -97,7 +101,7 @@ struct Found {
 }
 
 /// What stands between two brackets.
-struct Level<'a> {
+struct OpenBracket<'a> {
     /// Steps of the path that lead to it; `None` where they lead elsewhere.
     at: Option<usize>,
     /// After a name: a value without a key is then not an element, as in `Hann(0.5)`.
@@ -108,7 +112,7 @@ struct Level<'a> {
     value: Option<Option<usize>>,
 }
 
-impl Level<'_> {
+impl OpenBracket<'_> {
     fn new(at: Option<usize>, named: bool) -> Self {
         Self {
             at,
@@ -134,7 +138,7 @@ impl Level<'_> {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+enum ValueKind {
     Open,
     Close,
     Comma,
@@ -144,34 +148,34 @@ enum Kind {
 }
 
 #[derive(Clone, Copy)]
-struct Token {
-    kind: Kind,
+struct RonToken {
+    kind: ValueKind,
     start: usize,
     end: usize,
 }
 
-struct Tokens<'a> {
+struct RonTokens<'a> {
     text: &'a str,
     at: usize,
 }
 
-impl Iterator for Tokens<'_> {
-    type Item = Token;
+impl Iterator for RonTokens<'_> {
+    type Item = RonToken;
 
-    fn next(&mut self) -> Option<Token> {
+    fn next(&mut self) -> Option<RonToken> {
         self.at += blank(&self.text[self.at..]);
         let start = self.at;
         let rest = &self.text[start..];
         let first = rest.chars().next()?;
         let (kind, length) = match first {
-            '(' | '[' | '{' => (Kind::Open, 1),
-            ')' | ']' | '}' => (Kind::Close, 1),
-            ',' => (Kind::Comma, 1),
-            ':' => (Kind::Colon, 1),
-            _ => (Kind::Word, string(rest).unwrap_or_else(|| word(rest))),
+            '(' | '[' | '{' => (ValueKind::Open, 1),
+            ')' | ']' | '}' => (ValueKind::Close, 1),
+            ',' => (ValueKind::Comma, 1),
+            ':' => (ValueKind::Colon, 1),
+            _ => (ValueKind::Word, string(rest).unwrap_or_else(|| word(rest))),
         };
         self.at += length;
-        Some(Token {
+        Some(RonToken {
             kind,
             start,
             end: self.at,

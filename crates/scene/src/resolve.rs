@@ -163,8 +163,8 @@ impl Resolver<'_> {
     }
 
     /// Two flat things in one plane: which one light meets first would be left to rounding.
-    fn distinct(&mut self, file: &SceneFile, stops: &[Stop<'_>]) {
-        let mut flat: Vec<&Stop<'_>> = stops.iter().filter(|s| s.is_flat()).collect();
+    fn distinct(&mut self, file: &SceneFile, stops: &[PathStop<'_>]) {
+        let mut flat: Vec<&PathStop<'_>> = stops.iter().filter(|s| s.is_flat()).collect();
         flat.sort_by(|a, b| a.extent[0].total_cmp(&b.extent[0]));
         for pair in flat.windows(2) {
             let distance = pair[1].extent[0];
@@ -209,7 +209,7 @@ impl Resolver<'_> {
 }
 
 /// Something that planes can be before and after.
-struct Stop<'a> {
+struct PathStop<'a> {
     name: &'a str,
     /// Nearest and farthest distance on the first leg; one and the same for what is flat.
     extent: [f64; 2],
@@ -219,44 +219,44 @@ struct Stop<'a> {
     ends: Option<usize>,
 }
 
-impl Stop<'_> {
+impl PathStop<'_> {
     fn is_flat(&self) -> bool {
         self.extent[0].total_cmp(&self.extent[1]).is_eq()
     }
 }
 
 /// Everything there is, by distance.
-fn stops<'a>(path: &CentralRay, things: Things<'a>) -> Vec<Stop<'a>> {
+fn stops<'a>(path: &CentralRay, things: Things<'a>) -> Vec<PathStop<'a>> {
     let ends = |object: Object| {
         let mut legs = 0..path.legs.len();
         legs.find(|leg| path.ends_at(*leg).is_some_and(|hit| hit.object == object))
     };
-    let blockers = things.blockers.iter().map(|b| Stop {
+    let blockers = things.blockers.iter().map(|b| PathStop {
         name: &b.name,
         extent: [b.distance; 2],
         surface: false,
         ends: None,
     });
-    let surfaces = things.surfaces.iter().enumerate().map(|(i, s)| Stop {
+    let surfaces = things.surfaces.iter().enumerate().map(|(i, s)| PathStop {
         name: &s.name,
         extent: extent(&s.corners()),
         surface: true,
         ends: ends(Object::Surface(i)),
     });
-    let meshes = things.meshes.iter().enumerate().map(|(i, m)| Stop {
+    let meshes = things.meshes.iter().enumerate().map(|(i, m)| PathStop {
         name: &m.name,
         extent: m.extent,
         surface: !m.is_black(),
         ends: ends(Object::Mesh(i)),
     });
-    let patches = things.patches.iter().enumerate().map(|(i, p)| Stop {
+    let patches = things.patches.iter().enumerate().map(|(i, p)| PathStop {
         name: &p.name,
         extent: extent(&p.patch.corners()),
         surface: true,
         ends: ends(Object::Patch(i)),
     });
     let stops = blockers.chain(surfaces).chain(meshes).chain(patches);
-    let mut stops: Vec<Stop<'a>> = stops.collect();
+    let mut stops: Vec<PathStop<'a>> = stops.collect();
     stops.sort_by(|a, b| a.extent[0].total_cmp(&b.extent[0]));
     stops
 }

@@ -9,7 +9,7 @@ use std::fmt::{self, Display, Write};
 /// ends in `…`; what is beyond is not even formatted.
 #[must_use]
 pub fn shown(value: impl Display, most: usize) -> String {
-    let mut cut = Cut {
+    let mut cut = ShortenedText {
         text: String::new(),
         left: most,
     };
@@ -20,12 +20,12 @@ pub fn shown(value: impl Display, most: usize) -> String {
 }
 
 /// Text that takes so many more characters.
-struct Cut {
+struct ShortenedText {
     text: String,
     left: usize,
 }
 
-impl Write for Cut {
+impl Write for ShortenedText {
     fn write_str(&mut self, text: &str) -> fmt::Result {
         for c in text.chars() {
             let length = if is_printable(c) {

@@ -10,9 +10,9 @@ use std::sync::Arc;
 /// Triangles, in the frame at the light, and the one hierarchy over them that all rays ask. Clones
 /// share both.
 #[derive(Clone)]
-pub struct Triangles(Arc<Shared>);
+pub struct Triangles(Arc<SharedTriangles>);
 
-struct Shared {
+struct SharedTriangles {
     corners: Vec<[DVec3; 3]>,
     bounds: [DVec3; 2],
     hierarchy: BinaryHierarchy,
@@ -23,7 +23,7 @@ impl Triangles {
     #[must_use]
     pub fn new(corners: Vec<[DVec3; 3]>, origins: f64) -> Self {
         let bounds = |i: usize| enclosing(&corners[i]);
-        Self(Arc::new(Shared {
+        Self(Arc::new(SharedTriangles {
             hierarchy: BinaryHierarchy::new(corners.len(), origins, bounds),
             bounds: enclosing(corners.as_flattened()),
             corners,

@@ -87,13 +87,13 @@ impl Scene {
             return None;
         };
         let mesh = &self.meshes[mesh];
-        let looked = Look::new(mesh, mesh.smooth.as_ref()?, legs, plane);
+        let looked = WindowView::new(mesh, mesh.smooth.as_ref()?, legs, plane);
         Some((mesh, looked.mismatch()))
     }
 }
 
 /// What a window sees of a smooth mesh, as if surfaces after it were flat.
-struct Look<'a> {
+struct WindowView<'a> {
     mesh: &'a MeshObject,
     smooth: &'a SmoothMesh,
     /// At the hit, along the light that leaves it.
@@ -110,7 +110,7 @@ struct Look<'a> {
 /// The window, and what photons and rays differ by in it: sums over points at once, or their
 /// spectra.
 #[derive(Clone, Copy, Debug, Default)]
-struct Sums {
+struct WindowSums {
     difference: f64,
     whole: f64,
 }
@@ -125,7 +125,7 @@ struct Wave {
 }
 
 impl Wave {
-    fn add(&mut self, at: DVec3, sums: &Sums) {
+    fn add(&mut self, at: DVec3, sums: &WindowSums) {
         let [x, y] = self.frequency;
         let (sin, cos) = libm::sincos(TAU * (x * at.x + y * at.y));
         let add = |to: &mut [f64; 2], sum: f64| *to = [to[0] + sum * cos, to[1] + sum * sin];
@@ -153,7 +153,7 @@ fn waves(plane: &VirtualPlane) -> Vec<Wave> {
         .collect()
 }
 
-impl<'a> Look<'a> {
+impl<'a> WindowView<'a> {
     fn new(
         mesh: &'a MeshObject,
         smooth: &'a SmoothMesh,
@@ -225,7 +225,7 @@ impl<'a> Look<'a> {
         let [p, q, r] = whole;
         let flat = (q - p).cross(r - p).normalize();
         let area = (b - a).cross(c - a).z.abs();
-        let mut sums = Sums::default();
+        let mut sums = WindowSums::default();
         // Three points of a triangle that integrate squares exactly.
         for corner in piece {
             let point = (a + b + c + 3.0 * *corner) / 6.0;
@@ -248,7 +248,7 @@ impl<'a> Look<'a> {
         normal: DVec3,
         [u, v]: [f64; 2],
         area: f64,
-        sums: &mut Sums,
+        sums: &mut WindowSums,
     ) {
         let window = &self.plane.window;
         let [u, v] = [u * window.u.half_width(), v * window.v.half_width()];

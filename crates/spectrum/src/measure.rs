@@ -80,7 +80,7 @@ pub fn measure_watched(
             .collect()
     };
     let mut all = Vec::new();
-    let parts = Parts {
+    let parts = BatchParts {
         source,
         batches,
         watch,
@@ -111,7 +111,7 @@ pub fn measure_watched(
 }
 
 /// The parts of batches, one after the other.
-struct Parts<'a> {
+struct BatchParts<'a> {
     source: &'a dyn PhotonSource,
     batches: &'a mut (dyn Iterator<Item = PartialBatch> + Send),
     watch: &'a dyn Watch,
@@ -121,7 +121,7 @@ struct Parts<'a> {
     next: u32,
 }
 
-impl Iterator for Parts<'_> {
+impl Iterator for BatchParts<'_> {
     type Item = (Arc<BatchSum>, u32);
 
     fn next(&mut self) -> Option<Self::Item> {

@@ -131,7 +131,7 @@ pub fn read_files(
     planes: &[VirtualPlane],
 ) -> Result<Measurement, Failure> {
     let mut file = open(LEDGER)?;
-    let rows = Rows::read(&mut file, held)?;
+    let rows = StoredRows::read(&mut file, held)?;
     let ledger: Array2<f64> = file.array("ledger", [rows.numbers.len(), 4])?;
     let mut columns = Vec::new();
     for plane in planes {
@@ -160,12 +160,12 @@ pub fn read_files(
 
 /// The batches the rows of a file stand for.
 #[derive(PartialEq)]
-struct Rows {
+struct StoredRows {
     numbers: Array1<u32>,
     emitted: Array1<u64>,
 }
 
-impl Rows {
+impl StoredRows {
     /// They must be those the index names.
     fn read(file: &mut NpzFile, held: &Held) -> Result<Self, Failure> {
         let Range { start, end } = held.batches;
@@ -187,10 +187,10 @@ impl Rows {
 fn plane_batches(
     file: &mut NpzFile,
     held: &Held,
-    rows: &Rows,
+    rows: &StoredRows,
     plane: &VirtualPlane,
 ) -> Result<Vec<PlaneBatch>, Failure> {
-    if Rows::read(file, held)? != *rows {
+    if StoredRows::read(file, held)? != *rows {
         return Err(file.fault("emitted", format!("must be as in {LEDGER}")));
     }
     file.check_half_axes(&plane.grid)?;

@@ -73,7 +73,7 @@ impl CheckpointStore {
     }
 
     /// Of each batch the file with the most parts.
-    fn furthest(&self) -> BTreeMap<u32, Name> {
+    fn furthest(&self) -> BTreeMap<u32, CheckpointName> {
         let mut furthest = BTreeMap::new();
         for name in self.names() {
             let of_batch = furthest.entry(name.batch).or_insert_with(|| name.clone());
@@ -91,10 +91,10 @@ impl CheckpointStore {
         name.is_some_and(|name| inside(&self.out, &name).is_some())
     }
 
-    fn names(&self) -> impl Iterator<Item = Name> {
+    fn names(&self) -> impl Iterator<Item = CheckpointName> {
         let entries = self.is_inside().then(|| fs::read_dir(&self.folder).ok());
         let entries = entries.flatten().into_iter().flatten().flatten();
-        entries.filter_map(|entry| Name::parse(entry.file_name().to_str()?))
+        entries.filter_map(|entry| CheckpointName::parse(entry.file_name().to_str()?))
     }
 
     /// Keeps a batch.
@@ -121,7 +121,7 @@ impl CheckpointStore {
             return Err(Failure::write(&self.folder, LINKED));
         }
         let bytes = packed(&self.planes, batch)?;
-        let name = Name::new(batch.index, parts, &bytes);
+        let name = CheckpointName::new(batch.index, parts, &bytes);
         let put = || {
             fs::create_dir_all(&self.folder)?;
             let mut file = tempfile::NamedTempFile::new_in(&self.folder)?;
@@ -171,9 +171,9 @@ impl CheckpointStore {
         Ok((begun, damaged))
     }
 
-    fn batch(&self, name: &Name, photons: u64, path: &Path) -> Result<Batch, Failure> {
+    fn batch(&self, name: &CheckpointName, photons: u64, path: &Path) -> Result<Batch, Failure> {
         let bytes = read_file(path, available_memory()).map_err(Failure::bad_input)?;
-        if *name != Name::new(name.batch, name.parts, &bytes) {
+        if *name != CheckpointName::new(name.batch, name.parts, &bytes) {
             return Err(Failure::bad_input("its name has another hash"));
         }
         let held = Held {
@@ -240,7 +240,7 @@ pub enum BatchProgress {
 
 /// The name of a file: `NUMBER-HASH.batch` of a whole batch, `NUMBER-PARTS-HASH.begun` of its first parts.
 #[derive(Clone, Debug, PartialEq, Eq)]
-struct Name {
+struct CheckpointName {
     batch: u32,
     /// How many parts it holds; `None` of a whole batch.
     parts: Option<u32>,
@@ -248,7 +248,7 @@ struct Name {
     hash: String,
 }
 
-impl Name {
+impl CheckpointName {
     fn new(batch: u32, parts: Option<u32>, bytes: &[u8]) -> Self {
         let mut hasher = blake3::Hasher::new();
         if let Some(parts) = parts {
@@ -281,7 +281,7 @@ impl Name {
     }
 }
 
-impl fmt::Display for Name {
+impl fmt::Display for CheckpointName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { batch, parts, hash } = self;
         match parts {

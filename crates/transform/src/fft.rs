@@ -67,7 +67,7 @@ pub fn real_mut(row: &mut [Complex], index: usize) -> &mut f64 {
 }
 
 /// What a thread works in.
-struct Memory {
+struct Workspace4 {
     /// The reals of a row.
     reals: Vec<f64>,
     /// Some columns, one after another.
@@ -165,11 +165,11 @@ impl RealFft4 {
         self.first_axis(data, n1 * plane);
     }
 
-    fn memory(&self) -> Memory {
+    fn memory(&self) -> Workspace4 {
         let [n0, n1, n2, n3] = self.shape;
         let scratch = self.along.iter().map(|fft| fft.get_inplace_scratch_len());
         let scratch = scratch.max().unwrap_or_default();
-        Memory {
+        Workspace4 {
             reals: vec![0.0; n3],
             columns: vec![Complex::ZERO; COLUMNS * n0.max(n1).max(n2)],
             scratch: vec![Complex::ZERO; scratch.max(self.along_row.get_scratch_len())],
@@ -177,7 +177,7 @@ impl RealFft4 {
     }
 
     /// Transforms rows of reals.
-    fn rows(&self, rows: &mut [Complex], memory: &mut Memory) {
+    fn rows(&self, rows: &mut [Complex], memory: &mut Workspace4) {
         for row in rows.chunks_exact_mut(self.row()) {
             for (pair, value) in memory.reals.chunks_mut(2).zip(&*row) {
                 pair.copy_from_slice(&[value.re, value.im][..pair.len()]);
@@ -205,14 +205,14 @@ impl RealFft4 {
 }
 
 /// Transforms the columns of a matrix that lies in one piece.
-fn columns(data: &mut [Complex], fft: &dyn Fft<f64>, memory: &mut Memory) {
+fn columns(data: &mut [Complex], fft: &dyn Fft<f64>, memory: &mut Workspace4) {
     let inner = data.len() / fft.len();
     let mut rows: Vec<_> = data.chunks_exact_mut(inner).collect();
     transform_columns(&mut rows, fft, memory);
 }
 
 /// Transforms the columns of a matrix given by its rows.
-fn transform_columns(rows: &mut [&mut [Complex]], fft: &dyn Fft<f64>, memory: &mut Memory) {
+fn transform_columns(rows: &mut [&mut [Complex]], fft: &dyn Fft<f64>, memory: &mut Workspace4) {
     let n = rows.len();
     let width = rows[0].len();
     for start in (0..width).step_by(COLUMNS) {

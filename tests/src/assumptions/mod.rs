@@ -20,7 +20,7 @@ use trial::{Trial, trials};
 
 /// Which scenes are tried.
 #[derive(Debug, clap::Args)]
-pub(crate) struct Options {
+pub(crate) struct AssumptionOptions {
     /// Random scenes.
     #[arg(long, default_value_t = 1000)]
     scenes: u64,
@@ -36,14 +36,14 @@ pub(crate) struct Options {
 }
 
 /// A scene, and what came of its planes; `None` where it was not drawn, or is not legal.
-type Tried = (String, Option<Vec<Trial>>);
+type TriedScene = (String, Option<Vec<Trial>>);
 
 /// Tries all random scenes, and those of the repository.
-pub(crate) fn assumptions(options: &Options) -> io::Result<Section> {
+pub(crate) fn assumptions(options: &AssumptionOptions) -> io::Result<Section> {
     let mut files = Vec::new();
     files_of(Path::new(FOLDER), &mut files)?;
     let bar = progress(options.scenes + files.len() as u64, "scenes");
-    let tried = |name: String, scene: Option<Scene>| -> Tried {
+    let tried = |name: String, scene: Option<Scene>| -> TriedScene {
         let found = scene.as_ref().map(trials);
         for trial in found.iter().flatten() {
             bar.suspend(|| told(&name, trial));
@@ -52,11 +52,11 @@ pub(crate) fn assumptions(options: &Options) -> io::Result<Section> {
         (name, found)
     };
     let numbers = options.first..options.first + options.scenes;
-    let random: io::Result<Vec<Tried>> = numbers
+    let random: io::Result<Vec<TriedScene>> = numbers
         .into_par_iter()
         .map(|number| Ok(tried(number.to_string(), random(options, number)?)))
         .collect();
-    let kept: Vec<Tried> = files
+    let kept: Vec<TriedScene> = files
         .par_iter()
         .map(|path| {
             let name = path.file_stem().unwrap_or_default().to_string_lossy();
@@ -68,7 +68,7 @@ pub(crate) fn assumptions(options: &Options) -> io::Result<Section> {
 }
 
 /// A random scene.
-fn random(options: &Options, number: u64) -> io::Result<Option<Scene>> {
+fn random(options: &AssumptionOptions, number: u64) -> io::Result<Option<Scene>> {
     let folder = tempfile::tempdir()?;
     let file = wild::scene(options.seed, number, options.photons, folder.path());
     let scene = |file| resolve("random", file, folder.path(), u64::MAX).ok();
@@ -114,7 +114,7 @@ fn told(name: &str, trial: &Trial) {
 
 #[cfg(test)]
 mod tests {
-    use super::trial::{Ending, Trial, trials};
+    use super::trial::{Trial, TrialEnding, trials};
     use super::{FOLDER, Scene, SceneFile, kept, resolve};
     use etendue_compare::Verdict;
     use std::path::Path;
@@ -122,7 +122,7 @@ mod tests {
     /// What is broken alone at each plane, and what photons say of theory all the same.
     fn judged(scene: &Scene) -> Vec<(&'static str, Verdict)> {
         let judged = |trial: Trial| match trial.ending {
-            Some(Ending::Judged { verdict, .. }) => {
+            Some(TrialEnding::Judged { verdict, .. }) => {
                 trial.broken.first().map(|broken| (*broken, verdict))
             }
             _ => None,

@@ -1,8 +1,8 @@
 //! What all trials come to, a row for each assumption.
 
 use super::kind::{DARK, UNKNOWN, assumptions};
-use super::trial::Ending;
-use super::{Options, Tried};
+use super::trial::TrialEnding;
+use super::{AssumptionOptions, TriedScene};
 use crate::report::Bound::AtLeast;
 use crate::report::{self, Check, Section};
 use etendue_compare::Verdict;
@@ -28,7 +28,7 @@ struct Row {
 }
 
 impl Row {
-    fn new(says: &str, tried: &[Tried]) -> Self {
+    fn new(says: &str, tried: &[TriedScene]) -> Self {
         let mut row = Self::default();
         for (scene, trials) in tried {
             let broken = trials.iter().flatten();
@@ -41,13 +41,13 @@ impl Row {
         row
     }
 
-    fn count(&mut self, scene: &str, ending: Option<&Ending>) {
+    fn count(&mut self, scene: &str, ending: Option<&TrialEnding>) {
         match ending {
             None => {}
-            Some(Ending::Panicked(_)) => self.panics += 1,
-            Some(Ending::Speechless) => self.speechless += 1,
-            Some(Ending::Skipped) => self.skipped += 1,
-            Some(Ending::Judged { verdict, inside }) => {
+            Some(TrialEnding::Panicked(_)) => self.panics += 1,
+            Some(TrialEnding::Speechless) => self.speechless += 1,
+            Some(TrialEnding::Skipped) => self.skipped += 1,
+            Some(TrialEnding::Judged { verdict, inside }) => {
                 self.lit += usize::from(*inside > 0);
                 match verdict {
                     Verdict::Fail => self.fails.push(scene.to_owned()),
@@ -78,7 +78,11 @@ impl Row {
 }
 
 /// The table, and whether each assumption is caught that is tried.
-pub(super) fn section(options: &Options, random: &[Tried], kept: &[Tried]) -> Section {
+pub(super) fn section(
+    options: &AssumptionOptions,
+    random: &[TriedScene],
+    kept: &[TriedScene],
+) -> Section {
     let mut rows = Vec::new();
     let (mut skipped, mut panics) = (0, 0);
     for says in assumptions() {

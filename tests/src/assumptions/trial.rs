@@ -19,12 +19,12 @@ pub(super) struct Trial {
     pub(super) broken: BTreeSet<&'static str>,
     /// What comes of theory without the check; `None` where more than one assumption is broken,
     /// so that nothing would be learnt of any.
-    pub(super) ending: Option<Ending>,
+    pub(super) ending: Option<TrialEnding>,
 }
 
 /// What comes of a prediction that is not checked.
 #[derive(Debug)]
-pub(super) enum Ending {
+pub(super) enum TrialEnding {
     /// Photons were held against it, so many of them in the window.
     Judged { verdict: Verdict, inside: u64 },
     /// No theory has words for what the central ray meets.
@@ -62,7 +62,7 @@ fn trial(scene: &Scene) -> Option<Trial> {
     };
     let checked = match caught(|| Applicability::new(scene, plane)) {
         Ok(checked) => checked,
-        Err(says) => return trial([UNKNOWN].into(), Some(Ending::Panicked(says))),
+        Err(says) => return trial([UNKNOWN].into(), Some(TrialEnding::Panicked(says))),
     };
     let name = |reason: &String| assumption(reason).unwrap_or(UNKNOWN);
     let reasons = checked.reasons.iter().chain(&checked.declined);
@@ -70,7 +70,7 @@ fn trial(scene: &Scene) -> Option<Trial> {
     broken.extend(checked.dark.is_some().then_some(DARK));
     let tried = (broken.len() == 1).then(|| {
         let ending = caught(|| unchecked(scene, plane, &checked));
-        ending.unwrap_or_else(Ending::Panicked)
+        ending.unwrap_or_else(TrialEnding::Panicked)
     });
     if broken.is_empty() {
         None
@@ -90,10 +90,10 @@ fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
 }
 
 /// Predicts without the check, and judges by photons.
-fn unchecked(scene: &Scene, plane: &VirtualPlane, checked: &Applicability) -> Ending {
+fn unchecked(scene: &Scene, plane: &VirtualPlane, checked: &Applicability) -> TrialEnding {
     let theory = Theory::of(scene, plane);
     if !has_words(scene, plane, &theory) {
-        return Ending::Speechless;
+        return TrialEnding::Speechless;
     }
     let regardless = [Applicability {
         theory,
@@ -104,7 +104,7 @@ fn unchecked(scene: &Scene, plane: &VirtualPlane, checked: &Applicability) -> En
     }];
     let [_, longest] = seconds(scene, &regardless);
     if longest > LONGEST || too_much_work(scene, &regardless).is_some() {
-        return Ending::Skipped;
+        return TrialEnding::Skipped;
     }
     let found = predicted(plane, &regardless[0].theory);
     // What is left out is the chain of affine maps, which has a verdict of its own.
@@ -116,7 +116,7 @@ fn unchecked(scene: &Scene, plane: &VirtualPlane, checked: &Applicability) -> En
         ..Prediction::new(scene, plane, checked)
     };
     match judged(scene, SEEDS[0], &prediction) {
-        Ending::Judged {
+        TrialEnding::Judged {
             verdict: Verdict::Fail,
             ..
         } => judged(scene, SEEDS[1], &prediction),
@@ -154,7 +154,7 @@ fn predicted(plane: &VirtualPlane, theory: &Theory) -> Predicted {
 }
 
 /// What photons with this seed say of the prediction of the only plane.
-fn judged(scene: &Scene, seed: u64, prediction: &Prediction) -> Ending {
+fn judged(scene: &Scene, seed: u64, prediction: &Prediction) -> TrialEnding {
     let mut scene = scene.clone();
     scene.run.seed = seed;
     let photons = traced(&scene);
@@ -162,7 +162,7 @@ fn judged(scene: &Scene, seed: u64, prediction: &Prediction) -> Ending {
     let compared = compare(&photons, 0, prediction, &Test::of(&scene));
     let verdict = compared.map_or(Verdict::Undecided, |compared| compared.report.verdict);
     let few = verdict == Verdict::Fail && inside < HANDFUL;
-    Ending::Judged {
+    TrialEnding::Judged {
         verdict: if few { Verdict::Undecided } else { verdict },
         inside,
     }

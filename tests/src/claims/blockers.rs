@@ -1,7 +1,7 @@
 //! Statements about blockers: finite arrays, replicas, jitter, averages, combinations, soft shadows.
 
-use super::number::{Number, at, line, power};
-use super::scene::{Bench, LIGHT, Seen, number, plane, squares};
+use super::number::{ClaimNumber, at, line, power};
+use super::scene::{ClaimBench, LIGHT, SeenScene, number, plane, squares};
 use super::{CHANCE, Claim, PULL, decreasing};
 use crate::report::Bound::{AtLeast, AtMost, Below};
 use crate::report::Check;
@@ -23,10 +23,10 @@ pub(super) fn claims(photons: u64) -> Vec<Claim> {
 }
 
 /// Light right behind blockers, in a wide window.
-fn behind(blockers: &str, half: f64, [rho, spacing]: [f64; 2], photons: u64) -> Seen {
+fn behind(blockers: &str, half: f64, [rho, spacing]: [f64; 2], photons: u64) -> SeenScene {
     let window = format!("x: Hann({half}), u: Box(2)");
     let frequencies = format!("rho: (max: {rho}, spacing: {spacing}), nu: (max: 1)");
-    let bench = Bench {
+    let bench = ClaimBench {
         light: LIGHT,
         blockers,
         floor: 2.0,
@@ -119,7 +119,7 @@ fn jitter(photons: u64) -> Claim {
     let share = |[jitter, seed]: [f64; 2]| {
         let rest = format!("fill: 0.6, jitter: {jitter}, seed: {seed}");
         let window = "x: Hann(1.5), y: Hann(0.1), u: Box(2), v: Box(2)";
-        let bench = Bench {
+        let bench = ClaimBench {
             light: LIGHT,
             blockers: &squares([40, 40], 0.2, &rest),
             floor: 2.0,
@@ -152,10 +152,10 @@ fn jitter(photons: u64) -> Claim {
 /// Half-covering squares at pitches for which an odd number of halves cover the light's image, where ripples are largest; and how many there are along each axis.
 const PITCHES: [(f64, u32); 3] = [(0.2, 14), (0.2 / 3.0, 38), (0.04, 62)];
 
-fn ripples(at: &str, frequencies: &str, photons: u64) -> [Number; 3] {
+fn ripples(at: &str, frequencies: &str, photons: u64) -> [ClaimNumber; 3] {
     let planes = plane(at, "x: Hann(0.5), u: Hann(0.5)", frequencies);
     let seen = |blockers: &str| {
-        let bench = Bench {
+        let bench = ClaimBench {
             light: LIGHT,
             blockers,
             floor: 2.0,
@@ -178,7 +178,7 @@ fn ripples(at: &str, frequencies: &str, photons: u64) -> [Number; 3] {
     })
 }
 
-fn exponent(numbers: &[Number; 3]) -> f64 {
+fn exponent(numbers: &[ClaimNumber; 3]) -> f64 {
     let pairs = PITCHES.iter().zip(numbers);
     let logs: Vec<[f64; 2]> = pairs
         .map(|((pitch, _), n)| [pitch.ln(), n.value.ln()])
@@ -311,7 +311,7 @@ fn combined(photons: u64) -> Claim {
             continue;
         }
         let [one, two] = [&first, &both].map(|open| {
-            let bench = Bench {
+            let bench = ClaimBench {
                 light: LIGHT,
                 blockers: &opaque(open),
                 floor: 2.0,
@@ -362,7 +362,7 @@ fn soft_shadows(photons: u64) -> Claim {
                 "Grating(name: \"blockers\", center: (0, 0, 1), axis: X, frequency: {frequency}, modulation: 1, phase: {phase})"
             );
             let frequencies = format!("rho: (max: {rho}, spacing: {}), nu: (max: 1)", rho / 5.0);
-            let bench = Bench {
+            let bench = ClaimBench {
                 light: LIGHT,
                 blockers: &blockers,
                 floor,

@@ -1,7 +1,7 @@
 //! Statements about locality and discontinuities: windows narrowed, the central ray moved, tails of spectra.
 
 use super::number::{at, line, power};
-use super::scene::{Bench, LIGHT, Seen, number, plane, squares};
+use super::scene::{ClaimBench, LIGHT, SeenScene, number, plane, squares};
 use super::{Claim, decreasing};
 use crate::report::Bound::{Above, AtMost, Below};
 use crate::report::Check;
@@ -14,7 +14,14 @@ pub(super) fn claims(photons: u64) -> Vec<Claim> {
 }
 
 /// Light past a small square and without it, in a window that holds the whole shadow.
-fn shadow(light: &str, floor: f64, at: &str, half: f64, most: [f64; 2], photons: u64) -> [Seen; 2] {
+fn shadow(
+    light: &str,
+    floor: f64,
+    at: &str,
+    half: f64,
+    most: [f64; 2],
+    photons: u64,
+) -> [SeenScene; 2] {
     let [most, spacing] = most;
     let planes = format!(
         "(name: \"plane\", at: {at}, window: (x: Box({half}), u: Box(1)),
@@ -24,7 +31,7 @@ fn shadow(light: &str, floor: f64, at: &str, half: f64, most: [f64; 2], photons:
         let blockers = format!(
             "Shapes(name: \"blockers\", center: (0, 0, 1), shapes: [Rectangle(center: (0, 0), size: ({side}, {side}))])"
         );
-        let bench = Bench {
+        let bench = ClaimBench {
             light,
             blockers: &blockers,
             floor,
@@ -75,12 +82,12 @@ fn tails(photons: u64) -> Claim {
 const HALVES: [f64; 4] = [0.8, 0.4, 0.2, 0.1];
 
 /// Light behind a grating of 5 /m in windows that narrow.
-fn through(modulation: f64, photons: u64) -> [Seen; 4] {
+fn through(modulation: f64, photons: u64) -> [SeenScene; 4] {
     let grating = format!(
         "Grating(name: \"blockers\", center: (0, 0, 1), axis: X, frequency: 5, modulation: {modulation})"
     );
     HALVES.map(|half| {
-        let bench = Bench {
+        let bench = ClaimBench {
             light: LIGHT,
             blockers: &grating,
             floor: 2.0,
@@ -140,10 +147,10 @@ fn narrowed(photons: u64) -> [Claim; 2] {
 }
 
 /// The share of the power between 15 and 25 /m of an array that ends at ± 2 m, its centre beside the central ray.
-fn share(offset: f64, half: f64, photons: u64) -> super::number::Number {
+fn share(offset: f64, half: f64, photons: u64) -> super::number::ClaimNumber {
     let blockers = squares([80, 80], 0.05, "fill: 0.5")
         .replace("center: (0, 0, 1)", &format!("center: ({offset}, 0, 1)"));
-    let bench = Bench {
+    let bench = ClaimBench {
         light: LIGHT,
         blockers: &blockers,
         floor: 2.0,

@@ -8,7 +8,7 @@ mod surfaces;
 
 use crate::report::Bound::AtMost;
 use crate::report::{Check, Row, Section};
-use number::Number;
+use number::ClaimNumber;
 
 /// Photons of a scene, unless others are given.
 const PHOTONS: u64 = 1 << 20;
@@ -21,7 +21,7 @@ struct Claim {
     said: &'static str,
     /// What the numbers are.
     shown: String,
-    numbers: Vec<Number>,
+    numbers: Vec<ClaimNumber>,
     /// Beyond that each number is as predicted.
     checks: Vec<Check>,
     /// "holds", or in which part.
@@ -54,7 +54,7 @@ pub(crate) fn claims(photons: Option<u64>) -> Section {
 }
 
 fn row(claim: Claim) -> Row {
-    let texts: Vec<String> = claim.numbers.iter().map(Number::text).collect();
+    let texts: Vec<String> = claim.numbers.iter().map(ClaimNumber::text).collect();
     let cells = vec![
         claim.said.to_owned(),
         claim.shown,
@@ -69,7 +69,7 @@ fn row(claim: Claim) -> Row {
 }
 
 /// That each number is below the one before it, beyond noise.
-fn decreasing(numbers: &[Number]) -> Check {
+fn decreasing(numbers: &[ClaimNumber]) -> Check {
     let falls = numbers.windows(2).all(|pair| {
         let error = pair[0].error.hypot(pair[1].error);
         pair[0].value - pair[1].value > PULL * error

@@ -4,7 +4,7 @@ use etendue_field::{Complex, Slices, decimals, fixed, uncertain, whole};
 
 /// A measured number.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Number {
+pub(super) struct ClaimNumber {
     pub(super) value: f64,
     /// Standard error of measured minus predicted.
     pub(super) error: f64,
@@ -12,7 +12,7 @@ pub(super) struct Number {
     pub(super) predicted: f64,
 }
 
-impl Number {
+impl ClaimNumber {
     /// Measured minus predicted, in errors.
     pub(super) fn pull(&self) -> f64 {
         (self.value - self.predicted) / self.error

@@ -1,6 +1,6 @@
 //! Small scenes of the statements, traced and predicted.
 
-use super::number::{Batches, Number, jackknife};
+use super::number::{Batches, ClaimNumber, jackknife};
 use crate::scenes::{predicted, traced};
 use etendue_compare::Prediction;
 use etendue_field::Slices;
@@ -8,7 +8,7 @@ use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::Measurement;
 
 /// Light, blockers and a floor, all across the central ray.
-pub(super) struct Bench<'a> {
+pub(super) struct ClaimBench<'a> {
     pub(super) light: &'a str,
     /// As in a scene file; they stand 1 m from the light.
     pub(super) blockers: &'a str,
@@ -20,15 +20,15 @@ pub(super) struct Bench<'a> {
 /// A square light of 0.2 m.
 pub(super) const LIGHT: &str = "Rectangle(center: (0, 0, 0), size: (0.2, 0.2))";
 
-impl Bench<'_> {
-    pub(super) fn seen(&self, photons: u64) -> Seen {
+impl ClaimBench<'_> {
+    pub(super) fn seen(&self, photons: u64) -> SeenScene {
         let Self {
             light,
             blockers,
             floor,
             planes,
         } = self;
-        Seen::of(scene(
+        SeenScene::of(scene(
             &format!(
                 "light: {light}, blockers: [{blockers}],
                 surfaces: [Rectangle(name: \"floor\", center: (0, 0, {floor}), size: (20, 20), albedo: 1)],
@@ -68,12 +68,12 @@ pub(super) fn scene(text: &str, photons: u64) -> Scene {
 }
 
 /// A scene, measured and predicted.
-pub(super) struct Seen {
+pub(super) struct SeenScene {
     pub(super) measurement: Measurement,
     pub(super) predictions: Vec<Prediction>,
 }
 
-impl Seen {
+impl SeenScene {
     /// # Panics
     /// When no theory applies to a plane.
     pub(super) fn of(scene: Scene) -> Self {
@@ -84,7 +84,7 @@ impl Seen {
     }
 
     /// A number of one plane.
-    pub(super) fn number(&self, plane: usize, of: impl Fn(&Slices) -> f64) -> Number {
+    pub(super) fn number(&self, plane: usize, of: impl Fn(&Slices) -> f64) -> ClaimNumber {
         number(&[(self, plane)], &|slices| of(&slices[0]))
     }
 
@@ -95,7 +95,7 @@ impl Seen {
 }
 
 /// A number of several planes, also of different scenes: batch by batch of each.
-pub(super) fn number(planes: &[(&Seen, usize)], of: &dyn Fn(&[Slices]) -> f64) -> Number {
+pub(super) fn number(planes: &[(&SeenScene, usize)], of: &dyn Fn(&[Slices]) -> f64) -> ClaimNumber {
     let each = planes.iter();
     let batches: Batches = each.clone().map(|(seen, i)| seen.batches(*i)).collect();
     let [value, noise] = jackknife(&batches, of);
@@ -109,7 +109,7 @@ pub(super) fn number(planes: &[(&Seen, usize)], of: &dyn Fn(&[Slices]) -> f64) -
         let slices: Vec<Slices> = said.map(|p| p.slices.clone()).collect();
         [of(&slices), 0.0]
     };
-    Number {
+    ClaimNumber {
         value,
         error: noise.hypot(error),
         predicted,

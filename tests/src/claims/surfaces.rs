@@ -1,7 +1,7 @@
 //! Statements about surfaces: reciprocity, mirror spheres, curvature, the cosine, lobes, environments, criteria.
 
-use super::number::{Number, at};
-use super::scene::{Seen, number, scene};
+use super::number::{ClaimNumber, at};
+use super::scene::{SeenScene, number, scene};
 use super::{CHANCE, Claim, PULL, decreasing};
 use crate::report::Bound::{Above, AtLeast, AtMost, Below};
 use crate::report::Check;
@@ -51,7 +51,7 @@ fn planes(at: &str, orientation: &str, window: &str, frequencies: &str) -> Strin
 }
 
 /// Light at a glossy plane at one angle, seen at another, over the irradiance; both ways, and their ratio.
-fn both_ways(brdf: &str, photons: u64) -> Number {
+fn both_ways(brdf: &str, photons: u64) -> ClaimNumber {
     let angles = [20.0_f64, 50.0].map(f64::to_radians);
     let [there, back] = [angles, [angles[1], angles[0]]].map(|angles| {
         let light = "Rectangle(center: (0, 0, -1), size: (0.02, 0.02))";
@@ -62,10 +62,10 @@ fn both_ways(brdf: &str, photons: u64) -> Number {
             "x: Hann(0.02), u: Hann(0.02)",
             "azimuths: 1, rho: (max: 50), nu: (max: 50)",
         );
-        let seen = Seen::of(scene(&format!("{text}, {planes}"), photons));
+        let seen = SeenScene::of(scene(&format!("{text}, {planes}"), photons));
         let radiance = seen.number(0, Slices::at_zero);
         let cosine = angles[0].cos();
-        Number {
+        ClaimNumber {
             value: radiance.value / cosine,
             error: radiance.error / cosine,
             predicted: radiance.predicted / cosine,
@@ -190,12 +190,12 @@ fn curvature(photons: u64) -> [Claim; 2] {
             "x: Hann(0.1), u: Hann(0.6)",
             "azimuths: 1, rho: (max: 60), nu: (max: 12)",
         );
-        Seen::of(scene(&format!("{text}, {planes}"), photons))
+        SeenScene::of(scene(&format!("{text}, {planes}"), photons))
     });
     let each = |of: fn(&Slices) -> f64| seen.each_ref().map(|seen| seen.number(0, of)).to_vec();
     let angular = each(|slices| bandwidth(slices, bandwidth_nu));
     let spatial = each(|slices| bandwidth(slices, bandwidth_rho));
-    let spread = |of: &[Number]| {
+    let spread = |of: &[ClaimNumber]| {
         let values = of.iter().map(|n| n.value);
         values.clone().fold(0.0, f64::max) / values.fold(f64::INFINITY, f64::min) - 1.0
     };
@@ -256,14 +256,14 @@ fn cosine(photons: u64) -> Claim {
             window: (x: Hann(0.1), u: Hann({half})), frequencies: (azimuths: 4, rho: (max: 20), nu: (max: 12)))]"
         );
         let scene = scene(&format!("{text}, {planes}"), photons);
-        let whole = Seen::of(scene.clone());
+        let whole = SeenScene::of(scene.clone());
         // cos θ for cos θ cos φ.
         let tampered = |mut crossing: Crossing| {
             crossing.weight /= crossing.ray.v.cos();
             crossing
         };
         let source = Tampered::new(&scene, tampered);
-        let flat = Seen {
+        let flat = SeenScene {
             measurement: measured(&scene, &source),
             predictions: whole.predictions.clone(),
         };
@@ -275,9 +275,9 @@ fn cosine(photons: u64) -> Claim {
         })
     });
     // Photons of one scene, weighted twice: there is no prediction of the difference.
-    let numbers: Vec<Number> = apart
+    let numbers: Vec<ClaimNumber> = apart
         .iter()
-        .map(|n| Number {
+        .map(|n| ClaimNumber {
             predicted: n.value,
             ..*n
         })
@@ -315,7 +315,7 @@ fn lobe(photons: u64) -> Claim {
             &format!("x: Hann(0.02), u: Hann({half})"),
             &format!("azimuths: 2, rho: (max: 50), nu: (max: {nu}, spacing: {nu})"),
         );
-        let seen = Seen::of(scene(&format!("{text}, {planes}"), 4 * photons));
+        let seen = SeenScene::of(scene(&format!("{text}, {planes}"), 4 * photons));
         seen.number(0, |slices| {
             // A Hann window alone has half its value at the first frequency.
             let [theta, phi] =
@@ -348,7 +348,7 @@ fn lobe(photons: u64) -> Claim {
 }
 
 /// A diffuse sphere of curvature k, with a window and frequencies that go with it.
-fn diffuse(light: &str, (k, seed): (f64, u64), photons: u64) -> Seen {
+fn diffuse(light: &str, (k, seed): (f64, u64), photons: u64) -> SeenScene {
     let text = surface(
         light,
         [0.0; 2],
@@ -364,7 +364,7 @@ fn diffuse(light: &str, (k, seed): (f64, u64), photons: u64) -> Seen {
     let mut scene = scene(&format!("{text}, {planes}"), photons);
     // Photons of spheres of two sizes are else the same but for their scale.
     scene.run.seed = seed;
-    Seen::of(scene)
+    SeenScene::of(scene)
 }
 
 fn environment(photons: u64) -> [Claim; 2] {
@@ -429,10 +429,10 @@ fn criteria(photons: u64) -> Claim {
             "x: Hann(0.05), u: Hann(0.25)",
             "azimuths: 1, rho: (max: 40), nu: (max: 30)",
         );
-        let seen = Seen::of(scene(&format!("{text}, {planes}"), 4 * photons));
+        let seen = SeenScene::of(scene(&format!("{text}, {planes}"), 4 * photons));
         let found = seen.number(0, |slices| bandwidth(slices, bandwidth_nu));
         let of = criterion.blocker();
-        Number {
+        ClaimNumber {
             value: found.value / of,
             error: found.error / of,
             predicted: found.predicted / of,

@@ -16,37 +16,37 @@ const LARGEST: f64 = 0.01;
 const HALVES: i32 = 10;
 
 /// A fault of a size: what is predicted instead, or how photons are tampered with.
-enum Fault {
+enum SizedFault {
     Predicted(fn(f64) -> Box<Predict>),
     Photons(fn(f64, Crossing) -> Crossing),
 }
 
-const FAULTS: [(&str, Fault); 7] = [
+const FAULTS: [(&str, SizedFault); 7] = [
     (
         "first travel too long",
-        Fault::Predicted(|size| chained(move |c| scale_travel(c, 0, 1.0 + size))),
+        SizedFault::Predicted(|size| chained(move |c| scale_travel(c, 0, 1.0 + size))),
     ),
     (
         "second travel too long",
-        Fault::Predicted(|size| chained(move |c| scale_travel(c, 1, 1.0 + size))),
+        SizedFault::Predicted(|size| chained(move |c| scale_travel(c, 1, 1.0 + size))),
     ),
     (
         "blockers too wide",
-        Fault::Predicted(|size| {
+        SizedFault::Predicted(|size| {
             chained(move |c| each_rectangle(c, |r| r.size = r.size.map(|side| side * (1.0 + size))))
         }),
     ),
     (
         "window too wide in x and y",
-        Fault::Predicted(|size| widened(size, 0.0)),
+        SizedFault::Predicted(|size| widened(size, 0.0)),
     ),
     (
         "window too wide in u and v",
-        Fault::Predicted(|size| widened(0.0, size)),
+        SizedFault::Predicted(|size| widened(0.0, size)),
     ),
     (
         "field moved along x, of the half-width",
-        Fault::Predicted(|size| {
+        SizedFault::Predicted(|size| {
             Box::new(move |scene, plane| {
                 let shift = plane.window.x.half_width() * size;
                 Some(shifted(unchanged(scene, plane)?, shift))
@@ -55,7 +55,7 @@ const FAULTS: [(&str, Fault); 7] = [
     ),
     (
         "flux of photons with x > 0 too large",
-        Fault::Photons(|size, mut crossing| {
+        SizedFault::Photons(|size, mut crossing| {
             if crossing.ray.x > 0.0 {
                 crossing.weight *= 1.0 + size;
             }
@@ -116,12 +116,12 @@ pub(crate) fn smallest(photons: u64, seed: u64) -> Section {
 }
 
 /// The smallest size that is rejected.
-fn rejected(fault: &Fault, scene: &Scene, sound: &Measurement) -> Option<f64> {
+fn rejected(fault: &SizedFault, scene: &Scene, sound: &Measurement) -> Option<f64> {
     let sizes = (0..=HALVES).map(|halves| LARGEST * 0.5_f64.powi(halves));
     sizes
         .take_while(|size| match fault {
-            Fault::Predicted(predict) => is_rejected(scene, sound, &*predict(*size)),
-            Fault::Photons(tamper) => {
+            SizedFault::Predicted(predict) => is_rejected(scene, sound, &*predict(*size)),
+            SizedFault::Photons(tamper) => {
                 let tampered = Tampered {
                     tracer: &Tracer::new(scene),
                     crossing: |_, crossing| Some(tamper(*size, crossing)),

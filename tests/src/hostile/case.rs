@@ -8,7 +8,7 @@ use std::path::Path;
 
 /// A kind of input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub(crate) enum InputKind {
     Scene,
     Mesh,
     Picture,
@@ -16,7 +16,7 @@ pub(crate) enum Kind {
     Prediction,
 }
 
-impl Kind {
+impl InputKind {
     pub(crate) const ALL: [Self; 5] = [
         Self::Scene,
         Self::Mesh,
@@ -53,7 +53,7 @@ pub(crate) struct Attack {
 
 /// What must not be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Fault {
+pub(crate) enum HostileFault {
     /// Also an exit code that the program does not have.
     Panic,
     /// Ended by a signal, or for want of memory.
@@ -79,9 +79,9 @@ pub(crate) enum Reached {
 
 /// What became of a case.
 #[derive(Debug)]
-pub(crate) struct Outcome {
+pub(crate) struct CaseOutcome {
     pub(crate) reached: Reached,
-    pub(crate) faults: Vec<Fault>,
+    pub(crate) faults: Vec<HostileFault>,
     pub(crate) seconds: f64,
     pub(crate) peak: u64,
     /// The command lines and how they ended, for whoever looks into it.
@@ -94,11 +94,11 @@ const WORK: &str = "work";
 pub(crate) const OUT: &str = "out";
 
 /// Runs a case in a fresh folder within `at`, which is removed again.
-pub(crate) fn run(program: &Path, attack: &Attack, at: &Path) -> io::Result<Outcome> {
+pub(crate) fn run(program: &Path, attack: &Attack, at: &Path) -> io::Result<CaseOutcome> {
     let place = at.join("case");
     let work = place.join(WORK);
     folder::write(&work, &attack.files)?;
-    let mut outcome = Outcome {
+    let mut outcome = CaseOutcome {
         reached: Reached::Values,
         faults: Vec::new(),
         seconds: 0.0,
@@ -113,14 +113,14 @@ pub(crate) fn run(program: &Path, attack: &Attack, at: &Path) -> io::Result<Outc
         {
             outcome.reached = Reached::Ran;
             step(program, attack, then, at, &mut outcome)?;
-            if outcome.faults.contains(&Fault::Slow) && is_slow(program, attack, then, at)? {
-                outcome.faults.retain(|fault| *fault != Fault::Slow);
+            if outcome.faults.contains(&HostileFault::Slow) && is_slow(program, attack, then, at)? {
+                outcome.faults.retain(|fault| *fault != HostileFault::Slow);
             }
         }
         if let Some(summary) = &attack.summary
             && fs::read(work.join(OUT).join("summary.json")).ok().as_ref() != Some(summary)
         {
-            outcome.faults.push(Fault::Changed);
+            outcome.faults.push(HostileFault::Changed);
         }
     } else if is_syntax(&ended.stderr) {
         outcome.reached = Reached::Syntax;
@@ -135,14 +135,14 @@ fn step(
     attack: &Attack,
     arguments: &[String],
     at: &Path,
-    outcome: &mut Outcome,
+    outcome: &mut CaseOutcome,
 ) -> io::Result<Ended> {
     let place = at.join("case");
     let ended = child::call(program, &place.join(WORK), arguments, at)?;
     let mut faults = faults(&ended);
     let mut wrong = wrote(attack, arguments, &ended, &place)?;
     if !wrong.is_empty() {
-        faults.push(Fault::Wrote);
+        faults.push(HostileFault::Wrote);
         wrong.insert(0, "  changed on disk:".into());
     }
     outcome.seconds = outcome.seconds.max(ended.seconds);
@@ -176,7 +176,7 @@ fn is_slow(program: &Path, attack: &Attack, then: &[String], at: &Path) -> io::R
 }
 
 /// What is wrong with the process itself.
-fn faults(ended: &Ended) -> Vec<Fault> {
+fn faults(ended: &Ended) -> Vec<HostileFault> {
     let message = String::from_utf8_lossy(&ended.stderr);
     let slow = ended.hung || ended.seconds > LONGEST.as_secs_f64();
     let large = ended.peak > LARGEST;
@@ -192,11 +192,11 @@ fn faults(ended: &Ended) -> Vec<Fault> {
         || message.contains(control)
         || std::str::from_utf8(&ended.stderr).is_err();
     [
-        (Fault::Panic, panicked || !known),
-        (Fault::Abort, aborted),
-        (Fault::Slow, slow),
-        (Fault::Large, large),
-        (Fault::Message, refused && unfit),
+        (HostileFault::Panic, panicked || !known),
+        (HostileFault::Abort, aborted),
+        (HostileFault::Slow, slow),
+        (HostileFault::Large, large),
+        (HostileFault::Message, refused && unfit),
     ]
     .into_iter()
     .filter_map(|(fault, is)| is.then_some(fault))

@@ -19,7 +19,7 @@ mod text;
 
 use crate::progress::progress;
 use crate::report::Section;
-use case::{Attack, Kind, Outcome};
+use case::{Attack, CaseOutcome, InputKind};
 use dice::Dice;
 use std::fs;
 use std::io;
@@ -30,7 +30,7 @@ use table::Tallies;
 
 /// What to attack with, and where.
 #[derive(Debug, clap::Args)]
-pub(crate) struct Options {
+pub(crate) struct HostileOptions {
     /// Cases.
     #[arg(long, default_value_t = 20_000)]
     count: u64,
@@ -74,18 +74,18 @@ impl Seeds {
 
     fn attack(&self, seed: u64, case: u64) -> io::Result<Attack> {
         let mut dice = Dice::new(seed, case);
-        Ok(match Kind::of(case) {
-            Kind::Scene => scenes::attack(&self.scenes, &mut dice),
-            Kind::Mesh => meshes::attack(&self.meshes, &mut dice),
-            Kind::Picture => pictures::attack(&self.pictures, &mut dice),
-            Kind::Part => stages::part(&self.stages, &mut dice)?,
-            Kind::Prediction => stages::prediction(&self.stages, &mut dice)?,
+        Ok(match InputKind::of(case) {
+            InputKind::Scene => scenes::attack(&self.scenes, &mut dice),
+            InputKind::Mesh => meshes::attack(&self.meshes, &mut dice),
+            InputKind::Picture => pictures::attack(&self.pictures, &mut dice),
+            InputKind::Part => stages::part(&self.stages, &mut dice)?,
+            InputKind::Prediction => stages::prediction(&self.stages, &mut dice)?,
         })
     }
 }
 
 /// Runs all cases.
-pub(crate) fn hostile(options: &Options) -> io::Result<Section> {
+pub(crate) fn hostile(options: &HostileOptions) -> io::Result<Section> {
     let program = child::program(options.etendue.as_deref())?;
     let place = tempfile::tempdir()?;
     let seeds = Seeds::new(&program, place.path())?;
@@ -141,7 +141,12 @@ pub(crate) fn on_threads(
 }
 
 /// Keeps the input of a case, and what became of it.
-fn keep(options: &Options, number: u64, attack: &Attack, outcome: &Outcome) -> io::Result<()> {
+fn keep(
+    options: &HostileOptions,
+    number: u64,
+    attack: &Attack,
+    outcome: &CaseOutcome,
+) -> io::Result<()> {
     let at = options.keep.join(format!("{}-{number}", options.seed));
     if at.exists() {
         fs::remove_dir_all(&at)?;

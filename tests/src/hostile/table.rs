@@ -1,12 +1,12 @@
 //! What came of all cases: one row for each kind of input.
 
-use super::case::{Fault, Kind, Outcome, Reached};
+use super::case::{CaseOutcome, HostileFault, InputKind, Reached};
 use crate::report::{Check, Row, Section};
 use std::collections::BTreeMap;
 
 /// The cases of one kind.
 #[derive(Clone, Debug, Default)]
-struct Tally {
+struct CaseTally {
     cases: u64,
     reached: [u64; 4],
     faults: [u64; 7],
@@ -17,7 +17,7 @@ struct Tally {
 /// The cases of every kind.
 #[derive(Debug, Default)]
 pub(crate) struct Tallies {
-    kinds: [Tally; Kind::ALL.len()],
+    kinds: [CaseTally; InputKind::ALL.len()],
     /// The bad ones by their numbers.
     bad: BTreeMap<u64, String>,
 }
@@ -26,8 +26,8 @@ pub(crate) struct Tallies {
 const MOST_TOLD: usize = 60;
 
 impl Tallies {
-    pub(crate) fn add(&mut self, number: u64, outcome: &Outcome) {
-        let kind = Kind::of(number);
+    pub(crate) fn add(&mut self, number: u64, outcome: &CaseOutcome) {
+        let kind = InputKind::of(number);
         if !outcome.faults.is_empty() {
             let words = format!("* case {number}, {kind:?}: {:?}", outcome.faults);
             self.bad.insert(number, words);
@@ -44,7 +44,7 @@ impl Tallies {
 
     /// The table; it has passed if nothing went wrong in any case.
     pub(crate) fn section(&self, seed: u64) -> Section {
-        let pairs = Kind::ALL.iter().zip(&self.kinds);
+        let pairs = InputKind::ALL.iter().zip(&self.kinds);
         let rows = pairs.map(|(kind, tally)| row(*kind, tally)).collect();
         let bad: Vec<&str> = self.bad.values().map(String::as_str).collect();
         let told = bad[..bad.len().min(MOST_TOLD)].join("\n");
@@ -79,7 +79,7 @@ impl Tallies {
     }
 }
 
-fn row(kind: Kind, tally: &Tally) -> Row {
+fn row(kind: InputKind, tally: &CaseTally) -> Row {
     let reached = |reached| tally.reached[reached as usize];
     let share = |n: u64| match tally.cases {
         0 => "0".to_owned(),
@@ -95,13 +95,13 @@ fn row(kind: Kind, tally: &Tally) -> Row {
         share(reached(Reached::Ran)),
     ];
     let order = [
-        Fault::Panic,
-        Fault::Abort,
-        Fault::Slow,
-        Fault::Large,
-        Fault::Wrote,
-        Fault::Message,
-        Fault::Changed,
+        HostileFault::Panic,
+        HostileFault::Abort,
+        HostileFault::Slow,
+        HostileFault::Large,
+        HostileFault::Wrote,
+        HostileFault::Message,
+        HostileFault::Changed,
     ];
     row.extend(order.map(|fault| tally.faults[fault as usize].to_string()));
     row.push(format!("{:.1}", tally.seconds));

@@ -7,7 +7,7 @@ use serde_json::Value;
 
 /// What an index says of its folder.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) enum State {
+pub(super) enum IndexState {
     /// There is none: the folder holds no result, and does not claim to.
     Absent,
     Whole,
@@ -16,13 +16,13 @@ pub(super) enum State {
 }
 
 /// Checks the files of a folder against its index, and the index against its own hash.
-pub(super) fn state(files: &Folder, index: &str) -> State {
+pub(super) fn state(files: &Folder, index: &str) -> IndexState {
     let Some(Some(bytes)) = files.get(index) else {
-        return State::Absent;
+        return IndexState::Absent;
     };
     match whole(files, index, bytes) {
-        Ok(()) => State::Whole,
-        Err(reason) => State::Broken(reason),
+        Ok(()) => IndexState::Whole,
+        Err(reason) => IndexState::Broken(reason),
     }
 }
 
@@ -69,7 +69,7 @@ fn sealed(index: &[u8]) -> Result<(), &'static str> {
 
 #[cfg(test)]
 mod tests {
-    use super::{NO_HASH, State, state};
+    use super::{IndexState, NO_HASH, state};
     use crate::hostile::folder::Folder;
     use crate::hostile::index::TAIL;
 
@@ -90,9 +90,9 @@ mod tests {
         let own = blake3::hash(body.as_bytes()).to_hex();
         let index = format!("{body}{TAIL}{own}\"\n}}\n");
         let of = |index: &str, content| state(&folder(index, content), "i.json");
-        assert_eq!(of(&index, Some("content")), State::Whole);
+        assert_eq!(of(&index, Some("content")), IndexState::Whole);
         let broken = |index: &str, content, part: &str| match of(index, content) {
-            State::Broken(reason) => assert!(reason.contains(part), "{reason}"),
+            IndexState::Broken(reason) => assert!(reason.contains(part), "{reason}"),
             other => panic!("{other:?}"),
         };
         broken(&index, Some("other"), "not what");
@@ -101,6 +101,6 @@ mod tests {
         let changed = index.replace("\"files\"", " \"files\"");
         broken(&changed, Some("content"), "its own hash");
         broken("{", Some("content"), "lists no files");
-        assert_eq!(state(&Folder::new(), "i.json"), State::Absent);
+        assert_eq!(state(&Folder::new(), "i.json"), IndexState::Absent);
     }
 }

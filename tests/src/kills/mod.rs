@@ -14,11 +14,11 @@ use disk::FullDisk;
 use std::io;
 use std::path::PathBuf;
 use task::Verb;
-use trial::{Bench, Finding, Trouble};
+use trial::{Finding, KillTrouble, TrialBench};
 
 /// What to try, and where.
 #[derive(Debug, clap::Args)]
-pub(crate) struct Options {
+pub(crate) struct KillOptions {
     /// Trials.
     #[arg(long, default_value_t = 200)]
     count: u64,
@@ -37,17 +37,17 @@ pub(crate) struct Options {
 type Counts = [[u64; Finding::COUNT]; Verb::ALL.len()];
 
 /// Makes all trials.
-pub(crate) fn kills(options: &Options) -> io::Result<Section> {
+pub(crate) fn kills(options: &KillOptions) -> io::Result<Section> {
     let program = child::program(options.etendue.as_deref())?;
     let place = tempfile::tempdir()?;
     let tasks = task::tasks(&program, place.path())?;
     let disk = options.full_disk.map_or_else(FullDisk::best, Ok)?;
     let troubles = [
-        Trouble::Nothing,
-        Trouble::TwoWriters,
-        Trouble::FullDisk(disk),
+        KillTrouble::Nothing,
+        KillTrouble::TwoWriters,
+        KillTrouble::FullDisk(disk),
     ];
-    let bench = Bench {
+    let bench = TrialBench {
         program: &program,
         at: place.path(),
     };
@@ -78,7 +78,7 @@ pub(crate) fn kills(options: &Options) -> io::Result<Section> {
 /// The most faults that are told one by one.
 const MOST_TOLD: usize = 60;
 
-fn section(options: &Options, counts: &Counts, told: &[String]) -> Section {
+fn section(options: &KillOptions, counts: &Counts, told: &[String]) -> Section {
     let rows = Verb::ALL.iter().zip(counts).map(|(verb, counts)| {
         let ended = [Finding::Before, Finding::Between, Finding::After];
         let trials: u64 = ended.iter().map(|f| counts[*f as usize]).sum();

@@ -65,7 +65,7 @@ pub(super) const EARLIER: u64 = 1;
 
 /// A command, what is in its folder before, and how long it takes.
 #[derive(Debug)]
-pub(super) struct Task {
+pub(super) struct KillTask {
     pub(super) verb: Verb,
     /// The earlier result and the user's files, in `out`.
     pub(super) before: Folder,
@@ -77,7 +77,7 @@ pub(super) struct Task {
 }
 
 /// Makes all tasks, with earlier results of this program.
-pub(super) fn tasks(program: &Path, at: &Path) -> io::Result<Vec<Task>> {
+pub(super) fn tasks(program: &Path, at: &Path) -> io::Result<Vec<KillTask>> {
     let place = at.join("tasks");
     folder::write(&place.join("out"), &users())?;
     for command in [
@@ -94,7 +94,13 @@ pub(super) fn tasks(program: &Path, at: &Path) -> io::Result<Vec<Task>> {
     tasks
 }
 
-fn task(program: &Path, place: &Path, verb: Verb, inputs: &Folder, at: &Path) -> io::Result<Task> {
+fn task(
+    program: &Path,
+    place: &Path,
+    verb: Verb,
+    inputs: &Folder,
+    at: &Path,
+) -> io::Result<KillTask> {
     let out = place.join("out");
     let mut arguments = verb.arguments(EARLIER);
     if verb == Verb::Run {
@@ -120,7 +126,7 @@ fn task(program: &Path, place: &Path, verb: Verb, inputs: &Folder, at: &Path) ->
         foreign.insert(format!("{name}.edited"), Some(edited));
     }
     before.extend(foreign.clone());
-    Ok(Task {
+    Ok(KillTask {
         verb,
         before,
         foreign,

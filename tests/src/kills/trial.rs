@@ -1,8 +1,8 @@
 //! One trial: a command starts into a folder, something happens to it, and the folder is looked at.
 
-use super::check::{self, NO_HASH, State};
+use super::check::{self, IndexState, NO_HASH};
 use super::disk::{FullDisk, Mount, limited};
-use super::task::{Task, Verb};
+use super::task::{KillTask, Verb};
 use crate::hostile::child;
 use crate::hostile::dice::Dice;
 use crate::hostile::folder::{self, Folder};
@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 /// What happens beside a kill.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Trouble {
+pub(super) enum KillTrouble {
     Nothing,
     TwoWriters,
     FullDisk(FullDisk),
@@ -57,24 +57,24 @@ pub(super) type Findings = Vec<(Finding, String)>;
 
 /// A place for trials, and the program tried.
 #[derive(Debug)]
-pub(super) struct Bench<'a> {
+pub(super) struct TrialBench<'a> {
     pub(super) program: &'a Path,
     pub(super) at: &'a Path,
 }
 
-impl Bench<'_> {
+impl TrialBench<'_> {
     /// Makes a trial in a fresh folder, which is removed again.
     pub(super) fn trial(
         &self,
-        task: &Task,
-        trouble: Trouble,
+        task: &KillTask,
+        trouble: KillTrouble,
         dice: &mut Dice,
     ) -> io::Result<Findings> {
         let place = self.at.join("trial");
         let out = place.join("out");
         fs::create_dir_all(&out)?;
         let mount = match trouble {
-            Trouble::FullDisk(FullDisk::Tmpfs) => Some(Mount::new(&out, room(task, dice))?),
+            KillTrouble::FullDisk(FullDisk::Tmpfs) => Some(Mount::new(&out, room(task, dice))?),
             _ => None,
         };
         folder::write(&place.join("in"), &task.inputs)?;
@@ -102,23 +102,23 @@ impl Bench<'_> {
     /// Starts one writer or two and ends the first at some moment, or leaves them alone.
     fn disturbed(
         &self,
-        task: &Task,
-        trouble: Trouble,
+        task: &KillTask,
+        trouble: KillTrouble,
         dice: &mut Dice,
         findings: &mut Findings,
     ) -> io::Result<()> {
         let blocks = 1 + dice.length(1000);
         let command = || match trouble {
-            Trouble::FullDisk(FullDisk::Limit) => limited(self.program, blocks),
+            KillTrouble::FullDisk(FullDisk::Limit) => limited(self.program, blocks),
             _ => Command::new(self.program),
         };
         let moment = task.takes.mul_f64(1.2 * dice.unit());
         let wait = task.takes.mul_f64(0.5 * dice.unit() * dice.unit());
-        let alone = trouble != Trouble::Nothing && dice.one_in(2);
+        let alone = trouble != KillTrouble::Nothing && dice.one_in(2);
         let signal = *dice.pick(&["KILL", "KILL", "KILL", "TERM", "INT"]);
         let mut writers = vec![self.start(command(), task, 2)?];
         let start = Instant::now();
-        if trouble == Trouble::TwoWriters {
+        if trouble == KillTrouble::TwoWriters {
             std::thread::sleep(wait);
             writers.push(self.start(command(), task, 3)?);
         }
@@ -131,23 +131,23 @@ impl Bench<'_> {
             codes.push(ended(writer)?);
         }
         match trouble {
-            Trouble::TwoWriters => findings.push((Finding::TwoWriters, String::new())),
-            Trouble::FullDisk(_) => findings.push((Finding::FullDisk, String::new())),
-            Trouble::Nothing => (),
+            KillTrouble::TwoWriters => findings.push((Finding::TwoWriters, String::new())),
+            KillTrouble::FullDisk(_) => findings.push((Finding::FullDisk, String::new())),
+            KillTrouble::Nothing => (),
         }
         let undisturbed = if alone { &codes[..] } else { &codes[1..] };
         let known = |code: &Option<i32>| matches!(code, Some(0 | 1 | 3 | 4));
         let refused = |code: &Option<i32>| *code == Some(3);
-        let all_refused = trouble == Trouble::TwoWriters && alone && codes.iter().all(refused);
+        let all_refused = trouble == KillTrouble::TwoWriters && alone && codes.iter().all(refused);
         if !undisturbed.iter().all(known) || all_refused {
             findings.push((Finding::Exit, format!("exit codes {undisturbed:?}")));
-        } else if trouble == Trouble::TwoWriters && undisturbed.iter().any(refused) {
+        } else if trouble == KillTrouble::TwoWriters && undisturbed.iter().any(refused) {
             findings.push((Finding::Refused, String::new()));
         }
         Ok(())
     }
 
-    fn start(&self, mut command: Command, task: &Task, seed: u64) -> io::Result<Child> {
+    fn start(&self, mut command: Command, task: &KillTask, seed: u64) -> io::Result<Child> {
         command
             .args(task.verb.arguments(seed))
             .current_dir(self.at.join("trial"))
@@ -158,7 +158,7 @@ impl Bench<'_> {
     }
 
     /// An ordinary run must succeed, and leave nothing but its result and what is the user's.
-    fn next(&self, task: &Task, findings: &mut Findings) -> io::Result<()> {
+    fn next(&self, task: &KillTask, findings: &mut Findings) -> io::Result<()> {
         let place = self.at.join("trial");
         let ended = child::call(self.program, &place, &task.verb.arguments(5), self.at)?;
         if !matches!(ended.code, Some(0 | 1 | 4)) {
@@ -191,7 +191,7 @@ impl Bench<'_> {
     }
 
     /// A result that the user has edited is theirs: the command is refused and changes nothing.
-    fn edited(&self, task: &Task, findings: &mut Findings) -> io::Result<()> {
+    fn edited(&self, task: &KillTask, findings: &mut Findings) -> io::Result<()> {
         let place = self.at.join("trial");
         let out = place.join("out");
         let index = fs::read(out.join(task.verb.index())).unwrap_or_default();
@@ -215,13 +215,13 @@ impl Bench<'_> {
 }
 
 /// Whether this is what a writer that has ended leaves. A point of a sweep is cleared when it is run again.
-fn is_unfinished(task: &Task, name: &str) -> bool {
+fn is_unfinished(task: &KillTask, name: &str) -> bool {
     let is_point = task.verb == Verb::Sweep && name.starts_with("points/");
     name.contains(".etendue") && !is_point
 }
 
 /// Size of a disk that holds what is there, and some of what comes.
-fn room(task: &Task, dice: &mut Dice) -> u64 {
+fn room(task: &KillTask, dice: &mut Dice) -> u64 {
     // Each file and folder takes whole pages.
     let pages = |bytes: &Option<Vec<u8>>| 1 + bytes.as_ref().map_or(0, Vec::len).div_ceil(4096);
     let there: usize = task.before.values().map(pages).sum();
@@ -254,14 +254,14 @@ fn ended(child: &mut Child) -> io::Result<Option<i32>> {
 }
 
 /// Looks at the index, its files and the user's.
-fn judge(task: &Task, files: &Folder, when: &str, findings: &mut Findings) {
+fn judge(task: &KillTask, files: &Folder, when: &str, findings: &mut Findings) {
     match check::state(files, task.verb.index()) {
-        State::Absent => (),
-        State::Whole => findings.push((Finding::Whole, String::new())),
-        State::Broken(reason) if reason.ends_with(NO_HASH) => {
+        IndexState::Absent => (),
+        IndexState::Whole => findings.push((Finding::Whole, String::new())),
+        IndexState::Broken(reason) if reason.ends_with(NO_HASH) => {
             findings.push((Finding::NoHash, format!("{when}: {reason}")));
         }
-        State::Broken(reason) => findings.push((Finding::Broken, format!("{when}: {reason}"))),
+        IndexState::Broken(reason) => findings.push((Finding::Broken, format!("{when}: {reason}"))),
     }
     let mut foreign = task.foreign.iter();
     if let Some((name, _)) = foreign.find(|(name, bytes)| files.get(*name) != Some(bytes)) {

@@ -6,7 +6,7 @@ use etendue_transform::random::{self, Stream};
 
 /// What stands between light and plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum BlockerKind {
     /// Light across the way, behind masks.
     Across,
     /// Of a point.
@@ -31,7 +31,7 @@ pub(super) enum Kind {
     Sky,
 }
 
-impl Kind {
+impl BlockerKind {
     /// How many scenes there are of each: 130 with a closed form, 70 without.
     pub(super) const ALL: [(Self, usize); 11] = [
         (Self::Across, 40),
@@ -73,7 +73,7 @@ impl Kind {
 }
 
 /// Random numbers of one scene, in the order they are asked for.
-pub(super) struct Dice {
+pub(super) struct SceneDice {
     index: u64,
     next: u32,
 }
@@ -81,7 +81,7 @@ pub(super) struct Dice {
 /// The seed of all scenes: fixed beforehand, and not chosen.
 const SEED: u64 = 1;
 
-impl Dice {
+impl SceneDice {
     pub(super) fn new(index: u64) -> Self {
         Self { index, next: 0 }
     }
@@ -101,7 +101,7 @@ impl Dice {
 }
 
 /// A scene of a kind, as the text of its file.
-pub(super) fn scene(kind: Kind, dice: &mut Dice) -> String {
+pub(super) fn scene(kind: BlockerKind, dice: &mut SceneDice) -> String {
     let [x, u] = [dice.between(0.15, 0.5), dice.between(0.15, 0.45)];
     let window = match dice.of(4) {
         0 => format!("(x: Box({x}), u: Hann({u}))"),
@@ -125,13 +125,13 @@ pub(super) fn scene(kind: Kind, dice: &mut Dice) -> String {
     )
 }
 
-fn light(kind: Kind, dice: &mut Dice) -> String {
+fn light(kind: BlockerKind, dice: &mut SceneDice) -> String {
     let size = dice.between(0.05, 0.5);
     let point = "Point(center: (0, 0, 0))".to_owned();
     match kind {
-        Kind::PointAcross | Kind::PointDiffuse => point,
-        Kind::Sky => {
-            let lobe = |dice: &mut Dice| {
+        BlockerKind::PointAcross | BlockerKind::PointDiffuse => point,
+        BlockerKind::Sky => {
+            let lobe = |dice: &mut SceneDice| {
                 let [x, y] = [dice.between(-0.6, 0.6), dice.between(-0.6, 0.6)];
                 let width = dice.between(0.05, 0.5);
                 format!("(from: ({x}, {y}, -1), width: {width}, radiance: 1)")
@@ -139,10 +139,12 @@ fn light(kind: Kind, dice: &mut Dice) -> String {
             let lobes = [lobe(dice), lobe(dice)].join(", ");
             format!("Environment(center: (0, 0, 0), map: Lobes([{lobes}]))")
         }
-        Kind::Picture if dice.of(2) == 0 => {
+        BlockerKind::Picture if dice.of(2) == 0 => {
             format!("Beam(center: (0, 0, 0), image: (width: ({size}, 0.2)))")
         }
-        Kind::Picture => format!("Projector(center: (0, 0, 0), image: (width: ({size}, 0.2)))"),
+        BlockerKind::Picture => {
+            format!("Projector(center: (0, 0, 0), image: (width: ({size}, 0.2)))")
+        }
         _ => match dice.of(4) {
             0 => format!("Disc(center: (0, 0, 0), radius: {})", 0.5 * size),
             1 => {
@@ -161,11 +163,11 @@ fn light(kind: Kind, dice: &mut Dice) -> String {
 /// Masks before z = 0.9, none to three. Pictures have one that is opaque at least: without, they
 /// are predicted
 /// by a rule that is not of nets. So are points.
-fn blockers(kind: Kind, dice: &mut Dice) -> String {
-    if kind == Kind::Sky {
+fn blockers(kind: BlockerKind, dice: &mut SceneDice) -> String {
+    if kind == BlockerKind::Sky {
         return String::new();
     }
-    let opaque = matches!(kind, Kind::Picture | Kind::PointAcross);
+    let opaque = matches!(kind, BlockerKind::Picture | BlockerKind::PointAcross);
     let count = dice.of(4).max(usize::from(opaque));
     let layer = |i: usize| {
         let z = 0.3 + 0.25 * i as f64 + dice.between(0.0, 0.2);
@@ -192,7 +194,7 @@ fn blockers(kind: Kind, dice: &mut Dice) -> String {
 }
 
 /// Rectangles or discs in the cells of a board, some of four.
-fn shapes(dice: &mut Dice, square: bool) -> String {
+fn shapes(dice: &mut SceneDice, square: bool) -> String {
     let pitch = dice.between(0.1, 0.35);
     let count = 1 + dice.of(4);
     let shape = |i: usize| {
@@ -209,13 +211,15 @@ fn shapes(dice: &mut Dice, square: bool) -> String {
 }
 
 /// A floor, its name, and a plane at it.
-fn parallel(kind: Kind, dice: &mut Dice) -> (String, &'static str, String) {
+fn parallel(kind: BlockerKind, dice: &mut SceneDice) -> (String, &'static str, String) {
     let z = dice.between(1.1, 2.0);
     let floor = format!("Rectangle(name: \"floor\", center: (0, 0, {z}), size: (20, 20))");
     let plane = match kind {
-        Kind::Cosine => "at: Before(\"floor\"), quantity: DifferentialIrradiance".to_owned(),
-        Kind::Diffuse | Kind::PointDiffuse if dice.of(2) == 0 => "at: After(\"floor\")".to_owned(),
-        Kind::Diffuse | Kind::PointDiffuse => {
+        BlockerKind::Cosine => "at: Before(\"floor\"), quantity: DifferentialIrradiance".to_owned(),
+        BlockerKind::Diffuse | BlockerKind::PointDiffuse if dice.of(2) == 0 => {
+            "at: After(\"floor\")".to_owned()
+        }
+        BlockerKind::Diffuse | BlockerKind::PointDiffuse => {
             format!("at: Distance({})", z + dice.between(0.05, 0.3))
         }
         _ => "at: Before(\"floor\")".to_owned(),
@@ -224,17 +228,19 @@ fn parallel(kind: Kind, dice: &mut Dice) -> (String, &'static str, String) {
 }
 
 /// A smooth surface, its name, and a plane behind it.
-fn smooth(kind: Kind, dice: &mut Dice) -> (String, &'static str, String) {
+fn smooth(kind: BlockerKind, dice: &mut SceneDice) -> (String, &'static str, String) {
     let angle = dice.between(0.05, 0.7);
     let event = match kind {
-        Kind::Mirror => "Mirror".to_owned(),
-        Kind::Refraction => "Refraction(front: 1, back: 1.5)".to_owned(),
-        Kind::Lens => format!("ThinLens({})", dice.between(0.4, 2.0)),
-        Kind::Picture => ["Mirror", "Refraction(front: 1, back: 1.5)"][dice.of(2)].to_owned(),
+        BlockerKind::Mirror => "Mirror".to_owned(),
+        BlockerKind::Refraction => "Refraction(front: 1, back: 1.5)".to_owned(),
+        BlockerKind::Lens => format!("ThinLens({})", dice.between(0.4, 2.0)),
+        BlockerKind::Picture => {
+            ["Mirror", "Refraction(front: 1, back: 1.5)"][dice.of(2)].to_owned()
+        }
         _ => brdf(dice),
     };
     let (form, angle) = match dice.of(4) {
-        _ if kind == Kind::Lens => ("Plane".to_owned(), 0.0),
+        _ if kind == BlockerKind::Lens => ("Plane".to_owned(), 0.0),
         0 => ("Plane".to_owned(), angle),
         1 => (format!("Cylinder({})", dice.between(-0.3, 0.8)), angle),
         2 => {
@@ -256,7 +262,7 @@ fn smooth(kind: Kind, dice: &mut Dice) -> (String, &'static str, String) {
     (surface, "surface", format!("(name: \"plane\", {plane})"))
 }
 
-fn brdf(dice: &mut Dice) -> String {
+fn brdf(dice: &mut SceneDice) -> String {
     let roughness = dice.between(0.05, 0.5);
     let lobe = match dice.of(4) {
         0 => "Lambertian".to_owned(),

@@ -1,7 +1,7 @@
 //! What scenes drawn at random say of stated errors, in tables.
 
-use super::draw::Kind;
-use super::scene::{Measured, Outcome};
+use super::draw::BlockerKind;
+use super::scene::{Measured, SceneOutcome};
 use crate::report::Bound::{AtLeast, Below};
 use crate::report::{Check, Row, Section, worse};
 use crate::statistics::{mean, uniformity};
@@ -23,10 +23,10 @@ fn beyond(distance: f64) -> f64 {
 }
 
 /// What scenes are judged by.
-type Reading = fn(&Outcome) -> &Measured;
+type Reading = fn(&SceneOutcome) -> &Measured;
 
 /// All tables, and those of planted faults.
-pub(super) fn sections(outcomes: &[Outcome], left_out: usize) -> Vec<Section> {
+pub(super) fn sections(outcomes: &[SceneOutcome], left_out: usize) -> Vec<Section> {
     let sound: Reading = |outcome| &outcome.sound;
     let all = judged(outcomes, sound, 1.0);
     let is_sound = all.passes();
@@ -45,14 +45,14 @@ pub(super) fn sections(outcomes: &[Outcome], left_out: usize) -> Vec<Section> {
 }
 
 /// Whether scenes of a kind are in a group.
-type Belongs = fn(Kind) -> bool;
+type Belongs = fn(BlockerKind) -> bool;
 
 /// The shares beyond 1, 2 and 3 standard errors, with errors scaled by a factor.
-fn judged(outcomes: &[Outcome], reading: Reading, scale: f64) -> Section {
+fn judged(outcomes: &[SceneOutcome], reading: Reading, scale: f64) -> Section {
     let mut rows = Vec::new();
     let groups: [(&str, Belongs); 3] = [
         ("all", |_| true),
-        ("against closed forms", Kind::is_chain),
+        ("against closed forms", BlockerKind::is_chain),
         ("against more rays", |kind| !kind.is_chain()),
     ];
     for (name, belongs) in groups {
@@ -162,9 +162,9 @@ fn put(row: &mut Row, shares: &[f64], expected: f64, numbers: f64) {
 }
 
 /// Shares and ratios of each kind of scene.
-fn by_kind(outcomes: &[Outcome], left_out: usize) -> Section {
-    let row = |(kind, _): (Kind, usize)| {
-        let of_kind: Vec<&Outcome> = outcomes.iter().filter(|o| o.kind == kind).collect();
+fn by_kind(outcomes: &[SceneOutcome], left_out: usize) -> Section {
+    let row = |(kind, _): (BlockerKind, usize)| {
+        let of_kind: Vec<&SceneOutcome> = outcomes.iter().filter(|o| o.kind == kind).collect();
         let mut ratios: Vec<f64> = of_kind.iter().map(|o| o.sound.ratio).collect();
         ratios.sort_by(f64::total_cmp);
         let share = |distance: f64| {
@@ -174,7 +174,8 @@ fn by_kind(outcomes: &[Outcome], left_out: usize) -> Section {
         };
         let squares: Vec<f64> = ratios.iter().map(|r| r * r).collect();
         let [square, error] = mean(&squares);
-        let largest = |of: fn(&Outcome) -> f64| of_kind.iter().map(|o| of(o)).fold(0.0, f64::max);
+        let largest =
+            |of: fn(&SceneOutcome) -> f64| of_kind.iter().map(|o| of(o)).fold(0.0, f64::max);
         let least = of_kind.iter().map(|o| o.stated).fold(f64::MAX, f64::min);
         let cells = vec![
             kind.name().to_owned(),
@@ -212,16 +213,16 @@ fn by_kind(outcomes: &[Outcome], left_out: usize) -> Section {
             "stated errors",
             "largest error of the truth, in stated errors",
         ],
-        rows: Kind::ALL.into_iter().map(row).collect(),
+        rows: BlockerKind::ALL.into_iter().map(row).collect(),
         checks: Vec::new(),
     }
 }
 
 /// The scenes with the largest ratios.
-fn worst(outcomes: &[Outcome]) -> Section {
-    let mut all: Vec<&Outcome> = outcomes.iter().collect();
+fn worst(outcomes: &[SceneOutcome]) -> Section {
+    let mut all: Vec<&SceneOutcome> = outcomes.iter().collect();
     all.sort_by(|a, b| b.sound.ratio.total_cmp(&a.sound.ratio));
-    let row = |outcome: &&Outcome| {
+    let row = |outcome: &&SceneOutcome| {
         let distances = outcome.sound.apart.iter().map(|d| format!("{d:.2}"));
         let cells = vec![
             outcome.number.to_string(),

@@ -10,9 +10,9 @@ use std::process::ExitCode;
 
 /// The text of the scene with this number; the kinds take turns.
 pub(crate) fn scene(number: u64) -> String {
-    let kinds = draw::Kind::ALL;
+    let kinds = draw::BlockerKind::ALL;
     let (kind, _) = kinds[usize::try_from(number).unwrap_or_default() % kinds.len()];
-    draw::scene(kind, &mut draw::Dice::new(number))
+    draw::scene(kind, &mut draw::SceneDice::new(number))
 }
 
 /// Draws the scenes, prints what was found, and writes docs/nets.md.

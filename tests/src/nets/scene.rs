@@ -1,6 +1,6 @@
 //! One scene drawn at random: how far its prediction by nets is from the truth, in its own errors.
 
-use super::draw::{Dice, Kind, scene};
+use super::draw::{BlockerKind, SceneDice, scene};
 use etendue_compare::{Applicability, Theory};
 use etendue_field::{Complex, Slices, VirtualPlane};
 use etendue_field::{ProjectionGrid, Window};
@@ -8,8 +8,8 @@ use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_theory::{Budget, Model, REPLICATES};
 
 /// What is known of the light field of a scene.
-pub(super) struct Outcome {
-    pub(super) kind: Kind,
+pub(super) struct SceneOutcome {
+    pub(super) kind: BlockerKind,
     /// Its number: [`super::draw`] makes the same scene of it again.
     pub(super) number: u64,
     /// ‖error‖/‖F‖ as stated.
@@ -37,9 +37,9 @@ pub(super) struct Measured {
 }
 
 /// Scenes of each kind, those that theory does not take and those that leave no light drawn again.
-pub(super) fn outcomes(each: impl Fn(&Outcome)) -> (Vec<Outcome>, usize) {
+pub(super) fn outcomes(each: impl Fn(&SceneOutcome)) -> (Vec<SceneOutcome>, usize) {
     let (mut outcomes, mut left_out, mut number) = (Vec::new(), 0, 0);
-    for (kind, count) in Kind::ALL {
+    for (kind, count) in BlockerKind::ALL {
         let mut found = 0;
         while found < count {
             number += 1;
@@ -61,7 +61,7 @@ pub(super) fn outcomes(each: impl Fn(&Outcome)) -> (Vec<Outcome>, usize) {
 struct Untold;
 
 /// What a prediction comes to.
-struct Found {
+struct PredictionFound {
     slices: Slices,
     replicates: Vec<Slices>,
     error: f64,
@@ -77,8 +77,8 @@ const PLANTED: f64 = 1.02;
 const DARK: f64 = 0.3;
 
 /// `None` where theory has no word or no light comes.
-fn outcome(kind: Kind, number: u64) -> Result<Option<Outcome>, Untold> {
-    let mut dice = Dice::new(number);
+fn outcome(kind: BlockerKind, number: u64) -> Result<Option<SceneOutcome>, Untold> {
+    let mut dice = SceneDice::new(number);
     let text = scene(kind, &mut dice);
     let doublings = if kind.is_chain() { dice.of(3) } else { 0 };
     let budget = Budget {
@@ -101,7 +101,7 @@ fn outcome(kind: Kind, number: u64) -> Result<Option<Outcome>, Untold> {
         return Ok(None);
     }
     let (truth, error) = truth(&theory, plane, budget, found.error)?;
-    Ok(Some(Outcome {
+    Ok(Some(SceneOutcome {
         kind,
         number,
         stated: found.error,
@@ -111,7 +111,7 @@ fn outcome(kind: Kind, number: u64) -> Result<Option<Outcome>, Untold> {
     }))
 }
 
-fn measured(found: &Found, truth: &Slices) -> Measured {
+fn measured(found: &PredictionFound, truth: &Slices) -> Measured {
     Measured {
         ratio: distance(&found.slices, truth) / found.error,
         pairs: found
@@ -133,7 +133,7 @@ fn of_pair(pair: &[Slices], truth: &Slices, error: f64) -> f64 {
     (distance(&mean, truth) / (of_all * error)).powi(2)
 }
 
-impl Found {
+impl PredictionFound {
     fn scaled(&self, factor: f64) -> Self {
         let times = |slices: &Slices| {
             let mut slices = slices.clone();
@@ -157,7 +157,7 @@ fn theory(scene: &Scene, plane: &VirtualPlane) -> Option<Theory> {
 }
 
 /// A prediction by nets.
-fn found(theory: &Theory, plane: &VirtualPlane, budget: Budget) -> Option<Found> {
+fn found(theory: &Theory, plane: &VirtualPlane, budget: Budget) -> Option<PredictionFound> {
     let picture = ProjectionGrid::new(&plane.window, 1);
     let over = (&plane.window, &plane.grid, &picture);
     let found = match theory {
@@ -167,7 +167,7 @@ fn found(theory: &Theory, plane: &VirtualPlane, budget: Budget) -> Option<Found>
         Theory::Reflections(view) => view.predict(&[], over, budget),
         Theory::None => return None,
     };
-    Some(Found {
+    Some(PredictionFound {
         error: found.error?,
         slices: found.slices,
         replicates: found.replicates,
@@ -223,13 +223,13 @@ fn distance(a: &Slices, b: &Slices) -> f64 {
 }
 
 /// Residuals of the replicates at one frequency.
-fn residuals(found: &Found, truth: &Slices, at: [usize; 3]) -> Vec<Complex> {
+fn residuals(found: &PredictionFound, truth: &Slices, at: [usize; 3]) -> Vec<Complex> {
     let replicates = found.replicates.iter();
     replicates.map(|r| r.half[at] - truth.half[at]).collect()
 }
 
 /// Student's t of a real number.
-fn at_zero(found: &Found, truth: &Slices) -> f64 {
+fn at_zero(found: &PredictionFound, truth: &Slices) -> f64 {
     let zero = [0, 0, truth.grid.nu.half];
     let values: Vec<f64> = residuals(found, truth, zero).iter().map(|d| d.re).collect();
     let [mean, error] = crate::statistics::mean(&values);
@@ -237,7 +237,7 @@ fn at_zero(found: &Found, truth: &Slices) -> f64 {
 }
 
 /// Hotelling's T over √2: with circular noise |d|/σ.
-fn at_frequency(found: &Found, truth: &Slices, at: [usize; 3]) -> f64 {
+fn at_frequency(found: &PredictionFound, truth: &Slices, at: [usize; 3]) -> f64 {
     let values = residuals(found, truth, at);
     let r = values.len() as f64;
     let mean = values.iter().sum::<Complex>() / r;

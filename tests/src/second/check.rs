@@ -14,7 +14,7 @@ use crate::report::{
 type Difference = dyn Fn(&mut Dice, &str) -> f64;
 
 /// What is held against what.
-pub(super) struct Check {
+pub(super) struct SecondCheck {
     pub(super) name: &'static str,
     /// Times that random numbers are thrown, and points for each.
     pub(super) rounds: [u32; 2],
@@ -31,7 +31,7 @@ pub(super) struct Outcome {
     pub(super) planted: Vec<f64>,
 }
 
-impl Check {
+impl SecondCheck {
     pub(super) fn run(&self) -> Outcome {
         let largest = |fault: &str| {
             let rounds = 0..u64::from(self.rounds[0]);

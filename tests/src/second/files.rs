@@ -1,7 +1,7 @@
 //! A surface with a picture, written down in a scene file: the picture's format, its place on the
 //! surface, blend and texture.
 
-use super::check::{Check, worse};
+use super::check::{SecondCheck, worse};
 use super::pattern::{Levels, Pattern, Varied};
 use super::smooth::Smooth;
 use super::textures::apart;
@@ -35,9 +35,9 @@ fn luminance([r, g, b]: [f64; 3]) -> f64 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
-pub(super) fn checks(folder: &Rc<TempDir>, picture: &Levels) -> Vec<Check> {
+pub(super) fn checks(folder: &Rc<TempDir>, picture: &Levels) -> Vec<SecondCheck> {
     let (folder, picture) = (Rc::clone(folder), picture.clone());
-    vec![Check {
+    vec![SecondCheck {
         name: "blend over a picture of a file",
         rounds: [150, EACH],
         tolerance: (1e-11, "rounding of places and levels"),

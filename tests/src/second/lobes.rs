@@ -1,7 +1,7 @@
 //! The BRDFs of the tracers and those of theory against the second ones.
 
 use super::brdf::{self, mirrored};
-use super::check::{Check, relative};
+use super::check::{SecondCheck, relative};
 use super::pattern::cosine;
 use super::textures::grating;
 use super::vector::{Vector, aside, between, direction, scale};
@@ -52,9 +52,9 @@ const GGX: &[&str] = &[
     "D to the power 3/2",
 ];
 
-pub(super) fn checks() -> Vec<Check> {
+pub(super) fn checks() -> Vec<SecondCheck> {
     let of = |fast: Fast, names: [&'static str; 4]| {
-        let check = |name, faults, tolerance, lobe: fn(&mut Dice) -> Lobe| Check {
+        let check = |name, faults, tolerance, lobe: fn(&mut Dice) -> Lobe| SecondCheck {
             name,
             rounds: [4000, 1],
             tolerance,
@@ -99,8 +99,8 @@ pub(super) fn checks() -> Vec<Check> {
     both.into_iter().flatten().chain(more).collect()
 }
 
-fn between_lists(name: &'static str, fast: Fast) -> Check {
-    Check {
+fn between_lists(name: &'static str, fast: Fast) -> SecondCheck {
+    SecondCheck {
         name,
         rounds: [4000, 1],
         tolerance: (1e-9, "an angle near 0 from its cosine, off by 10⁻⁸ at most"),
@@ -109,8 +109,8 @@ fn between_lists(name: &'static str, fast: Fast) -> Check {
     }
 }
 
-fn of_sum(name: &'static str, fast: FastSum) -> Check {
-    Check {
+fn of_sum(name: &'static str, fast: FastSum) -> SecondCheck {
+    SecondCheck {
         name,
         rounds: [4000, 1],
         tolerance: (1e-10, "rounding of cos α, n = 200 times, and of 2π f t"),

@@ -1,7 +1,7 @@
 //! Theory's affine maps at surfaces against differences of rays followed by the second
 //! implementation. They are theory's own, but read off the conventions that the tracers share.
 
-use super::check::{Check, worse};
+use super::check::{SecondCheck, worse};
 use super::paths::{Legs, Turn};
 use super::smooth::Smooth;
 use super::vector::{Axes, Vector, dot, plus, turned_along, unit};
@@ -9,8 +9,8 @@ use super::views::{Looking, PLANES, View};
 use super::world::World;
 use crate::hostile::dice::Dice;
 use etendue_field::{Brdf, Frame, Fresnel, Light, Lobe, Orientation, Patch, Quantity, Specular};
-use etendue_theory::geometry::{Edition, Map};
-use etendue_theory::rays::{self, SpecularSurface, Plane};
+use etendue_theory::geometry::{AffineMap, Edition};
+use etendue_theory::rays::{self, Plane, SpecularSurface};
 use etendue_theory::{Observed, scattering};
 use std::path::Path;
 
@@ -30,8 +30,8 @@ const ONTO: &[&str] = &[
 ];
 const OFF: &[&str] = &["sign of latitude", "the central normal"];
 
-pub(super) fn checks() -> Vec<Check> {
-    let check = |name, faults, difference: fn(&mut Dice, &str) -> f64| Check {
+pub(super) fn checks() -> Vec<SecondCheck> {
+    let check = |name, faults, difference: fn(&mut Dice, &str) -> f64| SecondCheck {
         name,
         rounds: [300, 4],
         tolerance: (
@@ -108,9 +108,9 @@ impl Met {
     }
 
     /// The system of reflection off its surface.
-    fn scattering(&self, plane: Plane) -> Observed<scattering::System> {
+    fn scattering(&self, plane: Plane) -> Observed<scattering::ScatteringSystem> {
         let brdf = Brdf::new(Lobe::Lambertian, 1.0, Fresnel::White);
-        let system = scattering::System {
+        let system = scattering::ScatteringSystem {
             light: Light::Point { intensity: 1.0 },
             layers: Vec::new(),
             obstacles: vec![],
@@ -123,7 +123,7 @@ impl Met {
 }
 
 /// How far a map is from the derivative of a function at a ray.
-fn apart(map: &Map<4>, at: [f64; 4], of: impl Fn([f64; 4]) -> Option<[f64; 4]>) -> f64 {
+fn apart(map: &AffineMap<4>, at: [f64; 4], of: impl Fn([f64; 4]) -> Option<[f64; 4]>) -> f64 {
     let each = (0..4).map(|i| {
         let moved = |by: f64| {
             let mut z = at;
@@ -150,7 +150,7 @@ fn at_mirror(dice: &mut Dice, fault: &str) -> f64 {
         patch: met.patch,
         event: Specular::Mirror,
     };
-    let system = rays::System {
+    let system = rays::SpecularSystem {
         light: Light::Point { intensity: 1.0 },
         layers: Vec::new(),
         obstacles: vec![],

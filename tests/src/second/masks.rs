@@ -1,7 +1,7 @@
 //! Blockers, slides and windows against their definitions; blockers and slides as written in scene
 //! files.
 
-use super::check::{Check, relative, worse};
+use super::check::{SecondCheck, relative, worse};
 use super::pattern::cosine;
 use super::textures::grating;
 use super::vector::{Vector, between, scale};
@@ -26,11 +26,11 @@ const SQUARES: &[&str] = &["x and y swapped", "half a pitch off", "sides of a pi
 const SLIDE: &[&str] = &["widths swapped", "axes swapped", "no π"];
 const WINDOW: &[&str] = &["cosine not squared", "half-width is the width", "no π"];
 
-pub(super) fn checks() -> Vec<Check> {
+pub(super) fn checks() -> Vec<SecondCheck> {
     let exact = (0.0, "a number of two"); // 0 or 1 on both sides
     let angle = (1e-11, "rounding of 2π f t, up to 10³");
     let slide = (1e-11, "rounding of exponents and angles");
-    let check = |name, faults, tolerance, difference: fn(&mut Dice, &str) -> f64| Check {
+    let check = |name, faults, tolerance, difference: fn(&mut Dice, &str) -> f64| SecondCheck {
         name,
         rounds: [200, EACH],
         tolerance,

@@ -1,7 +1,7 @@
 //! Triangles, and meshes as smooth surfaces, against linear equations and the paraboloid that a
 //! mesh is cut from.
 
-use super::check::{Check, worse};
+use super::check::{SecondCheck, worse};
 use super::vector::{
     Axes, Vector, aside, between, cross, direction, distance, dot, plus, times, unit,
 };
@@ -20,16 +20,16 @@ const TRIANGLE: &[&str] = &["normals in another order", "u and v swapped"];
 const CURVATURE: &[&str] = &["axes swapped", "hollow for convex", "scale left out"];
 const NORMAL: &[&str] = &["axes swapped", "hollow for convex"];
 
-pub(super) fn checks() -> Vec<Check> {
+pub(super) fn checks() -> Vec<SecondCheck> {
     vec![
-        Check {
+        SecondCheck {
             name: "triangle: distance and normal",
             rounds: [4000, 1],
             tolerance: (1e-11, "rounding over the cosine of a ray that grazes"),
             faults: TRIANGLE,
             difference: Box::new(triangle),
         },
-        Check {
+        SecondCheck {
             name: "mesh: curvatures and their axes",
             rounds: [20, EACH],
             tolerance: (
@@ -39,7 +39,7 @@ pub(super) fn checks() -> Vec<Check> {
             faults: CURVATURE,
             difference: Box::new(curvatures),
         },
-        Check {
+        SecondCheck {
             name: "mesh: normal at the central hit",
             rounds: [20, 1],
             tolerance: (

@@ -26,7 +26,7 @@ mod world;
 
 use crate::hostile::dice::Dice;
 use crate::report::{self, Row, Section};
-use check::Check;
+use check::SecondCheck;
 use std::io;
 use std::rc::Rc;
 
@@ -58,7 +58,7 @@ pub(crate) fn second() -> io::Result<Section> {
     })
 }
 
-fn checks() -> io::Result<Vec<Check>> {
+fn checks() -> io::Result<Vec<SecondCheck>> {
     let folder = Rc::new(tempfile::tempdir()?);
     // Pictures have a case of their own: points are of cases that count up from 0.
     let mut dice = Dice::new(SEED, u64::MAX);
@@ -80,7 +80,7 @@ fn checks() -> io::Result<Vec<Check>> {
 }
 
 /// A row for each planted fault.
-fn rows(check: &Check) -> Vec<Row> {
+fn rows(check: &SecondCheck) -> Vec<Row> {
     let outcome = check.run();
     let (tolerance, reason) = check.tolerance;
     let planted = check.faults.iter().zip(&outcome.planted);

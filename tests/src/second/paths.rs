@@ -1,7 +1,7 @@
 //! The central ray at a surface, from docs/conventions.md, Frames: the frames of the legs before
 //! and after it, and of the surface.
 
-use super::check::{Check, worse};
+use super::check::{SecondCheck, worse};
 use super::smooth::Smooth;
 use super::vector::{
     Axes, Vector, across, angle, between, cross, dot, plus, times, turned_along, unit,
@@ -40,16 +40,16 @@ pub(super) struct Legs {
     pub(super) leaving: (Axes, f64),
 }
 
-pub(super) fn checks() -> Vec<Check> {
+pub(super) fn checks() -> Vec<SecondCheck> {
     vec![
-        Check {
+        SecondCheck {
             name: "frames of legs and surfaces, longitudes",
             rounds: [400, 4],
             tolerance: (1e-11, "rounding of coordinates and turns"),
             faults: FRAMES,
             difference: Box::new(frames),
         },
-        Check {
+        SecondCheck {
             name: "frame of a rectangle",
             rounds: [400, 1],
             tolerance: (1e-13, "rounding of coordinates of a few metres"),

@@ -1,6 +1,6 @@
 //! Environments, written down in scene files, against their definition: axes, pixels and lobes.
 
-use super::check::{Check, relative, worse};
+use super::check::{SecondCheck, relative, worse};
 use super::pattern::Levels;
 use super::vector::{Axes, Vector, angle, aside, between, direction, scale, times};
 use super::world::{World, triple};
@@ -27,17 +27,17 @@ const LOBES: &[&str] = &["the way light goes", "axes of the world", "2 σ² for 
 /// The name of a map in the folder.
 pub(super) const FILE: &str = "sky.exr";
 
-pub(super) fn checks(folder: &Rc<TempDir>, map: &Levels) -> Vec<Check> {
+pub(super) fn checks(folder: &Rc<TempDir>, map: &Levels) -> Vec<SecondCheck> {
     let (of_map, of_lobes, map) = (Rc::clone(folder), Rc::clone(folder), map.clone());
     vec![
-        Check {
+        SecondCheck {
             name: "environment map of a file",
             rounds: [150, EACH],
             tolerance: (1e-12, "rounding of angles and levels"),
             faults: MAP,
             difference: Box::new(move |dice, fault| mapped(dice, fault, of_map.path(), &map)),
         },
-        Check {
+        SecondCheck {
             name: "environment of spherical Gaussians",
             rounds: [150, EACH],
             tolerance: (1e-11, "rounding of unit vectors, 4/σ times, σ ≥ 10⁻³"),

@@ -1,6 +1,6 @@
 //! Smooth surfaces of scene files, and what they do to single rays, against solids and angles.
 
-use super::check::{Check, worse};
+use super::check::{SecondCheck, worse};
 use super::smooth::Smooth;
 use super::vector::{
     Axes, Vector, across, angle, between, direction, distance, dot, plus, scale, times, turned,
@@ -32,26 +32,26 @@ const EVENTS: &[&str] = &[
     "sign of the focal length",
 ];
 
-pub(super) fn checks() -> Vec<Check> {
+pub(super) fn checks() -> Vec<SecondCheck> {
     let lengths = (1e-12, "rounding of coordinates of a few metres");
     let grazing = (1e-10, "rounding over the cosine of a ray that grazes");
     let angles = (1e-10, "rounding over the cosine near total reflection");
     vec![
-        Check {
+        SecondCheck {
             name: "smooth surface: points and normals",
             rounds: [200, EACH],
             tolerance: lengths,
             faults: FORMS,
             difference: Box::new(points),
         },
-        Check {
+        SecondCheck {
             name: "smooth surface: rays that meet it",
             rounds: [200, EACH],
             tolerance: grazing,
             faults: HITS,
             difference: Box::new(hits),
         },
-        Check {
+        SecondCheck {
             name: "mirror, refraction, thin lens",
             rounds: [4000, 1],
             tolerance: angles,

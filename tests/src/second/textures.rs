@@ -1,6 +1,6 @@
 //! Patterns, pictures and blends against the second ones.
 
-use super::check::{Check, worse};
+use super::check::{SecondCheck, worse};
 use super::lobes;
 use super::pattern::{Levels, Pattern, Varied};
 use super::vector::{between, scale};
@@ -24,8 +24,8 @@ const BLEND: &[&str] = &[
     "texture left out",
 ];
 
-pub(super) fn checks() -> Vec<Check> {
-    let check = |name, faults, tolerance, pattern: fn(&mut Dice) -> Pattern| Check {
+pub(super) fn checks() -> Vec<SecondCheck> {
+    let check = |name, faults, tolerance, pattern: fn(&mut Dice) -> Pattern| SecondCheck {
         name,
         rounds: [4000, 1],
         tolerance,
@@ -45,7 +45,7 @@ pub(super) fn checks() -> Vec<Check> {
             Pattern::Checkerboard(scale(dice, 0.01, 1.0))
         }),
         check("pattern Picture", PICTURE, levels, picture),
-        Check {
+        SecondCheck {
             name: "blend and texture",
             rounds: [4000, 1],
             tolerance: (1e-11, "rounding of patterns"),

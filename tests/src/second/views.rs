@@ -1,7 +1,7 @@
 //! Coordinates of planes on surfaces: photons that cross a plane across the central ray, and the
 //! same photons as planes on the surface have them.
 
-use super::check::{Check, relative, worse};
+use super::check::{SecondCheck, relative, worse};
 use super::paths::{Legs, Turn};
 use super::smooth::Smooth;
 use super::vector::{Axes, Vector, dot, plus, times, turned_along, unit};
@@ -42,8 +42,8 @@ pub(super) enum View {
     Mirrored,
 }
 
-pub(super) fn checks() -> Vec<Check> {
-    vec![Check {
+pub(super) fn checks() -> Vec<SecondCheck> {
+    vec![SecondCheck {
         name: "coordinates and weights on surfaces",
         rounds: [60, EACH * 5],
         tolerance: (1e-11, "rounding over cosines, and of hits"),

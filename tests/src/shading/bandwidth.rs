@@ -1,6 +1,6 @@
 //! The sampling criteria of section 6.2 against traced rays.
 
-use super::eye::Scene;
+use super::eye::EyeScene;
 use crate::report::Bound::Below;
 use crate::report::{Check, Row, Section};
 use etendue_theory::shading::{Criterion, Lobe};
@@ -88,7 +88,7 @@ fn sweeps() -> Vec<(&'static str, Criterion)> {
 pub(super) fn bandwidths() -> Section {
     let mut rows = Vec::new();
     for (name, criterion) in sweeps() {
-        let scene = Scene { criterion };
+        let scene = EyeScene { criterion };
         let [b, edge, both] = scene.traced();
         let off = |said: f64, traced: f64| (said / traced - 1.0).abs();
         let (said, said_edge) = (criterion.environment(), criterion.blocker());

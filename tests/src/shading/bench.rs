@@ -7,7 +7,7 @@ use etendue_field::{Complex, Crossing, Ledger, PhotonSource, Slices, VirtualPlan
 use etendue_scene::{Event, Scene};
 use etendue_spectrum::{Measurement, estimate, measure};
 use etendue_theory::Observed;
-use etendue_theory::scattering::{System, chain};
+use etendue_theory::scattering::{ScatteringSystem, chain};
 use etendue_trace::Tracer;
 use glam::DVec3;
 
@@ -38,7 +38,7 @@ impl Bench {
     }
 
     /// The prediction of a system that was changed.
-    pub(super) fn predicted(&self, change: impl Fn(&mut System)) -> Slices {
+    pub(super) fn predicted(&self, change: impl Fn(&mut ScatteringSystem)) -> Slices {
         let mut view = seen(&self.scene);
         change(&mut view.system);
         said(&view, &self.scene.planes[0])
@@ -84,11 +84,11 @@ pub(super) fn mean(photons: &Measurement) -> Slices {
     estimate.expect("a scene has 64 batches").mean
 }
 
-fn seen(scene: &Scene) -> Observed<System> {
+fn seen(scene: &Scene) -> Observed<ScatteringSystem> {
     scattered(scene, &scene.planes[0]).expect("a plane behind a BRDF")
 }
 
-fn said(view: &Observed<System>, plane: &VirtualPlane) -> Slices {
+fn said(view: &Observed<ScatteringSystem>, plane: &VirtualPlane) -> Slices {
     let chain = chain(view).expect("a central ray");
     let [exact, _] = predicted::scattered(view, plane, &chain);
     exact

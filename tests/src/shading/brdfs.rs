@@ -5,7 +5,7 @@ use super::operators::Comparison;
 use crate::rows::Line;
 use crate::table1::apart;
 use etendue_field::{AngleTable, Complex};
-use etendue_theory::geometry::Map;
+use etendue_theory::geometry::AffineMap;
 use etendue_theory::shading::{
     Factor, Fresnel, Lattice, Lobe, Reflection, Step, Term, TextureWave, cosine_hat,
     cosine_squared_hat, semi_convolution, texture,
@@ -342,7 +342,9 @@ fn textured() -> Comparison {
             amplitude,
         });
         let back = |w: [f64; 2]| gloss.spectrum(Step::Back, w, &light_hat);
-        said(|omega| Map::<2>::outgoing(THETA1).spectrum(omega, &|w| texture(&waves, w, &back)))
+        said(|omega| {
+            AffineMap::<2>::outgoing(THETA1).spectrum(omega, &|w| texture(&waves, w, &back))
+        })
     };
     Comparison {
         operator: "texture",
@@ -370,7 +372,7 @@ fn varying() -> Comparison {
         reach: 12.0,
     };
     let through = |brdf: &dyn Fn([f64; 2]) -> Complex| {
-        let off = Map::<2>::back(K).then(&Map::<2>::outgoing(THETA1));
+        let off = AffineMap::<2>::back(K).then(&AffineMap::<2>::outgoing(THETA1));
         said(|omega| off.spectrum(omega, &|w| semi_convolution(&lattice, w, brdf, &lit)))
     };
     let straight = |[x, t]: [f64; 2]| {

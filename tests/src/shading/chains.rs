@@ -10,7 +10,7 @@ use etendue_compare::{
 use etendue_field::Slices;
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
-use etendue_theory::geometry::Map;
+use etendue_theory::geometry::AffineMap;
 use etendue_theory::scattering::{ReflectionChain, chain, defect};
 
 /// Of the exact prediction, which is not asked here.
@@ -25,7 +25,7 @@ fn faults() -> Vec<(&'static str, Change)> {
     vec![
         ("none", |_| ()),
         ("onto: curvature left out", |c| {
-            c.onto = c.onto.then(&Map::<4>::back(c.curvature, c.incidence));
+            c.onto = c.onto.then(&AffineMap::<4>::back(c.curvature, c.incidence));
         }),
         ("onto: 1/cos θ₀ beside x left out", |c| {
             row(&mut c.onto, 0, c.incidence.cos());
@@ -34,11 +34,11 @@ fn faults() -> Vec<(&'static str, Change)> {
             row(&mut c.onto, 0, 1.0 / c.incidence.cos());
         }),
         ("off: curvature left out", |c| {
-            let forth = Map::<4>::curvature(c.curvature, c.outgoing[0]);
+            let forth = AffineMap::<4>::curvature(c.curvature, c.outgoing[0]);
             c.off = forth.then(&c.off);
         }),
         ("off: sign of curvature", |c| {
-            let forth = Map::<4>::curvature(c.curvature, c.outgoing[0]);
+            let forth = AffineMap::<4>::curvature(c.curvature, c.outgoing[0]);
             c.off = forth.then(&forth).then(&c.off);
         }),
         ("off: cos θ₁ beside x left out", |c| {
@@ -48,7 +48,7 @@ fn faults() -> Vec<(&'static str, Change)> {
     ]
 }
 
-fn row(map: &mut Map<4>, row: usize, by: f64) {
+fn row(map: &mut AffineMap<4>, row: usize, by: f64) {
     map.matrix[row] = map.matrix[row].map(|x| by * x);
     map.offset[row] *= by;
 }

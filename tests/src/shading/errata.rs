@@ -4,7 +4,7 @@ use super::bandwidth::criterion;
 use super::brdfs::{
     self, K, chain, lopsided, lopsided_hat, primal, reflection, said, surface, term,
 };
-use super::eye::Scene;
+use super::eye::EyeScene;
 use super::light::{Surface, light_hat};
 use super::primal::{between, integral, transform, wave};
 use super::small;
@@ -12,7 +12,7 @@ use crate::report::Bound::{AtLeast, Below};
 use crate::report::{Check, Row, Section};
 use crate::table1::apart;
 use etendue_field::Complex;
-use etendue_theory::geometry::Map;
+use etendue_theory::geometry::AffineMap;
 use etendue_theory::shading::environment::{Glow, mirrored_differential_irradiance};
 use etendue_theory::shading::{Criterion, Factor, Lobe, Step, cosine_hat, g_hat, g_hat_3d};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -121,7 +121,7 @@ fn brdf() -> Vec<Erratum> {
     let unprimed = primal(&surface(Some(&global)));
     let gloss = reflection(vec![term(Factor::Cosine, Some(lobe))]);
     let right = apart(&chain(&gloss), &plain);
-    let off = Map::<2>::back(K).then(&Map::<2>::outgoing(brdfs::THETA1));
+    let off = AffineMap::<2>::back(K).then(&AffineMap::<2>::outgoing(brdfs::THETA1));
     let mirror = reflection(vec![term(Factor::Cosine, None)]);
     let hatless = said(|omega| {
         off.spectrum(omega, &|w| {
@@ -249,7 +249,7 @@ fn criteria() -> Vec<Erratum> {
     let concave = criterion(-0.3, 0.6, 3.0, 0.8);
     let row =
         |place, criterion: Criterion, edge: bool, printed: f64, corrected: f64, known: [f64; 2]| {
-            let traced = Scene { criterion }.traced()[usize::from(edge)];
+            let traced = EyeScene { criterion }.traced()[usize::from(edge)];
             let [printed, corrected, traced] =
                 [printed, corrected, traced].map(|b| b / criterion.lobe_cutoff);
             // The figures known beforehand (docs/theory.md, section 9), to the digits they have.

@@ -7,20 +7,20 @@ use std::f64::consts::TAU;
 const STEP: f64 = 1e-3;
 
 /// A circle, an eye and a blocker, as they are.
-pub(super) struct Scene {
+pub(super) struct EyeScene {
     pub(super) criterion: Criterion,
 }
 
 /// Where a ray of the eye hits: arc length and local outgoing angle.
-struct Hit {
+struct EyeHit {
     turn: f64,
     point: [f64; 2],
     local: f64,
 }
 
-impl Scene {
+impl EyeScene {
     /// The ray that reaches the eye with a slope, from where it leaves the circle.
-    fn hit(&self, slope: f64) -> Hit {
+    fn hit(&self, slope: f64) -> EyeHit {
         let c = &self.criterion;
         let (sine, cosine) = c.outgoing.sin_cos();
         // X = cos T − sin N across the central ray, which runs along D = sin T + cos N.
@@ -35,7 +35,7 @@ impl Scene {
         let length = -e / (q + (q * q - k * e).sqrt().copysign(q));
         let point = [t + length * along[0], n + length * along[1]];
         let turn = (k * point[0]).asin();
-        Hit {
+        EyeHit {
             turn,
             point,
             local: angle - turn,
@@ -53,7 +53,7 @@ impl Scene {
         self.criterion.incidence + self.criterion.outgoing
     }
 
-    fn from(&self, hit: &Hit, incident: f64) -> [f64; 2] {
+    fn from(&self, hit: &EyeHit, incident: f64) -> [f64; 2] {
         let angle = incident + hit.turn;
         let (sine, cosine) = self.criterion.incidence.sin_cos();
         let [t, n] = hit.point;

@@ -38,7 +38,7 @@ enum Lit {
 
 /// Whose lobe a surface has.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Lobe {
+enum LobeOwner {
     Phong(f64),
     Beckmann(f64),
     Ggx(f64),
@@ -46,7 +46,7 @@ enum Lobe {
 
 /// A glossy surface and an eye.
 #[derive(Clone, Copy, Debug)]
-struct Bench {
+struct GlossyBench {
     lit: Lit,
     curvature: f64,
     /// θ₀, radians.
@@ -54,16 +54,16 @@ struct Bench {
     /// Of the central ray that leaves, from the mirror direction, radians.
     aside: f64,
     distance: f64,
-    lobe: Lobe,
+    lobe: LobeOwner,
 }
 
-const BASE: Bench = Bench {
+const BASE: GlossyBench = GlossyBench {
     lit: Lit::Beam,
     curvature: 0.5,
     incidence: 0.5,
     aside: 0.0,
     distance: 0.5,
-    lobe: Lobe::Phong(2500.0),
+    lobe: LobeOwner::Phong(2500.0),
 };
 
 /// What is kept of the light at the eye.
@@ -82,7 +82,7 @@ const ANY: Windows = Windows {
     beam: 1.0,
 };
 
-impl Bench {
+impl GlossyBench {
     fn text(&self, windows: &Windows, photons: u64, seed: u64) -> String {
         let (sine, cosine) = self.incidence.sin_cos();
         let (light, slit, from) = match self.lit {
@@ -120,9 +120,9 @@ impl Bench {
         // The angle from Z of the normal is π − θ₀, and of what leaves π − 2 θ₀.
         let leaves = std::f64::consts::PI - 2.0 * self.incidence + self.aside;
         let lobe = match self.lobe {
-            Lobe::Phong(n) => format!("Phong({n})"),
-            Lobe::Beckmann(alpha) => format!("Beckmann({alpha})"),
-            Lobe::Ggx(alpha) => format!("Ggx({alpha})"),
+            LobeOwner::Phong(n) => format!("Phong({n})"),
+            LobeOwner::Beckmann(alpha) => format!("Beckmann({alpha})"),
+            LobeOwner::Ggx(alpha) => format!("Ggx({alpha})"),
         };
         let aperture = 0.6_f64.min(0.45 / self.curvature.abs());
         let [u, v] = windows.slope;
@@ -181,7 +181,7 @@ impl Bench {
         };
         let along = (2.0 * c.curvature + nearness) / c.outgoing.cos();
         // GGX has long tails.
-        let tails = if matches!(self.lobe, Lobe::Ggx(_)) {
+        let tails = if matches!(self.lobe, LobeOwner::Ggx(_)) {
             14.0
         } else {
             5.0
@@ -195,8 +195,8 @@ impl Bench {
             + self.distance
                 * (nearness / c.incidence.cos() + 2.0 * c.curvature * c.incidence.cos());
         let v = match self.lobe {
-            Lobe::Phong(_) => (5.0 * deviation / across.abs().max(0.2)).min(WIDEST),
-            Lobe::Beckmann(_) | Lobe::Ggx(_) => 0.6 * deviation,
+            LobeOwner::Phong(_) => (5.0 * deviation / across.abs().max(0.2)).min(WIDEST),
+            LobeOwner::Beckmann(_) | LobeOwner::Ggx(_) => 0.6 * deviation,
         };
         let said = self.says(c)[0].max(floor);
         let windows = Windows {
@@ -210,15 +210,15 @@ impl Bench {
 }
 
 /// A sweep: its name, what is swept, and how it changes the bench.
-struct Sweep {
+struct GlossySweep {
     name: &'static str,
     quantity: Quantity,
-    bench: fn(f64) -> Bench,
+    bench: fn(f64) -> GlossyBench,
     values: &'static [f64],
 }
 
-fn sweeps() -> Vec<Sweep> {
-    let sweep = |name, symbol, unit, values, bench| Sweep {
+fn sweeps() -> Vec<GlossySweep> {
+    let sweep = |name, symbol, unit, values, bench| GlossySweep {
         name,
         quantity: Quantity::new(symbol, unit),
         bench,
@@ -230,7 +230,7 @@ fn sweeps() -> Vec<Sweep> {
             "*k*",
             "1/m",
             &[-1.75, -1.4, -1.1, -0.88, -0.65, -0.35, 0.0, 0.5, 1.0],
-            |k| Bench {
+            |k| GlossyBench {
                 curvature: k,
                 ..BASE
             },
@@ -240,7 +240,7 @@ fn sweeps() -> Vec<Sweep> {
             "*θ*_{0} = −*θ*_{1}",
             "degrees",
             &[0.0, 20.0, 40.0, 60.0],
-            |angle| Bench {
+            |angle| GlossyBench {
                 incidence: angle.to_radians(),
                 ..BASE
             },
@@ -250,23 +250,25 @@ fn sweeps() -> Vec<Sweep> {
             "*θ*_{0} + *θ*_{1}",
             "degrees",
             &[-6.0, -3.0, 3.0, 6.0],
-            |angle| Bench {
+            |angle| GlossyBench {
                 aside: angle.to_radians(),
-                lobe: Lobe::Phong(400.0),
+                lobe: LobeOwner::Phong(400.0),
                 ..BASE
             },
         ),
-        sweep("distance", "*d*", "m", &[0.1, 0.25, 0.8, 1.5], |d| Bench {
-            distance: d,
-            ..BASE
+        sweep("distance", "*d*", "m", &[0.1, 0.25, 0.8, 1.5], |d| {
+            GlossyBench {
+                distance: d,
+                ..BASE
+            }
         }),
         sweep(
             "BRDF width",
             "1/√*n*",
             "radians",
             &[0.01, 0.03, 0.05, 0.1],
-            |width| Bench {
-                lobe: Lobe::Phong(width.powi(-2)),
+            |width| GlossyBench {
+                lobe: LobeOwner::Phong(width.powi(-2)),
                 ..BASE
             },
         ),
@@ -275,7 +277,7 @@ fn sweeps() -> Vec<Sweep> {
             "*d*'",
             "m",
             &[0.3, 0.45, 0.8, 1.6],
-            |distance| Bench {
+            |distance| GlossyBench {
                 lit: Lit::Point(distance),
                 ..BASE
             },
@@ -285,7 +287,7 @@ fn sweeps() -> Vec<Sweep> {
             "*d*'",
             "m",
             &[0.3, 0.45, 0.8, 1.6],
-            |distance| Bench {
+            |distance| GlossyBench {
                 lit: Lit::Point(distance),
                 curvature: -0.5,
                 ..BASE
@@ -296,7 +298,7 @@ fn sweeps() -> Vec<Sweep> {
             "*k*",
             "1/m",
             &[-1.2, -0.6, 0.0, 0.6],
-            |k| Bench {
+            |k| GlossyBench {
                 lit: Lit::Point(0.6),
                 curvature: k,
                 ..BASE
@@ -307,23 +309,25 @@ fn sweeps() -> Vec<Sweep> {
             "*θ*_{0} = −*θ*_{1}",
             "degrees",
             &[0.0, 25.0, 45.0],
-            |angle| Bench {
+            |angle| GlossyBench {
                 lit: Lit::Point(0.6),
                 incidence: angle.to_radians(),
                 ..BASE
             },
         ),
-        sweep("slit at d'", "*d*'", "m", &[0.4, 0.8], |distance| Bench {
-            lit: Lit::Slit(distance),
-            lobe: Lobe::Phong(400.0),
+        sweep("slit at d'", "*d*'", "m", &[0.4, 0.8], |distance| {
+            GlossyBench {
+                lit: Lit::Slit(distance),
+                lobe: LobeOwner::Phong(400.0),
+                ..BASE
+            }
+        }),
+        sweep("Beckmann", "*α*", "", &[0.03], |alpha| GlossyBench {
+            lobe: LobeOwner::Beckmann(alpha),
             ..BASE
         }),
-        sweep("Beckmann", "*α*", "", &[0.03], |alpha| Bench {
-            lobe: Lobe::Beckmann(alpha),
-            ..BASE
-        }),
-        sweep("GGX", "*α*", "", &[0.03], |alpha| Bench {
-            lobe: Lobe::Ggx(alpha),
+        sweep("GGX", "*α*", "", &[0.03], |alpha| GlossyBench {
+            lobe: LobeOwner::Ggx(alpha),
             ..BASE
         }),
     ]
@@ -458,7 +462,7 @@ fn range(bandwidth: f64, floor: f64) -> [f64; 2] {
 }
 
 /// Points and the curves of the criteria.
-fn panel(sweep: &Sweep, points: Vec<[f64; 3]>) -> CurvePanel {
+fn panel(sweep: &GlossySweep, points: Vec<[f64; 3]>) -> CurvePanel {
     const COUNT: u32 = 80;
     // Curves need no more.
     let digits = |x: f64| (x * 1e4).round() / 1e4;

@@ -15,7 +15,7 @@ const ALPHA: f64 = 0.01;
 const LEDGER: f64 = 1e-12;
 
 /// A scene, run.
-struct Outcome {
+struct ShadedRun {
     scene: Scene,
     planes: Vec<PlaneComparison>,
     /// p of photons against backward rays; `None` where there are none.
@@ -74,7 +74,7 @@ pub(super) fn photons(photons: Option<u64>) -> Section {
     }
 }
 
-fn run(scene: Scene, level: f64) -> Outcome {
+fn run(scene: Scene, level: f64) -> ShadedRun {
     let measurement = traced(&scene);
     let reference = traced_backwards(&scene);
     let predictions = predicted(&scene, reference.as_ref());
@@ -86,7 +86,7 @@ fn run(scene: Scene, level: f64) -> Outcome {
             .p_value
     };
     let planes = 0..scene.planes.len();
-    Outcome {
+    ShadedRun {
         planes: planes.clone().map(at).collect(),
         backward: planes.map(against).collect(),
         imbalance: measurement.ledger().imbalance(),
@@ -94,8 +94,8 @@ fn run(scene: Scene, level: f64) -> Outcome {
     }
 }
 
-fn row(outcome: &Outcome, index: usize, level: f64) -> Row {
-    let Outcome {
+fn row(outcome: &ShadedRun, index: usize, level: f64) -> Row {
+    let ShadedRun {
         scene, imbalance, ..
     } = outcome;
     let place = &scene.planes[index];

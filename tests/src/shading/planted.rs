@@ -10,7 +10,7 @@ use crate::report::{Check, Row, Section};
 use etendue_compare::sidak;
 use etendue_field::{Crossing, Fresnel, Light, Lobe, Pattern, Reflectance, Slices, Term, Weight};
 use etendue_scene::Scene;
-use etendue_theory::scattering::System;
+use etendue_theory::scattering::ScatteringSystem;
 use glam::DQuat;
 use std::f64::consts::TAU;
 
@@ -24,7 +24,7 @@ const PIXEL: f64 = TAU / 256.0;
 /// What is wrong.
 enum Plant {
     /// The prediction, of a system that was changed.
-    System(fn(&mut System)),
+    ScatteringSystem(fn(&mut ScatteringSystem)),
     /// The prediction, by a factor.
     Factor(f64),
     /// The photons: those of a scene that was changed, and what is made of their crossings.
@@ -97,7 +97,7 @@ impl Plant {
             (p, bench.apart(said, &bench.sound))
         };
         match self {
-            Self::System(change) => by_prediction(&bench.predicted(change)),
+            Self::ScatteringSystem(change) => by_prediction(&bench.predicted(change)),
             Self::Factor(factor) => {
                 let mut said = bench.sound.clone();
                 said.half.mapv_inplace(|value| value * factor);
@@ -139,7 +139,7 @@ fn stands() -> Vec<Stand> {
                 ),
                 (
                     "index + 2 %",
-                    Plant::System(|s| {
+                    Plant::ScatteringSystem(|s| {
                         s.reflectance.first_mut().fresnel = Fresnel::Dielectric { index: 1.53 };
                     }),
                 ),
@@ -150,19 +150,19 @@ fn stands() -> Vec<Stand> {
             plane: "texture",
             texts: &[],
             faults: vec![
-                ("exponent + 5 %", Plant::System(|s| lobe(s, 1.05))),
-                ("exponent − 5 %", Plant::System(|s| lobe(s, 0.95))),
+                ("exponent + 5 %", Plant::ScatteringSystem(|s| lobe(s, 1.05))),
+                ("exponent − 5 %", Plant::ScatteringSystem(|s| lobe(s, 0.95))),
                 (
                     "frequency of the texture + 1 %",
-                    Plant::System(|s| texture(s, 1.01)),
+                    Plant::ScatteringSystem(|s| texture(s, 1.01)),
                 ),
                 (
                     "frequency of the texture − 1 %",
-                    Plant::System(|s| texture(s, 0.99)),
+                    Plant::ScatteringSystem(|s| texture(s, 0.99)),
                 ),
                 (
                     "albedo forgotten",
-                    Plant::System(|s| s.reflectance.first_mut().albedo = 1.0),
+                    Plant::ScatteringSystem(|s| s.reflectance.first_mut().albedo = 1.0),
                 ),
             ],
         },
@@ -182,19 +182,19 @@ fn stands() -> Vec<Stand> {
             faults: vec![
                 (
                     "weights swapped",
-                    Plant::System(|s| swapped(&mut s.reflectance)),
+                    Plant::ScatteringSystem(|s| swapped(&mut s.reflectance)),
                 ),
                 (
                     "width of a lobe + 1 %",
-                    Plant::System(|s| lobe(s, 1.01_f64.powi(-2))),
+                    Plant::ScatteringSystem(|s| lobe(s, 1.01_f64.powi(-2))),
                 ),
                 (
                     "width of a lobe − 1 %",
-                    Plant::System(|s| lobe(s, 0.99_f64.powi(-2))),
+                    Plant::ScatteringSystem(|s| lobe(s, 0.99_f64.powi(-2))),
                 ),
                 (
                     "modulation of the weights 1 for 0.9",
-                    Plant::System(|s| full(&mut s.reflectance)),
+                    Plant::ScatteringSystem(|s| full(&mut s.reflectance)),
                 ),
             ],
         },
@@ -205,17 +205,17 @@ fn stands() -> Vec<Stand> {
             faults: vec![
                 (
                     "a term left out",
-                    Plant::System(|s| {
+                    Plant::ScatteringSystem(|s| {
                         s.reflectance.terms.remove(1);
                     }),
                 ),
                 (
                     "weights swapped",
-                    Plant::System(|s| swapped(&mut s.reflectance)),
+                    Plant::ScatteringSystem(|s| swapped(&mut s.reflectance)),
                 ),
                 (
                     "h for f",
-                    Plant::System(|s| turned_round(&mut s.reflectance)),
+                    Plant::ScatteringSystem(|s| turned_round(&mut s.reflectance)),
                 ),
             ],
         },
@@ -226,11 +226,11 @@ fn stands() -> Vec<Stand> {
             faults: vec![
                 (
                     "h for f",
-                    Plant::System(|s| turned_round(&mut s.reflectance)),
+                    Plant::ScatteringSystem(|s| turned_round(&mut s.reflectance)),
                 ),
                 (
                     "f left out",
-                    Plant::System(|s| s.reflectance.first_mut().incoming = None),
+                    Plant::ScatteringSystem(|s| s.reflectance.first_mut().incoming = None),
                 ),
             ],
         },
@@ -240,7 +240,7 @@ fn stands() -> Vec<Stand> {
             texts: &[],
             faults: vec![(
                 "f for h",
-                Plant::System(|s| turned_round(&mut s.reflectance)),
+                Plant::ScatteringSystem(|s| turned_round(&mut s.reflectance)),
             )],
         },
         Stand {
@@ -278,7 +278,7 @@ fn stands() -> Vec<Stand> {
     ]
 }
 
-fn lobe(system: &mut System, factor: f64) {
+fn lobe(system: &mut ScatteringSystem, factor: f64) {
     if let Lobe::Phong { exponent: number }
     | Lobe::Beckmann { roughness: number }
     | Lobe::Ggx { roughness: number } = &mut system.reflectance.first_mut().lobe
@@ -312,7 +312,7 @@ fn full(reflectance: &mut Reflectance) {
     }
 }
 
-fn texture(system: &mut System, factor: f64) {
+fn texture(system: &mut ScatteringSystem, factor: f64) {
     if let Some(Pattern::Cosine(grating)) = &mut system.reflectance.texture {
         grating.frequency *= factor;
     }

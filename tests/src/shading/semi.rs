@@ -16,9 +16,9 @@ use ndarray::Array3;
 const SCENE: &str = "semi_convolution";
 
 /// A change of the BRDFs that the operator is made of.
-type Fault = fn(&mut Reflectance);
+type BrdfChange = fn(&mut Reflectance);
 
-const FAULTS: [(&str, Fault); 6] = [
+const FAULTS: [(&str, BrdfChange); 6] = [
     ("none", |_| ()),
     ("weights swapped", swapped),
     ("weights at their means: a product", |r| {

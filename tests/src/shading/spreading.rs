@@ -6,7 +6,7 @@ use super::primal::{about, between, transform};
 use super::words::Statement;
 use crate::table1::slope;
 use etendue_field::Complex;
-use etendue_theory::geometry::Map;
+use etendue_theory::geometry::AffineMap;
 use etendue_theory::shading::environment::{Glow, irradiance};
 use etendue_theory::shading::{Factor, Lattice, Lobe, Reflection, Step, Term};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -96,7 +96,7 @@ fn curvature() -> Vec<Statement> {
             let sum: Complex = along
                 .map(|(x, w)| {
                     let off = |w| chain.spectrum(Step::Outgoing, w, &light_hat);
-                    Map::<2>::travel(1.5).spectrum([x, t], &off) * w
+                    AffineMap::<2>::travel(1.5).spectrum([x, t], &off) * w
                 })
                 .sum();
             sum.norm_sqr()

@@ -7,7 +7,7 @@ use crate::report::{Check, Row, Section, worse};
 use crate::rows::Line;
 use crate::table1::{ORDER, apart, order, slope};
 use etendue_field::Complex;
-use etendue_theory::geometry::Map;
+use etendue_theory::geometry::AffineMap;
 use etendue_theory::shading::{Factor, Lattice, Lobe, Reflection, Step, Term, cosine_squared_hat};
 use std::f64::consts::TAU;
 
@@ -29,10 +29,10 @@ struct Circle {
 const SEEN: f64 = 3.0;
 
 /// A change to the theory's chain.
-type Fault = dyn Fn(&mut Reflection<'static>);
+type ChainChange = dyn Fn(&mut Reflection<'static>);
 
 /// Faults, each alone, and what they do to the spectrum after the last step.
-fn planted() -> Vec<(&'static str, Box<Fault>)> {
+fn planted() -> Vec<(&'static str, Box<ChainChange>)> {
     let twice: &'static dyn Fn(f64) -> Complex = &|q| cosine_squared_hat(q).into();
     vec![
         ("no cosine", Box::new(|r| r.terms[0].before = Factor::One)),
@@ -163,7 +163,7 @@ impl Circle {
     }
 
     /// ‖chain − rays‖/‖rays‖, with a fault planted in the chain.
-    fn error(&self, step: Step, size: f64, plant: &Fault) -> f64 {
+    fn error(&self, step: Step, size: f64, plant: &ChainChange) -> f64 {
         let bell = Self::light(size);
         let lobe = self.lobe.map(|lobe| lobe * size);
         let mut reflection = Reflection {
@@ -195,16 +195,16 @@ impl Circle {
     }
 
     /// The steps of a mirror, for where content goes.
-    fn map(&self, step: Step) -> Map<2> {
-        let mut map = Map::identity();
+    fn map(&self, step: Step) -> AffineMap<2> {
+        let mut map = AffineMap::identity();
         for next in Step::ALL {
             map = map.then(&match next {
-                Step::Incidence => Map::<2>::incidence(self.theta0),
-                Step::Curvature => Map::<2>::curvature(self.k),
-                Step::Cosine | Step::Brdf => Map::identity(),
-                Step::Mirror => Map::mirror(),
-                Step::Back => Map::<2>::back(self.k),
-                Step::Outgoing => Map::<2>::outgoing(-self.theta0),
+                Step::Incidence => AffineMap::<2>::incidence(self.theta0),
+                Step::Curvature => AffineMap::<2>::curvature(self.k),
+                Step::Cosine | Step::Brdf => AffineMap::identity(),
+                Step::Mirror => AffineMap::mirror(),
+                Step::Back => AffineMap::<2>::back(self.k),
+                Step::Outgoing => AffineMap::<2>::outgoing(-self.theta0),
             });
             if next == step {
                 break;

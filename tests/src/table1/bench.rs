@@ -1,6 +1,6 @@
 //! A scene with one mirror whose steps can be had wrong, and held against its photons.
 
-use super::Outcome;
+use super::TableRun;
 use super::steps::Steps;
 use crate::predicted;
 use crate::scenes::compared;
@@ -12,17 +12,17 @@ use etendue_theory::{Model, Parameter, rays};
 const LEVEL: f64 = 0.01;
 
 /// A scene with one mirror, and its steps.
-pub(super) struct Bench<'a> {
-    pub(super) outcome: &'a Outcome,
+pub(super) struct MirrorBench<'a> {
+    pub(super) outcome: &'a TableRun,
     pub(super) distance: f64,
     pub(super) theta0: f64,
     pub(super) shape: Matrix<2>,
 }
 
-impl<'a> Bench<'a> {
+impl<'a> MirrorBench<'a> {
     /// # Panics
     /// When the scene is not one sphere or plane.
-    pub(super) fn new(outcome: &'a Outcome) -> Self {
+    pub(super) fn new(outcome: &'a TableRun) -> Self {
         let view = outcome.system(outcome.planes.len() - 1);
         let value = |p: Parameter| view.value(p).expect("one mirror");
         let k = value(Parameter::Curvature(0, 0));
@@ -56,7 +56,7 @@ impl<'a> Bench<'a> {
 
     /// Holds the photons of a plane against the chain of some steps, by the first-order rule.
     pub(super) fn judged(&self, plane: usize, steps: &Steps) -> FirstOrderReport {
-        let Outcome {
+        let TableRun {
             scene,
             measurement,
             predictions,

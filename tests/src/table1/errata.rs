@@ -1,22 +1,22 @@
 //! The paper's misprints, each alone, beside what should stand there.
 
-use super::bench::Bench;
+use super::bench::MirrorBench;
 use super::steps::Steps;
-use super::{Outcome, number, percent};
+use super::{TableRun, number, percent};
 use crate::report::Bound::{AtLeast, Below};
 use crate::report::{Check, Row, Section};
 use etendue_compare::{FirstOrderReport, Verdict};
-use etendue_theory::geometry::{Edition, Map, Matrix};
+use etendue_theory::geometry::{AffineMap, Edition, Matrix};
 use std::f64::consts::TAU;
 
 /// What a chain that was put together here may differ from the one read off the scene.
 const SAME: f64 = 1e-8;
 
 /// Makes a change to the steps, given θ₀ and the shape operator.
-type Misprint = Box<dyn Fn(&mut Steps, f64, Matrix<2>)>;
+type StepMisprint = Box<dyn Fn(&mut Steps, f64, Matrix<2>)>;
 
-fn all() -> Vec<(&'static str, &'static str, Misprint)> {
-    let of = |print: Edition, which: fn(&mut Steps, Steps)| -> Misprint {
+fn all() -> Vec<(&'static str, &'static str, StepMisprint)> {
+    let of = |print: Edition, which: fn(&mut Steps, Steps)| -> StepMisprint {
         Box::new(move |steps, theta0, shape| {
             let printed = Steps {
                 incidence: print.incidence_4d(theta0),
@@ -28,14 +28,15 @@ fn all() -> Vec<(&'static str, &'static str, Misprint)> {
             which(steps, printed);
         })
     };
-    let cosine = |cosine: fn(f64) -> f64, sign: f64| -> Misprint {
+    let cosine = |cosine: fn(f64) -> f64, sign: f64| -> StepMisprint {
         Box::new(move |steps, theta0, shape| {
             // The shear by M alone has the cosine of 1 beside M; its sign stays right.
             let longitude = cosine(theta0);
             steps.curvature =
-                Map::<4>::curvature(shape.map(|r| r.map(|m| sign * m)), longitude).spectrum_map();
+                AffineMap::<4>::curvature(shape.map(|r| r.map(|m| sign * m)), longitude)
+                    .spectrum_map();
             steps.back =
-                Map::<4>::back(shape.map(|r| r.map(|m| sign * m)), longitude).spectrum_map();
+                AffineMap::<4>::back(shape.map(|r| r.map(|m| sign * m)), longitude).spectrum_map();
         })
     };
     vec![
@@ -112,8 +113,8 @@ fn all() -> Vec<(&'static str, &'static str, Misprint)> {
 }
 
 /// Every misprint alone on a hollow sphere, and those of a plane mirror's on it.
-fn rows(outcome: &Outcome) -> Vec<Row> {
-    let bench = Bench::new(outcome);
+fn rows(outcome: &TableRun) -> Vec<Row> {
+    let bench = MirrorBench::new(outcome);
     let mut rows = Vec::new();
     let flat = bench.shape[0][0] == 0.0;
     for (name, plane, misprint) in all() {
@@ -155,7 +156,7 @@ fn rows(outcome: &Outcome) -> Vec<Row> {
 }
 
 /// The errata.
-fn section(outcomes: &[&Outcome]) -> Section {
+fn section(outcomes: &[&TableRun]) -> Section {
     Section {
         title: "Errata: each misprint alone".to_owned(),
         text: "One step of the chain as the paper prints it, all others as they should be, held against the photons of the file by the rule for first-order \
@@ -181,12 +182,12 @@ fn section(outcomes: &[&Outcome]) -> Section {
 }
 
 /// On the hollow mirror and the plane one.
-pub(super) fn misprints(sphere: &Outcome, flat: &Outcome) -> Section {
+pub(super) fn misprints(sphere: &TableRun, flat: &TableRun) -> Section {
     section(&[sphere, flat])
 }
 
 /// The scene files that ask for the printed formulas: `--expect disagreement`.
-pub(super) fn as_printed(outcomes: &[&Outcome], level: f64) -> Section {
+pub(super) fn as_printed(outcomes: &[&TableRun], level: f64) -> Section {
     let mut rows = Vec::new();
     let mut checks = Vec::new();
     for outcome in outcomes {

@@ -1,6 +1,6 @@
 //! The foci of the solar oven, from photons alone.
 
-use super::Outcome;
+use super::TableRun;
 use crate::predicted;
 use crate::report::Bound::Below;
 use crate::report::{Check, Row, Section};
@@ -16,10 +16,10 @@ const WIDTHS: [f64; 2] = [0.1, 1e-5];
 const MOST: f64 = 4.0;
 
 /// Sums over the crossings of a plane: weight, weight · x, weight · x², for x and y.
-type Sums = [[f64; 3]; 2];
+type CrossingSums = [[f64; 3]; 2];
 
 /// Where the beam is narrowest in the plane of incidence and across.
-pub(super) fn foci(outcome: &Outcome) -> Section {
+pub(super) fn foci(outcome: &TableRun) -> Section {
     let theta0: f64 = 0.7;
     let radius = 2.0;
     let known = [0.5 * radius * theta0.cos(), 0.5 * radius / theta0.cos()];
@@ -94,10 +94,10 @@ fn with_beam(scene: &Scene, width: f64) -> Scene {
 }
 
 /// For each batch, the sums of each plane.
-fn sums(scene: &Scene) -> Vec<Vec<Sums>> {
+fn sums(scene: &Scene) -> Vec<Vec<CrossingSums>> {
     let tracer = Tracer::new(scene);
     let batch = |number: u32| {
-        let mut sums: Vec<Sums> = vec![Sums::default(); scene.planes.len()];
+        let mut sums: Vec<CrossingSums> = vec![CrossingSums::default(); scene.planes.len()];
         let mut record = |plane: usize, crossings: &[Crossing]| {
             for Crossing { ray, weight } in crossings {
                 for (sum, x) in sums[plane].iter_mut().zip([ray.x, ray.y]) {
@@ -116,7 +116,7 @@ fn sums(scene: &Scene) -> Vec<Vec<Sums>> {
 }
 
 /// Of all batches but one.
-fn total(batches: &[Vec<Sums>], without: Option<usize>) -> Vec<[f64; 2]> {
+fn total(batches: &[Vec<CrossingSums>], without: Option<usize>) -> Vec<[f64; 2]> {
     let planes = batches[0].len();
     let variance = |plane: usize| {
         [0, 1].map(|axis: usize| {

@@ -22,25 +22,25 @@ use etendue_compare::{PlaneComparison, Prediction, sidak, system};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_theory::Observed;
-use etendue_theory::rays::System;
+use etendue_theory::rays::SpecularSystem;
 
 /// Share of true tables that may be rejected, over all planes.
 const ALPHA: f64 = 0.01;
 
 /// A scene of the table, run.
-struct Outcome {
+struct TableRun {
     scene: Scene,
     measurement: Measurement,
     predictions: Vec<Prediction>,
     planes: Vec<PlaneComparison>,
 }
 
-impl Outcome {
+impl TableRun {
     /// What theory sees of a plane.
     ///
     /// # Panics
     /// When the plane is not one that theory follows rays to.
-    fn system(&self, plane: usize) -> Observed<System> {
+    fn system(&self, plane: usize) -> Observed<SpecularSystem> {
         system(&self.scene, &self.scene.planes[plane]).expect("a scene of free specular surfaces")
     }
 
@@ -60,12 +60,12 @@ pub(crate) fn table1(photons: Option<u64>) -> Vec<Section> {
     let all: Vec<Scene> = scenes::all(photons);
     let planes = all.iter().map(|scene| scene.planes.len()).sum();
     let level = sidak(ALPHA, planes);
-    let outcomes: Vec<Outcome> = all.into_iter().map(|scene| run(scene, level)).collect();
+    let outcomes: Vec<TableRun> = all.into_iter().map(|scene| run(scene, level)).collect();
     let named = |name: &str| {
         let found = outcomes.iter().find(|o| o.scene.name == name);
         found.expect("a scene of the table")
     };
-    let (sound, printed): (Vec<&Outcome>, Vec<&Outcome>) =
+    let (sound, printed): (Vec<&TableRun>, Vec<&TableRun>) =
         outcomes.iter().partition(|o| !o.scene.file.as_printed);
     let mut sections = vec![
         planar::planar(),
@@ -90,12 +90,12 @@ pub(crate) fn table1(photons: Option<u64>) -> Vec<Section> {
     sections
 }
 
-fn run(scene: Scene, level: f64) -> Outcome {
+fn run(scene: Scene, level: f64) -> TableRun {
     let measurement = traced(&scene);
     let predictions = predicted(&scene, None);
     let each = predictions.iter().enumerate();
     let planes = each.map(|(i, p)| compared(&scene, &measurement, i, p, level));
-    Outcome {
+    TableRun {
         planes: planes.collect(),
         scene,
         measurement,

@@ -1,23 +1,23 @@
 //! Every plane of the table.
 
-use super::order::{self, Fall, ORDER, Order, fall};
-use super::path::{Path, Stage};
-use super::planar::Found;
-use super::{Outcome, number, percent};
+use super::order::{self, Fall, KnownOrder, ORDER, fall};
+use super::path::{MirrorPath, PathStage};
+use super::planar::StageFound;
+use super::{TableRun, number, percent};
 use crate::report::Bound::{AtLeast, Below};
 use crate::report::{Check, Row, Section, worse};
 use crate::rows::Line;
 use etendue_compare::Verdict;
 use etendue_field::{Orientation, Specular};
 use etendue_theory::geometry::Media;
-use etendue_theory::rays::System;
+use etendue_theory::rays::SpecularSystem;
 use etendue_theory::{Model, Observed, Parameter};
 
 /// What two quadratures, each good to 10⁻⁴, may differ by where first order is exact.
 const QUADRATURE: f64 = 2e-4;
 
 /// The 4D half of the table.
-pub(super) fn operators(outcomes: &[&Outcome], planes: usize, level: f64) -> Section {
+pub(super) fn operators(outcomes: &[&TableRun], planes: usize, level: f64) -> Section {
     let mut rows = Vec::new();
     for outcome in outcomes {
         let planes = 0..outcome.planes.len();
@@ -62,10 +62,10 @@ pub(super) fn operators(outcomes: &[&Outcome], planes: usize, level: f64) -> Sec
     }
 }
 
-fn row(outcome: &Outcome, index: usize, level: f64) -> Row {
+fn row(outcome: &TableRun, index: usize, level: f64) -> Row {
     let report = &outcome.planes[index].report;
     let view = outcome.system(index);
-    let known = Order::expected(&view);
+    let known = KnownOrder::expected(&view);
     let fall = fall(outcome, index);
     let first = report.first_order.as_ref();
     let error = first.map_or(f64::NAN, |f| f.chain.error);
@@ -85,7 +85,7 @@ fn row(outcome: &Outcome, index: usize, level: f64) -> Row {
         checks.push(Check::new("told apart", p, Below(level), reason));
     }
     let planar = section(&view).map(|(path, stage)| path.found(stage));
-    checks.extend(planar.iter().flat_map(Found::checks));
+    checks.extend(planar.iter().flat_map(StageFound::checks));
     let [.., before, last] = fall.errors;
     let exponent = known.exponent();
     let order = |x: f64| match exponent {
@@ -114,7 +114,7 @@ fn row(outcome: &Outcome, index: usize, level: f64) -> Row {
     Row::new(cells, checks).of(line)
 }
 
-fn follows(fall: &Fall, known: Order) -> Check {
+fn follows(fall: &Fall, known: KnownOrder) -> Check {
     if let Some(known) = known.exponent() {
         return order::check(fall.order, known);
     }
@@ -123,7 +123,7 @@ fn follows(fall: &Fall, known: Order) -> Check {
 }
 
 /// The last step on the way to a plane, and the row of the paper's table that it is.
-fn operator(view: &Observed<System>) -> (&'static str, Option<Line>) {
+fn operator(view: &Observed<SpecularSystem>) -> (&'static str, Option<Line>) {
     let Observed { system, plane } = view;
     let last = system.elements.last();
     if plane.arriving {
@@ -153,19 +153,19 @@ fn operator(view: &Observed<System>) -> (&'static str, Option<Line>) {
 }
 
 /// What the plane of incidence cuts out of a scene with one surface, whose principal axes lie along it.
-fn section(view: &Observed<System>) -> Option<(Path, Stage)> {
+fn section(view: &Observed<SpecularSystem>) -> Option<(MirrorPath, PathStage)> {
     let Observed { system, plane } = view;
     let value = |p: Parameter| view.value(p);
     let arriving = plane.arriving || system.elements.is_empty();
     let before = value(Parameter::Travel(0))?;
     if arriving && plane.orientation == Orientation::Orthogonal {
-        let path = Path {
+        let path = MirrorPath {
             travels: [before, 0.0],
             theta0: 0.0,
             k: 0.0,
             media: None,
         };
-        return Some((path, Stage::Travel));
+        return Some((path, PathStage::Travel));
     }
     if arriving != system.elements.is_empty() || system.elements.len() > 1 {
         return None;
@@ -194,20 +194,20 @@ fn section(view: &Observed<System>) -> Option<(Path, Stage)> {
         value(Parameter::Incidence(0))?
     };
     let after = value(Parameter::Travel(1)).unwrap_or(0.0);
-    let path = Path {
+    let path = MirrorPath {
         travels: [before, after],
         theta0,
         k: k1,
         media,
     };
     let stage = match plane.orientation {
-        Orientation::Tangent if arriving => Stage::Incidence,
-        Orientation::LocalNormals if arriving => Stage::Curvature,
-        Orientation::LocalNormals => Stage::Event,
+        Orientation::Tangent if arriving => PathStage::Incidence,
+        Orientation::LocalNormals if arriving => PathStage::Curvature,
+        Orientation::LocalNormals => PathStage::Event,
         Orientation::Mirrored => return None,
-        Orientation::Tangent => Stage::Back,
-        Orientation::Orthogonal if after.abs() < 1e-9 => Stage::Outgoing,
-        Orientation::Orthogonal => Stage::Beyond,
+        Orientation::Tangent => PathStage::Back,
+        Orientation::Orthogonal if after.abs() < 1e-9 => PathStage::Outgoing,
+        Orientation::Orthogonal => PathStage::Beyond,
     };
     Some((path, stage))
 }

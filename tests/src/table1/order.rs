@@ -1,11 +1,11 @@
 //! How fast the error of the first-order chain falls with the size of the neighbourhood.
 
-use super::Outcome;
+use super::TableRun;
 use crate::predicted;
 use crate::report::{Bound::AtMost, Check};
 use etendue_field::{FrequencyAxis, Orientation, SliceGrid, Slices, Specular, Window};
 use etendue_theory::geometry::Edition;
-use etendue_theory::rays::{self, System};
+use etendue_theory::rays::{self, SpecularSystem};
 use etendue_theory::{Model, Observed, Parameter};
 
 /// Sizes of the neighbourhood, in that of the scene.
@@ -25,7 +25,7 @@ const NORMAL: f64 = 1e-6;
 
 /// What is known beforehand (docs/theory.md, section 7).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Order {
+pub(super) enum KnownOrder {
     /// Travel and plane mirrors leave nothing out.
     Exact,
     /// Somewhere light comes at an angle.
@@ -34,9 +34,9 @@ pub(super) enum Order {
     Second,
 }
 
-impl Order {
+impl KnownOrder {
     /// That of a plane, before anything is computed.
-    pub(super) fn expected(view: &Observed<System>) -> Self {
+    pub(super) fn expected(view: &Observed<SpecularSystem>) -> Self {
         let Observed { system, plane } = view;
         let across = plane.orientation == Orientation::Orthogonal;
         let flat = |e: &rays::SpecularSurface| {
@@ -77,7 +77,7 @@ pub(super) struct Fall {
 ///
 /// # Panics
 /// When the chain does not arrive.
-pub(super) fn fall(outcome: &Outcome, index: usize) -> Fall {
+pub(super) fn fall(outcome: &TableRun, index: usize) -> Fall {
     let view = outcome.system(index);
     let at = &outcome.scene.planes[index];
     let map = rays::chain(&view, Edition::Corrected).expect("light arrives");

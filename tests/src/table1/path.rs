@@ -1,10 +1,10 @@
 //! A path over one surface in 2D: its operators, and its rays.
 
-use etendue_theory::geometry::{Map, Media};
+use etendue_theory::geometry::{AffineMap, Media};
 
 /// Steps of the path, in the order of light.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Stage {
+pub(super) enum PathStage {
     Travel,
     Incidence,
     Curvature,
@@ -14,11 +14,11 @@ pub(super) enum Stage {
     Beyond,
 }
 
-use Stage::{Back, Beyond, Curvature, Event, Incidence, Outgoing, Travel};
+use PathStage::{Back, Beyond, Curvature, Event, Incidence, Outgoing, Travel};
 
 /// Travel, and a surface: a mirror unless it has media.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Path {
+pub(super) struct MirrorPath {
     /// Metres of travel before and after the surface.
     pub(super) travels: [f64; 2],
     pub(super) theta0: f64,
@@ -26,7 +26,7 @@ pub(super) struct Path {
     pub(super) media: Option<Media>,
 }
 
-impl Path {
+impl MirrorPath {
     fn theta1(&self) -> f64 {
         match self.media {
             Some(media) => media.refracted(self.theta0).unwrap_or(f64::NAN),
@@ -35,28 +35,30 @@ impl Path {
     }
 
     /// The operators up to a stage.
-    pub(super) fn map(&self, stage: Stage) -> Map<2> {
+    pub(super) fn map(&self, stage: PathStage) -> AffineMap<2> {
         let theta1 = self.theta1();
         let event = match &self.media {
-            Some(media) => Map::<2>::refraction(self.theta0, media).unwrap_or(Map::identity()),
-            None => Map::mirror(),
+            Some(media) => {
+                AffineMap::<2>::refraction(self.theta0, media).unwrap_or(AffineMap::identity())
+            }
+            None => AffineMap::mirror(),
         };
         let off = match self.media {
-            Some(_) => Map::<2>::incidence(theta1)
+            Some(_) => AffineMap::<2>::incidence(theta1)
                 .inverse()
-                .unwrap_or(Map::identity()),
-            None => Map::<2>::outgoing(theta1),
+                .unwrap_or(AffineMap::identity()),
+            None => AffineMap::<2>::outgoing(theta1),
         };
         let steps = [
-            (Travel, Map::travel(self.travels[0])),
-            (Incidence, Map::<2>::incidence(self.theta0)),
-            (Curvature, Map::<2>::curvature(self.k)),
+            (Travel, AffineMap::travel(self.travels[0])),
+            (Incidence, AffineMap::<2>::incidence(self.theta0)),
+            (Curvature, AffineMap::<2>::curvature(self.k)),
             (Event, event),
-            (Back, Map::<2>::back(self.k)),
+            (Back, AffineMap::<2>::back(self.k)),
             (Outgoing, off),
-            (Beyond, Map::travel(self.travels[1])),
+            (Beyond, AffineMap::travel(self.travels[1])),
         ];
-        let mut map = Map::identity();
+        let mut map = AffineMap::identity();
         for (step, next) in steps {
             map = map.then(&next);
             if step == stage {
@@ -67,7 +69,7 @@ impl Path {
     }
 
     /// Where a ray really goes, (x, θ) at the light to the coordinates of a stage.
-    pub(super) fn trace(&self, stage: Stage, [x, theta]: [f64; 2]) -> [f64; 2] {
+    pub(super) fn trace(&self, stage: PathStage, [x, theta]: [f64; 2]) -> [f64; 2] {
         let x = x + self.travels[0] * theta.tan();
         if stage == Travel {
             return [x, theta];

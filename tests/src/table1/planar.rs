@@ -1,8 +1,8 @@
 //! The operators in 2D: against a plain quadrature of the mapped field, and against rays traced off a circle.
 
 use super::order::{self, ORDER, slope};
-use super::path::Path;
-use super::path::Stage::{self, Back, Beyond, Curvature, Event, Incidence, Outgoing, Travel};
+use super::path::MirrorPath;
+use super::path::PathStage::{self, Back, Beyond, Curvature, Event, Incidence, Outgoing, Travel};
 use super::quadrature::{apart, of_field, of_rays};
 use crate::report::Bound::Below;
 use crate::report::{Check, Row, Section};
@@ -27,14 +27,14 @@ const GLASS: Media = Media {
     after: 1.5,
 };
 
-fn paths() -> Vec<(&'static str, Path)> {
-    let mirror = |theta0, k| Path {
+fn paths() -> Vec<(&'static str, MirrorPath)> {
+    let mirror = |theta0, k| MirrorPath {
         travels: TRAVELS,
         theta0,
         k,
         media: None,
     };
-    let glass = |theta0, k, media| Path {
+    let glass = |theta0, k, media| MirrorPath {
         travels: TRAVELS,
         theta0,
         k,
@@ -99,7 +99,7 @@ pub(super) fn planar() -> Section {
     }
 }
 
-const fn line(stage: Stage) -> Line {
+const fn line(stage: PathStage) -> Line {
     match stage {
         Travel | Beyond => Line::Travel,
         Incidence => Line::Incidence,
@@ -111,7 +111,7 @@ const fn line(stage: Stage) -> Line {
 
 /// What a stage of a path comes to.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Found {
+pub(super) struct StageFound {
     /// Of the operators' spectrum against a quadrature of the field they map.
     pub(super) map: f64,
     /// Against that of the field traced, at all sizes.
@@ -120,7 +120,7 @@ pub(super) struct Found {
     pub(super) known: f64,
 }
 
-impl Found {
+impl StageFound {
     pub(super) fn checks(&self) -> Vec<Check> {
         vec![
             Check::new("map", self.map, Below(ROUNDING), "rounding of a sum"),
@@ -129,9 +129,9 @@ impl Found {
     }
 }
 
-impl Path {
+impl MirrorPath {
     /// Both comparisons.
-    pub(super) fn found(&self, stage: Stage) -> Found {
+    pub(super) fn found(&self, stage: PathStage) -> StageFound {
         let traced = SIZES.map(|size| {
             let (said, frequencies, field) = self.said(stage, size);
             apart(
@@ -141,7 +141,7 @@ impl Path {
         });
         let (said, frequencies, field) = self.said(stage, SIZES[0]);
         let logs = [0, 1, 2, 3].map(|i: usize| [SIZES[i].ln(), traced[i].ln()]);
-        Found {
+        StageFound {
             map: apart(&said, &of_field(&field, &self.map(stage), &frequencies)),
             order: slope(&logs),
             known: self.known(stage),
@@ -150,7 +150,7 @@ impl Path {
     }
 
     /// Beforehand: 1 at an angle, 2 along the normal, and where nothing is left out but that slopes are tangents.
-    fn known(&self, stage: Stage) -> f64 {
+    fn known(&self, stage: PathStage) -> f64 {
         let flat_mirror = self.k == 0.0 && self.media.is_none();
         match stage {
             Travel => 2.0,
@@ -161,7 +161,7 @@ impl Path {
     }
 
     /// What the operators say of a field of some size; the frequencies; the field.
-    fn said(&self, stage: Stage, size: f64) -> (Vec<Complex>, Vec<[f64; 2]>, Matrix<2>) {
+    fn said(&self, stage: PathStage, size: f64) -> (Vec<Complex>, Vec<[f64; 2]>, Matrix<2>) {
         let map = self.map(stage);
         let field = FIELD.map(|row| row.map(|s| s * size * size));
         let content = |i: i32| {

@@ -1,7 +1,7 @@
 //! Faults planted in the predictions, which the photons must reject.
 
-use super::Outcome;
-use super::bench::Bench;
+use super::TableRun;
+use super::bench::MirrorBench;
 use super::errata::{percent_or_dark, word};
 use super::steps::Steps;
 use crate::predicted;
@@ -9,11 +9,11 @@ use crate::report::Bound::{AtLeast, Below};
 use crate::report::{Check, Row, Section};
 use etendue_compare::{Residuals, Verdict};
 use etendue_field::Specular;
-use etendue_theory::geometry::{Map, SpectrumMap};
-use etendue_theory::rays::System;
+use etendue_theory::geometry::{AffineMap, SpectrumMap};
+use etendue_theory::rays::SpecularSystem;
 use etendue_theory::{Model, Observed, Parameter};
 
-type Change = fn(&mut Steps, &Bench<'_>);
+type MirrorChange = fn(&mut Steps, &MirrorBench<'_>);
 
 fn turned(map: &mut SpectrumMap<4>, row: usize) {
     map.matrix[row] = map.matrix[row].map(|x| -x);
@@ -24,7 +24,7 @@ fn cosine(map: &mut SpectrumMap<4>, at: usize, by: f64) {
     map.matrix[at] = map.matrix[at].map(|x| x * by);
 }
 
-fn faults() -> Vec<(&'static str, Change)> {
+fn faults() -> Vec<(&'static str, MirrorChange)> {
     vec![
         ("none", |_, _| ()),
         ("sign of travel", |s, _| s.distance = -s.distance),
@@ -36,10 +36,10 @@ fn faults() -> Vec<(&'static str, Change)> {
             s.incidence.phase[2] = -s.incidence.phase[2];
         }),
         ("curvature: sign", |s, b| {
-            s.curvature = Map::<4>::back(b.shape, b.theta0).spectrum_map();
+            s.curvature = AffineMap::<4>::back(b.shape, b.theta0).spectrum_map();
         }),
         ("back: sign, the shears cancel", |s, b| {
-            s.back = Map::<4>::curvature(b.shape, -b.theta0).spectrum_map();
+            s.back = AffineMap::<4>::curvature(b.shape, -b.theta0).spectrum_map();
         }),
         ("mirror: θ not turned", |s, _| turned(&mut s.mirror, 2)),
         ("mirror: φ not turned", |s, _| turned(&mut s.mirror, 3)),
@@ -67,25 +67,25 @@ fn faults() -> Vec<(&'static str, Change)> {
             s.back = swapped(b, 1.0).spectrum_map();
         }),
         ("curvature: M without its cosine", |s, b| {
-            s.curvature = Map::<4>::curvature(b.shape, 0.0).spectrum_map();
-            s.back = Map::<4>::back(b.shape, 0.0).spectrum_map();
+            s.curvature = AffineMap::<4>::curvature(b.shape, 0.0).spectrum_map();
+            s.back = AffineMap::<4>::back(b.shape, 0.0).spectrum_map();
         }),
     ]
 }
 
-fn swapped(bench: &Bench<'_>, sign: f64) -> Map<4> {
+fn swapped(bench: &MirrorBench<'_>, sign: f64) -> AffineMap<4> {
     let k = sign * bench.shape[0][0];
-    let mut map = Map::<4>::identity();
+    let mut map = AffineMap::<4>::identity();
     map.matrix[2][0] = k * bench.theta0.cos();
     map.matrix[3][1] = k;
     map
 }
 
 /// Faults of the affine maps, judged by the rule for first-order chains.
-pub(super) fn first_order(oblique: &Outcome, normal: &Outcome) -> Section {
+pub(super) fn first_order(oblique: &TableRun, normal: &TableRun) -> Section {
     let mut rows = Vec::new();
     for outcome in [oblique, normal] {
-        let bench = Bench::new(outcome);
+        let bench = MirrorBench::new(outcome);
         let straight = bench.theta0.abs() < 1e-6;
         for (name, fault) in faults() {
             if straight && (name.contains("cos") || name.contains('θ') && name.contains("sign")) {
@@ -157,13 +157,17 @@ pub(super) fn first_order(oblique: &Outcome, normal: &Outcome) -> Section {
     }
 }
 
-type Tamper = fn(&Observed<System>) -> Option<Observed<System>>;
+type Tamper = fn(&Observed<SpecularSystem>) -> Option<Observed<SpecularSystem>>;
 
 fn numbers() -> Vec<(&'static str, Tamper)> {
-    fn scaled(view: &Observed<System>, p: Parameter, by: f64) -> Option<Observed<System>> {
+    fn scaled(
+        view: &Observed<SpecularSystem>,
+        p: Parameter,
+        by: f64,
+    ) -> Option<Observed<SpecularSystem>> {
         view.with(p, by * view.value(p)?)
     }
-    fn turned(view: &Observed<System>, degrees: f64) -> Option<Observed<System>> {
+    fn turned(view: &Observed<SpecularSystem>, degrees: f64) -> Option<Observed<SpecularSystem>> {
         let p = Parameter::Incidence(0);
         view.with(p, view.value(p)? + degrees.to_radians())
     }
@@ -186,7 +190,7 @@ fn numbers() -> Vec<(&'static str, Tamper)> {
 }
 
 /// Wrong numbers in the exact prediction, judged by p.
-pub(super) fn exact(outcomes: &[&Outcome], level: f64) -> Section {
+pub(super) fn exact(outcomes: &[&TableRun], level: f64) -> Section {
     let mut rows = Vec::new();
     for outcome in outcomes {
         for (name, tamper) in numbers() {

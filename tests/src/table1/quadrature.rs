@@ -1,7 +1,7 @@
 //! Transforms of a Gaussian field in 2D by plain quadrature.
 
 use etendue_field::Complex;
-use etendue_theory::geometry::{Map, Matrix};
+use etendue_theory::geometry::{AffineMap, Matrix};
 use std::f64::consts::TAU;
 
 /// Half the nodes along each axis of a lattice, over rays traced and over the field mapped, and its half-width in standard deviations.
@@ -47,7 +47,11 @@ pub(super) fn of_rays(
 }
 
 /// The transforms of a mapped Gaussian field, by the trapezoid rule over where it is after.
-pub(super) fn of_field(field: &Matrix<2>, map: &Map<2>, frequencies: &[[f64; 2]]) -> Vec<Complex> {
+pub(super) fn of_field(
+    field: &Matrix<2>,
+    map: &AffineMap<2>,
+    frequencies: &[[f64; 2]],
+) -> Vec<Complex> {
     let mut sums = vec![Complex::new(0.0, 0.0); frequencies.len()];
     let Some(home) = map.inverse() else {
         return sums;

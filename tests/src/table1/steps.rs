@@ -1,7 +1,7 @@
 //! The steps of one mirror one by one, so that each can be had wrong.
 
 use etendue_field::{Orientation, Side, VirtualPlane};
-use etendue_theory::geometry::{Map, Matrix, SpectrumMap};
+use etendue_theory::geometry::{AffineMap, Matrix, SpectrumMap};
 
 /// Travel to a mirror met in the plane of (X, D), and the steps at it.
 #[derive(Clone, Debug)]
@@ -19,17 +19,17 @@ impl Steps {
     pub(super) fn sound(distance: f64, theta0: f64, shape: Matrix<2>) -> Self {
         Self {
             distance,
-            incidence: Map::<4>::incidence(theta0).spectrum_map(),
-            curvature: Map::<4>::curvature(shape, theta0).spectrum_map(),
-            mirror: Map::mirror().spectrum_map(),
-            back: Map::<4>::back(shape, -theta0).spectrum_map(),
-            outgoing: Map::<4>::outgoing(-theta0).spectrum_map(),
+            incidence: AffineMap::<4>::incidence(theta0).spectrum_map(),
+            curvature: AffineMap::<4>::curvature(shape, theta0).spectrum_map(),
+            mirror: AffineMap::mirror().spectrum_map(),
+            back: AffineMap::<4>::back(shape, -theta0).spectrum_map(),
+            outgoing: AffineMap::<4>::outgoing(-theta0).spectrum_map(),
         }
     }
 
     /// The chain up to a plane.
     pub(super) fn chain(&self, plane: &VirtualPlane) -> SpectrumMap<4> {
-        let mut map = Map::travel(match plane.leg {
+        let mut map = AffineMap::travel(match plane.leg {
             0 => plane.distance,
             _ => self.distance,
         })
@@ -50,13 +50,13 @@ impl Steps {
             }
         }
         if on_surface {
-            let mut counted = Map::<4>::identity();
+            let mut counted = AffineMap::<4>::identity();
             counted.offset[2] = -plane.longitude;
             then(&counted.spectrum_map());
         } else if leaves {
             then(&self.outgoing);
             let beyond = plane.distance - self.distance;
-            then(&Map::travel(beyond).spectrum_map());
+            then(&AffineMap::travel(beyond).spectrum_map());
         }
         map
     }

@@ -1,12 +1,12 @@
 //! Étendue along real rays, and their way back.
 
-use super::Outcome;
+use super::TableRun;
 use crate::report::Bound::Below;
 use crate::report::{Check, Row, Section, worse};
 use etendue_field::{Frame, Orientation};
 use etendue_theory::Observed;
 use etendue_theory::geometry::Edition;
-use etendue_theory::rays::{self, SpecularSurface, System};
+use etendue_theory::rays::{self, SpecularSurface, SpecularSystem};
 use glam::DVec3;
 
 /// Step of the differences, metres and direction cosines; their error is of its sixth power.
@@ -16,13 +16,13 @@ const ROUNDING: f64 = 1e-10;
 
 /// A straight leg of a ray.
 #[derive(Clone, Copy)]
-struct Ray {
+struct VolumeRay {
     point: DVec3,
     direction: DVec3,
 }
 
 /// Phase-space volume and reversibility on every scene with surfaces.
-pub(super) fn volume(outcomes: &[&Outcome]) -> Section {
+pub(super) fn volume(outcomes: &[&TableRun]) -> Section {
     let mut rows = Vec::new();
     for outcome in outcomes {
         let planes = outcome.scene.planes.iter();
@@ -84,7 +84,7 @@ pub(super) fn volume(outcomes: &[&Outcome]) -> Section {
 }
 
 /// Index at the light over index at the plane.
-fn index_ratio(system: &System) -> f64 {
+fn index_ratio(system: &SpecularSystem) -> f64 {
     let mut ratio = 1.0;
     let mut ray = start([0.0; 4]);
     for element in &system.elements {
@@ -119,7 +119,7 @@ fn bundle() -> impl Iterator<Item = [f64; 4]> {
 }
 
 /// Of volume, of the invariant, and of the way back.
-fn defects(system: &System, plane: &Frame, at: [f64; 4], ratio: f64) -> Option<[f64; 3]> {
+fn defects(system: &SpecularSystem, plane: &Frame, at: [f64; 4], ratio: f64) -> Option<[f64; 3]> {
     let slopes = has_lens(system);
     let map = |z: [f64; 4]| -> Option<[f64; 4]> {
         let arrived = through(
@@ -149,11 +149,11 @@ fn defects(system: &System, plane: &Frame, at: [f64; 4], ratio: f64) -> Option<[
             }
         }
     }
-    let rays = etendue_theory::geometry::Map::linear(jacobian);
+    let rays = etendue_theory::geometry::AffineMap::linear(jacobian);
     let arrived = through(&system.elements, &start(at))?;
     let mut elements = system.elements.clone();
     elements.reverse();
-    let turned = Ray {
+    let turned = VolumeRay {
         point: arrived.point + arrived.direction * STEP,
         direction: -arrived.direction,
     };
@@ -168,7 +168,7 @@ fn defects(system: &System, plane: &Frame, at: [f64; 4], ratio: f64) -> Option<[
 }
 
 /// An ideal lens bends slopes, and keeps the volume of positions and slopes; no real lens does.
-fn has_lens(system: &System) -> bool {
+fn has_lens(system: &SpecularSystem) -> bool {
     let events = system.elements.iter().map(|e| e.event);
     events
         .into_iter()
@@ -186,18 +186,18 @@ fn with_cosines([x, y, u, v]: [f64; 4]) -> [f64; 4] {
 }
 
 /// From a point of the light's plane with direction cosines.
-fn start([x, y, p, q]: [f64; 4]) -> Ray {
-    Ray {
+fn start([x, y, p, q]: [f64; 4]) -> VolumeRay {
+    VolumeRay {
         point: DVec3::new(x, y, 0.0),
         direction: DVec3::new(p, q, (1.0 - p * p - q * q).sqrt()),
     }
 }
 
-fn through(elements: &[SpecularSurface], ray: &Ray) -> Option<Ray> {
+fn through(elements: &[SpecularSurface], ray: &VolumeRay) -> Option<VolumeRay> {
     elements.iter().try_fold(*ray, |ray, e| follow(e, &ray))
 }
 
-fn follow(element: &SpecularSurface, ray: &Ray) -> Option<Ray> {
+fn follow(element: &SpecularSurface, ray: &VolumeRay) -> Option<VolumeRay> {
     let frame = &element.patch.frame;
     let (start, along) = (
         frame.to_local(ray.point),
@@ -212,14 +212,14 @@ fn follow(element: &SpecularSurface, ray: &Ray) -> Option<Ray> {
         point,
         ray.direction,
     )?;
-    Some(Ray {
+    Some(VolumeRay {
         point,
         direction: direction.normalize(),
     })
 }
 
 /// Where the line of a ray crosses a plane, and its direction cosines.
-fn coordinates(plane: &Frame, ray: &Ray) -> Option<[f64; 4]> {
+fn coordinates(plane: &Frame, ray: &VolumeRay) -> Option<[f64; 4]> {
     let (at, along) = (
         plane.to_local(ray.point),
         plane.vector_to_local(ray.direction),

@@ -1,6 +1,6 @@
 //! Blockers drawn at random, across the first leg of the path.
 
-use super::draw::Draw;
+use super::draw::SceneDraw;
 use super::light::{axis, modulation};
 use super::pictures::sheet;
 use etendue_scene::{AxisName, BlockersFile, HalfName, LightFile, MeshSource, ShapeFile};
@@ -16,7 +16,7 @@ const STRIPS: f64 = 64.0;
 
 /// None to three layers before the first surface, which is at this distance.
 pub(super) fn blockers(
-    draw: &mut Draw,
+    draw: &mut SceneDraw,
     light: &LightFile,
     first: f64,
 ) -> io::Result<Vec<BlockersFile>> {
@@ -59,7 +59,7 @@ fn terms(layer: &BlockersFile) -> f64 {
     }
 }
 
-fn layer(draw: &mut Draw, name: String, distance: f64) -> io::Result<BlockersFile> {
+fn layer(draw: &mut SceneDraw, name: String, distance: f64) -> io::Result<BlockersFile> {
     let aside = if draw.one_in(3) {
         [(); 2].map(|()| draw.unit * draw.between(-0.2, 0.2))
     } else {
@@ -90,7 +90,7 @@ fn layer(draw: &mut Draw, name: String, distance: f64) -> io::Result<BlockersFil
     })
 }
 
-fn squares(draw: &mut Draw, name: String, center: [f64; 3]) -> BlockersFile {
+fn squares(draw: &mut SceneDraw, name: String, center: [f64; 3]) -> BlockersFile {
     let (fill, jitter) = if draw.is_extreme() {
         *draw.pick(&[(1.0, 0.0), (1e-3, 0.999), (0.999, 0.001)])
     } else {
@@ -109,10 +109,10 @@ fn squares(draw: &mut Draw, name: String, center: [f64; 3]) -> BlockersFile {
 }
 
 /// Shapes in the cells of a board.
-fn board(draw: &mut Draw) -> Vec<ShapeFile> {
+fn board(draw: &mut SceneDraw) -> Vec<ShapeFile> {
     let pitch = draw.length([0.1, 0.5], [1e-4, 20.0]);
     let count = 1 + draw.below(5);
-    let shape = |draw: &mut Draw, i: usize| {
+    let shape = |draw: &mut SceneDraw, i: usize| {
         let [column, row] = [i % 3, i / 3].map(|k| (k as f64 - 0.5) * pitch);
         let center = [column, row];
         let size = [(); 2].map(|()| (pitch * draw.value([0.2, 0.95], [1e-6, 1.0])).max(LEAST));
@@ -127,7 +127,7 @@ fn board(draw: &mut Draw) -> Vec<ShapeFile> {
 }
 
 /// One edge, or a slit: now and then a very narrow one, or none at all.
-fn half_planes(draw: &mut Draw) -> Vec<ShapeFile> {
+fn half_planes(draw: &mut SceneDraw) -> Vec<ShapeFile> {
     let axis: AxisName = axis(draw);
     let edge = draw.unit * draw.between(-0.15, 0.15);
     let half = |edge: f64, opaque: HalfName| ShapeFile::HalfPlane { axis, edge, opaque };
@@ -148,7 +148,7 @@ fn half_planes(draw: &mut Draw) -> Vec<ShapeFile> {
 
 /// A mesh that does not reach the light, nor what comes after.
 fn mesh(
-    draw: &mut Draw,
+    draw: &mut SceneDraw,
     name: String,
     center: [f64; 3],
     distance: f64,

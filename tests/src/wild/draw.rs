@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
 /// The choices of one scene, in the order they are asked for.
-pub(super) struct Draw {
+pub(super) struct SceneDraw {
     dice: Dice,
     /// One value in so many is extreme; none where it is 0.
     rarity: usize,
@@ -26,7 +26,7 @@ const UNITS: [f64; 4] = [1e-3, 1e-2, 1e2, 1e4];
 /// Lengths a scene file may state, metres.
 const LENGTHS: [f64; 2] = [1e-9, 1e9];
 
-impl Draw {
+impl SceneDraw {
     pub(super) fn new(seed: u64, index: u64, folder: &Path) -> Self {
         let mut draw = Self {
             dice: Dice::new(seed, index),

@@ -1,6 +1,6 @@
 //! What a run of a scene comes to: whether its verdict is wrong, and who of three is.
 
-use super::run::{Ending, PlaneSummary, Runner};
+use super::run::{PlaneSummary, RunEnding, Runner};
 use crate::scenes::{measured, traced, traced_backwards};
 use etendue_compare::{Applicability, Prediction, Test, Verdict, compare};
 use etendue_scene::{SceneFile, resolve};
@@ -10,7 +10,7 @@ use std::path::Path;
 
 /// What is wrong with a scene, and stays so while it is made smaller.
 #[derive(Clone)]
-pub(super) enum Trouble {
+pub(super) enum SceneTrouble {
     Panic,
     Hang,
     Killed,
@@ -48,7 +48,7 @@ impl Culprit {
 
 /// A scene looked into.
 #[derive(Default)]
-pub(super) struct Judged {
+pub(super) struct JudgedScene {
     /// Why it was refused.
     pub(super) refused: Option<String>,
     /// What the scene came to.
@@ -58,7 +58,7 @@ pub(super) struct Judged {
     pub(super) fails: usize,
     pub(super) chance: usize,
     /// What is wrong, in words.
-    pub(super) troubles: Vec<(Trouble, String)>,
+    pub(super) troubles: Vec<(SceneTrouble, String)>,
 }
 
 /// Fewer rays than this in the window are too few for the spread of 64 batches: about ten in each.
@@ -69,11 +69,11 @@ const FIRST: u64 = 1;
 const OTHERS: [u64; 2] = [2, 3];
 
 /// Runs a scene, and looks into what fails.
-pub(super) fn judge(runner: &Runner, file: &SceneFile) -> io::Result<Judged> {
-    let mut judged = Judged::default();
+pub(super) fn judge(runner: &Runner, file: &SceneFile) -> io::Result<JudgedScene> {
+    let mut judged = JudgedScene::default();
     let planes = match runner.run(file, FIRST, false)? {
-        Ending::Done(planes) => planes,
-        Ending::Refused(why) => {
+        RunEnding::Done(planes) => planes,
+        RunEnding::Refused(why) => {
             judged.refused = Some(why);
             return Ok(judged);
         }
@@ -90,7 +90,7 @@ pub(super) fn judge(runner: &Runner, file: &SceneFile) -> io::Result<Judged> {
     let open = |p: &PlaneSummary| p.is_undecided() && !p.is_reference();
     if planes.iter().any(open) {
         match runner.run(file, FIRST, true)? {
-            Ending::Done(planes) => judged.count(runner, file, &planes, true)?,
+            RunEnding::Done(planes) => judged.count(runner, file, &planes, true)?,
             other => judged.troubles.extend(trouble(&other)),
         }
     }
@@ -98,16 +98,16 @@ pub(super) fn judge(runner: &Runner, file: &SceneFile) -> io::Result<Judged> {
 }
 
 /// What is wrong with a run that did not come to an end.
-fn trouble(ending: &Ending) -> Option<(Trouble, String)> {
+fn trouble(ending: &RunEnding) -> Option<(SceneTrouble, String)> {
     match ending {
-        Ending::Panic(says) => Some((Trouble::Panic, says.clone())),
-        Ending::Hang => Some((Trouble::Hang, "over the limit of time".into())),
-        Ending::Killed(how) => Some((Trouble::Killed, how.clone())),
-        Ending::Done(_) | Ending::Refused(_) => None,
+        RunEnding::Panic(says) => Some((SceneTrouble::Panic, says.clone())),
+        RunEnding::Hang => Some((SceneTrouble::Hang, "over the limit of time".into())),
+        RunEnding::Killed(how) => Some((SceneTrouble::Killed, how.clone())),
+        RunEnding::Done(_) | RunEnding::Refused(_) => None,
     }
 }
 
-impl Judged {
+impl JudgedScene {
     /// Takes the verdicts of a run; what fails is run again with other seeds.
     fn count(
         &mut self,
@@ -123,7 +123,7 @@ impl Judged {
         self.fails += 1;
         let mut again = Vec::new();
         for seed in OTHERS {
-            if let Ending::Done(planes) = runner.run(file, seed, backward)? {
+            if let RunEnding::Done(planes) = runner.run(file, seed, backward)? {
                 let failing = planes.into_iter().filter(PlaneSummary::fails);
                 again.extend(failing.map(|plane| plane.name));
             }
@@ -142,7 +142,7 @@ impl Judged {
             let [p, chain] = plane.p.map(shown);
             let [off, noise, stated] = plane.errors.map(shown);
             self.troubles.push((
-                Trouble::Wrong {
+                SceneTrouble::Wrong {
                     plane: plane.name.clone(),
                     backward,
                     culprit,
@@ -195,7 +195,7 @@ fn who(
         let by = if backward { "photons" } else { "backward rays" };
         let ending = runner.run(file, FIRST, !backward)?;
         let found = match &ending {
-            Ending::Done(planes) => planes.iter().find(|p| p.name == plane.name),
+            RunEnding::Done(planes) => planes.iter().find(|p| p.name == plane.name),
             _ => None,
         };
         let found = found.map_or("no end", |plane| &plane.verdict);
@@ -242,16 +242,26 @@ fn of_tracers(file: &SceneFile, folder: &Path, name: &str) -> Option<Tracers> {
 }
 
 /// Whether a scene is still in the same trouble, chance left out.
-pub(super) fn persists(runner: &Runner, file: &SceneFile, trouble: &Trouble) -> io::Result<bool> {
+pub(super) fn persists(
+    runner: &Runner,
+    file: &SceneFile,
+    trouble: &SceneTrouble,
+) -> io::Result<bool> {
     match trouble {
-        Trouble::Panic => Ok(matches!(runner.run(file, FIRST, false)?, Ending::Panic(_))),
-        Trouble::Hang => Ok(matches!(runner.run(file, FIRST, false)?, Ending::Hang)),
-        Trouble::Killed => Ok(matches!(runner.run(file, FIRST, false)?, Ending::Killed(_))),
-        Trouble::Wrong {
+        SceneTrouble::Panic => Ok(matches!(
+            runner.run(file, FIRST, false)?,
+            RunEnding::Panic(_)
+        )),
+        SceneTrouble::Hang => Ok(matches!(runner.run(file, FIRST, false)?, RunEnding::Hang)),
+        SceneTrouble::Killed => Ok(matches!(
+            runner.run(file, FIRST, false)?,
+            RunEnding::Killed(_)
+        )),
+        SceneTrouble::Wrong {
             plane, backward, ..
         } => {
             for seed in [FIRST, OTHERS[0]] {
-                let Ending::Done(planes) = runner.run(file, seed, *backward)? else {
+                let RunEnding::Done(planes) = runner.run(file, seed, *backward)? else {
                     return Ok(false);
                 };
                 if !planes.iter().any(|p| p.name == *plane && p.fails()) {

@@ -1,6 +1,6 @@
 //! Lights drawn at random.
 
-use super::draw::Draw;
+use super::draw::SceneDraw;
 use super::pictures::sky;
 use etendue_scene::{
     AxisName, BulbFile, EnvironmentFile, GratingFile, ImageFile, LightFile, SphericalGaussianFile,
@@ -9,14 +9,14 @@ use glam::DVec3;
 use std::io;
 
 /// A light at the origin of the scene's frame.
-pub(super) fn light(draw: &mut Draw) -> io::Result<LightFile> {
+pub(super) fn light(draw: &mut SceneDraw) -> io::Result<LightFile> {
     let center = draw.place(DVec3::ZERO);
     let strength = if draw.is_extreme() {
         *draw.pick(&[1e-9, 1e-3, 1e3, 1e9])
     } else {
         1.0
     };
-    let sides = |draw: &mut Draw| [(); 2].map(|()| draw.length([0.03, 0.5], [1e-6, 100.0]));
+    let sides = |draw: &mut SceneDraw| [(); 2].map(|()| draw.length([0.03, 0.5], [1e-6, 100.0]));
     Ok(match draw.below(14) {
         0..=3 => LightFile::Rectangle {
             center,
@@ -62,7 +62,7 @@ pub(super) fn light(draw: &mut Draw) -> io::Result<LightFile> {
     })
 }
 
-fn image(draw: &mut Draw, unit: f64) -> ImageFile {
+fn image(draw: &mut SceneDraw, unit: f64) -> ImageFile {
     let width = [(); 2].map(|()| unit * draw.value([0.05, 0.5], [1e-3, 20.0]));
     let grating = draw.one_in(3).then(|| GratingFile {
         axis: axis(draw),
@@ -74,12 +74,12 @@ fn image(draw: &mut Draw, unit: f64) -> ImageFile {
 }
 
 /// X or Y.
-pub(super) fn axis(draw: &mut Draw) -> AxisName {
+pub(super) fn axis(draw: &mut SceneDraw) -> AxisName {
     *draw.pick(&[AxisName::X, AxisName::Y])
 }
 
 /// Between none and all.
-pub(super) fn modulation(draw: &mut Draw) -> f64 {
+pub(super) fn modulation(draw: &mut SceneDraw) -> f64 {
     if draw.is_extreme() {
         *draw.pick(&[0.0, 1.0])
     } else {
@@ -87,7 +87,7 @@ pub(super) fn modulation(draw: &mut Draw) -> f64 {
     }
 }
 
-fn environment(draw: &mut Draw, center: [f64; 3]) -> io::Result<LightFile> {
+fn environment(draw: &mut SceneDraw, center: [f64; 3]) -> io::Result<LightFile> {
     let plain = draw.one_in(2);
     let [up, front] = if plain {
         [DVec3::Y, DVec3::Z].map(|v| v.to_array())
@@ -110,7 +110,7 @@ fn environment(draw: &mut Draw, center: [f64; 3]) -> io::Result<LightFile> {
     })
 }
 
-fn lobe(draw: &mut Draw, plain: bool) -> SphericalGaussianFile {
+fn lobe(draw: &mut SceneDraw, plain: bool) -> SphericalGaussianFile {
     let width = draw.value([0.05, 0.6], [1e-3, 100.0]);
     // From where nothing is known of the axes a lobe must be wide, to reach forward.
     let (from, width) = if plain {

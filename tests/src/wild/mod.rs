@@ -29,7 +29,7 @@ pub(crate) use small::{SmallOptions, small};
 use crate::hostile::{child, on_threads};
 use crate::progress::progress;
 use crate::report::Section;
-use judge::{Judged, judge};
+use judge::{JudgedScene, judge};
 use run::Runner;
 use std::fs;
 use std::io;
@@ -41,7 +41,7 @@ use tally::Tally;
 
 /// What to hunt for, and where.
 #[derive(Debug, clap::Args)]
-pub(crate) struct Options {
+pub(crate) struct WildOptions {
     /// Scenes.
     #[arg(long, default_value_t = 100)]
     scenes: u64,
@@ -75,7 +75,7 @@ pub(crate) struct Options {
 }
 
 /// Runs all scenes.
-pub(crate) fn wild(options: &Options) -> io::Result<Section> {
+pub(crate) fn wild(options: &WildOptions) -> io::Result<Section> {
     let program = child::program(options.etendue.as_deref())?;
     let place = tempfile::tempdir()?;
     let bar = progress(options.scenes, "scenes");
@@ -114,12 +114,12 @@ fn told(seed: u64, number: u64, says: &str) {
 /// Draws a scene, runs and judges it; keeps it where something is wrong, and tells what. `None`
 /// where nothing could be drawn.
 fn one(
-    options: &Options,
+    options: &WildOptions,
     program: &Path,
     number: u64,
     at: &Path,
     tell: &dyn Fn(u64, &str),
-) -> io::Result<Option<Judged>> {
+) -> io::Result<Option<JudgedScene>> {
     let runner = Runner {
         program: program.to_owned(),
         folder: at.join("scene"),
@@ -133,7 +133,7 @@ fn one(
     };
     if options.draw {
         keep(options, number, "drawn", &text(&file)?, &runner.folder)?;
-        return Ok(Some(Judged::default()));
+        return Ok(Some(JudgedScene::default()));
     }
     let judged = judge(&runner, &file)?;
     if let Some(why) = &judged.refused {
@@ -153,7 +153,7 @@ fn one(
 }
 
 /// Keeps a scene and the files it names.
-fn keep(options: &Options, number: u64, what: &str, text: &str, from: &Path) -> io::Result<()> {
+fn keep(options: &WildOptions, number: u64, what: &str, text: &str, from: &Path) -> io::Result<()> {
     let folder = options.out.join(format!("{}-{number}", options.seed));
     fs::create_dir_all(&folder)?;
     for file in fs::read_dir(from)? {

@@ -1,6 +1,6 @@
 //! Pictures and meshes drawn at random, written beside the scene.
 
-use super::draw::Draw;
+use super::draw::SceneDraw;
 use exr::prelude::write_rgb_file;
 use glam::DVec3;
 use std::fmt::Write as _;
@@ -8,20 +8,20 @@ use std::fs;
 use std::io;
 
 /// A map of light from far away; its file.
-pub(super) fn sky(draw: &mut Draw) -> io::Result<String> {
+pub(super) fn sky(draw: &mut SceneDraw) -> io::Result<String> {
     let width = 1 << draw.whole(1, 6);
     let bright = draw.one_in(2);
     picture(draw, [width, (width / 2).max(1)], bright)
 }
 
 /// A picture on a surface, of numbers from 0 to 1; its file.
-pub(super) fn texture(draw: &mut Draw) -> io::Result<String> {
+pub(super) fn texture(draw: &mut SceneDraw) -> io::Result<String> {
     let size = [(); 2].map(|()| draw.whole(1, 9) as usize);
     picture(draw, size, false)
 }
 
 /// Pixels from 0 to 1, and one of a thousand where it is `bright`.
-fn picture(draw: &mut Draw, [width, height]: [usize; 2], bright: bool) -> io::Result<String> {
+fn picture(draw: &mut SceneDraw, [width, height]: [usize; 2], bright: bool) -> io::Result<String> {
     let mut pixels: Vec<f32> = Vec::new();
     for _ in 0..width * height {
         pixels.push(f32::from(u8::try_from(draw.below(256)).unwrap_or(0)) / 255.0);
@@ -39,7 +39,7 @@ fn picture(draw: &mut Draw, [width, height]: [usize; 2], bright: bool) -> io::Re
 }
 
 /// A wavy sheet across `d`, around the origin, as far as `half` to each side; its file.
-pub(super) fn sheet(draw: &mut Draw, [x, y, n]: [DVec3; 3], half: f64) -> io::Result<String> {
+pub(super) fn sheet(draw: &mut SceneDraw, [x, y, n]: [DVec3; 3], half: f64) -> io::Result<String> {
     let cells = draw.whole(1, 8);
     let relief = half * draw.between(0.0, 0.15);
     let (mut text, side) = (String::new(), cells + 1);
@@ -59,7 +59,7 @@ pub(super) fn sheet(draw: &mut Draw, [x, y, n]: [DVec3; 3], half: f64) -> io::Re
     Ok(name)
 }
 
-fn next(draw: &mut Draw, extension: &str) -> String {
+fn next(draw: &mut SceneDraw, extension: &str) -> String {
     draw.inputs += 1;
     format!("input{}.{extension}", draw.inputs)
 }

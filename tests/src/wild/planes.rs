@@ -1,13 +1,13 @@
 //! Planes, windows and frequencies drawn at random.
 
-use super::draw::Draw;
+use super::draw::SceneDraw;
 use etendue_field::{Orientation, Profile, Quantity};
 use etendue_scene::{
     AxisFile, CentralRay, FrequenciesFile, Place, PlaneFile, SceneFile, SurfaceFile, WindowFile,
 };
 
 /// One to three planes at places of the path.
-pub(super) fn planes(draw: &mut Draw, file: &SceneFile, path: &CentralRay) -> Vec<PlaneFile> {
+pub(super) fn planes(draw: &mut SceneDraw, file: &SceneFile, path: &CentralRay) -> Vec<PlaneFile> {
     let mut planes = Vec::new();
     for i in 0..*draw.pick(&[1, 1, 2, 2, 3]) {
         let (at, orientation) = place(draw, file, path);
@@ -34,7 +34,7 @@ pub(super) fn planes(draw: &mut Draw, file: &SceneFile, path: &CentralRay) -> Ve
     planes
 }
 
-fn place(draw: &mut Draw, file: &SceneFile, path: &CentralRay) -> (Place, Orientation) {
+fn place(draw: &mut SceneDraw, file: &SceneFile, path: &CentralRay) -> (Place, Orientation) {
     let across = Orientation::Orthogonal;
     let visit = draw.below(file.path.visits.len());
     let name = file.path.visits[visit].clone();
@@ -68,7 +68,7 @@ fn place(draw: &mut Draw, file: &SceneFile, path: &CentralRay) -> (Place, Orient
     }
 }
 
-fn orientation(draw: &mut Draw, file: &SceneFile, name: &str, before: bool) -> Orientation {
+fn orientation(draw: &mut SceneDraw, file: &SceneFile, name: &str, before: bool) -> Orientation {
     let surface = file.surfaces.iter().find(|s| s.name() == name);
     let on_mesh = matches!(surface, Some(SurfaceFile::Mesh { .. }));
     match draw.below(6) {
@@ -79,10 +79,10 @@ fn orientation(draw: &mut Draw, file: &SceneFile, name: &str, before: bool) -> O
     }
 }
 
-pub(super) fn window(draw: &mut Draw) -> WindowFile {
+pub(super) fn window(draw: &mut SceneDraw) -> WindowFile {
     let x = draw.length([0.1, 0.5], [1e-4, 20.0]);
     let u = draw.value([0.08, 0.45], [1e-4, 4.0]);
-    let ratio = |draw: &mut Draw| draw.value([0.5, 2.0], [1e-2, 1e2]);
+    let ratio = |draw: &mut SceneDraw| draw.value([0.5, 2.0], [1e-2, 1e2]);
     let y = draw.one_in(4).then(|| x * ratio(draw));
     let v = draw.one_in(4).then(|| u * ratio(draw));
     WindowFile {
@@ -93,7 +93,7 @@ pub(super) fn window(draw: &mut Draw) -> WindowFile {
     }
 }
 
-fn profile(draw: &mut Draw, half: f64) -> Profile {
+fn profile(draw: &mut SceneDraw, half: f64) -> Profile {
     match draw.below(5) {
         0 => Profile::Box(half),
         1 => Profile::Gaussian {
@@ -104,7 +104,7 @@ fn profile(draw: &mut Draw, half: f64) -> Profile {
     }
 }
 
-pub(super) fn frequencies(draw: &mut Draw, window: &WindowFile) -> FrequenciesFile {
+pub(super) fn frequencies(draw: &mut SceneDraw, window: &WindowFile) -> FrequenciesFile {
     let widest = |a: Profile, b: Option<Profile>| {
         let b = b.map_or(0.0, |b| b.half_width());
         a.half_width().max(b)

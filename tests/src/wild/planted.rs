@@ -7,7 +7,7 @@ use etendue_compare::{Applicability, Prediction, Test, Theory, compare};
 use etendue_field::{Frame, Lobe, ProjectionGrid};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
-use etendue_theory::reflections::{Interaction, System};
+use etendue_theory::reflections::{Interaction, ReflectionSystem};
 use etendue_theory::{Budget, Model, Observed};
 use glam::DQuat;
 
@@ -24,10 +24,10 @@ const SEEN: f64 = 0.01;
 const SCENE: &str = "two_glossy";
 const PLANE: &str = "beyond";
 
-type Fault = (&'static str, fn(&mut System));
+type PlantedFault = (&'static str, fn(&mut ReflectionSystem));
 
 /// What is wrong, and what of it.
-const FAULTS: [Fault; 6] = [
+const FAULTS: [PlantedFault; 6] = [
     ("square left out", |system| system.obstacles.clear()),
     ("first lobe 1 % wider", |system| {
         change_lobe(system, 0, 1.01);
@@ -51,7 +51,7 @@ const FAULTS: [Fault; 6] = [
     }),
 ];
 
-fn change_lobe(system: &mut System, surface: usize, factor: f64) {
+fn change_lobe(system: &mut ReflectionSystem, surface: usize, factor: f64) {
     if let Interaction::Reflects(reflectance) = &mut system.surfaces[surface].interaction {
         let lobe: &mut Lobe = &mut reflectance.first_mut().lobe;
         if let Some((_, number)) = lobe.number_mut() {
@@ -60,7 +60,7 @@ fn change_lobe(system: &mut System, surface: usize, factor: f64) {
     }
 }
 
-fn tilt(system: &mut System, angle: f64) {
+fn tilt(system: &mut ReflectionSystem, angle: f64) {
     let frame = &mut system.surfaces[1].patch.frame;
     let turn = DQuat::from_axis_angle(frame.y, angle);
     *frame = Frame {
@@ -81,7 +81,7 @@ pub(super) fn planted() -> Section {
         unreachable!("{SCENE} has two surfaces that scatter");
     };
     let like = Prediction::new(&scene, &scene.planes[0], &theory);
-    let p_value = |view: &Observed<System>| p_value(&scene, &measured, view, &like);
+    let p_value = |view: &Observed<ReflectionSystem>| p_value(&scene, &measured, view, &like);
     let sound = p_value(view);
     let mut rows = vec![Row::new(
         vec!["none".to_owned(), format!("{sound:.5}")],
@@ -113,7 +113,7 @@ pub(super) fn planted() -> Section {
 fn p_value(
     scene: &Scene,
     measured: &Measurement,
-    view: &Observed<System>,
+    view: &Observed<ReflectionSystem>,
     like: &Prediction,
 ) -> f64 {
     let plane = &scene.planes[0];

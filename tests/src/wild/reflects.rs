@@ -1,13 +1,13 @@
 //! BRDFs drawn at random, and what varies them over a surface.
 
-use super::draw::Draw;
+use super::draw::SceneDraw;
 use super::light::{axis, modulation};
 use super::pictures::texture;
 use etendue_scene::{BrdfFile, EventFile, FresnelFile, LobeFile, PatternFile};
 use std::io;
 
 /// Reflection by a BRDF.
-pub(super) fn reflects(draw: &mut Draw) -> io::Result<EventFile> {
+pub(super) fn reflects(draw: &mut SceneDraw) -> io::Result<EventFile> {
     let (mut other, mut blend, mut varied) = (None, None, None);
     if draw.one_in(4) {
         other = Some(Box::new(brdf(draw)));
@@ -24,7 +24,7 @@ pub(super) fn reflects(draw: &mut Draw) -> io::Result<EventFile> {
     })
 }
 
-fn brdf(draw: &mut Draw) -> BrdfFile {
+fn brdf(draw: &mut SceneDraw) -> BrdfFile {
     let lobe = match draw.below(4) {
         0 => LobeFile::Lambertian,
         1 => LobeFile::Phong(draw.value([3.0, 500.0], [0.01, 1e4])),
@@ -53,7 +53,7 @@ fn brdf(draw: &mut Draw) -> BrdfFile {
     }
 }
 
-fn pattern(draw: &mut Draw) -> io::Result<PatternFile> {
+fn pattern(draw: &mut SceneDraw) -> io::Result<PatternFile> {
     Ok(match draw.below(3) {
         0 => PatternFile::Cosine {
             axis: axis(draw),

@@ -31,7 +31,7 @@ pub(super) struct Runner {
 }
 
 /// How a run ended.
-pub(super) enum Ending {
+pub(super) enum RunEnding {
     /// With a verdict on each plane.
     Done(Vec<PlaneSummary>),
     /// The scene was refused, for this reason.
@@ -93,7 +93,7 @@ pub(crate) fn text(file: &SceneFile) -> io::Result<String> {
 
 impl Runner {
     /// Runs a scene with this seed of photons, or of backward rays.
-    pub(super) fn run(&self, file: &SceneFile, seed: u64, backward: bool) -> io::Result<Ending> {
+    pub(super) fn run(&self, file: &SceneFile, seed: u64, backward: bool) -> io::Result<RunEnding> {
         fs::write(self.folder.join(SCENE), text(file)?)?;
         let out = self.scratch.join("out");
         if out.exists() {
@@ -127,25 +127,25 @@ impl Runner {
         let summary: Value = serde_json::from_slice(&summary).map_err(io::Error::other)?;
         let planes = summary["planes"].as_array().map(Vec::as_slice);
         let planes = planes.unwrap_or_default().iter();
-        Ok(Ending::Done(planes.map(PlaneSummary::new).collect()))
+        Ok(RunEnding::Done(planes.map(PlaneSummary::new).collect()))
     }
 }
 
 /// The end of a run that left no result.
-fn early(ended: &Ended) -> Option<Ending> {
+fn early(ended: &Ended) -> Option<RunEnding> {
     let stderr = String::from_utf8_lossy(&ended.stderr);
     if ended.hung {
-        return Some(Ending::Hang);
+        return Some(RunEnding::Hang);
     }
     match ended.code {
         Some(PANIC) => {
             let at = stderr.find("panicked").unwrap_or(0);
             let words = stderr[at..].lines().take(3);
-            Some(Ending::Panic(words.collect::<Vec<_>>().join(" ")))
+            Some(RunEnding::Panic(words.collect::<Vec<_>>().join(" ")))
         }
-        Some(code) if REFUSED.contains(&code) => Some(Ending::Refused(reason(&stderr))),
+        Some(code) if REFUSED.contains(&code) => Some(RunEnding::Refused(reason(&stderr))),
         Some(0 | 1 | 4) => None,
-        code => Some(Ending::Killed(format!(
+        code => Some(RunEnding::Killed(format!(
             "code {code:?}, signal {:?}, {} MB",
             ended.signal,
             ended.peak >> 20

@@ -1,6 +1,6 @@
 //! A scene drawn at random: surfaces one after the other, as the central ray comes to them.
 
-use super::draw::Draw;
+use super::draw::SceneDraw;
 use super::planes::{frequencies, planes, window};
 use super::surfaces::{passed, surface};
 use super::{blockers, light};
@@ -18,7 +18,7 @@ const TRIES: usize = 8;
 
 /// The scene of a seed with this number. Pictures and meshes it names are written to the folder.
 pub(crate) fn scene(seed: u64, index: u64, photons: u64, folder: &Path) -> io::Result<SceneFile> {
-    let mut draw = Draw::new(seed, index, folder);
+    let mut draw = SceneDraw::new(seed, index, folder);
     let mut file = empty(&mut draw, photons)?;
     let path = surfaces(&mut draw, &mut file)?;
     let first = path.legs[0].length;
@@ -41,7 +41,7 @@ pub(crate) fn scene(seed: u64, index: u64, photons: u64, folder: &Path) -> io::R
 }
 
 /// A light, and a plane at it.
-fn empty(draw: &mut Draw, photons: u64) -> io::Result<SceneFile> {
+fn empty(draw: &mut SceneDraw, photons: u64) -> io::Result<SceneFile> {
     let light = light::light(draw)?;
     let window = window(draw);
     let frequencies = frequencies(draw, &window);
@@ -85,7 +85,7 @@ fn empty(draw: &mut Draw, photons: u64) -> io::Result<SceneFile> {
 }
 
 /// Puts one to three surfaces on the way; returns it.
-fn surfaces(draw: &mut Draw, file: &mut SceneFile) -> io::Result<CentralRay> {
+fn surfaces(draw: &mut SceneDraw, file: &mut SceneFile) -> io::Result<CentralRay> {
     let count = *draw.pick(&[1, 1, 1, 1, 2, 2, 3]);
     let mut leg = Frame::IDENTITY;
     let mut path = CentralRay {
@@ -126,7 +126,7 @@ fn surfaces(draw: &mut Draw, file: &mut SceneFile) -> io::Result<CentralRay> {
 
 /// The leg on which the next surface may be: where a specular surface sends the central ray, and
 /// anywhere in front of another.
-fn onwards(draw: &mut Draw, file: &SceneFile, path: &CentralRay) -> Frame {
+fn onwards(draw: &mut SceneDraw, file: &SceneFile, path: &CentralRay) -> Frame {
     let last = &path.legs[path.legs.len() - 1];
     let specular = file.surfaces.last().is_some_and(is_specular);
     let Some(hit) = last.leaves.as_ref().filter(|_| !specular) else {

@@ -1,10 +1,10 @@
 //! Random scenes whose light several surfaces send on, with masks on any leg: photons must reject no
 //! prediction.
 
-use super::draw::Draw;
+use super::draw::SceneDraw;
 use super::planted::planted;
 use super::scene;
-use super::small::{Ending, SmallOptions, ending, keep, object, plane, sharpen};
+use super::small::{SmallEnding, SmallOptions, ending, keep, object, plane, sharpen};
 use crate::progress::progress;
 use crate::report::{Check, Row, Section};
 use etendue_compare::{Applicability, Class, Theory, Verdict};
@@ -27,7 +27,7 @@ struct Tried {
     scatterers: usize,
     /// Whether the theory of light that several surfaces send on predicts it.
     by_paths: bool,
-    ending: Ending,
+    ending: SmallEnding,
     seconds: f64,
 }
 
@@ -48,7 +48,7 @@ pub(crate) fn several(options: &SmallOptions) -> io::Result<Section> {
             };
             let begun = Instant::now();
             let ending = ending(&scene, options.classes);
-            if matches!(ending, Ending::Judged(_, Verdict::Fail)) {
+            if matches!(ending, SmallEnding::Judged(_, Verdict::Fail)) {
                 keep(options, number, &scene, folder.path())?;
             }
             bar.one();
@@ -73,7 +73,7 @@ fn drawn(options: &SmallOptions, number: u64, folder: &Path) -> Option<Scene> {
     let resolved = |file: &SceneFile| resolve("several", file.clone(), folder, u64::MAX).ok();
     for attempt in 0..TRIES {
         let number = number * TRIES + attempt;
-        let mut draw = Draw::new(options.seed ^ 0x7e7e, number, folder);
+        let mut draw = SceneDraw::new(options.seed ^ 0x7e7e, number, folder);
         let Ok(mut file) = scene(options.seed, number, options.photons, folder) else {
             continue;
         };
@@ -122,25 +122,29 @@ fn section(options: &SmallOptions, tried: &[Option<Tried>]) -> Section {
         };
         let count = |is: &dyn Fn(&Tried) -> bool| of_kind().filter(|tried| is(tried)).count();
         let judged = |wanted: Verdict| {
-            count(&|tried| matches!(tried.ending, Ending::Judged(_, verdict) if verdict == wanted))
+            count(
+                &|tried| matches!(tried.ending, SmallEnding::Judged(_, verdict) if verdict == wanted),
+            )
         };
         let rejected: Vec<String> = of_kind()
-            .filter(|tried| matches!(tried.ending, Ending::Judged(_, Verdict::Fail)))
+            .filter(|tried| matches!(tried.ending, SmallEnding::Judged(_, Verdict::Fail)))
             .map(|tried| tried.number.to_string())
             .collect();
         let mut seconds: Vec<f64> = of_kind().map(|tried| tried.seconds).collect();
         seconds.sort_by(f64::total_cmp);
         let median = seconds.get(seconds.len() / 2).copied().unwrap_or(0.0);
         let first_order =
-            count(&|tried| matches!(tried.ending, Ending::Judged(Class::FirstOrder, _)));
+            count(&|tried| matches!(tried.ending, SmallEnding::Judged(Class::FirstOrder, _)));
         let cells = vec![
             scatterers.to_string(),
             of_kind().count().to_string(),
-            count(&|tried| matches!(tried.ending, Ending::Judged(Class::Exact, _))).to_string(),
+            count(&|tried| matches!(tried.ending, SmallEnding::Judged(Class::Exact, _)))
+                .to_string(),
             first_order.to_string(),
             count(&|tried| tried.by_paths).to_string(),
-            count(&|tried| matches!(tried.ending, Ending::Named | Ending::Other)).to_string(),
-            count(&|tried| tried.ending == Ending::Skipped).to_string(),
+            count(&|tried| matches!(tried.ending, SmallEnding::Named | SmallEnding::Other))
+                .to_string(),
+            count(&|tried| tried.ending == SmallEnding::Skipped).to_string(),
             judged(Verdict::Pass).to_string(),
             judged(Verdict::Undecided).to_string(),
             rejected.join(", "),

@@ -3,7 +3,7 @@
 //! A scene is changed as the tree of values that it is: things are left out one at a time, and
 //! numbers made round. What is no scene any more does not fail in the same way, and is not taken.
 
-use super::judge::{Trouble, persists};
+use super::judge::{SceneTrouble, persists};
 use super::run::Runner;
 use super::straight::straightened;
 use etendue_scene::SceneFile;
@@ -43,7 +43,7 @@ const PLAIN: [(&str, &str); 6] = [
 pub(super) fn shrink(
     runner: &Runner,
     file: &SceneFile,
-    trouble: &Trouble,
+    trouble: &SceneTrouble,
     time: Duration,
 ) -> io::Result<SceneFile> {
     let begun = Instant::now();

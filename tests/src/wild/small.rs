@@ -1,7 +1,7 @@
 //! Small objects at random places in the light of random scenes: theory must either have them or
 //! not speak of the plane.
 
-use super::draw::Draw;
+use super::draw::SceneDraw;
 use super::run::text;
 use super::scene;
 use crate::progress::progress;
@@ -60,11 +60,11 @@ const KINDS: [&str; 3] = ["a mask", "a black mesh", "a surface off the path"];
 struct Tried {
     number: u64,
     kind: usize,
-    ending: Ending,
+    ending: SmallEnding,
 }
 
 #[derive(Clone, Copy, PartialEq)]
-pub(super) enum Ending {
+pub(super) enum SmallEnding {
     /// Theory does not speak, and names the object.
     Named,
     /// Theory does not speak for another reason.
@@ -88,7 +88,7 @@ pub(crate) fn small(options: &SmallOptions) -> io::Result<Section> {
                 return Ok(None);
             };
             let ending = ending(&scene, options.classes);
-            if matches!(ending, Ending::Judged(_, Verdict::Fail)) {
+            if matches!(ending, SmallEnding::Judged(_, Verdict::Fail)) {
                 keep(options, number, &scene, folder.path())?;
             }
             bar.one();
@@ -120,7 +120,7 @@ pub(super) fn keep(
 
 /// A scene with one plane and a small object in its light, of one of [`KINDS`].
 fn drawn(options: &SmallOptions, number: u64, folder: &Path) -> Option<(Scene, usize)> {
-    let mut draw = Draw::new(options.seed ^ 0x5311, number, folder);
+    let mut draw = SceneDraw::new(options.seed ^ 0x5311, number, folder);
     let mut file = scene(options.seed, number, options.photons, folder).ok()?;
     file.blockers.clear();
     file.run.photons = options.photons;
@@ -162,7 +162,7 @@ pub(super) fn sharpen(file: &mut SceneFile, cycles: f64) {
 }
 
 /// A plane across a leg, mostly the last.
-pub(super) fn plane(draw: &mut Draw, scene: &Scene) -> PlaneFile {
+pub(super) fn plane(draw: &mut SceneDraw, scene: &Scene) -> PlaneFile {
     let legs = &scene.path.legs;
     let last = legs.len() - 1;
     let leg = if draw.one_in(4) {
@@ -183,7 +183,7 @@ pub(super) fn plane(draw: &mut Draw, scene: &Scene) -> PlaneFile {
 }
 
 /// A coordinate of the window as a share of it: anywhere, or near its edge.
-fn share(draw: &mut Draw) -> f64 {
+fn share(draw: &mut SceneDraw) -> f64 {
     if draw.one_in(2) {
         draw.between(-1.0, 1.0)
     } else {
@@ -194,7 +194,7 @@ fn share(draw: &mut Draw) -> f64 {
 
 /// A point that a ray of the window passes on the leg of the plane, in the frame at the light, and
 /// how wide light is there.
-fn place(draw: &mut Draw, scene: &Scene, plane: &VirtualPlane) -> (DVec3, f64) {
+fn place(draw: &mut SceneDraw, scene: &Scene, plane: &VirtualPlane) -> (DVec3, f64) {
     let window = &plane.window;
     let profiles = [window.x, window.y, window.u, window.v];
     let [x, y, u, v] = profiles.map(|profile| share(draw) * profile.half_width());
@@ -207,7 +207,7 @@ fn place(draw: &mut Draw, scene: &Scene, plane: &VirtualPlane) -> (DVec3, f64) {
 
 /// Puts an object into the light, its radius a share of the light's width; returns its kind.
 pub(super) fn object(
-    draw: &mut Draw,
+    draw: &mut SceneDraw,
     scene: &Scene,
     file: &mut SceneFile,
     share: [f64; 2],
@@ -264,21 +264,25 @@ fn towards_light(scene: &Scene) -> DVec3 {
 }
 
 /// What theory says of the plane, and photons of that.
-pub(super) fn ending(scene: &Scene, classes: bool) -> Ending {
+pub(super) fn ending(scene: &Scene, classes: bool) -> SmallEnding {
     let plane = &scene.planes[0];
     let theory = Applicability::new(scene, plane);
     if theory.class() == Class::Reference {
         let named = theory.reasons.iter().any(|why| why.contains("object"));
-        return if named { Ending::Named } else { Ending::Other };
+        return if named {
+            SmallEnding::Named
+        } else {
+            SmallEnding::Other
+        };
     }
     let class = theory.class();
     if classes {
-        return Ending::Judged(class, Verdict::Undecided);
+        return SmallEnding::Judged(class, Verdict::Undecided);
     }
     let theories = [theory];
     let [_, longest] = seconds(scene, &theories);
     if longest > LONGEST_PREDICTION {
-        return Ending::Skipped;
+        return SmallEnding::Skipped;
     }
     let prediction = Prediction::new(scene, plane, &theories[0]);
     let judged = |seed: u64| {
@@ -291,31 +295,32 @@ pub(super) fn ending(scene: &Scene, classes: bool) -> Ending {
         Verdict::Fail => judged(SEEDS[1]),
         verdict => verdict,
     };
-    Ending::Judged(class, verdict)
+    SmallEnding::Judged(class, verdict)
 }
 
 fn section(options: &SmallOptions, tried: &[Option<Tried>]) -> Section {
     let tried: Vec<&Tried> = tried.iter().flatten().collect();
     let row = |(kind, says): (usize, &&str)| {
         let of_kind: Vec<&&Tried> = tried.iter().filter(|tried| tried.kind == kind).collect();
-        let count =
-            |is: &dyn Fn(Ending) -> bool| of_kind.iter().filter(|tried| is(tried.ending)).count();
+        let count = |is: &dyn Fn(SmallEnding) -> bool| {
+            of_kind.iter().filter(|tried| is(tried.ending)).count()
+        };
         let judged = |wanted: Verdict| {
-            count(&|ending| matches!(ending, Ending::Judged(_, verdict) if verdict == wanted))
+            count(&|ending| matches!(ending, SmallEnding::Judged(_, verdict) if verdict == wanted))
         };
         let class = |wanted: Class| {
-            count(&|ending| matches!(ending, Ending::Judged(class, _) if class == wanted))
+            count(&|ending| matches!(ending, SmallEnding::Judged(class, _) if class == wanted))
         };
         let rejected = of_kind
             .iter()
-            .filter(|tried| matches!(tried.ending, Ending::Judged(_, Verdict::Fail)));
+            .filter(|tried| matches!(tried.ending, SmallEnding::Judged(_, Verdict::Fail)));
         let rejected: Vec<String> = rejected.map(|tried| tried.number.to_string()).collect();
         let cells = vec![
             (*says).to_owned(),
             of_kind.len().to_string(),
-            count(&|ending| ending == Ending::Named).to_string(),
-            count(&|ending| ending == Ending::Other).to_string(),
-            count(&|ending| ending == Ending::Skipped).to_string(),
+            count(&|ending| ending == SmallEnding::Named).to_string(),
+            count(&|ending| ending == SmallEnding::Other).to_string(),
+            count(&|ending| ending == SmallEnding::Skipped).to_string(),
             class(Class::Exact).to_string(),
             class(Class::FirstOrder).to_string(),
             judged(Verdict::Pass).to_string(),

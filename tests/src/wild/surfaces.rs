@@ -1,6 +1,6 @@
 //! Surfaces drawn at random, for the central ray to visit or to pass.
 
-use super::draw::Draw;
+use super::draw::SceneDraw;
 use super::pictures::sheet;
 use super::reflects::reflects;
 use etendue_field::Frame;
@@ -10,7 +10,7 @@ use std::io;
 
 /// A surface across a leg of the path, so far along it.
 pub(super) fn surface(
-    draw: &mut Draw,
+    draw: &mut SceneDraw,
     name: String,
     leg: &Frame,
     distance: f64,
@@ -25,7 +25,7 @@ pub(super) fn surface(
 }
 
 /// A normal towards where light comes from, straight or oblique, grazing now and then.
-fn facing(draw: &mut Draw, leg: &Frame) -> DVec3 {
+fn facing(draw: &mut SceneDraw, leg: &Frame) -> DVec3 {
     if draw.one_in(3) {
         return -leg.d;
     }
@@ -43,7 +43,7 @@ fn facing(draw: &mut Draw, leg: &Frame) -> DVec3 {
     angle.sin() * aside - angle.cos() * leg.d
 }
 
-fn albedo(draw: &mut Draw) -> f64 {
+fn albedo(draw: &mut SceneDraw) -> f64 {
     if draw.is_extreme() {
         *draw.pick(&[0.0, 1.0, 1e-6])
     } else {
@@ -52,7 +52,7 @@ fn albedo(draw: &mut Draw) -> f64 {
 }
 
 fn rectangle(
-    draw: &mut Draw,
+    draw: &mut SceneDraw,
     name: String,
     leg: &Frame,
     on_axis: DVec3,
@@ -70,7 +70,7 @@ fn rectangle(
 }
 
 fn mesh(
-    draw: &mut Draw,
+    draw: &mut SceneDraw,
     name: String,
     leg: &Frame,
     on_axis: DVec3,
@@ -108,8 +108,8 @@ fn mesh(
     })
 }
 
-fn refraction(draw: &mut Draw) -> EventFile {
-    let index = |draw: &mut Draw| draw.value([1.0, 1.8], [0.1, 10.0]);
+fn refraction(draw: &mut SceneDraw) -> EventFile {
+    let index = |draw: &mut SceneDraw| draw.value([1.0, 1.8], [0.1, 10.0]);
     let (front, back) = *draw.pick(&[(1.0, 1.5), (1.5, 1.0), (0.0, 0.0)]);
     if front > 0.0 {
         EventFile::Refraction { front, back }
@@ -122,7 +122,7 @@ fn refraction(draw: &mut Draw) -> EventFile {
 }
 
 fn smooth(
-    draw: &mut Draw,
+    draw: &mut SceneDraw,
     name: String,
     leg: &Frame,
     on_axis: DVec3,
@@ -165,8 +165,8 @@ fn smooth(
     })
 }
 
-fn form(draw: &mut Draw) -> FormFile {
-    let curvature = |draw: &mut Draw| {
+fn form(draw: &mut SceneDraw) -> FormFile {
+    let curvature = |draw: &mut SceneDraw| {
         let k = draw.value([0.05, 1.0], [1e-6, 50.0]) / draw.unit;
         draw.signed(k)
     };
@@ -179,7 +179,7 @@ fn form(draw: &mut Draw) -> FormFile {
 }
 
 /// A small rectangle beside the first leg: the path does not visit it, and it stops light.
-pub(super) fn passed(draw: &mut Draw, name: String, first: f64) -> SurfaceFile {
+pub(super) fn passed(draw: &mut SceneDraw, name: String, first: f64) -> SurfaceFile {
     let size = [(); 2].map(|()| draw.unit * draw.between(0.05, 0.3));
     let gap = draw.unit * draw.between(0.01, 0.2);
     let x = draw.signed(0.5 * size[0] + gap);

@@ -1,6 +1,6 @@
 //! What all scenes come to, as a table.
 
-use super::judge::{Culprit, Judged, Trouble};
+use super::judge::{Culprit, JudgedScene, SceneTrouble};
 use crate::report::{Check, Row, Section};
 use std::collections::BTreeMap;
 
@@ -31,7 +31,7 @@ impl Tally {
         self.undrawn.push(number);
     }
 
-    pub(super) fn add(&mut self, number: u64, judged: &Judged) {
+    pub(super) fn add(&mut self, number: u64, judged: &JudgedScene) {
         self.scenes += 1;
         if let Some(why) = &judged.refused {
             self.refused.entry(why.clone()).or_default().push(number);
@@ -46,10 +46,10 @@ impl Tally {
         self.chance += judged.chance;
         for (trouble, _) in &judged.troubles {
             let list = match trouble {
-                Trouble::Panic => &mut self.panics,
-                Trouble::Hang => &mut self.hangs,
-                Trouble::Killed => &mut self.killed,
-                Trouble::Wrong { culprit, .. } => self.wrong.entry(*culprit).or_default(),
+                SceneTrouble::Panic => &mut self.panics,
+                SceneTrouble::Hang => &mut self.hangs,
+                SceneTrouble::Killed => &mut self.killed,
+                SceneTrouble::Wrong { culprit, .. } => self.wrong.entry(*culprit).or_default(),
             };
             if list.last() != Some(&number) {
                 list.push(number);

@@ -1,16 +1,16 @@
 //! How far the path of a ray, as theory has it, passes from what theory does not know of.
 
-use super::rays::Ray;
-use super::surroundings::{Form, Meets, Surroundings};
+use super::rays::CheckRay;
+use super::surroundings::{Meets, SurroundingForm, Surroundings};
 use etendue_field::{Disc, HalfPlane, Mask, Patch, Rectangle, Shape};
 use etendue_scene::{Object, Surface};
 use glam::DVec3;
 
 /// A straight piece of the path of a ray.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Piece {
+pub(super) struct PathPiece {
     pub(super) leg: usize,
-    pub(super) ray: Ray,
+    pub(super) ray: CheckRay,
     /// Distances along the ray at which the piece begins and ends.
     pub(super) extent: [f64; 2],
     /// The surface that the ray has left, and the one that ends its leg.
@@ -46,7 +46,7 @@ const AT_END: f64 = 1e-6;
 impl Suspect {
     /// Everything that rays may meet on the legs of these paths. Of a layer with many shapes, those
     /// nearest to where the rays cross it.
-    pub(super) fn all(around: &Surroundings<'_>, paths: &[&[Piece]]) -> Vec<Self> {
+    pub(super) fn all(around: &Surroundings<'_>, paths: &[&[PathPiece]]) -> Vec<Self> {
         let legs = paths.first().map_or(0, |pieces| pieces.len());
         let on_leg = |leg: usize| {
             let layers = 0..around.scene.blockers.len();
@@ -60,7 +60,7 @@ impl Suspect {
     }
 
     /// What is said of it once a ray meets it.
-    pub(super) fn meets(&self, around: &Surroundings<'_>, piece: &Piece) -> Meets {
+    pub(super) fn meets(&self, around: &Surroundings<'_>, piece: &PathPiece) -> Meets {
         match self.what {
             What::Shape { layer: index, .. }
             | What::HalfPlane { layer: index, .. }
@@ -81,7 +81,7 @@ impl Suspect {
 
     /// How far a piece of a path passes from it, metres; zero where it meets it against theory,
     /// infinite where it cannot.
-    pub(super) fn gap(&self, around: &Surroundings<'_>, piece: &Piece) -> f64 {
+    pub(super) fn gap(&self, around: &Surroundings<'_>, piece: &PathPiece) -> f64 {
         let (layer, outside): (usize, &dyn Fn(DVec3) -> f64) = match self.what {
             What::Object(i) => return object_gap(around, i, piece),
             What::Grating { layer } => (layer, &|_| 0.0),
@@ -122,7 +122,12 @@ const NEAREST_SHAPES: usize = 16;
 const CROSSINGS: usize = 300;
 
 /// The parts of a layer that rays may meet on a leg.
-fn of_layer(around: &Surroundings<'_>, layer: usize, paths: &[&[Piece]], leg: usize) -> Vec<What> {
+fn of_layer(
+    around: &Surroundings<'_>,
+    layer: usize,
+    paths: &[&[PathPiece]],
+    leg: usize,
+) -> Vec<What> {
     let Mask::Opaque {
         shapes,
         half_planes,
@@ -186,7 +191,7 @@ fn outside_half_plane(half: &HalfPlane, at: DVec3) -> f64 {
 }
 
 /// How far a piece of a path passes from a surface of the path where theory does not have it.
-fn object_gap(around: &Surroundings<'_>, index: usize, piece: &Piece) -> f64 {
+fn object_gap(around: &Surroundings<'_>, index: usize, piece: &PathPiece) -> f64 {
     let (object, form) = &around.objects[index];
     let [from, to] = piece.extent;
     let own = |which: Option<Object>| which == Some(*object);
@@ -202,14 +207,14 @@ fn object_gap(around: &Surroundings<'_>, index: usize, piece: &Piece) -> f64 {
         return f64::INFINITY;
     }
     match form {
-        Form::Flat(surface) => flat_gap(surface, &piece.ray, extent),
-        Form::Smooth(patch) => patch_gap(patch, &piece.ray, extent),
-        Form::Around(corners) => box_gap(corners, &piece.ray, extent),
+        SurroundingForm::Flat(surface) => flat_gap(surface, &piece.ray, extent),
+        SurroundingForm::Smooth(patch) => patch_gap(patch, &piece.ray, extent),
+        SurroundingForm::Around(corners) => box_gap(corners, &piece.ray, extent),
     }
 }
 
 /// How far a ray passes from a rectangle between two distances.
-fn flat_gap(surface: &Surface, ray: &Ray, extent: [f64; 2]) -> f64 {
+fn flat_gap(surface: &Surface, ray: &CheckRay, extent: [f64; 2]) -> f64 {
     let local = ray.seen_from(&surface.frame);
     let t = -local.point.z / local.direction.z;
     if !t.is_finite() {
@@ -224,8 +229,8 @@ fn flat_gap(surface: &Surface, ray: &Ray, extent: [f64; 2]) -> f64 {
 
 /// How far a ray passes from a patch between two distances: it may meet the quadric beside the
 /// patch or off the piece, or pass the quadric.
-fn patch_gap(patch: &Patch, ray: &Ray, extent: [f64; 2]) -> f64 {
-    let Ray { point, direction } = ray.seen_from(&patch.frame);
+fn patch_gap(patch: &Patch, ray: &CheckRay, extent: [f64; 2]) -> f64 {
+    let CheckRay { point, direction } = ray.seen_from(&patch.frame);
     let off = |t: f64| {
         let at = point + t * direction;
         let aside = (libm::hypot(at.x, at.y) - patch.aperture).max(0.0);
@@ -249,7 +254,7 @@ fn patch_gap(patch: &Patch, ray: &Ray, extent: [f64; 2]) -> f64 {
 }
 
 /// The distance of a piece from a box around a mesh.
-fn box_gap([low, high]: &[DVec3; 2], ray: &Ray, [from, to]: [f64; 2]) -> f64 {
+fn box_gap([low, high]: &[DVec3; 2], ray: &CheckRay, [from, to]: [f64; 2]) -> f64 {
     let distance = |t: f64| {
         let at = ray.at(t);
         at.distance(at.clamp(*low, *high))

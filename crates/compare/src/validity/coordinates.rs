@@ -1,6 +1,6 @@
 //! Rays in the coordinates of a plane, read from docs/conventions.md for this check.
 
-use super::rays::Ray;
+use super::rays::CheckRay;
 use etendue_field::{Frame, Orientation, TwoPlane};
 use etendue_theory::rays::Plane;
 use glam::DVec3;
@@ -30,10 +30,10 @@ fn turned(plane: &Plane) -> f64 {
 /// plane is on, where the plane needs them. `None` where the ray does not pass.
 pub(super) fn coordinates(
     plane: &Plane,
-    ray: &Ray,
+    ray: &CheckRay,
     on_surface: Option<[DVec3; 2]>,
 ) -> Option<TwoPlane> {
-    let Ray { point, direction } = ray.seen_from(&plane.frame);
+    let CheckRay { point, direction } = ray.seen_from(&plane.frame);
     let foot = point - point.z / direction.z * direction;
     if plane.orientation == Orientation::Orthogonal {
         let [u, v] = [direction.x, direction.y].map(|d| d / direction.z);
@@ -75,7 +75,7 @@ pub(super) fn direction(plane: &Plane, normal: DVec3, [u, v]: [f64; 2]) -> DVec3
 
 /// The ray with these coordinates, (x, y, u, v), at a plane; `None` where the plane is on a surface
 /// that is not there.
-pub(super) fn seen(plane: &Plane, [x, y, u, v]: [f64; 4]) -> Option<Ray> {
+pub(super) fn seen(plane: &Plane, [x, y, u, v]: [f64; 4]) -> Option<CheckRay> {
     let on_surface = plane.orientation != Orientation::Orthogonal;
     // A turn further the same direction has no other coordinates.
     if on_surface && (u + plane.longitude).abs().max(v.abs()) >= FRAC_PI_2 {
@@ -89,11 +89,11 @@ pub(super) fn seen(plane: &Plane, [x, y, u, v]: [f64; 4]) -> Option<Ray> {
         .filter(|_| plane.orientation.is_local())
     {
         let direction = plane.frame.d;
-        let down = Ray { point, direction }.back(patch);
+        let down = CheckRay { point, direction }.back(patch);
         point = down.at(down.theory_hit(patch)?);
         normal = patch.normal(point);
     }
     let away = direction(plane, normal, [u, v]);
     let direction = if plane.arriving { -away } else { away };
-    Some(Ray { point, direction })
+    Some(CheckRay { point, direction })
 }

@@ -2,8 +2,8 @@
 
 use super::coordinates::coordinates;
 use super::mesh_error::OffPatches;
-use super::rays::{Draw, Ray, bright, density, offset_of};
-use super::specular::{Arrival, Follower, on};
+use super::rays::{CheckRay, RayDraw, bright, density, offset_of};
+use super::specular::{Follower, PlaneArrival, on};
 use etendue_field::{Complex, Light, Profile, TwoPlane, interpolated_normal};
 use etendue_scene::{MeshObject, Object};
 use etendue_transform::SliceTransform;
@@ -45,7 +45,7 @@ impl Follower<'_> {
             return None;
         }
         let most = (LOOKED_AT / triangles).clamp(MIN_RAYS, MAX_RAYS);
-        let draws = || (0..TRIES).map(Draw::new);
+        let draws = || (0..TRIES).map(RayDraw::new);
         match self.system.light {
             // Evenly in the window, and the volume of rays stays what it is on their way.
             Light::Environment { .. } => {
@@ -56,7 +56,7 @@ impl Follower<'_> {
     }
 
     /// A ray of the light, and how much light it stands for beside others.
-    fn weighted(&self, draw: &Draw) -> Option<(Ray, f64)> {
+    fn weighted(&self, draw: &RayDraw) -> Option<(CheckRay, f64)> {
         let (ray, strength) = self.ray(draw)?;
         let patch = &self.system.elements.first()?.patch;
         let length = ray.theory_hit(patch)?;
@@ -82,10 +82,10 @@ impl Follower<'_> {
     /// The same of at most so many given rays; `None` if none brings light into the window.
     fn displacement(
         &self,
-        rays: impl Iterator<Item = (Ray, f64)>,
+        rays: impl Iterator<Item = (CheckRay, f64)>,
         most: usize,
     ) -> Option<OffPatches> {
-        let displaced = |(ray, emitted): (Ray, f64)| {
+        let displaced = |(ray, emitted): (CheckRay, f64)| {
             let (predicted, share) = self.theory(ray)?;
             let before = emitted * share;
             let light = before * self.plane.window.value(&predicted);
@@ -147,7 +147,7 @@ impl Follower<'_> {
 
     /// Where a ray arrives by the triangles of smooth meshes; nowhere if it misses one or meets it
     /// again.
-    fn by_triangles(&self, light: Ray) -> Arrival {
+    fn by_triangles(&self, light: CheckRay) -> PlaneArrival {
         let mut ray = light;
         let mut share = 1.0;
         for (leg, element) in self.system.elements.iter().enumerate() {
@@ -179,7 +179,7 @@ impl Follower<'_> {
 /// Distances along a ray, beyond one, at which it meets triangles of a mesh, and their numbers.
 fn hits<'a>(
     mesh: &'a MeshObject,
-    ray: &'a Ray,
+    ray: &'a CheckRay,
     from: f64,
 ) -> impl Iterator<Item = (f64, usize)> + 'a {
     let triangles = mesh.triangles.iter().enumerate();

@@ -9,14 +9,14 @@ const DARK: f64 = 1e-5;
 
 /// What a ray is drawn by.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Draw {
+pub(super) struct RayDraw {
     /// Its number, which chooses between ways to draw it.
     pub(super) index: u32,
     /// Six numbers in [0, 1].
     pub(super) numbers: [f64; 6],
 }
 
-impl Draw {
+impl RayDraw {
     pub(super) fn new(index: u32) -> Self {
         Self {
             index,
@@ -46,13 +46,13 @@ pub(super) fn bright<T>(rays: impl Iterator<Item = (f64, T)>, most: usize) -> Ve
 
 /// A straight leg of a ray, in the frame at the light.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Ray {
+pub(super) struct CheckRay {
     pub(super) point: DVec3,
     /// A unit vector.
     pub(super) direction: DVec3,
 }
 
-impl Ray {
+impl CheckRay {
     pub(super) fn at(&self, t: f64) -> DVec3 {
         self.point + t * self.direction
     }
@@ -169,11 +169,16 @@ pub(super) fn density(pair: [f64; 2]) -> f64 {
 }
 
 /// A ray of the light through a point, and how strong it is; `None` where none is.
-pub(super) fn ray_to(light: &Light, point: DVec3, index: u32, r: [f64; 2]) -> Option<(Ray, f64)> {
+pub(super) fn ray_to(
+    light: &Light,
+    point: DVec3,
+    index: u32,
+    r: [f64; 2],
+) -> Option<(CheckRay, f64)> {
     let through = |from: DVec3| {
         let direction = (point - from).try_normalize()?;
         let point = from;
-        Some(Ray { point, direction })
+        Some(CheckRay { point, direction })
     };
     let offset = [0, 1].map(|axis| centred(index / 2, r[axis]));
     let ray = match light {
@@ -198,7 +203,7 @@ pub(super) fn ray_to(light: &Light, point: DVec3, index: u32, r: [f64; 2]) -> Op
                 }
             };
             let direction = direction.normalize();
-            Ray { point, direction }.begun()
+            CheckRay { point, direction }.begun()
         }
         // No theory that asks follows rays of a file.
         Light::Rays { .. } => return None,
@@ -207,8 +212,8 @@ pub(super) fn ray_to(light: &Light, point: DVec3, index: u32, r: [f64; 2]) -> Op
 }
 
 /// How strong the light is that goes along a ray which begins at the light, beside its other rays.
-pub(super) fn strength(light: &Light, ray: &Ray) -> f64 {
-    let Ray { point, direction } = ray;
+pub(super) fn strength(light: &Light, ray: &CheckRay) -> f64 {
+    let CheckRay { point, direction } = ray;
     match light {
         Light::Area { exponent, .. } => libm::pow(direction.z, *exponent),
         Light::Point { .. } => 1.0,

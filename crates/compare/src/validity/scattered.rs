@@ -1,29 +1,29 @@
 //! Light that a surface with a BRDF receives and sends on: what photons meet, and where theory
 //! looks.
 
-use super::clearance::Piece;
+use super::clearance::PathPiece;
 use super::coordinates::{coordinates, direction, seen};
-use super::rays::{Draw, Ray, point_on, ray_to, within};
+use super::rays::{CheckRay, RayDraw, point_on, ray_to, within};
 use super::search::{Followed, found};
 use super::surroundings::{Meets, Surroundings, TakenLayer, unforeseen};
 use etendue_field::{Orientation, VirtualPlane};
 use etendue_scene::{Hit, Scene};
 use etendue_theory::Observed;
 use etendue_theory::rays::Plane;
-use etendue_theory::scattering::System;
+use etendue_theory::scattering::ScatteringSystem;
 
 /// What light for a plane meets before or behind a surface with a BRDF that theory does not know
 /// of, in words; and the blockers that theory takes.
 pub(crate) fn unforeseen_by_scattering(
     scene: &Scene,
     plane: &VirtualPlane,
-    view: &Observed<System>,
+    view: &Observed<ScatteringSystem>,
 ) -> (Vec<String>, Vec<TakenLayer>) {
     let Some(hit) = scene.path.ends_at(0) else {
         return (Vec::new(), Vec::new());
     };
     unforeseen(scene, Surroundings::new(scene, plane), |around| {
-        found(&Scatterer {
+        found(&CheckedScatterer {
             scene,
             plane,
             system: &view.system,
@@ -34,17 +34,17 @@ pub(crate) fn unforeseen_by_scattering(
     })
 }
 
-struct Scatterer<'a> {
+struct CheckedScatterer<'a> {
     scene: &'a Scene,
     plane: &'a VirtualPlane,
-    system: &'a System,
+    system: &'a ScatteringSystem,
     at: &'a Plane,
     hit: &'a Hit,
     around: &'a Surroundings<'a>,
 }
 
-impl Followed for Scatterer<'_> {
-    fn check(&self, draw: &Draw) -> Option<(f64, Option<Meets>)> {
+impl Followed for CheckedScatterer<'_> {
+    fn check(&self, draw: &RayDraw) -> Option<(f64, Option<Meets>)> {
         let LightPath {
             light,
             arriving,
@@ -62,10 +62,10 @@ impl Followed for Scatterer<'_> {
         Some((light, is_wrong.then(|| meets.unwrap_or(itself))))
     }
 
-    fn pieces(&self, draw: &Draw) -> Option<(f64, Vec<Piece>)> {
+    fn pieces(&self, draw: &RayDraw) -> Option<(f64, Vec<PathPiece>)> {
         let path = self.follow(draw)?;
         let own = Some(self.hit.object);
-        let arriving = Piece {
+        let arriving = PathPiece {
             leg: 0,
             ray: path.arriving,
             extent: [0.0, path.end],
@@ -73,7 +73,7 @@ impl Followed for Scatterer<'_> {
             ends: own,
             is_last: false,
         };
-        let leaving = Piece {
+        let leaving = PathPiece {
             leg: 1,
             ray: path.leaving,
             extent: [self.around.rounding(1), self.around.to_plane(&path.leaving)],
@@ -92,19 +92,19 @@ impl Followed for Scatterer<'_> {
 /// Light that comes to the surface and leaves it into the window.
 struct LightPath {
     light: f64,
-    arriving: Ray,
+    arriving: CheckRay,
     /// How far the surface is from the light.
     end: f64,
     /// Blockers that theory does not have on the way to the surface.
     meets: Option<Meets>,
-    leaving: Ray,
+    leaving: CheckRay,
 }
 
-impl Scatterer<'_> {
+impl CheckedScatterer<'_> {
     /// A path from the light to the window; `None` if it brings no light.
-    fn follow(&self, draw: &Draw) -> Option<LightPath> {
+    fn follow(&self, draw: &RayDraw) -> Option<LightPath> {
         let leaving = self.leaving(draw)?;
-        let Ray { point, direction } = leaving;
+        let CheckRay { point, direction } = leaving;
         let normal = self.system.patch.normal(point);
         let window = &self.plane.window;
         let z = coordinates(self.at, &leaving, Some([point, normal]))?;
@@ -125,7 +125,7 @@ impl Scatterer<'_> {
 
     /// A ray that leaves the surface: from a point of it, or, every other one across the leg, as it
     /// comes through the window.
-    fn leaving(&self, draw: &Draw) -> Option<Ray> {
+    fn leaving(&self, draw: &RayDraw) -> Option<CheckRay> {
         let r = draw.numbers;
         let [x, y, u, v] = within(&self.plane.window, r);
         let patch = &self.system.patch;
@@ -133,15 +133,15 @@ impl Scatterer<'_> {
             let seen = seen(self.at, [x, y, u, v])?;
             let back = seen.back(patch);
             let point = back.at(back.theory_hit(patch)?);
-            return Some(Ray { point, ..seen });
+            return Some(CheckRay { point, ..seen });
         }
         let point = point_on(patch, self.hit.point, draw.index, [r[0], r[1]])?;
         let direction = direction(self.at, patch.normal(point), [u, v]);
-        Some(Ray { point, direction })
+        Some(CheckRay { point, direction })
     }
 
     /// What stands between the light and a point of the surface.
-    fn shadow(&self, ray: &Ray, end: f64) -> Option<Meets> {
+    fn shadow(&self, ray: &CheckRay, end: f64) -> Option<Meets> {
         let (t, object) = self.around.first(ray, 0.0, None)?;
         let before = t < end * (1.0 - 1e-9);
         before.then(|| self.named(object))
@@ -149,7 +149,7 @@ impl Scatterer<'_> {
 
     /// What stands between a point of the surface and the plane; the surface itself wherever it is,
     /// as photons that would meet it again are gone, whatever stops them before.
-    fn beyond(&self, ray: &Ray) -> Option<Meets> {
+    fn beyond(&self, ray: &CheckRay) -> Option<Meets> {
         let end = self.around.to_plane(ray);
         let from = self.around.rounding(1);
         let ends = self.scene.path.ends_at(1).map(|hit| hit.object);
@@ -173,7 +173,7 @@ impl Scatterer<'_> {
 
     /// Whether it is from this point that theory has the ray leave: it looks from far out back
     /// along it.
-    fn looks_at(&self, leaving: &Ray) -> bool {
+    fn looks_at(&self, leaving: &CheckRay) -> bool {
         let back = leaving.back(&self.system.patch);
         let far = (back.point - leaving.point).length();
         let found = back.theory_hit(&self.system.patch);

@@ -5,8 +5,8 @@
 //! of the window. So for each such object the rays that pass it nearest are moved until they meet
 //! it or come no nearer: a distance that falls along a smooth path finds the smallest object.
 
-use super::clearance::{Piece, Suspect};
-use super::rays::{Draw, bright, lattice};
+use super::clearance::{PathPiece, Suspect};
+use super::rays::{RayDraw, bright, lattice};
 use super::surroundings::{Meets, Surroundings};
 
 /// Rays with light in the window that are followed for a plane.
@@ -35,10 +35,10 @@ const FAINT: f64 = 1e-3;
 pub(super) trait Followed {
     /// How much light a ray brings into the window, and what it meets on its way that theory does
     /// not know of, if anything; `None` if it brings none.
-    fn check(&self, draw: &Draw) -> Option<(f64, Option<Meets>)>;
+    fn check(&self, draw: &RayDraw) -> Option<(f64, Option<Meets>)>;
 
     /// How much light it brings by theory's path, and the pieces of that; `None` if it brings none.
-    fn pieces(&self, draw: &Draw) -> Option<(f64, Vec<Piece>)>;
+    fn pieces(&self, draw: &RayDraw) -> Option<(f64, Vec<PathPiece>)>;
 
     /// What stands around the path.
     fn around(&self) -> &Surroundings<'_>;
@@ -47,7 +47,7 @@ pub(super) trait Followed {
 /// What rays meet that theory does not know of.
 pub(super) fn found(rays: &impl Followed) -> Vec<Meets> {
     let checked = (0..TRIED_RAYS).filter_map(|index| {
-        let draw = Draw::new(index);
+        let draw = RayDraw::new(index);
         let (light, meets) = rays.check(&draw)?;
         Some((light, (draw, meets)))
     });
@@ -58,12 +58,12 @@ pub(super) fn found(rays: &impl Followed) -> Vec<Meets> {
         let (light, pieces) = rays.pieces(draw)?;
         (light > FAINT * strongest).then_some((*draw, pieces))
     });
-    let paths: Vec<(Draw, Vec<Piece>)> = paths.collect();
+    let paths: Vec<(RayDraw, Vec<PathPiece>)> = paths.collect();
     let Some((_, pieces)) = paths.first() else {
         return found;
     };
     let around = rays.around();
-    let all: Vec<&[Piece]> = paths.iter().map(|(_, pieces)| pieces.as_slice()).collect();
+    let all: Vec<&[PathPiece]> = paths.iter().map(|(_, pieces)| pieces.as_slice()).collect();
     for suspect in Suspect::all(around, &all) {
         if found.contains(&suspect.meets(around, &pieces[suspect.leg])) {
             continue;
@@ -88,15 +88,15 @@ struct Search<'a, R> {
 }
 
 impl<R: Followed> Search<'_, R> {
-    fn gap(&self, pieces: &[Piece]) -> f64 {
+    fn gap(&self, pieces: &[PathPiece]) -> f64 {
         self.suspect
             .gap(self.rays.around(), &pieces[self.suspect.leg])
     }
 
     /// The rays that pass the object nearest, and how near; none if it is out of reach.
-    fn starts(&self, paths: &[(Draw, Vec<Piece>)]) -> Vec<(f64, Draw)> {
+    fn starts(&self, paths: &[(RayDraw, Vec<PathPiece>)]) -> Vec<(f64, RayDraw)> {
         let gaps = paths.iter().map(|(draw, pieces)| (self.gap(pieces), *draw));
-        let mut gaps: Vec<(f64, Draw)> = gaps.filter(|(gap, _)| gap.is_finite()).collect();
+        let mut gaps: Vec<(f64, RayDraw)> = gaps.filter(|(gap, _)| gap.is_finite()).collect();
         gaps.sort_by(|(a, _), (b, _)| a.total_cmp(b));
         let [Some((nearest, _)), Some((farthest, _))] = [gaps.first(), gaps.last()] else {
             return Vec::new();
@@ -107,7 +107,7 @@ impl<R: Followed> Search<'_, R> {
     }
 
     /// Moves a ray towards the object; what it meets, if it comes to meet anything.
-    fn approach(&self, (mut gap, mut at): (f64, Draw)) -> Option<Meets> {
+    fn approach(&self, (mut gap, mut at): (f64, RayDraw)) -> Option<Meets> {
         let mut length = FIRST_MOVE;
         for number in 0..MOVES {
             if gap <= 0.0 {
@@ -134,7 +134,7 @@ impl<R: Followed> Search<'_, R> {
 
 /// A draw at most so far from another along each axis; two of three moves go along one axis, since
 /// in a corner of the window few other moves stay inside.
-fn moved(from: &Draw, length: f64, number: u32) -> Draw {
+fn moved(from: &RayDraw, length: f64, number: u32) -> RayDraw {
     let step = lattice(number);
     let mut numbers = from.numbers;
     for (axis, x) in numbers.iter_mut().enumerate() {
@@ -143,5 +143,5 @@ fn moved(from: &Draw, length: f64, number: u32) -> Draw {
             *x = (*x + length * (2.0 * step[axis] - 1.0)).clamp(0.0, 1.0);
         }
     }
-    Draw { numbers, ..*from }
+    RayDraw { numbers, ..*from }
 }

@@ -1,15 +1,15 @@
 //! Rays through specular surfaces: what photons meet, and where theory looks.
 
-use super::clearance::Piece;
+use super::clearance::PathPiece;
 use super::coordinates::{coordinates, seen};
 use super::mesh_error::OffPatches;
-use super::rays::{Draw, Ray, centred, point_on, ray_to, strength, within};
+use super::rays::{CheckRay, RayDraw, centred, point_on, ray_to, strength, within};
 use super::search::{Followed, found};
 use super::surroundings::{Meets, Surroundings, TakenLayer, unforeseen};
 use etendue_field::{Light, Patch, TwoPlane, VirtualPlane};
 use etendue_scene::{Object, Scene};
 use etendue_theory::Observed;
-use etendue_theory::rays::{Plane, System};
+use etendue_theory::rays::{Plane, SpecularSystem};
 use glam::DVec3;
 
 /// What light for a plane meets between or at the surfaces of a system that theory does not know
@@ -18,14 +18,14 @@ use glam::DVec3;
 pub(crate) fn unforeseen_by_rays(
     scene: &Scene,
     plane: &VirtualPlane,
-    view: &Observed<System>,
+    view: &Observed<SpecularSystem>,
     off: Option<OffPatches>,
 ) -> (Vec<String>, Vec<TakenLayer>) {
     let around = Surroundings::new(scene, plane);
     let (mut found, later) = unforeseen(scene, around, |around| {
         let follower = Follower::new(scene, plane, view, around);
-        let mut meets = found(&Drawn(&follower, Follower::ray));
-        meets.extend(found(&Drawn(&follower, Follower::ray_of_window)));
+        let mut meets = found(&FollowedRays(&follower, Follower::ray));
+        meets.extend(found(&FollowedRays(&follower, Follower::ray_of_window)));
         meets
     });
     let apart = off.map(|off| off.apart);
@@ -40,7 +40,7 @@ pub(crate) fn unforeseen_by_rays(
 pub(crate) fn off_patches(
     scene: &Scene,
     plane: &VirtualPlane,
-    view: &Observed<System>,
+    view: &Observed<SpecularSystem>,
 ) -> Option<OffPatches> {
     let around = Surroundings::new(scene, plane);
     Follower::new(scene, plane, view, &around).off_patches()
@@ -53,23 +53,23 @@ const OFF_PATCHES: f64 = 1e-4;
 pub(super) struct Follower<'a> {
     pub(super) scene: &'a Scene,
     pub(super) plane: &'a VirtualPlane,
-    pub(super) system: &'a System,
+    pub(super) system: &'a SpecularSystem,
     pub(super) at: &'a Plane,
     around: &'a Surroundings<'a>,
 }
 
 /// Rays of a follower, in one of two ways to draw them.
-struct Drawn<'a>(
+struct FollowedRays<'a>(
     &'a Follower<'a>,
-    fn(&Follower<'a>, &Draw) -> Option<(Ray, f64)>,
+    fn(&Follower<'a>, &RayDraw) -> Option<(CheckRay, f64)>,
 );
 
-impl Followed for Drawn<'_> {
-    fn check(&self, draw: &Draw) -> Option<(f64, Option<Meets>)> {
+impl Followed for FollowedRays<'_> {
+    fn check(&self, draw: &RayDraw) -> Option<(f64, Option<Meets>)> {
         self.0.check(self.1(self.0, draw)?)
     }
 
-    fn pieces(&self, draw: &Draw) -> Option<(f64, Vec<Piece>)> {
+    fn pieces(&self, draw: &RayDraw) -> Option<(f64, Vec<PathPiece>)> {
         let (ray, emitted) = self.1(self.0, draw)?;
         let mut pieces = Vec::with_capacity(self.0.system.elements.len() + 1);
         let (z, share) = self.0.follow(ray, |piece| pieces.push(piece))?;
@@ -83,7 +83,7 @@ impl Followed for Drawn<'_> {
 }
 
 /// A ray at the plane, and the share of it that masks on the first leg let pass.
-pub(super) type Arrival = Option<(TwoPlane, f64)>;
+pub(super) type PlaneArrival = Option<(TwoPlane, f64)>;
 
 /// Distances closer than this share are one.
 const SAME_DISTANCE: f64 = 1e-6;
@@ -92,7 +92,7 @@ impl<'a> Follower<'a> {
     fn new(
         scene: &'a Scene,
         plane: &'a VirtualPlane,
-        view: &'a Observed<System>,
+        view: &'a Observed<SpecularSystem>,
         around: &'a Surroundings<'a>,
     ) -> Self {
         Self {
@@ -108,7 +108,7 @@ impl<'a> Follower<'a> {
 impl Follower<'_> {
     /// How much light a ray brings into the window, and what it meets on its way that theory does not
     /// know of, if anything; `None` if it brings none.
-    fn check(&self, (ray, emitted): (Ray, f64)) -> Option<(f64, Option<Meets>)> {
+    fn check(&self, (ray, emitted): (CheckRay, f64)) -> Option<(f64, Option<Meets>)> {
         let (arrival, meets) = self.photon(ray);
         let brought = [arrival, self.theory(ray)].into_iter().flatten();
         let light = brought.map(|(z, share)| emitted * share * self.plane.window.value(&z));
@@ -117,8 +117,8 @@ impl Follower<'_> {
     }
 
     /// A ray of the light, towards the first surface, and how strong it is.
-    pub(super) fn ray(&self, draw: &Draw) -> Option<(Ray, f64)> {
-        let Draw { index, numbers: r } = *draw;
+    pub(super) fn ray(&self, draw: &RayDraw) -> Option<(CheckRay, f64)> {
+        let RayDraw { index, numbers: r } = *draw;
         let hit = self.scene.path.ends_at(0)?;
         let of_patch = |patch: &Patch| point_on(patch, hit.point, index, [r[0], r[1]]);
         let target = match (self.system.elements.first(), hit.object) {
@@ -146,7 +146,7 @@ impl Follower<'_> {
     /// A ray that theory has arrive in the window: hardly any ray of the light itself may
     /// come into a narrow one, or onto a part of a wide one that is close to the light. Light without
     /// extent is sent to places in the window, where nothing turns it first.
-    pub(super) fn ray_of_window(&self, draw: &Draw) -> Option<(Ray, f64)> {
+    pub(super) fn ray_of_window(&self, draw: &RayDraw) -> Option<(CheckRay, f64)> {
         let light = &self.system.light;
         let coordinates = within(&self.plane.window, draw.numbers);
         if !light.has_extent() {
@@ -160,7 +160,7 @@ impl Follower<'_> {
             let back = ray.back(&element.patch);
             let point = back.at(back.theory_hit(&element.patch)?);
             let came = self.turned(leg, on(&element.patch, point), &back)?;
-            ray = Ray {
+            ray = CheckRay {
                 direction: -came.direction,
                 ..came
             };
@@ -174,14 +174,14 @@ impl Follower<'_> {
     }
 
     /// Where theory has a ray arrive.
-    pub(super) fn theory(&self, light: Ray) -> Arrival {
+    pub(super) fn theory(&self, light: CheckRay) -> PlaneArrival {
         self.follow(light, |_| {})
     }
 
     /// Where theory has a ray arrive; its straight pieces are told one after the other.
-    fn follow(&self, light: Ray, mut tell: impl FnMut(Piece)) -> Arrival {
+    fn follow(&self, light: CheckRay, mut tell: impl FnMut(PathPiece)) -> PlaneArrival {
         let path = &self.scene.path;
-        let piece = |leg: usize, ray: Ray, end: f64| Piece {
+        let piece = |leg: usize, ray: CheckRay, end: f64| PathPiece {
             leg,
             ray,
             extent: [self.around.rounding(leg), end],
@@ -202,7 +202,7 @@ impl Follower<'_> {
     }
 
     /// How far a ray of the last leg goes: to the plane, or to the surface that the plane is on.
-    fn end(&self, ray: &Ray) -> f64 {
+    fn end(&self, ray: &CheckRay) -> f64 {
         let across = self.around.to_plane(ray);
         let ends = self.scene.path.ends_at(self.plane.leg);
         let surface = ends.filter(|_| self.at.arriving);
@@ -211,7 +211,7 @@ impl Follower<'_> {
     }
 
     /// The share of a ray that passes what theory has on the first leg.
-    pub(super) fn passed(&self, leg: usize, ray: &Ray, end: f64) -> f64 {
+    pub(super) fn passed(&self, leg: usize, ray: &CheckRay, end: f64) -> f64 {
         if leg == 0 {
             self.around.first_leg(ray, end).0[1]
         } else {
@@ -221,7 +221,7 @@ impl Follower<'_> {
 
     /// The point of the plane's surface at which theory counts a ray of the last leg, and the unit
     /// normal there; none across the leg. `None` where the ray does not meet it.
-    pub(super) fn counted_at(&self, ray: &Ray) -> Option<Option<[DVec3; 2]>> {
+    pub(super) fn counted_at(&self, ray: &CheckRay) -> Option<Option<[DVec3; 2]>> {
         let Some(patch) = self.at.patch.as_ref() else {
             return Some(None);
         };
@@ -234,7 +234,7 @@ impl Follower<'_> {
     }
 
     /// Where a photon arrives, and the first thing it meets that theory does not know of.
-    fn photon(&self, light: Ray) -> (Arrival, Option<Meets>) {
+    fn photon(&self, light: CheckRay) -> (PlaneArrival, Option<Meets>) {
         let mut ray = light;
         let mut share = 1.0;
         let mut unforeseen: Option<Meets> = None;
@@ -267,7 +267,7 @@ impl Follower<'_> {
     /// another first.
     fn next(
         &self,
-        ray: &Ray,
+        ray: &CheckRay,
         leg: usize,
         expected: Option<Object>,
         theory: Option<f64>,
@@ -290,7 +290,7 @@ impl Follower<'_> {
     }
 
     /// The coordinates at the plane of a photon that has met all surfaces before it.
-    fn last_leg(&self, ray: &Ray) -> (Option<TwoPlane>, Option<Meets>) {
+    fn last_leg(&self, ray: &CheckRay) -> (Option<TwoPlane>, Option<Meets>) {
         let path = &self.scene.path;
         let leg = self.plane.leg;
         let ends = path.ends_at(leg).map(|hit| hit.object);
@@ -327,7 +327,7 @@ impl Follower<'_> {
 
     /// The point of a surface at which a plane on it counts a photon: where it comes to its front,
     /// or, of light that leaves, that of its line nearest to where the central ray hits.
-    fn counted(&self, patch: &Patch, ray: &Ray) -> Option<DVec3> {
+    fn counted(&self, patch: &Patch, ray: &CheckRay) -> Option<DVec3> {
         if self.at.arriving {
             return Some(ray.at(ray.front_hit(patch, self.at.frame.d)?));
         }
@@ -339,13 +339,13 @@ impl Follower<'_> {
     }
 
     /// The ray that leaves the surface at the end of a leg.
-    pub(super) fn turned(&self, leg: usize, at: [DVec3; 2], ray: &Ray) -> Option<Ray> {
+    pub(super) fn turned(&self, leg: usize, at: [DVec3; 2], ray: &CheckRay) -> Option<CheckRay> {
         let [point, normal] = at;
         let element = &self.system.elements[leg];
         let frame = &element.patch.frame;
         let direction = element.event.turned(frame, normal, point, ray.direction)?;
         let direction = direction.normalize();
-        Some(Ray { point, direction })
+        Some(CheckRay { point, direction })
     }
 }
 

@@ -1,6 +1,6 @@
 //! What stands around the path, and what a ray of a leg meets of it.
 
-use super::rays::Ray;
+use super::rays::CheckRay;
 use crate::chain::stands_before;
 use etendue_field::{Patch, VirtualPlane};
 use etendue_scene::{Hit, Object, Scene, Surface};
@@ -78,7 +78,7 @@ fn in_words(found: Vec<Meets>, scene: &Scene) -> Vec<String> {
 pub(super) struct Surroundings<'a> {
     pub(super) scene: &'a Scene,
     plane: &'a VirtualPlane,
-    pub(super) objects: Vec<(Object, Form<'a>)>,
+    pub(super) objects: Vec<(Object, SurroundingForm<'a>)>,
     /// Blockers that theory has wherever light meets them.
     pub(super) taken: Vec<TakenLayer>,
 }
@@ -92,7 +92,7 @@ pub(crate) struct TakenLayer {
     pub(crate) from: usize,
 }
 
-pub(super) enum Form<'a> {
+pub(super) enum SurroundingForm<'a> {
     Smooth(Patch),
     Flat(&'a Surface),
     /// A box around a mesh, its lowest and highest corner.
@@ -106,14 +106,14 @@ impl<'a> Surroundings<'a> {
     /// Meshes that the plane's light has left are not among them: theory knows them by the surface
     /// that osculates them where the central ray hits.
     pub(super) fn new(scene: &'a Scene, plane: &'a VirtualPlane) -> Self {
-        let mut objects: Vec<(Object, Form<'a>)> = Vec::new();
+        let mut objects: Vec<(Object, SurroundingForm<'a>)> = Vec::new();
         for (leg, hit) in scene.path.legs.iter().map(|leg| leg.leaves).enumerate() {
             let Some(hit) = hit else { continue };
             let form = match hit.object {
-                Object::Patch(i) => Form::Smooth(scene.patches[i].patch),
-                Object::Surface(i) => Form::Flat(&scene.surfaces[i]),
+                Object::Patch(i) => SurroundingForm::Smooth(scene.patches[i].patch),
+                Object::Surface(i) => SurroundingForm::Flat(&scene.surfaces[i]),
                 Object::Mesh(_) if leg <= plane.leg => continue,
-                Object::Mesh(i) => Form::Around(scene.meshes[i].triangles.bounds()),
+                Object::Mesh(i) => SurroundingForm::Around(scene.meshes[i].triangles.bounds()),
             };
             if objects.iter().all(|(object, _)| *object != hit.object) {
                 objects.push((hit.object, form));
@@ -135,7 +135,7 @@ impl<'a> Surroundings<'a> {
 
     /// How far along a ray of its leg the plane is; of a plane on a surface, the plane across the
     /// leg where the central ray hits.
-    pub(super) fn to_plane(&self, ray: &Ray) -> f64 {
+    pub(super) fn to_plane(&self, ray: &CheckRay) -> f64 {
         let path = &self.scene.path;
         let leg = &path.legs[self.plane.leg];
         let across = leg.frame.travelled(path.along(self.plane));
@@ -146,7 +146,7 @@ impl<'a> Surroundings<'a> {
     /// The surface that a ray meets first beyond `from`, and where; `ignored` is not met.
     pub(super) fn first(
         &self,
-        ray: &Ray,
+        ray: &CheckRay,
         from: f64,
         ignored: Option<Object>,
     ) -> Option<(f64, Object)> {
@@ -164,7 +164,7 @@ impl<'a> Surroundings<'a> {
     }
 
     /// Where a ray meets an object beyond `from`, whatever it meets first.
-    pub(super) fn hit(&self, ray: &Ray, from: f64, what: Object) -> Option<f64> {
+    pub(super) fn hit(&self, ray: &CheckRay, from: f64, what: Object) -> Option<f64> {
         let forms = self.objects.iter().filter(|(object, _)| *object == what);
         let hits = forms.flat_map(|(_, form)| form.hits(ray));
         hits.filter(|t| *t > from).min_by(f64::total_cmp)
@@ -172,7 +172,7 @@ impl<'a> Surroundings<'a> {
 
     /// The share of a ray of the first leg that passes the blockers before `end`; and that which
     /// passes those that theory puts before the plane.
-    pub(super) fn first_leg(&self, ray: &Ray, end: f64) -> ([f64; 2], Option<Meets>) {
+    pub(super) fn first_leg(&self, ray: &CheckRay, end: f64) -> ([f64; 2], Option<Meets>) {
         let mut shares = [1.0; 2];
         let mut meets = None;
         for index in 0..self.scene.blockers.len() {
@@ -199,7 +199,13 @@ impl<'a> Surroundings<'a> {
     }
 
     /// Blockers that a ray of a later leg meets between `from` and `end`.
-    pub(super) fn later_leg(&self, ray: &Ray, leg: usize, from: f64, end: f64) -> Option<Meets> {
+    pub(super) fn later_leg(
+        &self,
+        ray: &CheckRay,
+        leg: usize,
+        from: f64,
+        end: f64,
+    ) -> Option<Meets> {
         let met = |index: &usize| {
             let crossed = self.crossing(ray, *index);
             crossed.is_some_and(|t| t > from && t < end) && self.transmittance(ray, *index) < 1.0
@@ -226,21 +232,21 @@ impl<'a> Surroundings<'a> {
     }
 
     /// How far along a ray it crosses the plane of blockers.
-    pub(super) fn crossing(&self, ray: &Ray, index: usize) -> Option<f64> {
+    pub(super) fn crossing(&self, ray: &CheckRay, index: usize) -> Option<f64> {
         let t = (self.scene.blockers[index].distance - ray.point.z) / ray.direction.z;
         t.is_finite().then_some(t)
     }
 
-    fn transmittance(&self, ray: &Ray, index: usize) -> f64 {
+    fn transmittance(&self, ray: &CheckRay, index: usize) -> f64 {
         let at = self.crossing(ray, index).map(|t| ray.at(t));
         let mask = &self.scene.blockers[index].mask;
         at.map_or(1.0, |at| mask.transmittance(at.x, at.y))
     }
 }
 
-impl Form<'_> {
+impl SurroundingForm<'_> {
     /// Where a ray meets it; NaN for nowhere.
-    fn hits(&self, ray: &Ray) -> [f64; 2] {
+    fn hits(&self, ray: &CheckRay) -> [f64; 2] {
         match self {
             Self::Around([low, high]) => {
                 let [a, b] = [*low, *high].map(|corner| (corner - ray.point) / ray.direction);

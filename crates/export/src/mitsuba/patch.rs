@@ -15,8 +15,8 @@ const EDGE: usize = 512;
 
 /// A patch as triangles.
 #[derive(Debug)]
-pub(super) struct Mesh {
-    pub(super) vertices: Vec<Vertex>,
+pub(super) struct PatchMesh {
+    pub(super) vertices: Vec<MeshVertex>,
     /// Counterclockwise as the patch faces.
     pub(super) faces: Vec<[u32; 3]>,
     /// How far its triangles are from the patch, metres.
@@ -25,7 +25,7 @@ pub(super) struct Mesh {
 
 /// A corner of triangles.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Vertex {
+pub(super) struct MeshVertex {
     pub(super) point: DVec3,
     /// Unit normal.
     pub(super) normal: DVec3,
@@ -34,7 +34,7 @@ pub(super) struct Vertex {
 }
 
 /// The mesh of a patch; its texture coordinates are (s, t).
-pub(super) fn mesh(patch: &Patch) -> Mesh {
+pub(super) fn mesh(patch: &Patch) -> PatchMesh {
     if patch.curvature.iter().all(|k| *k == 0.0) {
         return rings(patch, 1, EDGE);
     }
@@ -49,13 +49,13 @@ pub(super) fn mesh(patch: &Patch) -> Mesh {
 }
 
 /// The middle, and rings of corners around it.
-fn rings(patch: &Patch, rings: usize, sectors: usize) -> Mesh {
+fn rings(patch: &Patch, rings: usize, sectors: usize) -> PatchMesh {
     let vertex = |r: f64, turn: f64| {
         let (sin, cos) = libm::sincos(TAU * turn);
         let uv = DVec2::new(r * cos, r * sin);
         let point = patch.point(uv.x, uv.y);
         let normal = patch.normal(point);
-        Vertex { point, normal, uv }
+        MeshVertex { point, normal, uv }
     };
     // Of a half ball the edge is steep: there rings are nearer to each other, as on a ball they are alike.
     let steep = (patch.aperture * patch.curvature[2].abs()).min(1.0);
@@ -95,7 +95,7 @@ fn rings(patch: &Patch, rings: usize, sectors: usize) -> Mesh {
         .iter()
         .map(|face| off(patch, face.map(|i| vertices[i as usize].point)));
     let error = error.fold(0.0, f64::max);
-    Mesh {
+    PatchMesh {
         vertices,
         faces,
         error,

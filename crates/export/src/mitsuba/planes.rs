@@ -12,11 +12,11 @@ struct PlanesFile<'a> {
     scene: &'a str,
     /// The frame of the exported coordinates, in the world of the scene file.
     world: Frame,
-    planes: Vec<Plane<'a>>,
+    planes: Vec<RecordedPlane<'a>>,
 }
 
 #[derive(Serialize)]
-struct Plane<'a> {
+struct RecordedPlane<'a> {
     name: &'a str,
     /// In the exported coordinates; on a surface X, Y and D are T, B and N.
     frame: Frame,
@@ -38,7 +38,7 @@ struct Plane<'a> {
 pub(super) fn json(scene: &Scene) -> Vec<u8> {
     let path = &scene.path;
     let hit_id = |hit: &Hit| id(hit.object);
-    let planes = scene.planes.iter().map(|plane| Plane {
+    let planes = scene.planes.iter().map(|plane| RecordedPlane {
         name: &plane.name,
         frame: match plane.orientation {
             Orientation::Orthogonal => path.frame_at(plane.distance, plane.leg),

@@ -1,6 +1,6 @@
 //! Meshes as binary PLY files (Turk 1994).
 
-use super::patch::Mesh;
+use super::patch::PatchMesh;
 use glam::DVec3;
 use std::collections::HashMap;
 
@@ -24,7 +24,7 @@ pub(super) fn shaded(triangles: &[[DVec3; 3]], normals: &[[DVec3; 3]]) -> Vec<u8
 }
 
 /// A mesh with normals and texture coordinates.
-pub(super) fn smooth(mesh: &Mesh) -> Vec<u8> {
+pub(super) fn smooth(mesh: &PatchMesh) -> Vec<u8> {
     let vertices: Vec<[f64; 8]> = mesh
         .vertices
         .iter()

@@ -10,7 +10,7 @@ use etendue_field::Side;
 const ASIDE: f64 = 9.0;
 /// Where a segment's name is written.
 #[derive(Debug)]
-pub(super) struct Name {
+pub(super) struct SegmentName {
     pub(super) text: String,
     pub(super) middle: f64,
     pub(super) row: usize,
@@ -44,7 +44,11 @@ pub(super) fn number_places(section: &Section, across: impl Fn(f64) -> f64) -> V
 }
 
 /// Names above their segments, in as many rows as it takes to keep them apart.
-pub(super) fn names(segments: &[Segment], area: Area, across: impl Fn(f64) -> f64) -> Vec<Name> {
+pub(super) fn names(
+    segments: &[Segment],
+    area: Area,
+    across: impl Fn(f64) -> f64,
+) -> Vec<SegmentName> {
     let mut wanted: Vec<(f64, &str)> = segments
         .iter()
         .filter_map(|s| Some((across(0.5 * (s.start[0] + s.end[0])), s.label.as_deref()?)))
@@ -60,7 +64,7 @@ pub(super) fn names(segments: &[Segment], area: Area, across: impl Fn(f64) -> f6
         let row = free.unwrap_or(row_ends.len());
         row_ends.resize(row_ends.len().max(row + 1), 0.0);
         row_ends[row] = middle + half;
-        names.push(Name {
+        names.push(SegmentName {
             text: text.to_owned(),
             middle,
             row,

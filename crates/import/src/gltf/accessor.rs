@@ -1,7 +1,7 @@
 //! Buffers and what is read from them.
 
-use super::reader::Reader;
-use super::uri::{Source, source};
+use super::reader::GltfReader;
+use super::uri::{BufferSource, source};
 use crate::range::MAX_NUMBER;
 use ::gltf::json::accessor::{ComponentType, Type};
 use ::gltf::json::validation::Checked;
@@ -9,7 +9,7 @@ use ::gltf::json::{Accessor, Index};
 use std::sync::Arc;
 
 /// Rows of numbers in a buffer, all of them there.
-struct Rows {
+struct AccessorRows {
     bytes: Arc<[u8]>,
     start: usize,
     stride: usize,
@@ -18,7 +18,7 @@ struct Rows {
     is_normalized: bool,
 }
 
-impl Rows {
+impl AccessorRows {
     fn number(&self, row: usize, column: usize) -> f64 {
         let size = self.component.size();
         let at = self.start + row * self.stride + column * size;
@@ -51,7 +51,7 @@ impl Rows {
     }
 }
 
-impl Reader<'_> {
+impl GltfReader<'_> {
     /// Rows of N finite numbers; `None` after a cause.
     pub(super) fn numbers<const N: usize>(
         &mut self,
@@ -100,7 +100,7 @@ impl Reader<'_> {
             .ok()
     }
 
-    fn rows(&mut self, index: Index<Accessor>, kind: Type, width: usize) -> Option<Rows> {
+    fn rows(&mut self, index: Index<Accessor>, kind: Type, width: usize) -> Option<AccessorRows> {
         let path = format!("accessors[{}]", index.value());
         let accessor = self.root.get(index)?;
         let (Checked::Valid(found), Checked::Valid(component)) =
@@ -125,7 +125,7 @@ impl Reader<'_> {
             self.cause(&path, "reaches beyond its buffer, or elements overlap");
             return None;
         };
-        Some(Rows {
+        Some(AccessorRows {
             bytes,
             start,
             stride,
@@ -201,11 +201,11 @@ impl Reader<'_> {
     /// What a URI names.
     pub(super) fn bytes_of(&self, uri: &str) -> Result<Vec<u8>, String> {
         match source(uri, self.files.left())? {
-            Source::Data(bytes) => {
+            BufferSource::Data(bytes) => {
                 self.files.spend(bytes.len() as u64)?;
                 Ok(bytes)
             }
-            Source::File(name) => {
+            BufferSource::File(name) => {
                 let folders = std::slice::from_ref(&self.folder);
                 let quoted = crate::report::quoted(&name);
                 let found = self.files.find(folders, &name);

@@ -1,7 +1,7 @@
 //! Cameras of a glTF file.
 
-use super::node::Placed;
-use super::reader::Reader;
+use super::node::PlacedNode;
+use super::reader::GltfReader;
 use crate::range::MAX_NUMBER;
 use ::gltf::json::camera::{Orthographic, Perspective};
 use etendue_world::{Camera, Projection};
@@ -13,8 +13,8 @@ const ACROSS: usize = 512;
 /// Widths over heights that make a picture of at least one pixel, and not too many.
 const ASPECTS: [f64; 2] = [1.0 / 32.0, 512.0];
 
-impl<'a> Reader<'a> {
-    pub(super) fn camera_of(&mut self, placed: &Placed<'a>, number: usize) {
+impl<'a> GltfReader<'a> {
+    pub(super) fn camera_of(&mut self, placed: &PlacedNode<'a>, number: usize) {
         let path = format!("cameras[{number}]");
         let Some(camera) = self.root.cameras.get(number) else {
             return;

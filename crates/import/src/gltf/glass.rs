@@ -1,11 +1,11 @@
 //! `KHR_materials_transmission`, as interfaces that light goes through.
 
 use super::metallic::roughness;
-use super::reader::Reader;
+use super::reader::GltfReader;
 use super::surface::Draft;
 use etendue_world::{Dielectric, Material, Texture};
 
-impl Reader<'_> {
+impl GltfReader<'_> {
     /// What lets a share of light through, and otherwise is `opaque`. `None` after a cause.
     pub(super) fn with_glass(
         &mut self,

@@ -1,8 +1,8 @@
 //! Images, as numbers.
 
-use super::level::{Level, cut};
+use super::level::{TextureChannel, cut};
 use super::raster_key::RasterKey;
-use super::reader::Reader;
+use super::reader::GltfReader;
 use crate::pictures;
 use etendue_field::Raster;
 use etendue_scene::Channels;
@@ -18,9 +18,9 @@ fn extension(bytes: &[u8]) -> Option<&'static str> {
     }
 }
 
-impl Reader<'_> {
+impl GltfReader<'_> {
     /// The pixels of an image as one number each; `None` after a cause.
-    pub(super) fn raster(&mut self, image: usize, level: Level) -> Option<Arc<Raster>> {
+    pub(super) fn raster(&mut self, image: usize, level: TextureChannel) -> Option<Arc<Raster>> {
         let key = RasterKey::new(image, level);
         if let Some(known) = self.rasters.get(&key) {
             return known.clone().ok();
@@ -33,7 +33,7 @@ impl Reader<'_> {
         read.ok()
     }
 
-    fn read_image(&mut self, number: usize, level: Level) -> Result<Raster, String> {
+    fn read_image(&mut self, number: usize, level: TextureChannel) -> Result<Raster, String> {
         let image = self.root.images.get(number).ok_or("is not there")?;
         let bytes = match (&image.uri, image.buffer_view) {
             (Some(uri), _) => self.bytes_of(uri)?,
@@ -42,7 +42,7 @@ impl Reader<'_> {
         };
         let extension = extension(&bytes).ok_or("is no PNG or JPEG picture")?;
         let raster = match level {
-            Level::Alpha { factor, cutoff } => {
+            TextureChannel::Alpha { factor, cutoff } => {
                 let number = |alpha: f64| cut(factor * alpha, cutoff);
                 super::alpha::read(extension, &bytes, number)?
             }
@@ -58,19 +58,19 @@ impl Reader<'_> {
         Ok(raster)
     }
 
-    fn numbers_of(&self, channels: &Channels, level: Level) -> Result<Raster, String> {
+    fn numbers_of(&self, channels: &Channels, level: TextureChannel) -> Result<Raster, String> {
         let color = self.color;
         let is_grey = channels.count == 1;
         let raster = channels.raster(|rgb| match level {
             // Rounding would move the luminance of three equal numbers off them.
-            Level::Color(factor) if is_grey => pictures::linear(rgb[0]) * color.of(factor),
-            Level::Color(factor) => {
+            TextureChannel::Color(factor) if is_grey => pictures::linear(rgb[0]) * color.of(factor),
+            TextureChannel::Color(factor) => {
                 let linear = rgb.map(pictures::linear);
                 color.of([0, 1, 2].map(|i| linear[i] * factor[i]))
             }
-            Level::GreenSquared(factor) => (factor * rgb[1]) * (factor * rgb[1]),
-            Level::Blue(factor) => factor * rgb[2],
-            Level::Alpha { .. } => 1.0,
+            TextureChannel::GreenSquared(factor) => (factor * rgb[1]) * (factor * rgb[1]),
+            TextureChannel::Blue(factor) => factor * rgb[2],
+            TextureChannel::Alpha { .. } => 1.0,
         });
         raster.map_err(|fault| fault.to_string())
     }

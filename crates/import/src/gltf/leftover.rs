@@ -1,9 +1,9 @@
 //! What files hold that a world does not.
 
-use super::reader::Reader;
+use super::reader::GltfReader;
 use crate::report::quoted;
 
-impl Reader<'_> {
+impl GltfReader<'_> {
     /// Notes on parts of the file as a whole.
     pub(super) fn tell_leftovers(&self) {
         let root = self.root;

@@ -2,7 +2,7 @@
 
 /// The number that is taken from a pixel.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Level {
+pub(super) enum TextureChannel {
     /// An sRGB colour, made linear, times these factors.
     Color([f64; 3]),
     /// The square of the second channel times a factor.

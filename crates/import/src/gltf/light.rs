@@ -1,15 +1,15 @@
 //! Lights of `KHR_lights_punctual`.
 
-use super::node::Placed;
-use super::reader::{MAX_SHAPES, Reader};
+use super::node::PlacedNode;
+use super::reader::{GltfReader, MAX_SHAPES};
 use crate::range::MAX_NUMBER;
 use ::gltf::json::extensions::scene::khr_lights_punctual::{Light as Punctual, Spot, Type};
 use ::gltf::json::validation::Checked;
 use etendue_world::{Falloff, Light};
 use std::f64::consts::FRAC_PI_2;
 
-impl<'a> Reader<'a> {
-    pub(super) fn light_of(&mut self, placed: &Placed<'a>, number: usize) {
+impl<'a> GltfReader<'a> {
+    pub(super) fn light_of(&mut self, placed: &PlacedNode<'a>, number: usize) {
         let path = format!("extensions.KHR_lights_punctual.lights[{number}]");
         let extensions = self.root.extensions.as_ref();
         let lights = extensions.and_then(|of| of.khr_lights_punctual.as_ref());
@@ -29,7 +29,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn light(&mut self, light: &Punctual, placed: &Placed<'a>, path: &str) -> Option<Light> {
+    fn light(&mut self, light: &Punctual, placed: &PlacedNode<'a>, path: &str) -> Option<Light> {
         let most = [0.0, MAX_NUMBER];
         let strength = self.within(&format!("{path}.intensity"), light.intensity, most)?;
         for value in light.color {

@@ -1,31 +1,31 @@
 //! Materials of a glTF file.
 
-use super::level::Level;
-use super::reader::Reader;
-use super::surface::{Draft, Surface};
+use super::level::TextureChannel;
+use super::reader::GltfReader;
+use super::surface::{Draft, GltfSurface};
 use crate::range::MAX_NUMBER;
 use crate::report::quoted;
-use ::gltf::json::Material as Source;
+use ::gltf::json::Material as BufferSource;
 use ::gltf::json::material::AlphaMode;
 use ::gltf::json::validation::Checked;
 use etendue_world::{Material, Texture};
 use std::collections::BTreeSet;
 
-impl<'a> Reader<'a> {
+impl<'a> GltfReader<'a> {
     /// A material by its number; without one that of the specification. `None` after a cause.
-    pub(super) fn material(&mut self, number: Option<usize>) -> Option<Surface> {
+    pub(super) fn material(&mut self, number: Option<usize>) -> Option<GltfSurface> {
         if let Some(known) = self.materials.get(&number) {
             return known.clone();
         }
         let made = match number.map(|n| (n, self.root.materials.get(n))) {
             Some((n, Some(source))) => self.surface(source, format!("materials[{n}]")),
-            _ => self.surface(&Source::default(), "the default material".to_owned()),
+            _ => self.surface(&BufferSource::default(), "the default material".to_owned()),
         };
         self.materials.insert(number, made.clone());
         made
     }
 
-    fn surface(&mut self, source: &Source, path: String) -> Option<Surface> {
+    fn surface(&mut self, source: &BufferSource, path: String) -> Option<GltfSurface> {
         let mut draft = Draft {
             source,
             path,
@@ -56,7 +56,7 @@ impl<'a> Reader<'a> {
             return None;
         }
         self.world.materials.push(material);
-        Some(Surface {
+        Some(GltfSurface {
             material: self.world.materials.len() - 1,
             emission,
             is_double_sided: source.double_sided,
@@ -99,7 +99,7 @@ impl<'a> Reader<'a> {
             return Some(None);
         }
         self.note_once("strengths of lights are taken as radiometric: 1 cd as 1 W/sr, 1 lx as 1 W/m², 1 nit of emission as 1 W m⁻² sr⁻¹");
-        let level = Level::Color(factor.map(|v| v * strength));
+        let level = TextureChannel::Color(factor.map(|v| v * strength));
         let source = draft.source;
         match &source.emissive_texture {
             Some(info) => self.bitmap(draft, info, "emissiveTexture", level).map(Some),
@@ -119,7 +119,7 @@ impl<'a> Reader<'a> {
             }
             Checked::Valid(AlphaMode::Blend) => None,
         };
-        let level = Level::Alpha { factor, cutoff };
+        let level = TextureChannel::Alpha { factor, cutoff };
         let texture = match &source.pbr_metallic_roughness.base_color_texture {
             Some(info) => {
                 if cutoff.is_some() {
@@ -161,6 +161,6 @@ impl<'a> Reader<'a> {
 }
 
 /// Whether a material emits light.
-fn is_lit(source: &Source) -> bool {
+fn is_lit(source: &BufferSource) -> bool {
     source.emissive_factor.0.iter().any(|v| *v > 0.0)
 }

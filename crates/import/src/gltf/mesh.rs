@@ -1,7 +1,7 @@
 //! Primitives of meshes, as triangles.
 
-use super::reader::Reader;
-use crate::meshes::Parts;
+use super::reader::GltfReader;
+use crate::meshes::MeshParts;
 use ::gltf::json::mesh::{Mode, Primitive, Semantic};
 use ::gltf::json::validation::Checked;
 use ::gltf::json::{Accessor, Index};
@@ -15,14 +15,14 @@ fn attribute(primitive: &Primitive, of: Semantic) -> Option<Index<Accessor>> {
     primitive.attributes.get(&Checked::Valid(of)).copied()
 }
 
-impl Reader<'_> {
+impl GltfReader<'_> {
     /// The triangles of a primitive, with the texture coordinates that its material asks for; `None` if there are none, or after a cause.
     pub(super) fn parts(
         &mut self,
         primitive: &Primitive,
         path: &str,
         set: Option<u32>,
-    ) -> Option<Parts> {
+    ) -> Option<MeshParts> {
         let Checked::Valid(mode) = primitive.mode else {
             return None;
         };
@@ -53,7 +53,7 @@ impl Reader<'_> {
             self.cause(path, "attributes of different lengths");
             return None;
         }
-        let mut parts = Parts {
+        let mut parts = MeshParts {
             vertices,
             corners: corners(&listed, mode),
             normals: normals.map(|n| n.into_iter().map(DVec3::from).collect()),
@@ -81,7 +81,7 @@ impl Reader<'_> {
     }
 
     /// Drops what no ray meets, and turns normals to the front.
-    fn finish(&self, parts: &mut Parts, path: &str) -> Option<()> {
+    fn finish(&self, parts: &mut MeshParts, path: &str) -> Option<()> {
         let spent = self.files.spend(parts.bytes());
         spent.map_err(|error| self.cause(path, error)).ok()?;
         parts.drop_empty();
@@ -142,7 +142,7 @@ fn corners(listed: &[u32], mode: Mode) -> Vec<[u32; 3]> {
 }
 
 /// The same triangles with their back for a front, `gap` behind them. Corners at one place move together.
-pub(super) fn back_of(parts: &etendue_world::Triangles, gap: f64) -> Parts {
+pub(super) fn back_of(parts: &etendue_world::Triangles, gap: f64) -> MeshParts {
     let bits = |v: DVec3| v.to_array().map(|x| (x + 0.0).to_bits());
     let mut sums: BTreeMap<[u64; 3], DVec3> = BTreeMap::new();
     let vertices = parts.vertices();
@@ -157,7 +157,7 @@ pub(super) fn back_of(parts: &etendue_world::Triangles, gap: f64) -> Parts {
         let sum = sums.get(&bits(*v)).copied().unwrap_or_default();
         *v - gap * sum.normalize_or_zero()
     });
-    Parts {
+    MeshParts {
         vertices: moved.collect(),
         corners: parts
             .corners()

@@ -1,7 +1,7 @@
 //! Metallic roughness, as plastic and metal.
 
-use super::level::Level;
-use super::reader::Reader;
+use super::level::TextureChannel;
+use super::reader::GltfReader;
 use super::surface::Draft;
 use etendue_world::{Conductor, Distribution, Material, Plastic, Roughness, Texture};
 
@@ -17,7 +17,7 @@ struct Coat {
     specular: f64,
 }
 
-impl Reader<'_> {
+impl GltfReader<'_> {
     /// What the front of an opaque material does; `None` after a cause.
     pub(super) fn metallic_roughness(&mut self, draft: &mut Draft<'_>) -> Option<Material> {
         let color = self.base_color(draft);
@@ -42,7 +42,7 @@ impl Reader<'_> {
         let pbr = &draft.source.pbr_metallic_roughness;
         let path = format!("{}.{PBR}.baseColorFactor", draft.path);
         let [r, g, b, _] = self.shares(&path, pbr.base_color_factor.0)?;
-        let level = Level::Color([r, g, b]);
+        let level = TextureChannel::Color([r, g, b]);
         match &pbr.base_color_texture {
             Some(info) => self.bitmap(draft, info, &format!("{PBR}.baseColorTexture"), level),
             None => Some(self.constant(&level)),
@@ -58,7 +58,7 @@ impl Reader<'_> {
             // Nothing is left of the picture.
             Some(info) if factor > 0.0 => {
                 let field = format!("{PBR}.metallicRoughnessTexture");
-                self.bitmap(draft, info, &field, Level::Blue(factor))
+                self.bitmap(draft, info, &field, TextureChannel::Blue(factor))
             }
             _ => Some(Texture::Constant(factor)),
         }
@@ -72,7 +72,7 @@ impl Reader<'_> {
         match &pbr.metallic_roughness_texture {
             Some(info) if factor > 0.0 => {
                 let field = format!("{PBR}.metallicRoughnessTexture");
-                self.bitmap(draft, info, &field, Level::GreenSquared(factor))
+                self.bitmap(draft, info, &field, TextureChannel::GreenSquared(factor))
             }
             _ => Some(Texture::Constant(factor * factor)),
         }

@@ -1,6 +1,6 @@
 //! Nodes: where everything is.
 
-use super::reader::Reader;
+use super::reader::GltfReader;
 use crate::range::{MAX_NUMBER, holds};
 use crate::report::quoted;
 use ::gltf::json::Node;
@@ -10,13 +10,13 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 const UNIT: f64 = 1e-3;
 
 /// A node and where it is.
-pub(super) struct Placed<'a> {
+pub(super) struct PlacedNode<'a> {
     pub(super) node: &'a Node,
     pub(super) path: String,
     pub(super) to_world: DAffine3,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> GltfReader<'a> {
     /// Adds all that the nodes of the scene hold. Without recursion: each node is met once.
     pub(super) fn nodes(&mut self) {
         let mut met = vec![false; self.root.nodes.len()];
@@ -38,7 +38,7 @@ impl<'a> Reader<'a> {
             let to_world = outer * own;
             let children = node.children.iter().flatten().rev();
             open.extend(children.map(|child| (child.value(), to_world)));
-            let placed = Placed {
+            let placed = PlacedNode {
                 node,
                 path,
                 to_world,
@@ -85,7 +85,7 @@ impl<'a> Reader<'a> {
     }
 
     /// What is at a node.
-    fn hold(&mut self, placed: &Placed<'a>) {
+    fn hold(&mut self, placed: &PlacedNode<'a>) {
         let (node, path) = (placed.node, &placed.path);
         if !holds(placed.to_world) {
             let message = format!("is placed out of range; allowed: up to {MAX_NUMBER:e}");
@@ -171,7 +171,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-impl Placed<'_> {
+impl PlacedNode<'_> {
     /// Where it is and how it is turned, looking along −Z with Y up, as a camera or light of a world looks along Z. Scale is left out, a mirror too.
     pub(super) fn looking(&self) -> Option<DAffine3> {
         let linear = self.to_world.matrix3;

@@ -1,6 +1,6 @@
 //! What tells rasters apart that are made once.
 
-use super::level::Level;
+use super::level::TextureChannel;
 
 /// An image, and which numbers are taken from it.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -11,12 +11,12 @@ pub(super) struct RasterKey {
 }
 
 impl RasterKey {
-    pub(super) fn new(image: usize, level: Level) -> Self {
+    pub(super) fn new(image: usize, level: TextureChannel) -> Self {
         let (kind, numbers) = match level {
-            Level::Color(factor) => (0, factor),
-            Level::GreenSquared(factor) => (1, [factor, 0.0, 0.0]),
-            Level::Blue(factor) => (2, [factor, 0.0, 0.0]),
-            Level::Alpha { factor, cutoff } => (3, [factor, cutoff.unwrap_or(-1.0), 0.0]),
+            TextureChannel::Color(factor) => (0, factor),
+            TextureChannel::GreenSquared(factor) => (1, [factor, 0.0, 0.0]),
+            TextureChannel::Blue(factor) => (2, [factor, 0.0, 0.0]),
+            TextureChannel::Alpha { factor, cutoff } => (3, [factor, cutoff.unwrap_or(-1.0), 0.0]),
         };
         Self {
             image,

@@ -2,7 +2,7 @@
 
 use super::container::Document;
 use super::raster_key::RasterKey;
-use super::surface::Surface;
+use super::surface::GltfSurface;
 use crate::Color;
 use crate::files::Files;
 use crate::report::{Place, Report};
@@ -17,7 +17,7 @@ use std::sync::Arc;
 pub(super) const MAX_SHAPES: usize = 1 << 20;
 
 /// Makes a world of a file.
-pub(super) struct Reader<'a> {
+pub(super) struct GltfReader<'a> {
     pub(super) root: &'a Root,
     pub(super) chunk: Option<&'a [u8]>,
     pub(super) files: &'a Files,
@@ -33,13 +33,13 @@ pub(super) struct Reader<'a> {
     /// The same with their back for a front, moved aside.
     pub(super) backs: HashMap<(usize, usize), Option<Arc<Triangles>>>,
     /// Materials by their number; `None` after a cause. The default one has no number.
-    pub(super) materials: HashMap<Option<usize>, Option<Surface>>,
+    pub(super) materials: HashMap<Option<usize>, Option<GltfSurface>>,
     pub(super) rasters: HashMap<RasterKey, Result<Arc<Raster>, String>>,
     /// Notes that are told once.
     pub(super) told: HashSet<&'static str>,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> GltfReader<'a> {
     pub(super) fn new(
         document: &'a Document,
         files: &'a Files,

@@ -1,9 +1,9 @@
 //! Meshes of nodes, as shapes.
 
 use super::mesh::back_of;
-use super::node::Placed;
-use super::reader::{MAX_SHAPES, Reader};
-use super::surface::Surface;
+use super::node::PlacedNode;
+use super::reader::{GltfReader, MAX_SHAPES};
+use super::surface::GltfSurface;
 use crate::range::MAX_NUMBER;
 use ::gltf::json::mesh::{Mode, Primitive};
 use ::gltf::json::validation::Checked;
@@ -17,9 +17,9 @@ const GAP: f64 = 1e-5;
 /// Most characters of a name.
 const LONGEST: usize = 100;
 
-impl<'a> Reader<'a> {
+impl<'a> GltfReader<'a> {
     /// Adds the shapes of a mesh, one for each primitive.
-    pub(super) fn mesh_of(&mut self, placed: &Placed<'a>, number: usize) {
+    pub(super) fn mesh_of(&mut self, placed: &PlacedNode<'a>, number: usize) {
         let Some(mesh) = self.root.meshes.get(number) else {
             return;
         };
@@ -43,7 +43,7 @@ impl<'a> Reader<'a> {
 
     fn primitive(
         &mut self,
-        placed: &Placed<'a>,
+        placed: &PlacedNode<'a>,
         key: [usize; 2],
         primitive: &Primitive,
         name: &str,
@@ -82,7 +82,7 @@ impl<'a> Reader<'a> {
         &mut self,
         primitive: &Primitive,
         path: &str,
-        surface: &Surface,
+        surface: &GltfSurface,
     ) -> Option<Arc<Triangles>> {
         let Checked::Valid(mode) = primitive.mode else {
             return None;
@@ -98,7 +98,7 @@ impl<'a> Reader<'a> {
         parts.finish().map(Arc::new)
     }
 
-    fn add(&mut self, mesh: Arc<Triangles>, to_world: DAffine3, name: &str, surface: &Surface) {
+    fn add(&mut self, mesh: Arc<Triangles>, to_world: DAffine3, name: &str, surface: &GltfSurface) {
         self.world.shapes.push(Shape {
             name: name.to_owned(),
             geometry: Geometry::Mesh(mesh),
@@ -116,7 +116,7 @@ impl<'a> Reader<'a> {
         front: &Triangles,
         to_world: DAffine3,
         name: &str,
-        surface: &Surface,
+        surface: &GltfSurface,
         path: &str,
     ) {
         let known = match self.backs.get(&key) {

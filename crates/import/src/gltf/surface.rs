@@ -1,12 +1,12 @@
 //! What surfaces are made of, read and while they are read.
 
-use ::gltf::json::Material as Source;
+use ::gltf::json::Material as BufferSource;
 use etendue_world::Emission;
 use std::collections::BTreeSet;
 
 /// What a surface is made of.
 #[derive(Clone, Debug)]
-pub(super) struct Surface {
+pub(super) struct GltfSurface {
     /// The number of its material.
     pub(super) material: usize,
     pub(super) emission: Option<Emission>,
@@ -17,7 +17,7 @@ pub(super) struct Surface {
 
 /// A material while it is read.
 pub(super) struct Draft<'a> {
-    pub(super) source: &'a Source,
+    pub(super) source: &'a BufferSource,
     pub(super) path: String,
     /// Texture coordinates that pictures ask for.
     pub(super) sets: BTreeSet<u32>,

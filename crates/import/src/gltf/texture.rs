@@ -1,7 +1,7 @@
 //! Textures, with how they are placed.
 
-use super::level::{Level, cut};
-use super::reader::Reader;
+use super::level::{TextureChannel, cut};
+use super::reader::GltfReader;
 use super::surface::Draft;
 use crate::range::MAX_NUMBER;
 use ::gltf::json::extensions::texture::TextureTransform;
@@ -10,14 +10,14 @@ use ::gltf::json::validation::Checked;
 use etendue_world::{Bitmap, Filter, Texture, Wrap};
 use glam::{DAffine2, DMat2, DVec2};
 
-impl Reader<'_> {
+impl GltfReader<'_> {
     /// The number of a pixel that is white and opaque.
-    pub(super) fn constant(&self, level: &Level) -> Texture {
+    pub(super) fn constant(&self, level: &TextureChannel) -> Texture {
         Texture::Constant(match *level {
-            Level::Color(factor) => self.color.of(factor),
-            Level::GreenSquared(factor) => factor * factor,
-            Level::Blue(factor) => factor,
-            Level::Alpha { factor, cutoff } => cut(factor, cutoff),
+            TextureChannel::Color(factor) => self.color.of(factor),
+            TextureChannel::GreenSquared(factor) => factor * factor,
+            TextureChannel::Blue(factor) => factor,
+            TextureChannel::Alpha { factor, cutoff } => cut(factor, cutoff),
         })
     }
 
@@ -27,7 +27,7 @@ impl Reader<'_> {
         draft: &mut Draft<'_>,
         info: &Info,
         field: &str,
-        level: Level,
+        level: TextureChannel,
     ) -> Option<Texture> {
         let path = format!("{}.{field}", draft.path);
         let texture = self.root.get(info.index)?;
@@ -43,7 +43,7 @@ impl Reader<'_> {
         let (wrap, filter) = self.sampler(sampler, &path);
         let filter = match level {
             // Between pixels that pass or do not, there is nothing.
-            Level::Alpha {
+            TextureChannel::Alpha {
                 cutoff: Some(_), ..
             } => Filter::Nearest,
             _ => filter,

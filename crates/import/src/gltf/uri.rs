@@ -11,7 +11,7 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
 );
 
 /// Where the bytes are.
-pub(super) enum Source {
+pub(super) enum BufferSource {
     /// Here.
     Data(Vec<u8>),
     /// In a file of this name.
@@ -19,7 +19,7 @@ pub(super) enum Source {
 }
 
 /// Reads a URI; data may have at most `most` bytes.
-pub(super) fn source(uri: &str, most: u64) -> Result<Source, String> {
+pub(super) fn source(uri: &str, most: u64) -> Result<BufferSource, String> {
     if let Some(data) = uri.strip_prefix("data:") {
         let (kind, text) = data.split_once(',').ok_or("is data without a comma")?;
         if !kind.ends_with(";base64") {
@@ -31,12 +31,12 @@ pub(super) fn source(uri: &str, most: u64) -> Result<Source, String> {
         }
         let bytes = BASE64.decode(text);
         let bytes = bytes.map_err(|error| format!("is damaged base64 ({error})"))?;
-        return Ok(Source::Data(bytes));
+        return Ok(BufferSource::Data(bytes));
     }
     if uri.contains("://") {
         return Err("is on another machine; allowed: files and data".to_owned());
     }
-    unescaped(uri).map(Source::File)
+    unescaped(uri).map(BufferSource::File)
 }
 
 /// A name without its percent signs.

@@ -1,28 +1,32 @@
 //! Asking objects for their properties, which marks them as read.
 
-use super::object::{Kind, Object, Property, Value};
-use super::reader::Reader;
+use super::object::{MitsubaObject, ObjectKind, ObjectProperty, Value};
+use super::reader::MitsubaReader;
 use super::xml::unknown;
 use crate::report::quoted;
 use glam::{DAffine3, DVec3};
 
-impl<'a> Reader<'a> {
+impl<'a> MitsubaReader<'a> {
     /// The property of this name. Of objects with one name the last counts, as in Mitsuba.
-    pub(super) fn property(&self, object: &'a Object, name: &str) -> Option<&'a Property> {
+    pub(super) fn property(
+        &self,
+        object: &'a MitsubaObject,
+        name: &str,
+    ) -> Option<&'a ObjectProperty> {
         let mut all = object.properties.iter();
         let found = all.rfind(|property| property.name == name)?;
         found.is_read.set(true);
         Some(found)
     }
 
-    pub(super) fn has(&self, object: &Object, name: &str) -> bool {
+    pub(super) fn has(&self, object: &MitsubaObject, name: &str) -> bool {
         object.properties.iter().any(|p| p.name == name)
     }
 
     /// The value of a property, as `read` takes it; `None` if it is not there, or a cause was given.
     fn ask<T>(
         &self,
-        object: &'a Object,
+        object: &'a MitsubaObject,
         name: &str,
         allowed: &str,
         read: impl Fn(&'a Value) -> Option<T>,
@@ -37,7 +41,7 @@ impl<'a> Reader<'a> {
         value
     }
 
-    pub(super) fn number(&self, object: &'a Object, name: &str) -> Option<f64> {
+    pub(super) fn number(&self, object: &'a MitsubaObject, name: &str) -> Option<f64> {
         self.ask(object, name, "a number", |value| match value {
             Value::Number(value) => Some(*value),
             Value::Whole(value) => Some(*value as f64),
@@ -48,7 +52,7 @@ impl<'a> Reader<'a> {
     /// A number in a range; else a cause that says the range.
     pub(super) fn number_within(
         &self,
-        object: &'a Object,
+        object: &'a MitsubaObject,
         name: &str,
         allowed: &str,
         is_allowed: impl Fn(f64) -> bool,
@@ -63,14 +67,14 @@ impl<'a> Reader<'a> {
         None
     }
 
-    pub(super) fn whole(&self, object: &'a Object, name: &str) -> Option<i64> {
+    pub(super) fn whole(&self, object: &'a MitsubaObject, name: &str) -> Option<i64> {
         self.ask(object, name, "an integer", |value| match value {
             Value::Whole(value) => Some(*value),
             _ => None,
         })
     }
 
-    pub(super) fn truth(&self, object: &'a Object, name: &str) -> bool {
+    pub(super) fn truth(&self, object: &'a MitsubaObject, name: &str) -> bool {
         let found = self.ask(object, name, "a boolean", |value| match value {
             Value::Truth(value) => Some(*value),
             _ => None,
@@ -78,21 +82,21 @@ impl<'a> Reader<'a> {
         found.unwrap_or(false)
     }
 
-    pub(super) fn text(&self, object: &'a Object, name: &str) -> Option<&'a str> {
+    pub(super) fn text(&self, object: &'a MitsubaObject, name: &str) -> Option<&'a str> {
         self.ask(object, name, "a string", |value| match value {
             Value::Text(value) => Some(value.as_str()),
             _ => None,
         })
     }
 
-    pub(super) fn vector(&self, object: &'a Object, name: &str) -> Option<DVec3> {
+    pub(super) fn vector(&self, object: &'a MitsubaObject, name: &str) -> Option<DVec3> {
         self.ask(object, name, "a point or a vector", |value| match value {
             Value::Vector(value) => Some(*value),
             _ => None,
         })
     }
 
-    pub(super) fn transform(&self, object: &'a Object, name: &str) -> Option<DAffine3> {
+    pub(super) fn transform(&self, object: &'a MitsubaObject, name: &str) -> Option<DAffine3> {
         self.ask(object, name, "a transform", |value| match value {
             Value::Transform(value) => Some(*value),
             _ => None,
@@ -100,7 +104,11 @@ impl<'a> Reader<'a> {
     }
 
     /// Where a property is, or its object.
-    pub(super) fn place_of(&self, object: &'a Object, name: &str) -> &'a crate::report::Place {
+    pub(super) fn place_of(
+        &self,
+        object: &'a MitsubaObject,
+        name: &str,
+    ) -> &'a crate::report::Place {
         let mut all = object.properties.iter();
         let found = all.rfind(|property| property.name == name);
         found.map_or(&object.place, |property| &property.place)
@@ -119,7 +127,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The object that a property is, or refers to.
-    pub(super) fn object_of(&self, property: &'a Property) -> Option<&'a Object> {
+    pub(super) fn object_of(&self, property: &'a ObjectProperty) -> Option<&'a MitsubaObject> {
         let at = match &property.value {
             Value::Object(at) => *at,
             Value::Reference(id) => match self.ids.get(id) {
@@ -135,9 +143,9 @@ impl<'a> Reader<'a> {
     /// All objects of a kind within an object, with their properties, in the order of the file.
     pub(super) fn children(
         &self,
-        object: &'a Object,
-        kind: Kind,
-    ) -> Vec<(&'a Property, &'a Object)> {
+        object: &'a MitsubaObject,
+        kind: ObjectKind,
+    ) -> Vec<(&'a ObjectProperty, &'a MitsubaObject)> {
         let mut found = Vec::new();
         for property in &object.properties {
             if let Some(child) = self.object_of(property)
@@ -152,7 +160,11 @@ impl<'a> Reader<'a> {
     }
 
     /// The one object of a kind, if there is one; more are a cause.
-    pub(super) fn child(&self, object: &'a Object, kind: Kind) -> Option<&'a Object> {
+    pub(super) fn child(
+        &self,
+        object: &'a MitsubaObject,
+        kind: ObjectKind,
+    ) -> Option<&'a MitsubaObject> {
         let found = self.children(object, kind);
         if let Some((second, _)) = found.get(1) {
             let (name, plugin) = (kind.name(), quoted(&object.plugin));

@@ -1,6 +1,6 @@
 //! Mitsuba's cube from −1 to 1: twelve triangles, flat normals, each side with all of the texture.
 
-use crate::meshes::Parts;
+use crate::meshes::MeshParts;
 use glam::{DVec2, DVec3};
 
 /// The normal of each side, and its corners; bit k of a corner says whether coordinate k is 1.
@@ -13,7 +13,7 @@ const SIDES: [([f64; 3], [u32; 4]); 6] = [
     ([0.0, 0.0, -1.0], [3, 1, 0, 2]),
 ];
 
-pub(super) fn parts() -> Parts {
+pub(super) fn parts() -> MeshParts {
     let (mut vertices, mut normals, mut uvs) = (Vec::new(), Vec::new(), Vec::new());
     let mut corners = Vec::new();
     for (side, (normal, places)) in (0_u32..).zip(SIDES) {
@@ -27,7 +27,7 @@ pub(super) fn parts() -> Parts {
         corners.push([first, first + 1, first + 2]);
         corners.push([first + 3, first, first + 2]);
     }
-    Parts {
+    MeshParts {
         vertices,
         corners,
         normals: Some(normals),

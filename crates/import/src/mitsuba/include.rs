@@ -1,6 +1,6 @@
 //! Other files of a scene: where they are looked for, and those that are included.
 
-use super::source::Source;
+use super::source::SourceFile;
 use super::transform::{Attributes, allow, required};
 use super::xml::Tree;
 use crate::report::quoted;
@@ -19,7 +19,7 @@ impl Tree<'_> {
         &mut self,
         attributes: &Attributes,
         parent: usize,
-        source: &mut Source,
+        source: &mut SourceFile,
     ) -> Result<(), String> {
         allow(attributes, &["value"])?;
         if parent != 0 {
@@ -40,7 +40,7 @@ impl Tree<'_> {
         &mut self,
         attributes: &Attributes,
         parent: usize,
-        source: &Source,
+        source: &SourceFile,
         depth: usize,
     ) -> Result<(), String> {
         allow(attributes, &["filename", "name"])?;

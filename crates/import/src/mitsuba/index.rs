@@ -1,7 +1,7 @@
 //! Indices of refraction by name.
 
-use super::object::{Object, Value};
-use super::reader::Reader;
+use super::object::{MitsubaObject, Value};
+use super::reader::MitsubaReader;
 use crate::report::quoted;
 
 /// At about 589 nm (Hecht, Optics, 4th edition), as Mitsuba has them.
@@ -31,15 +31,15 @@ const NAMED: [(&str, f64); 23] = [
     ("diamond", 2.419),
 ];
 
-impl<'a> Reader<'a> {
+impl<'a> MitsubaReader<'a> {
     /// The index inside over that outside; `inside` is the name where none is given.
-    pub(super) fn relative_index(&self, object: &'a Object, inside: &str) -> Option<f64> {
+    pub(super) fn relative_index(&self, object: &'a MitsubaObject, inside: &str) -> Option<f64> {
         let inside = self.one_index(object, "int_ior", inside);
         let outside = self.one_index(object, "ext_ior", "air");
         Some(inside? / outside?)
     }
 
-    fn one_index(&self, object: &'a Object, name: &str, default: &str) -> Option<f64> {
+    fn one_index(&self, object: &'a MitsubaObject, name: &str, default: &str) -> Option<f64> {
         let word = match self.property(object, name).map(|p| &p.value) {
             None => default,
             Some(Value::Text(word)) => word,

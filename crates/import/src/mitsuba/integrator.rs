@@ -1,22 +1,22 @@
 //! How far light is followed.
 
-use super::object::{Kind, Object};
-use super::reader::Reader;
+use super::object::{MitsubaObject, ObjectKind};
+use super::reader::MitsubaReader;
 use crate::report::quoted;
 
 /// Integrators within one another, such as moment and aov.
 const MAX_DEPTH: usize = 8;
 
-impl<'a> Reader<'a> {
+impl<'a> MitsubaReader<'a> {
     /// What the integrator says of the depth; all the rest is how Mitsuba computes.
-    pub(super) fn integrator(&mut self, scene: &'a Object) {
-        let Some(mut object) = self.child(scene, Kind::Integrator) else {
+    pub(super) fn integrator(&mut self, scene: &'a MitsubaObject) {
+        let Some(mut object) = self.child(scene, ObjectKind::Integrator) else {
             return;
         };
         for _ in 0..MAX_DEPTH {
             object.is_used.set(true);
             match object.plugin.as_str() {
-                "moment" | "aov" => match self.child(object, Kind::Integrator) {
+                "moment" | "aov" => match self.child(object, ObjectKind::Integrator) {
                     Some(nested) => object = nested,
                     None => return self.note_depth(object),
                 },
@@ -33,11 +33,11 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn hide(&mut self, object: &'a Object) {
+    fn hide(&mut self, object: &'a MitsubaObject) {
         self.world.hides_sources = self.truth(object, "hide_emitters");
     }
 
-    fn note_depth(&self, object: &'a Object) {
+    fn note_depth(&self, object: &'a MitsubaObject) {
         let message = format!(
             "integrator {} is left out: light is followed without an end",
             quoted(&object.plugin)
@@ -46,7 +46,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Mitsuba counts the edges of a path: one shows sources alone, 2 adds direct light.
-    fn depth(&self, object: &'a Object) -> Option<u32> {
+    fn depth(&self, object: &'a MitsubaObject) -> Option<u32> {
         match self.whole(object, "max_depth")? {
             -1 => None,
             // Nothing at all is shown with 0; a world has no such depth.

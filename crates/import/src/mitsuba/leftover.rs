@@ -1,10 +1,10 @@
 //! What nothing asked for.
 
-use super::object::{Object, Value};
+use super::object::{MitsubaObject, Value};
 use crate::report::{Report, quoted};
 
 /// A note for each property that was not read, and for each object that the world does not have.
-pub(super) fn tell(objects: &[Object], report: &Report) {
+pub(super) fn tell(objects: &[MitsubaObject], report: &Report) {
     for (at, object) in objects.iter().enumerate() {
         if object.is_used.get() {
             properties(object, report);
@@ -19,7 +19,7 @@ pub(super) fn tell(objects: &[Object], report: &Report) {
     }
 }
 
-fn properties(object: &Object, report: &Report) {
+fn properties(object: &MitsubaObject, report: &Report) {
     for property in object.properties.iter().filter(|p| !p.is_read.get()) {
         if let Value::Object(_) = property.value {
             continue;

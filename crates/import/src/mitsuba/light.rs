@@ -1,8 +1,8 @@
 //! Emitters that are no surfaces.
 
 use super::mesh::z_of;
-use super::object::Object;
-use super::reader::Reader;
+use super::object::MitsubaObject;
+use super::reader::MitsubaReader;
 use super::transform::is_rigid;
 use etendue_field::Raster;
 use etendue_world::{Falloff, Light, SkyMap};
@@ -15,8 +15,8 @@ const ALLOWED: &str = "point, spot, directional, constant, envmap; area within a
 /// Half the angle of a spot, degrees, if nothing is said.
 const CUTOFF: f64 = 20.0;
 
-impl<'a> Reader<'a> {
-    pub(super) fn light(&mut self, object: &'a Object) {
+impl<'a> MitsubaReader<'a> {
+    pub(super) fn light(&mut self, object: &'a MitsubaObject) {
         object.is_used.set(true);
         let light = match object.plugin.as_str() {
             "point" => self.point(object),
@@ -42,7 +42,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn point(&mut self, object: &'a Object) -> Option<Light> {
+    fn point(&mut self, object: &'a MitsubaObject) -> Option<Light> {
         let position = self.either(object, "position", |map| Some(map.translation));
         let intensity = self.strength(object, "intensity");
         Some(Light::Point {
@@ -51,7 +51,7 @@ impl<'a> Reader<'a> {
         })
     }
 
-    fn directional(&mut self, object: &'a Object) -> Option<Light> {
+    fn directional(&mut self, object: &'a MitsubaObject) -> Option<Light> {
         let direction = self.either(object, "direction", z_of);
         let irradiance = self.strength(object, "irradiance");
         let direction = direction?.unwrap_or(DVec3::Z).try_normalize();
@@ -71,7 +71,7 @@ impl<'a> Reader<'a> {
     )]
     fn either(
         &self,
-        object: &'a Object,
+        object: &'a MitsubaObject,
         name: &str,
         of: impl Fn(DAffine3) -> Option<DVec3>,
     ) -> Option<Option<DVec3>> {
@@ -94,7 +94,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn spot(&mut self, object: &'a Object) -> Option<Light> {
+    fn spot(&mut self, object: &'a MitsubaObject) -> Option<Light> {
         if self.property(object, "texture").is_some() {
             let message = "texture of a spot is not supported";
             self.report.cause(self.place_of(object, "texture"), message);
@@ -132,7 +132,7 @@ impl<'a> Reader<'a> {
         })
     }
 
-    fn sky(&mut self, object: &'a Object) -> Option<Light> {
+    fn sky(&mut self, object: &'a MitsubaObject) -> Option<Light> {
         let scale = match self.has(object, "scale") {
             true => self.number_within(object, "scale", "from 0 on", |s| s >= 0.0),
             false => Some(1.0),
@@ -158,7 +158,7 @@ impl<'a> Reader<'a> {
     }
 
     /// `to_world`, which must keep lengths and angles. `None` after a cause.
-    pub(super) fn rigid(&self, object: &'a Object) -> Option<DAffine3> {
+    pub(super) fn rigid(&self, object: &'a MitsubaObject) -> Option<DAffine3> {
         if !self.has(object, "to_world") {
             return Some(DAffine3::IDENTITY);
         }

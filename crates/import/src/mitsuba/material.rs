@@ -1,8 +1,8 @@
 //! Materials: `bsdf` elements.
 
 use super::metals;
-use super::object::Object;
-use super::reader::Reader;
+use super::object::MitsubaObject;
+use super::reader::MitsubaReader;
 use super::texture::as_number;
 use crate::range::MAX_SHARE;
 use crate::report::quoted;
@@ -18,9 +18,9 @@ const MAX_MATERIALS: usize = 1 << 20;
 /// Plugins that are materials of a world.
 const ALLOWED: &str = "diffuse, conductor, roughconductor, dielectric, thindielectric, roughdielectric, plastic, roughplastic, phong, twosided, mask, blendbsdf, null";
 
-impl<'a> Reader<'a> {
+impl<'a> MitsubaReader<'a> {
     /// The number of a material; `None` after a cause.
-    pub(super) fn material(&mut self, object: &'a Object) -> Option<usize> {
+    pub(super) fn material(&mut self, object: &'a MitsubaObject) -> Option<usize> {
         let at = object.number;
         if let Some(known) = self.materials.get(&at) {
             return *known;
@@ -47,7 +47,11 @@ impl<'a> Reader<'a> {
         self.world.materials.len() - 1
     }
 
-    pub(super) fn make_material(&mut self, object: &'a Object, depth: usize) -> Option<Material> {
+    pub(super) fn make_material(
+        &mut self,
+        object: &'a MitsubaObject,
+        depth: usize,
+    ) -> Option<Material> {
         object.is_used.set(true);
         self.made_materials += 1;
         if self.made_materials > MAX_MATERIALS {
@@ -90,7 +94,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn conductor(&mut self, object: &'a Object, is_rough: bool) -> Option<Material> {
+    fn conductor(&mut self, object: &'a MitsubaObject, is_rough: bool) -> Option<Material> {
         let index = self.metal(object);
         let reflectance = self.reflectance(object, "specular_reflectance", 1.0);
         let roughness = self.roughness_if(is_rough, object);
@@ -102,7 +106,7 @@ impl<'a> Reader<'a> {
     }
 
     /// n and k, or `None` for what reflects all. The outer `None` is after a cause.
-    fn metal(&mut self, object: &'a Object) -> Option<Option<[f64; 2]>> {
+    fn metal(&mut self, object: &'a MitsubaObject) -> Option<Option<[f64; 2]>> {
         let name = match self.has(object, "material") {
             true => self.text(object, "material")?,
             false => "none",
@@ -132,7 +136,7 @@ impl<'a> Reader<'a> {
     }
 
     /// A number that may be written as a spectrum.
-    fn one_number(&mut self, object: &'a Object, name: &str, default: f64) -> Option<f64> {
+    fn one_number(&mut self, object: &'a MitsubaObject, name: &str, default: f64) -> Option<f64> {
         match self.texture_or(object, name, Role::Number, default)? {
             Texture::Constant(value) if value >= 0.0 => Some(value),
             _ => {
@@ -145,7 +149,7 @@ impl<'a> Reader<'a> {
 
     fn dielectric(
         &mut self,
-        object: &'a Object,
+        object: &'a MitsubaObject,
         is_rough: bool,
         is_thin: bool,
     ) -> Option<Material> {
@@ -162,7 +166,7 @@ impl<'a> Reader<'a> {
         }))
     }
 
-    fn plastic(&mut self, object: &'a Object, is_rough: bool) -> Option<Material> {
+    fn plastic(&mut self, object: &'a MitsubaObject, is_rough: bool) -> Option<Material> {
         let index = self.relative_index(object, "polypropylene");
         let diffuse = self.reflectance(object, "diffuse_reflectance", 0.5);
         let specular = self.reflectance(object, "specular_reflectance", 1.0);
@@ -178,7 +182,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Of Mitsuba 0.6; Mitsuba 3 has none.
-    fn phong(&mut self, object: &'a Object) -> Option<Material> {
+    fn phong(&mut self, object: &'a MitsubaObject) -> Option<Material> {
         let diffuse = self.reflectance(object, "diffuse_reflectance", 0.5);
         let specular = self.reflectance(object, "specular_reflectance", 0.2);
         let exponent = self.texture_or(object, "exponent", Role::Reflectance, 30.0)?;
@@ -203,14 +207,18 @@ impl<'a> Reader<'a> {
         clippy::option_option,
         reason = "none is smooth; the outer none is a cause"
     )]
-    fn roughness_if(&mut self, is_rough: bool, object: &'a Object) -> Option<Option<Roughness>> {
+    fn roughness_if(
+        &mut self,
+        is_rough: bool,
+        object: &'a MitsubaObject,
+    ) -> Option<Option<Roughness>> {
         match is_rough {
             true => self.roughness(object).map(Some),
             false => Some(None),
         }
     }
 
-    fn roughness(&mut self, object: &'a Object) -> Option<Roughness> {
+    fn roughness(&mut self, object: &'a MitsubaObject) -> Option<Roughness> {
         let distribution = self.choice(
             object,
             "distribution",
@@ -241,7 +249,7 @@ impl<'a> Reader<'a> {
         })
     }
 
-    fn alpha(&mut self, object: &'a Object, name: &str) -> Option<Texture> {
+    fn alpha(&mut self, object: &'a MitsubaObject, name: &str) -> Option<Texture> {
         let texture = self.texture_or(object, name, Role::Number, 0.1)?;
         if texture.largest() > 0.0 {
             return Some(as_number(texture));

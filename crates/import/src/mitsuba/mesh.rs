@@ -1,10 +1,10 @@
 //! Shapes that are meshes.
 
-use super::mesh_key::MeshKey;
-use super::object::Object;
-use super::reader::Reader;
+use super::mesh_key::MitsubaMeshKey;
+use super::object::MitsubaObject;
+use super::reader::MitsubaReader;
 use super::{cube, serialized};
-use crate::meshes::Parts;
+use crate::meshes::MeshParts;
 use crate::report::quoted;
 use etendue_scene::DetailedMesh;
 use etendue_world::Triangles;
@@ -13,23 +13,27 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A mesh of a shape.
-pub(super) struct Mesh {
+pub(super) struct MitsubaMesh {
     pub(super) triangles: Arc<Triangles>,
     /// Whether its front is the other side.
     pub(super) is_flipped: bool,
 }
 
-impl<'a> Reader<'a> {
-    pub(super) fn cube(&self, object: &'a Object) -> Option<Mesh> {
+impl<'a> MitsubaReader<'a> {
+    pub(super) fn cube(&self, object: &'a MitsubaObject) -> Option<MitsubaMesh> {
         let triangles = cube::parts().finish()?;
-        Some(Mesh {
+        Some(MitsubaMesh {
             triangles: Arc::new(triangles),
             is_flipped: self.truth(object, "flip_normals"),
         })
     }
 
     /// An OBJ, PLY or serialized mesh.
-    pub(super) fn mesh(&mut self, object: &'a Object, to_world: DAffine3) -> Option<Mesh> {
+    pub(super) fn mesh(
+        &mut self,
+        object: &'a MitsubaObject,
+        to_world: DAffine3,
+    ) -> Option<MitsubaMesh> {
         let flips = self.truth(object, "flip_normals");
         let is_flat = self.truth(object, "face_normals");
         let is_obj = object.plugin == "obj";
@@ -41,7 +45,7 @@ impl<'a> Reader<'a> {
         };
         let number = self.shape_index(object)?;
         let name = self.file_name(object)?;
-        let key = MeshKey {
+        let key = MitsubaMeshKey {
             path: self.mesh_path(object, name)?,
             number,
             is_flat,
@@ -59,13 +63,13 @@ impl<'a> Reader<'a> {
         };
         // Mitsuba makes normals of placed triangles, which a mirror turns over; normals of the file it maps as normals.
         let is_mirrored = to_world.matrix3.determinant() < 0.0;
-        Some(Mesh {
+        Some(MitsubaMesh {
             triangles,
             is_flipped: flips != (is_mirrored && is_made),
         })
     }
 
-    fn shape_index(&self, object: &'a Object) -> Option<u32> {
+    fn shape_index(&self, object: &'a MitsubaObject) -> Option<u32> {
         if object.plugin != "serialized" || !self.has(object, "shape_index") {
             return Some(0);
         }
@@ -79,7 +83,7 @@ impl<'a> Reader<'a> {
         number.ok()
     }
 
-    fn mesh_path(&self, object: &'a Object, name: &str) -> Option<PathBuf> {
+    fn mesh_path(&self, object: &'a MitsubaObject, name: &str) -> Option<PathBuf> {
         let found = self.files.find(&object.folders, name);
         let path = found
             .map_err(|error| self.unread(object, name, &error))
@@ -97,13 +101,13 @@ impl<'a> Reader<'a> {
     /// The triangles of a mesh, and whether their normals were made of them.
     fn triangles(
         &mut self,
-        object: &'a Object,
-        key: &MeshKey,
+        object: &'a MitsubaObject,
+        key: &MitsubaMeshKey,
         to_world: DAffine3,
         is_new: bool,
     ) -> (Result<Arc<Triangles>, String>, bool) {
         // A mesh with normals of its own is one for all places.
-        let everywhere = MeshKey {
+        let everywhere = MitsubaMeshKey {
             linear: None,
             is_flat: false,
             ..key.clone()
@@ -124,7 +128,7 @@ impl<'a> Reader<'a> {
         (made, !has_normals)
     }
 
-    fn parts(&mut self, key: &MeshKey) -> Result<Parts, String> {
+    fn parts(&mut self, key: &MitsubaMeshKey) -> Result<MeshParts, String> {
         let bytes = self.mesh_bytes(&key.path)?;
         let is_packed = key
             .path
@@ -133,7 +137,7 @@ impl<'a> Reader<'a> {
         match is_packed {
             true => serialized::read(&bytes, key.number, self.files),
             false => DetailedMesh::parse(&key.path, &bytes)
-                .map(Parts::from)
+                .map(MeshParts::from)
                 .map_err(|fault| format!("is no sound mesh: {fault}")),
         }
     }
@@ -149,9 +153,9 @@ impl<'a> Reader<'a> {
 
     fn finish(
         &self,
-        object: &'a Object,
-        mut parts: Parts,
-        key: &MeshKey,
+        object: &'a MitsubaObject,
+        mut parts: MeshParts,
+        key: &MitsubaMeshKey,
         linear: DMat3,
     ) -> Result<Arc<Triangles>, String> {
         // Shapes that share a file may have meshes of their own.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 /// What a mesh is read from and how, so that shapes may share it.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub(super) struct MeshKey {
+pub(super) struct MitsubaMeshKey {
     pub(super) path: PathBuf,
     pub(super) number: u32,
     pub(super) is_flat: bool,

@@ -1,12 +1,16 @@
 //! Materials that hold others.
 
-use super::object::{Kind, Object};
-use super::reader::Reader;
+use super::object::{MitsubaObject, ObjectKind};
+use super::reader::MitsubaReader;
 use super::texture::as_number;
 use etendue_world::Material;
 
-impl<'a> Reader<'a> {
-    pub(super) fn two_sided(&mut self, object: &'a Object, depth: usize) -> Option<Material> {
+impl<'a> MitsubaReader<'a> {
+    pub(super) fn two_sided(
+        &mut self,
+        object: &'a MitsubaObject,
+        depth: usize,
+    ) -> Option<Material> {
         let sides = self.nested(object, depth);
         let both = match <[Material; 2]>::try_from(sides?) {
             Ok(both) => both,
@@ -23,7 +27,7 @@ impl<'a> Reader<'a> {
         Some(Material::TwoSided(Box::new(both)))
     }
 
-    pub(super) fn mask(&mut self, object: &'a Object, depth: usize) -> Option<Material> {
+    pub(super) fn mask(&mut self, object: &'a MitsubaObject, depth: usize) -> Option<Material> {
         let opacity = self.reflectance(object, "opacity", 0.5);
         let mut of = self.nested(object, depth)?;
         match (of.pop(), of.pop()) {
@@ -35,7 +39,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    pub(super) fn blend(&mut self, object: &'a Object, depth: usize) -> Option<Material> {
+    pub(super) fn blend(&mut self, object: &'a MitsubaObject, depth: usize) -> Option<Material> {
         if !self.has(object, "weight") {
             self.report.cause(&object.place, "blendbsdf without weight");
         }
@@ -50,8 +54,8 @@ impl<'a> Reader<'a> {
     }
 
     /// All bsdfs within; `None` after a cause.
-    fn nested(&mut self, object: &'a Object, depth: usize) -> Option<Vec<Material>> {
-        let within = self.children(object, Kind::Bsdf);
+    fn nested(&mut self, object: &'a MitsubaObject, depth: usize) -> Option<Vec<Material>> {
+        let within = self.children(object, ObjectKind::Bsdf);
         // All are read, so that all causes are found.
         let all: Vec<Option<Material>> = within
             .into_iter()
@@ -61,7 +65,7 @@ impl<'a> Reader<'a> {
         all.into_iter().collect()
     }
 
-    fn wrong_number(&self, object: &'a Object, allowed: &str) -> Option<Material> {
+    fn wrong_number(&self, object: &'a MitsubaObject, allowed: &str) -> Option<Material> {
         let plugin = &object.plugin;
         let message = format!("{plugin} with another number of bsdfs; allowed: {allowed}");
         self.report.cause(&object.place, message);

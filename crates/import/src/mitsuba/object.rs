@@ -8,8 +8,8 @@ use std::rc::Rc;
 
 /// An object of the scene: what Mitsuba has a plugin for.
 #[derive(Debug)]
-pub(super) struct Object {
-    pub(super) kind: Kind,
+pub(super) struct MitsubaObject {
+    pub(super) kind: ObjectKind,
     /// Its number among all objects.
     pub(super) number: usize,
     /// The name of the plugin.
@@ -19,7 +19,7 @@ pub(super) struct Object {
     /// Where its files are looked for.
     pub(super) folders: Rc<[PathBuf]>,
     /// In the order of the file.
-    pub(super) properties: Vec<Property>,
+    pub(super) properties: Vec<ObjectProperty>,
     /// The object that it is written in; the scene's is its own.
     pub(super) parent: usize,
     /// Whether the world has it.
@@ -28,7 +28,7 @@ pub(super) struct Object {
 
 /// A value or an object within another one.
 #[derive(Debug)]
-pub(super) struct Property {
+pub(super) struct ObjectProperty {
     /// Empty for objects without a name.
     pub(super) name: String,
     pub(super) value: Value,
@@ -61,7 +61,7 @@ pub(super) enum Value {
 
 /// Elements that are objects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum ObjectKind {
     Scene,
     Integrator,
     Sensor,
@@ -77,7 +77,7 @@ pub(super) enum Kind {
     Volume,
 }
 
-impl Kind {
+impl ObjectKind {
     /// The kind of an element's name. A spectrum with a type is a texture.
     pub(super) fn of(name: &str, has_type: bool) -> Option<Self> {
         Some(match name {

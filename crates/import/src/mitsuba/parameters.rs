@@ -9,12 +9,12 @@ const MOST_BYTES: usize = 16 << 20;
 /// Parameters by their name, set from outside or by `<default>`.
 #[derive(Debug, Default)]
 pub(super) struct Parameters {
-    values: BTreeMap<String, Parameter>,
+    values: BTreeMap<String, MitsubaParameter>,
     made: usize,
 }
 
 #[derive(Debug)]
-struct Parameter {
+struct MitsubaParameter {
     value: String,
     /// Whether it must be met in the file.
     is_set: bool,
@@ -25,7 +25,7 @@ impl Parameters {
     /// Those set from outside.
     pub(super) fn new(set: &[(String, String)]) -> Self {
         let values = set.iter().map(|(name, value)| {
-            let parameter = Parameter {
+            let parameter = MitsubaParameter {
                 value: value.clone(),
                 is_set: true,
                 is_used: false,
@@ -42,7 +42,7 @@ impl Parameters {
     pub(super) fn default(&mut self, name: &str, value: &str) {
         self.values
             .entry(name.to_owned())
-            .or_insert_with(|| Parameter {
+            .or_insert_with(|| MitsubaParameter {
                 value: value.to_owned(),
                 is_set: false,
                 is_used: false,

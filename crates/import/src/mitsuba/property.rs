@@ -1,7 +1,7 @@
 //! Elements that are values of properties.
 
 use super::object::Value;
-use super::source::Source;
+use super::source::SourceFile;
 use super::transform::{Attributes, allow, find, required, step};
 use super::value;
 use super::xml::Tree;
@@ -17,7 +17,7 @@ impl Tree<'_> {
         node: Node<'_, '_>,
         element: &str,
         attributes: &Attributes,
-        source: &mut Source,
+        source: &mut SourceFile,
     ) -> Result<Value, String> {
         if element == "transform" {
             allow(attributes, &["name"])?;
@@ -77,7 +77,7 @@ impl Tree<'_> {
         }
     }
 
-    fn spectrum(&self, file: &str, source: &Source) -> Result<Value, String> {
+    fn spectrum(&self, file: &str, source: &SourceFile) -> Result<Value, String> {
         let read = || {
             let path = self.files.find(&source.folders, file)?;
             let bytes = self.files.read(&path)?;

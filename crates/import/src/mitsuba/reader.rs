@@ -1,7 +1,7 @@
 //! Reads the objects of a Mitsuba scene into a world.
 
-use super::mesh_key::MeshKey;
-use super::object::{Kind, Object};
+use super::mesh_key::MitsubaMeshKey;
+use super::object::{MitsubaObject, ObjectKind};
 use crate::Color;
 use crate::files::Files;
 use crate::pictures::Pictures;
@@ -15,8 +15,8 @@ use std::sync::Arc;
 pub(super) const MOST_SHAPES: usize = 1 << 20;
 
 /// Makes a world of objects.
-pub(super) struct Reader<'a> {
-    pub(super) objects: &'a [Object],
+pub(super) struct MitsubaReader<'a> {
+    pub(super) objects: &'a [MitsubaObject],
     pub(super) ids: &'a HashMap<String, usize>,
     pub(super) files: &'a Files,
     pub(super) report: &'a Report,
@@ -25,7 +25,7 @@ pub(super) struct Reader<'a> {
     pub(super) pictures: Pictures,
     /// Bytes of mesh files that hold several meshes.
     pub(super) packed: HashMap<PathBuf, Result<Arc<[u8]>, String>>,
-    pub(super) meshes: HashMap<MeshKey, Result<Arc<Triangles>, String>>,
+    pub(super) meshes: HashMap<MitsubaMeshKey, Result<Arc<Triangles>, String>>,
     /// The material of each bsdf; `None` if it is no sound one.
     pub(super) materials: HashMap<usize, Option<usize>>,
     /// Materials, with those within one another.
@@ -34,9 +34,9 @@ pub(super) struct Reader<'a> {
     pub(super) defaults: [Option<usize>; 2],
 }
 
-impl<'a> Reader<'a> {
+impl<'a> MitsubaReader<'a> {
     pub(super) fn new(
-        objects: &'a [Object],
+        objects: &'a [MitsubaObject],
         ids: &'a HashMap<String, usize>,
         files: &'a Files,
         report: &'a Report,
@@ -65,14 +65,14 @@ impl<'a> Reader<'a> {
         self.refuse_unknown();
         self.integrator(scene);
         self.sensors(scene);
-        for (_, light) in self.children(scene, Kind::Emitter) {
+        for (_, light) in self.children(scene, ObjectKind::Emitter) {
             // Shapes refer to area lights.
             match light.plugin == "area" {
                 true => light.is_used.set(false),
                 false => self.light(light),
             }
         }
-        for (_, shape) in self.children(scene, Kind::Shape) {
+        for (_, shape) in self.children(scene, ObjectKind::Shape) {
             self.top_shape(shape);
         }
         self.definitions(scene);
@@ -81,10 +81,13 @@ impl<'a> Reader<'a> {
     }
 
     /// Materials, textures and the like, which others refer to. They are read where they are used.
-    fn definitions(&self, scene: &'a Object) {
+    fn definitions(&self, scene: &'a MitsubaObject) {
         for property in &scene.properties {
             if let Some(object) = self.object_of(property)
-                && matches!(object.kind, Kind::Bsdf | Kind::Texture | Kind::Film)
+                && matches!(
+                    object.kind,
+                    ObjectKind::Bsdf | ObjectKind::Texture | ObjectKind::Film
+                )
             {
                 property.is_read.set(true);
             }
@@ -95,8 +98,8 @@ impl<'a> Reader<'a> {
     fn refuse_media(&self) {
         for object in self.objects {
             // What is within a medium goes with it.
-            let is_outermost = self.objects[object.parent].kind != Kind::Medium;
-            if matches!(object.kind, Kind::Medium | Kind::Volume) && is_outermost {
+            let is_outermost = self.objects[object.parent].kind != ObjectKind::Medium;
+            if matches!(object.kind, ObjectKind::Medium | ObjectKind::Volume) && is_outermost {
                 let (kind, plugin) = (object.kind.name(), quoted(&object.plugin));
                 let message = format!("{kind} {plugin}: participating media are not supported");
                 self.report.cause(&object.place, message);
@@ -106,7 +109,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The object and all within it are passed over: a message has been given.
-    pub(super) fn drop_all(&self, object: &'a Object) {
+    pub(super) fn drop_all(&self, object: &'a MitsubaObject) {
         object.is_used.set(true);
         for property in &object.properties {
             property.is_read.set(true);
@@ -117,7 +120,7 @@ impl<'a> Reader<'a> {
     }
 
     /// An object of which nothing came. A cause has been given already; if not, this is one.
-    pub(super) fn lost(&self, object: &'a Object) {
+    pub(super) fn lost(&self, object: &'a MitsubaObject) {
         if !self.report.has_causes() {
             let (kind, plugin) = (object.kind.name(), quoted(&object.plugin));
             let message = format!("{kind} {plugin} is not understood");
@@ -126,7 +129,7 @@ impl<'a> Reader<'a> {
     }
 
     /// A plugin that a world has nothing for.
-    pub(super) fn unsupported(&self, object: &'a Object, allowed: &str) {
+    pub(super) fn unsupported(&self, object: &'a MitsubaObject, allowed: &str) {
         let (kind, plugin) = (object.kind.name(), quoted(&object.plugin));
         let message = format!("{kind} {plugin} is not supported; allowed: {allowed}");
         self.report.cause(&object.place, message);

@@ -1,7 +1,7 @@
 //! Sensors, as cameras.
 
-use super::object::{Kind, Object, Property};
-use super::reader::Reader;
+use super::object::{MitsubaObject, ObjectKind, ObjectProperty};
+use super::reader::MitsubaReader;
 use crate::report::quoted;
 use etendue_world::{Camera, Lens, Projection};
 use glam::{DAffine3, DVec3};
@@ -18,10 +18,11 @@ const MAX_PIXELS: i64 = 1 << 16;
 /// Diagonal of a frame of 35 mm film, mm, to which focal lengths refer.
 const DIAGONAL: f64 = 43.266_615_305_567_87;
 
-impl<'a> Reader<'a> {
-    pub(super) fn sensors(&mut self, scene: &'a Object) {
-        let all = self.children(scene, Kind::Sensor);
-        let is_known = |sensor: &Object| ALLOWED.split(", ").any(|known| known == sensor.plugin);
+impl<'a> MitsubaReader<'a> {
+    pub(super) fn sensors(&mut self, scene: &'a MitsubaObject) {
+        let all = self.children(scene, ObjectKind::Sensor);
+        let is_known =
+            |sensor: &MitsubaObject| ALLOWED.split(", ").any(|known| known == sensor.plugin);
         let knows_any = all.iter().any(|(_, sensor)| is_known(sensor));
         for (_, sensor) in all {
             if is_known(sensor) {
@@ -41,7 +42,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn camera(&mut self, object: &'a Object) -> Option<Camera> {
+    fn camera(&mut self, object: &'a MitsubaObject) -> Option<Camera> {
         let size = self.film(object);
         self.sampler(object);
         let clip = self.clip(object);
@@ -67,7 +68,7 @@ impl<'a> Reader<'a> {
         })
     }
 
-    fn clip(&self, object: &'a Object) -> Option<[f64; 2]> {
+    fn clip(&self, object: &'a MitsubaObject) -> Option<[f64; 2]> {
         let near = self.number(object, "near_clip").unwrap_or(1e-2);
         let far = self.number(object, "far_clip").unwrap_or(1e4);
         if 0.0 < near && near < far {
@@ -80,7 +81,7 @@ impl<'a> Reader<'a> {
 
     fn perspective(
         &mut self,
-        object: &'a Object,
+        object: &'a MitsubaObject,
         size: [usize; 2],
         [_, far]: [f64; 2],
         is_lens: bool,
@@ -117,7 +118,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Half the width of the picture at distance 1.
-    fn half_width(&self, object: &'a Object, [width, height]: [usize; 2]) -> Option<f64> {
+    fn half_width(&self, object: &'a MitsubaObject, [width, height]: [usize; 2]) -> Option<f64> {
         let aspect = width as f64 / height as f64;
         let diagonal = |tangent: f64| tangent / (1.0 + 1.0 / (aspect * aspect)).sqrt();
         if !self.has(object, "fov") {
@@ -152,7 +153,7 @@ impl<'a> Reader<'a> {
     }
 
     /// In millimetres, of a film of 35 mm.
-    fn focal_length(&self, object: &'a Object) -> Option<f64> {
+    fn focal_length(&self, object: &'a MitsubaObject) -> Option<f64> {
         if !self.has(object, "focal_length") {
             return Some(50.0);
         }
@@ -170,7 +171,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The placement with Z of unit length, and how long Z was.
-    fn orthographic(&self, object: &'a Object) -> Option<(DAffine3, f64)> {
+    fn orthographic(&self, object: &'a MitsubaObject) -> Option<(DAffine3, f64)> {
         if !self.has(object, "to_world") {
             return Some((DAffine3::IDENTITY, 1.0));
         }
@@ -193,8 +194,8 @@ impl<'a> Reader<'a> {
     }
 
     /// Pixels across and down.
-    fn film(&self, object: &'a Object) -> Option<[usize; 2]> {
-        let Some(film) = self.child(object, Kind::Film) else {
+    fn film(&self, object: &'a MitsubaObject) -> Option<[usize; 2]> {
+        let Some(film) = self.child(object, ObjectKind::Film) else {
             return Some(SIZE);
         };
         let size = ["width", "height"].map(|name| self.pixels(film, name));
@@ -209,7 +210,7 @@ impl<'a> Reader<'a> {
                 self.refuse_crop(film, name);
             }
         }
-        for (_, filter) in self.children(film, Kind::Rfilter) {
+        for (_, filter) in self.children(film, ObjectKind::Rfilter) {
             if filter.plugin != "box" {
                 let plugin = quoted(&filter.plugin);
                 let message = format!("rfilter {plugin} is approximated by the box filter");
@@ -217,7 +218,7 @@ impl<'a> Reader<'a> {
             }
             self.drop_all(filter);
         }
-        if self.children(film, Kind::Rfilter).is_empty() {
+        if self.children(film, ObjectKind::Rfilter).is_empty() {
             let message = "rfilter `gaussian`, the default, is approximated by the box filter";
             self.report.note(&film.place, message);
         }
@@ -225,12 +226,12 @@ impl<'a> Reader<'a> {
         Some([width?, height?])
     }
 
-    fn refuse_crop(&self, film: &'a Object, name: &str) {
+    fn refuse_crop(&self, film: &'a MitsubaObject, name: &str) {
         let message = format!("{name}: parts of a film are not supported");
         self.report.cause(self.place_of(film, name), message);
     }
 
-    fn pixels(&self, film: &'a Object, name: &str) -> Option<usize> {
+    fn pixels(&self, film: &'a MitsubaObject, name: &str) -> Option<usize> {
         if !self.has(film, name) {
             return Some(SIZE[usize::from(name == "height")]);
         }
@@ -244,8 +245,9 @@ impl<'a> Reader<'a> {
     }
 
     /// How Mitsuba draws its samples is of no use here.
-    fn sampler(&self, object: &'a Object) {
-        let samplers: Vec<(&Property, &Object)> = self.children(object, Kind::Sampler);
+    fn sampler(&self, object: &'a MitsubaObject) {
+        let samplers: Vec<(&ObjectProperty, &MitsubaObject)> =
+            self.children(object, ObjectKind::Sampler);
         for (_, sampler) in samplers {
             let plugin = quoted(&sampler.plugin);
             self.report

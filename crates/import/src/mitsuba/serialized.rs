@@ -1,7 +1,7 @@
 //! Mitsuba's own mesh files, versions 3 and 4: several meshes, each packed by zlib.
 
 use crate::files::Files;
-use crate::meshes::Parts;
+use crate::meshes::MeshParts;
 use crate::range::MAX_NUMBER;
 use flate2::read::ZlibDecoder;
 use glam::{DVec2, DVec3};
@@ -18,11 +18,11 @@ const LONGEST_NAME: u64 = 1 << 16;
 const MAX_PER_BYTE: u64 = 64;
 
 /// The mesh of this number, from 0.
-pub(super) fn read(bytes: &[u8], number: u32, files: &Files) -> Result<Parts, String> {
+pub(super) fn read(bytes: &[u8], number: u32, files: &Files) -> Result<MeshParts, String> {
     let (version, start) = find(bytes, number)?;
     let packed = bytes.get(start..).ok_or("has a mesh beyond its end")?;
     let most = files.left().min(packed.len() as u64 * MAX_PER_BYTE);
-    let mut stream = Stream {
+    let mut stream = UnpackedStream {
         inner: ZlibDecoder::new(packed).take(most),
         most,
     };
@@ -76,13 +76,13 @@ fn head(bytes: &[u8], at: usize) -> Result<u16, String> {
 }
 
 /// What is unpacked, from the front.
-struct Stream<R> {
+struct UnpackedStream<R> {
     inner: std::io::Take<R>,
     most: u64,
 }
 
-impl<R: Read> Stream<R> {
-    fn mesh(&mut self, version: u16) -> Result<Parts, String> {
+impl<R: Read> UnpackedStream<R> {
+    fn mesh(&mut self, version: u16) -> Result<MeshParts, String> {
         let flags = u32::from_le_bytes(self.some()?);
         if version >= 4 {
             self.name()?;
@@ -100,7 +100,7 @@ impl<R: Read> Stream<R> {
         if flags & HAS_COLORS != 0 {
             let _colors: Vec<[f64; 3]> = self.rows(vertices, is_double)?;
         }
-        Ok(Parts {
+        Ok(MeshParts {
             vertices: vertex.into_iter().map(DVec3::from).collect(),
             corners: self.corners(triangles, vertices)?,
             normals: normals.map(|all| all.into_iter().map(DVec3::from).collect()),

@@ -1,8 +1,8 @@
 //! Shapes, groups of them and instances.
 
-use super::mesh::Mesh;
-use super::object::{Kind, Object};
-use super::reader::{MOST_SHAPES, Reader};
+use super::mesh::MitsubaMesh;
+use super::object::{MitsubaObject, ObjectKind};
+use super::reader::{MOST_SHAPES, MitsubaReader};
 use super::transform::frame;
 use crate::placement::fault;
 use crate::report::quoted;
@@ -13,9 +13,9 @@ use glam::{DAffine3, DMat3, DVec3};
 const ALLOWED: &str =
     "rectangle, disk, sphere, cylinder, cube, obj, ply, serialized, shapegroup, instance";
 
-impl<'a> Reader<'a> {
+impl<'a> MitsubaReader<'a> {
     /// A shape of the scene itself.
-    pub(super) fn top_shape(&mut self, object: &'a Object) {
+    pub(super) fn top_shape(&mut self, object: &'a MitsubaObject) {
         match object.plugin.as_str() {
             // Instances show what groups hold.
             "shapegroup" => {}
@@ -24,9 +24,9 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn instance(&mut self, object: &'a Object) {
+    fn instance(&mut self, object: &'a MitsubaObject) {
         let to_world = self.to_world(object);
-        let groups = self.children(object, Kind::Shape);
+        let groups = self.children(object, ObjectKind::Shape);
         let [(_, group)] = groups[..] else {
             let message = "an instance of another number of shapegroups; allowed: one";
             return self.report.cause(&object.place, message);
@@ -38,7 +38,7 @@ impl<'a> Reader<'a> {
             );
             return self.report.cause(&object.place, message);
         }
-        for (_, shape) in self.children(group, Kind::Shape) {
+        for (_, shape) in self.children(group, ObjectKind::Shape) {
             if matches!(shape.plugin.as_str(), "shapegroup" | "instance") {
                 let message = format!("{} within a shapegroup", quoted(&shape.plugin));
                 self.report.cause(&shape.place, message);
@@ -49,7 +49,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Adds one shape, placed by its own transform and then by `outer`.
-    fn shape(&mut self, object: &'a Object, outer: DAffine3, is_instance: bool) {
+    fn shape(&mut self, object: &'a MitsubaObject, outer: DAffine3, is_instance: bool) {
         if self.world.shapes.len() >= MOST_SHAPES {
             if !self.report.has_causes() {
                 let message = format!("more than {MOST_SHAPES} shapes, with all instances");
@@ -61,7 +61,7 @@ impl<'a> Reader<'a> {
         let own = self.to_world(object);
         let placed = self.geometry(object, own);
         let emission = self.shape_emission(object, is_instance);
-        let material = match self.child(object, Kind::Bsdf) {
+        let material = match self.child(object, ObjectKind::Bsdf) {
             Some(bsdf) => self.material(bsdf),
             None => Some(self.default_material(emission.is_some())),
         };
@@ -82,7 +82,7 @@ impl<'a> Reader<'a> {
         });
     }
 
-    fn to_world(&self, object: &'a Object) -> DAffine3 {
+    fn to_world(&self, object: &'a MitsubaObject) -> DAffine3 {
         let found = self.transform(object, "to_world");
         found.unwrap_or(DAffine3::IDENTITY)
     }
@@ -90,10 +90,10 @@ impl<'a> Reader<'a> {
     /// The geometry, how it is placed, and whether its front is the other side.
     fn geometry(
         &mut self,
-        object: &'a Object,
+        object: &'a MitsubaObject,
         own: DAffine3,
     ) -> Option<(Geometry, DAffine3, bool)> {
-        let meshed = |mesh: Mesh| (Geometry::Mesh(mesh.triangles), own, mesh.is_flipped);
+        let meshed = |mesh: MitsubaMesh| (Geometry::Mesh(mesh.triangles), own, mesh.is_flipped);
         match object.plugin.as_str() {
             "rectangle" => Some((Geometry::Rectangle, own, self.flips(object))),
             "disk" => Some((Geometry::Disc, own, self.flips(object))),
@@ -108,11 +108,15 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn flips(&self, object: &'a Object) -> bool {
+    fn flips(&self, object: &'a MitsubaObject) -> bool {
         self.truth(object, "flip_normals")
     }
 
-    fn sphere(&self, object: &'a Object, own: DAffine3) -> Option<(Geometry, DAffine3, bool)> {
+    fn sphere(
+        &self,
+        object: &'a MitsubaObject,
+        own: DAffine3,
+    ) -> Option<(Geometry, DAffine3, bool)> {
         let center = self.vector_or(object, "center", DVec3::ZERO);
         let radius = self.radius(object)?;
         let placed =
@@ -122,7 +126,11 @@ impl<'a> Reader<'a> {
         Some((Geometry::Sphere, placed, self.flips(object) != is_mirrored))
     }
 
-    fn cylinder(&self, object: &'a Object, own: DAffine3) -> Option<(Geometry, DAffine3, bool)> {
+    fn cylinder(
+        &self,
+        object: &'a MitsubaObject,
+        own: DAffine3,
+    ) -> Option<(Geometry, DAffine3, bool)> {
         let p0 = self.vector_or(object, "p0", DVec3::ZERO);
         let p1 = self.vector_or(object, "p1", DVec3::Z);
         let radius = self.radius(object)?;
@@ -137,14 +145,14 @@ impl<'a> Reader<'a> {
         Some((Geometry::Cylinder, placed, self.flips(object)))
     }
 
-    fn radius(&self, object: &'a Object) -> Option<f64> {
+    fn radius(&self, object: &'a MitsubaObject) -> Option<f64> {
         match self.has(object, "radius") {
             true => self.number_within(object, "radius", "a number above 0", |r| r > 0.0),
             false => Some(1.0),
         }
     }
 
-    fn vector_or(&self, object: &'a Object, name: &str, default: DVec3) -> Option<DVec3> {
+    fn vector_or(&self, object: &'a MitsubaObject, name: &str, default: DVec3) -> Option<DVec3> {
         match self.has(object, name) {
             true => self.vector(object, name),
             false => Some(default),
@@ -152,7 +160,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Whether a shape can be placed like this; else a cause.
-    fn is_sound(&self, object: &'a Object, geometry: &Geometry, to_world: DAffine3) -> bool {
+    fn is_sound(&self, object: &'a MitsubaObject, geometry: &Geometry, to_world: DAffine3) -> bool {
         let Some(fault) = fault(geometry, to_world) else {
             return true;
         };
@@ -164,10 +172,10 @@ impl<'a> Reader<'a> {
 
     fn shape_emission(
         &mut self,
-        object: &'a Object,
+        object: &'a MitsubaObject,
         is_instance: bool,
     ) -> Option<etendue_world::Emission> {
-        let emitter = self.child(object, Kind::Emitter)?;
+        let emitter = self.child(object, ObjectKind::Emitter)?;
         if emitter.plugin != "area" {
             self.unsupported(emitter, "area, within a shape");
             return None;

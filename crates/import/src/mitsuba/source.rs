@@ -5,24 +5,24 @@ use std::path::PathBuf;
 use std::rc::Rc;
 
 /// A file that is being read.
-pub(super) struct Source {
+pub(super) struct SourceFile {
     pub(super) name: Rc<str>,
     /// Where it looks for files: its own folders, those of the file that includes it.
     pub(super) folders: Rc<[PathBuf]>,
     /// Before version 2.
     pub(super) is_old: bool,
-    pub(super) cursor: Cursor,
+    pub(super) cursor: LineCursor,
 }
 
 /// Counts lines and columns of places that follow one another.
-pub(super) struct Cursor {
+pub(super) struct LineCursor {
     text: Rc<str>,
     offset: usize,
     line: usize,
     column: usize,
 }
 
-impl Cursor {
+impl LineCursor {
     pub(super) fn new(text: &str) -> Self {
         Self {
             text: text.into(),

@@ -1,7 +1,7 @@
 //! Numbers that may vary over a surface: values, spectra and textures.
 
-use super::object::{Kind, Object, Property, Value};
-use super::reader::Reader;
+use super::object::{MitsubaObject, ObjectKind, ObjectProperty, Value};
+use super::reader::MitsubaReader;
 use crate::Color;
 use crate::range::MAX_SHARE;
 use crate::report::quoted;
@@ -12,11 +12,11 @@ use glam::{DAffine2, DAffine3, DMat2, DVec2};
 /// Plugins that textures may be.
 const ALLOWED: &str = "bitmap, checkerboard, uniform, srgb, rawconstant, d65";
 
-impl<'a> Reader<'a> {
+impl<'a> MitsubaReader<'a> {
     /// The texture of a property, or a constant where it is not there. `None` after a cause.
     pub(super) fn texture_or(
         &mut self,
-        object: &'a Object,
+        object: &'a MitsubaObject,
         name: &str,
         role: Role,
         default: f64,
@@ -30,7 +30,7 @@ impl<'a> Reader<'a> {
     /// As [`Self::texture_or`], for shares of light: 0 to 1.
     pub(super) fn reflectance(
         &mut self,
-        object: &'a Object,
+        object: &'a MitsubaObject,
         name: &str,
         default: f64,
     ) -> Option<Texture> {
@@ -46,7 +46,7 @@ impl<'a> Reader<'a> {
     }
 
     /// A light's strength, which is one number for all of it.
-    pub(super) fn strength(&mut self, object: &'a Object, name: &str) -> Option<f64> {
+    pub(super) fn strength(&mut self, object: &'a MitsubaObject, name: &str) -> Option<f64> {
         let texture = self.emission(object, name)?;
         match texture {
             Texture::Constant(value) => Some(value),
@@ -59,14 +59,14 @@ impl<'a> Reader<'a> {
     }
 
     /// What shines.
-    pub(super) fn emission(&mut self, object: &'a Object, name: &str) -> Option<Texture> {
+    pub(super) fn emission(&mut self, object: &'a MitsubaObject, name: &str) -> Option<Texture> {
         let texture = self.texture_or(object, name, Role::Emission, 1.0)?;
         self.not_negative(object, name, texture)
     }
 
     pub(super) fn not_negative(
         &self,
-        object: &'a Object,
+        object: &'a MitsubaObject,
         name: &str,
         texture: Texture,
     ) -> Option<Texture> {
@@ -86,7 +86,7 @@ impl<'a> Reader<'a> {
         None
     }
 
-    fn texture(&mut self, property: &'a Property, role: Role) -> Option<Texture> {
+    fn texture(&mut self, property: &'a ObjectProperty, role: Role) -> Option<Texture> {
         if let Some(object) = self.object_of(property) {
             object.is_used.set(true);
             return self.texture_of(object, role);
@@ -119,8 +119,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn texture_of(&mut self, object: &'a Object, role: Role) -> Option<Texture> {
-        if object.kind != Kind::Texture {
+    fn texture_of(&mut self, object: &'a MitsubaObject, role: Role) -> Option<Texture> {
+        if object.kind != ObjectKind::Texture {
             let message = format!("{} in place of a texture", object.kind.name());
             self.report.cause(&object.place, message);
             return None;
@@ -147,7 +147,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn colored(&self, object: &'a Object, name: &str) -> Option<Texture> {
+    fn colored(&self, object: &'a MitsubaObject, name: &str) -> Option<Texture> {
         let value = match self.property(object, name) {
             None => 1.0,
             Some(property) => match property.value {
@@ -164,14 +164,14 @@ impl<'a> Reader<'a> {
         Some(Texture::Constant(value))
     }
 
-    fn raw_constant(&self, object: &'a Object) -> Option<Texture> {
+    fn raw_constant(&self, object: &'a MitsubaObject) -> Option<Texture> {
         match self.property(object, "value").map(|p| &p.value) {
             Some(Value::Vector(v)) => Some(Texture::Constant(self.color.of(v.to_array()))),
             _ => self.number(object, "value").map(Texture::Constant),
         }
     }
 
-    fn checkerboard(&mut self, object: &'a Object, role: Role) -> Option<Texture> {
+    fn checkerboard(&mut self, object: &'a MitsubaObject, role: Role) -> Option<Texture> {
         let first = self.texture_or(object, "color0", role, 0.4);
         let second = self.texture_or(object, "color1", role, 0.2);
         let to_uv = self.to_uv(object);
@@ -186,7 +186,7 @@ impl<'a> Reader<'a> {
         })
     }
 
-    fn bitmap(&mut self, object: &'a Object) -> Option<Texture> {
+    fn bitmap(&mut self, object: &'a MitsubaObject) -> Option<Texture> {
         let to_uv = self.to_uv(object);
         let raw = self.truth(object, "raw");
         let filter = self.choice(
@@ -215,7 +215,7 @@ impl<'a> Reader<'a> {
     /// The picture that `filename` names.
     pub(super) fn picture(
         &mut self,
-        object: &'a Object,
+        object: &'a MitsubaObject,
         raw: bool,
     ) -> Option<std::sync::Arc<etendue_field::Raster>> {
         let name = self.file_name(object)?;
@@ -225,7 +225,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The name of the file that an object asks for.
-    pub(super) fn file_name(&self, object: &'a Object) -> Option<&'a str> {
+    pub(super) fn file_name(&self, object: &'a MitsubaObject) -> Option<&'a str> {
         if !self.has(object, "filename") {
             let message = format!("{} without filename", quoted(&object.plugin));
             self.report.cause(&object.place, message);
@@ -234,7 +234,7 @@ impl<'a> Reader<'a> {
     }
 
     /// A file that cannot be used.
-    pub(super) fn unread(&self, object: &'a Object, name: &str, error: &str) {
+    pub(super) fn unread(&self, object: &'a MitsubaObject, name: &str, error: &str) {
         let message = format!("file {} {error}", quoted(name));
         self.report
             .cause(self.place_of(object, "filename"), message);
@@ -243,7 +243,7 @@ impl<'a> Reader<'a> {
     /// One of several words; the first where none is given. `None` after a cause.
     pub(super) fn choice<T: Copy>(
         &self,
-        object: &'a Object,
+        object: &'a MitsubaObject,
         name: &str,
         allowed: &[(&str, T)],
     ) -> Option<T> {
@@ -260,7 +260,7 @@ impl<'a> Reader<'a> {
         found.map(|(_, value)| *value)
     }
 
-    fn to_uv(&self, object: &'a Object) -> DAffine2 {
+    fn to_uv(&self, object: &'a MitsubaObject) -> DAffine2 {
         let map = self
             .transform(object, "to_uv")
             .unwrap_or(DAffine3::IDENTITY);

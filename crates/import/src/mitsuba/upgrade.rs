@@ -1,6 +1,6 @@
 //! Names of properties before version 2, as Mitsuba 3 renames them.
 
-use super::object::{Object, Property, Value};
+use super::object::{MitsubaObject, ObjectProperty, Value};
 use glam::{DAffine3, DVec3};
 
 /// `toWorld` → `to_world`, `intIOR` → `int_ior`.
@@ -25,7 +25,7 @@ pub(super) fn underscored(name: &str) -> String {
 }
 
 /// What changed beside the writing of names: the reflectance of diffuse surfaces, and scales of texture coordinates.
-pub(super) fn upgrade(object: &mut Object) {
+pub(super) fn upgrade(object: &mut MitsubaObject) {
     if object.plugin == "diffuse" {
         for property in &mut object.properties {
             if property.name == "diffuse_reflectance" {
@@ -48,7 +48,7 @@ pub(super) fn upgrade(object: &mut Object) {
     let scale = DVec3::new(value(u_scale, 1.0), value(v_scale, 1.0), 1.0);
     let offset = DVec3::new(value(u_offset, 0.0), value(v_offset, 0.0), 0.0);
     let to_uv = DAffine3::from_scale(scale) * DAffine3::from_translation(offset);
-    object.properties.push(Property {
+    object.properties.push(ObjectProperty {
         name: "to_uv".to_owned(),
         value: Value::Transform(to_uv),
         place,
@@ -56,7 +56,7 @@ pub(super) fn upgrade(object: &mut Object) {
     });
 }
 
-fn take(object: &mut Object, name: &str) -> Option<(f64, crate::report::Place)> {
+fn take(object: &mut MitsubaObject, name: &str) -> Option<(f64, crate::report::Place)> {
     let at = object.properties.iter().position(|p| p.name == name)?;
     let value = match object.properties[at].value {
         Value::Number(value) => value,

@@ -1,9 +1,9 @@
 //! From XML to objects: parameters are put in, files are included, names are upgraded.
 
-use super::object::{Kind, Object, Property, Value};
+use super::object::{MitsubaObject, ObjectKind, ObjectProperty, Value};
 use super::parameters::Parameters;
 use super::property_names::VALUES;
-use super::source::{Cursor, Source};
+use super::source::{LineCursor, SourceFile};
 use super::transform::{Attributes, allow, find, required};
 use super::upgrade;
 use crate::files::Files;
@@ -23,7 +23,7 @@ const MOST_ELEMENTS: usize = 1 << 21;
 /// What the files of a scene hold.
 pub(super) struct Tree<'a> {
     /// The scene is the first.
-    pub(super) objects: Vec<Object>,
+    pub(super) objects: Vec<MitsubaObject>,
     /// Objects by their id.
     pub(super) ids: HashMap<String, usize>,
     parameters: Parameters,
@@ -72,7 +72,7 @@ impl<'a> Tree<'a> {
         let name: Rc<str> = name.into();
         // What parses them compares all of an element with one another.
         if let Some(offset) = crowded(text) {
-            let mut cursor = Cursor::new(text);
+            let mut cursor = LineCursor::new(text);
             let place = cursor.place(offset, &name);
             let message = format!("an element of more than {MAX_ATTRIBUTES} attributes");
             return self.report.cause(&place, message);
@@ -90,11 +90,11 @@ impl<'a> Tree<'a> {
             }
         };
         let root = document.root_element();
-        let mut source = Source {
+        let mut source = SourceFile {
             name,
             folders,
             is_old: false,
-            cursor: Cursor::new(text),
+            cursor: LineCursor::new(text),
         };
         let place = source.cursor.place(root.range().start, &source.name);
         match root.attribute("version").map(version) {
@@ -109,20 +109,34 @@ impl<'a> Tree<'a> {
             }
             Some((parent, depth)) => self.element(root, parent, &mut source, depth),
             None if root.tag_name().name() == "scene" => {
-                self.object(root, Kind::Scene, &Vec::new(), place, 0, &mut source, 0);
+                self.object(
+                    root,
+                    ObjectKind::Scene,
+                    &Vec::new(),
+                    place,
+                    0,
+                    &mut source,
+                    0,
+                );
             }
             None => self.report.cause(&place, "the root is no <scene>"),
         }
     }
 
-    fn children(&mut self, node: Node<'_, '_>, at: usize, source: &mut Source, depth: usize) {
+    fn children(&mut self, node: Node<'_, '_>, at: usize, source: &mut SourceFile, depth: usize) {
         for child in node.children().filter(Node::is_element) {
             self.element(child, at, source, depth);
         }
     }
 
     /// One element within the object `parent`.
-    fn element(&mut self, node: Node<'_, '_>, parent: usize, source: &mut Source, depth: usize) {
+    fn element(
+        &mut self,
+        node: Node<'_, '_>,
+        parent: usize,
+        source: &mut SourceFile,
+        depth: usize,
+    ) {
         let place = source.cursor.place(node.range().start, &source.name);
         self.elements += 1;
         if self.elements > MOST_ELEMENTS || depth > MAX_DEPTH {
@@ -136,7 +150,7 @@ impl<'a> Tree<'a> {
         }
         let done = self.attributes(node).and_then(|attributes| {
             let name = node.tag_name().name();
-            match Kind::of(name, find(&attributes, "type").is_some()) {
+            match ObjectKind::of(name, find(&attributes, "type").is_some()) {
                 Some(kind) => {
                     // The root of an included file.
                     let is_root = node.parent_element().is_none();
@@ -177,17 +191,17 @@ impl<'a> Tree<'a> {
     fn object(
         &mut self,
         node: Node<'_, '_>,
-        kind: Kind,
+        kind: ObjectKind,
         attributes: &Attributes,
         place: Place,
         parent: usize,
-        source: &mut Source,
+        source: &mut SourceFile,
         depth: usize,
     ) {
         let at = self.objects.len();
         let id = find(attributes, "id").map(str::to_owned);
         let name = find(attributes, "name").unwrap_or_default().to_owned();
-        self.objects.push(Object {
+        self.objects.push(MitsubaObject {
             kind,
             number: at,
             plugin: find(attributes, "type").unwrap_or("scene").to_owned(),
@@ -224,7 +238,7 @@ impl<'a> Tree<'a> {
         }
     }
 
-    fn add(&mut self, at: usize, name: String, value: Value, place: &Place, source: &Source) {
+    fn add(&mut self, at: usize, name: String, value: Value, place: &Place, source: &SourceFile) {
         let name = match source.is_old {
             true => upgrade::underscored(&name),
             false => name,
@@ -235,7 +249,7 @@ impl<'a> Tree<'a> {
             let message = format!("property {} is there twice", quoted(&name));
             self.report.cause(place, message);
         }
-        properties.push(Property {
+        properties.push(ObjectProperty {
             name,
             value,
             place: place.clone(),
@@ -250,7 +264,7 @@ impl<'a> Tree<'a> {
         attributes: &Attributes,
         place: &Place,
         parent: usize,
-        source: &mut Source,
+        source: &mut SourceFile,
         depth: usize,
     ) -> Result<(), String> {
         match node.tag_name().name() {

@@ -1,11 +1,11 @@
 //! Entries of an MTL file.
 
-use super::map::Map;
+use super::map::MtlMap;
 use crate::report::Place;
 
 /// A material of an MTL file, as it is written.
 #[derive(Clone, Debug)]
-pub(super) struct Entry {
+pub(super) struct MtlEntry {
     /// Where it begins.
     pub(super) place: Place,
     /// Diffuse reflectance.
@@ -24,12 +24,12 @@ pub(super) struct Entry {
     pub(super) d: Option<f64>,
     /// Kind of illumination, 0 to 10.
     pub(super) illum: Option<u32>,
-    pub(super) map_kd: Option<Map>,
-    pub(super) map_ke: Option<Map>,
-    pub(super) map_d: Option<Map>,
+    pub(super) map_kd: Option<MtlMap>,
+    pub(super) map_ke: Option<MtlMap>,
+    pub(super) map_d: Option<MtlMap>,
 }
 
-impl Entry {
+impl MtlEntry {
     pub(super) fn new(place: Place) -> Self {
         Self {
             place,

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 /// A picture and how it is placed.
 #[derive(Clone, Debug)]
-pub(super) struct Map {
+pub(super) struct MtlMap {
     pub(super) place: Place,
     pub(super) file: String,
     /// Where it is looked for.
@@ -35,7 +35,7 @@ const OPTIONS: [(&str, usize); 13] = [
     ("-type", 1),
 ];
 
-impl Map {
+impl MtlMap {
     /// Reads what follows the word; `None` after a cause.
     pub(super) fn read(text: &str, place: Place, folder: PathBuf, report: &Report) -> Option<Self> {
         let (mut scale, mut offset, mut wrap) = (DVec2::ONE, DVec2::ZERO, Wrap::Repeat);

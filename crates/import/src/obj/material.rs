@@ -1,10 +1,10 @@
 //! Materials of MTL files.
 
-use super::entry::Entry;
-use super::map::Map;
+use super::entry::MtlEntry;
+use super::map::MtlMap;
 use super::ply::diffuse;
-use super::reader::Reader;
-use super::surface::Surface;
+use super::reader::ObjReader;
+use super::surface::ObjSurface;
 use crate::pictures::{decode, linear};
 use crate::range::{MAX_NUMBER, MAX_SHARE};
 use etendue_field::Raster;
@@ -14,11 +14,11 @@ use std::sync::Arc;
 /// Index of refraction, if nothing is said.
 const INDEX: f64 = 1.5;
 
-impl Reader<'_> {
+impl ObjReader<'_> {
     /// The surface of parts without a material.
-    pub(super) fn default_surface(&mut self) -> Surface {
+    pub(super) fn default_surface(&mut self) -> ObjSurface {
         self.world.materials.push(diffuse());
-        Surface {
+        ObjSurface {
             material: self.world.materials.len() - 1,
             emission: None,
             has_picture: false,
@@ -26,7 +26,7 @@ impl Reader<'_> {
     }
 
     /// `None` after a cause.
-    pub(super) fn surface(&mut self, entry: &Entry) -> Option<Surface> {
+    pub(super) fn surface(&mut self, entry: &MtlEntry) -> Option<ObjSurface> {
         let scatter = self.scatter(entry);
         let emission = self.emission(entry);
         let opacity = match &entry.map_d {
@@ -43,14 +43,14 @@ impl Reader<'_> {
         };
         self.world.materials.push(material);
         let maps = [&entry.map_kd, &entry.map_ke, &entry.map_d];
-        Some(Surface {
+        Some(ObjSurface {
             material: self.world.materials.len() - 1,
             emission,
             has_picture: maps.iter().any(|map| map.is_some()),
         })
     }
 
-    fn scatter(&mut self, entry: &Entry) -> Option<Material> {
+    fn scatter(&mut self, entry: &MtlEntry) -> Option<Material> {
         let note = |message: &str| self.report.note(&entry.place, message);
         let ks = self.color.of(entry.ks.unwrap_or_default());
         let illum = entry.illum.unwrap_or(if ks > 0.0 { 2 } else { 1 });
@@ -78,7 +78,7 @@ impl Reader<'_> {
     }
 
     /// `Kd` times its picture.
-    fn diffuse(&mut self, entry: &Entry) -> Option<Texture> {
+    fn diffuse(&mut self, entry: &MtlEntry) -> Option<Texture> {
         match &entry.map_kd {
             Some(map) => {
                 let texture = self.bitmap(map, entry.kd.unwrap_or([1.0; 3]), false)?;
@@ -97,7 +97,7 @@ impl Reader<'_> {
         }
     }
 
-    fn phong(&mut self, entry: &Entry, ks: f64) -> Option<Material> {
+    fn phong(&mut self, entry: &MtlEntry, ks: f64) -> Option<Material> {
         let diffuse = self.diffuse(entry)?;
         let exponent = entry.ns.unwrap_or(1.0);
         let note = |message: &str| self.report.note(&entry.place, message);
@@ -121,7 +121,7 @@ impl Reader<'_> {
         })
     }
 
-    fn glass(&self, entry: &Entry) -> Material {
+    fn glass(&self, entry: &MtlEntry) -> Material {
         let index = entry.ni.unwrap_or(INDEX);
         if entry.ni.is_none() {
             let message = format!("transmits without Ni: {INDEX} is taken");
@@ -140,7 +140,7 @@ impl Reader<'_> {
 
     /// The outer `None` is after a cause.
     #[expect(clippy::option_option, reason = "the outer none is a cause")]
-    fn emission(&mut self, entry: &Entry) -> Option<Option<Texture>> {
+    fn emission(&mut self, entry: &MtlEntry) -> Option<Option<Texture>> {
         if let Some(map) = &entry.map_ke {
             return self
                 .bitmap(map, entry.ke.unwrap_or([1.0; 3]), false)
@@ -151,7 +151,7 @@ impl Reader<'_> {
     }
 
     /// A picture times factors; levels are sRGB unless they are `raw`. `None` after a cause.
-    fn bitmap(&mut self, map: &Map, factor: [f64; 3], raw: bool) -> Option<Texture> {
+    fn bitmap(&mut self, map: &MtlMap, factor: [f64; 3], raw: bool) -> Option<Texture> {
         let read = self.pixels(map, factor, raw);
         let refuse = |error: String| {
             let message = format!("file {} {error}", map.name());
@@ -166,7 +166,7 @@ impl Reader<'_> {
         }))
     }
 
-    fn pixels(&self, map: &Map, factor: [f64; 3], raw: bool) -> Result<Raster, String> {
+    fn pixels(&self, map: &MtlMap, factor: [f64; 3], raw: bool) -> Result<Raster, String> {
         let path = self
             .files
             .find(std::slice::from_ref(&map.folder), &map.file)?;

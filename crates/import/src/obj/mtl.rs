@@ -1,7 +1,7 @@
 //! MTL files, statement by statement.
 
-use super::entry::Entry;
-use super::map::Map;
+use super::entry::MtlEntry;
+use super::map::MtlMap;
 use crate::range::MAX_NUMBER;
 use crate::report::{Place, Report, quoted};
 use crate::spectrum::from_xyz;
@@ -18,10 +18,10 @@ pub(super) fn read(
     name: &str,
     folder: &Path,
     report: &Report,
-    entries: &mut HashMap<String, Entry>,
+    entries: &mut HashMap<String, MtlEntry>,
 ) {
     let mut left_out: Vec<(Place, String, usize)> = Vec::new();
-    let mut open: Option<(String, Entry)> = None;
+    let mut open: Option<(String, MtlEntry)> = None;
     for (i, line) in text.lines().enumerate() {
         let line = line.split('#').next().unwrap_or_default().trim();
         let end = line.find(char::is_whitespace).unwrap_or(line.len());
@@ -36,14 +36,14 @@ pub(super) fn read(
         }
         if word.eq_ignore_ascii_case("newmtl") {
             close(open.take(), report, entries);
-            open = Some((rest.to_owned(), Entry::new(place)));
+            open = Some((rest.to_owned(), MtlEntry::new(place)));
             continue;
         }
         let Some((_, entry)) = &mut open else {
             report.note(&place, format!("{} before newmtl left out", quoted(word)));
             continue;
         };
-        let statement = Statement {
+        let statement = MtlStatement {
             word,
             rest,
             place,
@@ -68,7 +68,11 @@ pub(super) fn read(
     }
 }
 
-fn close(open: Option<(String, Entry)>, report: &Report, entries: &mut HashMap<String, Entry>) {
+fn close(
+    open: Option<(String, MtlEntry)>,
+    report: &Report,
+    entries: &mut HashMap<String, MtlEntry>,
+) {
     let Some((name, entry)) = open else {
         return;
     };
@@ -86,16 +90,16 @@ fn close(open: Option<(String, Entry)>, report: &Report, entries: &mut HashMap<S
     }
 }
 
-struct Statement<'a> {
+struct MtlStatement<'a> {
     word: &'a str,
     rest: &'a str,
     place: Place,
     report: &'a Report,
 }
 
-impl Statement<'_> {
+impl MtlStatement<'_> {
     /// Whether the statement is known.
-    fn apply(&self, entry: &mut Entry, folder: &Path) -> bool {
+    fn apply(&self, entry: &mut MtlEntry, folder: &Path) -> bool {
         match self.word.to_ascii_lowercase().as_str() {
             "kd" => entry.kd = self.color(1.0).or(entry.kd),
             "ks" => entry.ks = self.color(1.0).or(entry.ks),
@@ -131,8 +135,8 @@ impl Statement<'_> {
         self.report.cause(&self.place, message);
     }
 
-    fn map(&self, folder: &Path) -> Option<Map> {
-        Map::read(
+    fn map(&self, folder: &Path) -> Option<MtlMap> {
+        MtlMap::read(
             self.rest,
             self.place.clone(),
             folder.to_owned(),
@@ -145,7 +149,7 @@ impl Statement<'_> {
             return self.number(0.0, 1.0);
         };
         self.report.note(&self.place, "-halo left out");
-        let inner = Statement {
+        let inner = MtlStatement {
             rest: after.trim(),
             place: self.place.clone(),
             ..*self

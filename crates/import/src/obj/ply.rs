@@ -1,7 +1,7 @@
 //! PLY files: one mesh.
 
 use crate::files::Files;
-use crate::meshes::Parts;
+use crate::meshes::MeshParts;
 use crate::report::{Place, Report};
 use crate::{Imported, Options, Refused};
 use etendue_scene::DetailedMesh;
@@ -15,7 +15,7 @@ pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused
     let (_, _, bytes) = Files::open(file, options)?;
     let unsound = |error: String| Refused::because(file, format!("is no sound mesh: {error}"));
     let read = DetailedMesh::parse(file, &bytes).map_err(|fault| unsound(fault.to_string()))?;
-    let mut parts = Parts::from(read);
+    let mut parts = MeshParts::from(read);
     parts.drop_empty();
     parts.face_normals();
     let mended = parts.mend_normals();

@@ -1,11 +1,11 @@
 //! Parts of OBJ files, as shapes.
 
-use super::entry::Entry;
+use super::entry::MtlEntry;
 use super::mtl;
-use super::surface::Surface;
+use super::surface::ObjSurface;
 use crate::Color;
 use crate::files::Files;
-use crate::meshes::Parts;
+use crate::meshes::MeshParts;
 use crate::report::{Place, Report, quoted};
 use etendue_scene::{DetailedMesh, ObjFile, ObjPart};
 use etendue_world::{Geometry, Shape, World};
@@ -15,19 +15,19 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Makes a world of a file.
-pub(super) struct Reader<'a> {
+pub(super) struct ObjReader<'a> {
     pub(super) files: &'a Files,
     pub(super) report: &'a Report,
     pub(super) color: Color,
     pub(super) world: World,
     place: Place,
     folder: PathBuf,
-    entries: HashMap<String, Entry>,
+    entries: HashMap<String, MtlEntry>,
     /// Surfaces by the name of their material; `None` after a cause.
-    surfaces: HashMap<Option<String>, Option<Surface>>,
+    surfaces: HashMap<Option<String>, Option<ObjSurface>>,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> ObjReader<'a> {
     pub(super) fn new(
         files: &'a Files,
         report: &'a Report,
@@ -101,7 +101,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn part(&mut self, mesh: &DetailedMesh, part: &Part) {
+    fn part(&mut self, mesh: &DetailedMesh, part: &MaterialPart) {
         let Some(surface) = self.surface_of(&part.material, part.line) else {
             return;
         };
@@ -134,7 +134,7 @@ impl<'a> Reader<'a> {
         });
     }
 
-    fn surface_of(&mut self, name: &Option<String>, line: usize) -> Option<Surface> {
+    fn surface_of(&mut self, name: &Option<String>, line: usize) -> Option<ObjSurface> {
         if let Some(known) = self.surfaces.get(name) {
             return known.clone();
         }
@@ -158,7 +158,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The triangles of a part with their own vertices, v of pictures downwards.
-    fn parts(&self, mesh: &DetailedMesh, part: &Part) -> Option<Parts> {
+    fn parts(&self, mesh: &DetailedMesh, part: &MaterialPart) -> Option<MeshParts> {
         let mut known: HashMap<u32, u32> = HashMap::new();
         let mut order: Vec<usize> = Vec::new();
         let mut corner = |i: u32| {
@@ -173,7 +173,7 @@ impl<'a> Reader<'a> {
             .iter()
             .map(|i| mesh.triangles[*i].map(&mut corner))
             .collect();
-        let parts = Parts {
+        let parts = MeshParts {
             vertices: order.iter().map(|i| mesh.vertices[*i]).collect(),
             corners,
             normals: some(&mesh.normals, &order),
@@ -199,20 +199,20 @@ fn some<T: Copy + Default + PartialEq>(all: &Option<Vec<T>>, order: &[usize]) ->
 }
 
 /// All triangles of one material.
-struct Part {
+struct MaterialPart {
     material: Option<String>,
     line: usize,
     triangles: Vec<usize>,
 }
 
 /// Parts of the same material as one, in the order of the first.
-fn joined(parts: Vec<ObjPart>) -> Vec<Part> {
-    let mut joined: Vec<Part> = Vec::new();
+fn joined(parts: Vec<ObjPart>) -> Vec<MaterialPart> {
+    let mut joined: Vec<MaterialPart> = Vec::new();
     let mut known: HashMap<Option<String>, usize> = HashMap::new();
     for part in parts {
         let at = *known.entry(part.material.clone()).or_insert(joined.len());
         if at == joined.len() {
-            joined.push(Part {
+            joined.push(MaterialPart {
                 material: part.material,
                 line: part.line,
                 triangles: Vec::new(),

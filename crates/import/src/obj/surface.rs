@@ -4,7 +4,7 @@ use etendue_world::Texture;
 
 /// What a part is made of.
 #[derive(Clone, Debug)]
-pub(super) struct Surface {
+pub(super) struct ObjSurface {
     pub(super) material: usize,
     pub(super) emission: Option<Texture>,
     /// A picture that needs texture coordinates.

@@ -3,18 +3,18 @@
 use super::entity::{Entity, Read};
 use super::imagemap::upside_down;
 use super::keys::Uv;
-use super::reader::Reader;
-use super::scene::Shape;
-use super::shape::Surface;
-use crate::pictures::Curve;
+use super::reader::PbrtReader;
+use super::scene::PbrtShape;
+use super::shape::PbrtSurface;
+use crate::pictures::TransferCurve;
 use etendue_world::{Bitmap, Emission, Filter, Texture, Wrap};
 use std::f64::consts::PI;
 
-impl Reader<'_> {
+impl PbrtReader<'_> {
     /// What a shape emits, but for the power that is wanted.
     pub(super) fn shape_emission(
         &mut self,
-        shape: &Shape,
+        shape: &PbrtShape,
         uv: Uv,
         is_in_object: bool,
     ) -> Read<Option<Emission>> {
@@ -55,7 +55,11 @@ impl Reader<'_> {
         let scale = self.scale_of(area);
         let name = self.file_name(area)?;
         let is_png = name.to_ascii_lowercase().ends_with(".png");
-        let curve = if is_png { Curve::Srgb } else { Curve::Linear };
+        let curve = if is_png {
+            TransferCurve::Srgb
+        } else {
+            TransferCurve::Linear
+        };
         let pixels = self.picture(area, curve)?;
         let scale = scale?;
         Ok(Texture::Bitmap(Bitmap {
@@ -71,7 +75,7 @@ impl Reader<'_> {
         &self,
         area: Option<&Entity>,
         emission: Option<Emission>,
-        surface: &Surface,
+        surface: &PbrtSurface,
     ) -> Read<Option<Emission>> {
         let (Some(area), Some(Texture::Constant(radiance))) = (area, &emission) else {
             return Ok(emission);

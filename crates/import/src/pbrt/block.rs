@@ -1,7 +1,7 @@
 //! What begins and ends: blocks of attributes, and objects.
 
 use super::build::Builder;
-use super::scene::{Instance, Object};
+use super::scene::{Instance, PbrtObject};
 use crate::report::{Place, quoted};
 
 /// Blocks within one another.
@@ -57,7 +57,7 @@ impl Builder<'_> {
             return Err(format!("a second object {}", quoted(&name)));
         }
         self.push('o', place)?;
-        let object = Object {
+        let object = PbrtObject {
             place: place.clone(),
             shapes: Vec::new(),
         };

@@ -1,8 +1,8 @@
 //! A scene from directives.
 
 use super::entity::Entity;
-use super::parameter::Parameter;
-use super::scene::{MaterialOf, Scene, Shape, State};
+use super::parameter::PbrtParameter;
+use super::scene::{GraphicsState, MaterialOf, PbrtScene, PbrtShape};
 use super::token::Tokens;
 use crate::files::Files;
 use crate::report::{Place, Report, quoted};
@@ -36,10 +36,10 @@ const SETTINGS: [&str; 5] = [
 pub(super) struct Builder<'a> {
     pub(super) files: &'a Files,
     pub(super) report: &'a Report,
-    pub(super) scene: Scene,
-    pub(super) state: State,
+    pub(super) scene: PbrtScene,
+    pub(super) state: GraphicsState,
     /// States to return to, with `a` for attributes and `o` for objects, and where they were left.
-    pub(super) stack: Vec<(State, char, Place)>,
+    pub(super) stack: Vec<(GraphicsState, char, Place)>,
     systems: BTreeMap<String, DAffine3>,
     pub(super) is_world: bool,
     /// The object that shapes go to.
@@ -56,8 +56,8 @@ impl<'a> Builder<'a> {
         Self {
             files,
             report,
-            scene: Scene::default(),
-            state: State::default(),
+            scene: PbrtScene::default(),
+            state: GraphicsState::default(),
             stack: Vec::new(),
             systems: BTreeMap::new(),
             is_world: false,
@@ -69,7 +69,7 @@ impl<'a> Builder<'a> {
     }
 
     /// The scene of a text.
-    pub(super) fn build(mut self, text: &str, name: &str) -> Scene {
+    pub(super) fn build(mut self, text: &str, name: &str) -> PbrtScene {
         let mut tokens = Tokens::new(text, name);
         self.follow(&mut tokens);
         if !self.is_world {
@@ -126,7 +126,7 @@ impl<'a> Builder<'a> {
         &mut self,
         word: &str,
         plugin: String,
-        own: Vec<Rc<Parameter>>,
+        own: Vec<Rc<PbrtParameter>>,
         place: &Place,
     ) -> Result<(), String> {
         if let Some(kind) = SETTINGS.iter().find(|kind| **kind == word) {
@@ -172,7 +172,7 @@ impl<'a> Builder<'a> {
     fn make_named(
         &mut self,
         name: String,
-        own: Vec<Rc<Parameter>>,
+        own: Vec<Rc<PbrtParameter>>,
         place: &Place,
     ) -> Result<(), String> {
         let entity = self.entity("material", String::new(), own, place, Some(2));
@@ -188,7 +188,7 @@ impl<'a> Builder<'a> {
     fn camera(
         &mut self,
         plugin: String,
-        own: Vec<Rc<Parameter>>,
+        own: Vec<Rc<PbrtParameter>>,
         place: &Place,
     ) -> Result<(), String> {
         self.before_world("Camera")?;
@@ -201,8 +201,8 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn shape(&mut self, plugin: String, own: Vec<Rc<Parameter>>, place: &Place) {
-        let shape = Shape {
+    fn shape(&mut self, plugin: String, own: Vec<Rc<PbrtParameter>>, place: &Place) {
+        let shape = PbrtShape {
             entity: self.entity("shape", plugin, own, place, Some(0)),
             to_world: self.state.to_world,
             is_reversed: self.state.is_reversed,
@@ -216,7 +216,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn attribute(&mut self, target: &str, own: Vec<Rc<Parameter>>) -> Result<(), String> {
+    fn attribute(&mut self, target: &str, own: Vec<Rc<PbrtParameter>>) -> Result<(), String> {
         let Some(at) = TARGETS.iter().position(|known| *known == target) else {
             let allowed = TARGETS.join(", ");
             return Err(format!(
@@ -240,7 +240,7 @@ impl<'a> Builder<'a> {
         name: String,
         kind: &str,
         plugin: String,
-        own: Vec<Rc<Parameter>>,
+        own: Vec<Rc<PbrtParameter>>,
         place: &Place,
     ) -> Result<(), String> {
         self.within_world("Texture")?;
@@ -264,7 +264,7 @@ impl<'a> Builder<'a> {
         &self,
         kind: &'static str,
         plugin: String,
-        own: Vec<Rc<Parameter>>,
+        own: Vec<Rc<PbrtParameter>>,
         place: &Place,
         target: Option<usize>,
     ) -> Entity {

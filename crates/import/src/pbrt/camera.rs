@@ -1,8 +1,8 @@
 //! The camera, the film and how far light is followed.
 
-use super::entity::{Entity, Given, Read};
-use super::parameter::Kind;
-use super::reader::Reader;
+use super::entity::{CauseGiven, Entity, Read};
+use super::parameter::ParameterKind;
+use super::reader::PbrtReader;
 use super::transform::without_scale;
 use crate::report::{Place, quoted};
 use etendue_world::{Camera, Lens, Projection};
@@ -35,7 +35,7 @@ const PATHS: [&str; 8] = [
 /// By how much of its size a window may miss square pixels.
 const SQUARE: f64 = 1e-4;
 
-impl Reader<'_> {
+impl PbrtReader<'_> {
     pub(super) fn camera(&mut self, whole: &Place) {
         let default = || Entity::default("camera", "perspective", whole.clone());
         let found = self.scene.camera.clone();
@@ -58,7 +58,7 @@ impl Reader<'_> {
         let placed = without_scale(map.inverse()).ok_or_else(|| {
             let message = "a camera that is sheared, or scaled differently along axes";
             self.report.cause(&entity.place, message);
-            Given
+            CauseGiven
         });
         self.exposure(entity)?;
         let size = size?;
@@ -93,7 +93,7 @@ impl Reader<'_> {
         } else {
             [1.0, 1.0 / aspect]
         };
-        let window = entity.exactly::<4>(report, "screenwindow", Kind::Float)?;
+        let window = entity.exactly::<4>(report, "screenwindow", ParameterKind::Float)?;
         let window = window.unwrap_or([-x, x, -y, y]);
         let [left, right, low, high] = window;
         let (width, height) = (right - left, high - low);
@@ -103,7 +103,7 @@ impl Reader<'_> {
         }
         let message = format!("pixels that are not square, {width} × {height} over {w} × {h}");
         self.report.cause(&entity.place, message);
-        Err(Given)
+        Err(CauseGiven)
     }
 
     /// `fov` is that of the shorter side, from −1 to 1.
@@ -183,13 +183,13 @@ impl Reader<'_> {
             })
         };
         let [w, h] = [pixels(0, "xresolution"), pixels(1, "yresolution")];
-        let crop = film.exactly::<4>(report, "cropwindow", Kind::Float)?;
+        let crop = film.exactly::<4>(report, "cropwindow", ParameterKind::Float)?;
         if crop.is_some_and(|crop| is_part(crop, [0.0, 1.0, 0.0, 1.0])) {
             let message = "parts of a film are not supported".to_owned();
             return Err(film.fault(report, "cropwindow", message));
         }
         let (w, h) = (w?, h?);
-        let bounds = film.exactly::<4>(report, "pixelbounds", Kind::Integer)?;
+        let bounds = film.exactly::<4>(report, "pixelbounds", ParameterKind::Integer)?;
         if bounds.is_some_and(|b| is_part(b, [0.0, w as f64, 0.0, h as f64])) {
             let message = "parts of a film are not supported".to_owned();
             return Err(film.fault(report, "pixelbounds", message));
@@ -242,7 +242,7 @@ impl Reader<'_> {
             }
             depth = match entity.integer_or(self.report, "maxdepth", DEPTH) {
                 Ok(depth) => depth,
-                Err(Given) => return,
+                Err(CauseGiven) => return,
             };
             if depth < 0 {
                 let message = format!("maxdepth is {depth}; allowed: from 0 on");

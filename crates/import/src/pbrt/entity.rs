@@ -1,6 +1,6 @@
 //! What a directive makes, and asking it for its parameters, which marks them as read.
 
-use super::parameter::{Kind, Parameter, Values};
+use super::parameter::{ParameterKind, ParameterValues, PbrtParameter};
 use crate::report::{Place, Report, quoted};
 use glam::{DVec2, DVec3};
 use std::cell::Cell;
@@ -8,10 +8,10 @@ use std::rc::Rc;
 
 /// A cause has been given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Given;
+pub(super) struct CauseGiven;
 
 /// What was read, or nothing after a cause.
-pub(super) type Read<T> = Result<T, Given>;
+pub(super) type Read<T> = Result<T, CauseGiven>;
 
 /// What pbrt has a plugin for.
 #[derive(Clone, Debug)]
@@ -22,9 +22,9 @@ pub(super) struct Entity {
     pub(super) plugin: String,
     pub(super) place: Place,
     /// Its own parameters.
-    pub(super) own: Vec<Rc<Parameter>>,
+    pub(super) own: Vec<Rc<PbrtParameter>>,
     /// Those of `Attribute` directives before it.
-    pub(super) defaults: Rc<Vec<Rc<Parameter>>>,
+    pub(super) defaults: Rc<Vec<Rc<PbrtParameter>>>,
     /// Whether the world has it.
     pub(super) is_used: Cell<bool>,
 }
@@ -43,7 +43,7 @@ impl Entity {
     }
 
     /// The last parameter of this name, its own before others.
-    pub(super) fn find(&self, name: &str) -> Option<&Parameter> {
+    pub(super) fn find(&self, name: &str) -> Option<&PbrtParameter> {
         let all = self.own.iter().rev().chain(self.defaults.iter().rev());
         let found = all.map(|p| &**p).find(|p| p.name == name)?;
         found.is_read.set(true);
@@ -60,13 +60,13 @@ impl Entity {
     }
 
     /// A cause at a parameter.
-    pub(super) fn fault(&self, report: &Report, name: &str, message: String) -> Given {
+    pub(super) fn fault(&self, report: &Report, name: &str, message: String) -> CauseGiven {
         report.cause(self.place_of(name), message);
-        Given
+        CauseGiven
     }
 
     /// A cause that says what this plugin may be.
-    pub(super) fn unsupported(&self, report: &Report, allowed: &str) -> Given {
+    pub(super) fn unsupported(&self, report: &Report, allowed: &str) -> CauseGiven {
         let plugin = quoted(&self.plugin);
         let message = format!(
             "{} {plugin} is not supported; allowed: {allowed}",
@@ -74,7 +74,7 @@ impl Entity {
         );
         report.cause(&self.place, message);
         self.drop_all();
-        Given
+        CauseGiven
     }
 
     /// It is passed over with all parameters: a message has been given.
@@ -86,12 +86,17 @@ impl Entity {
     }
 
     /// The values of a parameter of one of these types; `None` if it is not there.
-    fn values(&self, report: &Report, name: &str, kinds: &[Kind]) -> Read<Option<&Values>> {
+    fn values(
+        &self,
+        report: &Report,
+        name: &str,
+        kinds: &[ParameterKind],
+    ) -> Read<Option<&ParameterValues>> {
         let Some(parameter) = self.find(name) else {
             return Ok(None);
         };
-        if let Values::Broken = parameter.values {
-            return Err(Given);
+        if let ParameterValues::Broken = parameter.values {
+            return Err(CauseGiven);
         }
         if kinds.contains(&parameter.kind) {
             return Ok(Some(&parameter.values));
@@ -103,9 +108,14 @@ impl Entity {
     }
 
     /// All numbers of a parameter.
-    pub(super) fn numbers(&self, report: &Report, name: &str, kinds: &[Kind]) -> Read<&[f64]> {
+    pub(super) fn numbers(
+        &self,
+        report: &Report,
+        name: &str,
+        kinds: &[ParameterKind],
+    ) -> Read<&[f64]> {
         match self.values(report, name, kinds)? {
-            Some(Values::Numbers(all)) => Ok(all),
+            Some(ParameterValues::Numbers(all)) => Ok(all),
             _ => Ok(&[]),
         }
     }
@@ -115,7 +125,7 @@ impl Entity {
         &self,
         report: &Report,
         name: &str,
-        kind: Kind,
+        kind: ParameterKind,
     ) -> Read<Option<[f64; N]>> {
         if !self.has(name) {
             return Ok(None);
@@ -131,7 +141,7 @@ impl Entity {
     }
 
     pub(super) fn float(&self, report: &Report, name: &str) -> Read<Option<f64>> {
-        let one = self.exactly::<1>(report, name, Kind::Float)?;
+        let one = self.exactly::<1>(report, name, ParameterKind::Float)?;
         Ok(one.map(|[value]| value))
     }
 
@@ -159,30 +169,30 @@ impl Entity {
 
     #[expect(clippy::cast_possible_truncation, reason = "32 bits were checked")]
     pub(super) fn integer_or(&self, report: &Report, name: &str, default: i64) -> Read<i64> {
-        let one = self.exactly::<1>(report, name, Kind::Integer)?;
+        let one = self.exactly::<1>(report, name, ParameterKind::Integer)?;
         Ok(one.map_or(default, |[value]| value as i64))
     }
 
     pub(super) fn truth(&self, report: &Report, name: &str, default: bool) -> Read<bool> {
-        match self.values(report, name, &[Kind::Bool])? {
+        match self.values(report, name, &[ParameterKind::Bool])? {
             None => Ok(default),
-            Some(Values::Truths(all)) if all.len() == 1 => Ok(all[0]),
+            Some(ParameterValues::Truths(all)) if all.len() == 1 => Ok(all[0]),
             Some(_) => Err(self.fault(report, name, format!("{name} is not one truth value"))),
         }
     }
 
     /// All words of a parameter.
     pub(super) fn texts(&self, report: &Report, name: &str) -> Read<&[String]> {
-        match self.values(report, name, &[Kind::Text])? {
-            Some(Values::Texts(all)) => Ok(all),
+        match self.values(report, name, &[ParameterKind::Text])? {
+            Some(ParameterValues::Texts(all)) => Ok(all),
             _ => Ok(&[]),
         }
     }
 
     /// The name of the texture that a parameter of that type asks for.
     pub(super) fn texture_name(&self, report: &Report, name: &str) -> Read<&str> {
-        match self.values(report, name, &[Kind::Texture])? {
-            Some(Values::Texts(all)) if all.len() == 1 => Ok(&all[0]),
+        match self.values(report, name, &[ParameterKind::Texture])? {
+            Some(ParameterValues::Texts(all)) if all.len() == 1 => Ok(&all[0]),
             _ => Err(self.fault(report, name, format!("{name} is not one texture"))),
         }
     }
@@ -216,17 +226,22 @@ impl Entity {
     }
 
     pub(super) fn point_or(&self, report: &Report, name: &str, default: DVec3) -> Read<DVec3> {
-        let found = self.exactly::<3>(report, name, Kind::Point3)?;
+        let found = self.exactly::<3>(report, name, ParameterKind::Point3)?;
         Ok(found.map_or(default, DVec3::from))
     }
 
-    pub(super) fn points(&self, report: &Report, name: &str, kind: Kind) -> Read<Vec<DVec3>> {
+    pub(super) fn points(
+        &self,
+        report: &Report,
+        name: &str,
+        kind: ParameterKind,
+    ) -> Read<Vec<DVec3>> {
         let all = self.numbers(report, name, &[kind])?.chunks_exact(3);
         Ok(all.map(DVec3::from_slice).collect())
     }
 
     pub(super) fn pairs(&self, report: &Report, name: &str) -> Read<Vec<DVec2>> {
-        let kinds = [Kind::Point2, Kind::Vector2];
+        let kinds = [ParameterKind::Point2, ParameterKind::Vector2];
         let all = self.numbers(report, name, &kinds)?.chunks_exact(2);
         Ok(all.map(DVec2::from_slice).collect())
     }

@@ -2,9 +2,9 @@
 
 use super::entity::{Entity, Read};
 use super::keys::Uv;
-use super::reader::Reader;
+use super::reader::PbrtReader;
 use super::texture::Ask;
-use crate::pictures::Curve;
+use crate::pictures::TransferCurve;
 use crate::report::quoted;
 use crate::spectrum::Role;
 use etendue_field::Raster;
@@ -13,7 +13,7 @@ use glam::{DAffine2, DMat2, DVec2};
 use std::path::Path;
 use std::sync::Arc;
 
-impl Reader<'_> {
+impl PbrtReader<'_> {
     pub(super) fn imagemap(&mut self, entity: &Entity, ask: Ask, uv: Uv) -> Read<Texture> {
         let report = self.report;
         let to_uv = self.mapping(entity, uv);
@@ -70,9 +70,9 @@ impl Reader<'_> {
         };
         let name = self.file_name(entity)?;
         let curve = match entity.text(self.report, "encoding")? {
-            None if is_png(name) => Curve::Srgb,
-            None | Some("linear") => Curve::Linear,
-            Some("sRGB") => Curve::Srgb,
+            None if is_png(name) => TransferCurve::Srgb,
+            None | Some("linear") => TransferCurve::Linear,
+            Some("sRGB") => TransferCurve::Srgb,
             Some(other) => gamma(other).ok_or_else(|| {
                 let other = quoted(other);
                 let message = format!("encoding is {other}; allowed: linear, sRGB, gamma NUMBER");
@@ -83,7 +83,7 @@ impl Reader<'_> {
     }
 
     /// The picture that `filename` names.
-    pub(super) fn picture(&mut self, entity: &Entity, curve: Curve) -> Read<Arc<Raster>> {
+    pub(super) fn picture(&mut self, entity: &Entity, curve: TransferCurve) -> Read<Arc<Raster>> {
         let name = self.file_name(entity)?;
         let found = self.find(name);
         let read =
@@ -98,7 +98,7 @@ pub(super) fn upside_down() -> DAffine2 {
     DAffine2::from_mat2_translation(linear, DVec2::Y)
 }
 
-fn gamma(text: &str) -> Option<Curve> {
+fn gamma(text: &str) -> Option<TransferCurve> {
     let exponent = text.strip_prefix("gamma")?.trim().parse::<f64>().ok()?;
-    (exponent.is_finite() && exponent > 0.0).then_some(Curve::Gamma(exponent))
+    (exponent.is_finite() && exponent > 0.0).then_some(TransferCurve::Gamma(exponent))
 }

@@ -14,7 +14,7 @@ pub(super) enum Uv {
 }
 
 /// The file of a mesh, and whether its texture coordinates are asked for.
-pub(super) type MeshKey = (PathBuf, bool);
+pub(super) type PbrtMeshKey = (PathBuf, bool);
 
 /// A texture once read, by its name and what it is asked for.
 pub(super) type TextureKey = (bool, String, u8, Uv);

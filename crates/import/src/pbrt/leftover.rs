@@ -1,14 +1,14 @@
 //! What nothing asked for.
 
 use super::entity::Entity;
-use super::parameter::Parameter;
-use super::scene::Scene;
+use super::parameter::PbrtParameter;
+use super::scene::PbrtScene;
 use crate::report::{Report, quoted};
 use std::collections::BTreeSet;
 use std::rc::Rc;
 
 /// A note for each parameter that was not read, and for each object that the world does not have.
-pub(super) fn tell(scene: &Scene, report: &Report) {
+pub(super) fn tell(scene: &PbrtScene, report: &Report) {
     let camera = scene.camera.iter().map(|(camera, _)| camera);
     let lights = scene.lights.iter().map(|(light, _)| light);
     let all = camera
@@ -46,7 +46,7 @@ fn entity_left(entity: &Entity, report: &Report) {
     }
 }
 
-fn parameters(all: &[Rc<Parameter>], of: &str, report: &Report) {
+fn parameters(all: &[Rc<PbrtParameter>], of: &str, report: &Report) {
     for parameter in all.iter().filter(|p| !p.is_read.get()) {
         let name = quoted(&parameter.name);
         report.note(&parameter.place, format!("{name} of {of} is left out"));

@@ -1,7 +1,7 @@
 //! Lights that are no surfaces.
 
-use super::entity::{Entity, Given, Read};
-use super::reader::Reader;
+use super::entity::{CauseGiven, Entity, Read};
+use super::reader::PbrtReader;
 use super::transform::without_scale;
 use crate::range::{MAX_NUMBER, in_range};
 use crate::spectrum::Role;
@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 /// Plugins that are lights of a world.
 const ALLOWED: &str = "point, spot, distant, infinite";
 
-impl Reader<'_> {
+impl PbrtReader<'_> {
     pub(super) fn light(&mut self, entity: &Entity, to_world: DAffine3) {
         entity.is_used.set(true);
         let light = match entity.plugin.as_str() {
@@ -68,7 +68,7 @@ impl Reader<'_> {
             &entity.place,
             "a place out of range; allowed: coordinates up to 1e9",
         );
-        Err(Given)
+        Err(CauseGiven)
     }
 
     /// The way from `from` to `to` in the world.
@@ -78,7 +78,7 @@ impl Reader<'_> {
         let way = to_world.transform_vector3(to? - from?).try_normalize();
         way.ok_or_else(|| {
             self.report.cause(&entity.place, "a direction of no length");
-            Given
+            CauseGiven
         })
     }
 
@@ -102,7 +102,7 @@ impl Reader<'_> {
         if without_scale(to_world).is_none() {
             let message = "a spot that is sheared, or scaled differently along axes";
             report.cause(&entity.place, message);
-            return Err(Given);
+            return Err(CauseGiven);
         }
         let (cutoff, delta) = (cutoff?, delta?);
         if delta > cutoff {

@@ -1,8 +1,8 @@
 //! Materials. Those that do not let light through are the same on both sides.
 
-use super::entity::{Entity, Given, Read};
+use super::entity::{CauseGiven, Entity, Read};
 use super::keys::Uv;
-use super::reader::Reader;
+use super::reader::PbrtReader;
 use super::scene::MaterialOf;
 use super::texture::Ask;
 use crate::report::quoted;
@@ -27,7 +27,7 @@ const DEFAULT: usize = usize::MAX;
 
 const ALBEDO: Ask = Ask::Spectrum(Role::Reflectance);
 
-impl Reader<'_> {
+impl PbrtReader<'_> {
     /// The number of a material; `None` where there is no surface at all.
     pub(super) fn material(&mut self, of: &MaterialOf, uv: Uv) -> Read<Option<usize>> {
         let number = match of {
@@ -38,14 +38,14 @@ impl Reader<'_> {
                 None => {
                     let message = format!("material {} is not known", quoted(name));
                     self.cause_once(place, message);
-                    return Err(Given);
+                    return Err(CauseGiven);
                 }
             },
         };
         // What is unsound on one surface is so on all.
         let all = [Uv::Own, Uv::Ball, Uv::Disc].map(|uv| self.materials.get(&(number, uv)));
-        if all.contains(&Some(&Err(Given))) {
-            return Err(Given);
+        if all.contains(&Some(&Err(CauseGiven))) {
+            return Err(CauseGiven);
         }
         if let Some(known) = self.materials.get(&(number, uv)) {
             return *known;
@@ -78,7 +78,7 @@ impl Reader<'_> {
         if self.made_materials > MAX_MATERIALS || self.depth > MAX_DEPTH {
             let message = "it is in itself, or too many materials are in one another";
             self.cause_once(&entity.place, message.to_owned());
-            return Err(Given);
+            return Err(CauseGiven);
         }
         for name in ["displacement", "normalmap"] {
             if entity.has(name) {
@@ -108,7 +108,7 @@ impl Reader<'_> {
                 );
                 self.report.cause(&entity.place, message);
                 entity.drop_all();
-                return Err(Given);
+                return Err(CauseGiven);
             }
         }))
     }
@@ -183,7 +183,8 @@ impl Reader<'_> {
 
     /// Of what is behind the normal over what is before it.
     fn index(&mut self, entity: &Entity) -> Read<f64> {
-        let is_float = |p: &super::parameter::Parameter| p.kind == super::parameter::Kind::Float;
+        let is_float =
+            |p: &super::parameter::PbrtParameter| p.kind == super::parameter::ParameterKind::Float;
         let index = match entity.find("eta") {
             Some(parameter) if !is_float(parameter) => {
                 let message = "approximated: eta is the same at all wavelengths";

@@ -1,11 +1,11 @@
 //! Shapes that are meshes.
 
-use super::entity::{Entity, Given, Read};
+use super::entity::{CauseGiven, Entity, Read};
 use super::include;
-use super::parameter::Kind;
-use super::reader::Reader;
-use super::scene::Shape;
-use crate::meshes::Parts;
+use super::parameter::ParameterKind;
+use super::reader::PbrtReader;
+use super::scene::PbrtShape;
+use crate::meshes::MeshParts;
 use crate::report::quoted;
 use etendue_scene::DetailedMesh;
 use etendue_world::Triangles;
@@ -23,13 +23,13 @@ const TRIANGLE: [DVec2; 3] = [DVec2::ZERO, DVec2::X, DVec2::ONE];
 const PATCH: [DVec2; 4] = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE];
 
 /// Triangles, with their area in the world if they are one triangle or one patch.
-pub(super) struct Mesh {
+pub(super) struct PbrtMesh {
     pub(super) triangles: Arc<Triangles>,
     pub(super) area: Option<f64>,
 }
 
-impl Reader<'_> {
-    pub(super) fn mesh(&mut self, shape: &Shape, needs_uv: bool) -> Read<Mesh> {
+impl PbrtReader<'_> {
+    pub(super) fn mesh(&mut self, shape: &PbrtShape, needs_uv: bool) -> Read<PbrtMesh> {
         let entity = &shape.entity;
         let (triangles, each) = match entity.plugin.as_str() {
             "trianglemesh" => (self.triangle_mesh(entity, needs_uv)?, 1),
@@ -38,7 +38,7 @@ impl Reader<'_> {
         };
         let is_one = triangles.corners().len() <= each;
         let area = is_one.then(|| area(&triangles, shape.to_world));
-        Ok(Mesh { triangles, area })
+        Ok(PbrtMesh { triangles, area })
     }
 
     fn ply(&mut self, entity: &Entity, needs_uv: bool) -> Read<Arc<Triangles>> {
@@ -57,7 +57,7 @@ impl Reader<'_> {
         let made = parts.and_then(|parts| self.finish(parts, needs_uv));
         let made = made.map_err(|error| self.unread_once(entity, name, error));
         self.meshes.insert(key, made.clone());
-        made.map_err(|_| Given)
+        made.map_err(|_| CauseGiven)
     }
 
     /// The cause is given, and stays.
@@ -66,7 +66,7 @@ impl Reader<'_> {
         error
     }
 
-    fn ply_parts(&self, path: &Path) -> Result<Parts, String> {
+    fn ply_parts(&self, path: &Path) -> Result<MeshParts, String> {
         let bytes = include::bytes(self.files, path)?;
         let is_gz = path
             .extension()
@@ -82,15 +82,15 @@ impl Reader<'_> {
             return Err(format!("has extension {extension}; allowed: ply, ply.gz"));
         }
         let mesh = DetailedMesh::parse(&inner, &bytes);
-        mesh.map(Parts::from)
+        mesh.map(MeshParts::from)
             .map_err(|fault| format!("is no sound mesh: {fault}"))
     }
 
     fn triangle_mesh(&mut self, entity: &Entity, needs_uv: bool) -> Read<Arc<Triangles>> {
         let (vertices, indices) = self.indexed::<3>(entity)?;
-        let parts = Parts {
+        let parts = MeshParts {
             normals: self.beside(entity, "N", &vertices, |e, r| {
-                e.points(r, "N", Kind::Normal)
+                e.points(r, "N", ParameterKind::Normal)
             })?,
             uvs: self.beside(entity, "uv", &vertices, |e, r| e.pairs(r, "uv"))?,
             vertices,
@@ -103,10 +103,10 @@ impl Reader<'_> {
     fn bilinear(&mut self, entity: &Entity, needs_uv: bool) -> Read<Arc<Triangles>> {
         let (vertices, patches) = self.indexed::<4>(entity)?;
         let normals = self.beside(entity, "N", &vertices, |e, r| {
-            e.points(r, "N", Kind::Normal)
+            e.points(r, "N", ParameterKind::Normal)
         })?;
         let uvs = self.beside(entity, "uv", &vertices, |e, r| e.pairs(r, "uv"))?;
-        let mut parts = Parts {
+        let mut parts = MeshParts {
             vertices: Vec::new(),
             corners: Vec::new(),
             normals: normals.as_ref().map(|_| Vec::new()),
@@ -116,7 +116,7 @@ impl Reader<'_> {
             let at = patch.map(|i| i as usize);
             self.check_patch(entity, at.map(|i| vertices[i]), needs_uv)?;
             // Below 2³² in all: each index of the file makes one vertex.
-            let first = u32::try_from(parts.vertices.len()).map_err(|_| Given)?;
+            let first = u32::try_from(parts.vertices.len()).map_err(|_| CauseGiven)?;
             parts.vertices.extend(at.map(|i| vertices[i]));
             if let (Some(to), Some(of)) = (&mut parts.normals, &normals) {
                 to.extend(at.map(|i| of[i]));
@@ -153,8 +153,8 @@ impl Reader<'_> {
     /// Places of vertices, and which of them make each face of `N` corners.
     fn indexed<const N: usize>(&self, entity: &Entity) -> Read<(Vec<DVec3>, Vec<[u32; N]>)> {
         let report = self.report;
-        let vertices = entity.points(report, "P", Kind::Point3)?;
-        let indices = entity.numbers(report, "indices", &[Kind::Integer])?;
+        let vertices = entity.points(report, "P", ParameterKind::Point3)?;
+        let indices = entity.numbers(report, "indices", &[ParameterKind::Integer])?;
         if indices.is_empty() && vertices.len() == N {
             #[expect(clippy::cast_possible_truncation, reason = "3 or 4")]
             let all = std::array::from_fn(|i| i as u32);
@@ -197,16 +197,16 @@ impl Reader<'_> {
         Ok((!all.is_empty()).then_some(all))
     }
 
-    fn made(&self, entity: &Entity, parts: Parts, needs_uv: bool) -> Read<Arc<Triangles>> {
+    fn made(&self, entity: &Entity, parts: MeshParts, needs_uv: bool) -> Read<Arc<Triangles>> {
         let made = self.finish(parts, needs_uv);
         made.map_err(|error| {
             self.report
                 .cause(&entity.place, format!("the mesh {error}"));
-            Given
+            CauseGiven
         })
     }
 
-    fn finish(&self, mut parts: Parts, needs_uv: bool) -> Result<Arc<Triangles>, String> {
+    fn finish(&self, mut parts: MeshParts, needs_uv: bool) -> Result<Arc<Triangles>, String> {
         self.files.spend(parts.bytes())?;
         parts.drop_empty();
         if needs_uv && parts.uvs.is_none() {
@@ -222,13 +222,13 @@ impl Reader<'_> {
 }
 
 /// Triangles that share no vertex, with pbrt's own texture coordinates.
-fn apart(parts: Parts) -> Result<Parts, String> {
+fn apart(parts: MeshParts) -> Result<MeshParts, String> {
     let count = u32::try_from(parts.corners.len()).ok();
     let count = count.filter(|count| count.checked_mul(3).is_some());
     let count = count.ok_or("has too many triangles")?;
     let all = || parts.corners.iter().flatten().map(|i| *i as usize);
     let normals = parts.normals.as_ref();
-    Ok(Parts {
+    Ok(MeshParts {
         vertices: all().map(|i| parts.vertices[i]).collect(),
         normals: normals.map(|normals| all().map(|i| normals[i]).collect()),
         uvs: Some(parts.corners.iter().flat_map(|_| TRIANGLE).collect()),

@@ -1,6 +1,6 @@
 //! Lists of parameters, such as `"float radius" 2`.
 
-use super::token::{At, Token, Tokens, number};
+use super::token::{LineColumn, Token, Tokens, number};
 use super::words::is_directive;
 use crate::range::MAX_NUMBER;
 use crate::report::{Place, Report, quoted};
@@ -9,10 +9,10 @@ use std::rc::Rc;
 
 /// A named value.
 #[derive(Debug)]
-pub(super) struct Parameter {
-    pub(super) kind: Kind,
+pub(super) struct PbrtParameter {
+    pub(super) kind: ParameterKind,
     pub(super) name: String,
-    pub(super) values: Values,
+    pub(super) values: ParameterValues,
     pub(super) place: Place,
     /// Whether anything asked for it.
     pub(super) is_read: Cell<bool>,
@@ -20,7 +20,7 @@ pub(super) struct Parameter {
 
 /// What stands behind the name.
 #[derive(Debug)]
-pub(super) enum Values {
+pub(super) enum ParameterValues {
     Numbers(Vec<f64>),
     Texts(Vec<String>),
     Truths(Vec<bool>),
@@ -30,7 +30,7 @@ pub(super) enum Values {
 
 /// The types of pbrt-v4.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum ParameterKind {
     Bool,
     Integer,
     Float,
@@ -47,23 +47,23 @@ pub(super) enum Kind {
 }
 
 /// All types by their names.
-const KINDS: [(&str, Kind); 13] = [
-    ("bool", Kind::Bool),
-    ("integer", Kind::Integer),
-    ("float", Kind::Float),
-    ("point2", Kind::Point2),
-    ("vector2", Kind::Vector2),
-    ("point3", Kind::Point3),
-    ("vector3", Kind::Vector3),
-    ("normal", Kind::Normal),
-    ("string", Kind::Text),
-    ("texture", Kind::Texture),
-    ("rgb", Kind::Rgb),
-    ("blackbody", Kind::Blackbody),
-    ("spectrum", Kind::Spectrum),
+const KINDS: [(&str, ParameterKind); 13] = [
+    ("bool", ParameterKind::Bool),
+    ("integer", ParameterKind::Integer),
+    ("float", ParameterKind::Float),
+    ("point2", ParameterKind::Point2),
+    ("vector2", ParameterKind::Vector2),
+    ("point3", ParameterKind::Point3),
+    ("vector3", ParameterKind::Vector3),
+    ("normal", ParameterKind::Normal),
+    ("string", ParameterKind::Text),
+    ("texture", ParameterKind::Texture),
+    ("rgb", ParameterKind::Rgb),
+    ("blackbody", ParameterKind::Blackbody),
+    ("spectrum", ParameterKind::Spectrum),
 ];
 
-impl Kind {
+impl ParameterKind {
     /// How many numbers make one value.
     fn arity(self) -> usize {
         match self {
@@ -80,8 +80,8 @@ impl Kind {
     }
 }
 
-/// All parameters that follow. Those with a fault are there too, as [`Values::Broken`].
-pub(super) fn parameters(tokens: &mut Tokens<'_>, report: &Report) -> Vec<Rc<Parameter>> {
+/// All parameters that follow. Those with a fault are there too, as [`ParameterValues::Broken`].
+pub(super) fn parameters(tokens: &mut Tokens<'_>, report: &Report) -> Vec<Rc<PbrtParameter>> {
     let mut all = Vec::new();
     while let Some((Token::Text(declared), at)) = tokens.peek().cloned() {
         tokens.next();
@@ -99,7 +99,7 @@ pub(super) fn parameters(tokens: &mut Tokens<'_>, report: &Report) -> Vec<Rc<Par
             report.cause(&place, message);
             continue;
         };
-        all.push(Rc::new(Parameter {
+        all.push(Rc::new(PbrtParameter {
             values: checked(values, *kind, name, &place, report),
             kind: *kind,
             name: name.to_owned(),
@@ -111,7 +111,7 @@ pub(super) fn parameters(tokens: &mut Tokens<'_>, report: &Report) -> Vec<Rc<Par
 }
 
 /// One value, or a list of them in brackets.
-fn values(tokens: &mut Tokens<'_>, place: &Place, report: &Report) -> Values {
+fn values(tokens: &mut Tokens<'_>, place: &Place, report: &Report) -> ParameterValues {
     let mut list = List::default();
     match tokens.peek().cloned() {
         Some((Token::Open, _)) => {
@@ -131,7 +131,7 @@ fn values(tokens: &mut Tokens<'_>, place: &Place, report: &Report) -> Values {
                 }
             }
             report.cause(place, "a list without ]");
-            return Values::Broken;
+            return ParameterValues::Broken;
         }
         Some((Token::Word(word), _)) if is_directive(word) => {}
         Some((token, at)) => {
@@ -142,74 +142,91 @@ fn values(tokens: &mut Tokens<'_>, place: &Place, report: &Report) -> Values {
         None => {}
     }
     report.cause(place, "a parameter without a value");
-    Values::Broken
+    ParameterValues::Broken
 }
 
 /// Values of one sort, as they come.
 #[derive(Default)]
 struct List {
-    found: Option<Values>,
+    found: Option<ParameterValues>,
 }
 
 impl List {
-    fn add(&mut self, token: Token<'_>, at: At, tokens: &Tokens<'_>, report: &Report) {
+    fn add(&mut self, token: Token<'_>, at: LineColumn, tokens: &Tokens<'_>, report: &Report) {
         let error = match (self.found.as_mut(), token) {
             // One message is enough.
-            (Some(Values::Broken), _) => return,
+            (Some(ParameterValues::Broken), _) => return,
             (_, Token::Broken(what)) => what.to_owned(),
             (_, Token::Open | Token::Close) => "a bracket where a value should be".to_owned(),
             (None, Token::Text(text)) => {
-                self.found = Some(Values::Texts(vec![text.into_owned()]));
+                self.found = Some(ParameterValues::Texts(vec![text.into_owned()]));
                 return;
             }
-            (Some(Values::Texts(all)), Token::Text(text)) => return all.push(text.into_owned()),
+            (Some(ParameterValues::Texts(all)), Token::Text(text)) => {
+                return all.push(text.into_owned());
+            }
             (None, Token::Word(word @ ("true" | "false"))) => {
-                self.found = Some(Values::Truths(vec![word == "true"]));
+                self.found = Some(ParameterValues::Truths(vec![word == "true"]));
                 return;
             }
-            (Some(Values::Truths(all)), Token::Word(word @ ("true" | "false"))) => {
+            (Some(ParameterValues::Truths(all)), Token::Word(word @ ("true" | "false"))) => {
                 return all.push(word == "true");
             }
             (None, Token::Word(word)) => match number(word) {
                 Ok(value) => {
-                    self.found = Some(Values::Numbers(vec![value]));
+                    self.found = Some(ParameterValues::Numbers(vec![value]));
                     return;
                 }
                 Err(error) => error,
             },
-            (Some(Values::Numbers(all)), Token::Word(word)) => match number(word) {
+            (Some(ParameterValues::Numbers(all)), Token::Word(word)) => match number(word) {
                 Ok(value) => return all.push(value),
                 Err(error) => error,
             },
             (Some(_), _) => "values of different sorts in one list".to_owned(),
         };
         report.cause(&tokens.place(at), error);
-        self.found = Some(Values::Broken);
+        self.found = Some(ParameterValues::Broken);
     }
 
-    fn finish(self) -> Values {
-        self.found.unwrap_or(Values::Numbers(Vec::new()))
+    fn finish(self) -> ParameterValues {
+        self.found.unwrap_or(ParameterValues::Numbers(Vec::new()))
     }
 }
 
 /// The values if they go with the type; else a cause.
-fn checked(values: Values, kind: Kind, name: &str, place: &Place, report: &Report) -> Values {
+fn checked(
+    values: ParameterValues,
+    kind: ParameterKind,
+    name: &str,
+    place: &Place,
+    report: &Report,
+) -> ParameterValues {
     let is_in_range = |v: &f64| v.abs() <= MAX_NUMBER;
     let whole = |v: &f64| v.fract() == 0.0 && v.abs() <= f64::from(i32::MAX);
     let allowed = match (kind, &values) {
-        (_, Values::Broken) => return values,
-        (_, Values::Numbers(none)) if none.is_empty() => return values,
-        (_, Values::Numbers(all)) if kind != Kind::Integer && !all.iter().all(is_in_range) => {
+        (_, ParameterValues::Broken) => return values,
+        (_, ParameterValues::Numbers(none)) if none.is_empty() => return values,
+        (_, ParameterValues::Numbers(all))
+            if kind != ParameterKind::Integer && !all.iter().all(is_in_range) =>
+        {
             "numbers from -1e9 to 1e9"
         }
-        (Kind::Bool, Values::Truths(_))
-        | (Kind::Text | Kind::Texture | Kind::Spectrum, Values::Texts(_)) => return values,
-        (Kind::Integer, Values::Numbers(all)) if all.iter().all(whole) => return values,
-        (Kind::Bool, _) => "true or false, without quotation marks",
-        (Kind::Text | Kind::Texture, _) => "words in quotation marks",
-        (Kind::Integer, _) => "integers of 32 bits",
-        (_, Values::Numbers(all)) if all.len().is_multiple_of(kind.arity()) => return values,
-        (Kind::Spectrum, _) => "pairs of a wavelength and a value, or a name",
+        (ParameterKind::Bool, ParameterValues::Truths(_))
+        | (
+            ParameterKind::Text | ParameterKind::Texture | ParameterKind::Spectrum,
+            ParameterValues::Texts(_),
+        ) => return values,
+        (ParameterKind::Integer, ParameterValues::Numbers(all)) if all.iter().all(whole) => {
+            return values;
+        }
+        (ParameterKind::Bool, _) => "true or false, without quotation marks",
+        (ParameterKind::Text | ParameterKind::Texture, _) => "words in quotation marks",
+        (ParameterKind::Integer, _) => "integers of 32 bits",
+        (_, ParameterValues::Numbers(all)) if all.len().is_multiple_of(kind.arity()) => {
+            return values;
+        }
+        (ParameterKind::Spectrum, _) => "pairs of a wavelength and a value, or a name",
         (kind, _) => match kind.arity() {
             1 => "numbers",
             2 => "pairs of numbers",
@@ -218,5 +235,5 @@ fn checked(values: Values, kind: Kind, name: &str, place: &Place, report: &Repor
     };
     let message = format!("{} {name}; allowed: {allowed}", kind.name());
     report.cause(place, message);
-    Values::Broken
+    ParameterValues::Broken
 }

@@ -1,8 +1,8 @@
 //! Reads a pbrt scene into a world.
 
-use super::entity::{Entity, Given, Read};
-use super::keys::{MeshKey, TextureKey, Uv};
-use super::scene::Scene;
+use super::entity::{CauseGiven, Entity, Read};
+use super::keys::{PbrtMeshKey, TextureKey, Uv};
+use super::scene::PbrtScene;
 use crate::Color;
 use crate::files::Files;
 use crate::pictures::Pictures;
@@ -18,15 +18,15 @@ use std::sync::Arc;
 pub(super) const MOST_SHAPES: usize = 1 << 20;
 
 /// Makes a world of a scene.
-pub(super) struct Reader<'a> {
-    pub(super) scene: &'a Scene,
+pub(super) struct PbrtReader<'a> {
+    pub(super) scene: &'a PbrtScene,
     pub(super) files: &'a Files,
     pub(super) report: &'a Report,
     pub(super) color: Color,
     pub(super) folder: PathBuf,
     pub(super) world: World,
     pub(super) pictures: Pictures,
-    pub(super) meshes: HashMap<MeshKey, Result<Arc<Triangles>, String>>,
+    pub(super) meshes: HashMap<PbrtMeshKey, Result<Arc<Triangles>, String>>,
     pub(super) textures: BTreeMap<TextureKey, Read<Texture>>,
     /// Materials that were made, by their number in the scene and what they are on; `None` for no surface at all.
     pub(super) materials: BTreeMap<(usize, Uv), Read<Option<usize>>>,
@@ -48,9 +48,9 @@ impl Uv {
     }
 }
 
-impl<'a> Reader<'a> {
+impl<'a> PbrtReader<'a> {
     pub(super) fn new(
-        scene: &'a Scene,
+        scene: &'a PbrtScene,
         files: &'a Files,
         report: &'a Report,
         color: Color,
@@ -119,7 +119,7 @@ impl<'a> Reader<'a> {
     }
 
     /// A cause for a file that cannot be used.
-    pub(super) fn unread(&self, entity: &Entity, name: &str, error: &str) -> Given {
+    pub(super) fn unread(&self, entity: &Entity, name: &str, error: &str) -> CauseGiven {
         let message = format!("file {} {error}", quoted(name));
         entity.fault(self.report, "filename", message)
     }

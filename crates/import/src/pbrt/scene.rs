@@ -1,7 +1,7 @@
 //! A scene as its files have it: what each directive makes, with the transforms and materials that hold for it.
 
 use super::entity::Entity;
-use super::parameter::Parameter;
+use super::parameter::PbrtParameter;
 use crate::report::Place;
 use glam::DAffine3;
 use std::collections::BTreeMap;
@@ -9,7 +9,7 @@ use std::rc::Rc;
 
 /// What all files of a scene make together.
 #[derive(Debug, Default)]
-pub(super) struct Scene {
+pub(super) struct PbrtScene {
     /// The camera, and the map from the world to its coordinates.
     pub(super) camera: Option<(Entity, DAffine3)>,
     /// Film, Sampler, Integrator, PixelFilter and Accelerator: the last of each.
@@ -21,16 +21,16 @@ pub(super) struct Scene {
     pub(super) textures: BTreeMap<(bool, String), Entity>,
     pub(super) areas: Vec<Entity>,
     pub(super) lights: Vec<(Entity, DAffine3)>,
-    pub(super) shapes: Vec<Shape>,
-    pub(super) objects: BTreeMap<String, Object>,
+    pub(super) shapes: Vec<PbrtShape>,
+    pub(super) objects: BTreeMap<String, PbrtObject>,
     pub(super) instances: Vec<Instance>,
     /// Parameters of `Attribute` directives.
-    pub(super) defaults: Vec<Rc<Parameter>>,
+    pub(super) defaults: Vec<Rc<PbrtParameter>>,
 }
 
 /// A shape with all that holds for it.
 #[derive(Debug)]
-pub(super) struct Shape {
+pub(super) struct PbrtShape {
     pub(super) entity: Entity,
     pub(super) to_world: DAffine3,
     /// `ReverseOrientation`
@@ -52,9 +52,9 @@ pub(super) enum MaterialOf {
 
 /// What `ObjectBegin` and `ObjectEnd` enclose.
 #[derive(Debug)]
-pub(super) struct Object {
+pub(super) struct PbrtObject {
     pub(super) place: Place,
-    pub(super) shapes: Vec<Shape>,
+    pub(super) shapes: Vec<PbrtShape>,
 }
 
 /// An object that is shown.
@@ -67,16 +67,16 @@ pub(super) struct Instance {
 
 /// What directives leave for those after them.
 #[derive(Clone, Debug)]
-pub(super) struct State {
+pub(super) struct GraphicsState {
     pub(super) to_world: DAffine3,
     pub(super) is_reversed: bool,
     pub(super) material: MaterialOf,
     pub(super) area: Option<usize>,
     /// Parameters for shapes, lights, materials, media and textures.
-    pub(super) defaults: [Rc<Vec<Rc<Parameter>>>; 5],
+    pub(super) defaults: [Rc<Vec<Rc<PbrtParameter>>>; 5],
 }
 
-impl Default for State {
+impl Default for GraphicsState {
     fn default() -> Self {
         Self {
             to_world: DAffine3::IDENTITY,

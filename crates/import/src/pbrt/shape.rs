@@ -1,11 +1,11 @@
 //! Shapes, objects and instances.
 
-use super::entity::{Entity, Given, Read};
+use super::entity::{CauseGiven, Entity, Read};
 use super::keys::Uv;
 use super::material::reads_uv;
-use super::mesh::Mesh;
-use super::reader::{MOST_SHAPES, Reader};
-use super::scene::Shape;
+use super::mesh::PbrtMesh;
+use super::reader::{MOST_SHAPES, PbrtReader};
+use super::scene::PbrtShape;
 use super::texture::Ask;
 use crate::placement::fault;
 use crate::report::{Place, quoted};
@@ -18,7 +18,7 @@ use std::f64::consts::PI;
 const ALLOWED: &str = "sphere, disk, cylinder, trianglemesh, plymesh, bilinearmesh";
 
 /// A surface before it has a material.
-pub(super) struct Surface {
+pub(super) struct PbrtSurface {
     pub(super) geometry: Geometry,
     /// From the geometry's coordinates to those of the shape.
     pub(super) placement: DAffine3,
@@ -26,7 +26,7 @@ pub(super) struct Surface {
     pub(super) area: Option<f64>,
 }
 
-impl Reader<'_> {
+impl PbrtReader<'_> {
     /// The shapes that are in no object.
     pub(super) fn shapes(&mut self) {
         for shape in &self.scene.shapes {
@@ -78,7 +78,7 @@ impl Reader<'_> {
     }
 
     /// A shape where its own transform places it; `None` after a cause, or if there is no surface.
-    fn shape(&mut self, shape: &Shape, is_in_object: bool) -> Option<etendue_world::Shape> {
+    fn shape(&mut self, shape: &PbrtShape, is_in_object: bool) -> Option<etendue_world::Shape> {
         let entity = &shape.entity;
         entity.is_used.set(true);
         let uv = match entity.plugin.as_str() {
@@ -99,8 +99,8 @@ impl Reader<'_> {
             return None;
         }
         let opacity = self.texture_or(entity, "alpha", Ask::Float, 1.0, uv);
-        let material =
-            material.and_then(|number| Ok(self.masked(entity, number.ok_or(Given)?, opacity?)));
+        let material = material
+            .and_then(|number| Ok(self.masked(entity, number.ok_or(CauseGiven)?, opacity?)));
         let emission = self.shape_emission(shape, uv, is_in_object);
         let varies = |emission: &Emission| !matches!(emission, Texture::Constant(_));
         let needs_uv = material.is_ok_and(|at| reads_uv(&self.world.materials[at]))
@@ -134,7 +134,7 @@ impl Reader<'_> {
     ///
     /// pbrt makes normals of meshes where they are placed, so that a mirror leaves their front where it is; but it turns those of other shapes over
     /// below a mirror. Where such a shape shines, it is seen on one side and sends light from the other: it is taken where it sends light.
-    fn is_flipped(&self, shape: &Shape, geometry: &Geometry, shines: bool) -> bool {
+    fn is_flipped(&self, shape: &PbrtShape, geometry: &Geometry, shines: bool) -> bool {
         let is_mirrored = shape.to_world.matrix3.determinant() < 0.0;
         let turns = is_mirrored && !matches!(geometry, Geometry::Mesh(_));
         if turns && shines {
@@ -144,9 +144,9 @@ impl Reader<'_> {
         shape.is_reversed != (turns && !shines)
     }
 
-    fn surface(&mut self, shape: &Shape, needs_uv: bool) -> Read<Surface> {
+    fn surface(&mut self, shape: &PbrtShape, needs_uv: bool) -> Read<PbrtSurface> {
         let entity = &shape.entity;
-        let meshed = |Mesh { triangles, area }| Surface {
+        let meshed = |PbrtMesh { triangles, area }| PbrtSurface {
             geometry: Geometry::Mesh(triangles),
             placement: DAffine3::IDENTITY,
             area,
@@ -172,7 +172,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn sphere(&self, entity: &Entity) -> Read<Surface> {
+    fn sphere(&self, entity: &Entity) -> Read<PbrtSurface> {
         let radius = self.radius(entity);
         self.goes_around(entity)?;
         let radius = radius?;
@@ -183,14 +183,14 @@ impl Reader<'_> {
                 return Err(entity.fault(self.report, name, message));
             }
         }
-        Ok(Surface {
+        Ok(PbrtSurface {
             geometry: Geometry::Sphere,
             placement: DAffine3::from_scale(DVec3::splat(radius)),
             area: Some(4.0 * PI * radius * radius),
         })
     }
 
-    fn disk(&self, entity: &Entity) -> Read<Surface> {
+    fn disk(&self, entity: &Entity) -> Read<PbrtSurface> {
         let radius = self.radius(entity);
         let height = entity.float_or(self.report, "height", 0.0);
         let none: (_, fn(f64) -> bool) = ("0", |r| r == 0.0);
@@ -199,14 +199,14 @@ impl Reader<'_> {
         let (radius, height) = (radius?, height?);
         inner?;
         let scale = DAffine3::from_scale(DVec3::new(radius, radius, 1.0));
-        Ok(Surface {
+        Ok(PbrtSurface {
             geometry: Geometry::Disc,
             placement: DAffine3::from_translation(height * DVec3::Z) * scale,
             area: Some(PI * radius * radius),
         })
     }
 
-    fn cylinder(&self, entity: &Entity) -> Read<Surface> {
+    fn cylinder(&self, entity: &Entity) -> Read<PbrtSurface> {
         let radius = self.radius(entity);
         let ends = [("zmin", -1.0), ("zmax", 1.0)]
             .map(|(name, end)| entity.float_or(self.report, name, end));
@@ -216,7 +216,7 @@ impl Reader<'_> {
         let (a, b) = (a?, b?);
         let (low, high) = (a.min(b), a.max(b));
         let scale = DAffine3::from_scale(DVec3::new(radius, radius, high - low));
-        Ok(Surface {
+        Ok(PbrtSurface {
             geometry: Geometry::Cylinder,
             placement: DAffine3::from_translation(low * DVec3::Z) * scale,
             area: Some(2.0 * PI * radius * (high - low)),

@@ -1,9 +1,9 @@
 //! Pictures of light from far away: squares that keep areas of the sphere (Clarberg 2008, *Fast equal-area mapping of the (hemi)sphere using SIMD*).
 
-use super::entity::{Entity, Given, Read};
-use super::reader::Reader;
+use super::entity::{CauseGiven, Entity, Read};
+use super::reader::PbrtReader;
 use super::transform::without_scale;
-use crate::pictures::Curve;
+use crate::pictures::TransferCurve;
 use etendue_field::Raster;
 use etendue_world::{Light, SkyMap};
 use glam::{DAffine3, DVec3};
@@ -16,7 +16,7 @@ const MAX_PIXELS: usize = 2048;
 /// Places in each pixel of the map, along both sides, of a map of one pixel: the larger it is the fewer, so that none takes long.
 const WITHIN: usize = 4096;
 
-impl Reader<'_> {
+impl PbrtReader<'_> {
     pub(super) fn sky(&mut self, entity: &Entity, to_world: DAffine3) -> Read<Light> {
         if entity.has("L") {
             let message = "L beside filename; allowed: one of both".to_owned();
@@ -26,11 +26,15 @@ impl Reader<'_> {
         let turned = without_scale(to_world).ok_or_else(|| {
             let message = "a sky that is sheared, or scaled differently along axes";
             self.report.cause(&entity.place, message);
-            Given
+            CauseGiven
         });
         let name = self.file_name(entity)?;
         let is_png = name.to_ascii_lowercase().ends_with(".png");
-        let curve = if is_png { Curve::Srgb } else { Curve::Linear };
+        let curve = if is_png {
+            TransferCurve::Srgb
+        } else {
+            TransferCurve::Linear
+        };
         let square = self.picture(entity, curve)?;
         let side = square.width();
         if side != square.height() || side > MAX_PIXELS {
@@ -44,7 +48,7 @@ impl Reader<'_> {
         let bytes = (8 * side * (2 * side + 1) * size_of::<f64>()) as u64;
         let spent = self.files.spend(bytes);
         spent.map_err(|error| entity.fault(self.report, "filename", error))?;
-        let radiance = longitudes(&square, scale? * factor).ok_or(Given)?;
+        let radiance = longitudes(&square, scale? * factor).ok_or(CauseGiven)?;
         let (w, h) = (radiance.width(), radiance.height());
         let message = format!(
             "approximated: the square picture is resampled to {w} × {h} pixels by longitude and latitude, and interpolated"

@@ -1,9 +1,9 @@
 //! Colours and spectra of parameters, as numbers.
 
-use super::entity::{Entity, Given, Read};
+use super::entity::{CauseGiven, Entity, Read};
 use super::named;
-use super::parameter::{Kind, Values};
-use super::reader::Reader;
+use super::parameter::{ParameterKind, ParameterValues};
+use super::reader::PbrtReader;
 use super::token::number;
 use crate::Color;
 use crate::range::in_range;
@@ -17,7 +17,7 @@ const PLANCK: f64 = 1.438_776_877e7;
 const TUNGSTEN: f64 = 2855.5;
 
 /// A spectrum as a file has it.
-enum Spectrum {
+enum PbrtSpectrum {
     Rgb([f64; 3]),
     /// Kelvin.
     Blackbody(f64),
@@ -26,7 +26,7 @@ enum Spectrum {
     Named(String),
 }
 
-impl Reader<'_> {
+impl PbrtReader<'_> {
     /// The number of a colour or spectrum; `None` if it is not there.
     pub(super) fn number_of(&self, entity: &Entity, name: &str, role: Role) -> Read<Option<f64>> {
         let Some(spectrum) = self.spectrum(entity, name)? else {
@@ -35,28 +35,32 @@ impl Reader<'_> {
         let fault = |what: &str| entity.fault(self.report, name, format!("{name} {what}"));
         let color = match (role, spectrum) {
             (Role::Emission, spectrum) => self.light_color(spectrum, &fault)?,
-            (Role::Reflectance, Spectrum::Rgb(rgb)) if rgb.iter().any(|v| *v > 1.0) => {
+            (Role::Reflectance, PbrtSpectrum::Rgb(rgb)) if rgb.iter().any(|v| *v > 1.0) => {
                 return Err(fault("is above 1; allowed: 0 to 1"));
             }
-            (_, Spectrum::Rgb(rgb)) => rgb,
-            (role, Spectrum::Sampled(samples)) => rgb(&samples, role),
-            (_, Spectrum::Named(name)) => match named::index(&name) {
+            (_, PbrtSpectrum::Rgb(rgb)) => rgb,
+            (role, PbrtSpectrum::Sampled(samples)) => rgb(&samples, role),
+            (_, PbrtSpectrum::Named(name)) => match named::index(&name) {
                 Some(rgb) => rgb,
                 None => return Err(fault("is light; allowed: what is not")),
             },
-            (_, Spectrum::Blackbody(_)) => return Err(fault("is light; allowed: what is not")),
+            (_, PbrtSpectrum::Blackbody(_)) => return Err(fault("is light; allowed: what is not")),
         };
         Ok(Some(self.color.of(color)))
     }
 
     /// Spectra of light have luminance 1, whatever they add up to; colours have that of their numbers.
-    fn light_color(&self, spectrum: Spectrum, fault: &impl Fn(&str) -> Given) -> Read<[f64; 3]> {
+    fn light_color(
+        &self,
+        spectrum: PbrtSpectrum,
+        fault: &impl Fn(&str) -> CauseGiven,
+    ) -> Read<[f64; 3]> {
         let samples = match spectrum {
-            Spectrum::Rgb(rgb) => return Ok(rgb),
-            Spectrum::Blackbody(kelvin) if kelvin > 0.0 => blackbody(kelvin),
-            Spectrum::Blackbody(_) => return Err(fault("is no temperature above 0")),
-            Spectrum::Sampled(samples) => samples,
-            Spectrum::Named(name) => match name.as_str() {
+            PbrtSpectrum::Rgb(rgb) => return Ok(rgb),
+            PbrtSpectrum::Blackbody(kelvin) if kelvin > 0.0 => blackbody(kelvin),
+            PbrtSpectrum::Blackbody(_) => return Err(fault("is no temperature above 0")),
+            PbrtSpectrum::Sampled(samples) => samples,
+            PbrtSpectrum::Named(name) => match name.as_str() {
                 "stdillum-D65" => return Ok([1.0; 3]),
                 "stdillum-A" => blackbody(TUNGSTEN),
                 // All that is asked for is its luminance.
@@ -77,25 +81,25 @@ impl Reader<'_> {
         }
     }
 
-    fn spectrum(&self, entity: &Entity, name: &str) -> Read<Option<Spectrum>> {
+    fn spectrum(&self, entity: &Entity, name: &str) -> Read<Option<PbrtSpectrum>> {
         let Some(parameter) = entity.find(name) else {
             return Ok(None);
         };
         let fault = |message: String| entity.fault(self.report, name, message);
         let found = match (parameter.kind, &parameter.values) {
-            (_, Values::Broken) => return Err(Given),
-            (Kind::Rgb, Values::Numbers(all)) => match all[..] {
-                [r, g, b] if r.min(g).min(b) >= 0.0 => Spectrum::Rgb([r, g, b]),
+            (_, ParameterValues::Broken) => return Err(CauseGiven),
+            (ParameterKind::Rgb, ParameterValues::Numbers(all)) => match all[..] {
+                [r, g, b] if r.min(g).min(b) >= 0.0 => PbrtSpectrum::Rgb([r, g, b]),
                 [_, _, _] => return Err(fault(format!("{name} is below 0"))),
                 _ => return Err(fault(format!("{name} is not one colour"))),
             },
-            (Kind::Blackbody, Values::Numbers(all)) if all.len() == 1 => {
-                Spectrum::Blackbody(all[0])
+            (ParameterKind::Blackbody, ParameterValues::Numbers(all)) if all.len() == 1 => {
+                PbrtSpectrum::Blackbody(all[0])
             }
-            (Kind::Spectrum, Values::Numbers(all)) => {
-                Spectrum::Sampled(sampled(all).map_err(|error| fault(format!("{name}: {error}")))?)
-            }
-            (Kind::Spectrum, Values::Texts(all)) if all.len() == 1 => {
+            (ParameterKind::Spectrum, ParameterValues::Numbers(all)) => PbrtSpectrum::Sampled(
+                sampled(all).map_err(|error| fault(format!("{name}: {error}")))?,
+            ),
+            (ParameterKind::Spectrum, ParameterValues::Texts(all)) if all.len() == 1 => {
                 self.named_spectrum(&all[0]).map_err(fault)?
             }
             (kind, _) => {
@@ -109,9 +113,9 @@ impl Reader<'_> {
     }
 
     /// One that pbrt knows, or a file of pairs.
-    fn named_spectrum(&self, name: &str) -> Result<Spectrum, String> {
+    fn named_spectrum(&self, name: &str) -> Result<PbrtSpectrum, String> {
         if named::index(name).is_some() || named::is_illuminant(name) {
-            return Ok(Spectrum::Named(name.to_owned()));
+            return Ok(PbrtSpectrum::Named(name.to_owned()));
         }
         let unread = |error: String| format!("spectrum {} {error}", quoted(name));
         let path = self.find(name).map_err(unread)?;
@@ -120,7 +124,7 @@ impl Reader<'_> {
         let words = lines.flat_map(|line| line.unwrap_or_default().split_whitespace());
         let numbers: Result<Vec<f64>, String> = words.map(|word| in_range(number(word)?)).collect();
         let samples = numbers.and_then(|numbers| sampled(&numbers));
-        Ok(Spectrum::Sampled(
+        Ok(PbrtSpectrum::Sampled(
             samples.map_err(|e| unread(format!(": {e}")))?,
         ))
     }

@@ -1,9 +1,9 @@
 //! Numbers that may vary over a surface: values, spectra and textures.
 
-use super::entity::{Entity, Given, Read};
+use super::entity::{CauseGiven, Entity, Read};
 use super::keys::Uv;
-use super::parameter::Kind;
-use super::reader::Reader;
+use super::parameter::ParameterKind;
+use super::reader::PbrtReader;
 use crate::range::MAX_SHARE;
 use crate::report::quoted;
 use crate::spectrum::Role;
@@ -25,7 +25,7 @@ pub(super) enum Ask {
     Spectrum(Role),
 }
 
-impl Reader<'_> {
+impl PbrtReader<'_> {
     /// The texture of a parameter, or a constant where it is not there.
     pub(super) fn texture_or(
         &mut self,
@@ -38,7 +38,7 @@ impl Reader<'_> {
         let Some(parameter) = entity.find(name) else {
             return Ok(Texture::Constant(default));
         };
-        if parameter.kind == Kind::Texture {
+        if parameter.kind == ParameterKind::Texture {
             let asked = entity.texture_name(self.report, name)?;
             return self.named_texture(entity, name, asked, ask, uv);
         }
@@ -217,6 +217,6 @@ impl Reader<'_> {
         spent.map_err(|error| entity.fault(self.report, "filename", error))?;
         let values = pixels.values().iter().map(|v| of(*v)).collect();
         let raster = Raster::new(pixels.width(), pixels.height(), values);
-        raster.map(Arc::new).ok_or(Given)
+        raster.map(Arc::new).ok_or(CauseGiven)
     }
 }

@@ -21,7 +21,7 @@ pub(super) enum Token<'a> {
 
 /// A line and a column, both from 1.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct At {
+pub(super) struct LineColumn {
     line: usize,
     column: usize,
 }
@@ -31,8 +31,8 @@ pub(super) struct At {
 pub(super) struct Tokens<'a> {
     file: Rc<str>,
     rest: &'a str,
-    at: At,
-    peeked: Option<(Token<'a>, At)>,
+    at: LineColumn,
+    peeked: Option<(Token<'a>, LineColumn)>,
 }
 
 impl<'a> Tokens<'a> {
@@ -40,13 +40,13 @@ impl<'a> Tokens<'a> {
         Self {
             file: file.into(),
             rest: text,
-            at: At { line: 1, column: 1 },
+            at: LineColumn { line: 1, column: 1 },
             peeked: None,
         }
     }
 
     /// A place in this file.
-    pub(super) fn place(&self, at: At) -> Place {
+    pub(super) fn place(&self, at: LineColumn) -> Place {
         Place {
             file: Rc::clone(&self.file),
             line: at.line,
@@ -60,7 +60,7 @@ impl<'a> Tokens<'a> {
     }
 
     /// The next token, which stays.
-    pub(super) fn peek(&mut self) -> Option<&(Token<'a>, At)> {
+    pub(super) fn peek(&mut self) -> Option<&(Token<'a>, LineColumn)> {
         if self.peeked.is_none() {
             self.peeked = self.read();
         }
@@ -68,11 +68,11 @@ impl<'a> Tokens<'a> {
     }
 
     /// The next token; `None` at the end of the file.
-    pub(super) fn next(&mut self) -> Option<(Token<'a>, At)> {
+    pub(super) fn next(&mut self) -> Option<(Token<'a>, LineColumn)> {
         self.peeked.take().or_else(|| self.read())
     }
 
-    fn read(&mut self) -> Option<(Token<'a>, At)> {
+    fn read(&mut self) -> Option<(Token<'a>, LineColumn)> {
         self.skip();
         let at = self.at;
         let start = self.rest;

@@ -49,8 +49,8 @@ impl Rays {
 /// What a file begins with, and how a photon stands in it.
 pub(super) enum Content<'a> {
     Npy(u64),
-    Mcpl(&'a Rays, Box<mcpl::Header>, u64),
-    Tm25(&'a Rays, Box<tm25::Header>, u64),
+    Mcpl(&'a Rays, Box<mcpl::McplHeader>, u64),
+    Tm25(&'a Rays, Box<tm25::Tm25Header>, u64),
 }
 
 impl<'a> Content<'a> {
@@ -64,20 +64,20 @@ impl<'a> Content<'a> {
         let mut comments = vec![WATTS.as_bytes().to_vec(), rays.about.clone().into_bytes()];
         // A number of photons is a sum as the format has it.
         comments.extend(stat_sum_comment("emitted_photons", rays.emitted as f64));
-        let header = mcpl::Header {
+        let header = mcpl::McplHeader {
             universal_pdg: Some(PHOTON),
             source: format!("Etendue {}", env!("CARGO_PKG_VERSION")).into_bytes(),
             comments,
-            ..mcpl::Header::default()
+            ..mcpl::McplHeader::default()
         };
         Self::Mcpl(rays, Box::new(header), rows)
     }
 
     /// Rays of this flux in all, W, without wavelengths.
     pub(super) fn tm25(rays: &'a Rays, rows: u64, flux: f64) -> Self {
-        let mut header = tm25::Header {
+        let mut header = tm25::Tm25Header {
             radiant_flux: single(flux),
-            ..tm25::Header::default()
+            ..tm25::Tm25Header::default()
         };
         header.texts[3] = format!("Etendue {}", env!("CARGO_PKG_VERSION"));
         header.texts[7].clone_from(&rays.about);

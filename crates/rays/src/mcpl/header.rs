@@ -2,14 +2,14 @@
 
 use super::stat::{self, StatSum};
 use crate::Fault;
-use crate::cursor::Cursor;
+use crate::cursor::ByteCursor;
 
 /// A comment by which the weights of a file are W.
 pub const WATTS: &str = "power: the weight of a particle is its power in W";
 
 /// The header of a file, without the number of its particles.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Header {
+pub struct McplHeader {
     /// 2 or 3. They differ in how directions are packed.
     pub version: u32,
     /// Whether numbers have their lowest byte first.
@@ -32,7 +32,7 @@ pub struct Header {
     pub blobs: Vec<(Vec<u8>, Vec<u8>)>,
 }
 
-impl Default for Header {
+impl Default for McplHeader {
     /// Version 3, little-endian, f64, with a PDG code and a weight for each particle.
     fn default() -> Self {
         Self {
@@ -50,11 +50,11 @@ impl Default for Header {
     }
 }
 
-impl Header {
+impl McplHeader {
     /// The header, the number of particles, and where these begin.
     pub(super) fn read(bytes: &[u8]) -> Result<(Self, u64, usize), Fault> {
         let (version, little_endian) = signature(bytes)?;
-        let mut cursor = Cursor::new(bytes, 8, little_endian);
+        let mut cursor = ByteCursor::new(bytes, 8, little_endian);
         let count = cursor.u64("the number of particles")?;
         let comments = texts(&mut cursor, "the number of comments")?;
         let blobs = texts(&mut cursor, "the number of blobs")?;
@@ -163,7 +163,7 @@ impl Header {
 
 /// Version and order of bytes.
 fn signature(bytes: &[u8]) -> Result<(u32, bool), Fault> {
-    let mut cursor = Cursor::new(bytes, 0, true);
+    let mut cursor = ByteCursor::new(bytes, 0, true);
     let start = cursor.take(8, "the signature of MCPL")?;
     let version = match &start[..7] {
         b"MCPL002" => 2,
@@ -191,7 +191,7 @@ fn signature(bytes: &[u8]) -> Result<(u32, bool), Fault> {
 const MOST_TEXTS: u32 = 65_536;
 
 /// How many comments or blobs there are.
-fn texts(cursor: &mut Cursor<'_>, what: &str) -> Result<u32, Fault> {
+fn texts(cursor: &mut ByteCursor<'_>, what: &str) -> Result<u32, Fault> {
     let at = cursor.at();
     let count = cursor.u32(what)?;
     if count > MOST_TEXTS {
@@ -202,7 +202,7 @@ fn texts(cursor: &mut Cursor<'_>, what: &str) -> Result<u32, Fault> {
 }
 
 /// Bytes whose number stands before them.
-fn text(cursor: &mut Cursor<'_>, what: &str) -> Result<Vec<u8>, Fault> {
+fn text(cursor: &mut ByteCursor<'_>, what: &str) -> Result<Vec<u8>, Fault> {
     let length = cursor.u32(what)?;
     cursor.take(length as usize, what).map(<[u8]>::to_vec)
 }

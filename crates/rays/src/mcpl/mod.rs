@@ -11,11 +11,11 @@ mod header;
 mod particle;
 mod stat;
 
-pub use header::{Header, WATTS};
+pub use header::{McplHeader, WATTS};
 pub use particle::Particle;
 pub use stat::{StatSum, stat_sum_comment};
 
-use crate::cursor::Cursor;
+use crate::cursor::ByteCursor;
 use crate::set::PHOTON_ENERGY_LENGTH;
 use crate::{Fault, PowerUnit, RaySet, Wavelengths};
 
@@ -25,7 +25,7 @@ pub const PHOTON: i32 = 22;
 /// A file as it stands.
 #[derive(Clone, Debug, PartialEq)]
 pub struct McplFile {
-    header: Header,
+    header: McplHeader,
     count: usize,
     records: Vec<u8>,
     /// Bytes behind the last record, fewer than one takes: a public test file ends with a line feed.
@@ -39,7 +39,7 @@ impl McplFile {
     /// Whatever is not as the format has it, the first such thing. A file that was not closed (no particles by its header, and records
     /// behind it) is refused too, and so are more bytes after the last record than are too few for another.
     pub fn read(bytes: &[u8]) -> Result<Self, Fault> {
-        let (header, count, start) = Header::read(bytes)?;
+        let (header, count, start) = McplHeader::read(bytes)?;
         let size = header.record_size();
         let records = bytes.get(start..).unwrap_or_default();
         let needed = usize::try_from(count)
@@ -69,12 +69,12 @@ impl McplFile {
     /// # Errors
     /// A particle that no file may hold, or that differs from the universal weight or PDG code of the header.
     pub fn new(
-        header: Header,
+        header: McplHeader,
         particles: impl IntoIterator<Item = Particle>,
     ) -> Result<Self, Fault> {
         header.check()?;
         let mut file = Self {
-            header: Header {
+            header: McplHeader {
                 version: 3,
                 ..header
             },
@@ -92,7 +92,7 @@ impl McplFile {
 
     /// What the file says of all its particles.
     #[must_use]
-    pub fn header(&self) -> &Header {
+    pub fn header(&self) -> &McplHeader {
         &self.header
     }
 
@@ -162,7 +162,7 @@ impl McplFile {
     fn decode(&self, index: usize) -> Result<Particle, String> {
         let size = self.header.record_size();
         let record = self.records.get(index * size..(index + 1) * size);
-        let mut cursor = Cursor::new(record.unwrap_or_default(), 0, self.header.little_endian);
+        let mut cursor = ByteCursor::new(record.unwrap_or_default(), 0, self.header.little_endian);
         Particle::decode(&self.header, &mut cursor)
     }
 }

@@ -1,8 +1,8 @@
 //! A record of a file: one particle.
 
 use super::direction;
-use super::header::{Header, ordered};
-use crate::cursor::Cursor;
+use super::header::{McplHeader, ordered};
+use crate::cursor::ByteCursor;
 
 /// A particle, in the units of the format.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,8 +27,8 @@ pub struct Particle {
 
 impl Particle {
     /// Reads a record.
-    pub(super) fn decode(header: &Header, cursor: &mut Cursor<'_>) -> Result<Self, String> {
-        let numbers = Numbers { header };
+    pub(super) fn decode(header: &McplHeader, cursor: &mut ByteCursor<'_>) -> Result<Self, String> {
+        let numbers = ParticleNumbers { header };
         let mut next = || numbers.read(cursor);
         let polarisation = if header.polarisation {
             [next()?, next()?, next()?]
@@ -95,7 +95,7 @@ impl Particle {
     /// # Errors
     /// Why no such file may hold it: a number that is not finite or not in its precision, a negative energy, a direction that is no unit
     /// vector, or another weight or PDG code than the universal one.
-    pub fn encode(&self, header: &Header, records: &mut Vec<u8>) -> Result<(), String> {
+    pub fn encode(&self, header: &McplHeader, records: &mut Vec<u8>) -> Result<(), String> {
         self.check()?;
         if header
             .universal_weight
@@ -106,7 +106,7 @@ impl Particle {
         if header.universal_pdg.is_some_and(|pdg| pdg != self.pdg) {
             return Err("its PDG code is not the universal one".to_owned());
         }
-        let numbers = Numbers { header };
+        let numbers = ParticleNumbers { header };
         let (packed, negative) = direction::pack(self.direction);
         let energy = if negative {
             -self.energy_mev
@@ -131,12 +131,12 @@ impl Particle {
 }
 
 /// Numbers in the precision and order of a file.
-struct Numbers<'a> {
-    header: &'a Header,
+struct ParticleNumbers<'a> {
+    header: &'a McplHeader,
 }
 
-impl Numbers<'_> {
-    fn read(&self, cursor: &mut Cursor<'_>) -> Result<f64, String> {
+impl ParticleNumbers<'_> {
+    fn read(&self, cursor: &mut ByteCursor<'_>) -> Result<f64, String> {
         let read = if self.header.single_precision {
             cursor.f32("a number").map(f64::from)
         } else {

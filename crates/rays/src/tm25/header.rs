@@ -2,7 +2,7 @@
 
 use super::text;
 use crate::Fault;
-use crate::cursor::Cursor;
+use crate::cursor::ByteCursor;
 
 /// Where the spectral information of rays is, 4.7.1.9.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,7 +73,7 @@ impl Flags {
 
 /// All a file says before its rays, without their number.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Header {
+pub struct Tm25Header {
     /// 2013 or 2020.
     pub version: i32,
     /// 0: simulated, 1: measured.
@@ -96,7 +96,7 @@ pub struct Header {
     pub reserved: [u8; 168],
     /// Which numbers rays have.
     pub flags: Flags,
-    /// Texts, in the order of [`Header::TEXTS`].
+    /// Texts, in the order of [`Tm25Header::TEXTS`].
     pub texts: [String; 9],
     /// Spectral tables: wavelength in nm, and weight.
     pub spectra: Vec<Vec<[f32; 2]>>,
@@ -104,11 +104,11 @@ pub struct Header {
     pub extra_columns: Vec<String>,
     /// More text.
     pub additional_text: String,
-    /// Characters that [`Header::additional_text`] has room for, a multiple of 8.
+    /// Characters that [`Tm25Header::additional_text`] has room for, a multiple of 8.
     pub text_room: usize,
 }
 
-impl Default for Header {
+impl Default for Tm25Header {
     /// Simulated rays with a radiant flux, and nothing else that is known.
     fn default() -> Self {
         Self {
@@ -142,7 +142,7 @@ const MOST_SPECTRA: u32 = 65_536;
 /// Characters of the name of a column, 4.7.5.
 const NAME: usize = 128;
 
-impl Header {
+impl Tm25Header {
     /// What the texts of 4.7.3 are about.
     pub const TEXTS: [&str; 9] = [
         "light source",
@@ -176,7 +176,7 @@ impl Header {
 
     /// The header, the number of rays, and where these begin.
     pub(super) fn read(bytes: &[u8], notes: &mut Vec<String>) -> Result<(Self, u64, usize), Fault> {
-        let cursor = &mut Cursor::new(bytes, 0, true);
+        let cursor = &mut ByteCursor::new(bytes, 0, true);
         let mut header = Self::default();
         let (rays, spectra, extra, text_bytes) = header.read_description(cursor, notes)?;
         header.read_flags(cursor)?;
@@ -197,7 +197,7 @@ impl Header {
     /// 4.7.1. Returns the numbers of rays, spectra, additional columns and bytes of additional text.
     fn read_description(
         &mut self,
-        cursor: &mut Cursor<'_>,
+        cursor: &mut ByteCursor<'_>,
         notes: &mut Vec<String>,
     ) -> Result<(u64, u32, u32, usize), Fault> {
         if cursor.take(4, "the signature of TM-25")? != b"TM25" {
@@ -255,7 +255,7 @@ impl Header {
     }
 
     /// 4.7.2.
-    fn read_flags(&mut self, cursor: &mut Cursor<'_>) -> Result<(), Fault> {
+    fn read_flags(&mut self, cursor: &mut ByteCursor<'_>) -> Result<(), Fault> {
         for what in ["position", "direction"] {
             let at = cursor.at();
             if !cursor.flag(what)? {
@@ -276,7 +276,7 @@ impl Header {
     /// 4.7.4: tables, and zeros up to a multiple of 32 bytes.
     fn read_spectra(
         &mut self,
-        cursor: &mut Cursor<'_>,
+        cursor: &mut ByteCursor<'_>,
         spectra: u32,
         notes: &mut Vec<String>,
     ) -> Result<(), Fault> {

@@ -12,16 +12,16 @@
 mod header;
 mod text;
 
-pub use header::{Flags, Header, SpectrumType};
+pub use header::{Flags, SpectrumType, Tm25Header};
 
-use crate::cursor::Cursor;
+use crate::cursor::ByteCursor;
 use crate::set::{length, unit};
 use crate::{Fault, PowerUnit, RaySet, Wavelengths};
 
 /// A file as it stands.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tm25File {
-    header: Header,
+    header: Tm25Header,
     /// Rays, one after the other, each with the numbers that the header names.
     numbers: Vec<f32>,
     notes: Vec<String>,
@@ -39,7 +39,7 @@ impl Tm25File {
     /// Whatever is not as the format has it, the first such thing; bytes after the last ray.
     pub fn read(bytes: &[u8]) -> Result<Self, Fault> {
         let mut notes = Vec::new();
-        let (header, rays, start) = Header::read(bytes, &mut notes)?;
+        let (header, rays, start) = Tm25Header::read(bytes, &mut notes)?;
         let columns = header.columns();
         let found = bytes.len() - start;
         let needed = usize::try_from(rays)
@@ -52,7 +52,7 @@ impl Tm25File {
             );
             return Err(Fault::byte(start, message));
         }
-        let mut cursor = Cursor::new(bytes, start, true);
+        let mut cursor = ByteCursor::new(bytes, start, true);
         let mut numbers = Vec::with_capacity(found / 4);
         while cursor.left() > 0 {
             numbers.push(cursor.f32("a ray")?);
@@ -66,11 +66,11 @@ impl Tm25File {
         Ok(file)
     }
 
-    /// A file with these rays: `columns` numbers each, as [`Header::columns`] counts them.
+    /// A file with these rays: `columns` numbers each, as [`Tm25Header::columns`] counts them.
     ///
     /// # Errors
     /// A header or rays that no file may have.
-    pub fn new(header: Header, numbers: Vec<f32>) -> Result<Self, Fault> {
+    pub fn new(header: Tm25Header, numbers: Vec<f32>) -> Result<Self, Fault> {
         header.check()?;
         if !numbers.len().is_multiple_of(header.columns()) {
             let message = format!("{} numbers for rays of {}", numbers.len(), header.columns());
@@ -87,7 +87,7 @@ impl Tm25File {
 
     /// What the file says of all its rays.
     #[must_use]
-    pub fn header(&self) -> &Header {
+    pub fn header(&self) -> &Tm25Header {
         &self.header
     }
 
@@ -168,7 +168,7 @@ impl Tm25File {
     /// The radiant flux of 1 lm, W, where the header states both fluxes.
     #[must_use]
     pub fn watts_per_lumen(&self) -> Option<f64> {
-        let Header {
+        let Tm25Header {
             luminous_flux,
             radiant_flux,
             ..

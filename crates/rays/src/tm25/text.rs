@@ -1,11 +1,11 @@
 //! Text of a fixed number of UTF-32 characters, ended by zeros.
 
 use crate::Fault;
-use crate::cursor::Cursor;
+use crate::cursor::ByteCursor;
 
 /// Reads a text from its place of `characters` characters; `what` names it in notes.
 pub(super) fn read(
-    cursor: &mut Cursor<'_>,
+    cursor: &mut ByteCursor<'_>,
     characters: usize,
     what: &str,
     notes: &mut Vec<String>,

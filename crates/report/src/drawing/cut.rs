@@ -9,13 +9,13 @@ use std::collections::HashMap;
 
 /// A plane that cuts the scene.
 #[derive(Clone, Copy)]
-pub(super) struct Cut<'a> {
+pub(super) struct CuttingPlane<'a> {
     pub(super) scene: &'a Scene,
     /// 0: that of X, 1: that of Y.
     pub(super) axis: usize,
 }
 
-impl Cut<'_> {
+impl CuttingPlane<'_> {
     pub(super) fn section(&self, planes: &[&VirtualPlane]) -> Section {
         let scene = self.scene;
         let pieces = self.pieces(planes);

@@ -1,6 +1,6 @@
 //! The scene to scale, in the plane of D and X at the light: where its path turns.
 
-use super::cut::Cut;
+use super::cut::CuttingPlane;
 use etendue_field::VirtualPlane;
 use etendue_figures::{Object, Segment, World};
 use etendue_scene::{Leg, Scene};
@@ -21,7 +21,7 @@ pub(super) fn world(scene: &Scene, planes: &[&VirtualPlane]) -> Option<World> {
         let place = leg.frame.to_world(local);
         [place.z, place.x]
     };
-    let pieces = Cut { scene, axis: 0 }.pieces(planes);
+    let pieces = CuttingPlane { scene, axis: 0 }.pieces(planes);
     let objects = pieces.into_iter().map(|(leg, segment)| {
         let leg = &legs[leg];
         Object {

@@ -20,7 +20,7 @@ use serde::Serialize;
 const MOST_SLICES: usize = 1_500_000;
 
 #[derive(Serialize)]
-struct Run<'a> {
+struct RunData<'a> {
     scene: &'a str,
     verdict: Verdict,
     /// The verdict in a sentence.
@@ -31,19 +31,19 @@ struct Run<'a> {
     explorer: Option<&'a str>,
     /// The strip along the path, SVG.
     path: &'a str,
-    planes: Vec<Plane<'a>>,
+    planes: Vec<PlaneData<'a>>,
     /// The tables of the terminal, headers first.
     tables: [Vec<Vec<String>>; 2],
 }
 
 #[derive(Serialize)]
-struct Plane<'a> {
+struct PlaneData<'a> {
     report: &'a PlaneReport,
     /// Its verdict with p.
     words: String,
     /// What is to be said of a first-order chain that does not pass.
     on_chain: Option<String>,
-    axes: Axes,
+    axes: PageAxes,
     /// Radians.
     azimuths: Vec<f64>,
     field: Grids,
@@ -54,7 +54,7 @@ struct Plane<'a> {
 }
 
 #[derive(Serialize)]
-struct Axes {
+struct PageAxes {
     x: Labelled,
     u: Labelled,
     rho: Labelled,
@@ -129,7 +129,7 @@ pub fn data(
     let slices: usize = planes.iter().map(|plane| 3 * 4 * plane.sigma.len()).sum();
     let each = case.scene.planes.iter().zip(planes).zip(&case.predictions);
     let each = each.map(|((plane, found), prediction)| {
-        Plane::new(plane, found, prediction, slices <= MOST_SLICES)
+        PlaneData::new(plane, found, prediction, slices <= MOST_SLICES)
     });
     let method = match summary.method {
         Method::Photons => "",
@@ -148,7 +148,7 @@ pub fn data(
         summary.seed,
         word = shell_word(&file),
     );
-    let run = Run {
+    let run = RunData {
         scene: &summary.scene,
         verdict: summary.verdict,
         words: verdict_text(summary),
@@ -162,7 +162,7 @@ pub fn data(
     serde_json::to_string(&run).unwrap_or_default()
 }
 
-impl<'a> Plane<'a> {
+impl<'a> PlaneData<'a> {
     fn new(
         plane: &VirtualPlane,
         found: &'a PlaneComparison,
@@ -191,7 +191,7 @@ impl<'a> Plane<'a> {
             report: &found.report,
             words: verdict_line(found).replace('*', ""),
             on_chain: on_chain(&found.report),
-            axes: Axes {
+            axes: PageAxes {
                 x: Labelled::new(&x, field.grid.bins),
                 u: Labelled::new(&u, field.grid.bins),
                 rho: Labelled::new(&rho, grid.rho.count()),

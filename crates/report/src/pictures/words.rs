@@ -5,7 +5,7 @@ use etendue_figures::{Axis, Quantity};
 use etendue_spectrum::field::FullRadial;
 
 /// The names of a plane's coordinates: slopes across the central ray, angles on a surface.
-pub(super) struct Words {
+pub(super) struct CoordinateNames {
     pub(super) along: [&'static str; 2],
     pub(super) across: [&'static str; 2],
     angle: &'static str,
@@ -14,7 +14,7 @@ pub(super) struct Words {
     rings: [&'static str; 2],
 }
 
-impl Words {
+impl CoordinateNames {
     const ACROSS: Self = Self {
         along: ["*x*", "*u*"],
         across: ["*y*", "*v*"],
@@ -62,18 +62,18 @@ impl Words {
 
 /// The axes of the light field of a plane, (x, u) across its ray.
 pub fn light_field_axes(plane: &VirtualPlane, grid: &ProjectionGrid) -> [Axis; 2] {
-    Words::of(plane).projection_axes(grid)
+    CoordinateNames::of(plane).projection_axes(grid)
 }
 
 /// The axes of its spectrum, (ρ, ν).
 pub fn spectrum_axes(plane: &VirtualPlane) -> [Axis; 2] {
-    Words::of(plane).frequency_axes(&plane.grid)
+    CoordinateNames::of(plane).frequency_axes(&plane.grid)
 }
 
 /// The axes of its full radial spectrum, (|Ωxy|, |Ωuv|). The first ring of each is that of zero, half as wide as the others; it is
 /// drawn alike.
 pub fn full_radial_axes(plane: &VirtualPlane, of: &FullRadial) -> [Axis; 2] {
-    let words = Words::of(plane);
+    let words = CoordinateNames::of(plane);
     let axis = |name, unit, edges: &[f64]| {
         let rings = edges.len() - 1;
         let width = edges[rings] / (rings as f64 - 0.5);
@@ -93,8 +93,8 @@ pub fn full_radial_quantity() -> Quantity {
 
 /// The axes of the light field across the other two coordinates, (y, v).
 pub fn across_axes(plane: &VirtualPlane, grid: &ProjectionGrid) -> [Axis; 2] {
-    let words = Words::of(plane);
-    Words {
+    let words = CoordinateNames::of(plane);
+    CoordinateNames {
         along: words.across,
         ..words
     }
@@ -103,7 +103,7 @@ pub fn across_axes(plane: &VirtualPlane, grid: &ProjectionGrid) -> [Axis; 2] {
 
 /// What a light field across the ray holds.
 pub fn light_field_quantity() -> Quantity {
-    Words::ACROSS.light_field_quantity()
+    CoordinateNames::ACROSS.light_field_quantity()
 }
 
 /// What a radial spectrum holds.

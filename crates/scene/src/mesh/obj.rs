@@ -5,7 +5,7 @@ pub(super) mod parts;
 
 use super::error::fault;
 use super::shared::{Mesh, check_coordinate, check_corners, fan};
-use super::text::{Lines, Words, number, quoted};
+use super::text::{LineWords, Lines, number, quoted};
 use crate::fault::Fault;
 use glam::DVec3;
 use std::borrow::Cow;
@@ -79,7 +79,7 @@ fn statements(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, [u8]>)> {
 fn vertices(bytes: &[u8]) -> Result<Vec<DVec3>, Fault> {
     let mut vertices = Vec::new();
     for (line, statement) in statements(bytes) {
-        let mut words = Words(&statement);
+        let mut words = LineWords(&statement);
         match words.next() {
             Some(b"v") => vertices.push(vertex(line, vertices.len() + 1, words)?),
             None | Some(b"f") => {}
@@ -93,7 +93,7 @@ fn vertices(bytes: &[u8]) -> Result<Vec<DVec3>, Fault> {
     Ok(vertices)
 }
 
-fn vertex(line: usize, index: usize, mut words: Words<'_>) -> Result<DVec3, Fault> {
+fn vertex(line: usize, index: usize, mut words: LineWords<'_>) -> Result<DVec3, Fault> {
     let mut point = DVec3::ZERO;
     for axis in 0..3 {
         let place = || place(line, &format!("vertex {index}, {}", ["x", "y", "z"][axis]));
@@ -112,7 +112,7 @@ fn triangles(bytes: &[u8], count: usize) -> Result<Vec<[u32; 3]>, Fault> {
     let (mut before, mut face) = (0, 0);
     let mut corners = Vec::new();
     for (line, statement) in statements(bytes) {
-        let mut words = Words(&statement);
+        let mut words = LineWords(&statement);
         match words.next() {
             Some(b"v") => before += 1,
             Some(b"f") => {

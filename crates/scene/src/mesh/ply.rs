@@ -7,12 +7,12 @@ mod header;
 use super::error::fault;
 use super::shared::{Mesh, check_coordinate, check_corners, fan};
 use crate::fault::Fault;
-use body::{Body, Row};
+use body::{Body, PlyRow};
 use glam::DVec3;
-use header::{Element, Header};
+use header::{PlyElement, PlyHeader};
 
 pub(super) fn read(bytes: &[u8]) -> Result<Mesh, Fault> {
-    let (header, data) = Header::read(bytes)?;
+    let (header, data) = PlyHeader::read(bytes)?;
     let axes = axes(header.element("vertex")?)?;
     let list = list(header.element("face")?)?;
     let count = header.element("vertex")?.count;
@@ -38,7 +38,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, Fault> {
 }
 
 /// Where among a vertex's properties x, y and z are.
-fn axes(element: &Element) -> Result<[usize; 3], Fault> {
+fn axes(element: &PlyElement) -> Result<[usize; 3], Fault> {
     let mut axes = [0; 3];
     for (axis, name) in axes.iter_mut().zip(["x", "y", "z"]) {
         *axis = element
@@ -57,7 +57,7 @@ fn axes(element: &Element) -> Result<[usize; 3], Fault> {
 }
 
 /// Where among a face's properties its corners are.
-fn list(element: &Element) -> Result<usize, Fault> {
+fn list(element: &PlyElement) -> Result<usize, Fault> {
     let names = ["vertex_indices", "vertex_index"];
     let mut properties = element.properties.iter();
     let position = properties.position(|p| {
@@ -73,7 +73,7 @@ fn list(element: &Element) -> Result<usize, Fault> {
     Ok(found)
 }
 
-fn vertex(row: Row<'_>, values: [f64; 3]) -> Result<DVec3, Fault> {
+fn vertex(row: PlyRow<'_>, values: [f64; 3]) -> Result<DVec3, Fault> {
     for (axis, value) in ["x", "y", "z"].into_iter().zip(values) {
         check_coordinate(value, || row.place(axis))?;
     }
@@ -81,7 +81,12 @@ fn vertex(row: Row<'_>, values: [f64; 3]) -> Result<DVec3, Fault> {
 }
 
 /// Writes a face's corners, among `count` vertices.
-fn face(row: Row<'_>, values: &[f64], count: usize, corners: &mut Vec<u32>) -> Result<(), Fault> {
+fn face(
+    row: PlyRow<'_>,
+    values: &[f64],
+    count: usize,
+    corners: &mut Vec<u32>,
+) -> Result<(), Fault> {
     check_corners(values.len(), || row.place("number of corners"))?;
     corners.clear();
     for (i, value) in values.iter().enumerate() {

@@ -46,9 +46,9 @@ impl<'a> Iterator for Lines<'a> {
 
 /// Words of a line.
 #[derive(Clone, Default)]
-pub(super) struct Words<'a>(pub(super) &'a [u8]);
+pub(super) struct LineWords<'a>(pub(super) &'a [u8]);
 
-impl<'a> Iterator for Words<'a> {
+impl<'a> Iterator for LineWords<'a> {
     type Item = &'a [u8];
 
     fn next(&mut self) -> Option<Self::Item> {

@@ -2,7 +2,7 @@
 
 use super::Resolver;
 use super::faults::show;
-use super::triangles::Placement;
+use super::triangles::MeshPlacement;
 use crate::Mesh;
 use crate::fault::Fault;
 use crate::file::{BlockersFile, EventFile, FormFile, MeshSource, SceneFile, SurfaceFile};
@@ -13,7 +13,7 @@ use glam::DVec3;
 use std::path::Path;
 
 /// A mesh as the file has it.
-struct Placed<'a> {
+struct PlacedMesh<'a> {
     of: String,
     name: &'a String,
     center: &'a [f64; 3],
@@ -36,7 +36,7 @@ impl Resolver<'_> {
                     center,
                     mesh,
                     scale,
-                } => Some(Placed {
+                } => Some(PlacedMesh {
                     of: format!("blockers[{i}]"),
                     name,
                     center,
@@ -59,7 +59,7 @@ impl Resolver<'_> {
                     scale,
                     albedo,
                     event,
-                } => Some(Placed {
+                } => Some(PlacedMesh {
                     of: format!("surfaces[{i}]"),
                     name,
                     center,
@@ -77,7 +77,7 @@ impl Resolver<'_> {
         objects.collect()
     }
 
-    fn mesh(&mut self, placed: &Placed<'_>, reach: f64, frame: &Frame) -> Option<MeshObject> {
+    fn mesh(&mut self, placed: &PlacedMesh<'_>, reach: f64, frame: &Frame) -> Option<MeshObject> {
         let of = &placed.of;
         self.faults
             .coordinates(&format!("{of}.center"), placed.center);
@@ -87,7 +87,7 @@ impl Resolver<'_> {
                 .within(format!("{of}.albedo"), albedo, 0.0..=1.0);
         }
         let mesh = self.source(of, placed.mesh)?;
-        let at = Placement {
+        let at = MeshPlacement {
             of: placed.of.clone(),
             source: placed.mesh,
             center: DVec3::from(*placed.center),
@@ -122,7 +122,7 @@ impl Resolver<'_> {
     /// A mesh with the normals of its vertices.
     fn smooth(
         &mut self,
-        at: &Placement<'_>,
+        at: &MeshPlacement<'_>,
         event: &EventFile,
         mesh: &Mesh,
         frame: &Frame,

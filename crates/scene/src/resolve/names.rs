@@ -2,7 +2,7 @@
 
 use super::faults::show;
 use super::fields::fields;
-use super::{Resolver, Stop};
+use super::{PathStop, Resolver};
 use crate::file::{BlockersFile, SceneFile, SurfaceFile};
 use crate::limits;
 use crate::shown::is_printable;
@@ -17,7 +17,7 @@ impl Resolver<'_> {
         }
     }
 
-    pub(super) fn names(&mut self, file: &SceneFile, stops: &[Stop<'_>]) {
+    pub(super) fn names(&mut self, file: &SceneFile, stops: &[PathStop<'_>]) {
         let blockers = file.blockers.iter().map(BlockersFile::name).enumerate();
         let surfaces = file.surfaces.iter().map(SurfaceFile::name).enumerate();
         let blockers = blockers.map(|(i, name)| (format!("blockers[{i}].name"), name));

@@ -1,7 +1,7 @@
 //! Normals at the vertices of a smooth mesh.
 
 use super::Resolver;
-use super::triangles::{Placement, others};
+use super::triangles::{MeshPlacement, others};
 use crate::Mesh;
 use glam::DVec3;
 
@@ -19,7 +19,7 @@ const MIN_NORMAL: f64 = 0.01;
 impl Resolver<'_> {
     /// The normals of all vertices, the mean of the triangles around each by area; zero where no
     /// triangle is.
-    pub(super) fn normals(&mut self, at: &Placement<'_>, mesh: &Mesh) -> Option<Vec<DVec3>> {
+    pub(super) fn normals(&mut self, at: &MeshPlacement<'_>, mesh: &Mesh) -> Option<Vec<DVec3>> {
         let mut sums = vec![(DVec3::ZERO, 0.0); mesh.vertices().len()];
         for (corners, indices) in mesh.corners().zip(mesh.triangles()) {
             let normal = across(corners);
@@ -60,7 +60,7 @@ impl Resolver<'_> {
     }
 
     /// Requires the normal of a vertex to be on the side of each triangle around it.
-    fn one_side(&mut self, at: &Placement<'_>, mesh: &Mesh, normals: &[DVec3]) -> Option<()> {
+    fn one_side(&mut self, at: &MeshPlacement<'_>, mesh: &Mesh, normals: &[DVec3]) -> Option<()> {
         let mut turned = Vec::new();
         for (corners, indices) in mesh.corners().zip(mesh.triangles()) {
             let normal = across(corners).normalize();

@@ -1,7 +1,7 @@
 //! Virtual planes: their place on the path, their window and their frequencies.
 
 use super::faults::{names, number, show};
-use super::{Resolver, SAME_PLANE, Stop};
+use super::{PathStop, Resolver, SAME_PLANE};
 use crate::fault::Fault;
 use crate::file::{
     AxisFile, BlockersFile, FrequenciesFile, Place, PlaneFile, SceneFile, SurfaceFile, WindowFile,
@@ -29,7 +29,7 @@ impl Resolver<'_> {
         &mut self,
         file: &SceneFile,
         path: &CentralRay,
-        stops: &[Stop<'_>],
+        stops: &[PathStop<'_>],
     ) -> Vec<VirtualPlane> {
         if file.planes.is_empty() {
             self.faults.add("planes", "empty", "at least one plane");
@@ -73,7 +73,7 @@ impl Resolver<'_> {
         plane: &PlaneFile,
         place: OnPath,
         path: &CentralRay,
-        stops: &[Stop<'_>],
+        stops: &[PathStop<'_>],
     ) -> (Frame, f64) {
         let across = (path.frame_at(place.distance, place.leg), 0.0);
         if plane.orientation == Orientation::Orthogonal {
@@ -138,7 +138,7 @@ impl Resolver<'_> {
         place: &Place,
         file: &SceneFile,
         path: &CentralRay,
-        stops: &[Stop<'_>],
+        stops: &[PathStop<'_>],
     ) -> Option<OnPath> {
         match place {
             Place::Emission => Some(OnPath {
@@ -187,8 +187,8 @@ impl Resolver<'_> {
         name: &str,
         file: &SceneFile,
         path: &CentralRay,
-        stops: &'a [Stop<'a>],
-    ) -> Option<&'a Stop<'a>> {
+        stops: &'a [PathStop<'a>],
+    ) -> Option<&'a PathStop<'a>> {
         let Some(stop) = stops.iter().find(|s| s.name == name) else {
             let surfaces = file.surfaces.iter().map(SurfaceFile::name);
             let mut written = file.blockers.iter().map(BlockersFile::name).chain(surfaces);
@@ -229,7 +229,7 @@ impl Resolver<'_> {
         of: &str,
         distance: f64,
         path: &CentralRay,
-        stops: &[Stop<'_>],
+        stops: &[PathStop<'_>],
     ) -> OnPath {
         let value = || format!("Distance({})", number(distance));
         let leg = path.legs.iter().rposition(|leg| leg.start <= distance);
@@ -248,7 +248,7 @@ impl Resolver<'_> {
         let hit = (0..path.legs.len() - 1).find(ends);
         let hit = hit.and_then(|leg| stops.iter().find(|s| s.ends == Some(leg)));
         let at = path.frame_at(distance, leg);
-        let beside = |s: &&Stop<'_>| s.extent.iter().any(|end| near(*end, at.origin.z));
+        let beside = |s: &&PathStop<'_>| s.extent.iter().any(|end| near(*end, at.origin.z));
         let on_first = || stops.iter().filter(|_| leg == 0).find(beside);
         if let Some(stop) = hit.or_else(on_first) {
             let name = shown(stop.name, limits::NAME);

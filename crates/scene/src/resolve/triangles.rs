@@ -23,7 +23,7 @@ const MAX_DROPPED_SHARE: f64 = 1e-6;
 const MAX_COORDINATE: f64 = 1e9;
 
 /// Where a mesh is, and how its faults are told.
-pub(super) struct Placement<'a> {
+pub(super) struct MeshPlacement<'a> {
     /// The field of the blocker or the surface.
     pub(super) of: String,
     pub(super) source: &'a MeshSource,
@@ -33,7 +33,7 @@ pub(super) struct Placement<'a> {
     pub(super) reach: f64,
 }
 
-impl Placement<'_> {
+impl MeshPlacement<'_> {
     /// A vertex in the world of the scene file.
     pub(super) fn world(&self, vertex: DVec3) -> DVec3 {
         self.center + vertex * self.scale
@@ -66,7 +66,11 @@ impl Placement<'_> {
 
 impl Resolver<'_> {
     /// The mesh without triangles too thin for f64, if they are next to nothing of it.
-    pub(super) fn distinct_triangles(&mut self, at: &Placement<'_>, mesh: Mesh) -> Option<Mesh> {
+    pub(super) fn distinct_triangles(
+        &mut self,
+        at: &MeshPlacement<'_>,
+        mesh: Mesh,
+    ) -> Option<Mesh> {
         self.inside(at, &mesh)?;
         let [low, high] = mesh.bounds();
         let size = at.scale * low.abs().max(high.abs()).length();
@@ -101,7 +105,7 @@ impl Resolver<'_> {
     }
 
     /// Requires vertices within the coordinates of a scene.
-    fn inside(&mut self, at: &Placement<'_>, mesh: &Mesh) -> Option<()> {
+    fn inside(&mut self, at: &MeshPlacement<'_>, mesh: &Mesh) -> Option<()> {
         let mut corners: Vec<u32> = mesh.triangles().as_flattened().to_vec();
         corners.sort_unstable();
         corners.dedup();

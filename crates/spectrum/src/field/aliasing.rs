@@ -21,7 +21,7 @@ pub struct Aliasing {
 }
 
 /// A frequency that slices and spectrum share.
-struct Shared {
+struct SharedFrequency {
     harmonics: [isize; 4],
     /// Cycles per cell along the two axes of the line, 0 to ½.
     f: [f64; 2],
@@ -42,8 +42,8 @@ impl FieldSpectrum {
         let [mut difference, mut expected, mut bound] = [0.0; 3];
         for line in &all {
             let beyond = edge_powers(line);
-            let inside = |s: &&Shared| s.f.iter().all(|f| *f < 0.5 * share);
-            for Shared {
+            let inside = |s: &&SharedFrequency| s.f.iter().all(|f| *f < 0.5 * share);
+            for SharedFrequency {
                 harmonics,
                 f,
                 slice,
@@ -68,7 +68,7 @@ impl FieldSpectrum {
     }
 
     /// The shared frequencies of each line, up to and with Nyquist.
-    fn shared(&self, slices: &Slices) -> Vec<Vec<Shared>> {
+    fn shared(&self, slices: &Slices) -> Vec<Vec<SharedFrequency>> {
         let grid = &slices.grid;
         let mut lines = vec![(0, [0, 2])];
         if grid.azimuths.is_multiple_of(2) {
@@ -90,7 +90,7 @@ impl FieldSpectrum {
                     (harmonics[a], harmonics[b]) = (i, j);
                     let cycles =
                         |axis: usize, i: isize| i.abs() as f64 / self.grid.cells[axis] as f64;
-                    shared.push(Shared {
+                    shared.push(SharedFrequency {
                         harmonics,
                         f: [cycles(a, i), cycles(b, j)],
                         slice: slices.half[[k, m, n]],
@@ -114,7 +114,7 @@ impl FieldSpectrum {
 }
 
 /// The mean power of a line in the outermost quarter along each of its axes: a stand-in for that beyond Nyquist.
-fn edge_powers(line: &[Shared]) -> [f64; 2] {
+fn edge_powers(line: &[SharedFrequency]) -> [f64; 2] {
     [0, 1].map(|axis| {
         let outer = line.iter().filter(|s| s.f[axis] >= 0.375);
         let (count, sum) = outer.fold((0, 0.0), |(count, sum), s| {

@@ -7,7 +7,7 @@ use ndarray::Array2;
 use rayon::prelude::*;
 
 /// A matrix over (ρx, ρy, νu, νv).
-type Matrix = [[f64; 4]; 4];
+type FrequencyMatrix = [[f64; 4]; 4];
 
 /// Entries of a symmetric matrix, and the power.
 const COUNT: usize = 11;
@@ -22,7 +22,7 @@ pub struct PowerMoments {
     /// ∫ P, up to a factor that all moments have.
     pub power: f64,
     /// ∫ P Ωᵢ Ωⱼ, cycles² per unit of the coordinates, squared.
-    pub second: Matrix,
+    pub second: FrequencyMatrix,
 }
 
 impl PowerMoments {
@@ -37,7 +37,7 @@ impl PowerMoments {
 
     /// ∫ P Ω Ωᵀ/∫ P; `None` where there is no power, or noise has it below zero.
     #[must_use]
-    pub fn covariance(&self) -> Option<Matrix> {
+    pub fn covariance(&self) -> Option<FrequencyMatrix> {
         let of = |row: [f64; 4]| row.map(|sum| sum / self.power);
         (self.power > 0.0).then(|| self.second.map(of))
     }
@@ -178,9 +178,9 @@ pub struct FieldCovariance {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MatrixEstimate {
     /// [ρx, ρy, νu, νv], cycles² per unit of the coordinates, squared.
-    pub value: Matrix,
+    pub value: FrequencyMatrix,
     /// Its standard errors, by the delete-one jackknife over groups of batches.
-    pub error: Matrix,
+    pub error: FrequencyMatrix,
 }
 
 impl FieldCovariance {
@@ -232,7 +232,10 @@ impl FieldCovariance {
 
     /// Of a matrix that is made of it, such as what a map makes of it. `None` where there is none of all groups, or
     /// of all but one.
-    pub fn estimate_of(&self, of: impl Fn(&Matrix) -> Option<Matrix>) -> Option<MatrixEstimate> {
+    pub fn estimate_of(
+        &self,
+        of: impl Fn(&FrequencyMatrix) -> Option<FrequencyMatrix>,
+    ) -> Option<MatrixEstimate> {
         let value = of(&self.moments.covariance()?)?;
         let mut jackknife = Jackknife::new(ndarray::Ix2(4, 4));
         for without in &self.without {

@@ -131,7 +131,7 @@ pub fn measure_field(
         });
     }
     let grid = options.grid(plane);
-    let run = Run {
+    let run = GroupContext {
         source,
         index,
         plane,
@@ -171,7 +171,7 @@ struct OfGroup {
 }
 
 /// What all groups need to know.
-struct Run<'a> {
+struct GroupContext<'a> {
     source: &'a dyn PhotonSource,
     index: usize,
     plane: &'a VirtualPlane,
@@ -182,7 +182,7 @@ struct Run<'a> {
     progress: &'a (dyn Fn(u64) + Sync),
 }
 
-impl Run<'_> {
+impl GroupContext<'_> {
     /// The sum of all groups, and the groups if they are to be kept.
     fn sum(&self, keep: bool) -> (FieldCells, PlaneTally, Vec<FieldCells>) {
         let mut sum = self.transform.cells();

@@ -15,7 +15,7 @@ use tempfile::TempPath;
 
 /// Files that were there and are no more.
 #[derive(Debug, Default)]
-pub(super) struct Moved {
+pub(super) struct MovedFiles {
     /// Files of the earlier result.
     pub(super) gone: Vec<String>,
     /// Files of somebody else.
@@ -26,7 +26,7 @@ pub(super) struct Moved {
     arguments: ArgumentStyle,
 }
 
-impl Moved {
+impl MovedFiles {
     /// Moves a file to where nothing is.
     fn file(&mut self, from: PathBuf, to: PathBuf) -> Result<(), Failure> {
         let moved = || {
@@ -65,7 +65,7 @@ impl Moved {
 
 impl Results {
     /// Puts everything in its place.
-    pub(super) fn commit(&self) -> Result<Moved, Failure> {
+    pub(super) fn commit(&self) -> Result<MovedFiles, Failure> {
         let index = self.plan.index;
         let ready = self.ready(index);
         let failure = |e| Failure::write(&self.shown, e);
@@ -80,10 +80,10 @@ impl Results {
     }
 
     /// Ends what a dead process began to move, and removes what it left.
-    pub(super) fn recover(&self) -> Result<Moved, Failure> {
+    pub(super) fn recover(&self) -> Result<MovedFiles, Failure> {
         let moved = match self.ready_index() {
             Some(index) => self.move_all(index)?,
-            None => Moved::default(),
+            None => MovedFiles::default(),
         };
         let left = self.folder.join(UNFINISHED);
         match fs::remove_dir_all(&left) {
@@ -92,10 +92,10 @@ impl Results {
         }
     }
 
-    fn move_all(&self, index: &str) -> Result<Moved, Failure> {
-        let mut moved = Moved {
+    fn move_all(&self, index: &str) -> Result<MovedFiles, Failure> {
+        let mut moved = MovedFiles {
             arguments: self.plan.arguments,
-            ..Moved::default()
+            ..MovedFiles::default()
         };
         let result = self.moves(index, &mut moved);
         if let Err(error) = result {
@@ -117,7 +117,7 @@ impl Results {
         Ok(moved)
     }
 
-    fn moves(&self, index: &str, moved: &mut Moved) -> Result<(), Failure> {
+    fn moves(&self, index: &str, moved: &mut MovedFiles) -> Result<(), Failure> {
         let ready = self.ready(index);
         let new = listed(&ready).unwrap_or_default();
         // From here on the folder is no result, until the new index comes.
@@ -154,7 +154,7 @@ impl Results {
     }
 
     /// Moves a new file to its name; with `force`, a file of somebody else goes aside.
-    fn place(&self, from: PathBuf, name: &str, moved: &mut Moved) -> Result<(), Failure> {
+    fn place(&self, from: PathBuf, name: &str, moved: &mut MovedFiles) -> Result<(), Failure> {
         let to = self.inside(name).ok_or_else(|| {
             let shown = self.shown.join(name);
             Failure::write(&shown, LINKED)

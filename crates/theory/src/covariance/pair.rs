@@ -1,6 +1,8 @@
 //! Pairs of matrices whose quotient is a covariance.
 
-use crate::geometry::{AffineMap, Matrix, diagonal, from_fn, inverse, product, sum, times, transpose};
+use crate::geometry::{
+    AffineMap, Matrix, diagonal, from_fn, inverse, product, sum, times, transpose,
+};
 use std::f64::consts::PI;
 
 /// S⁻¹ = 8π² C, of the power; of |L| it would be 4π² C.

@@ -2,7 +2,7 @@
 
 use super::factors;
 use super::pair::SpectralCovariance;
-use crate::geometry::{Edition, AffineMap, Matrix, diagonal};
+use crate::geometry::{AffineMap, Edition, Matrix, diagonal};
 use crate::model::Observed;
 use crate::parallel::{Chain, Operator};
 use crate::{rays, scattering};

@@ -95,7 +95,10 @@ impl Edition {
     /// Outgoing angle in 4D: (x, θ) as in 2D.
     #[must_use]
     pub fn outgoing_4d(self, theta1: f64) -> SpectrumMap<4> {
-        SpectrumMap::sections(&self.outgoing(theta1), &AffineMap::identity().spectrum_map())
+        SpectrumMap::sections(
+            &self.outgoing(theta1),
+            &AffineMap::identity().spectrum_map(),
+        )
     }
 
     /// Incidence, curvature, mirror, back, outgoing at −θ₀ in 4D.

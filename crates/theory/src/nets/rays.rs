@@ -1,6 +1,6 @@
 //! The rays of nets one by one, for sums other than slices.
 
-use super::{Budget, DIMENSIONS, Integrand, NetPoints, RayNode, REPLICATES};
+use super::{Budget, DIMENSIONS, Integrand, NetPoints, REPLICATES, RayNode};
 use etendue_field::TwoPlane;
 
 /// A light field at a plane as weighted rays, in independent nets that each stand for all of it.

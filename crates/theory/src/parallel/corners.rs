@@ -19,7 +19,7 @@
 
 use crate::parallel::expansion::AxisSection;
 use crate::parallel::polygon::{self, Polygon, cross, dot};
-use crate::parallel::row::{FrequencyRow, ComplexRow, add_product, add_scaled};
+use crate::parallel::row::{ComplexRow, FrequencyRow, add_product, add_scaled};
 use crate::parallel::wave::SectionWave;
 use etendue_field::Complex;
 use std::f64::consts::{PI, TAU};

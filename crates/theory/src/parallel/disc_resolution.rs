@@ -27,7 +27,11 @@ pub(crate) struct DiscResolution(pub(crate) Vec<Discs>);
 
 impl DiscResolution {
     /// For spectra up to `frequency`, along position and slope (docs/theory.md, after Eq. 5b).
-    pub(crate) fn for_spectrum(path: &ChainSegment<'_>, window: &Window, frequency: [f64; 2]) -> Self {
+    pub(crate) fn for_spectrum(
+        path: &ChainSegment<'_>,
+        window: &Window,
+        frequency: [f64; 2],
+    ) -> Self {
         let nodes = Self::wanted(path, window, frequency);
         if path.has_discs() {
             nodes.affordable(path, window)

@@ -152,7 +152,12 @@ impl AxisSection {
 }
 
 impl Expansion {
-    pub(crate) fn new(path: &ChainSegment<'_>, window: &Window, slope: &Slope, fineness: &[Discs]) -> Self {
+    pub(crate) fn new(
+        path: &ChainSegment<'_>,
+        window: &Window,
+        slope: &Slope,
+        fineness: &[Discs],
+    ) -> Self {
         let mut expansion = Self::empty(window);
         expansion.products = products(path, window, slope, &expansion.sections);
         expansion.multiply_out(path, fineness, usize::MAX);
@@ -334,7 +339,9 @@ fn products(
                 }
                 _ => None,
             });
-            gratings.fold(waves, |waves, grating| SectionWave::products(&waves, &grating))
+            gratings.fold(waves, |waves, grating| {
+                SectionWave::products(&waves, &grating)
+            })
         })
     };
     slope.parts.iter().map(product).collect()

@@ -136,7 +136,12 @@ pub(crate) fn nodes_of_cells(path: &ChainSegment<'_>, grid: &ProjectionGrid) -> 
 }
 
 impl<'a> Cells<'a> {
-    fn new(path: &ChainSegment<'a>, window: &'a Window, slope: &Slope, grid: &ProjectionGrid) -> Self {
+    fn new(
+        path: &ChainSegment<'a>,
+        window: &'a Window,
+        slope: &Slope,
+        grid: &ProjectionGrid,
+    ) -> Self {
         let gratings = gratings(path);
         let nodes = gauss_legendre(nodes(&gratings, grid)).into_iter();
         Self {

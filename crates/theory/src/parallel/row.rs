@@ -60,7 +60,12 @@ pub(crate) fn add_scaled(to: &mut [f64], values: &[f64], factor: f64) {
 }
 
 /// to[range] += a · b.
-pub(crate) fn add_product(to: &mut ComplexRow, range: std::ops::Range<usize>, a: &ComplexRow, b: &ComplexRow) {
+pub(crate) fn add_product(
+    to: &mut ComplexRow,
+    range: std::ops::Range<usize>,
+    a: &ComplexRow,
+    b: &ComplexRow,
+) {
     let re = to.re[range.clone()].iter_mut();
     let im = to.im[range].iter_mut();
     let a = a.re.iter().zip(&a.im);

@@ -1,7 +1,7 @@
 //! A chain whose closed form takes too long, or does not resolve a pattern: the same light by nets
 //! of rays.
 
-use crate::model::{Model, ShiftedModels, Observed, Over};
+use crate::model::{Model, Observed, Over, ShiftedModels};
 use crate::nets::{Budget, RayNets};
 use crate::predicted::Predicted;
 use crate::rays::Plane;

@@ -1,6 +1,6 @@
 //! Slices of a chain.
 
-use super::expansion::{SectionColumns, Expansion, Sum};
+use super::expansion::{Expansion, SectionColumns, Sum};
 use crate::Chain;
 use crate::parallel::chain::ChainSegment;
 use crate::parallel::corners::Corners;
@@ -26,7 +26,11 @@ pub fn slices(chain: &Chain, window: &Window, grid: &SliceGrid) -> Slices {
 }
 
 /// How discs are taken apart for a grid.
-pub(crate) fn fineness(path: &ChainSegment<'_>, window: &Window, grid: &SliceGrid) -> DiscResolution {
+pub(crate) fn fineness(
+    path: &ChainSegment<'_>,
+    window: &Window,
+    grid: &SliceGrid,
+) -> DiscResolution {
     DiscResolution::for_spectrum(path, window, [grid.rho.max(), grid.nu.max()])
 }
 

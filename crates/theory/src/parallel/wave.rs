@@ -160,7 +160,10 @@ mod tests {
                 assert!((got - expected).abs() < 1e-14); // rounding of a few hundred terms below 1
             }
             if let Some((grating, distance)) = gratings.get(count) {
-                waves = SectionWave::products(&waves, &SectionWave::of_grating(grating, *distance, half));
+                waves = SectionWave::products(
+                    &waves,
+                    &SectionWave::of_grating(grating, *distance, half),
+                );
             }
         }
     }

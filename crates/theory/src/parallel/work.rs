@@ -83,7 +83,12 @@ const TERM: f64 = 0.6;
 /// Frequencies that take as long as the beginning of a row.
 const ROW: f64 = 40.0;
 
-fn of_slices(expansion: &Expansion, waves: [f64; 2], products: f64, grid: &SliceGrid) -> PredictionWork {
+fn of_slices(
+    expansion: &Expansion,
+    waves: [f64; 2],
+    products: f64,
+    grid: &SliceGrid,
+) -> PredictionWork {
     let [azimuths, rows, count] = grid.half_shape().map(|n| n as f64);
     let polygons = expansion
         .sections

@@ -1,7 +1,7 @@
 //! Rays of a plane, followed back to the light as they go.
 
 use super::trace::LegRay;
-use super::{SpecularSurface, Plane, SpecularSystem};
+use super::{Plane, SpecularSurface, SpecularSystem};
 use etendue_field::Specular;
 use glam::DVec3;
 

@@ -1,8 +1,8 @@
 //! The first-order chain of a system.
 
 use super::central::{CentralHit, Incidence};
-use super::{SpecularSurface, Plane, SpecularSystem};
-use crate::geometry::{Edition, AffineMap, Matrix, SpectrumMap};
+use super::{Plane, SpecularSurface, SpecularSystem};
+use crate::geometry::{AffineMap, Edition, Matrix, SpectrumMap};
 use crate::model::Observed;
 use crate::words::{self, degrees, number};
 use etendue_field::{Frame, Orientation, Quantity, Specular};
@@ -220,7 +220,12 @@ impl Walk {
     }
 
     /// On the surface of the last element, light leaving it.
-    fn leaving_surface(&mut self, element: &SpecularSurface, hit: &CentralHit, plane: &Plane) -> Option<()> {
+    fn leaving_surface(
+        &mut self,
+        element: &SpecularSurface,
+        hit: &CentralHit,
+        plane: &Plane,
+    ) -> Option<()> {
         let (shape, theta1) = self.event(element, hit)?;
         if plane.orientation == Orientation::Tangent {
             self.back(shape, theta1);

@@ -16,7 +16,11 @@ use etendue_field::Window;
 ///
 /// `None` where the central ray does not arrive.
 #[must_use]
-pub fn defect(view: &Observed<SpecularSystem>, map: &SpectrumMap<4>, window: &Window) -> Option<f64> {
+pub fn defect(
+    view: &Observed<SpecularSystem>,
+    map: &SpectrumMap<4>,
+    window: &Window,
+) -> Option<f64> {
     let Observed { system, plane } = view;
     let half = [window.x, window.y, window.u, window.v].map(|profile| profile.half_width());
     let lands = |ray| Some(plane.coordinates(&system.follow(ray)?)?.0);

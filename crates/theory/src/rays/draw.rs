@@ -146,7 +146,9 @@ impl<'a> RaySampler<'a> {
             RayStrategy::Picture => By::Picture(system.picture_densities()?),
             RayStrategy::Positions => match (&outer, plane) {
                 (Outer::Sky(..), Some(plane)) if system.elements.is_empty() => By::Straight {
-                    positions: Box::new([window.x, window.y].map(|profile| LinearDensity::of(&profile))),
+                    positions: Box::new(
+                        [window.x, window.y].map(|profile| LinearDensity::of(&profile)),
+                    ),
                     plane: *plane,
                 },
                 _ => aim(0)?,

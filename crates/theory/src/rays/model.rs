@@ -3,7 +3,7 @@
 
 use super::central::CentralHit;
 use super::{SpecularSystem, predict, with_rays};
-use crate::model::{Model, ShiftedModels, Observed, Over};
+use crate::model::{Model, Observed, Over, ShiftedModels};
 use crate::nets::{Budget, RayNets, work_of_nets};
 use crate::parameter::{New, Parameter, change_curvature, curvatures, resize};
 use crate::predicted::Predicted;

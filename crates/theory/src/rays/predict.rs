@@ -3,11 +3,11 @@
 use super::draw::{RaySampler, RayStrategy};
 use super::emission::emitted;
 use super::region::{Finder, Neighbourhood, RayField, neighbourhood};
-use super::{Plane, LegRay, SpecularSystem};
+use super::{LegRay, Plane, SpecularSystem};
 use crate::geometry::{AffineMap, SpectrumMap};
 use crate::mask::Masks;
-use crate::model::{ShiftedModels, Observed, Over};
-use crate::nets::{self, Budget, DIMENSIONS, Integrand, RayNode, RayNets};
+use crate::model::{Observed, Over, ShiftedModels};
+use crate::nets::{self, Budget, DIMENSIONS, Integrand, RayNets, RayNode};
 use crate::obstacle::PreparedObstacles;
 use crate::predicted::Predicted;
 use etendue_field::{Frame, FrequencyAxis, Light, Mask, SliceGrid, Slices, TwoPlane, Window};
@@ -274,7 +274,8 @@ fn summed(
     (window, grid, picture): Over<'_>,
     [of_slices, of_pictures]: [Budget; 2],
 ) -> Predicted {
-    let draw = way.and_then(|(lands, strategy)| RaySampler::new(observed, window, &lands, strategy));
+    let draw =
+        way.and_then(|(lands, strategy)| RaySampler::new(observed, window, &lands, strategy));
     let (system, _) = observed;
     let (Some((lands, _)), Some(draw)) = (way, draw) else {
         return Predicted::dark(grid, picture);

@@ -91,7 +91,12 @@ impl CosineGrating {
 ///
 /// `distance` must not be zero when b is infinite.
 #[must_use]
-pub(crate) fn area_light(width: f64, distance: f64, window: &GaussianWindow, k: [f64; 2]) -> Complex {
+pub(crate) fn area_light(
+    width: f64,
+    distance: f64,
+    window: &GaussianWindow,
+    k: [f64; 2],
+) -> Complex {
     let travelled = Travelled::new(distance, window);
     let [omega, big_q] = travelled.frequencies(k);
     let Travelled { p, q, .. } = travelled;
@@ -230,7 +235,10 @@ pub(crate) fn blocked_by_strip(
 ///
 /// The integrand is even and analytic in s: the trapezoid rule converges exponentially.
 #[must_use]
-pub(crate) fn shaded(window: &GaussianWindow, field: impl Fn(&GaussianWindow) -> Complex) -> Complex {
+pub(crate) fn shaded(
+    window: &GaussianWindow,
+    field: impl Fn(&GaussianWindow) -> Complex,
+) -> Complex {
     // Step 0.25 errs by exp(−π²/0.25²) = 1e-69, the end at 6.5 by exp(−6.5²) = 5e-19.
     const STEP: f64 = 0.25;
     let nodes = (1..=26).map(|j| STEP * f64::from(j));

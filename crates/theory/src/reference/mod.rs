@@ -18,7 +18,7 @@ use crate::parallel::expansion::Expansion;
 use crate::testing::{chain, lambertian, window};
 use crate::{Chain, g_hat, g_hat_3d};
 use etendue_field::{Complex, Profile, Rectangle};
-use gaussian::{GaussianWindow, GaussianBlock};
+use gaussian::{GaussianBlock, GaussianWindow};
 use jitter::{JitteredArray, jittered_array_power};
 use serde_json::Value;
 

@@ -232,7 +232,12 @@ fn seen(k: f64, central: f64, s: f64, local: f64) -> ([f64; 2], f64) {
 
 /// Step 7 by trapezoids over arc length, local incident and local outgoing angle, of rays off the
 /// circle as it is.
-fn traced(parameters: &Value, bells: &[GaussianField], lobe: Option<f64>, omega: [f64; 2]) -> Complex {
+fn traced(
+    parameters: &Value,
+    bells: &[GaussianField],
+    lobe: Option<f64>,
+    omega: [f64; 2],
+) -> Complex {
     let p = |name: &str| number(&parameters[name]);
     let (k, theta0, theta1) = (p("k"), p("th0"), p("th1"));
     let lattice = |middle: f64, reach: f64, count: i32| {

@@ -37,7 +37,11 @@ const MIN_DISTANCE: f64 = 2.0;
 
 impl DirectionCoordinates {
     /// Of the leg that begins at the light (0) or at a scatterer.
-    pub(super) fn new(view: &Observed<ReflectionSystem>, scatterers: &[ScatteringSurface], leg: usize) -> Self {
+    pub(super) fn new(
+        view: &Observed<ReflectionSystem>,
+        scatterers: &[ScatteringSurface],
+        leg: usize,
+    ) -> Self {
         let Observed { system, plane } = view;
         let from = leg.checked_sub(1).map(|before| &scatterers[before]);
         let first = from.map_or(0, |from| from.number + 1);
@@ -74,7 +78,12 @@ impl DirectionCoordinates {
 
     /// What a Gaussian of angles becomes at a point of the surface, `map` leading to the end of the
     /// leg.
-    pub(super) fn seen(&self, angles: &Gaussian<2>, [s, t]: [f64; 2], map: &AffineMap<4>) -> Gaussian<2> {
+    pub(super) fn seen(
+        &self,
+        angles: &Gaussian<2>,
+        [s, t]: [f64; 2],
+        map: &AffineMap<4>,
+    ) -> Gaussian<2> {
         if matches!(self, Self::Angles) {
             return *angles;
         }

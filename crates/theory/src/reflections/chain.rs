@@ -69,7 +69,9 @@ impl FirstOrderChain {
     pub fn rays(&self) -> AffineMap<4> {
         let mut maps = self.maps.iter();
         let first = maps.next().copied().unwrap_or_else(AffineMap::identity);
-        maps.fold(first, |rays, map| rays.then(&AffineMap::<4>::mirror()).then(map))
+        maps.fold(first, |rays, map| {
+            rays.then(&AffineMap::<4>::mirror()).then(map)
+        })
     }
 }
 
@@ -111,7 +113,11 @@ fn scatterers(view: &Observed<ReflectionSystem>) -> Option<Vec<ScatteringSurface
 }
 
 /// The map from a scatterer, or the light, to the next, or the plane.
-fn map(view: &Observed<ReflectionSystem>, scatterers: &[ScatteringSurface], leg: usize) -> Option<AffineMap<4>> {
+fn map(
+    view: &Observed<ReflectionSystem>,
+    scatterers: &[ScatteringSurface],
+    leg: usize,
+) -> Option<AffineMap<4>> {
     let Observed { system, plane } = view;
     let from = leg.checked_sub(1).map(|before| &scatterers[before]);
     let first = from.map_or(0, |from| from.number + 1);
@@ -167,7 +173,10 @@ pub(super) fn towards(frame: &Frame, normal: DVec3, [theta, phi]: [f64; 2]) -> D
     frame.turned_to(normal).vector_to_world(away)
 }
 
-fn steps(view: &Observed<ReflectionSystem>, scatterers: &[ScatteringSurface]) -> Option<Vec<String>> {
+fn steps(
+    view: &Observed<ReflectionSystem>,
+    scatterers: &[ScatteringSurface],
+) -> Option<Vec<String>> {
     let Observed { system, plane } = view;
     let mut steps: Vec<String> = system.obstacles.iter().map(words::obstacle).collect();
     let (mut at, mut name) = (DVec3::ZERO, "light");

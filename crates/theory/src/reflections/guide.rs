@@ -4,7 +4,9 @@
 //! before; a lobe blurs its angles there; the edge of a surface narrows its positions. What is left
 //! at a surface tells which directions matter at each of its points, and at the light which rays.
 
-use crate::geometry::{AffineMap, Matrix, congruent, diagonal, from_fn, inverse, product, sum, times};
+use crate::geometry::{
+    AffineMap, Matrix, congruent, diagonal, from_fn, inverse, product, sum, times,
+};
 use crate::scattering::{bell, bell_density};
 use etendue_field::{Profile, Window};
 use std::f64::consts::{PI, TAU};
@@ -191,7 +193,8 @@ impl GuideMixture {
     /// Of Gaussians with their shares, which add up to 1; those that are no density are left out.
     pub(super) fn new(parts: impl IntoIterator<Item = (f64, Option<Gaussian<2>>)>) -> Option<Self> {
         let bells = parts.into_iter();
-        let bells = bells.filter_map(|(share, part)| Some((share, HeavyTailedGaussian::new(&part?)?)));
+        let bells =
+            bells.filter_map(|(share, part)| Some((share, HeavyTailedGaussian::new(&part?)?)));
         let mut bells: Vec<(f64, HeavyTailedGaussian)> = bells.collect();
         let total: f64 = bells.iter().map(|(share, _)| share).sum();
         for (share, _) in &mut bells {

@@ -1,7 +1,7 @@
 //! Surfaces in a row and a plane behind them as a model: its parameters and its prediction.
 
 use super::{Interaction, PathSurface, ReflectionSystem, predict};
-use crate::model::{Model, ShiftedModels, Observed, Over};
+use crate::model::{Model, Observed, Over, ShiftedModels};
 use crate::nets::{Budget, RayNets, work_of_nets};
 use crate::parameter::{New, Parameter, change_curvature, curvatures};
 use crate::predicted::Predicted;
@@ -143,7 +143,9 @@ impl Model for Observed<ReflectionSystem> {
         let albedo = albedo.filter(|albedo| *albedo > 0.0);
         let is_factor = |parameter: &Parameter| *parameter == Parameter::Albedo && albedo.is_some();
         let others = parameters.iter().filter(|parameter| !is_factor(parameter));
-        let moved: Option<Vec<_>> = others.map(|other| ShiftedModels::nearby(self, *other)).collect();
+        let moved: Option<Vec<_>> = others
+            .map(|other| ShiftedModels::nearby(self, *other))
+            .collect();
         let moved = moved.expect("parameters of these surfaces");
         let mut found = predict::predict(self, &moved, over, budget);
         let factor = parameters.iter().position(is_factor);

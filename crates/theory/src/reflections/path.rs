@@ -2,7 +2,7 @@
 
 use super::aim::DirectionCoordinates;
 use super::chain::{FirstOrderChain, ScatteringSurface, chain};
-use super::guide::{HeavyTailedGaussian, Conditional, Gaussian, GuideMixture};
+use super::guide::{Conditional, Gaussian, GuideMixture, HeavyTailedGaussian};
 use super::{PathSurface, ReflectionSystem};
 use crate::model::Observed;
 use crate::nets::{DIMENSIONS, RayNode};

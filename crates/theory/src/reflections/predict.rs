@@ -2,8 +2,8 @@
 
 use super::ReflectionSystem;
 use super::path::FieldPaths;
-use crate::model::{ShiftedModels, Observed, Over};
-use crate::nets::{self, Budget, DIMENSIONS, Integrand, RayNode, RayNets};
+use crate::model::{Observed, Over, ShiftedModels};
+use crate::nets::{self, Budget, DIMENSIONS, Integrand, RayNets, RayNode};
 use crate::predicted::Predicted;
 use etendue_field::Slices;
 
@@ -52,7 +52,10 @@ pub(crate) fn with_rays(
 }
 
 /// Of light that the chain does not lead to the plane.
-fn dark(moved: &[ShiftedModels<Observed<ReflectionSystem>>], (_, grid, picture): Over<'_>) -> Predicted {
+fn dark(
+    moved: &[ShiftedModels<Observed<ReflectionSystem>>],
+    (_, grid, picture): Over<'_>,
+) -> Predicted {
     Predicted {
         derivatives: vec![Slices::zeros(*grid); moved.len()],
         ..Predicted::dark(grid, picture)

@@ -3,7 +3,7 @@
 use super::ScatteringSystem;
 use crate::geometry::{AffineMap, Matrix};
 use crate::model::Observed;
-use crate::rays::{Incidence, Plane, LegRay};
+use crate::rays::{Incidence, LegRay, Plane};
 use crate::words::{self, degrees, number};
 use etendue_field::{
     AngleTable, Frame, Fresnel, Lobe, Orientation, Pattern, Quantity, Reflectance, Term, Weight,

@@ -195,20 +195,34 @@ pub(super) struct Lights<'a> {
 
 impl<'a> Lights<'a> {
     /// For a surface whose normal is this where the central ray meets it.
-    pub(super) fn new(system: &'a ScatteringSystem, normal: DVec3, strategy: LightStrategy) -> Self {
+    pub(super) fn new(
+        system: &'a ScatteringSystem,
+        normal: DVec3,
+        strategy: LightStrategy,
+    ) -> Self {
         let sky = match &system.light {
-            Light::Environment { environment } => SkyDensity::new(environment, normal).map(Arc::new),
+            Light::Environment { environment } => {
+                SkyDensity::new(environment, normal).map(Arc::new)
+            }
             _ => None,
         };
         Self::under(system, sky, strategy)
     }
 
     /// The same for a changed system in the same environment.
-    pub(super) fn of<'b>(&'b self, system: &'b ScatteringSystem, strategy: LightStrategy) -> Lights<'b> {
+    pub(super) fn of<'b>(
+        &'b self,
+        system: &'b ScatteringSystem,
+        strategy: LightStrategy,
+    ) -> Lights<'b> {
         Lights::under(system, self.sky.clone(), strategy)
     }
 
-    fn under(system: &'a ScatteringSystem, sky: Option<Arc<SkyDensity<'a>>>, strategy: LightStrategy) -> Self {
+    fn under(
+        system: &'a ScatteringSystem,
+        sky: Option<Arc<SkyDensity<'a>>>,
+        strategy: LightStrategy,
+    ) -> Self {
         let strategy = strategy.in_effect(system);
         Self {
             system,

@@ -4,7 +4,7 @@ use super::ScatteringSystem;
 use super::brdf;
 use super::incoming::{IncomingLight, LightPart, secant};
 use crate::mask::Masks;
-use crate::rays::{Plane, LegRay};
+use crate::rays::{LegRay, Plane};
 use etendue_field::Orientation;
 use glam::DVec3;
 

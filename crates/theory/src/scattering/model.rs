@@ -1,7 +1,7 @@
 //! A surface with a BRDF and a plane behind it as a model: its parameters and its prediction.
 
 use super::{ScatteringSystem, chain, predict, with_rays};
-use crate::model::{Model, ShiftedModels, Observed, Over};
+use crate::model::{Model, Observed, Over, ShiftedModels};
 use crate::nets::{Budget, RayNets, work_of_nets};
 use crate::parameter::{New, Parameter, change_curvature, curvatures};
 use crate::predicted::Predicted;
@@ -78,7 +78,9 @@ impl Model for Observed<ScatteringSystem> {
         let factor = only.filter(|albedo| *albedo > 0.0);
         let is_factor = |parameter: &Parameter| *parameter == Parameter::Albedo && factor.is_some();
         let others = parameters.iter().filter(|parameter| !is_factor(parameter));
-        let moved: Option<Vec<_>> = others.map(|other| ShiftedModels::nearby(self, *other)).collect();
+        let moved: Option<Vec<_>> = others
+            .map(|other| ShiftedModels::nearby(self, *other))
+            .collect();
         let moved = moved.expect("parameters of the surface");
         let mut found = predict(self, chain(self).as_ref(), &moved, over, budget);
         if let (Some(i), Some(albedo)) = (parameters.iter().position(is_factor), factor) {

@@ -6,10 +6,10 @@ use super::incoming::LightPart;
 use super::linear::Linear;
 use super::{ReflectionChain, ScatteringSystem};
 use crate::mask::Masks;
-use crate::model::{ShiftedModels, Observed, Over};
-use crate::nets::{self, Budget, DIMENSIONS, Integrand, RayNode, RayNets};
+use crate::model::{Observed, Over, ShiftedModels};
+use crate::nets::{self, Budget, DIMENSIONS, Integrand, RayNets, RayNode};
 use crate::predicted::Predicted;
-use crate::rays::{Plane, LegRay};
+use crate::rays::{LegRay, Plane};
 use etendue_field::{EnvironmentMap, Light, SliceGrid, TwoPlane, Window};
 use glam::DVec3;
 
@@ -174,7 +174,12 @@ fn over(radiance: f64, density: f64) -> f64 {
 }
 
 /// The radiance of a ray at a plane, of what a part of the light shines, per unit of its measure.
-fn radiance(view: &Observed<ScatteringSystem>, masks: &Masks<'_>, leaving: &Leaving, part: LightPart) -> f64 {
+fn radiance(
+    view: &Observed<ScatteringSystem>,
+    masks: &Masks<'_>,
+    leaving: &Leaving,
+    part: LightPart,
+) -> f64 {
     let Observed { system, plane } = view;
     let passes = past_obstacles(plane, masks, leaving);
     let radiance = if passes > 0.0 {

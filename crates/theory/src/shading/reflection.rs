@@ -140,12 +140,16 @@ impl Reflection<'_> {
         let until = |step: Step| move |w: [f64; 2]| self.spectrum(step, w, before);
         match step {
             Step::Incidence => AffineMap::<2>::incidence(self.incidence).spectrum(omega, before),
-            Step::Curvature => AffineMap::<2>::curvature(k).spectrum(omega, &until(Step::Incidence)),
+            Step::Curvature => {
+                AffineMap::<2>::curvature(k).spectrum(omega, &until(Step::Incidence))
+            }
             Step::Cosine => self.sum(|term| self.lit(term, omega, before)),
             Step::Mirror => AffineMap::mirror().spectrum(omega, &until(Step::Cosine)),
             Step::Brdf => self.sum(|term| self.reflected(term, omega, before)),
             Step::Back => AffineMap::<2>::back(k).spectrum(omega, &until(Step::Brdf)),
-            Step::Outgoing => AffineMap::<2>::outgoing(self.outgoing).spectrum(omega, &until(Step::Back)),
+            Step::Outgoing => {
+                AffineMap::<2>::outgoing(self.outgoing).spectrum(omega, &until(Step::Back))
+            }
         }
     }
 

@@ -9,7 +9,7 @@ use etendue_pipeline::{Reporter, Work};
 use etendue_spectrum::field::{FieldCovariance, MatrixEstimate, measure_field};
 use etendue_store::Failure;
 use etendue_theory::covariance::{SpectralCovariance, window};
-use etendue_theory::geometry::Map;
+use etendue_theory::geometry::AffineMap;
 use serde_json::{Value, json as tree_of};
 
 /// Frequencies on either side of zero that covariances are over: the noise of a second moment grows as the fourth power
@@ -88,7 +88,7 @@ pub(super) fn measured(
 fn propagated(probe: &Probe<'_>, leaving: &FieldCovariance) -> Option<MatrixEstimate> {
     let [camera, surface] = [0, 1].map(|i: usize| window(&probe.planes[i].window));
     let less = surface.map(|row| row.map(|entry| -entry));
-    let travel = Map::travel(probe.stops[0].distance);
+    let travel = AffineMap::travel(probe.stops[0].distance);
     leaving.estimate_of(|measured| {
         let light = SpectralCovariance::of(measured).multiplied(&less);
         light.mapped(&travel)?.multiplied(&camera).matrix()

@@ -3,14 +3,14 @@
 use super::super::detailed::{DetailedMesh, check};
 use super::super::error::fault;
 use super::super::shared::{check_corners, fan};
-use super::super::text::{Words, number, quoted};
+use super::super::text::{LineWords, number, quoted};
 use super::{corner, place, statements, vertices, without_mark};
 use crate::fault::Fault;
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 
 /// The place, the texture coordinates and the normal of a corner, by their numbers in the file.
-type Key = (u32, Option<u32>, Option<u32>);
+type CornerKey = (u32, Option<u32>, Option<u32>);
 
 pub(in super::super) fn read(bytes: &[u8]) -> Result<DetailedMesh, Fault> {
     let bytes = without_mark(bytes);
@@ -41,7 +41,7 @@ pub(in super::super) fn read(bytes: &[u8]) -> Result<DetailedMesh, Fault> {
 fn rows<const N: usize>(bytes: &[u8], word: &[u8]) -> Result<Vec<[f64; N]>, Fault> {
     let mut rows = Vec::new();
     for (line, statement) in statements(bytes) {
-        let mut words = Words(&statement);
+        let mut words = LineWords(&statement);
         if words.next() != Some(word) {
             continue;
         }
@@ -63,12 +63,12 @@ fn rows<const N: usize>(bytes: &[u8], word: &[u8]) -> Result<Vec<[f64; N]>, Faul
 }
 
 /// All different corners, and triangles of them.
-fn faces(bytes: &[u8], counts: [usize; 3]) -> Result<(Vec<Key>, Vec<[u32; 3]>), Fault> {
-    let mut known: HashMap<Key, u32> = HashMap::new();
+fn faces(bytes: &[u8], counts: [usize; 3]) -> Result<(Vec<CornerKey>, Vec<[u32; 3]>), Fault> {
+    let mut known: HashMap<CornerKey, u32> = HashMap::new();
     let (mut keys, mut triangles, mut corners) = (Vec::new(), Vec::new(), Vec::new());
     let (mut before, mut face) = ([0; 3], 0);
     for (line, statement) in statements(bytes) {
-        let mut words = Words(&statement);
+        let mut words = LineWords(&statement);
         match words.next() {
             Some(b"v") => before[0] += 1,
             Some(b"vt") => before[1] += 1,
@@ -101,7 +101,7 @@ fn faces(bytes: &[u8], counts: [usize; 3]) -> Result<(Vec<Key>, Vec<[u32; 3]>), 
 }
 
 /// A corner such as `7`, `7/3`, `7//5` or `-1/-1/-1`. A fault is a value and what is allowed.
-fn key(word: &[u8], before: [usize; 3], counts: [usize; 3]) -> Result<Key, (String, String)> {
+fn key(word: &[u8], before: [usize; 3], counts: [usize; 3]) -> Result<CornerKey, (String, String)> {
     let first = corner(word, before[0], counts[0])?;
     let mut others = word.split(|b| *b == b'/').skip(1);
     let mut other = |i: usize| match others.next() {

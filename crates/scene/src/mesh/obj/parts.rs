@@ -1,7 +1,7 @@
 //! OBJ files as scenes: which triangles have which material.
 
 use super::super::detailed::DetailedMesh;
-use super::super::text::Words;
+use super::super::text::LineWords;
 use super::{detailed, statements, without_mark};
 use crate::fault::Fault;
 use std::ops::Range;
@@ -63,7 +63,7 @@ impl ObjFile {
             left_out: Vec::new(),
         };
         for (line, statement) in statements(without_mark(bytes)) {
-            let mut words = Words(&statement);
+            let mut words = LineWords(&statement);
             let Some(word) = words.next() else {
                 continue;
             };

@@ -1,8 +1,8 @@
 //! The data of a PLY file.
 
 use super::super::error::fault;
-use super::super::text::{Lines, Words, number, quoted};
-use super::header::{Element, Encoding, Property, Scalar};
+use super::super::text::{LineWords, Lines, number, quoted};
+use super::header::{Encoding, PlyElement, PlyProperty, Scalar};
 use crate::fault::Fault;
 
 /// The data behind the header, read from the front. ASCII files hold a row a line; blank lines are passed over.
@@ -14,7 +14,7 @@ enum Data<'a> {
     Text {
         lines: Lines<'a>,
         line: usize,
-        words: Words<'a>,
+        words: LineWords<'a>,
     },
     Binary {
         bytes: &'a [u8],
@@ -24,14 +24,14 @@ enum Data<'a> {
 
 /// Where a row is, for messages.
 #[derive(Clone, Copy)]
-pub(super) struct Row<'a> {
-    element: &'a Element,
+pub(super) struct PlyRow<'a> {
+    element: &'a PlyElement,
     index: usize,
     line: Option<usize>,
 }
 
 /// What is found in place of a value, and what is allowed.
-type Trouble = (String, String);
+type PlyTrouble = (String, String);
 
 impl<'a> Body<'a> {
     pub(super) fn new(lines: Lines<'a>, encoding: Encoding) -> Self {
@@ -39,7 +39,7 @@ impl<'a> Body<'a> {
             Encoding::Ascii => Data::Text {
                 lines,
                 line: 0,
-                words: Words::default(),
+                words: LineWords::default(),
             },
             _ => Data::Binary {
                 bytes: lines.rest,
@@ -52,8 +52,8 @@ impl<'a> Body<'a> {
     /// Gives each row of an element: for every property its value, or the values of its list.
     pub(super) fn rows(
         &mut self,
-        element: &Element,
-        mut each: impl FnMut(Row<'_>, &[Vec<f64>]) -> Result<(), Fault>,
+        element: &PlyElement,
+        mut each: impl FnMut(PlyRow<'_>, &[Vec<f64>]) -> Result<(), Fault>,
     ) -> Result<(), Fault> {
         let mut values = vec![Vec::new(); element.properties.len()];
         for index in 0..element.count {
@@ -68,17 +68,17 @@ impl<'a> Body<'a> {
         Ok(())
     }
 
-    fn begin<'e>(&mut self, element: &'e Element, index: usize) -> Row<'e> {
+    fn begin<'e>(&mut self, element: &'e PlyElement, index: usize) -> PlyRow<'e> {
         let line = match &mut self.data {
             Data::Binary { .. } => None,
             Data::Text { lines, line, words } => {
                 let next = lines.find(|(_, text)| !text.is_empty());
                 let (number, text) = next.unwrap_or((*line + 1, &[]));
-                (*line, *words) = (number, Words(text));
+                (*line, *words) = (number, LineWords(text));
                 Some(number)
             }
         };
-        Row {
+        PlyRow {
             element,
             index,
             line,
@@ -87,10 +87,10 @@ impl<'a> Body<'a> {
 
     fn property(
         &mut self,
-        row: Row<'_>,
-        property: &Property,
+        row: PlyRow<'_>,
+        property: &PlyProperty,
         values: &mut Vec<f64>,
-    ) -> Result<(), Trouble> {
+    ) -> Result<(), PlyTrouble> {
         values.clear();
         let count = match property.length {
             None => 1,
@@ -109,9 +109,9 @@ impl<'a> Body<'a> {
         Ok(())
     }
 
-    fn scalar(&mut self, row: Row<'_>, scalar: Scalar) -> Result<f64, Trouble> {
+    fn scalar(&mut self, row: PlyRow<'_>, scalar: Scalar) -> Result<f64, PlyTrouble> {
         let file_ends = || {
-            let Element { name, count, .. } = row.element;
+            let PlyElement { name, count, .. } = row.element;
             let allowed = format!("{count} rows of element {name}, as the header announces");
             ("missing, as the file ends".to_string(), allowed)
         };
@@ -135,7 +135,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    fn finish(&mut self, row: Row<'_>) -> Result<(), Fault> {
+    fn finish(&mut self, row: PlyRow<'_>) -> Result<(), Fault> {
         match &mut self.data {
             Data::Text { words, .. } => words.next().map_or(Ok(()), |word| {
                 let allowed = "the end of the line, after the properties announced";
@@ -161,7 +161,7 @@ impl<'a> Body<'a> {
     }
 }
 
-impl Row<'_> {
+impl PlyRow<'_> {
     pub(super) fn place(self, what: &str) -> String {
         let line = self.line.map(|line| format!("line {line}, "));
         let line = line.unwrap_or_default();

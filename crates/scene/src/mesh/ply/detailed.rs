@@ -3,7 +3,7 @@
 use super::super::detailed::{DetailedMesh, check};
 use super::super::shared::fan;
 use super::body::Body;
-use super::header::{Element, Header};
+use super::header::{PlyElement, PlyHeader};
 use super::{axes, face, list, vertex};
 use crate::fault::Fault;
 use glam::{DVec2, DVec3};
@@ -12,7 +12,7 @@ use glam::{DVec2, DVec3};
 const UVS: [[&str; 2]; 3] = [["u", "v"], ["s", "t"], ["texture_u", "texture_v"]];
 
 pub(in super::super) fn read(bytes: &[u8]) -> Result<DetailedMesh, Fault> {
-    let (header, data) = Header::read(bytes)?;
+    let (header, data) = PlyHeader::read(bytes)?;
     let element = header.element("vertex")?;
     let axes = axes(element)?;
     let normal = columns(element, ["nx", "ny", "nz"]);
@@ -58,7 +58,7 @@ pub(in super::super) fn read(bytes: &[u8]) -> Result<DetailedMesh, Fault> {
 }
 
 /// Where among the properties these are; `None` unless all are there, as single numbers.
-fn columns<const N: usize>(element: &Element, names: [&str; N]) -> Option<[usize; N]> {
+fn columns<const N: usize>(element: &PlyElement, names: [&str; N]) -> Option<[usize; N]> {
     let found = names.map(|name| {
         let mut properties = element.properties.iter();
         properties.position(|p| p.name == name && p.length.is_none())

@@ -1,15 +1,15 @@
 //! The header of a PLY file.
 
 use super::super::error::fault;
-use super::super::text::{Lines, Words, number, quoted};
+use super::super::text::{LineWords, Lines, number, quoted};
 use crate::fault::Fault;
 use std::collections::HashSet;
 
 /// What a PLY file says of its data.
-pub(super) struct Header {
+pub(super) struct PlyHeader {
     pub(super) encoding: Encoding,
     /// In the order of the data.
-    pub(super) elements: Vec<Element>,
+    pub(super) elements: Vec<PlyElement>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -20,14 +20,14 @@ pub(super) enum Encoding {
 }
 
 /// A table of the file, such as that of the vertices.
-pub(super) struct Element {
+pub(super) struct PlyElement {
     pub(super) name: String,
     pub(super) count: usize,
-    pub(super) properties: Vec<Property>,
+    pub(super) properties: Vec<PlyProperty>,
 }
 
 /// A column of an element.
-pub(super) struct Property {
+pub(super) struct PlyProperty {
     pub(super) name: String,
     pub(super) scalar: Scalar,
     /// For lists, the type of their length.
@@ -55,7 +55,7 @@ const LONGEST_NAME: usize = 100;
 /// Elements that a message lists.
 const MOST_LISTED: usize = 4;
 
-impl Header {
+impl PlyHeader {
     /// The header, and the lines behind it.
     pub(super) fn read(bytes: &[u8]) -> Result<(Self, Lines<'_>), Fault> {
         let mut lines = Lines::new(bytes);
@@ -64,12 +64,12 @@ impl Header {
             return Err(fault("line 1", quoted(first), "ply"));
         }
         let mut encoding = None;
-        let mut elements: Vec<Element> = Vec::new();
+        let mut elements: Vec<PlyElement> = Vec::new();
         // Names of all elements, and of the properties of the last: looked up, so that a header of any length takes time in proportion.
         let (mut known, mut properties) = (HashSet::new(), HashSet::new());
         for (at, line) in lines.by_ref() {
             let refused = |allowed: &str| fault(format!("line {at}"), quoted(line), allowed);
-            let words: Vec<&[u8]> = Words(line).collect();
+            let words: Vec<&[u8]> = LineWords(line).collect();
             match words.as_slice() {
                 [] | [b"comment" | b"obj_info", ..] => {}
                 [b"format", ..] if encoding.is_some() => {
@@ -115,7 +115,7 @@ impl Header {
         ))
     }
 
-    pub(super) fn element(&self, name: &str) -> Result<&Element, Fault> {
+    pub(super) fn element(&self, name: &str) -> Result<&PlyElement, Fault> {
         let found = self.elements.iter().find(|e| e.name == name);
         let place = || format!("element {name} of the header");
         found.ok_or_else(|| fault(place(), "missing", "elements vertex and face"))
@@ -149,7 +149,7 @@ impl Header {
     }
 }
 
-impl Property {
+impl PlyProperty {
     /// The fewest bytes it can take in a row.
     fn least(&self, encoding: Encoding) -> usize {
         match encoding {
@@ -201,22 +201,22 @@ fn name(word: &[u8]) -> Option<String> {
     (word.len() <= LONGEST_NAME).then(|| String::from_utf8_lossy(word).into())
 }
 
-fn element(words: &[&[u8]]) -> Option<Element> {
+fn element(words: &[&[u8]]) -> Option<PlyElement> {
     let [word, count] = words else { return None };
-    Some(Element {
+    Some(PlyElement {
         name: name(word)?,
         count: number(count)?,
         properties: Vec::new(),
     })
 }
 
-fn property(words: &[&[u8]]) -> Option<Property> {
+fn property(words: &[&[u8]]) -> Option<PlyProperty> {
     let (word, scalar, length) = match words {
         [b"list", length, scalar, word] => (word, scalar, Some(Scalar::named(length)?)),
         [scalar, word] => (word, scalar, None),
         _ => return None,
     };
-    Some(Property {
+    Some(PlyProperty {
         name: name(word)?,
         scalar: Scalar::named(scalar)?,
         length,

@@ -3,8 +3,8 @@
 use super::apart;
 use crate::covariance::{SpectralCovariance, Traced, Untraced, window};
 use crate::geometry::covariance::{gaussian_window, power_spectrum};
-use crate::geometry::{Edition, AffineMap, Matrix, diagonal, sum};
-use crate::rays::{self, SpecularSurface, Plane};
+use crate::geometry::{AffineMap, Edition, Matrix, diagonal, sum};
+use crate::rays::{self, Plane, SpecularSurface};
 use crate::testing::{chain_of, opaque};
 use crate::{Chain, Observed, Operator, scattering};
 use etendue_field::{

@@ -34,7 +34,10 @@ fn inverses() {
 
 #[test]
 fn composition_is_one_map_after_the_other() {
-    let (first, second) = (AffineMap::<4>::incidence(0.5), AffineMap::<4>::curvature(SHAPE, 0.5));
+    let (first, second) = (
+        AffineMap::<4>::incidence(0.5),
+        AffineMap::<4>::curvature(SHAPE, 0.5),
+    );
     let ray = [0.3, -0.2, 0.1, 0.4];
     let one = first.then(&second).apply(ray);
     let other = second.apply(first.apply(ray));
@@ -72,7 +75,11 @@ fn closed_form_of_a_mirror() {
     let mirror = AffineMap::<2>::mirror_reflection(theta0, k);
     assert!(apart(&mirror, &expected) < ROUNDING);
     assert!((mirror.focus().unwrap() + c0 / (2.0 * k)).abs() < ROUNDING);
-    assert!(AffineMap::<2>::mirror_reflection(theta0, 0.0).focus().is_none());
+    assert!(
+        AffineMap::<2>::mirror_reflection(theta0, 0.0)
+            .focus()
+            .is_none()
+    );
     let [[m11, m12], [_, m22]] = SHAPE;
     let expected = AffineMap::<4>::linear([
         [-1.0, 0.0, 0.0, 0.0],
@@ -187,7 +194,9 @@ fn sections_are_the_plane_of_incidence() {
     let surface = AffineMap::<4>::refracting_surface(0.7, SHAPE, &GLASS)
         .unwrap()
         .matrix;
-    let line = AffineMap::<2>::refracting_surface(0.7, k, &GLASS).unwrap().matrix;
+    let line = AffineMap::<2>::refracting_surface(0.7, k, &GLASS)
+        .unwrap()
+        .matrix;
     for n in 0..4 {
         let (i, j) = (n / 2, n % 2);
         assert!((mirror[2 * i][2 * j] - flat[i][j]).abs() < ROUNDING);

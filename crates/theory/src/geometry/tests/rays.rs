@@ -1,7 +1,7 @@
 //! Maps against traced rays: the error falls with the neighbourhood's size, as its first or second
 //! power.
 
-use super::trace::{LightAxes, GraphSurface, reflected, refracted};
+use super::trace::{GraphSurface, LightAxes, reflected, refracted};
 use super::*;
 use crate::geometry::plane_sphere::{to_angles, to_slopes};
 
@@ -59,10 +59,18 @@ fn mirrors_in_space() {
     for (theta0, order) in [(0.7, 1.0), (-0.4, 1.0), (0.0, 2.0)] {
         for k in [0.5, -0.5] {
             let map = AffineMap::<4>::mirror_reflection(theta0, [[k, 0.0], [0.0, k]]);
-            assert_order(&map, |z| reflected(GraphSurface::sphere(k), theta0, z), order);
+            assert_order(
+                &map,
+                |z| reflected(GraphSurface::sphere(k), theta0, z),
+                order,
+            );
         }
         let map = AffineMap::<4>::mirror_reflection(theta0, SHAPE);
-        assert_order(&map, |z| reflected(GraphSurface::graph(SHAPE), theta0, z), order);
+        assert_order(
+            &map,
+            |z| reflected(GraphSurface::graph(SHAPE), theta0, z),
+            order,
+        );
     }
 }
 

@@ -100,7 +100,12 @@ pub(super) fn reflected(surface: GraphSurface, theta0: f64, z: [f64; 4]) -> [f64
 }
 
 /// A ray refracted by a surface met at θ₀, in the frames before and after.
-pub(super) fn refracted(surface: GraphSurface, theta0: f64, media: &Media, z: [f64; 4]) -> [f64; 4] {
+pub(super) fn refracted(
+    surface: GraphSurface,
+    theta0: f64,
+    media: &Media,
+    z: [f64; 4],
+) -> [f64; 4] {
     let ray = LightAxes::coming(theta0).ray(z);
     let [point, n] = surface.hit(ray);
     let ratio = media.before / media.after;

@@ -157,7 +157,10 @@ fn gaussian_window(a: f64, b: f64) -> Window {
 
 #[test]
 fn discs_and_points_agree_with_closed_forms() {
-    let (gaussian, window) = (GaussianWindow { a: 0.7, b: 0.35 }, gaussian_window(0.7, 0.35));
+    let (gaussian, window) = (
+        GaussianWindow { a: 0.7, b: 0.35 },
+        gaussian_window(0.7, 0.35),
+    );
     let (radius, distance) = (0.3, 2.0);
     let round = chain_of(spot(disc([0.0; 2], radius), 0.0), [(distance, None)]);
     let point = chain_of(Light::Point { intensity: 1.0 }, [(distance, None)]);

@@ -1,7 +1,7 @@
 //! How light from one coordinate of the receiver adds to the spectrum of a window farther on.
 
 use crate::numerics::quadrature::gauss_legendre;
-use crate::parallel::row::{FrequencyRow, ComplexRow, add_scaled};
+use crate::parallel::row::{ComplexRow, FrequencyRow, add_scaled};
 use etendue_field::{Complex, Profile, cis};
 use ndarray::{Array2, aview1};
 use std::f64::consts::TAU;

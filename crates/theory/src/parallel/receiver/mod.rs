@@ -17,8 +17,8 @@ mod tests;
 mod work;
 
 use crate::barrier::{Barrier, Bounds};
-use crate::parallel::chain::{ParallelEmitter, MaskLayer};
-use density::{LobeDensity, Integrator};
+use crate::parallel::chain::{MaskLayer, ParallelEmitter};
+use density::{Integrator, LobeDensity};
 use etendue_field::{Disc, Grating, Rectangle, Shape};
 use region::ReceiverRegion;
 use std::f64::consts::{PI, TAU};

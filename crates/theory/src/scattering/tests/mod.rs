@@ -94,7 +94,12 @@ fn white(lobe: Lobe) -> Reflectance {
 }
 
 /// A surface a metre from the light, met at θ₀ in the plane of X.
-fn system(light: Light, theta0: f64, curvature: [f64; 3], reflectance: Reflectance) -> ScatteringSystem {
+fn system(
+    light: Light,
+    theta0: f64,
+    curvature: [f64; 3],
+    reflectance: Reflectance,
+) -> ScatteringSystem {
     let d = DVec3::new(libm::sin(theta0), 0.0, -libm::cos(theta0));
     ScatteringSystem {
         light,
@@ -360,8 +365,9 @@ fn wrong_operators_are_seen() {
     let mut sheared = sound;
     sheared.onto.matrix[2][0] *= -1.0;
     assert!(error(&system, &sheared) > 3.0 * least);
-    let exact_error =
-        |other: &ScatteringSystem| distance(&exact(other, &plane, &window, &grid).slices, &right.slices);
+    let exact_error = |other: &ScatteringSystem| {
+        distance(&exact(other, &plane, &window, &grid).slices, &right.slices)
+    };
     let sharper = view(&system, &plane)
         .with(Parameter::Lobe, 1.05 / (0.25 * e * e))
         .unwrap()

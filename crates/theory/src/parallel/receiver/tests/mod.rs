@@ -4,7 +4,7 @@ mod points;
 mod spectra;
 
 use super::Receiver;
-use crate::parallel::chain::{ParallelEmitter, MaskLayer};
+use crate::parallel::chain::{MaskLayer, ParallelEmitter};
 use crate::testing::square;
 use etendue_field::{Disc, Grating, HalfPlane, Light, Mask, Rectangle, Shape};
 

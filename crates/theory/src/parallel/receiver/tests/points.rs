@@ -145,7 +145,8 @@ fn two_discs_meet_in_a_lens() {
             mask: &mask,
         }];
         let stopped = |layers: &[MaskLayer<'_>]| {
-            Receiver::new(ParallelEmitter::new(&light), layers, 2.0, false, 0.0, 1.0).irradiance(0.0, 0.0)
+            Receiver::new(ParallelEmitter::new(&light), layers, 2.0, false, 0.0, 1.0)
+                .irradiance(0.0, 0.0)
                 / 1.7
         };
         let (r, s, d) = (0.25, radius, offset);
