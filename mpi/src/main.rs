@@ -3,7 +3,7 @@
 //! `mpirun -n 32 etendue-mpi run scenes/fig9b.ron --photons 2^36 --threads 4 --resume`
 //!
 //! Rank 0 does what `etendue` does, works as well, and hands out pieces as other ranks ask for them. Nothing is summed by MPI:
-//! it carries bytes, and the result has those of `etendue run`.
+//! it carries bytes, and the result has those of `etendue run`. The arguments are those of `etendue`, parsed by its own crate.
 //!
 //! Why `ferrompi`: it needs no libclang, its calls return errors instead of aborting, and both MPICH and Open MPI are tested there.
 //! `mpi` (rsmpi) generates its bindings by libclang, which the nodes of clusters often lack.

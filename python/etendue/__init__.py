@@ -19,10 +19,11 @@ from etendue.rays import Spectrum, spectrum
 from etendue.result import LightField, Plane, Radial, Result, Slices
 from etendue.scene import PlaneInfo, Scene
 from etendue.stages import Measurement, Photons, Prediction, check, compare, measure, merge, photons, predict, run
-from etendue.worlds import Picture, Probe, probe, render
+from etendue.worlds import ImportedScene, Picture, Probe, import_scene, probe, render
 
 __all__ = [
     "CannotRun",
+    "ImportedScene",
     "LightField",
     "Measurement",
     "Photons",
@@ -40,6 +41,7 @@ __all__ = [
     "check",
     "compare",
     "figure",
+    "import_scene",
     "measure",
     "merge",
     "photons",

@@ -1,13 +1,16 @@
 from collections.abc import Callable
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
-Progress = Callable[[int], object]
+Tell = Callable[[int, str, str, int, int], object]
+"""Is told the number of some work, its verb and things, how many there are, and how many are done."""
+SceneArgument = Union[str, PathLike[str], tuple[str, str, str]]
+"""The path of a scene file, or a text with the name and the folder of the scene."""
 
 class SceneError(ValueError):
     faults: list[str]
@@ -34,17 +37,7 @@ class Outcome:
 class Job:
     @staticmethod
     def read(
-        path: str | PathLike[str], set: list[tuple[str, str]], photons: int | None, seed: int | None, backward: bool
-    ) -> Job: ...
-    @staticmethod
-    def parse(
-        text: str,
-        name: str,
-        folder: str | PathLike[str],
-        set: list[tuple[str, str]],
-        photons: int | None,
-        seed: int | None,
-        backward: bool,
+        scene: SceneArgument, set: list[tuple[str, str]], photons: int | None, seed: int | None, backward: bool
     ) -> Job: ...
     @property
     def name(self) -> str: ...
@@ -55,7 +48,7 @@ class Job:
     def json(self) -> str: ...
     def warnings(self) -> list[str]: ...
     def planes(self) -> list[tuple[str, str, list[str], list[str]]]: ...
-    def measure(self, batches: list[int], threads: int | None, progress: Progress | None) -> Measurement: ...
+    def measure(self, batches: list[int], threads: int | None, progress: Tell | None) -> Measurement: ...
     def predict(self, threads: int | None) -> Prediction: ...
     def compare(self, measurement: Measurement, prediction: Prediction, threads: int | None) -> Outcome: ...
     def crossings(self, batches: list[int], plane: int) -> tuple[Floats, list[int], list[int]]: ...
@@ -65,9 +58,41 @@ class Job:
         batch: NDArray[np.uint32],
         batches: int,
         threads: int | None,
-        progress: Progress | None,
+        progress: Tell | None,
     ) -> dict[str, Any]: ...
     def packed(self, measurement: Measurement) -> list[tuple[int, bytes]]: ...
     def unpacked(self, batches: list[tuple[int, bytes]]) -> Measurement: ...
 
+def sweep(
+    scene: SceneArgument,
+    set: list[tuple[str, str | list[float]]],
+    out: str | PathLike[str],
+    arguments: dict[str, Any],
+    threads: int | None,
+    progress: Tell | None,
+) -> None: ...
+def figure(
+    scenes: list[SceneArgument],
+    set: list[tuple[str, str]],
+    out: str | PathLike[str],
+    arguments: dict[str, Any],
+    threads: int | None,
+    progress: Tell | None,
+) -> Path: ...
+def render(
+    scene: str | PathLike[str],
+    out: str | PathLike[str],
+    arguments: dict[str, Any],
+    threads: int | None,
+    progress: Tell | None,
+) -> None: ...
+def probe(
+    scene: str | PathLike[str],
+    pixel: tuple[int, int],
+    out: str | PathLike[str],
+    arguments: dict[str, Any],
+    threads: int | None,
+    progress: Tell | None,
+) -> list[str]: ...
+def import_scene(scene: str | PathLike[str], arguments: dict[str, Any]) -> dict[str, Any]: ...
 def command(arguments: list[str]) -> int: ...

@@ -1,22 +1,20 @@
-"""Commands that write many files, as functions."""
+"""Sweeps and figures, which write many files."""
 
 from __future__ import annotations
 
 import csv
-import json
 import os
-import subprocess
-import sys
-import tempfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from etendue._etendue import CannotRun, SceneError
-from etendue.scene import Scene, Source, Value, _text, _whole, as_scene  # pyright: ignore[reportPrivateUsage]
+from etendue import _etendue
+from etendue.progress import Progress, told
+from etendue.ranges import thread_count
+from etendue.scene import Method, Scene, Source, Value, field_texts, method_of, scene_argument, value_text
 
 
 def sweep(
@@ -25,19 +23,37 @@ def sweep(
     *,
     out: str | os.PathLike[str],
     together: bool = False,
+    common_seed: bool = False,
     photons: float | None = None,
+    seed: int | None = None,
+    method: Method | None = None,
+    force: bool = False,
+    threads: int | None = None,
+    progress: Progress = None,
 ) -> dict[str, NDArray[Any]]:
     """Runs a scene with fields that take several values; returns the table of all planes, a column each.
 
-    `set` gives a field one value, a sequence of numbers, or text as the command takes it: `{"blockers.0.pitch": "0.05..0.4:8"}`.
-    Several fields make a grid, or with `together` go in step. What is done is kept in `out`: the same call goes on from there.
+    `set` gives a field one value, a sequence of numbers, or text: `{"blockers.0.pitch": "0.05..0.4:8"}` is 8 values, and `:8log` 8 values
+    by equal factors. Several fields make a grid, or with `together` go in step.
+    `photons`, `seed` and `method` are as in `run`. Each point has a seed of its own, unless `common_seed`.
+    What is done is kept in `out`: the same call goes on from there, also after Ctrl-C. `force` replaces files in `out` that Étendue did
+    not write.
+    `progress` is whether a bar is shown, or a function that is told how many points are done.
+
+    Raises `SceneError` with all faults of the scene, and `CannotRun` where `out` holds something else.
     """
-    arguments = [f"--set={path}={_values(value)}" for path, value in set.items()]
-    if together:
-        arguments.append("--together")
-    if photons is not None:
-        arguments.append(f"--photons={_whole(photons)}")
-    _done("sweep", [scene], arguments, Path(out))
+    arguments = given(
+        together=together,
+        common_seed=common_seed,
+        photons=photons,
+        seed=seed,
+        method=method_of(scene) if method is None else method,
+        force=force,
+    )
+    values = [(path, _values(value)) for path, value in set.items()]
+    threads = thread_count(threads)
+    with told(progress) as tell:
+        _etendue.sweep(scene_argument(scene), values, out, arguments, threads, tell)
     with open(Path(out) / "sweep.csv", newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     return {name: _column([row[name] for row in rows]) for name in rows[0]}
@@ -47,22 +63,42 @@ def figure(
     scenes: Sequence[Scene | Source],
     *,
     out: str | os.PathLike[str],
-    planes: Sequence[str] = (),
+    plane: str | None = None,
+    set: Mapping[str, Value] | None = None,
     style: str | os.PathLike[str] | None = None,
+    quality: Literal["draft", "print"] | None = None,
+    force: bool = False,
+    threads: int | None = None,
+    progress: Progress = None,
 ) -> Path:
-    """Draws planes of scenes side by side: PNG, SVG, PDF and their data. Returns the PNG."""
-    arguments = [f"--plane={plane}" for plane in planes]
-    if style is not None:
-        arguments.append(f"--style={os.fspath(style)}")
-    _done("figure", scenes, arguments, Path(out))
-    found = sorted(Path(out).rglob("figure.png"))
-    return found[0]
+    """Draws scenes: PNG, SVG, PDF and their data, in a folder below `out`. Returns the PNG.
+
+    One scene is drawn along its path, or at `plane` alone; several are drawn side by side at `plane`, or each at its last plane.
+    A name such as "7" or "table1" is a figure of the paper; of several such figures the PNG of the first is returned.
+    `set` overrides fields of the scenes. `style` is a file that says how the figure looks.
+    `quality` is "print" unless said, or "draft": an eighth of the photons of the scenes, and fewer frequencies.
+    `force` replaces files in `out` that Étendue did not write.
+    `progress` is whether a bar is shown, or a function that is told how much of the work at hand is done.
+    """
+    if isinstance(scenes, (str, os.PathLike, Mapping, Scene)):
+        raise TypeError("scenes is one scene; allowed: a sequence of them, such as [scene]")
+    arguments = given(plane=plane, style=style, quality=quality, force=force)
+    wanted = [scene_argument(scene) for scene in scenes]
+    threads = thread_count(threads)
+    with told(progress) as tell:
+        folder = _etendue.figure(wanted, field_texts(set), out, arguments, threads, tell)
+    return Path(folder) / "figure.png"
 
 
-def _values(value: object) -> str:
-    if isinstance(value, (str, int, float)):
-        return _text(value)
-    return ",".join(repr(float(number)) for number in value)  # type: ignore[attr-defined]
+def given(**arguments: Any) -> dict[str, Any]:
+    """The arguments that a caller has given: the library has the values of all others."""
+    return {name: value for name, value in arguments.items() if value is not None}
+
+
+def _values(value: Value | Sequence[float] | NDArray[np.float64]) -> str | list[float]:
+    if isinstance(value, str) or np.ndim(value) == 0:
+        return value_text(value)  # type: ignore[arg-type]
+    return [float(number) for number in value]  # type: ignore[union-attr]
 
 
 def _column(cells: list[str]) -> NDArray[Any]:
@@ -70,29 +106,3 @@ def _column(cells: list[str]) -> NDArray[Any]:
         return np.array([float(cell) if cell else np.nan for cell in cells])
     except ValueError:
         return np.array(cells)
-
-
-def _done(command: str, scenes: Sequence[Scene | Source], arguments: list[str], out: Path) -> None:
-    """Runs a command; a fault of its input and one of this machine are raised as everywhere."""
-    with tempfile.TemporaryDirectory() as folder:
-        paths = [_path(scene, Path(folder)) for scene in scenes]
-        # What follows `--` is a path, whatever it begins with.
-        line = [sys.executable, "-m", "etendue", command, *arguments, f"--out={out}", "--quiet", "--", *paths]
-        ended = subprocess.run(line, capture_output=True, text=True, check=False)
-    message = ended.stderr.strip().removeprefix("error: ")
-    if ended.returncode == 2:
-        error = SceneError(message)
-        error.faults = message.splitlines()
-        raise error
-    if ended.returncode not in (0, 1, 4):
-        raise CannotRun(message)
-
-
-def _path(scene: Scene | Source, folder: Path) -> str:
-    """A file that holds the scene."""
-    if isinstance(scene, (str, os.PathLike)):
-        return os.fspath(scene)
-    scene = as_scene(scene)
-    path = folder / f"{scene.name}.ron"
-    path.write_text(json.dumps(scene.file), encoding="utf-8")
-    return os.fspath(path)

@@ -5,25 +5,54 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
-from typing import Any, Union
+from typing import TYPE_CHECKING, Any, Union
+
+if TYPE_CHECKING:
+    from etendue._etendue import Tell
 
 Progress = Union[bool, Callable[[int], object], None]
-"""Whether a bar is shown, or a function that is told the photons done so far. `None`: a bar where somebody looks, on a terminal or in a
-notebook, and tqdm is installed."""
+"""Whether a bar is shown, or a function that is told how much of the work at hand is done: photons, pixels, points of a sweep.
+`None`: a bar where somebody looks, on a terminal or in a notebook, and tqdm is installed."""
 
 
 @contextmanager
-def told(progress: Progress, total: int, unit: str) -> Generator[Callable[[int], object] | None, None, None]:
-    """A function to tell photons to, while they are traced."""
+def told(progress: Progress) -> Generator[Tell | None, None, None]:
+    """A function to tell progress to: of which work, what is done to what, how many there are, and how many are done."""
     if callable(progress):
-        yield progress
+        yield lambda number, verb, things, total, done: progress(done)
         return
-    bar = _bar(progress, total, unit)
-    if bar is None:
+    if progress is None:
+        progress = sys.stderr.isatty() or _is_notebook()
+    tqdm = _tqdm() if progress else None
+    if tqdm is None:
         yield None
         return
-    with bar:
-        yield lambda done: bar.update(done - bar.n)
+    bars = _Bars(tqdm)
+    try:
+        yield bars.tell
+    finally:
+        bars.close()
+
+
+class _Bars:
+    """A bar for the work at hand; one after the other."""
+
+    def __init__(self, tqdm: Any) -> None:
+        self._tqdm = tqdm
+        self._bar: Any = None
+        self._number = -1
+
+    def tell(self, number: int, verb: str, things: str, total: int, done: int) -> None:
+        if number != self._number:
+            self.close()
+            self._bar = self._tqdm(total=total, unit=things, unit_scale=True, desc=verb)
+            self._number = number
+        self._bar.update(done - self._bar.n)
+
+    def close(self) -> None:
+        if self._bar is not None:
+            self._bar.close()
+            self._bar = None
 
 
 def _is_notebook() -> bool:
@@ -32,13 +61,9 @@ def _is_notebook() -> bool:
     return getattr(shell, "kernel", None) is not None
 
 
-def _bar(progress: bool | None, total: int, unit: str) -> Any:
-    if progress is None:
-        progress = sys.stderr.isatty() or _is_notebook()
-    if not progress:
-        return None
+def _tqdm() -> Any:
     try:
         from tqdm.auto import tqdm
     except ImportError:
         return None
-    return tqdm(total=total, unit=unit, unit_scale=True, desc="tracing")
+    return tqdm

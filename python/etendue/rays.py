@@ -97,7 +97,7 @@ def spectrum(
             raise ValueError(f"{name} has {column.size} numbers and x {rays}; allowed: one of each for a ray")
     group, batches = _groups(rays, batch, batches)
     plane = Scene(_around(window, frequencies), name="rays")
-    with told(progress, rays, "rays") as tell:
+    with told(progress) as tell:
         found: dict[str, Any] = plane._job.spectrum(  # pyright: ignore[reportPrivateUsage]
             columns, group, batches, thread_count(threads), tell
         )

@@ -7,10 +7,13 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal, Union, cast
+from typing import TYPE_CHECKING, Literal, Union, cast
 
 from etendue import types
 from etendue._etendue import Job
+
+if TYPE_CHECKING:
+    from etendue._etendue import SceneArgument
 
 Method = Literal["photons", "backward"]
 Value = Union[bool, int, float, str, Sequence[float]]
@@ -36,7 +39,7 @@ class PlaneInfo:
 class Scene:
     """A scene that is sound, and how it is measured.
 
-    `set` overrides fields by their paths, as `--set` of the command does: `{"blockers.0.pitch": 0.1}`. A tree may name
+    `set` overrides fields by their paths: `{"blockers.0.pitch": 0.1}`. A tree may name
     meshes and pictures in `folder`.
 
     Raises `SceneError`, whose `faults` lists all that is wrong with it.
@@ -55,7 +58,7 @@ class Scene:
     ) -> None:
         if method not in ("photons", "backward"):
             raise ValueError(f"method is {method!r}; allowed: 'photons' or 'backward'")
-        fields = [(path, _text(value)) for path, value in (set or {}).items()]
+        fields = field_texts(set)
         count = None if photons is None else _whole(photons)
         seed = None if seed is None else _seed(seed)
         backward = method == "backward"
@@ -64,7 +67,7 @@ class Scene:
             self._job = Job.read(source, fields, count, seed, backward)
         else:
             self._folder = os.fspath(Path(folder).absolute())
-            self._job = Job.parse(json.dumps(source), name, self._folder, fields, count, seed, backward)
+            self._job = Job.read((json.dumps(source), name, self._folder), fields, count, seed, backward)
         self._method: Method = method
 
     @property
@@ -133,6 +136,24 @@ def as_scene(
     )
 
 
+def scene_argument(scene: Scene | Source) -> SceneArgument:
+    """A scene for the native side: the path of its file, or its text with its name and folder."""
+    if isinstance(scene, (str, os.PathLike)):
+        return os.fspath(scene)
+    scene = as_scene(scene)
+    return (scene._job.json(), scene.name, scene._folder)  # pyright: ignore[reportPrivateUsage]
+
+
+def method_of(scene: Scene | Source) -> Method | None:
+    """How a scene is measured, if it says so."""
+    return scene._method if isinstance(scene, Scene) else None  # pyright: ignore[reportPrivateUsage]
+
+
+def field_texts(set: Mapping[str, Value] | None) -> list[tuple[str, str]]:
+    """Fields and their values as scene files have them."""
+    return [(path, value_text(value)) for path, value in (set or {}).items()]
+
+
 def _whole(photons: float) -> int:
     if isinstance(photons, str) or not 0 < photons < 2**63 or photons != int(photons):
         raise ValueError(f"photons is {photons!r}; allowed: a whole number above 0, such as 1e6 or 2**20")
@@ -145,7 +166,7 @@ def _seed(seed: int) -> int:
     return int(seed)
 
 
-def _text(value: Value) -> str:
+def value_text(value: Value) -> str:
     """A value as scene files have it."""
     if isinstance(value, str):
         return value

@@ -75,7 +75,7 @@ def measure(
     scene = as_scene(scene, set, photons, seed, method)
     numbers = _batches(scene, batches)
     threads = thread_count(threads)
-    with told(progress, scene.photons * len(numbers) // scene.batches, "photons") as tell:
+    with told(progress) as tell:
         raw = scene._job.measure(numbers, threads, tell)  # pyright: ignore[reportPrivateUsage]
     return Measurement(scene, raw)
 

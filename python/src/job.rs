@@ -4,6 +4,7 @@ use crate::live::alive;
 use crate::outcome::Outcome;
 use crate::raised::raised;
 use crate::rays::{Rays, spectrum};
+use crate::scene::SceneArgument;
 use etendue_field::Crossing;
 use etendue_pipeline::Options;
 use etendue_spectrum::{Batch, Watch};
@@ -12,7 +13,6 @@ use ndarray::Array2;
 use numpy::{PyArray2, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
-use std::path::PathBuf;
 use std::sync::Arc;
 
 /// A scene, and how it is measured.
@@ -27,66 +27,31 @@ pub(crate) struct Measurement(etendue_spectrum::Measurement);
 #[pyclass(frozen, module = "etendue._etendue")]
 pub(crate) struct Prediction(Vec<etendue_compare::Prediction>);
 
-fn options(
-    set: Vec<(String, String)>,
-    photons: Option<u64>,
-    seed: Option<u64>,
-    backward: bool,
-) -> Options {
-    let method = if backward {
-        Method::Backward
-    } else {
-        Method::Photons
-    };
-    Options {
-        set,
-        photons,
-        seed,
-        method,
-    }
-}
-
-impl Job {
-    fn of(py: Python<'_>, job: Result<etendue_pipeline::Job, Failure>) -> PyResult<Self> {
-        let job = job.map_err(|failure| raised(py, failure))?;
-        Ok(Self(Arc::new(job)))
-    }
-}
-
 #[pymethods]
 impl Job {
+    /// The scene of a file or of a text, with some fields set.
     #[staticmethod]
     fn read(
         py: Python<'_>,
-        path: PathBuf,
+        scene: SceneArgument,
         set: Vec<(String, String)>,
         photons: Option<u64>,
         seed: Option<u64>,
         backward: bool,
     ) -> PyResult<Self> {
-        Self::of(
-            py,
-            etendue_pipeline::Job::read(&path, &options(set, photons, seed, backward)),
-        )
-    }
-
-    #[staticmethod]
-    #[expect(clippy::too_many_arguments, reason = "as many as there are in Python")]
-    fn parse(
-        py: Python<'_>,
-        text: &str,
-        name: &str,
-        folder: PathBuf,
-        set: Vec<(String, String)>,
-        photons: Option<u64>,
-        seed: Option<u64>,
-        backward: bool,
-    ) -> PyResult<Self> {
-        let options = options(set, photons, seed, backward);
-        Self::of(
-            py,
-            etendue_pipeline::Job::parse(text, name, &folder, &options),
-        )
+        let source = scene.source(&set)?;
+        let options = Options {
+            photons,
+            seed,
+            method: if backward {
+                Method::Backward
+            } else {
+                Method::Photons
+            },
+        };
+        let job = etendue_pipeline::Job::read(&source, &options);
+        let job = job.map_err(|failure| raised(py, failure))?;
+        Ok(Self(Arc::new(job)))
     }
 
     #[getter]
@@ -135,7 +100,9 @@ impl Job {
         let job = Arc::clone(&self.0);
         let found = alive(py, threads, progress.as_ref(), move |live| {
             job.check_limits()?;
-            job.measure(&batches, live)
+            let run = &job.scene().run;
+            let photons = run.photons * batches.len() as u64 / u64::from(run.batches);
+            job.measure(&batches, &live.trace(photons, "photons"))
         });
         found.map(Measurement)
     }
@@ -176,6 +143,8 @@ impl Job {
         let job = Arc::clone(&self.0);
         let (rows, counts, emitted) = alive(py, None, None, move |live| {
             let source = job.source()?;
+            let photons = batches.iter().map(|batch| source.emitted(*batch)).sum();
+            let watch = live.trace(photons, "photons");
             let mut rows = Vec::new();
             let mut counts = Vec::new();
             for batch in &batches {
@@ -185,7 +154,7 @@ impl Job {
                         rows.push([ray.x, ray.y, ray.u, ray.v, *weight]);
                     }
                 };
-                source.emit(*batch, &mut record, &|photons| live.traced(photons));
+                source.emit(*batch, &mut record, &|photons| watch.traced(photons));
                 counts.push(rows.len() - before);
             }
             let emitted: Vec<u64> = batches.iter().map(|batch| source.emitted(*batch)).collect();

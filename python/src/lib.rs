@@ -2,12 +2,20 @@
 //!
 //! Everything a user sees is in `etendue/*.py`; this is what it stands on.
 
+mod arguments;
 mod arrays;
+mod figure;
+mod import;
 mod job;
 mod live;
 mod outcome;
+mod probe;
 mod raised;
 mod rays;
+mod render;
+mod scene;
+mod sweep;
+mod world;
 
 use pyo3::prelude::*;
 
@@ -15,16 +23,25 @@ use pyo3::prelude::*;
 #[pymodule(gil_used = false)]
 mod _etendue {
     #[pymodule_export]
+    use crate::figure::figure;
+    #[pymodule_export]
+    use crate::import::import_scene;
+    #[pymodule_export]
     use crate::job::{Job, Measurement, Prediction};
     #[pymodule_export]
     use crate::outcome::Outcome;
     #[pymodule_export]
+    use crate::probe::probe;
+    #[pymodule_export]
     use crate::raised::{CannotRun, SceneError};
-
-    use pyo3::prelude::*;
+    #[pymodule_export]
+    use crate::render::render;
+    #[pymodule_export]
+    use crate::sweep::sweep;
 
     /// Runs the command `etendue` with the arguments of this process; returns its exit code.
-    #[pyfunction]
+    #[cfg(feature = "command")]
+    #[pyo3::pyfunction]
     fn command(arguments: Vec<String>) -> u8 {
         etendue::command(arguments)
     }

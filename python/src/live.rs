@@ -1,47 +1,179 @@
 //! Long work that Python can follow and stop.
 
 use crate::raised::raised;
+use etendue_pipeline::{Progress, Reporter, Work};
 use etendue_spectrum::Watch;
 use etendue_store::Failure;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use std::panic::resume_unwind;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::Duration;
 
 /// How long Python waits before it looks for Ctrl-C, and tells progress.
 const TICK: Duration = Duration::from_millis(50);
 
+/// How long work that was stopped has to remove its files before the caller goes on without it.
+const GRACE: Duration = Duration::from_millis(500);
+
 /// What the thread that works and the one that waits tell each other.
 #[derive(Default)]
 pub(crate) struct Live {
-    photons: AtomicU64,
     is_stopped: AtomicBool,
+    works: Mutex<Works>,
+}
+
+/// Work that goes on, and work that has ended.
+#[derive(Default)]
+struct Works {
+    begun: u64,
+    /// One within the other, the innermost last.
+    in_hand: Vec<Arc<Counted>>,
+    ended: Option<Arc<Counted>>,
+}
+
+/// How much of some work is done.
+struct Counted {
+    number: u64,
+    verb: &'static str,
+    things: &'static str,
+    total: u64,
+    done: AtomicU64,
 }
 
 /// What unwinds a thread that is to stop.
 struct Stopped;
 
-impl Watch for Live {
-    fn traced(&self, photons: u64) {
-        self.photons.fetch_add(photons, Ordering::Relaxed);
+impl Live {
+    fn works(&self) -> MutexGuard<'_, Works> {
+        self.works.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Unwinds if the work is to stop. This is no panic, and prints nothing.
+    fn check(&self) {
         if self.is_stopped.load(Ordering::Relaxed) {
-            // A block of photons takes a millisecond and a part of a batch a second: it ends in the midst of it. This is no panic, and
-            // prints nothing.
             resume_unwind(Box::new(Stopped));
         }
     }
 
-    fn goes_on(&self, _batch: u32, _part: u32) -> bool {
-        !self.is_stopped.load(Ordering::Relaxed)
+    /// Follows work in which so many of these things are traced.
+    pub(crate) fn trace(&self, total: u64, things: &'static str) -> Tracing<'_> {
+        let work = Work::Steps {
+            verb: "tracing",
+            total: usize::try_from(total).unwrap_or(usize::MAX),
+            things,
+        };
+        Tracing {
+            live: self,
+            bar: self.begin(work),
+        }
+    }
+
+    /// Tells `progress` how much of the innermost work is done; of the last one, when there is none.
+    fn report(&self, progress: &Bound<'_, PyAny>) -> PyResult<()> {
+        let works = self.works();
+        let counted = works.in_hand.last().or(works.ended.as_ref()).cloned();
+        drop(works);
+        let Some(counted) = counted else {
+            return Ok(());
+        };
+        let Counted {
+            number,
+            verb,
+            things,
+            total,
+            done,
+        } = &*counted;
+        let done = done.load(Ordering::Relaxed);
+        progress
+            .call1((number, verb, things, total, done))
+            .map(drop)
     }
 }
 
-/// Does work on so many threads, one for each core unless said. Meanwhile other threads of Python go on, `progress` is told the photons
-/// that are traced, and Ctrl-C is seen: then this returns at once, and the work ends at the next block of photons, or by itself.
+impl Reporter for Live {
+    fn note(&self, _text: &str) {}
+
+    fn warn(&self, _text: &str) {}
+
+    fn begin(&self, work: Work) -> Box<dyn Progress + '_> {
+        self.check();
+        let (verb, things, total) = match work {
+            Work::Photons(total) => ("tracing", "photons", total),
+            Work::Steps {
+                verb,
+                total,
+                things,
+            } => (verb, things, total as u64),
+            // There is nothing to count.
+            Work::Stage(_) => return Box::new(Bar(self, None)),
+        };
+        let mut works = self.works();
+        works.begun += 1;
+        let counted = Arc::new(Counted {
+            number: works.begun,
+            verb,
+            things,
+            total,
+            done: AtomicU64::new(0),
+        });
+        works.in_hand.push(Arc::clone(&counted));
+        Box::new(Bar(self, Some(counted)))
+    }
+}
+
+/// Work that is counted, or a stage that is not.
+struct Bar<'a>(&'a Live, Option<Arc<Counted>>);
+
+impl Progress for Bar<'_> {
+    fn advance(&self, steps: u64) {
+        if let Some(counted) = &self.1 {
+            counted.done.fetch_add(steps, Ordering::Relaxed);
+        }
+        self.0.check();
+    }
+
+    fn set(&self, steps: u64) {
+        if let Some(counted) = &self.1 {
+            counted.done.store(steps, Ordering::Relaxed);
+        }
+    }
+
+    fn name(&self, _step: &str) {}
+}
+
+impl Drop for Bar<'_> {
+    fn drop(&mut self) {
+        if let Some(counted) = self.1.take() {
+            let mut works = self.0.works();
+            works.in_hand.retain(|other| !Arc::ptr_eq(other, &counted));
+            works.ended = Some(counted);
+        }
+    }
+}
+
+/// Rays that are traced, batch by batch.
+pub(crate) struct Tracing<'a> {
+    live: &'a Live,
+    bar: Box<dyn Progress + 'a>,
+}
+
+impl Watch for Tracing<'_> {
+    fn traced(&self, photons: u64) {
+        self.bar.advance(photons);
+    }
+
+    fn goes_on(&self, _batch: u32, _part: u32) -> bool {
+        !self.live.is_stopped.load(Ordering::Relaxed)
+    }
+}
+
+/// Does work on so many threads, one for each core unless said. Meanwhile other threads of Python go on, `progress` is told how much is
+/// done, and Ctrl-C is seen: then the work is stopped at the next block of photons or the next step. This returns when it has ended, or
+/// soon; at once, where no work is counted.
 pub(crate) fn alive<T: Send + 'static>(
     py: Python<'_>,
     threads: Option<usize>,
@@ -64,10 +196,7 @@ pub(crate) fn alive<T: Send + 'static>(
     loop {
         let (found, back) = py.detach(move || (told.recv_timeout(TICK), told));
         told = back;
-        let report = |progress: &Bound<'_, PyAny>| {
-            let photons = live.photons.load(Ordering::Relaxed);
-            progress.call1((photons,)).map(drop)
-        };
+        let report = |progress: &Bound<'_, PyAny>| live.report(progress);
         match found {
             Ok(found) => {
                 progress.map_or(Ok(()), report)?;
@@ -78,6 +207,9 @@ pub(crate) fn alive<T: Send + 'static>(
                 let goes_on = goes_on.and_then(|()| progress.map_or(Ok(()), report));
                 if let Err(error) = goes_on {
                     live.is_stopped.store(true, Ordering::Relaxed);
+                    if live.works().begun > 0 {
+                        py.detach(move || drop(told.recv_timeout(GRACE)));
+                    }
                     return Err(error);
                 }
             }

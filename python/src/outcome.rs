@@ -4,6 +4,7 @@ use crate::arrays::Arrays;
 use crate::raised::raised;
 use etendue_compare::PlaneComparison;
 use etendue_field::ProjectionGrid;
+use etendue_store::ArgumentStyle;
 use etendue_store::arrays::SliceArrays;
 use ndarray::Array1;
 use pyo3::exceptions::PyIndexError;
@@ -87,7 +88,8 @@ impl Outcome {
     }
 
     fn save(&self, py: Python<'_>, folder: PathBuf, force: bool) -> PyResult<PathBuf> {
-        let saved = py.detach(|| etendue_report::save(&self.0, &folder, force));
+        let saved =
+            py.detach(|| etendue_report::save(&self.0, &folder, force, ArgumentStyle::Python));
         saved.map_err(|failure| raised(py, failure))
     }
 }

@@ -107,7 +107,9 @@ pub(crate) fn spectrum(
 ) -> Result<Spectrum, Failure> {
     let batches = (0..rays.0.len()).filter_map(|i| u32::try_from(i).ok());
     let mut batches = batches.map(PartialBatch::new);
-    let (measured, _) = measure_watched(rays, std::slice::from_ref(plane), &mut batches, live);
+    let all = rays.0.iter().map(|batch| batch.len() as u64).sum();
+    let watch = live.trace(all, "rays");
+    let (measured, _) = measure_watched(rays, std::slice::from_ref(plane), &mut batches, &watch);
     let few = |error: estimate::TooFewBatches| Failure {
         message: error.to_string(),
         code: 2,

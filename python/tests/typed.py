@@ -15,3 +15,11 @@ result = etendue.run(scene, photons=1e5, set={"run.seed": 3})
 slope: float = result["far"].report["slope"]["measured"]
 power = result["far"].radial.measured.max()
 shape: tuple[int, ...] = result["far"].slices.measured.shape
+table = etendue.sweep(scene, {"light.center.2": [0.0, 0.1], "run.seed": 3}, out="out", method="backward", threads=2)
+column: int = table["plane"].size
+drawn: str = etendue.figure([scene, "other.ron"], out="out", plane="far", quality="draft").suffix
+picture = etendue.render("cbox.xml", out="out", size=(64, 48), look_from=(0, 1, 4), look_at=(0, 0, 0), progress=print)
+error: float = picture.error.max()
+probed = etendue.probe("cbox.xml", (3, 4), out="out", rays=1e6, window=8)
+surfaces: int = len(probed.surfaces)
+triangles: int = etendue.import_scene("cbox.xml", set={"res": 64}).counts["triangles"]

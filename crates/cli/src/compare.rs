@@ -15,7 +15,7 @@ use etendue_store::Failure;
 use etendue_store::batches::{self, Held};
 use etendue_store::predictions;
 use etendue_store::stored::{Stored, check_earlier};
-use etendue_store::{MEASUREMENT, PREDICTION, Results, SUMMARY};
+use etendue_store::{ArgumentStyle, MEASUREMENT, PREDICTION, Results, SUMMARY};
 use serde_json::json;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -30,8 +30,20 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<u8, Failure> {
     let (case, inputs) = read(args)?;
     stage.finish_and_clear();
     watch.lap("read");
-    let plan = plan(&case.scene, &[], inputs, args.force.force);
-    check_earlier(&args.out, SUMMARY, &case.scene, args.force.force)?;
+    let plan = plan(
+        &case.scene,
+        &[],
+        inputs,
+        args.force.force,
+        ArgumentStyle::Command,
+    );
+    check_earlier(
+        &args.out,
+        SUMMARY,
+        &case.scene,
+        args.force.force,
+        ArgumentStyle::Command,
+    )?;
     let results = Results::claim(&args.out, plan)?;
     let (held, all) = (case.measurement.batches().len(), case.scene.run.batches);
     if !args.quiet && held < all as usize {

@@ -23,7 +23,7 @@ use etendue_spectrum::{CrossPower, Measurement};
 use etendue_store::Failure;
 use etendue_store::sealed::json;
 use etendue_store::stored::VERSION;
-use etendue_store::{COVARIANCE, Plan, Results};
+use etendue_store::{ArgumentStyle, COVARIANCE, Plan, Results};
 use serde_json::json as tree_of;
 use std::path::Path;
 
@@ -45,6 +45,7 @@ pub(crate) fn covariance(args: &CovarianceArgs) -> Result<u8, Failure> {
         files: files.collect(),
         inputs: load::inputs(&args.scene.source(), &scene),
         force: args.force.force,
+        arguments: ArgumentStyle::Command,
     };
     let (results, reports) = on_threads(&args.threads, || {
         limits::check(&scene, &theories, rayon::current_num_threads())?;

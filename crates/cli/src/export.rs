@@ -6,7 +6,7 @@ use etendue_pipeline::load;
 use etendue_store::Failure;
 use etendue_store::sealed::json;
 use etendue_store::stored::VERSION;
-use etendue_store::{EXPORT, Plan, Results};
+use etendue_store::{ArgumentStyle, EXPORT, Plan, Results};
 use serde_json::json as tree_of;
 use std::path::Path;
 
@@ -24,6 +24,7 @@ pub(crate) fn export(args: &ExportArgs) -> Result<u8, Failure> {
         files: export.files.iter().map(|(name, _)| name.clone()).collect(),
         inputs: load::inputs(&args.scene.source(), &scene),
         force: args.force.force,
+        arguments: ArgumentStyle::Command,
     };
     let mut results = Results::claim(&folder, plan)?;
     for (name, bytes) in &export.files {

@@ -6,23 +6,23 @@ use crate::print::say;
 use crate::progress::Terminal;
 use crate::threads::on_threads;
 use crate::warnings;
-use etendue_compare::Verdict;
-use etendue_paper::{Request, make, subjects};
-use etendue_pipeline::table::word;
-use etendue_pipeline::{Reporter, Work};
-use etendue_store::Failure;
-use std::time::Instant;
+use etendue_paper::{Request, Wanted, make_all, subjects};
+use etendue_store::{ArgumentStyle, Failure};
 
 /// `etendue figure`: returns the exit code.
 pub(crate) fn figure(args: &FigureArgs) -> Result<u8, Failure> {
+    let arguments = ArgumentStyle::Command;
+    let wanted = args.names.iter();
+    let wanted = wanted.map(|name| Wanted::named(name, &args.set, arguments));
     let request = Request {
-        names: args.names.clone(),
+        wanted: wanted.collect(),
         set: args.set.clone(),
         plane: args.plane.clone(),
         style: args.style.clone(),
         quality: args.quality,
         out: args.out.clone(),
         force: args.force.force,
+        arguments,
     };
     let subjects = subjects(&request)?;
     for warning in subjects.iter().flat_map(|subject| subject.warnings()) {
@@ -32,27 +32,7 @@ pub(crate) fn figure(args: &FigureArgs) -> Result<u8, Failure> {
     }
     on_threads(&args.threads, || {
         let terminal = Terminal::new(args.quiet);
-        let bar = terminal.begin(Work::Steps {
-            verb: "drawing",
-            total: subjects.len(),
-            things: "figures",
-        });
-        let mut worst = Verdict::Pass;
-        for subject in &subjects {
-            bar.name(subject.name());
-            let begun = Instant::now();
-            let verdict = make(&request, subject, &terminal)?;
-            terminal.note(&format!(
-                "figure {}: {}, {:.1} s: {}",
-                subject.name(),
-                word(verdict),
-                begun.elapsed().as_secs_f64(),
-                subject.about()
-            ));
-            worst = worst.and(verdict);
-            bar.advance(1);
-        }
-        drop(bar);
+        let worst = make_all(&request, &subjects, &terminal)?;
         if !args.quiet {
             say(&format!("figures in {}", args.out.display()));
         }

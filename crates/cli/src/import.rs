@@ -3,11 +3,11 @@
 use crate::args::ImportArgs;
 use crate::print::deliver;
 use etendue_store::Failure;
-use etendue_view::{contents, load};
+use etendue_view::Contents;
 
 /// `etendue import`: returns the exit code.
 pub(crate) fn import(args: &ImportArgs) -> Result<u8, Failure> {
-    let imported = load(&args.scene.source())?;
-    deliver(&contents(&imported).join("\n"))?;
+    let contents = Contents::read(&args.scene.source())?;
+    deliver(&contents.lines().join("\n"))?;
     Ok(0)
 }

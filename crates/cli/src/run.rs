@@ -20,7 +20,7 @@ use etendue_scene::Scene;
 use etendue_store::Failure;
 use etendue_store::checkpoints::CheckpointStore;
 use etendue_store::stored::{check_earlier, summary_of};
-use etendue_store::{Plan, Results, SUMMARY};
+use etendue_store::{ArgumentStyle, Plan, Results, SUMMARY};
 use std::path::Path;
 use std::time::Instant;
 
@@ -40,14 +40,26 @@ pub(crate) fn run_with(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u
         .clone()
         .unwrap_or_else(|| Path::new("out").join(&scene.name));
     let inputs = load::inputs(&args.scene.source(), &scene);
-    let plan = plan(&scene, &args.save, inputs, args.force.force);
+    let plan = plan(
+        &scene,
+        &args.save,
+        inputs,
+        args.force.force,
+        ArgumentStyle::Command,
+    );
     on_threads(&args.threads, || {
         warnings::tell(&scene, args.quiet);
         limits::check(&scene, &theories, rayon::current_num_threads())?;
         if args.save.contains(&Save::Field) {
             field::check_memory(&scene)?;
         }
-        check_earlier(&folder, SUMMARY, &scene, args.force.force)?;
+        check_earlier(
+            &folder,
+            SUMMARY,
+            &scene,
+            args.force.force,
+            ArgumentStyle::Command,
+        )?;
         let begin = |plan: Plan| {
             if args.resume {
                 Results::claim_in_turn(&folder, plan, &warnings::warn)

@@ -5,7 +5,9 @@ use crate::exit::{ended, not_parsed};
 use crate::threads::on_threads;
 use crate::{interrupt, predict, run, sweep};
 use clap::Parser;
-use etendue_pipeline::{Job, Leader, Options, Workers, follow_job, follow_points, report_failure};
+use etendue_pipeline::{
+    Job, Leader, Options, Silent, Workers, follow_job, follow_points, report_failure,
+};
 use etendue_store::Failure;
 use etendue_sweep::Points;
 use std::ffi::OsString;
@@ -58,7 +60,9 @@ fn follow(command: &Command, workers: &dyn Workers) {
         Command::Predict(args) => with_job(&args.scene, &args.photons, &args.threads, workers),
         Command::Sweep(args) => on_threads(&args.threads, || {
             let points = Points::read(&args.request())?;
-            follow_points(workers, points.scenes(), &|number| points.summary(number))
+            follow_points(workers, points.scenes(), &|number| {
+                points.summary(number, &Silent)
+            })
         }),
         _ => Ok(()),
     };
@@ -75,12 +79,11 @@ fn with_job(
     workers: &dyn Workers,
 ) -> Result<(), Failure> {
     let options = Options {
-        set: scene.set.clone(),
         photons: photons.photons,
         seed: photons.seed,
         method: photons.method,
     };
     on_threads(threads, || {
-        follow_job(workers, &Job::read(&scene.path, &options)?)
+        follow_job(workers, &Job::read(&scene.source(), &options)?)
     })
 }

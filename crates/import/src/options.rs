@@ -36,6 +36,14 @@ pub enum Color {
 }
 
 impl Color {
+    /// Each by its name.
+    pub const ALL: [(&str, Self); 4] = [
+        ("luminance", Self::Luminance),
+        ("red", Self::Red),
+        ("green", Self::Green),
+        ("blue", Self::Blue),
+    ];
+
     /// The number of a colour in linear sRGB.
     pub(crate) fn of(self, [red, green, blue]: [f64; 3]) -> f64 {
         match self {

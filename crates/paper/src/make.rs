@@ -3,24 +3,26 @@
 use crate::own;
 use crate::quality::Quality;
 use crate::recipe::{RECIPES, Recipe, named};
-use crate::request::Request;
+use crate::request::{Request, Wanted};
 use crate::shot::{self, Shot};
 use crate::style;
 use crate::subject::{FigureData, Subject};
 use etendue_compare::{FullRadialReport, HighFrequencyShare, Verdict};
 use etendue_figures::Style;
-use etendue_pipeline::Reporter;
+use etendue_pipeline::table::word;
+use etendue_pipeline::{Reporter, Stopwatch, Work};
 use etendue_report::shell_word;
 use etendue_scene::{Scene, SceneFile};
 use etendue_store::sealed::json;
 use etendue_store::stored::VERSION;
-use etendue_store::{FIGURE, Failure, Plan, Results};
+use etendue_store::{ArgumentStyle, FIGURE, Failure, Plan, Results};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// The figures that are asked for: those of the paper, or one of scene files.
 pub fn subjects(request: &Request) -> Result<Vec<Subject>, Failure> {
-    if request.names.iter().any(|name| own::is_scene(name)) {
+    let is_scene = |wanted: &Wanted| matches!(wanted, Wanted::Scene(_));
+    if request.wanted.iter().any(is_scene) {
         Ok(vec![own::subject(request)?])
     } else {
         of_paper(request)
@@ -30,19 +32,27 @@ pub fn subjects(request: &Request) -> Result<Vec<Subject>, Failure> {
 /// The figures of the paper that are asked for.
 fn of_paper(request: &Request) -> Result<Vec<Subject>, Failure> {
     let of_scenes = [
-        ("--set", !request.set.is_empty()),
-        ("--plane", request.plane.is_some()),
+        ("set", !request.set.is_empty()),
+        ("plane", request.plane.is_some()),
     ];
     if let Some((option, _)) = of_scenes.iter().find(|(_, given)| *given) {
-        let message = format!("{option} is for figures of scene files: etendue figure SCENE.ron");
+        let message = match request.arguments {
+            ArgumentStyle::Command => {
+                format!("--{option} is for figures of scene files: etendue figure SCENE.ron")
+            }
+            ArgumentStyle::Python => format!("{option} is for figures of scenes"),
+        };
         return Err(Failure::bad_input(message));
     }
-    let is_all = request.names.iter().any(|name| name == "all");
+    let names = request.wanted.iter().filter_map(|wanted| match wanted {
+        Wanted::PaperFigure(name) => Some(name.as_str()),
+        Wanted::Scene(_) => None,
+    });
+    let is_all = names.clone().any(|name| name == "all");
     let recipes: Vec<&'static Recipe> = if is_all {
         RECIPES.iter().collect()
     } else {
-        let recipes = request.names.iter().map(|name| named(name));
-        recipes.collect::<Result<_, _>>()?
+        names.map(named).collect::<Result<_, _>>()?
     };
     let subjects = recipes.into_iter();
     subjects.map(|recipe| recipe.subject()).collect()
@@ -85,8 +95,38 @@ struct Judged<'a> {
     full_radial: Option<FullRadialReport>,
 }
 
+/// Makes figures; returns the verdict on all planes of their scenes. `reporter` is told of each.
+pub fn make_all(
+    request: &Request,
+    subjects: &[Subject],
+    reporter: &dyn Reporter,
+) -> Result<Verdict, Failure> {
+    let bar = reporter.begin(Work::Steps {
+        verb: "drawing",
+        total: subjects.len(),
+        things: "figures",
+    });
+    let mut worst = Verdict::Pass;
+    for subject in subjects {
+        bar.name(subject.name());
+        let mut watch = Stopwatch::start();
+        let verdict = make(request, subject, reporter)?;
+        watch.lap("figure");
+        reporter.note(&format!(
+            "figure {}: {}, {:.1} s: {}",
+            subject.name(),
+            word(verdict),
+            watch.seconds("figure").unwrap_or_default(),
+            subject.about
+        ));
+        worst = worst.and(verdict);
+        bar.advance(1);
+    }
+    Ok(worst)
+}
+
 /// Makes a figure; returns the verdict on all planes of its scenes. What was replaced and what is undecided is noted.
-pub fn make(
+pub(crate) fn make(
     request: &Request,
     subject: &Subject,
     reporter: &dyn Reporter,
@@ -99,6 +139,7 @@ pub fn make(
         files: endings.into_iter().chain(texts).collect(),
         inputs: subject.inputs.clone(),
         force: request.force,
+        arguments: request.arguments,
     };
     let mut results = Results::claim_below(&request.out, &subject.name, plan)?;
     let files = subject.scenes.iter().filter(|_| subject.is_own);
@@ -187,6 +228,7 @@ fn write(results: &mut Results, subject: &Subject, taken: &FigureData<'_>) -> Re
     let figure = (subject.draw)(taken)?;
     let pdf = figure.pdf().map_err(Failure::cannot_run)?;
     let png = figure.png().map_err(Failure::cannot_run)?;
+    let _stage = taken.reporter.begin(Work::Stage("writing results"));
     results.write("figure.pdf", &pdf)?;
     results.write("figure.png", &png)?;
     results.write("figure.svg", figure.svg.as_bytes())?;

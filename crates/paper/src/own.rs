@@ -1,6 +1,6 @@
 //! Figures of the user's scenes: one along its path, or several side by side at a plane.
 
-use crate::request::Request;
+use crate::request::{Request, Wanted};
 use crate::rows::{Seen, compared, feet};
 use crate::subject::FigureData;
 use crate::subject::Subject;
@@ -11,17 +11,19 @@ use etendue_report::pictures::spectra_are;
 use etendue_report::shell_word;
 use etendue_scene::Scene;
 use etendue_store::Failure;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-/// Whether a name on the command line is that of a scene file.
-pub(crate) fn is_scene(name: &str) -> bool {
-    let ending = Path::new(name).extension();
-    ending.is_some_and(|ending| ending == "ron" || ending == "json")
-}
-
-/// The figure of the scenes named on the command line.
+/// The figure of the scenes that are asked for.
 pub(crate) fn subject(request: &Request) -> Result<Subject, Failure> {
-    if let Some(name) = request.names.iter().find(|name| !is_scene(name)) {
+    let mut sources: Vec<&SceneSource> = Vec::new();
+    for wanted in &request.wanted {
+        let name = match wanted {
+            Wanted::Scene(source) => {
+                sources.push(source);
+                continue;
+            }
+            Wanted::PaperFigure(name) => name,
+        };
         let message = format!(
             "{name} is no scene file, and beside scene files there is nothing else: they are one figure"
         );
@@ -30,12 +32,8 @@ pub(crate) fn subject(request: &Request) -> Result<Subject, Failure> {
     let mut scenes: Vec<Scene> = Vec::new();
     let mut inputs: Vec<PathBuf> = Vec::new();
     let mut warnings: Vec<String> = Vec::new();
-    for name in &request.names {
-        let scene = SceneSource {
-            path: PathBuf::from(name),
-            set: request.set.clone(),
-        };
-        let found = load::scene(&scene, |_| ())?;
+    for source in &sources {
+        let found = load::scene(source, |_| ())?;
         if scenes.iter().any(|scene| scene.name == found.name) {
             let message = format!(
                 "two scenes are named {}: give one file another name",
@@ -44,7 +42,7 @@ pub(crate) fn subject(request: &Request) -> Result<Subject, Failure> {
             return Err(Failure::bad_input(message));
         }
         warnings.extend(found.warnings());
-        inputs.extend(load::inputs(&scene, &found));
+        inputs.extend(load::inputs(source, &found));
         scenes.push(found);
     }
     let planes = planes(&scenes, request.plane.as_deref())?;
@@ -62,7 +60,7 @@ pub(crate) fn subject(request: &Request) -> Result<Subject, Failure> {
     Ok(Subject {
         name,
         about,
-        arguments: arguments(request),
+        arguments: arguments(request, &sources),
         scenes,
         is_own: true,
         texts: Vec::new(),
@@ -106,8 +104,16 @@ fn planes(scenes: &[Scene], asked: Option<&str>) -> Result<Vec<String>, Failure>
 }
 
 /// What stands behind `etendue figure` to make it again.
-fn arguments(request: &Request) -> String {
-    let mut words: Vec<String> = request.names.iter().map(|name| shell_word(name)).collect();
+fn arguments(request: &Request, sources: &[&SceneSource]) -> String {
+    let names = sources.iter().map(|source| match source.text {
+        Some(_) => source
+            .path
+            .file_name()
+            .unwrap_or_default()
+            .to_string_lossy(),
+        None => source.path.to_string_lossy(),
+    });
+    let mut words: Vec<String> = names.map(|name| shell_word(&name)).collect();
     for (path, value) in &request.set {
         words.extend(["--set".to_owned(), shell_word(&format!("{path}={value}"))]);
     }

@@ -3,12 +3,13 @@
 use serde::Serialize;
 
 /// How much work goes into a figure.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Quality {
     /// An eighth of the photons of the scenes, twice as many frequencies as they ask for along each axis
     Draft,
     /// The photons of the scenes, four times as many frequencies
+    #[default]
     Print,
     /// What it takes to have all texts in their places
     #[cfg(test)]

@@ -48,12 +48,6 @@ impl Subject {
         &self.name
     }
 
-    /// What it shows.
-    #[must_use]
-    pub fn about(&self) -> &str {
-        &self.about
-    }
-
     /// What the user should know of the scenes.
     #[must_use]
     pub fn warnings(&self) -> &[String] {

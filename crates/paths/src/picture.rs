@@ -30,6 +30,8 @@ impl Paths {
     ) -> Picture {
         let [w, h] = camera.size;
         let row = |row: usize| {
+            // Where the caller unwinds from `progress`, rows that wait end before they begin.
+            progress(0);
             let pixels = (0..w).map(|column| self.pixel(camera, [column, row], samples, seed));
             let pixels: Vec<[f64; 2]> = pixels.collect();
             progress(w as u64);

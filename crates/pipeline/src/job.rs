@@ -10,20 +10,17 @@ use crate::workers::Packing;
 use crate::{limits, load};
 use etendue_compare::{Applicability, PlaneComparison, Prediction, Verdict};
 use etendue_field::PhotonSource;
-use etendue_scene::{Scene, SceneFile, resolve};
+use etendue_scene::Scene;
 use etendue_spectrum::{Batch, Measurement, PartialBatch, Watch, measure_watched};
 use etendue_store::Failure;
 use etendue_store::Method;
-use etendue_store::machine;
 use etendue_store::predictions;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-/// What is asked for beside a scene file, as on the command line.
-#[derive(Clone, Debug)]
+/// How a scene is measured, where it is not as the scene says.
+#[derive(Clone, Copy, Debug)]
 pub struct Options {
-    /// Fields set to values, each as by [`SceneFile::with`].
-    pub set: Vec<(String, String)>,
     /// Photons, instead of the scene's.
     pub photons: Option<u64>,
     /// Seed of the photons, instead of the scene's.
@@ -42,42 +39,16 @@ pub struct Job {
 }
 
 impl Job {
-    /// The scene in a file.
+    /// The scene of a file, or of a text in place of one.
     ///
     /// # Errors
     /// When it cannot be read, or is no sound scene: all its faults, with their lines.
-    pub fn read(path: &Path, options: &Options) -> Result<Self, Failure> {
-        let source = SceneSource {
-            path: path.to_owned(),
-            set: options.set.clone(),
-        };
-        let scene = load::scene(&source, |run| {
+    pub fn read(source: &SceneSource, options: &Options) -> Result<Self, Failure> {
+        let scene = load::scene(source, |run| {
             run.photons = options.photons.unwrap_or(run.photons);
             run.seed = options.seed.unwrap_or(run.seed);
         })?;
-        let inputs = load::inputs(&source, &scene);
-        Self::of(scene, options.method, inputs)
-    }
-
-    /// The scene that a text describes, in RON or JSON; its meshes and pictures are in `folder`.
-    ///
-    /// # Errors
-    /// When it is no sound scene: all its faults.
-    pub fn parse(
-        text: &str,
-        name: &str,
-        folder: &Path,
-        options: &Options,
-    ) -> Result<Self, Failure> {
-        let refused = |e| Failure::bad_input(format!("{name}: {e}"));
-        let file = SceneFile::parse(text).map_err(refused)?;
-        let mut file = file.with_all(&options.set).map_err(refused)?;
-        file.run.photons = options.photons.unwrap_or(file.run.photons);
-        file.run.seed = options.seed.unwrap_or(file.run.seed);
-        let set = load::named(&options.set);
-        let scene = resolve(name, file, folder, machine::available_memory());
-        let scene = scene.map_err(|error| load::refused(&error, name, "", &set))?;
-        let inputs = scene.inputs.keys().map(|name| folder.join(name)).collect();
+        let inputs = load::inputs(source, &scene);
         Self::of(scene, options.method, inputs)
     }
 

@@ -3,69 +3,107 @@
 use etendue_scene::{
     RunFile, Scene, SceneError, SceneFile, limits, read_below, read_file, resolve,
 };
-use etendue_store::Failure;
 use etendue_store::machine;
 use etendue_store::stored::copy_of;
-use etendue_store::{Plan, Results};
+use etendue_store::{ArgumentStyle, Failure, Plan, Results};
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 /// A scene file, and what is set in it.
 #[derive(Clone, Debug)]
 pub struct SceneSource {
-    /// The file, in RON or JSON.
+    /// The file, in RON or JSON. Its meshes and pictures are in the same folder.
     pub path: PathBuf,
+    /// The content of the file, where none is read: then the path only names the scene and its folder.
+    pub text: Option<String>,
     /// Fields set to values, each as by [`SceneFile::with`].
     pub set: Vec<(String, String)>,
+    /// How messages name arguments.
+    pub arguments: ArgumentStyle,
 }
 
-/// Reads, overrides and resolves the scene named on the command line; `options` are overrides of the command
-/// line's own.
+impl SceneSource {
+    /// A scene file that the command line names.
+    #[must_use]
+    pub fn file(path: &Path, set: &[(String, String)]) -> Self {
+        Self {
+            path: path.to_owned(),
+            text: None,
+            set: set.to_owned(),
+            arguments: ArgumentStyle::Command,
+        }
+    }
+
+    /// The folder in which its meshes and pictures are.
+    fn folder(&self) -> &Path {
+        self.path.parent().unwrap_or(Path::new(""))
+    }
+
+    /// The name of the scene: that of the file without its ending.
+    fn name(&self) -> Cow<'_, str> {
+        self.path.file_stem().unwrap_or_default().to_string_lossy()
+    }
+
+    /// What messages call it: the path of its file, or its name where there is no file.
+    fn shown(&self) -> String {
+        match self.text {
+            Some(_) => self.name().into_owned(),
+            None => self.path.display().to_string(),
+        }
+    }
+
+    /// The content of the file, read unless it is given.
+    fn read(&self) -> Result<Cow<'_, str>, Failure> {
+        if let Some(text) = &self.text {
+            return Ok(text.into());
+        }
+        let unreadable = |e: &dyn std::fmt::Display| {
+            Failure::bad_input(format!("cannot read {}: {e}", self.shown()))
+        };
+        let bytes = read_file(&self.path, limits::FILE_BYTES).map_err(|e| unreadable(&e))?;
+        let text = String::from_utf8(bytes).map_err(|e| unreadable(&e.utf8_error()))?;
+        Ok(text.into())
+    }
+}
+
+/// Reads, overrides and resolves a scene; `options` are overrides that have arguments of their own.
 pub fn scene(source: &SceneSource, options: impl FnOnce(&mut RunFile)) -> Result<Scene, Failure> {
-    let path = &source.path;
-    let shown = path.display();
-    let unreadable =
-        |e: &dyn std::fmt::Display| Failure::bad_input(format!("cannot read {shown}: {e}"));
-    let bytes = read_file(path, limits::FILE_BYTES).map_err(|e| unreadable(&e))?;
-    let text = str::from_utf8(&bytes).map_err(|e| unreadable(&e))?;
+    let arguments = source.arguments;
+    let shown = source.shown();
+    let text = source.read()?;
     let mut file =
-        SceneFile::parse(text).map_err(|e| Failure::bad_input(format!("{shown}: {e}")))?;
-    let refused = |e| Failure::bad_input(format!("{shown}: --set {e}"));
-    file = file.with_all(&source.set).map_err(refused)?;
+        SceneFile::parse(&text).map_err(|e| Failure::bad_input(format!("{shown}: {e}")))?;
+    let unset = |e| Failure::bad_input(format!("{shown}: {}", arguments.in_set(e)));
+    file = file.with_all(&source.set).map_err(unset)?;
     let photons = file.run.photons;
     options(&mut file.run);
-    let mut set = named(&source.set);
+    let set = source.set.iter();
+    let set = set.map(|(path, value)| (path.clone(), arguments.set(path, value)));
+    let mut set: Vec<(String, String)> = set.collect();
     if file.run.photons != photons {
-        let option = format!("--photons {}", file.run.photons);
+        let option = arguments.with("photons", file.run.photons);
         set.push(("run.photons".to_owned(), option));
     }
-    let name = path.file_stem().unwrap_or_default().to_string_lossy();
-    let scene = resolve(&name, file, folder(source), machine::available_memory());
-    scene.map_err(|error| self::refused(&error, &shown.to_string(), text, &set))
-}
-
-/// For each field that was set, what has set it.
-pub fn named(set: &[(String, String)]) -> Vec<(String, String)> {
-    let set = set.iter();
-    set.map(|(path, value)| (path.clone(), format!("--set {path}={value}")))
-        .collect()
+    let memory = machine::available_memory();
+    let scene = resolve(&source.name(), file, source.folder(), memory);
+    // A text that nobody has in a file has no lines to be named.
+    let text = source.text.is_none().then_some(&*text);
+    scene.map_err(|error| refused(&error, &shown, text.unwrap_or_default(), &set))
 }
 
 /// What is wrong with a scene, a line for each fault: where it is in the text, or what has set it.
-pub fn refused(error: &SceneError, shown: &str, text: &str, set: &[(String, String)]) -> Failure {
+fn refused(error: &SceneError, shown: &str, text: &str, set: &[(String, String)]) -> Failure {
     let lines = error.in_text(text, set);
     let lines = lines.lines().map(|line| format!("{shown}: {line}"));
     Failure::of_scene(error, lines.collect::<Vec<_>>().join("\n"))
 }
 
-/// The folder of the scene file, in which its meshes and pictures are.
-fn folder(source: &SceneSource) -> &Path {
-    source.path.parent().unwrap_or(Path::new(""))
-}
-
-/// The scene file, and all that it names.
+/// The scene file, if there is one, and all that it names.
 pub fn inputs(source: &SceneSource, scene: &Scene) -> Vec<PathBuf> {
-    let named = scene.inputs.keys().map(|name| folder(source).join(name));
-    named.chain([source.path.clone()]).collect()
+    let file = source.text.is_none().then(|| source.path.clone());
+    let named = scene.inputs.keys();
+    let named = named.map(|name| source.folder().join(name));
+    named.chain(file).collect()
 }
 
 /// Claims a folder for a stage with these files, and copies the meshes and pictures of the scene there: the next
@@ -84,12 +122,13 @@ pub fn stage(
         files,
         inputs: inputs(source, scene),
         force,
+        arguments: source.arguments,
     };
     let mut results = Results::claim(out, plan)?;
     for (name, hash) in &scene.inputs {
-        let path = folder(source).join(name);
+        let path = source.folder().join(name);
         let shown = path.display();
-        let bytes = read_below(folder(source), name, u64::MAX)
+        let bytes = read_below(source.folder(), name, u64::MAX)
             .map_err(|e| Failure::bad_input(format!("cannot read {shown}: {e}")))?;
         if *hash != blake3::hash(&bytes).to_hex().as_str() {
             let message = format!("{shown} changed while it was read");

@@ -31,8 +31,11 @@ pub enum Work {
 }
 
 /// Work that goes on. It ends when this is dropped.
+///
+/// A program that is to stop may unwind from `advance` and from [`Reporter::begin`]: both are called often, and no result is half written
+/// then.
 pub trait Progress: Send + Sync {
-    /// So many photons or things more are done.
+    /// So many photons or things more are done; zero says only that work goes on.
     fn advance(&self, steps: u64);
 
     /// So many are done in all.

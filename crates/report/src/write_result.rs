@@ -6,7 +6,7 @@ use etendue_pipeline::photons::Save;
 use etendue_pipeline::{Judged, MeasuredScene, Outcome, Stopwatch, field, photons};
 use etendue_scene::Scene;
 use etendue_store::stored::check_earlier;
-use etendue_store::{Failure, Finished, Plan, Results, SUMMARY, TIMING, arrays};
+use etendue_store::{ArgumentStyle, Failure, Finished, Plan, Results, SUMMARY, TIMING, arrays};
 use std::path::{Path, PathBuf};
 
 /// What a user wants of a result folder.
@@ -22,7 +22,13 @@ pub struct OutputOptions<'a> {
 const NOT_COMPACT: &[&str] = &[".csv", ".svg"];
 
 /// What a comparison of a scene writes.
-pub fn plan(scene: &Scene, save: &[Save], inputs: Vec<PathBuf>, force: bool) -> Plan {
+pub fn plan(
+    scene: &Scene,
+    save: &[Save],
+    inputs: Vec<PathBuf>,
+    force: bool,
+    arguments: ArgumentStyle,
+) -> Plan {
     let of_plane = |plane: &VirtualPlane| {
         let mut names = [arrays::NAMES.as_slice(), pictures::NAMES.as_slice()].concat();
         names.extend(save.iter().flat_map(|save| photons::names(*save)));
@@ -47,6 +53,7 @@ pub fn plan(scene: &Scene, save: &[Save], inputs: Vec<PathBuf>, force: bool) -> 
             .collect(),
         inputs,
         force,
+        arguments,
     }
 }
 
@@ -90,14 +97,20 @@ pub fn write_result(
     results.finish(|files| summary.json(files))
 }
 
-/// Writes what `etendue run` writes; returns the folder.
+/// Writes what `etendue run` writes; returns the folder. `arguments` says how messages name `force`.
 ///
 /// # Errors
 /// When the folder holds another scene's result and `force` is not set, or cannot be written.
-pub fn save(outcome: &Outcome, folder: &Path, force: bool) -> Result<PathBuf, Failure> {
+pub fn save(
+    outcome: &Outcome,
+    folder: &Path,
+    force: bool,
+    arguments: ArgumentStyle,
+) -> Result<PathBuf, Failure> {
     let scene = &outcome.case().scene;
-    check_earlier(folder, SUMMARY, scene, force)?;
-    let plan = plan(scene, &[], outcome.inputs().to_vec(), force);
+    check_earlier(folder, SUMMARY, scene, force, arguments)?;
+    let inputs = outcome.inputs().to_vec();
+    let plan = plan(scene, &[], inputs, force, arguments);
     let results = Results::claim(folder, plan)?;
     let options = OutputOptions {
         save: &[],

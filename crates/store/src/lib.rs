@@ -8,6 +8,7 @@
     reason = "a Failure carries the whole message for the user, written where it occurs"
 )]
 
+mod argument_style;
 pub mod arrays;
 pub mod batches;
 pub mod checkpoints;
@@ -26,6 +27,7 @@ pub mod sealed;
 pub mod stored;
 pub mod unfinished;
 
+pub use argument_style::ArgumentStyle;
 pub use failure::{CANNOT_RUN, Failure};
 pub use method::Method;
 pub use results::{

@@ -7,8 +7,8 @@
 mod claim;
 mod commit;
 
-use crate::Failure;
 use crate::lock::Lock;
+use crate::{ArgumentStyle, Failure};
 use crate::{lock, sealed, unfinished};
 use etendue_scene::read_file;
 use std::collections::{BTreeMap, BTreeSet};
@@ -62,6 +62,8 @@ pub struct Plan {
     pub inputs: Vec<PathBuf>,
     /// Whether files of somebody else are replaced.
     pub force: bool,
+    /// How messages name the argument for that.
+    pub arguments: ArgumentStyle,
 }
 
 /// A results folder being written by this process alone.

@@ -1,12 +1,12 @@
 //! What a stage leaves in its folder for a later one: arrays, and last an index that names them.
 
-use crate::Failure;
 use crate::Method;
 use crate::fields::{FieldChange, difference};
 use crate::machine;
 use crate::npz::NpzFile;
 use crate::sealed;
 use crate::sealed::json;
+use crate::{ArgumentStyle, Failure};
 use crate::{Finished, MAX_INDEX_BYTES, Results, SUMMARY};
 use etendue_scene::{Scene, SceneFile, read_below, read_file, scene_hash};
 use serde::de::DeserializeOwned;
@@ -228,12 +228,13 @@ pub fn summary_of(folder: &Path, scene: &Scene, method: Method) -> Option<Value>
 }
 
 /// Fails where a folder holds a result of another scene, so that no result takes the place of one
-/// that only shares its name. How a scene was measured does not count.
+/// that only shares its name. How a scene was measured does not count. `arguments` says how the message names `force`.
 pub fn check_earlier(
     folder: &Path,
     index: &str,
     scene: &Scene,
     force: bool,
+    arguments: ArgumentStyle,
 ) -> Result<(), Failure> {
     let path = folder.join(index);
     let earlier = read_file(&path, MAX_INDEX_BYTES).ok();
@@ -251,10 +252,12 @@ pub fn check_earlier(
         None => Ok(()),
         Some(FieldChange { field, values }) => Err(Failure::cannot_run(format!(
             "{} holds the result of another scene, in which {field} is {} and not {}: \
-             choose another folder with --out, or replace it with --force",
+             {}, or replace it with {}",
             folder.display(),
             values[0],
-            values[1]
+            values[1],
+            arguments.another_folder(),
+            arguments.force()
         ))),
     }
 }

@@ -13,6 +13,7 @@ mod points;
 mod request;
 mod run;
 mod table;
+mod unshown;
 pub mod values;
 
 pub use points::{Points, scene_at};

@@ -4,9 +4,9 @@ use crate::request::Request;
 use crate::values::{Point, Setting, Sweep, message_at, points, shown};
 use etendue_compare::{Applicability, Test};
 use etendue_pipeline::load::{self, SceneSource};
-use etendue_pipeline::{MeasuredScene, Silent, Summary, judged};
+use etendue_pipeline::{MeasuredScene, Reporter, Summary, judged};
 use etendue_scene::{RunFile, Scene};
-use etendue_store::{Failure, Method};
+use etendue_store::{ArgumentStyle, Failure, Method};
 use std::collections::BTreeMap;
 
 /// What is asked for: a scene at each point of a sweep.
@@ -25,11 +25,9 @@ impl Points {
     /// Reads the scene at all points.
     pub fn read(request: &Request) -> Result<Self, Failure> {
         let (set, sweeps) = settings(&request.set);
-        check(request, &set, &sweeps)?;
-        let source = SceneSource {
-            path: request.path.clone(),
-            set,
-        };
+        let mut source = request.scene.clone();
+        source.set.extend(set);
+        check(request, &source.set, &sweeps)?;
         let options = |run: &mut RunFile| {
             run.photons = request.photons.unwrap_or(run.photons);
             run.seed = request.seed.unwrap_or(run.seed);
@@ -90,11 +88,11 @@ impl Points {
     }
 
     /// Runs a point; returns its `summary.json`.
-    pub fn summary(&self, point: u32) -> Result<Vec<u8>, Failure> {
+    pub fn summary(&self, point: u32, reporter: &dyn Reporter) -> Result<Vec<u8>, Failure> {
         let scene = self.scenes.get(point as usize);
         let scene = scene.ok_or_else(|| Failure::cannot_run("no such point"))?;
         let theories = Applicability::of_planes(scene);
-        let case = MeasuredScene::of(scene.clone(), theories, self.method, &Silent)?;
+        let case = MeasuredScene::of(scene.clone(), theories, self.method, reporter)?;
         let summary = Summary::new(&case, &judged(&case, &Test::of(&case.scene))?, Vec::new());
         Ok(summary.json(&BTreeMap::new()))
     }
@@ -118,10 +116,15 @@ fn check(request: &Request, set: &[(String, String)], sweeps: &[Sweep]) -> Resul
             .iter()
             .map(|(path, value)| format!("{path}={value} is one value; "))
             .collect();
-        let message = format!(
-            "nothing is swept: {}--set PATH=A..B:N or PATH=A,B,C gives a field several, such as --set blockers.0.pitch=0.05..0.4:8",
-            given.concat()
-        );
+        let several = match request.scene.arguments {
+            ArgumentStyle::Command => {
+                "--set PATH=A..B:N or PATH=A,B,C gives a field several, such as --set blockers.0.pitch=0.05..0.4:8"
+            }
+            ArgumentStyle::Python => {
+                "set gives a field several, such as {'blockers.0.pitch': [0.05, 0.1]} or {'blockers.0.pitch': '0.05..0.4:8'}"
+            }
+        };
+        let message = format!("nothing is swept: {}{several}", given.concat());
         return Err(Failure::bad_input(message));
     }
     let options = [

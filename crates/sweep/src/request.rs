@@ -1,15 +1,15 @@
 //! What a sweep is asked for.
 
 use crate::values::Setting;
+use etendue_pipeline::load::SceneSource;
 use etendue_store::Method;
-use std::path::PathBuf;
 
 /// A scene with fields that take several values.
 #[derive(Clone, Debug)]
 pub struct Request {
-    /// The scene file.
-    pub path: PathBuf,
-    /// Fields set to a value, or to several.
+    /// The scene, with fields set to a value at all points.
+    pub scene: SceneSource,
+    /// More fields, set to a value or to several.
     pub set: Vec<Setting>,
     /// Whether all points have one seed; otherwise each has its own.
     pub common_seed: bool,
@@ -23,4 +23,21 @@ pub struct Request {
     pub method: Method,
     /// Whether files that Étendue did not write are replaced.
     pub force: bool,
+}
+
+impl Request {
+    /// A sweep of fields of a scene, by photons, in all combinations.
+    #[must_use]
+    pub fn new(scene: SceneSource, set: Vec<Setting>) -> Self {
+        Self {
+            scene,
+            set,
+            common_seed: false,
+            together: false,
+            photons: None,
+            seed: None,
+            method: Method::Photons,
+            force: false,
+        }
+    }
 }

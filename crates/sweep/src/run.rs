@@ -4,6 +4,7 @@ use crate::pictures;
 use crate::points::Points;
 use crate::request::Request;
 use crate::table::{self, BANDWIDTHS, Found, SLOPE};
+use crate::unshown::Unshown;
 use crate::values::{Sweep, shown};
 use etendue_compare::Applicability;
 use etendue_field::{decimals, fixed, uncertain};
@@ -50,21 +51,22 @@ pub fn run(
     };
     all.scenes.iter().try_for_each(checked)?;
     let Points { base, sweeps, .. } = all;
-    check_earlier(folder, SWEEP, base, request.force)?;
-    check_fields(folder, sweeps, request.force)?;
+    let arguments = request.scene.arguments;
+    check_earlier(folder, SWEEP, base, request.force, arguments)?;
+    check_fields(request, folder, sweeps)?;
     let inputs = load::inputs(&all.source, base);
     // Before the work, and once more for the table: each point claims a folder of its own.
-    drop(Results::claim(folder, plan(&inputs, request.force))?);
+    drop(Results::claim(folder, plan(request, &inputs))?);
     unfinished::keeps(
         "interrupted: the points that are done are kept, and the same command goes on from them",
     );
     let found = run_all(request, folder, &inputs, all, workers, reporter)?;
-    let results = Results::claim(folder, plan(&inputs, request.force))?;
+    let results = Results::claim(folder, plan(request, &inputs))?;
     finish(request, all, &found, results, reporter)
 }
 
 /// Fails where the folder holds a sweep of other fields.
-fn check_fields(folder: &Path, sweeps: &[Sweep], force: bool) -> Result<(), Failure> {
+fn check_fields(request: &Request, folder: &Path, sweeps: &[Sweep]) -> Result<(), Failure> {
     let earlier = read_file(&folder.join(SWEEP), MAX_INDEX_BYTES).ok();
     let earlier: Option<Value> = earlier.and_then(|bytes| serde_json::from_slice(&bytes).ok());
     let Some(fields) = earlier
@@ -75,18 +77,20 @@ fn check_fields(folder: &Path, sweeps: &[Sweep], force: bool) -> Result<(), Fail
     };
     let now: BTreeSet<&str> = sweeps.iter().map(|sweep| sweep.path.as_str()).collect();
     let earlier: BTreeSet<&str> = fields.keys().map(String::as_str).collect();
-    if force || now == earlier {
+    if request.force || now == earlier {
         return Ok(());
     }
     let earlier: Vec<&str> = earlier.into_iter().collect();
     Err(Failure::cannot_run(format!(
-        "{} holds a sweep of {}: choose another folder with --out, or replace it with --force",
+        "{} holds a sweep of {}: {}, or replace it with {}",
         folder.display(),
-        earlier.join(", ")
+        earlier.join(", "),
+        request.scene.arguments.another_folder(),
+        request.scene.arguments.force()
     )))
 }
 
-fn plan(inputs: &[PathBuf], force: bool) -> Plan {
+fn plan(request: &Request, inputs: &[PathBuf]) -> Plan {
     let pictures = pictures::NAMES.iter();
     let pictures =
         pictures.flat_map(|name| ["png", "svg", "csv"].map(|end| format!("{name}.{end}")));
@@ -94,7 +98,8 @@ fn plan(inputs: &[PathBuf], force: bool) -> Plan {
         index: SWEEP,
         files: pictures.chain([TABLE.to_owned()]).collect(),
         inputs: inputs.to_vec(),
-        force,
+        force: request.force,
+        arguments: request.scene.arguments,
     }
 }
 
@@ -123,6 +128,7 @@ fn run_all(
             files: Vec::new(),
             inputs: inputs.to_vec(),
             force: request.force,
+            arguments: request.scene.arguments,
         };
         Results::claim_below(folder, &names[point as usize], plan)
     };
@@ -134,7 +140,7 @@ fn run_all(
     let own = |point: u32| {
         bar.name(&shown(&all.points[point as usize]));
         let results = claimed(point)?;
-        kept(results, &all.summary(point)?)
+        kept(results, &all.summary(point, &Unshown(&*bar))?)
     };
     let mut summaries: Vec<Option<Value>> = (0..names.len()).map(earlier).collect();
     let missing = (0..).zip(&summaries);
@@ -210,6 +216,7 @@ fn finish(
     let Points { base, sweeps, .. } = all;
     let paths: Vec<String> = sweeps.iter().map(|sweep| sweep.path.clone()).collect();
     results.write(TABLE, &table::csv(&paths, found)?)?;
+    let stage = reporter.begin(Work::Stage("writing results"));
     let figures = pictures::drawn(&base.name, found, request.together)?;
     for (name, figure) in pictures::NAMES.iter().zip(&figures) {
         etendue_report::pictures::write(&mut results, name, figure)?;
@@ -228,6 +235,7 @@ fn finish(
             files,
         })
     })?;
+    drop(stage);
     if let Some(message) = finished.replaced_message() {
         reporter.note(&message);
     }

@@ -1,7 +1,7 @@
 //! The values that fields of a scene take in a sweep.
 
 use etendue_field::tidy;
-use etendue_store::Failure;
+use etendue_store::{ArgumentStyle, Failure};
 
 /// A field of the scene and its values.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,6 +30,11 @@ const MAX_POINTS: usize = 1000;
 /// What `--set` of a sweep takes.
 pub fn setting(text: &str) -> Result<Setting, String> {
     let (path, values) = text.split_once('=').ok_or("must be PATH=VALUE")?;
+    setting_of(path, values, ArgumentStyle::Command)
+}
+
+/// A field that is set to `values`, a value or several as `--set` of a sweep takes them behind `PATH=`.
+pub fn setting_of(path: &str, values: &str, arguments: ArgumentStyle) -> Result<Setting, String> {
     let [path, values] = [path, values].map(|part| part.trim().to_owned());
     let is_plain = !values.contains(['(', '[', '"']);
     let is_range = is_plain
@@ -37,7 +42,8 @@ pub fn setting(text: &str) -> Result<Setting, String> {
             .split_once("..")
             .is_some_and(|(from, _)| !from.contains('/') && !from.is_empty());
     if is_range || is_list(&values) {
-        return sweep(text).map(Setting::Sweep);
+        let values = values_of(&values).map_err(|why| allowed(&why, arguments))?;
+        return Ok(Setting::Sweep(Sweep { path, values }));
     }
     Ok(Setting::Value(path, values))
 }
@@ -60,21 +66,46 @@ fn is_list(text: &str) -> bool {
 pub fn sweep(text: &str) -> Result<Sweep, String> {
     let (path, values) = text
         .split_once('=')
-        .ok_or_else(|| allowed("no field is named"))?;
-    let values = match values.split_once("..") {
-        None => values.split(',').map(number).collect::<Result<_, _>>(),
-        Some((from, rest)) => range(from, rest),
-    };
+        .ok_or_else(|| allowed("no field is named", ArgumentStyle::Command))?;
     Ok(Sweep {
         path: path.trim().to_owned(),
-        values: values.map_err(|why| allowed(&why))?,
+        values: values_of(values).map_err(|why| allowed(&why, ArgumentStyle::Command))?,
     })
 }
 
-fn allowed(why: &str) -> String {
-    format!(
-        "{why}; allowed: PATH=A..B:N, PATH=A..B:Nlog by equal factors, or PATH=A,B,C, numbers and at most {MAX_POINTS} of them"
-    )
+impl Sweep {
+    /// A field and its values, if these are finite numbers and not too many. The message names them as Python does.
+    pub fn new(path: String, values: Vec<f64>) -> Result<Self, String> {
+        let refused = |why: &str| {
+            Err(format!(
+                "in set, {path}: {}",
+                allowed(why, ArgumentStyle::Python)
+            ))
+        };
+        match values.iter().find(|value| !value.is_finite()) {
+            Some(value) => refused(&format!("`{value}` is no number")),
+            None if !(1..=MAX_POINTS).contains(&values.len()) => {
+                refused(&format!("there are {} values", values.len()))
+            }
+            None => Ok(Self { path, values }),
+        }
+    }
+}
+
+/// The values of a range or a list.
+fn values_of(text: &str) -> Result<Vec<f64>, String> {
+    match text.split_once("..") {
+        None => text.split(',').map(number).collect(),
+        Some((from, rest)) => range(from, rest),
+    }
+}
+
+fn allowed(why: &str, arguments: ArgumentStyle) -> String {
+    let forms = match arguments {
+        ArgumentStyle::Command => "PATH=A..B:N, PATH=A..B:Nlog by equal factors, or PATH=A,B,C",
+        ArgumentStyle::Python => "'A..B:N', 'A..B:Nlog' by equal factors, or a sequence",
+    };
+    format!("{why}; allowed: {forms}, numbers and at most {MAX_POINTS} of them")
 }
 
 fn number(text: &str) -> Result<f64, String> {

@@ -5,11 +5,10 @@ use crate::picture_request::PictureRequest;
 use etendue_adaptive::{Layers, Method, Plan, Rendered, Stage};
 use etendue_paths::Paths;
 use etendue_pipeline::{Progress, Reporter, Work};
-use etendue_store::Failure;
 use etendue_store::exr::{Part, exr};
 use etendue_store::npz::Npz;
 use etendue_store::sealed::json;
-use etendue_store::{Results, TIMING};
+use etendue_store::{ArgumentStyle, Failure, Results, TIMING};
 use etendue_world::{Camera, Projection};
 use ndarray::Array2;
 use serde_json::{Value, json as tree_of};
@@ -30,9 +29,13 @@ pub(crate) fn render(
     reporter: &dyn Reporter,
 ) -> Result<String, Failure> {
     if let Projection::Perspective { lens: Some(_), .. } = camera.projection {
-        return Err(Failure::bad_input(
-            "the camera has a lens, and the criteria of few shading samples are about a pinhole: allowed is --method reference",
-        ));
+        let allowed = match request.source.arguments {
+            ArgumentStyle::Command => "--method reference",
+            ArgumentStyle::Python => "method='reference'",
+        };
+        return Err(Failure::bad_input(format!(
+            "the camera has a lens, and the criteria of few shading samples are about a pinhole: allowed is {allowed}"
+        )));
     }
     let pixels = camera.size[0] * camera.size[1];
     let samples = request

@@ -6,13 +6,16 @@
 )]
 
 mod adaptive;
+mod contents;
 mod finite;
 mod picture;
 mod picture_request;
 mod probe;
+pub mod ranges;
 mod world_source;
 
+pub use contents::Contents;
 pub use picture::{RenderedPicture, render};
 pub use picture_request::PictureRequest;
 pub use probe::{BandwidthMap, ProbeRequest, ProbedPixel, map_bandwidths, probe_pixel};
-pub use world_source::{CameraChoice, Viewpoint, WorldSource, contents, load};
+pub use world_source::{CameraChoice, Viewpoint, WorldSource};

@@ -36,8 +36,9 @@ pub fn render(
     reporter: &dyn Reporter,
 ) -> Result<RenderedPicture, Failure> {
     let imported = world_source::load(&request.source)?;
-    let camera = world_source::camera(&imported.world, &request.camera)?;
-    world_source::require_light(&imported.world)?;
+    let arguments = request.source.arguments;
+    let camera = world_source::camera(&imported.world, &request.camera, arguments)?;
+    world_source::require_light(&imported.world, arguments)?;
     let method = request.method;
     let of_adaptive = method.map(|_| adaptive::FILES).unwrap_or_default();
     let plan = Plan {
@@ -49,6 +50,7 @@ pub fn render(
             .collect(),
         inputs: vec![request.source.path.clone()],
         force: request.force,
+        arguments,
     };
     let mut results = Results::claim(folder, plan)?;
     let mut made_from = tree_of!({
@@ -87,11 +89,13 @@ pub fn render(
         write(&mut results, &picture, &made_from)?;
         String::new()
     };
+    let stage = reporter.begin(Work::Stage("writing results"));
     let finished = results.finish(|files| {
         let mut index = made_from.clone();
         index["files"] = tree_of!(files);
         json(&index)
     })?;
+    drop(stage);
     if let Some(message) = finished.replaced_message() {
         reporter.note(&message);
     }

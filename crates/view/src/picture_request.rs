@@ -1,6 +1,7 @@
 //! A picture that is asked for.
 
 use crate::world_source::{CameraChoice, WorldSource};
+use etendue_adaptive::{BLOCKER_RAYS, Method};
 
 /// A picture that is asked for.
 #[derive(Clone, Debug)]
@@ -10,7 +11,7 @@ pub struct PictureRequest {
     /// The camera.
     pub camera: CameraChoice,
     /// How few shading samples are spent; `None` for a reference.
-    pub method: Option<etendue_adaptive::Method>,
+    pub method: Option<Method>,
     /// Paths for each pixel of a reference.
     pub samples: u32,
     /// Shading samples of the whole picture; otherwise one for each 20 pixels.
@@ -25,4 +26,48 @@ pub struct PictureRequest {
     pub seed: u64,
     /// Whether files that Étendue did not write are replaced.
     pub force: bool,
+}
+
+impl PictureRequest {
+    /// Paths for each pixel of a reference, unless said.
+    pub const SAMPLES: u32 = 64;
+    /// Paths of each shading sample, unless said.
+    pub const PATHS: u32 = 128;
+    /// Rays by which the distance of blockers is found, unless said.
+    pub const BLOCKER_RAYS: u32 = BLOCKER_RAYS;
+    /// The seed, unless said.
+    pub const SEED: u64 = 1;
+
+    /// Each method by its name.
+    pub const METHODS: [(&str, Option<Method>); 6] = [
+        ("reference", None),
+        ("uniform", Some(Method::Uniform)),
+        ("predicted", Some(Method::Predicted)),
+        ("printed", Some(Method::Printed)),
+        ("weighted", Some(Method::Weighted)),
+        ("variance", Some(Method::Variance)),
+    ];
+
+    /// A reference of a scene as its first camera sees it.
+    #[must_use]
+    pub fn new(source: WorldSource) -> Self {
+        Self {
+            source,
+            camera: CameraChoice::default(),
+            method: None,
+            samples: Self::SAMPLES,
+            shading_samples: None,
+            paths: Self::PATHS,
+            blocker_rays: Self::BLOCKER_RAYS,
+            isotropic: false,
+            seed: Self::SEED,
+            force: false,
+        }
+    }
+
+    /// The method where none is named: a reference, unless a number of shading samples is.
+    #[must_use]
+    pub fn usual_method(shading_samples: Option<u32>) -> Option<Method> {
+        shading_samples.map(|_| Method::Predicted)
+    }
 }

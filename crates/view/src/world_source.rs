@@ -1,9 +1,8 @@
 //! Scenes of other programs, as they are read for pictures and probes.
 
 use etendue_import::{Imported, Options, import};
-use etendue_pipeline::table::aligned;
-use etendue_store::Failure;
-use etendue_world::{Camera, Geometry, Light, Projection, World};
+use etendue_store::{ArgumentStyle, Failure};
+use etendue_world::{Camera, Light, Projection, World};
 use glam::{DAffine3, DMat3, DVec3};
 use std::path::PathBuf;
 
@@ -20,6 +19,8 @@ pub struct WorldSource {
     pub sky: Option<f64>,
     /// A camera that the scene need not have: the first, named `command`.
     pub viewpoint: Option<Viewpoint>,
+    /// How messages name arguments.
+    pub arguments: ArgumentStyle,
 }
 
 /// Where a camera of 512 × 512 pixels stands, and where it looks, in coordinates of the scene.
@@ -44,12 +45,41 @@ pub struct CameraChoice {
     pub size: Option<[usize; 2]>,
 }
 
-/// What commands say.
-const NO_CAMERA: &str = "the scene has no camera: --look-from and --look-at add one";
-const NO_LIGHT: &str = "the scene has no light: --sky adds one";
+impl WorldSource {
+    /// A scene file as it is.
+    #[must_use]
+    pub fn new(path: PathBuf, arguments: ArgumentStyle) -> Self {
+        Self {
+            path,
+            options: Options::default(),
+            bounces: None,
+            sky: None,
+            viewpoint: None,
+            arguments,
+        }
+    }
+}
+
+impl Viewpoint {
+    /// What is up, unless said.
+    pub const UP: DVec3 = DVec3::Y;
+    /// The angle from side to side, unless said, degrees.
+    pub const FOV: f64 = 45.0;
+}
+
+/// Says how a scene comes to a camera.
+pub(crate) fn no_camera(arguments: ArgumentStyle) -> String {
+    let [from, at] = ["look_from", "look_at"].map(|name| arguments.name(name));
+    format!("the scene has no camera: {from} and {at} add one")
+}
+
+/// Says how a scene comes to a light.
+pub(crate) fn no_light(arguments: ArgumentStyle) -> String {
+    format!("the scene has no light: {} adds one", arguments.name("sky"))
+}
 
 /// Reads a scene; causes for which it is refused come all together.
-pub fn load(source: &WorldSource) -> Result<Imported, Failure> {
+pub(crate) fn load(source: &WorldSource) -> Result<Imported, Failure> {
     let mut imported = import(&source.path, &source.options).map_err(Failure::bad_input)?;
     if source.bounces.is_some() {
         imported.world.depth = source.bounces;
@@ -58,7 +88,10 @@ pub fn load(source: &WorldSource) -> Result<Imported, Failure> {
         imported.world.lights.push(Light::Constant { radiance });
     }
     if let Some(viewpoint) = &source.viewpoint {
-        imported.world.cameras.insert(0, camera_at(viewpoint)?);
+        imported
+            .world
+            .cameras
+            .insert(0, camera_at(viewpoint, source.arguments)?);
     }
     Ok(imported)
 }
@@ -68,17 +101,18 @@ pub(crate) fn notes(imported: &Imported) -> Vec<String> {
     imported.notes.iter().map(ToString::to_string).collect()
 }
 
-/// The camera that the command line puts into the scene.
-fn camera_at(viewpoint: &Viewpoint) -> Result<Camera, Failure> {
+/// The camera that a viewpoint puts into the scene.
+fn camera_at(viewpoint: &Viewpoint, arguments: ArgumentStyle) -> Result<Camera, Failure> {
     let ahead = (viewpoint.at - viewpoint.from).try_normalize();
     let frame = ahead.and_then(|ahead| {
         let left = viewpoint.up.cross(ahead).try_normalize()?;
         Some(DMat3::from_cols(left, ahead.cross(left), ahead))
     });
     let frame = frame.ok_or_else(|| {
-        let message =
-            "--look-from and --look-at are one place, or --up goes along the line between them";
-        Failure::bad_input(message)
+        let [from, at, up] = ["look_from", "look_at", "up"].map(|name| arguments.name(name));
+        Failure::bad_input(format!(
+            "{from} and {at} are one place, or {up} goes along the line between them"
+        ))
     })?;
     Ok(Camera {
         name: "command".to_owned(),
@@ -93,17 +127,26 @@ fn camera_at(viewpoint: &Viewpoint) -> Result<Camera, Failure> {
     })
 }
 
-/// Requires something that shines.
-pub(crate) fn require_light(world: &World) -> Result<(), Failure> {
+/// Whether something shines.
+pub(crate) fn has_light(world: &World) -> bool {
     let shines = world.shapes.iter().any(|shape| shape.emission.is_some());
-    if shines || !world.lights.is_empty() {
+    shines || !world.lights.is_empty()
+}
+
+/// Requires something that shines.
+pub(crate) fn require_light(world: &World, arguments: ArgumentStyle) -> Result<(), Failure> {
+    if has_light(world) {
         return Ok(());
     }
-    Err(Failure::bad_input(NO_LIGHT))
+    Err(Failure::bad_input(no_light(arguments)))
 }
 
 /// The camera that is asked for, or the first, with the size that is asked for.
-pub(crate) fn camera(world: &World, choice: &CameraChoice) -> Result<Camera, Failure> {
+pub(crate) fn camera(
+    world: &World,
+    choice: &CameraChoice,
+    arguments: ArgumentStyle,
+) -> Result<Camera, Failure> {
     let is_meant = |camera: &&Camera| choice.name.as_ref().is_none_or(|name| *name == camera.name);
     let camera = world.cameras.iter().find(is_meant).ok_or_else(|| {
         let names: Vec<&str> = world
@@ -113,96 +156,14 @@ pub(crate) fn camera(world: &World, choice: &CameraChoice) -> Result<Camera, Fai
             .collect();
         Failure::bad_input(match &choice.name {
             Some(name) if !names.is_empty() => {
-                format!("--camera {name}; allowed: {}", names.join(", "))
+                let camera = arguments.with("camera", name);
+                format!("{camera}; allowed: {}", names.join(", "))
             }
-            _ => NO_CAMERA.to_owned(),
+            _ => no_camera(arguments),
         })
     })?;
     Ok(Camera {
         size: choice.size.unwrap_or(camera.size),
         ..camera.clone()
     })
-}
-
-/// What a scene holds, line by line, and a note for all that was left out or approximated.
-#[must_use]
-pub fn contents(imported: &Imported) -> Vec<String> {
-    let world = &imported.world;
-    let mut lines = aligned(rows(world));
-    lines.extend(world.cameras.iter().map(of_camera));
-    if world.cameras.is_empty() {
-        lines.push(NO_CAMERA.to_owned());
-    }
-    if require_light(world).is_err() {
-        lines.push(NO_LIGHT.to_owned());
-    }
-    lines.push(match world.depth {
-        Some(depth) => format!("light meets at most {depth} surfaces"),
-        None => "light meets any number of surfaces".to_owned(),
-    });
-    lines.extend(notes(imported).iter().map(|note| format!("note: {note}")));
-    lines
-}
-
-/// What there is of each kind, and how many.
-fn rows(world: &World) -> Vec<Vec<String>> {
-    let mut counts: Vec<(&str, usize)> = Vec::new();
-    let mut count = |kind, by| match counts.iter_mut().find(|(known, _)| *known == kind) {
-        Some((_, count)) => *count += by,
-        None => counts.push((kind, by)),
-    };
-    for shape in &world.shapes {
-        match &shape.geometry {
-            Geometry::Rectangle => count("rectangles", 1),
-            Geometry::Disc => count("discs", 1),
-            Geometry::Sphere => count("spheres", 1),
-            Geometry::Cylinder => count("cylinders", 1),
-            Geometry::Mesh(mesh) => {
-                count("meshes", 1);
-                count("triangles", mesh.corners().len());
-            }
-        }
-        if shape.emission.is_some() {
-            count("area lights", 1);
-        }
-    }
-    for light in &world.lights {
-        let kind = match light {
-            Light::Point { .. } => "point lights",
-            Light::Spot { .. } => "spotlights",
-            Light::Directional { .. } => "directional lights",
-            Light::Constant { .. } => "constant environments",
-            Light::Sky(_) => "environment maps",
-        };
-        count(kind, 1);
-    }
-    count("materials", world.materials.len());
-    counts
-        .iter()
-        .map(|(kind, count)| vec![count.to_string(), (*kind).to_owned()])
-        .collect()
-}
-
-fn of_camera(camera: &Camera) -> String {
-    let Camera {
-        name, size: [w, h], ..
-    } = camera;
-    let kind = match camera.projection {
-        Projection::Perspective {
-            half_width, lens, ..
-        } => {
-            let angle = 2.0 * libm::atan(half_width).to_degrees();
-            let lens = lens.map_or(String::new(), |lens| {
-                format!(", lens of radius {} focused at {}", lens.radius, lens.focus)
-            });
-            format!("perspective, {angle:.4}° wide{lens}")
-        }
-        Projection::Orthographic => "orthographic".to_owned(),
-    };
-    let name = if name.is_empty() {
-        "without a name"
-    } else {
-        name
-    };
-    format!("camera {name}: {w} × {h} pixels, {kind}")
 }

@@ -247,7 +247,7 @@ impl Circle {
                 let weight = radiance * ds * dt;
                 match step {
                     ReflectionStep::Incidence | ReflectionStep::Curvature => {
-                        add([s, incident], weight)
+                        add([s, incident], weight);
                     }
                     ReflectionStep::Cosine => add([s, incident], weight * incident.cos()),
                     ReflectionStep::Mirror => add([s, -incident], weight * incident.cos()),

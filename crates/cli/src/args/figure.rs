@@ -78,7 +78,7 @@ pub(crate) struct FigureArgs {
     pub(crate) style: Option<PathBuf>,
 
     /// How much work goes into it
-    #[arg(long, value_name = "QUALITY", default_value = "print", value_parser = qualities())]
+    #[arg(long, value_name = "QUALITY", default_value = Quality::default().name(), value_parser = qualities())]
     pub(crate) quality: Quality,
 
     #[command(flatten)]

@@ -36,6 +36,16 @@ pub(super) fn one_of<T: Copy + Send + Sync + 'static, const N: usize>(
     })
 }
 
+/// Takes one of some values by its name.
+pub(super) fn one_named<T: Copy + Send + Sync + 'static, const N: usize>(
+    all: [(&'static str, T); N],
+) -> impl TypedValueParser<Value = T> {
+    PossibleValuesParser::new(all.map(|(name, _)| name)).try_map(move |text| {
+        let found = all.iter().find(|(name, _)| *name == text);
+        found.map(|(_, value)| *value).ok_or("no such value")
+    })
+}
+
 /// The methods that a user may name.
 pub(super) fn methods() -> impl TypedValueParser<Value = Method> {
     let named = |method: Method, help| (method, method.name(), help);
@@ -84,10 +94,7 @@ pub(crate) struct SceneArgs {
 impl SceneArgs {
     /// The scene, for the pipeline.
     pub(crate) fn source(&self) -> SceneSource {
-        SceneSource {
-            path: self.path.clone(),
-            set: self.set.clone(),
-        }
+        SceneSource::file(&self.path, &self.set)
     }
 }
 

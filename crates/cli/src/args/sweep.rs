@@ -2,6 +2,7 @@
 
 use super::shared::{ForceArgs, PhotonArgs, SceneArgs, ThreadArgs};
 use clap::Args;
+use etendue_pipeline::load::SceneSource;
 use etendue_sweep::Request;
 use etendue_sweep::values::{Setting, Sweep, setting, sweep};
 use std::path::PathBuf;
@@ -61,7 +62,7 @@ impl SweepArgs {
     /// The sweep that is asked for.
     pub(crate) fn request(&self) -> Request {
         Request {
-            path: self.path.clone(),
+            scene: SceneSource::file(&self.path, &[]),
             set: self.set.clone(),
             common_seed: self.common_seed,
             together: self.together,

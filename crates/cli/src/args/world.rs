@@ -1,12 +1,26 @@
 //! Arguments of commands that take scenes of other programs.
 
-use super::shared::{ForceArgs, ThreadArgs, assignment, whole_number};
-use clap::{Args, ValueEnum};
-use etendue_adaptive::{BLOCKER_RAYS, Method};
+use super::shared::{ForceArgs, ThreadArgs, assignment, one_named, whole_number};
+use clap::Args;
+use clap::builder::RangedU64ValueParser;
+use etendue_adaptive::Method;
 use etendue_import::{Color, Options};
+use etendue_store::ArgumentStyle;
+use etendue_view::ranges::{self, MAX_ANGLE, MAX_COORDINATE, SIDE};
 use etendue_view::{CameraChoice, PictureRequest, ProbeRequest, Viewpoint, WorldSource};
 use glam::DVec3;
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
+
+/// A whole number in a range.
+fn within<T: TryFrom<u64> + Clone + Send + Sync>(
+    range: RangeInclusive<u64>,
+) -> RangedU64ValueParser<T>
+where
+    <T as TryFrom<u64>>::Error: Send + Sync + 'static + std::error::Error + ToString,
+{
+    RangedU64ValueParser::new().range(range)
+}
 
 #[derive(Debug, Args)]
 pub(crate) struct WorldArgs {
@@ -19,8 +33,8 @@ pub(crate) struct WorldArgs {
     pub(crate) root: Option<PathBuf>,
 
     /// The one number that each colour becomes
-    #[arg(long, value_name = "CHANNEL", default_value = "luminance")]
-    pub(crate) color: Channel,
+    #[arg(long, value_name = "CHANNEL", default_value = "luminance", value_parser = one_named(Color::ALL))]
+    pub(crate) color: Color,
 
     /// Give a parameter of the file, such as Mitsuba's $res, a value; may be repeated
     #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
@@ -54,14 +68,17 @@ pub(crate) struct ViewArgs {
     pub(crate) up: DVec3,
 
     /// Its angle from side to side, degrees
-    #[arg(long, value_name = "DEG", value_parser = angle, requires = "look_from", default_value = "45")]
+    #[arg(long, value_name = "DEG", value_parser = angle, requires = "look_from", default_value_t = Viewpoint::FOV)]
     pub(crate) fov: f64,
 }
 
 fn numbers(text: &str) -> Option<Vec<f64>> {
     let parsed = text.split(',').map(|part| part.trim().parse().ok());
     let numbers: Vec<f64> = parsed.collect::<Option<_>>()?;
-    numbers.iter().all(|v| v.abs() <= 1e9).then_some(numbers)
+    numbers
+        .iter()
+        .all(|v| v.abs() <= MAX_COORDINATE)
+        .then_some(numbers)
 }
 
 fn point(text: &str) -> Result<DVec3, String> {
@@ -72,12 +89,12 @@ fn point(text: &str) -> Result<DVec3, String> {
 }
 
 fn angle(text: &str) -> Result<f64, String> {
-    let found = text.parse().ok().filter(|v| 0.0 < *v && *v < 180.0);
+    let found = text.parse().ok().filter(|v| 0.0 < *v && *v < MAX_ANGLE);
     found.ok_or_else(|| "allowed: above 0 and below 180".to_owned())
 }
 
 fn radiance(text: &str) -> Result<f64, String> {
-    let found = text.parse().ok().filter(|v| (0.0..=1e9).contains(v));
+    let found = text.parse().ok().filter(|v| ranges::SKY.contains(v));
     found.ok_or_else(|| "allowed: a number from 0 to 1e9".to_owned())
 }
 
@@ -87,20 +104,15 @@ impl WorldArgs {
         let ViewArgs { up, fov, .. } = self.view;
         let ends = self.view.look_from.zip(self.view.look_at);
         WorldSource {
-            path: self.path.clone(),
             options: Options {
                 root: self.root.clone(),
-                color: match self.color {
-                    Channel::Luminance => Color::Luminance,
-                    Channel::Red => Color::Red,
-                    Channel::Green => Color::Green,
-                    Channel::Blue => Color::Blue,
-                },
+                color: self.color,
                 set: self.set.clone(),
             },
             bounces: self.bounces,
             sky: self.sky,
             viewpoint: ends.map(|(from, at)| Viewpoint { from, at, up, fov }),
+            ..WorldSource::new(self.path.clone(), ArgumentStyle::Command)
         }
     }
 }
@@ -121,7 +133,10 @@ impl RenderArgs {
         PictureRequest {
             source: self.scene.source(),
             camera: self.camera.choice(),
-            method: self.few_samples(),
+            method: match self.method {
+                Some(RenderMethod(method)) => method,
+                None => PictureRequest::usual_method(self.shading_samples),
+            },
             samples: self.samples,
             shading_samples: self.shading_samples,
             paths: self.paths,
@@ -131,39 +146,11 @@ impl RenderArgs {
             force: self.force.force,
         }
     }
-
-    /// How few shading samples are spent; `None` for a reference.
-    fn few_samples(&self) -> Option<Method> {
-        match (self.method, self.shading_samples) {
-            (Some(RenderMethod::Reference), _) | (None, None) => None,
-            (Some(RenderMethod::Predicted) | None, _) => Some(Method::Predicted),
-            (Some(RenderMethod::Uniform), _) => Some(Method::Uniform),
-            (Some(RenderMethod::Printed), _) => Some(Method::Printed),
-            (Some(RenderMethod::Weighted), _) => Some(Method::Weighted),
-            (Some(RenderMethod::Variance), _) => Some(Method::Variance),
-        }
-    }
 }
 
-/// How samples of a picture are spent.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum RenderMethod {
-    Reference,
-    Uniform,
-    Predicted,
-    Printed,
-    Weighted,
-    Variance,
-}
-
-/// What a colour becomes.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum Channel {
-    Luminance,
-    Red,
-    Green,
-    Blue,
-}
+/// How samples of a picture are spent; `None` for a reference.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RenderMethod(Option<Method>);
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
@@ -209,23 +196,23 @@ pub(crate) struct RenderArgs {
 
     /// How samples are spent: all over (reference), or few shading samples where the method puts them [default: reference, or predicted
     /// with --shading-samples]
-    #[arg(long, value_name = "METHOD")]
+    #[arg(long, value_name = "METHOD", value_parser = one_named(PictureRequest::METHODS.map(|(name, method)| (name, RenderMethod(method)))))]
     pub(crate) method: Option<RenderMethod>,
 
     /// Paths for each pixel of a reference, at least 2
-    #[arg(long, value_name = "N", default_value = "64", value_parser = clap::value_parser!(u32).range(2..))]
+    #[arg(long, value_name = "N", default_value_t = PictureRequest::SAMPLES, value_parser = within::<u32>(ranges::SAMPLES))]
     pub(crate) samples: u32,
 
     /// Shading samples of the whole picture, for all methods but reference [default: one for each 20 pixels]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000_000))]
+    #[arg(long, value_name = "N", value_parser = within::<u32>(ranges::SHADING_SAMPLES))]
     pub(crate) shading_samples: Option<u32>,
 
     /// Paths of each shading sample
-    #[arg(long, value_name = "N", default_value = "128", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    #[arg(long, value_name = "N", default_value_t = PictureRequest::PATHS, value_parser = within::<u32>(ranges::PATHS))]
     pub(crate) paths: u32,
 
     /// Rays of each point by which the distance of blockers is found, as many again to lights; the paper has 100
-    #[arg(long, value_name = "N", default_value_t = BLOCKER_RAYS, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, value_name = "N", default_value_t = PictureRequest::BLOCKER_RAYS, value_parser = within::<u32>(ranges::BLOCKER_RAYS))]
     pub(crate) blocker_rays: u32,
 
     /// Samples as dense along all directions, as in the paper; without it denser along the direction in which light changes faster
@@ -233,7 +220,7 @@ pub(crate) struct RenderArgs {
     pub(crate) isotropic: bool,
 
     /// Seed of the paths
-    #[arg(long, value_name = "N", default_value = "1")]
+    #[arg(long, value_name = "N", default_value_t = PictureRequest::SEED)]
     pub(crate) seed: u64,
 
     /// Folder for the picture [default: out/NAME]
@@ -279,23 +266,23 @@ pub(crate) struct ProbeArgs {
     pub(crate) map: Option<[usize; 2]>,
 
     /// Most surfaces along the ray
-    #[arg(long = "depth", value_name = "N", default_value = "1", value_parser = clap::value_parser!(u16).range(1..=16))]
+    #[arg(long = "depth", value_name = "N", default_value_t = ProbeRequest::SURFACES, value_parser = within::<u16>(ranges::SURFACES))]
     pub(crate) surfaces: u16,
 
     /// Pixels across the window
-    #[arg(long, value_name = "PIXELS", default_value = "16", value_parser = window)]
+    #[arg(long, value_name = "PIXELS", default_value_t = ProbeRequest::WINDOW, value_parser = window)]
     pub(crate) window: f64,
 
     /// Rays traced back for each plane [default: 2^20; for a map, 2^15]
     #[arg(long, value_name = "N", value_parser = enough)]
     pub(crate) rays: Option<u64>,
 
-    /// Photons that check them
-    #[arg(long, value_name = "N", default_value = "2^25", value_parser = enough)]
-    pub(crate) photons: u64,
+    /// Photons that check them [default: 2^25]
+    #[arg(long, value_name = "N", value_parser = enough)]
+    pub(crate) photons: Option<u64>,
 
     /// Seed of both
-    #[arg(long, value_name = "N", default_value = "1")]
+    #[arg(long, value_name = "N", default_value_t = ProbeRequest::SEED)]
     pub(crate) seed: u64,
 
     /// Measure the covariance of each plane's spectrum too, and hold that of the camera against covariance tracing from the first surface
@@ -320,14 +307,17 @@ pub(crate) struct ProbeArgs {
 impl ProbeArgs {
     /// What is asked for.
     pub(crate) fn request(&self) -> ProbeRequest {
-        let default = if self.map.is_some() { 1 << 15 } else { 1 << 20 };
+        let default = match self.map {
+            Some(_) => ProbeRequest::RAYS_OF_MAP,
+            None => ProbeRequest::RAYS,
+        };
         ProbeRequest {
             source: self.scene.source(),
             camera: self.camera.choice(),
             surfaces: self.surfaces,
             window: self.window,
             rays: self.rays.unwrap_or(default),
-            photons: self.photons,
+            photons: self.photons.unwrap_or(ProbeRequest::PHOTONS),
             seed: self.seed,
             covariance: self.covariance,
             out: self.out.clone(),
@@ -339,10 +329,13 @@ impl ProbeArgs {
 /// At least one in each of 64 batches.
 fn enough(text: &str) -> Result<u64, String> {
     let number = whole_number(text)?;
-    match number {
-        64.. => Ok(number),
-        _ => Err("allowed: from 64 on, one for each batch".to_owned()),
+    if ranges::RAYS.contains(&number) {
+        return Ok(number);
     }
+    Err(format!(
+        "allowed: from {} on, one for each batch",
+        ranges::RAYS.start()
+    ))
 }
 
 fn pixel(text: &str) -> Result<[usize; 2], String> {
@@ -353,7 +346,7 @@ fn pixel(text: &str) -> Result<[usize; 2], String> {
 }
 
 fn window(text: &str) -> Result<f64, String> {
-    let sound = text.parse().ok().filter(|x| (0.01..=1e4).contains(x));
+    let sound = text.parse().ok().filter(|x| ranges::WINDOW.contains(x));
     sound.ok_or_else(|| "allowed: 0.01 to 10000".to_owned())
 }
 
@@ -369,13 +362,14 @@ pub(crate) struct CameraArgs {
     pub(crate) size: Option<[usize; 2]>,
 }
 
-/// Most pixels along a side.
-const MAX_PIXELS: usize = 1 << 14;
-
 fn size(text: &str) -> Result<[usize; 2], String> {
-    let number = |text: &str| text.parse().ok().filter(|n| (1..=MAX_PIXELS).contains(n));
+    let side = |text: &str| text.parse().ok().filter(|n| SIDE.contains(n));
+    let number = |text: &str| side(text).and_then(|n| usize::try_from(n).ok());
     let parsed = text
         .split_once('x')
         .and_then(|(w, h)| Some([number(w)?, number(h)?]));
-    parsed.ok_or_else(|| format!("allowed: two whole numbers from 1 to {MAX_PIXELS}, as in 64x48"))
+    parsed.ok_or_else(|| {
+        let most = SIDE.end();
+        format!("allowed: two whole numbers from 1 to {most}, as in 64x48")
+    })
 }

@@ -45,7 +45,7 @@ impl Results {
         Ok(())
     }
 
-    /// Refuses where something of somebody else stands in the way; with `--force`, only what is no file.
+    /// Refuses where something of somebody else stands in the way; with `force`, only what is no file.
     pub(super) fn refuse_foreign(&self) -> Result<(), Failure> {
         let earlier = self.earlier();
         let mut foreign = Vec::new();
@@ -73,9 +73,10 @@ impl Results {
         };
         Err(Failure::cannot_run(format!(
             "{} holds files that etendue did not write, or that were changed since: {}{more}; \
-             choose another folder, or replace them with --force",
+             choose another folder, or replace them with {}",
             self.shown.display(),
-            told.join(", ")
+            told.join(", "),
+            self.plan.arguments.force()
         )))
     }
 

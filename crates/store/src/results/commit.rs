@@ -7,7 +7,7 @@
 use super::{
     LINKED, Results, TIMING, UNFINISHED, has_hash, is_regular, listed, parents, sealed_bytes,
 };
-use crate::Failure;
+use crate::{ArgumentStyle, Failure};
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -22,6 +22,8 @@ pub(super) struct MovedFiles {
     pub(super) replaced: Vec<String>,
     /// Each move, to undo it.
     done: Vec<[PathBuf; 2]>,
+    /// How messages name arguments.
+    arguments: ArgumentStyle,
 }
 
 impl MovedFiles {
@@ -38,8 +40,10 @@ impl MovedFiles {
         moved().map_err(|e| {
             let what = match e.kind() {
                 io::ErrorKind::AlreadyExists => {
-                    "a file has come to stand there; move it away, or replace it with --force"
-                        .to_owned()
+                    let force = self.arguments.force();
+                    format!(
+                        "a file has come to stand there; move it away, or replace it with {force}"
+                    )
                 }
                 _ => e.to_string(),
             };
@@ -89,7 +93,10 @@ impl Results {
     }
 
     fn move_all(&self, index: &str) -> Result<MovedFiles, Failure> {
-        let mut moved = MovedFiles::default();
+        let mut moved = MovedFiles {
+            arguments: self.plan.arguments,
+            ..MovedFiles::default()
+        };
         let result = self.moves(index, &mut moved);
         if let Err(error) = result {
             moved.undo();
@@ -146,7 +153,7 @@ impl Results {
         self.place(ready, index, moved)
     }
 
-    /// Moves a new file to its name; with `--force`, a file of somebody else goes aside.
+    /// Moves a new file to its name; with `force`, a file of somebody else goes aside.
     fn place(&self, from: PathBuf, name: &str, moved: &mut MovedFiles) -> Result<(), Failure> {
         let to = self.inside(name).ok_or_else(|| {
             let shown = self.shown.join(name);

@@ -12,7 +12,7 @@ use etendue_report::pictures;
 use etendue_spectrum::bandwidth::{bandwidth_nu, bandwidth_rho};
 use etendue_spectrum::{CrossPower, Measurement, measure};
 use etendue_store::sealed::json;
-use etendue_store::{Failure, Results, arrays};
+use etendue_store::{ArgumentStyle, Failure, Results, arrays};
 use serde_json::json as tree_of;
 use std::path::PathBuf;
 
@@ -38,8 +38,14 @@ pub fn probe_pixel(
     let [[column, row], [w, h]] = [pixel, scene.camera.size];
     if column >= w || row >= h {
         let [w, h] = [w - 1, h - 1];
-        let message = format!("--pixel {column},{row}; allowed: 0,0 to {w},{h}");
-        return Err(Failure::bad_input(message));
+        return Err(Failure::bad_input(match request.source.arguments {
+            ArgumentStyle::Command => {
+                format!("--pixel {column},{row}; allowed: 0,0 to {w},{h}")
+            }
+            ArgumentStyle::Python => {
+                format!("pixel is ({column}, {row}); allowed: (0, 0) to ({w}, {h})")
+            }
+        }));
     }
     let question = scene.question(pixel, 4);
     let probe = Probe::new(&scene.paths, &scene.camera, &question).ok_or_else(|| {
@@ -57,7 +63,7 @@ pub fn probe_pixel(
     Ok(ProbedPixel {
         folder,
         verdict,
-        lines: lines(&scene.imported.world, &probe, &found, request.surfaces),
+        lines: lines(request, &scene.imported.world, &probe, &found),
     })
 }
 
@@ -79,6 +85,7 @@ fn written(
     let each = found.iter().map(|(found, _)| verdict(found));
     let verdict = each.fold(Verdict::Pass, Verdict::and);
     let stops = probe.stops.iter();
+    let stage = reporter.begin(Work::Stage("writing results"));
     let finished = results.finish(|files| {
         made_from["verdict"] = tree_of!(verdict);
         made_from["surfaces"] = stops
@@ -88,6 +95,7 @@ fn written(
         made_from["files"] = tree_of!(files);
         json(&made_from)
     })?;
+    drop(stage);
     if let Some(message) = finished.replaced_message() {
         reporter.note(&message);
     }

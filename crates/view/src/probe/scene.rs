@@ -44,6 +44,38 @@ pub struct ProbeRequest {
     pub force: bool,
 }
 
+impl ProbeRequest {
+    /// Most surfaces along the ray, unless said.
+    pub const SURFACES: u16 = 1;
+    /// Pixels across the window, unless said.
+    pub const WINDOW: f64 = 16.0;
+    /// Rays traced back for each plane, unless said.
+    pub const RAYS: u64 = 1 << 20;
+    /// Rays traced back for each pixel of a map, unless said.
+    pub const RAYS_OF_MAP: u64 = 1 << 15;
+    /// Photons that check them, unless said.
+    pub const PHOTONS: u64 = 1 << 25;
+    /// The seed, unless said.
+    pub const SEED: u64 = 1;
+
+    /// A probe of the light that the first camera of a scene sees.
+    #[must_use]
+    pub fn new(source: WorldSource) -> Self {
+        Self {
+            source,
+            camera: CameraChoice::default(),
+            surfaces: Self::SURFACES,
+            window: Self::WINDOW,
+            rays: Self::RAYS,
+            photons: Self::PHOTONS,
+            seed: Self::SEED,
+            covariance: false,
+            out: None,
+            force: false,
+        }
+    }
+}
+
 /// A scene that is read.
 #[derive(Debug)]
 pub(super) struct ProbedScene<'a> {
@@ -56,10 +88,11 @@ pub(super) struct ProbedScene<'a> {
 impl<'a> ProbedScene<'a> {
     pub(super) fn read(request: &'a ProbeRequest) -> Result<Self, Failure> {
         let imported = world_source::load(&request.source)?;
-        world_source::require_light(&imported.world)?;
+        let arguments = request.source.arguments;
+        world_source::require_light(&imported.world, arguments)?;
         Ok(Self {
             request,
-            camera: world_source::camera(&imported.world, &request.camera)?,
+            camera: world_source::camera(&imported.world, &request.camera, arguments)?,
             paths: Paths::new(&imported.world),
             imported,
         })
@@ -105,6 +138,7 @@ impl<'a> ProbedScene<'a> {
             files,
             inputs: vec![self.request.source.path.clone()],
             force: self.request.force,
+            arguments: self.request.source.arguments,
         };
         Ok((Results::claim(&folder, plan)?, folder))
     }

@@ -1,6 +1,7 @@
 //! What a probe comes to, in words and in JSON.
 
 use super::found::{Found, verdict};
+use super::scene::ProbeRequest;
 use etendue_compare::{Verdict, lobe_cutoff};
 use etendue_field::{Lobe, percent, uncertain};
 use etendue_paths::{Probe, Reflects, Stop};
@@ -8,6 +9,7 @@ use etendue_pipeline::table::aligned;
 use etendue_spectrum::Uncertain;
 use etendue_spectrum::bandwidth::Widest;
 use etendue_spectrum::field::MatrixEstimate;
+use etendue_store::ArgumentStyle;
 use etendue_theory::shading::Criterion;
 use etendue_world::World;
 use serde_json::{Value, json as tree_of};
@@ -80,7 +82,13 @@ fn word(reflects: Reflects) -> String {
 }
 
 /// The surfaces, the planes, and how densely the picture is to be sampled.
-pub(super) fn lines(world: &World, probe: &Probe<'_>, found: &[&Found], most: u16) -> Vec<String> {
+pub(super) fn lines(
+    request: &ProbeRequest,
+    world: &World,
+    probe: &Probe<'_>,
+    found: &[&Found],
+) -> Vec<String> {
+    let arguments = request.source.arguments;
     let mut lines = surfaces(world, probe);
     lines.push(String::new());
     lines.extend(planes(found));
@@ -90,14 +98,15 @@ pub(super) fn lines(world: &World, probe: &Probe<'_>, found: &[&Found], most: u1
         let report = &found.comparison.report;
         // How many photons it counts there are rays here, and both may be too few.
         let why = report.undecided.as_ref()?.split("; needs").next()?;
-        Some(format!("{}: {why}; more --rays or --photons", report.name))
+        let [rays, photons] = ["rays", "photons"].map(|name| arguments.name(name));
+        Some(format!("{}: {why}; more {rays} or {photons}", report.name))
     }));
-    if probe.stops.len() < usize::from(most) {
+    if probe.stops.len() < usize::from(request.surfaces) {
         let count = probe.stops.len();
         lines.push(format!("The ray leaves the scene after surface {count}."));
     }
     if let Some(nu) = found.first().and_then(|camera| camera.nu) {
-        lines.extend(bandwidths(probe, nu.value));
+        lines.extend(bandwidths(probe, nu.value, arguments));
     }
     lines.extend(covariances(found));
     lines
@@ -177,7 +186,7 @@ const OF_WINDOW: f64 = 0.557_22;
 pub(super) const ON_GRID: f64 = 0.681_53;
 
 /// Bandwidths at the camera, and the shading samples that they ask for.
-fn bandwidths(probe: &Probe<'_>, measured: Uncertain) -> Vec<String> {
+fn bandwidths(probe: &Probe<'_>, measured: Uncertain, arguments: ArgumentStyle) -> Vec<String> {
     let samples = |cycles: f64| 2.0 * cycles * probe.pixel_slope;
     let line = |what: &str, cycles: f64| {
         let samples = samples(cycles);
@@ -196,10 +205,10 @@ fn bandwidths(probe: &Probe<'_>, measured: Uncertain) -> Vec<String> {
         None => "  Eq. 20 is about lobes: it says nothing of this surface".to_owned(),
     });
     if is_own {
-        lines.push(
-            "  What is measured is the window: a wider one (--window) shows what the light has."
-                .to_owned(),
-        );
+        lines.push(format!(
+            "  What is measured is the window: a wider one ({}) shows what the light has.",
+            arguments.name("window")
+        ));
     }
     lines
 }

@@ -1,0 +1,87 @@
+//! How messages name the arguments of whoever calls a library.
+
+use std::fmt::Display;
+
+/// How messages name arguments. The command and the Python package call the same functions, and each has its own way to write an argument.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ArgumentStyle {
+    /// Options of the command, such as `--look-from`.
+    #[default]
+    Command,
+    /// Keyword arguments of Python, such as `look_from=`.
+    Python,
+}
+
+impl ArgumentStyle {
+    /// The argument with this name in Python, without a value.
+    #[must_use]
+    pub fn name(self, name: &str) -> String {
+        match self {
+            Self::Command => format!("--{}", name.replace('_', "-")),
+            Self::Python => format!("{name}="),
+        }
+    }
+
+    /// The argument with this name and a value.
+    #[must_use]
+    pub fn with(self, name: &str, value: impl Display) -> String {
+        match self {
+            Self::Command => format!("{} {value}", self.name(name)),
+            Self::Python => format!("{name}={value}"),
+        }
+    }
+
+    /// The argument that sets a field of a scene.
+    #[must_use]
+    pub fn set(self, path: &str, value: &str) -> String {
+        match self {
+            Self::Command => format!("--set {path}={value}"),
+            Self::Python => format!("set={{'{path}': {value}}}"),
+        }
+    }
+
+    /// A fault in the argument that sets fields of a scene.
+    #[must_use]
+    pub fn in_set(self, fault: impl Display) -> String {
+        match self {
+            Self::Command => format!("--set {fault}"),
+            Self::Python => format!("in set, {fault}"),
+        }
+    }
+
+    /// The argument that has files of others replaced.
+    #[must_use]
+    pub fn force(self) -> &'static str {
+        match self {
+            Self::Command => "--force",
+            Self::Python => "force=True",
+        }
+    }
+
+    /// Advice to name another folder.
+    #[must_use]
+    pub fn another_folder(self) -> &'static str {
+        match self {
+            Self::Command => "choose another folder with --out",
+            Self::Python => "choose another folder",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::ArgumentStyle::{Command, Python};
+
+    #[test]
+    fn each_caller_reads_its_own_arguments() {
+        assert_eq!(Command.name("look_from"), "--look-from");
+        assert_eq!(Python.name("look_from"), "look_from=");
+        assert_eq!(Command.with("photons", 7), "--photons 7");
+        assert_eq!(Python.with("photons", 7), "photons=7");
+        assert_eq!(Command.set("light.radiance", "2"), "--set light.radiance=2");
+        assert_eq!(
+            Python.set("light.radiance", "2"),
+            "set={'light.radiance': 2}"
+        );
+    }
+}

@@ -1,0 +1,120 @@
+//! What a scene of another program holds, for people.
+
+use crate::world_source::{WorldSource, has_light, load, no_camera, no_light, notes};
+use etendue_pipeline::table::aligned;
+use etendue_store::{ArgumentStyle, Failure};
+use etendue_world::{Camera, Geometry, Light, Projection, World};
+
+/// What a scene holds, and what was left out of it or approximated.
+#[derive(Clone, Debug)]
+pub struct Contents {
+    /// What there is of each kind, such as `triangles`, and how many.
+    pub counts: Vec<(&'static str, usize)>,
+    /// Its cameras, the first of which is used unless another is named.
+    pub cameras: Vec<Camera>,
+    /// Whether something shines.
+    pub has_light: bool,
+    /// Most surfaces that light meets between a source and the camera, if there is a limit.
+    pub depth: Option<u32>,
+    /// A sentence for all that was left out or approximated.
+    pub notes: Vec<String>,
+    arguments: ArgumentStyle,
+}
+
+impl Contents {
+    /// Reads a scene.
+    pub fn read(source: &WorldSource) -> Result<Self, Failure> {
+        let imported = load(source)?;
+        let notes = notes(&imported);
+        let world = imported.world;
+        Ok(Self {
+            counts: counts(&world),
+            has_light: has_light(&world),
+            depth: world.depth,
+            cameras: world.cameras,
+            notes,
+            arguments: source.arguments,
+        })
+    }
+
+    /// All of it, line by line.
+    #[must_use]
+    pub fn lines(&self) -> Vec<String> {
+        let counts = self.counts.iter();
+        let counts = counts.map(|(kind, count)| vec![count.to_string(), (*kind).to_owned()]);
+        let mut lines = aligned(counts.collect());
+        lines.extend(self.cameras.iter().map(of_camera));
+        if self.cameras.is_empty() {
+            lines.push(no_camera(self.arguments));
+        }
+        if !self.has_light {
+            lines.push(no_light(self.arguments));
+        }
+        lines.push(match self.depth {
+            Some(depth) => format!("light meets at most {depth} surfaces"),
+            None => "light meets any number of surfaces".to_owned(),
+        });
+        lines.extend(self.notes.iter().map(|note| format!("note: {note}")));
+        lines
+    }
+}
+
+/// What there is of each kind, and how many.
+fn counts(world: &World) -> Vec<(&'static str, usize)> {
+    let mut counts: Vec<(&'static str, usize)> = Vec::new();
+    let mut count = |kind, by| match counts.iter_mut().find(|(known, _)| *known == kind) {
+        Some((_, count)) => *count += by,
+        None => counts.push((kind, by)),
+    };
+    for shape in &world.shapes {
+        match &shape.geometry {
+            Geometry::Rectangle => count("rectangles", 1),
+            Geometry::Disc => count("discs", 1),
+            Geometry::Sphere => count("spheres", 1),
+            Geometry::Cylinder => count("cylinders", 1),
+            Geometry::Mesh(mesh) => {
+                count("meshes", 1);
+                count("triangles", mesh.corners().len());
+            }
+        }
+        if shape.emission.is_some() {
+            count("area lights", 1);
+        }
+    }
+    for light in &world.lights {
+        let kind = match light {
+            Light::Point { .. } => "point lights",
+            Light::Spot { .. } => "spotlights",
+            Light::Directional { .. } => "directional lights",
+            Light::Constant { .. } => "constant environments",
+            Light::Sky(_) => "environment maps",
+        };
+        count(kind, 1);
+    }
+    count("materials", world.materials.len());
+    counts
+}
+
+fn of_camera(camera: &Camera) -> String {
+    let Camera {
+        name, size: [w, h], ..
+    } = camera;
+    let kind = match camera.projection {
+        Projection::Perspective {
+            half_width, lens, ..
+        } => {
+            let angle = 2.0 * libm::atan(half_width).to_degrees();
+            let lens = lens.map_or(String::new(), |lens| {
+                format!(", lens of radius {} focused at {}", lens.radius, lens.focus)
+            });
+            format!("perspective, {angle:.4}° wide{lens}")
+        }
+        Projection::Orthographic => "orthographic".to_owned(),
+    };
+    let name = if name.is_empty() {
+        "without a name"
+    } else {
+        name
+    };
+    format!("camera {name}: {w} × {h} pixels, {kind}")
+}

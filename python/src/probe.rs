@@ -1,0 +1,52 @@
+//! The light field behind a pixel of a scene of another program.
+
+use crate::arguments::{self, Arguments};
+use crate::live::alive;
+use crate::world;
+use etendue_view::{ProbeRequest, probe_pixel, ranges};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::path::PathBuf;
+
+/// Measures the light field behind a pixel into a folder; returns what is to be said of it.
+#[pyfunction]
+pub(crate) fn probe(
+    py: Python<'_>,
+    scene: PathBuf,
+    pixel: &Bound<'_, PyAny>,
+    out: PathBuf,
+    arguments: &Bound<'_, PyDict>,
+    threads: Option<usize>,
+    progress: Option<Bound<'_, PyAny>>,
+) -> PyResult<Vec<String>> {
+    let pixel = arguments::pixel(pixel)?;
+    let mut request = request(scene, &Arguments(arguments))?;
+    request.out = Some(out);
+    alive(py, threads, progress.as_ref(), move |live| {
+        probe_pixel(&request, pixel, live).map(|found| found.lines)
+    })
+}
+
+fn request(scene: PathBuf, arguments: &Arguments<'_, '_>) -> PyResult<ProbeRequest> {
+    let mut request = ProbeRequest::new(world::source(scene, arguments)?);
+    request.camera = world::camera(arguments)?;
+    arguments.whole("depth", &ranges::SURFACES, &mut request.surfaces)?;
+    let window = ranges::WINDOW;
+    let allowed = format!(
+        "a number of pixels from {} to {}",
+        window.start(),
+        window.end()
+    );
+    arguments.number(
+        "window",
+        &allowed,
+        |x| window.contains(x),
+        &mut request.window,
+    )?;
+    arguments.count("rays", &ranges::RAYS, &mut request.rays)?;
+    arguments.count("photons", &ranges::RAYS, &mut request.photons)?;
+    arguments.whole("seed", &(0..=u64::MAX), &mut request.seed)?;
+    arguments.flag("covariance", &mut request.covariance)?;
+    arguments.flag("force", &mut request.force)?;
+    Ok(request)
+}

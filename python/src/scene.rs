@@ -1,0 +1,42 @@
+//! Scenes as Python gives them.
+
+use etendue_pipeline::load::SceneSource;
+use etendue_store::ArgumentStyle;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use std::path::{Path, PathBuf};
+
+/// A scene file, or the text of one.
+#[derive(FromPyObject)]
+pub(crate) enum SceneArgument {
+    /// Text in RON or JSON, the name of the scene, and the folder in which its meshes and pictures are.
+    Text((String, String, PathBuf)),
+    /// The path of a file.
+    File(PathBuf),
+}
+
+impl SceneArgument {
+    /// The scene with some fields set.
+    pub(crate) fn source(self, set: &[(String, String)]) -> PyResult<SceneSource> {
+        let (path, text) = match self {
+            Self::File(path) => (path, None),
+            Self::Text((text, name, folder)) => {
+                let file = format!("{name}.ron");
+                if Path::new(&file)
+                    .file_name()
+                    .is_none_or(|whole| whole != file.as_str())
+                {
+                    let message = format!("name is {name:?}; allowed: the name of a file");
+                    return Err(PyValueError::new_err(message));
+                }
+                (folder.join(file), Some(text))
+            }
+        };
+        Ok(SceneSource {
+            path,
+            text,
+            set: set.to_owned(),
+            arguments: ArgumentStyle::Python,
+        })
+    }
+}

@@ -1,0 +1,68 @@
+//! A scene with fields that take several values.
+
+use crate::arguments::Arguments;
+use crate::live::alive;
+use crate::scene::SceneArgument;
+use etendue_store::{ArgumentStyle, Method};
+use etendue_sweep::values::{Setting, Sweep, setting_of};
+use etendue_sweep::{Points, Request, run};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::path::PathBuf;
+
+/// What a field is set to.
+#[derive(FromPyObject)]
+pub(crate) enum Values {
+    /// A value, or a range or list of them, as text.
+    Text(String),
+    /// Several numbers.
+    Numbers(Vec<f64>),
+}
+
+fn setting((path, values): (String, Values)) -> PyResult<Setting> {
+    let setting = match values {
+        Values::Numbers(values) => Sweep::new(path, values).map(Setting::Sweep),
+        Values::Text(text) => {
+            let setting = setting_of(&path, &text, ArgumentStyle::Python);
+            setting.map_err(|why| format!("in set, {path}: {why}"))
+        }
+    };
+    setting.map_err(PyValueError::new_err)
+}
+
+/// Runs a sweep, and leaves its table and its points in a folder.
+#[pyfunction]
+pub(crate) fn sweep(
+    py: Python<'_>,
+    scene: SceneArgument,
+    set: Vec<(String, Values)>,
+    out: PathBuf,
+    arguments: &Bound<'_, PyDict>,
+    threads: Option<usize>,
+    progress: Option<Bound<'_, PyAny>>,
+) -> PyResult<()> {
+    let set: Vec<Setting> = set.into_iter().map(setting).collect::<PyResult<_>>()?;
+    let mut request = Request::new(scene.source(&[])?, set);
+    let arguments = Arguments(arguments);
+    arguments.flag("together", &mut request.together)?;
+    arguments.flag("common_seed", &mut request.common_seed)?;
+    arguments.flag("force", &mut request.force)?;
+    let methods = [Method::Photons, Method::Backward].map(|method| (method.name(), method));
+    arguments.one_of("method", &methods, &mut request.method)?;
+    let any = 0..=u64::MAX;
+    if arguments.get("photons")?.is_some() {
+        let mut photons = 0;
+        arguments.count("photons", &(1..=u64::MAX), &mut photons)?;
+        request.photons = Some(photons);
+    }
+    if arguments.get("seed")?.is_some() {
+        let mut seed = 0;
+        arguments.whole("seed", &any, &mut seed)?;
+        request.seed = Some(seed);
+    }
+    alive(py, threads, progress.as_ref(), move |live| {
+        let points = Points::read(&request)?;
+        run(&request, &points, &out, None, live).map(drop)
+    })
+}
