@@ -3,7 +3,7 @@
 use crate::arguments::Arguments;
 use crate::live::alive;
 use crate::scene::SceneArgument;
-use etendue_paper::{Quality, Request, Wanted, make_all, subjects};
+use etendue_paper::{FigureRequest, Quality, Wanted, make_all, subjects};
 use etendue_store::{ArgumentStyle, Failure};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -27,7 +27,7 @@ pub(crate) fn figure(
         }
         text @ SceneArgument::Text(_) => text.source(&set).map(Wanted::Scene),
     });
-    let mut request = Request {
+    let mut request = FigureRequest {
         wanted: wanted.collect::<PyResult<_>>()?,
         set: set.clone(),
         plane: None,

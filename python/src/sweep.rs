@@ -5,7 +5,7 @@ use crate::live::alive;
 use crate::scene::SceneArgument;
 use etendue_store::{ArgumentStyle, Method};
 use etendue_sweep::values::{Setting, Sweep, setting_of};
-use etendue_sweep::{Points, Request, run};
+use etendue_sweep::{SweepPoints, SweepRequest, run};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -43,7 +43,7 @@ pub(crate) fn sweep(
     progress: Option<Bound<'_, PyAny>>,
 ) -> PyResult<()> {
     let set: Vec<Setting> = set.into_iter().map(setting).collect::<PyResult<_>>()?;
-    let mut request = Request::new(scene.source(&[])?, set);
+    let mut request = SweepRequest::new(scene.source(&[])?, set);
     let arguments = Arguments(arguments);
     arguments.flag("together", &mut request.together)?;
     arguments.flag("common_seed", &mut request.common_seed)?;
@@ -62,7 +62,7 @@ pub(crate) fn sweep(
         request.seed = Some(seed);
     }
     alive(py, threads, progress.as_ref(), move |live| {
-        let points = Points::read(&request)?;
+        let points = SweepPoints::read(&request)?;
         run(&request, &points, &out, None, live).map(drop)
     })
 }

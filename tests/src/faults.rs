@@ -22,14 +22,14 @@ pub(crate) fn planted(photons: u64, seed: u64) -> ReportSection {
     let sound = measured(&scene, &tracer);
     let no_jacobian = measured(
         &scene,
-        &Tampered {
+        &TamperedBlock {
             tracer: &tracer,
             crossing: without_jacobian,
         },
     );
     let losing = measured(
         &scene,
-        &Tampered {
+        &TamperedBlock {
             tracer: &tracer,
             crossing: losing_one_in_a_hundred,
         },
@@ -77,7 +77,7 @@ pub(crate) fn planted_elsewhere(photons: u64, seed: u64) -> ReportSection {
             };
             let flat = measured(
                 &scene,
-                &Tampered {
+                &TamperedBlock {
                     tracer: &tracer,
                     crossing,
                 },
@@ -388,7 +388,7 @@ fn shifted(mut slices: Slices, shift: f64) -> Slices {
 }
 
 /// A tracer whose crossings are tampered with before they are recorded; the number counts them in a block.
-struct Tampered<'a, F> {
+struct TamperedBlock<'a, F> {
     tracer: &'a Tracer,
     crossing: F,
 }
@@ -402,7 +402,7 @@ fn losing_one_in_a_hundred(number: usize, crossing: Crossing) -> Option<Crossing
     (!number.is_multiple_of(100)).then_some(crossing)
 }
 
-impl<F: Fn(usize, Crossing) -> Option<Crossing> + Sync> PhotonSource for Tampered<'_, F> {
+impl<F: Fn(usize, Crossing) -> Option<Crossing> + Sync> PhotonSource for TamperedBlock<'_, F> {
     fn emitted(&self, batch: u32) -> u64 {
         self.tracer.emitted(batch)
     }

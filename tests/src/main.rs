@@ -7,6 +7,8 @@
 //! `hostile` and `kills` attack the program `etendue` from outside; `wild` hunts for scenes on which it is wrong.
 //! `assumptions` switches off what is checked of a scene before theory is believed.
 
+#![allow(clippy::too_many_lines, reason = "checks are lists of rows")]
+
 mod assumptions;
 mod bandwidth;
 mod calibration;

@@ -2,11 +2,11 @@
 
 use etendue_field::{ProjectionGrid, SliceGrid, Slices, VirtualPlane, Window};
 use etendue_theory::geometry::SpectrumMap;
-use etendue_theory::scattering::{self, ReflectionChain};
-use etendue_theory::{Budget, Model, Observed, Predicted, rays};
+use etendue_theory::scattering::{self, ScatteringChain};
+use etendue_theory::{Model, Observed, Predicted, RayBudget, rays};
 
 /// Rays of a prediction: errors of a fifth of the photons' noise.
-const BUDGET: Budget = Budget {
+const BUDGET: RayBudget = RayBudget {
     nodes: 5e6,
     error: 5e-4,
 };
@@ -36,7 +36,7 @@ pub(crate) fn linear(
 pub(crate) fn scattered(
     view: &Observed<scattering::ScatteringSystem>,
     plane: &VirtualPlane,
-    chain: &ReflectionChain,
+    chain: &ScatteringChain,
 ) -> [Slices; 2] {
     let picture = ProjectionGrid::new(&plane.window, 1);
     let over = (&plane.window, &plane.grid, &picture);

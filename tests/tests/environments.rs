@@ -8,12 +8,12 @@ use etendue_field::{Light, Orientation, ProjectionGrid, Quantity};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::{Measurement, measure};
 use etendue_theory::rays::SpecularSystem;
-use etendue_theory::{Budget, Model, Observed, Predicted};
+use etendue_theory::{Model, Observed, Predicted, RayBudget};
 use etendue_trace::Tracer;
 use glam::{DQuat, DVec3};
 
 /// Of a prediction: a few times the error that the photons of these tests have.
-const BUDGET: Budget = Budget {
+const BUDGET: RayBudget = RayBudget {
     nodes: 2e6,
     error: 1e-3,
 };

@@ -15,7 +15,7 @@ use etendue_field::{
 };
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::{Measurement, measure};
-use etendue_theory::{Budget, Model, Observed, rays, scattering};
+use etendue_theory::{Model, Observed, RayBudget, rays, scattering};
 use etendue_trace::{Backward, Tracer};
 use std::path::Path;
 use std::sync::Arc;
@@ -380,7 +380,7 @@ fn darkness_behind_two_occluders_is_decided() {
 }
 
 /// Enough for half a per cent of each of these scenes.
-const BUDGET: Budget = Budget {
+const BUDGET: RayBudget = RayBudget {
     nodes: 1e6,
     error: 5e-3,
 };

@@ -192,6 +192,7 @@ mod tests {
 
     /// Eqs. 20 and 21 as theory has them, in the plane of incidence, against finite differences over one pixel.
     #[test]
+    #[expect(clippy::too_many_lines, reason = "a test may be a list of cases")]
     fn screen_differences_are_the_criteria() {
         let (paths, camera) = seen();
         let cutoffs = Cutoffs::default();

@@ -17,5 +17,5 @@ mod shading;
 mod visible;
 
 pub use blockers::BLOCKER_RAYS;
-pub use method::{Layers, Method, Plan, Rendered, Stage, render};
+pub use method::{Layers, Rendered, SampleMethod, SamplePlan, Stage, render};
 pub use metric::Metric;

@@ -14,7 +14,7 @@ use etendue_world::Camera;
 
 /// Where shading samples go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
+pub enum SampleMethod {
     /// Evenly over all that is shaded.
     Uniform,
     /// By the criteria of Durand et al. 2005, Eqs. 20 and 21, corrected.
@@ -30,9 +30,9 @@ pub enum Method {
 
 /// What is asked for.
 #[derive(Clone, Copy, Debug)]
-pub struct Plan {
+pub struct SamplePlan {
     /// Where samples go.
-    pub method: Method,
+    pub method: SampleMethod,
     /// Shading samples.
     pub samples: usize,
     /// Paths of each.
@@ -108,7 +108,7 @@ const POWER: f64 = 2.0 / 3.0;
 pub fn render(
     paths: &Paths,
     camera: &Camera,
-    plan: &Plan,
+    plan: &SamplePlan,
     stage: &dyn Fn(Stage, usize),
     progress: &(dyn Fn(u64) + Sync),
 ) -> Rendered {
@@ -138,7 +138,7 @@ pub fn render(
 struct AdaptiveRun<'a> {
     visible: &'a Visible,
     shader: Shader<'a>,
-    plan: &'a Plan,
+    plan: &'a SamplePlan,
     stage: &'a dyn Fn(Stage, usize),
     progress: &'a (dyn Fn(u64) + Sync),
     layers: Layers,
@@ -154,19 +154,21 @@ impl AdaptiveRun<'_> {
         });
         let method = self.plan.method;
         let wanted = match method {
-            Method::Uniform | Method::Variance => even,
-            Method::Predicted | Method::Printed | Method::Weighted => self.predicted(),
+            SampleMethod::Uniform | SampleMethod::Variance => even,
+            SampleMethod::Predicted | SampleMethod::Printed | SampleMethod::Weighted => {
+                self.predicted()
+            }
         };
         let count = self.plan.samples as f64;
         let power = match method {
-            Method::Uniform | Method::Variance => 1.0,
-            Method::Predicted | Method::Printed | Method::Weighted => POWER,
+            SampleMethod::Uniform | SampleMethod::Variance => 1.0,
+            SampleMethod::Predicted | SampleMethod::Printed | SampleMethod::Weighted => POWER,
         };
         let wanted: Vec<Option<Metric>> = wanted
             .iter()
             .map(|metric| metric.map(|metric| to_power(metric, power)))
             .collect();
-        if !matches!(method, Method::Weighted | Method::Variance) {
+        if !matches!(method, SampleMethod::Weighted | SampleMethod::Variance) {
             let metrics = scaled(&wanted, count);
             self.told(&metrics);
             let points = self.points(&metrics, count, 0);
@@ -178,7 +180,7 @@ impl AdaptiveRun<'_> {
         let pilot = self.shaded(&points, 0);
         let contrast = self.contrast(&pilot);
         let rest = (1.0 - FIRST_SHARE) * count;
-        let then = if method == Method::Weighted {
+        let then = if method == SampleMethod::Weighted {
             let missed = self.missed(&pilot);
             let found = first.iter().zip(&missed);
             let by_error = |(metric, missed): (&Option<Metric>, &f64)| {
@@ -271,7 +273,7 @@ impl AdaptiveRun<'_> {
         let squared = self.visible.pixels(|[column, row]| {
             let near = near[row * w + column];
             match self.plan.method {
-                Method::Printed => printed(self.visible, [column, row], near, eye),
+                SampleMethod::Printed => printed(self.visible, [column, row], near, eye),
                 _ => criterion(self.visible, [column, row], near),
             }
         });

@@ -1,15 +1,15 @@
 //! Pictures of few shading samples whose radiance is known, and what all of them keep.
 
-use etendue_adaptive::{Method, Plan, Rendered, render};
+use etendue_adaptive::{Rendered, SampleMethod, SamplePlan, render};
 use etendue_paths::Paths;
 use etendue_world::{Camera, Geometry, Light, Material, Projection, Shape, Texture, World};
 use glam::{DAffine3, DMat3, DVec3};
 
-const ALL: [Method; 4] = [
-    Method::Uniform,
-    Method::Predicted,
-    Method::Weighted,
-    Method::Variance,
+const ALL: [SampleMethod; 4] = [
+    SampleMethod::Uniform,
+    SampleMethod::Predicted,
+    SampleMethod::Weighted,
+    SampleMethod::Variance,
 ];
 
 /// A ball of radius 1 that reflects half, in even light.
@@ -46,8 +46,8 @@ fn camera(size: [usize; 2]) -> Camera {
     }
 }
 
-fn picture(world: &World, method: Method, samples: usize, seed: u64) -> Rendered {
-    let plan = Plan {
+fn picture(world: &World, method: SampleMethod, samples: usize, seed: u64) -> Rendered {
+    let plan = SamplePlan {
         method,
         samples,
         each: 128,
@@ -105,14 +105,14 @@ fn samples_are_spent() {
 /// A sphere's criterion grows to its edge, and samples with it; even ones do not.
 #[test]
 fn predicted_samples_gather_at_the_edge() {
-    let far = |method: Method| {
+    let far = |method: SampleMethod| {
         let found = picture(&ball(), method, 600, 4);
         let edge = |at: &&[f64; 2]| ((at[0] - 48.0).powi(2) + (at[1] - 30.0).powi(2)).sqrt() > 26.0;
         let outside = found.points.iter().filter(edge).count() as f64;
         outside / found.points.len() as f64
     };
     // The disc seen has a radius of some 31 pixels: 30 % of its area is beyond 26.
-    let [even, predicted] = [Method::Uniform, Method::Predicted].map(far);
+    let [even, predicted] = [SampleMethod::Uniform, SampleMethod::Predicted].map(far);
     assert!((even - 0.3).abs() < 0.06, "{even}");
     assert!(predicted > even + 0.1, "{predicted} {even}");
 }

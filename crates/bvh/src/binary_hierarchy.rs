@@ -1,6 +1,6 @@
 //! A hierarchy with two boxes in a node, for scenes of few things.
 
-use crate::build::{Kind, bvh};
+use crate::build::{TreeKind, bvh};
 use crate::space::{Space, vector};
 use glam::DVec3;
 use obvhs::bvh2::Bvh2;
@@ -20,7 +20,7 @@ impl BinaryHierarchy {
     #[must_use]
     pub fn new(count: usize, origins: f64, bounds: impl Fn(usize) -> [DVec3; 2] + Sync) -> Self {
         let space = Space::around((0..count).map(&bounds), origins);
-        let bvh = bvh(count, &space, Kind::Binary, bounds);
+        let bvh = bvh(count, &space, TreeKind::Binary, bounds);
         Self { bvh, space }
     }
 

@@ -14,7 +14,7 @@ use std::time::Duration;
 
 /// What becomes of a tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub(crate) enum TreeKind {
     /// Rays go through it as it is.
     Binary,
     /// It is collapsed to a tree with eight boxes in a node.
@@ -36,7 +36,7 @@ const OPENING: f32 = 3.0;
 pub(crate) fn bvh(
     count: usize,
     space: &Space,
-    kind: Kind,
+    kind: TreeKind,
     bounds: impl Fn(usize) -> [DVec3; 2] + Sync,
 ) -> Bvh2 {
     let boxed = |i: &u32| space.padded(bounds(*i as usize));
@@ -54,7 +54,7 @@ pub(crate) fn bvh(
 }
 
 /// The tree over some of them.
-fn built(numbers: Vec<u32>, kind: Kind, boxed: impl Fn(&u32) -> Aabb) -> Bvh2 {
+fn built(numbers: Vec<u32>, kind: TreeKind, boxed: impl Fn(&u32) -> Aabb) -> Bvh2 {
     let boxes: Vec<Aabb> = numbers.iter().map(boxed).collect();
     let preset = if boxes.len() <= MAX_REINSERTED {
         BvhBuildParams::very_slow_build()
@@ -67,8 +67,8 @@ fn built(numbers: Vec<u32>, kind: Kind, boxed: impl Fn(&u32) -> Aabb) -> Bvh2 {
         ..preset
     };
     let parameters = match kind {
-        Kind::Binary => parameters,
-        Kind::Collapsed => BvhBuildParams {
+        TreeKind::Binary => parameters,
+        TreeKind::Collapsed => BvhBuildParams {
             max_prims_per_leaf: number(MAX_LEAF),
             collapse_traversal_cost: OPENING,
             ..parameters
@@ -82,8 +82,8 @@ fn built(numbers: Vec<u32>, kind: Kind, boxed: impl Fn(&u32) -> Aabb) -> Bvh2 {
 }
 
 /// A tree as rays ask it: nodes lie in the order in which they are opened.
-fn finished(mut bvh: Bvh2, kind: Kind) -> Bvh2 {
-    if kind == Kind::Binary {
+fn finished(mut bvh: Bvh2, kind: TreeKind) -> Bvh2 {
+    if kind == TreeKind::Binary {
         bvh.reorder_in_stack_traversal_order();
         bvh.parents = Vec::new();
         bvh.nodes.shrink_to_fit();
@@ -92,7 +92,7 @@ fn finished(mut bvh: Bvh2, kind: Kind) -> Bvh2 {
 }
 
 /// One tree over what several have.
-fn joined(mut parts: Vec<Bvh2>, kind: Kind) -> Bvh2 {
+fn joined(mut parts: Vec<Bvh2>, kind: TreeKind) -> Bvh2 {
     let root = |i: &u32| *parts[*i as usize].nodes[0].aabb();
     let one_each = BvhBuildParams {
         max_prims_per_leaf: 1,
@@ -131,7 +131,7 @@ fn joined(mut parts: Vec<Bvh2>, kind: Kind) -> Bvh2 {
     bvh.parents = Vec::new();
     // Parts overlap: some nodes belong elsewhere.
     ReinsertionOptimizer::default().run(&mut bvh, 0.01, None);
-    if kind == Kind::Binary {
+    if kind == TreeKind::Binary {
         bvh.max_depth = bvh.max_depth.max(bvh.depth(0) + 1);
     }
     finished(bvh, kind)

@@ -23,7 +23,7 @@ pub(crate) struct Leaf {
 }
 
 /// A ray, its direction made (x, y, 1) on axes of its own.
-pub(crate) struct Sight {
+pub(crate) struct LeafRay {
     origin: [f32; 3],
     axes: [usize; 3],
     slopes: [f32; 2],
@@ -31,7 +31,7 @@ pub(crate) struct Sight {
     tolerance: f32,
 }
 
-impl Sight {
+impl LeafRay {
     #[inline]
     pub(crate) fn new(origin: Vec3A, direction: DVec3, tolerance: f32) -> Self {
         let size = direction.abs();
@@ -74,7 +74,7 @@ impl Leaf {
 
     /// The triangles that a ray may meet, a bit for each.
     #[inline(always)]
-    fn candidates<S: Simd>(&self, simd: S, sight: &Sight) -> u32 {
+    fn candidates<S: Simd>(&self, simd: S, sight: &LeafRay) -> u32 {
         let a = self.across(simd, sight, 0);
         let b = self.across(simd, sight, 1);
         let c = self.across(simd, sight, 2);
@@ -89,7 +89,7 @@ impl Leaf {
 
     /// Where a corner of each triangle is across the ray.
     #[inline(always)]
-    fn across<S: Simd>(&self, simd: S, sight: &Sight, corner: usize) -> [Lanes<S>; 2] {
+    fn across<S: Simd>(&self, simd: S, sight: &LeafRay, corner: usize) -> [Lanes<S>; 2] {
         let [x, y, z] = sight.axes;
         let corner = &self.corners[corner];
         let z = Lanes::simd_from(simd, corner[z]) - sight.origin[z];
@@ -111,13 +111,13 @@ fn size<S: Simd>(p: [Lanes<S>; 2]) -> Lanes<S> {
 }
 
 /// Leaves of triangles, of which those are named that a ray may meet.
-pub(crate) struct Triangles<'a, M> {
+pub(crate) struct TriangleLeaves<'a, M> {
     pub(crate) leaves: &'a [Leaf],
-    pub(crate) sight: Sight,
+    pub(crate) sight: LeafRay,
     pub(crate) meet: M,
 }
 
-impl<M: FnMut(usize) -> f32> Visit for Triangles<'_, M> {
+impl<M: FnMut(usize) -> f32> Visit for TriangleLeaves<'_, M> {
     #[inline(always)]
     fn visit<S: Simd>(&mut self, simd: S, leaf: usize) -> f32 {
         let leaf = &self.leaves[leaf];

@@ -30,7 +30,7 @@ pub(crate) struct Node {
 const LEAF: u32 = 1 << 31;
 
 /// A ray as nodes see it.
-pub(crate) struct Ray {
+pub(crate) struct NodeRay {
     origin: [f32; 3],
     /// One over its direction.
     turned: [f32; 3],
@@ -55,7 +55,7 @@ pub(crate) trait Visit {
     fn visit<S: Simd>(&mut self, simd: S, leaf: usize) -> f32;
 }
 
-impl Ray {
+impl NodeRay {
     #[inline]
     pub(crate) fn new(origin: Vec3A, direction: Vec3A, until: f32) -> Self {
         let turned = direction.to_array().map(|d| {
@@ -83,7 +83,7 @@ impl Wide {
 
     /// Visits the leaves whose boxes a ray meets, the nearer ones about first.
     #[inline(always)]
-    pub(crate) fn along<S: Simd>(&self, simd: S, ray: &Ray, visit: impl Visit) {
+    pub(crate) fn along<S: Simd>(&self, simd: S, ray: &NodeRay, visit: impl Visit) {
         if self.memory <= STACK {
             self.remembering(simd, ray, &mut [Waiting::default(); STACK], visit);
         } else {
@@ -96,7 +96,7 @@ impl Wide {
     fn remembering<S: Simd>(
         &self,
         simd: S,
-        ray: &Ray,
+        ray: &NodeRay,
         waiting: &mut [Waiting],
         mut visit: impl Visit,
     ) {
@@ -174,7 +174,7 @@ impl Node {
 
     /// Which boxes a ray meets, a bit for each, and how far along it they begin.
     #[inline(always)]
-    fn meets<S: Simd>(&self, simd: S, ray: &Ray, until: f32) -> (u32, [f32; WIDTH]) {
+    fn meets<S: Simd>(&self, simd: S, ray: &NodeRay, until: f32) -> (u32, [f32; WIDTH]) {
         let [x, y, z] = ray.first;
         let near = self.crossing(simd, ray, 0, x);
         let near = near.max(self.crossing(simd, ray, 1, y));
@@ -190,7 +190,7 @@ impl Node {
 
     /// How far along the ray it crosses planes.
     #[inline(always)]
-    fn crossing<S: Simd>(&self, simd: S, ray: &Ray, axis: usize, plane: usize) -> f32x8<S> {
+    fn crossing<S: Simd>(&self, simd: S, ray: &NodeRay, axis: usize, plane: usize) -> f32x8<S> {
         let plane = f32x8::simd_from(simd, self.planes[plane]);
         (plane - ray.origin[axis]) * ray.turned[axis]
     }

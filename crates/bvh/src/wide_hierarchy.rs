@@ -1,11 +1,11 @@
 //! A hierarchy with eight boxes in a node, for many triangles and rays that go anywhere.
 
-use crate::build::{Kind, bvh};
+use crate::build::{TreeKind, bvh};
 use crate::collapse;
-use crate::leaf::{self, Leaf, Sight};
+use crate::leaf::{self, Leaf, LeafRay};
 use crate::single::single;
 use crate::space::{Space, vector};
-use crate::wide::{Ray, Visit, Wide};
+use crate::wide::{NodeRay, Visit, Wide};
 use fearless_simd::{Level, Simd, dispatch};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -17,14 +17,14 @@ pub struct WideHierarchy {
     /// Numbers as they were given, in the order of leaves.
     order: Vec<u32>,
     tree: Wide,
-    leaves: Leaves,
+    leaves: TreeLeaves,
     space: Space,
     level: Level,
 }
 
 /// What is in the leaves of a tree.
 #[derive(Clone)]
-enum Leaves {
+enum TreeLeaves {
     /// The first and the number of them.
     Boxes(Vec<[u32; 2]>),
     Triangles(Vec<Leaf>),
@@ -36,12 +36,12 @@ impl WideHierarchy {
     #[must_use]
     pub fn new(count: usize, origins: f64, bounds: impl Fn(usize) -> [DVec3; 2] + Sync) -> Self {
         let space = Space::around((0..count).map(&bounds), origins);
-        let bvh = bvh(count, &space, Kind::Collapsed, bounds);
+        let bvh = bvh(count, &space, TreeKind::Collapsed, bounds);
         let (tree, leaves) = collapse::collapsed(&bvh);
         Self {
             order: bvh.primitive_indices,
             tree,
-            leaves: Leaves::Boxes(leaves),
+            leaves: TreeLeaves::Boxes(leaves),
             space,
             level: Level::new(),
         }
@@ -58,7 +58,7 @@ impl WideHierarchy {
             let [a, b, c] = corners(i);
             [a.min(b).min(c), a.max(b).max(c)]
         });
-        let Leaves::Boxes(leaves) = &boxes.leaves else {
+        let TreeLeaves::Boxes(leaves) = &boxes.leaves else {
             return boxes;
         };
         let within = |[first, count]: &[u32; 2]| {
@@ -66,7 +66,7 @@ impl WideHierarchy {
             let corners = numbers.iter().map(|i| corners(*i as usize));
             Leaf::new(*first, corners.map(|of| of.map(|p| boxes.space.scaled(p))))
         };
-        let leaves = Leaves::Triangles(leaves.par_iter().map(within).collect());
+        let leaves = TreeLeaves::Triangles(leaves.par_iter().map(within).collect());
         Self { leaves, ..boxes }
     }
 
@@ -90,19 +90,19 @@ impl WideHierarchy {
         let begin = self.space.begin(start, direction, from);
         let origin = start + begin * direction - self.space.center;
         let limit = |at: f64| self.space.limit(at, begin);
-        let ray = Ray::new(vector(origin), vector(direction), limit(until));
+        let ray = NodeRay::new(vector(origin), vector(direction), limit(until));
         let meet = |i: usize| limit(meet(i));
         match &self.leaves {
-            Leaves::Boxes(leaves) => {
+            TreeLeaves::Boxes(leaves) => {
                 let visit = Boxes { leaves, meet };
                 dispatch!(self.level, simd => self.tree.along(simd, &ray, visit));
             }
-            Leaves::Triangles(leaves) => {
+            TreeLeaves::Triangles(leaves) => {
                 let tolerance = single(self.space.unit * self.space.padding);
                 let origin = vector(self.space.unit * origin);
-                let visit = leaf::Triangles {
+                let visit = leaf::TriangleLeaves {
                     leaves,
-                    sight: Sight::new(origin, direction, tolerance),
+                    sight: LeafRay::new(origin, direction, tolerance),
                     meet,
                 };
                 dispatch!(self.level, simd => self.tree.along(simd, &ray, visit));

@@ -14,7 +14,7 @@ use etendue_scene::Scene;
 use etendue_store::Failure;
 use etendue_store::output::OutputFile;
 use etendue_sweep::scene_at;
-use etendue_sweep::values::{Point, message_at, points, shown};
+use etendue_sweep::values::{SweepPoint, message_at, points, shown};
 use etendue_theory::shading::Criterion;
 use std::path::PathBuf;
 
@@ -60,7 +60,7 @@ pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
     }
     let mut warnings: Vec<&String> = rows.iter().flat_map(|row| &row.warnings).collect();
     warnings.dedup();
-    let cells = rows.iter().map(Row::cells);
+    let cells = rows.iter().map(BandwidthRow::cells);
     let table: Vec<Vec<String>> = std::iter::once(header).chain(cells).collect();
     say(
         "Bandwidths hold 95 % of the energy: that of the lobe in cycles per radian, others in cycles per unit slope at a fixed point of the plane.",
@@ -97,7 +97,7 @@ fn header(args: &BandwidthArgs) -> Vec<String> {
 
 /// What is known of a plane at a point of the sweep.
 #[derive(Clone, Debug)]
-struct Row {
+struct BandwidthRow {
     /// The values swept.
     point: Vec<f64>,
     plane: String,
@@ -106,7 +106,7 @@ struct Row {
     warnings: Vec<String>,
 }
 
-impl Row {
+impl BandwidthRow {
     fn cells(&self) -> Vec<String> {
         let mut cells: Vec<String> = self.point.iter().map(|x| number(*x)).collect();
         cells.push(self.plane.clone());
@@ -127,9 +127,9 @@ impl Row {
 }
 
 /// The table as CSV.
-fn csv_of(header: &[String], rows: &[Row]) -> Result<Vec<u8>, Failure> {
+fn csv_of(header: &[String], rows: &[BandwidthRow]) -> Result<Vec<u8>, Failure> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    let lines = rows.iter().map(Row::record);
+    let lines = rows.iter().map(BandwidthRow::record);
     for line in std::iter::once(header.to_vec()).chain(lines) {
         writer.write_record(line).map_err(Failure::cannot_run)?;
     }
@@ -140,9 +140,9 @@ fn csv_of(header: &[String], rows: &[Row]) -> Result<Vec<u8>, Failure> {
 fn of(
     args: &BandwidthArgs,
     scene: &Scene,
-    point: &Point,
+    point: &SweepPoint,
     quiet: bool,
-) -> Result<Vec<Row>, Failure> {
+) -> Result<Vec<BandwidthRow>, Failure> {
     let theories = Applicability::of_planes(scene);
     let all = scene.planes.iter().zip(&theories).enumerate();
     let planes: Vec<(usize, Criterion)> = all
@@ -162,7 +162,7 @@ fn of(
     let row = |(i, c): (usize, Criterion)| {
         let (plane, theory) = (&scene.planes[i], &theories[i]);
         let edge = |value: f64| c.blocker_distance.map(|_| value);
-        let mut row = Row {
+        let mut row = BandwidthRow {
             point: point.iter().map(|(_, value)| *value).collect(),
             plane: plane.name.clone(),
             numbers: vec![

@@ -9,7 +9,7 @@ use crate::progress::Terminal;
 use crate::threads::on_threads;
 use etendue_compare::{Applicability, CovarianceReport, Prediction, SliceMoment};
 use etendue_field::PhotonSource;
-use etendue_figures::{Ellipse, Ellipses, Picture, Quantity, ellipses};
+use etendue_figures::{AxisQuantity, Ellipse, Ellipses, Picture, ellipses};
 use etendue_pipeline::measured;
 use etendue_pipeline::method::source;
 use etendue_pipeline::moments::{check_memory, fitting};
@@ -31,6 +31,10 @@ use std::path::Path;
 const NAMES: [&str; 3] = ["covariance.png", "covariance.svg", "covariance.csv"];
 
 /// `etendue covariance`: returns the exit code.
+#[expect(
+    clippy::too_many_lines,
+    reason = "one command from arguments to files, in the order in which it goes"
+)]
 pub(crate) fn covariance(args: &CovarianceArgs) -> Result<u8, Failure> {
     let mut scene = load::scene(&args.scene.source(), |run| args.photons.set(run))?;
     choose(&mut scene, &args.plane)?;
@@ -185,7 +189,7 @@ fn draw(
             y,
             values: power.view(),
         },
-        quantity: Quantity::new("|*S*_{0}|^{2}", ""),
+        quantity: AxisQuantity::new("|*S*_{0}|^{2}", ""),
         floor: FLOOR,
         ellipses: all,
     })

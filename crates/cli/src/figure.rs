@@ -6,7 +6,7 @@ use crate::print::say;
 use crate::progress::Terminal;
 use crate::threads::on_threads;
 use crate::warnings;
-use etendue_paper::{Request, Wanted, make_all, subjects};
+use etendue_paper::{FigureRequest, Wanted, make_all, subjects};
 use etendue_store::{ArgumentStyle, Failure};
 
 /// `etendue figure`: returns the exit code.
@@ -14,7 +14,7 @@ pub(crate) fn figure(args: &FigureArgs) -> Result<u8, Failure> {
     let arguments = ArgumentStyle::Command;
     let wanted = args.names.iter();
     let wanted = wanted.map(|name| Wanted::named(name, &args.set, arguments));
-    let request = Request {
+    let request = FigureRequest {
         wanted: wanted.collect(),
         set: args.set.clone(),
         plane: args.plane.clone(),

@@ -79,7 +79,7 @@ pub(crate) fn run_with(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u
             args,
             scene,
             theories,
-            Place {
+            ResultPlace {
                 folder: &folder,
                 plan,
                 results,
@@ -100,7 +100,7 @@ fn check_saved(save: &[Save]) -> Result<(), Failure> {
 }
 
 /// Where a result is going to be.
-struct Place<'a> {
+struct ResultPlace<'a> {
     folder: &'a Path,
     plan: Plan,
     /// `None` where several processes measure.
@@ -133,7 +133,7 @@ fn stages(
     args: &RunArgs,
     mut scene: Scene,
     theories: Vec<Applicability>,
-    place: Place<'_>,
+    place: ResultPlace<'_>,
 ) -> Result<u8, Failure> {
     let mut watch = Stopwatch::start();
     if !args.quiet {

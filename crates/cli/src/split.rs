@@ -21,7 +21,7 @@ pub(crate) fn split(args: &SplitArgs) -> Result<u8, Failure> {
     let out = args.out.clone();
     let out = out.unwrap_or_else(|| Path::new("out").join(&scene.name));
     let below = |name: &str| shell_word(&out.join(name).to_string_lossy());
-    let work = Work {
+    let work = SplitWork {
         name: shell_word(&scene.name),
         scene: scene_words(args),
         parts,
@@ -65,7 +65,7 @@ fn scene_words(args: &SplitArgs) -> String {
 }
 
 /// Work to be split, in the words of a shell.
-struct Work {
+struct SplitWork {
     name: String,
     scene: String,
     parts: u32,
@@ -75,7 +75,7 @@ struct Work {
     out: String,
 }
 
-impl Work {
+impl SplitWork {
     fn measure(&self, batches: &str, part: &str) -> String {
         let Self {
             scene, part: parts, ..

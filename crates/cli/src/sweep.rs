@@ -8,7 +8,7 @@ use crate::warnings;
 use etendue_pipeline::Leader;
 use etendue_pipeline::table::aligned;
 use etendue_store::Failure;
-use etendue_sweep::{Finished, Points, run};
+use etendue_sweep::{FinishedSweep, SweepPoints, run};
 use std::path::Path;
 
 /// `etendue sweep`: returns the exit code.
@@ -20,7 +20,7 @@ pub(crate) fn sweep(args: &SweepArgs) -> Result<u8, Failure> {
 pub(crate) fn sweep_with(args: &SweepArgs, workers: Option<&Leader<'_>>) -> Result<u8, Failure> {
     on_threads(&args.threads, || {
         let request = args.request();
-        let all = Points::read(&request)?;
+        let all = SweepPoints::read(&request)?;
         let name = || Path::new("out").join(format!("{}-sweep", all.name()));
         let folder = args.out.clone().unwrap_or_else(name);
         if !args.quiet {
@@ -42,8 +42,8 @@ pub(crate) fn sweep_with(args: &SweepArgs, workers: Option<&Leader<'_>>) -> Resu
     })
 }
 
-fn print(finished: &Finished) {
-    let Finished {
+fn print(finished: &FinishedSweep) {
+    let FinishedSweep {
         folder,
         rows,
         has_curves,

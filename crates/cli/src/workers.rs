@@ -9,7 +9,7 @@ use etendue_pipeline::{
     Job, Leader, Options, Silent, Workers, follow_job, follow_points, report_failure,
 };
 use etendue_store::Failure;
-use etendue_sweep::Points;
+use etendue_sweep::SweepPoints;
 use std::ffi::OsString;
 
 /// What a command line comes to in a workers; returns the exit code. `run`, `predict` and `sweep` are for many.
@@ -59,7 +59,7 @@ fn follow(command: &Command, workers: &dyn Workers) {
         Command::Run(args) => with_job(&args.scene, &args.photons, &args.threads, workers),
         Command::Predict(args) => with_job(&args.scene, &args.photons, &args.threads, workers),
         Command::Sweep(args) => on_threads(&args.threads, || {
-            let points = Points::read(&args.request())?;
+            let points = SweepPoints::read(&args.request())?;
             follow_points(workers, points.scenes(), &|number| {
                 points.summary(number, &Silent)
             })

@@ -6,7 +6,7 @@ use crate::system::print;
 use crate::theories::Theory;
 use etendue_field::{FrequencyAxis, ProjectionGrid, SliceGrid, VirtualPlane, Window};
 use etendue_scene::Scene;
-use etendue_theory::{Budget, Model, Observed, Over, Predicted, rays, reflections};
+use etendue_theory::{Model, Observed, Over, Predicted, RayBudget, rays, reflections};
 use serde::Serialize;
 
 /// The error of a plane's first-order chain in smaller and smaller neighbourhoods of the central
@@ -24,7 +24,7 @@ pub struct Convergence {
 }
 
 /// Rays of each step, where no rule converges.
-const BUDGET: Budget = Budget {
+const BUDGET: RayBudget = RayBudget {
     nodes: 4e6,
     error: 1e-4,
 };

@@ -174,7 +174,7 @@ mod tests {
     use super::*;
     use crate::full_radial::compared;
     use etendue_scene::{SceneFile, resolve};
-    use etendue_theory::Budget;
+    use etendue_theory::RayBudget;
 
     #[test]
     fn closed_forms_alias_as_rays_do() {
@@ -193,7 +193,7 @@ mod tests {
             panic!("parallel planes");
         };
         let cells = ProjectionGrid::new(&plane.window, 1);
-        let budget = Budget {
+        let budget = RayBudget {
             nodes: 32.0 * f64::from(1 << 15),
             error: 0.0,
         };

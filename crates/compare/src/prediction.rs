@@ -11,7 +11,7 @@ use etendue_field::{Projection, ProjectionGrid, Slices, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::estimate::{self, TooFewBatches};
 use etendue_spectrum::{Measurement, PROJECTION_BINS};
-use etendue_theory::{Budget, Model, Over, reflections, scattering};
+use etendue_theory::{Model, Over, RayBudget, reflections, scattering};
 use ndarray::Array2;
 
 /// Everything a measurement of a plane is held against.
@@ -130,7 +130,7 @@ impl Prediction {
         self,
         model: &M,
         over: Over<'_>,
-        budget: Budget,
+        budget: RayBudget,
         first_order: impl FnOnce(&etendue_theory::Predicted) -> Option<FirstOrder>,
     ) -> Self {
         let parameters = model.parameters();

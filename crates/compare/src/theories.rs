@@ -5,7 +5,8 @@ use crate::system::{scattered, system};
 use etendue_field::{Mask, Orientation, VirtualPlane};
 use etendue_scene::{BlockerLayer, Scene};
 use etendue_theory::{
-    Budget, Chain, Model, Observed, Over, Parameter, PredictionWork, rays, reflections, scattering,
+    Chain, Model, Observed, Over, Parameter, PredictionWork, RayBudget, rays, reflections,
+    scattering,
 };
 
 /// The theories of a windowed light field.
@@ -75,7 +76,7 @@ impl Theory {
     }
 
     /// What a prediction of its model takes.
-    pub(crate) fn work(&self, over: Over<'_>, budget: Budget) -> PredictionWork {
+    pub(crate) fn work(&self, over: Over<'_>, budget: RayBudget) -> PredictionWork {
         match self {
             Self::Parallel(chain) => chain.work(over, budget),
             Self::Specular(view) => view.work(over, budget),

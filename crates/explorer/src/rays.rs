@@ -7,12 +7,12 @@ use etendue_field::{
     Brdf, Frame, Fresnel, Lobe, Mask, Orientation, Patch, ProjectionGrid, Quantity, Reflectance,
     SliceGrid,
 };
-use etendue_theory::{Budget, Model, Observed, Over, Predicted, rays, scattering};
+use etendue_theory::{Model, Observed, Over, Predicted, RayBudget, rays, scattering};
 use glam::DVec3;
 
 /// What the command gives a scene with as many photons as saved ones have: rays in all, and the
 /// error that is good enough.
-const BUDGET: Budget = Budget {
+const BUDGET: RayBudget = RayBudget {
     nodes: 1.1e6,
     error: 3e-3,
 };

@@ -5,14 +5,14 @@ use crate::text::width;
 
 /// A named quantity and its unit.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Quantity {
+pub struct AxisQuantity {
     /// Name, markup: `|*S*|^{2}`.
     pub name: String,
     /// Unit, markup; empty for a pure number.
     pub unit: String,
 }
 
-impl Quantity {
+impl AxisQuantity {
     /// The quantity `name`, in `unit`.
     #[must_use]
     pub fn new(name: &str, unit: &str) -> Self {
@@ -54,7 +54,7 @@ impl Quantity {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     /// What is along it.
-    pub quantity: Quantity,
+    pub quantity: AxisQuantity,
     /// Outer edge of the first cell, in the quantity's unit.
     pub min: f64,
     /// Outer edge of the last cell.
@@ -75,7 +75,7 @@ impl Axis {
     #[must_use]
     pub fn edges(name: &str, unit: &str, [min, max]: [f64; 2]) -> Self {
         Self {
-            quantity: Quantity::new(name, unit),
+            quantity: AxisQuantity::new(name, unit),
             min,
             max,
             is_log: false,

@@ -1,6 +1,6 @@
 //! One quantity, measured | predicted | difference in σ.
 
-use crate::axis::{Axis, Quantity};
+use crate::axis::{Axis, AxisQuantity};
 use crate::bar;
 use crate::color::{Colors, Scale, Shading, has_gaps, largest};
 use crate::figure::{Error, Figure, csv_text, decimal};
@@ -21,7 +21,7 @@ pub struct Comparison<'a> {
     /// The second.
     pub y: Axis,
     /// What the cells hold.
-    pub quantity: Quantity,
+    pub quantity: AxisQuantity,
     /// The colors of measured and predicted.
     pub scale: Scale,
     /// Measured values; may be negative once the shot noise has been taken off.

@@ -1,6 +1,6 @@
 //! Curves and measured points over one axis, panel beside panel.
 
-use crate::axis::{Axis, Quantity, upright_ticks};
+use crate::axis::{Axis, AxisQuantity, upright_ticks};
 use crate::figure::{Error, Figure, csv_text, decimal};
 use crate::grid::LEFT;
 use crate::panel::Panel;
@@ -50,7 +50,7 @@ pub struct CurvePanel {
     /// Over the frame, markup.
     pub title: String,
     /// What is along x.
-    pub x: Quantity,
+    pub x: AxisQuantity,
     /// What is in the frame.
     pub curves: Vec<Curve>,
     /// Whether x and y are drawn by equal factors; those not above 0 are left out then.
@@ -65,7 +65,7 @@ pub struct Curves {
     /// A line below the title, markup.
     pub note: String,
     /// What is along y.
-    pub y: Quantity,
+    pub y: AxisQuantity,
     /// From left to right, and then below.
     pub panels: Vec<CurvePanel>,
 }
@@ -177,7 +177,7 @@ fn is_drawn(panel: &CurvePanel, point: &[f64; 3]) -> bool {
 }
 
 /// The axes around all points of a panel, and around y = 0.
-fn axes(panel: &CurvePanel, y: &Quantity) -> [Axis; 2] {
+fn axes(panel: &CurvePanel, y: &AxisQuantity) -> [Axis; 2] {
     let points = || {
         let all = panel.curves.iter().flat_map(|c| &c.points);
         all.filter(|point| is_drawn(panel, point))
@@ -186,7 +186,7 @@ fn axes(panel: &CurvePanel, y: &Quantity) -> [Axis; 2] {
         let from = points().map(low).fold(f64::INFINITY, f64::min);
         [from, points().map(high).fold(f64::NEG_INFINITY, f64::max)]
     };
-    let axis = |quantity: &Quantity, is_log, [min, max]: [f64; 2]| Axis {
+    let axis = |quantity: &AxisQuantity, is_log, [min, max]: [f64; 2]| Axis {
         quantity: quantity.clone(),
         min,
         max,
@@ -221,7 +221,7 @@ fn axes(panel: &CurvePanel, y: &Quantity) -> [Axis; 2] {
     ]
 }
 
-fn draw(svg: &mut Svg, panel: &CurvePanel, y: &Quantity, area: Area) {
+fn draw(svg: &mut Svg, panel: &CurvePanel, y: &AxisQuantity, area: Area) {
     let [x, y] = axes(panel, y);
     let frame = Panel {
         area,

@@ -1,6 +1,6 @@
 //! A spectrum, and the ellipses of covariances over it.
 
-use crate::axis::Quantity;
+use crate::axis::AxisQuantity;
 use crate::bar;
 use crate::color::{Colors, Shading, largest};
 use crate::figure::{Error, Figure, csv_text, decimal};
@@ -29,7 +29,7 @@ pub struct Ellipses<'a> {
     /// The power, shown in decibels below its largest value.
     pub picture: Picture<'a>,
     /// What the picture holds.
-    pub quantity: Quantity,
+    pub quantity: AxisQuantity,
     /// Lower end of the decibels, below 0.
     pub floor: f64,
     /// Each drawn where it is two standard deviations, in the order of the key. One that is not there leaves its color

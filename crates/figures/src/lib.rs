@@ -61,7 +61,7 @@ mod svg;
 mod text;
 mod world;
 
-pub use axis::{Axis, Quantity};
+pub use axis::{Axis, AxisQuantity};
 pub use color::{Palette, Scale, palettes};
 pub use comparison::{Comparison, comparison};
 pub use curves::{Curve, CurveKind, CurvePanel, Curves, curves};
@@ -70,7 +70,7 @@ pub use figure::{Error, Figure, stacked};
 pub use grid::{Guide, Picture};
 pub use image::photograph;
 pub use plate::{Bars, Plate, PlateRow, plate};
-pub use section::{Object, PlaneMark, Section, Segment, SegmentKind, World};
+pub use section::{DrawnObject, DrawnWorld, PlaneMark, Section, Segment, SegmentKind};
 pub use section_figure::section;
-pub use strip::{Column, Strip, strip};
+pub use strip::{Strip, StripColumn, strip};
 pub use style::Style;

@@ -1,6 +1,6 @@
 //! Pictures in rows and columns, such as several scenes side by side.
 
-use crate::axis::{Axis, Quantity, minus};
+use crate::axis::{Axis, AxisQuantity, minus};
 use crate::bar;
 use crate::color::Scale;
 use crate::figure::{Error, Figure, csv_text, decimal};
@@ -18,7 +18,7 @@ pub struct PlateRow<'a> {
     /// Its name.
     pub name: &'a str,
     /// What the pictures hold.
-    pub quantity: Quantity,
+    pub quantity: AxisQuantity,
     /// How values are laid on the colors.
     pub scale: Scale,
     /// Whether one range of colors is for all of the row. Otherwise each picture is relative to its own largest value.
@@ -48,7 +48,7 @@ pub struct Plate<'a> {
 #[derive(Clone, Debug)]
 pub struct Bars {
     /// What it is.
-    pub quantity: Quantity,
+    pub quantity: AxisQuantity,
     /// The same in words, markup.
     pub about: String,
     /// Heights of the bars.
@@ -122,7 +122,7 @@ pub fn plate(plate: &Plate<'_>, style: &Style) -> Result<Figure, Error> {
 }
 
 fn row<'b, 'a>(row: &'b PlateRow<'a>) -> PictureRow<'b, 'a> {
-    let Quantity { name, unit } = row.quantity.clone();
+    let AxisQuantity { name, unit } = row.quantity.clone();
     let cells = row.pictures.iter();
     PictureRow {
         name: row.name,

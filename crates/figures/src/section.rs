@@ -63,12 +63,12 @@ pub struct Section {
     /// The cut through y, where it shows something else; drawn above.
     pub other: Option<Box<Self>>,
     /// The scene to scale; drawn above all.
-    pub world: Option<World>,
+    pub world: Option<DrawnWorld>,
 }
 
 /// Something in the scene.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Object {
+pub struct DrawnObject {
     /// What it is; points are (z, x).
     pub segment: Segment,
     /// Where light goes that arrives at it, (z, x).
@@ -77,11 +77,11 @@ pub struct Object {
 
 /// The plane of D and X at the light; points are (z, x), metres.
 #[derive(Clone, Debug, PartialEq)]
-pub struct World {
+pub struct DrawnWorld {
     /// Corners and ends of the central ray.
     pub path: Vec<[f64; 2]>,
     /// Lights, blockers and surfaces.
-    pub objects: Vec<Object>,
+    pub objects: Vec<DrawnObject>,
     /// The virtual planes, as wide as their windows.
     pub planes: Vec<[[f64; 2]; 2]>,
 }

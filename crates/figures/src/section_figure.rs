@@ -2,7 +2,7 @@
 
 use crate::cut::SectionLayout;
 use crate::figure::{Error, Figure, csv_text, decimal};
-use crate::section::{Section, SegmentKind, World};
+use crate::section::{DrawnWorld, Section, SegmentKind};
 use crate::svg::{Area, Svg};
 use crate::text::plain;
 
@@ -13,7 +13,7 @@ impl Section {
         let mut top = y;
         if let Some(world) = &self.world {
             world.draw(svg, [x, top], width);
-            top += World::HEIGHT;
+            top += DrawnWorld::HEIGHT;
         }
         if let Some(other) = &self.other {
             let area = Area {

@@ -1,6 +1,6 @@
 //! The path: the cut along the central ray and, under each virtual plane, its light field and spectrum.
 
-use crate::axis::Quantity;
+use crate::axis::AxisQuantity;
 use crate::bar;
 use crate::color::{Colors, Scale, hex};
 use crate::cut::SectionLayout;
@@ -14,7 +14,7 @@ use crate::svg::{Anchor, Area, Svg, TextStyle};
 
 /// What is shown under a virtual plane.
 #[derive(Clone, Debug)]
-pub struct Column<'a> {
+pub struct StripColumn<'a> {
     /// The light field in (x, u).
     pub light_field: Picture<'a>,
     /// That in (y, v). There is a row of them if each column has one.
@@ -44,13 +44,13 @@ pub struct Strip<'a> {
     /// The scene; `columns[i]` belongs to its plane i.
     pub section: &'a Section,
     /// One for each plane.
-    pub columns: Vec<Column<'a>>,
+    pub columns: Vec<StripColumn<'a>>,
     /// What the light fields hold; shown linearly, each relative to its own largest value.
-    pub light_field: Quantity,
+    pub light_field: AxisQuantity,
     /// What the spectra hold; shown in decibels below each one's own largest value.
-    pub spectrum: Quantity,
+    pub spectrum: AxisQuantity,
     /// What the full radial spectra hold, shown likewise.
-    pub full_radial: Quantity,
+    pub full_radial: AxisQuantity,
     /// Lower end of the decibels, below 0.
     pub floor: f64,
 }
@@ -79,12 +79,12 @@ impl StripRow {
         rows.extend(across.then_some(Self::Across));
         rows.push(Self::Spectrum);
         rows.extend(predicted.then_some(Self::Predicted));
-        let full_radial = |column: &Column<'_>| column.full_radial.is_some();
+        let full_radial = |column: &StripColumn<'_>| column.full_radial.is_some();
         if strip.columns.iter().all(full_radial) {
             rows.push(Self::FullRadial);
             rows.extend(predicted.then_some(Self::FullPredicted));
         }
-        let off_chain = |column: &Column<'_>| column.off_chain.is_some();
+        let off_chain = |column: &StripColumn<'_>| column.off_chain.is_some();
         rows.extend(
             strip
                 .columns
@@ -108,7 +108,7 @@ impl StripRow {
     }
 
     /// Its picture in a column.
-    fn picture<'a, 'b>(self, column: &'b Column<'a>) -> &'b Picture<'a> {
+    fn picture<'a, 'b>(self, column: &'b StripColumn<'a>) -> &'b Picture<'a> {
         let full_radial = column.full_radial.as_ref();
         let other = match self {
             Self::Across => column.across.as_ref(),
@@ -125,12 +125,12 @@ impl StripRow {
     }
 
     /// What its pictures hold.
-    fn quantity(self, strip: &Strip<'_>) -> Quantity {
+    fn quantity(self, strip: &Strip<'_>) -> AxisQuantity {
         match self {
             Self::LightField | Self::Across => strip.light_field.clone(),
             Self::Spectrum | Self::Predicted => strip.spectrum.clone(),
             Self::FullRadial | Self::FullPredicted => strip.full_radial.clone(),
-            Self::OffChain => Quantity::new("off the chain", "% of the peak"),
+            Self::OffChain => AxisQuantity::new("off the chain", "% of the peak"),
         }
     }
 }
@@ -190,7 +190,7 @@ pub fn strip(strip: &Strip<'_>, style: &Style) -> Result<Figure, Error> {
 /// The pictures under the cut.
 fn grid<'b, 'a>(strip: &'b Strip<'a>, style: &Style) -> PageGrid<'b, 'a> {
     let row = |row: StripRow| {
-        let cell = |column: &'b Column<'a>| {
+        let cell = |column: &'b StripColumn<'a>| {
             let guides = match row {
                 StripRow::Spectrum | StripRow::Predicted => &column.guides[..],
                 _ => &[],

@@ -1,7 +1,7 @@
 //! The scene to scale, seen along Y of its light: where the central ray turns, and where things stand.
 
 use crate::marks::{BADGE, Hatching, PLANE, badge, line_of};
-use crate::section::{Object, SegmentKind, World};
+use crate::section::{DrawnObject, DrawnWorld, SegmentKind};
 use crate::sizes::{INK, LABEL_TEXT, SOFT, STROKE, TICK_TEXT};
 use crate::svg::{Anchor, Area, Stroke, Svg, TextStyle};
 use etendue_field::tidy;
@@ -10,7 +10,7 @@ use etendue_field::tidy;
 const DRAWING: f64 = 170.0;
 const HEAD: f64 = 30.0;
 
-impl World {
+impl DrawnWorld {
     /// Height of all.
     pub(crate) const HEIGHT: f64 = HEAD + DRAWING + 16.0;
 
@@ -77,7 +77,7 @@ impl World {
 
     fn objects(&self, svg: &mut Svg, place: &dyn Fn([f64; 2]) -> [f64; 2]) {
         let mut hatching = Hatching::default();
-        for Object { segment, light } in &self.objects {
+        for DrawnObject { segment, light } in &self.objects {
             let ends = [segment.start, segment.end].map(place);
             let (color, width) = line_of(segment.kind);
             if segment.kind == SegmentKind::Surface {

@@ -5,7 +5,8 @@
 use crate::common::{DECIBEL, compare, corner, grid, path, scene, uneven_grid};
 use etendue_field::Side;
 use etendue_figures::{
-    Curve, CurveKind, CurvePanel, Curves, Figure, Quantity, Scale, Style, curves, section, stacked,
+    AxisQuantity, Curve, CurveKind, CurvePanel, Curves, Figure, Scale, Style, curves, section,
+    stacked,
 };
 use resvg::usvg;
 
@@ -56,7 +57,7 @@ fn lines(count: usize) -> Curves {
         let scale = if i == 0 { 3e-7 } else { 25.0 };
         CurvePanel {
             title: "*a* panel with a title that is a good deal longer than it is wide".to_owned(),
-            x: Quantity::new("*θ*_{0} = −*θ*_{1}", "degrees"),
+            x: AxisQuantity::new("*θ*_{0} = −*θ*_{1}", "degrees"),
             curves: vec![
                 curve(CurveKind::Theory, "corrected", scale),
                 curve(CurveKind::Rival, "as printed", 0.5 * scale),
@@ -68,7 +69,7 @@ fn lines(count: usize) -> Curves {
     Curves {
         title: "A title".to_owned(),
         note: String::new(),
-        y: Quantity::new("*B*", "cycles/slope"),
+        y: AxisQuantity::new("*B*", "cycles/slope"),
         panels: (0..count).map(panel).collect(),
     }
 }

@@ -32,7 +32,7 @@ mod texture;
 mod uri;
 
 use crate::files::Files;
-use crate::report::{Place, Report};
+use crate::report::{Report, SourcePlace};
 use crate::{Imported, Options, Refused};
 use etendue_world::World;
 use std::path::Path;
@@ -40,7 +40,7 @@ use std::path::Path;
 pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused> {
     let (files, path, bytes) = Files::open(file, options)?;
     let name = file.file_name().unwrap_or_default().to_string_lossy();
-    let place = Place::whole(&name);
+    let place = SourcePlace::whole(&name);
     let report = Report::default();
     let mut world = World::default();
     if let Some(document) = container::read(&bytes, &place, &report) {

@@ -17,7 +17,7 @@ mod surface;
 pub(crate) use ply::import as import_ply;
 
 use crate::files::Files;
-use crate::report::{Place, Report};
+use crate::report::{Report, SourcePlace};
 use crate::{Imported, Options, Refused};
 use etendue_scene::ObjFile;
 use std::path::Path;
@@ -31,8 +31,13 @@ pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused
     drop(bytes);
     let report = Report::default();
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-    let reader =
-        reader::ObjReader::new(&files, &report, Place::whole(&name), folder, options.color);
+    let reader = reader::ObjReader::new(
+        &files,
+        &report,
+        SourcePlace::whole(&name),
+        folder,
+        options.color,
+    );
     let world = reader.world(read);
     report.finish(world)
 }

@@ -51,7 +51,7 @@ mod transform;
 mod words;
 
 use crate::files::Files;
-use crate::report::{Place, Report};
+use crate::report::{Report, SourcePlace};
 use crate::{Imported, Options, Refused};
 use std::path::Path;
 
@@ -89,7 +89,7 @@ fn read(
     options: &Options,
 ) -> Result<Imported, Refused> {
     let report = Report::default();
-    let whole = Place::whole(name);
+    let whole = SourcePlace::whole(name);
     for (name, _) in &options.set {
         let message = format!("{name} is set, but pbrt's files have no parameters of their own");
         report.cause(&whole, message);

@@ -13,7 +13,7 @@ const LONGEST: usize = 60;
 
 /// A place in a file.
 #[derive(Clone, Debug)]
-pub(crate) struct Place {
+pub(crate) struct SourcePlace {
     /// The file, as the scene names it.
     pub(crate) file: Rc<str>,
     /// From 1; 0 for the file as a whole.
@@ -22,7 +22,7 @@ pub(crate) struct Place {
     pub(crate) column: usize,
 }
 
-impl Place {
+impl SourcePlace {
     /// A file as a whole.
     pub(crate) fn whole(file: &str) -> Self {
         let (line, column) = (0, 0);
@@ -58,7 +58,7 @@ struct Messages {
 }
 
 impl Messages {
-    fn add(&mut self, place: &Place, message: String) {
+    fn add(&mut self, place: &SourcePlace, message: String) {
         match self.kept.len() < MAX_MESSAGES {
             true => self.kept.push(place.note(message)),
             false => self.more += 1,
@@ -68,7 +68,7 @@ impl Messages {
     /// All that are kept; the last one says how many more there are of this kind.
     fn finish(mut self, kind: &str) -> Vec<Note> {
         if let (Some(last), more @ 1..) = (self.kept.last(), self.more) {
-            let more = Place::whole(&last.file).note(format!("and {more} more {kind}"));
+            let more = SourcePlace::whole(&last.file).note(format!("and {more} more {kind}"));
             self.kept.push(more);
         }
         self.kept
@@ -77,12 +77,12 @@ impl Messages {
 
 impl Report {
     /// The scene cannot be read, because of this too.
-    pub(crate) fn cause(&self, place: &Place, message: impl Into<String>) {
+    pub(crate) fn cause(&self, place: &SourcePlace, message: impl Into<String>) {
         self.causes.borrow_mut().add(place, message.into());
     }
 
     /// This is dropped or approximated.
-    pub(crate) fn note(&self, place: &Place, message: impl Into<String>) {
+    pub(crate) fn note(&self, place: &SourcePlace, message: impl Into<String>) {
         self.notes.borrow_mut().add(place, message.into());
     }
 

@@ -2,9 +2,9 @@
 
 use crate::quality::Quality;
 use crate::subject::FigureData;
-use etendue_adaptive::{BLOCKER_RAYS, Method, Plan, Rendered, render};
+use etendue_adaptive::{BLOCKER_RAYS, Rendered, SampleMethod, SamplePlan, render};
 use etendue_figures::{
-    Axis, Figure, Palette, Picture, Plate, PlateRow, Quantity, Scale, Style, plate, stacked,
+    Axis, AxisQuantity, Figure, Palette, Picture, Plate, PlateRow, Scale, Style, plate, stacked,
 };
 use etendue_import::{Options, import};
 use etendue_paths::Paths;
@@ -43,13 +43,13 @@ const PATHS_PER_SAMPLE: u32 = 128;
 /// Paths of each pixel of the reference.
 const REFERENCE: u32 = 64;
 
-struct Scene {
+struct CreatureScene {
     paths: Paths,
     camera: Camera,
     samples: usize,
 }
 
-impl Scene {
+impl CreatureScene {
     /// The creatures, as large as the quality asks.
     fn new(quality: Quality) -> Result<Self, Failure> {
         let folder = tempfile::tempdir().map_err(Failure::cannot_run)?;
@@ -80,8 +80,8 @@ impl Scene {
         })
     }
 
-    fn rendered(&self, method: Method, is_even: bool) -> Rendered {
-        let plan = Plan {
+    fn rendered(&self, method: SampleMethod, is_even: bool) -> Rendered {
+        let plan = SamplePlan {
             method,
             samples: self.samples,
             each: PATHS_PER_SAMPLE,
@@ -111,18 +111,18 @@ impl Scene {
 }
 
 /// Two pictures side by side.
-struct Pair<'a> {
+struct PicturePair<'a> {
     title: &'a str,
     note: &'a str,
     heads: [&'a str; 2],
     values: [&'a Array2<f64>; 2],
-    quantity: Quantity,
+    quantity: AxisQuantity,
     scale: Scale,
     feet: Vec<Vec<String>>,
 }
 
-impl Pair<'_> {
-    fn drawn(self, scene: &Scene, style: &Style) -> Result<Figure, Failure> {
+impl PicturePair<'_> {
+    fn drawn(self, scene: &CreatureScene, style: &Style) -> Result<Figure, Failure> {
         let of = Plate {
             title: self.title,
             note: self.note,
@@ -143,27 +143,27 @@ impl Pair<'_> {
 
 /// Fig. 16.
 pub(crate) fn criteria(taken: &FigureData<'_>) -> Result<Figure, Failure> {
-    let scene = Scene::new(taken.quality)?;
-    let layers = scene.rendered(Method::Predicted, false).layers;
+    let scene = CreatureScene::new(taken.quality)?;
+    let layers = scene.rendered(SampleMethod::Predicted, false).layers;
     let squares = |values: &[f64]| scene.picture(values.iter().map(|x| x * x).collect());
     let [blockers, bandwidth] = [squares(&layers.blockers)?, squares(&layers.bandwidth)?];
     let density = scene.picture(layers.density.clone())?;
     let dots = scene.picture(layers.samples.iter().map(|n| n.min(1.0)).collect())?;
-    let above = Pair {
+    let above = PicturePair {
         title: "Criteria and shading samples",
         note: "Left: the nearness of what is reflected, 1/*d'*, the inverse of its harmonic mean. Right: the bandwidth by Eq. 21, corrected, in the direction of its largest.",
         heads: ["blockers", "bandwidth"],
         values: [&blockers, &bandwidth],
-        quantity: Quantity::new("square", ""),
+        quantity: AxisQuantity::new("square", ""),
         scale: Scale::Decibel { floor: -50.0 },
         feet: Vec::new(),
     };
-    let below = Pair {
+    let below = PicturePair {
         title: "",
         note: "Left: samples a pixel that are asked for, up to one. Right: pixels that have one.",
         heads: ["density", "samples"],
         values: [&density, &dots],
-        quantity: Quantity::new("samples a pixel", ""),
+        quantity: AxisQuantity::new("samples a pixel", ""),
         scale: Scale::Linear,
         feet: Vec::new(),
     };
@@ -175,12 +175,12 @@ pub(crate) fn criteria(taken: &FigureData<'_>) -> Result<Figure, Failure> {
 
 /// Fig. 17.
 pub(crate) fn pictures(taken: &FigureData<'_>) -> Result<Figure, Failure> {
-    let scene = Scene::new(taken.quality)?;
+    let scene = CreatureScene::new(taken.quality)?;
     let stage = taken.reporter.begin(Work::Stage("rendering"));
     let ways = [
-        (Method::Uniform, true),
-        (Method::Predicted, true),
-        (Method::Predicted, false),
+        (SampleMethod::Uniform, true),
+        (SampleMethod::Predicted, true),
+        (SampleMethod::Predicted, false),
     ];
     let few = ways.map(|(method, is_even)| scene.rendered(method, is_even).radiance);
     let reference = scene.paths.picture(&scene.camera, REFERENCE, 2, &|_| {});
@@ -196,8 +196,8 @@ pub(crate) fn pictures(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         "{} shading samples of {PATHS_PER_SAMPLE} paths, 0.05 a pixel. relMSE: the mean of (*x* − *r*)²/(*r*² + *ε*²), *ε* a hundredth of the mean, noise of the reference *r* included.",
         scene.samples
     );
-    let radiance = || Quantity::new("radiance of white", "");
-    let above = Pair {
+    let radiance = || AxisQuantity::new("radiance of white", "");
+    let above = PicturePair {
         title: "A picture of few shading samples",
         note: &note,
         heads: ["even samples", "by the criteria, alike in all directions"],
@@ -206,7 +206,7 @@ pub(crate) fn pictures(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         scale: Scale::Linear,
         feet: vec![even, round],
     };
-    let below = Pair {
+    let below = PicturePair {
         title: "",
         note: "",
         heads: ["by the criteria, along each direction", "reference"],

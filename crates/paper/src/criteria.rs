@@ -4,16 +4,16 @@ use crate::quality::Quality;
 use crate::shot::resolved;
 use crate::subject::{FigureData, Text};
 use etendue_compare::{Applicability, criterion, measured_bandwidth};
-use etendue_figures::{Curve, CurveKind, CurvePanel, Curves, Figure, Quantity};
+use etendue_figures::{AxisQuantity, Curve, CurveKind, CurvePanel, Curves, Figure};
 use etendue_pipeline::measured;
 use etendue_store::Failure;
 use etendue_store::Method;
 use etendue_theory::shading::Criterion;
 
 /// A field of a scene, and the values it takes.
-struct Sweep {
+struct CriterionSweep {
     title: &'static str,
-    quantity: Quantity,
+    quantity: AxisQuantity,
     field: &'static str,
     /// Ends of the lines, and where photons are counted.
     ends: [f64; 2],
@@ -27,17 +27,17 @@ const POINTS: u32 = 40;
 
 /// Curves over curvature and distance without a blocker, and over curvature behind an edge.
 pub(crate) fn criteria(taken: &FigureData<'_>) -> Result<Figure, Failure> {
-    let curvature = |title, values| Sweep {
+    let curvature = |title, values| CriterionSweep {
         title,
-        quantity: Quantity::new("*k*", "1/m"),
+        quantity: AxisQuantity::new("*k*", "1/m"),
         field: "surfaces.0.form.Sphere",
         ends: [-1.0, 1.0],
         values,
         shown: |k| k,
     };
-    let distance = Sweep {
+    let distance = CriterionSweep {
         title: "Eq. 20, over distance",
-        quantity: Quantity::new("*d*", "m"),
+        quantity: AxisQuantity::new("*d*", "m"),
         field: "planes.0.at.Distance",
         ends: [1.05, 2.0],
         values: &[1.1, 1.3, 1.6, 1.9],
@@ -60,12 +60,16 @@ pub(crate) fn criteria(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         note: "*B*: the frequency below which 95 % of the power lies, at a fixed point a distance *d* off. Corrected: Ω_{ρ} |1 + 2*kd*/cos *θ*_{1}|, and behind an edge at *d'*: \
                Ω_{ρ} |1 + *d* (cos *θ*_{0}/*d'* + 2*k*)/cos *θ*_{1}|. Where the corrected value is least the window sets what is measured."
             .to_owned(),
-        y: Quantity::new("*B*", "cycles/slope"),
+        y: AxisQuantity::new("*B*", "cycles/slope"),
         panels: panels.to_vec(),
     })
 }
 
-fn panel(taken: &FigureData<'_>, text: &Text, sweep: &Sweep) -> Result<CurvePanel, Failure> {
+fn panel(
+    taken: &FigureData<'_>,
+    text: &Text,
+    sweep: &CriterionSweep,
+) -> Result<CurvePanel, Failure> {
     let [from, to] = sweep.ends;
     let along = (0..=POINTS).map(|i| from + (to - from) * f64::from(i) / f64::from(POINTS));
     let lines = along.map(|value| {
@@ -105,7 +109,7 @@ fn said(criterion: &Criterion) -> [f64; 2] {
     }
 }
 
-fn at((name, text): &Text, sweep: &Sweep, value: f64) -> Result<Criterion, Failure> {
+fn at((name, text): &Text, sweep: &CriterionSweep, value: f64) -> Result<Criterion, Failure> {
     let scene = resolved(name, text, &set(sweep, value), |photons| photons)?;
     let plane = &scene.planes[0];
     let found = criterion(&scene, plane, &Applicability::new(&scene, plane));
@@ -116,7 +120,7 @@ fn at((name, text): &Text, sweep: &Sweep, value: f64) -> Result<Criterion, Failu
 fn counted(
     taken: &FigureData<'_>,
     (name, text): &Text,
-    sweep: &Sweep,
+    sweep: &CriterionSweep,
     value: f64,
 ) -> Result<[f64; 3], Failure> {
     let quality: Quality = taken.quality;
@@ -129,6 +133,6 @@ fn counted(
     Ok([(sweep.shown)(value), found.value, found.error])
 }
 
-fn set(sweep: &Sweep, value: f64) -> [(String, String); 1] {
+fn set(sweep: &CriterionSweep, value: f64) -> [(String, String); 1] {
     [(sweep.field.to_owned(), format!("{value:?}"))]
 }

@@ -2,8 +2,8 @@
 
 use crate::subject::FigureData;
 use etendue_figures::{
-    Axis, Curve, CurveKind, CurvePanel, Curves, Figure, Picture, Plate, PlateRow, Quantity, Scale,
-    stacked,
+    Axis, AxisQuantity, Curve, CurveKind, CurvePanel, Curves, Figure, Picture, Plate, PlateRow,
+    Scale, stacked,
 };
 use etendue_store::Failure;
 use etendue_theory::shading::{FresnelFactor, cosine_hat, energy_below, g_hat, g_hat_3d};
@@ -25,7 +25,7 @@ fn curve(kind: CurveKind, name: &str, [from, to]: [f64; 2], f: &dyn Fn(f64) -> f
     Curve::new(kind, name, (0..=POINTS).map(point).collect())
 }
 
-fn panel(title: &str, x: Quantity, curves: Vec<Curve>) -> CurvePanel {
+fn panel(title: &str, x: AxisQuantity, curves: Vec<Curve>) -> CurvePanel {
     CurvePanel {
         title: title.to_owned(),
         x,
@@ -38,15 +38,15 @@ fn values(title: &str, note: &str, panels: Vec<CurvePanel>) -> Curves {
     Curves {
         title: title.to_owned(),
         note: note.to_owned(),
-        y: Quantity::new("value", ""),
+        y: AxisQuantity::new("value", ""),
         panels,
     }
 }
 
 /// g(v) and G(u, v), and their transforms (docs/theory.md (6) and (7)).
 pub(crate) fn slopes(taken: &FigureData<'_>) -> Result<Figure, Failure> {
-    let slope = || Quantity::new("*v*", "slope");
-    let frequency = || Quantity::new("*Ω*", "cycles/slope");
+    let slope = || AxisQuantity::new("*v*", "slope");
+    let frequency = || AxisQuantity::new("*Ω*", "cycles/slope");
     let g = |v: f64| libm::pow(1.0 + v * v, -1.5);
     let g_3d = |v: f64| libm::pow(1.0 + v * v, -2.0);
     let (flat, solid) = ("2D: *g*", "3D: *G*, along one axis");
@@ -101,7 +101,7 @@ fn solid_slopes(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         heads: vec!["*G*(*u*, *v*)".to_owned(), "its transform".to_owned()],
         rows: vec![PlateRow {
             name: "theory",
-            quantity: Quantity::new("value", ""),
+            quantity: AxisQuantity::new("value", ""),
             scale: Scale::Linear,
             shared: false,
             pictures,
@@ -117,12 +117,12 @@ const SHARES: [f64; 3] = [0.8, 0.95, 0.99];
 const MAX_FREQUENCY: f64 = 6.0;
 
 /// The cosine, or the cosine times a Fresnel factor.
-struct Material {
+struct KernelFactor {
     name: &'static str,
     fresnel: Option<FresnelFactor>,
 }
 
-impl Material {
+impl KernelFactor {
     fn value(&self, theta: f64) -> f64 {
         let factor = self.fresnel.map_or(1.0, |f| f.reflectance(theta));
         factor * libm::cos(theta)
@@ -144,7 +144,7 @@ impl Material {
 
 /// cos₊ and cos₊ times the Fresnel factors of two dielectrics and a conductor (Fig. 12), with the frequencies below which their energy lies.
 pub(crate) fn fresnel(taken: &FigureData<'_>) -> Result<Figure, Failure> {
-    let material = |name, fresnel| Material { name, fresnel };
+    let material = |name, fresnel| KernelFactor { name, fresnel };
     let dielectric = |index| Some(FresnelFactor::Dielectric { index });
     // Aluminium at 650 nm, as in the figures of microfacet papers.
     let metal = FresnelFactor::Conductor {
@@ -157,8 +157,8 @@ pub(crate) fn fresnel(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         material("× diamond", dielectric(2.417)),
         material("× aluminium", Some(metal)),
     ];
-    let angles = || Quantity::new("*θ*", "radians");
-    let frequency = || Quantity::new("*Ω*", "cycles/rad");
+    let angles = || AxisQuantity::new("*θ*", "radians");
+    let frequency = || AxisQuantity::new("*Ω*", "cycles/rad");
     let range = [-FRAC_PI_2, FRAC_PI_2];
     let functions = materials.iter().map(|of| {
         let theory = curve(CurveKind::Theory, "theory", range, &|t| of.value(t));

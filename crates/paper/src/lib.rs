@@ -1,6 +1,6 @@
 //! The figures of Durand et al. 2005, measured and predicted, and figures of a user's scenes.
 //!
-//! [`subjects`] says what a [`Request`] comes to; [`make_all`] runs their scenes, draws them and writes each with its data
+//! [`subjects`] says what a [`FigureRequest`] comes to; [`make_all`] runs their scenes, draws them and writes each with its data
 //! and recipe. What each figure of the paper is made of stands in `recipe.rs`.
 
 #![allow(
@@ -29,5 +29,5 @@ mod table1;
 
 pub use make::{make_all, subjects};
 pub use quality::Quality;
-pub use request::{Request, Wanted};
+pub use request::{FigureRequest, Wanted};
 pub use subject::Subject;

@@ -3,7 +3,7 @@
 use crate::own;
 use crate::quality::Quality;
 use crate::recipe::{RECIPES, Recipe, named};
-use crate::request::{Request, Wanted};
+use crate::request::{FigureRequest, Wanted};
 use crate::shot::{self, Shot};
 use crate::style;
 use crate::subject::{FigureData, Subject};
@@ -20,7 +20,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// The figures that are asked for: those of the paper, or one of scene files.
-pub fn subjects(request: &Request) -> Result<Vec<Subject>, Failure> {
+pub fn subjects(request: &FigureRequest) -> Result<Vec<Subject>, Failure> {
     let is_scene = |wanted: &Wanted| matches!(wanted, Wanted::Scene(_));
     if request.wanted.iter().any(is_scene) {
         Ok(vec![own::subject(request)?])
@@ -30,7 +30,7 @@ pub fn subjects(request: &Request) -> Result<Vec<Subject>, Failure> {
 }
 
 /// The figures of the paper that are asked for.
-fn of_paper(request: &Request) -> Result<Vec<Subject>, Failure> {
+fn of_paper(request: &FigureRequest) -> Result<Vec<Subject>, Failure> {
     let of_scenes = [
         ("set", !request.set.is_empty()),
         ("plane", request.plane.is_some()),
@@ -60,7 +60,7 @@ fn of_paper(request: &Request) -> Result<Vec<Subject>, Failure> {
 
 /// `figure.json`, all but the hashes of the files.
 #[derive(Debug, Serialize)]
-struct Index<'a> {
+struct FigureIndex<'a> {
     figure: &'a str,
     about: &'a str,
     /// What makes it again.
@@ -78,12 +78,12 @@ struct Index<'a> {
     /// The user's scenes, as they were run but for the frequencies.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     scene_files: &'a BTreeMap<String, SceneFile>,
-    planes: Vec<Judged<'a>>,
+    planes: Vec<SceneVerdict<'a>>,
     files: &'a BTreeMap<String, String>,
 }
 
 #[derive(Debug, Serialize)]
-struct Judged<'a> {
+struct SceneVerdict<'a> {
     scene: &'a str,
     plane: &'a str,
     verdict: Verdict,
@@ -97,7 +97,7 @@ struct Judged<'a> {
 
 /// Makes figures; returns the verdict on all planes of their scenes. `reporter` is told of each.
 pub fn make_all(
-    request: &Request,
+    request: &FigureRequest,
     subjects: &[Subject],
     reporter: &dyn Reporter,
 ) -> Result<Verdict, Failure> {
@@ -126,8 +126,12 @@ pub fn make_all(
 }
 
 /// Makes a figure; returns the verdict on all planes of its scenes. What was replaced and what is undecided is noted.
+#[expect(
+    clippy::too_many_lines,
+    reason = "one figure from subject to result, in the order in which it goes"
+)]
 pub(crate) fn make(
-    request: &Request,
+    request: &FigureRequest,
     subject: &Subject,
     reporter: &dyn Reporter,
 ) -> Result<Verdict, Failure> {
@@ -176,7 +180,7 @@ pub(crate) fn make(
     let styled: String = styled.collect();
     let finished = results.finish(|written| {
         let quality = request.quality.name();
-        let judged = all.iter().map(|(shot, report)| Judged {
+        let judged = all.iter().map(|(shot, report)| SceneVerdict {
             scene: &shot.scene.name,
             plane: &report.name,
             verdict: report.verdict,
@@ -185,7 +189,7 @@ pub(crate) fn make(
             high_frequency_share: &report.high_frequency_share,
             full_radial: report.full_radial,
         });
-        json(&Index {
+        json(&FigureIndex {
             figure: &subject.name,
             about: &subject.about,
             command: format!(

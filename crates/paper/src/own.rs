@@ -1,6 +1,6 @@
 //! Figures of the user's scenes: one along its path, or several side by side at a plane.
 
-use crate::request::{Request, Wanted};
+use crate::request::{FigureRequest, Wanted};
 use crate::rows::{Seen, compared, feet};
 use crate::subject::FigureData;
 use crate::subject::Subject;
@@ -14,21 +14,8 @@ use etendue_store::Failure;
 use std::path::PathBuf;
 
 /// The figure of the scenes that are asked for.
-pub(crate) fn subject(request: &Request) -> Result<Subject, Failure> {
-    let mut sources: Vec<&SceneSource> = Vec::new();
-    for wanted in &request.wanted {
-        let name = match wanted {
-            Wanted::Scene(source) => {
-                sources.push(source);
-                continue;
-            }
-            Wanted::PaperFigure(name) => name,
-        };
-        let message = format!(
-            "{name} is no scene file, and beside scene files there is nothing else: they are one figure"
-        );
-        return Err(Failure::bad_input(message));
-    }
+pub(crate) fn subject(request: &FigureRequest) -> Result<Subject, Failure> {
+    let sources = sources(request)?;
     let mut scenes: Vec<Scene> = Vec::new();
     let mut inputs: Vec<PathBuf> = Vec::new();
     let mut warnings: Vec<String> = Vec::new();
@@ -78,6 +65,17 @@ pub(crate) fn subject(request: &Request) -> Result<Subject, Failure> {
     })
 }
 
+/// The scenes that are asked for, where nothing else is.
+fn sources(request: &FigureRequest) -> Result<Vec<&SceneSource>, Failure> {
+    let sources = request.wanted.iter().map(|wanted| match wanted {
+        Wanted::Scene(source) => Ok(source),
+        Wanted::PaperFigure(name) => Err(Failure::bad_input(format!(
+            "{name} is no scene file, and beside scene files there is nothing else: they are one figure"
+        ))),
+    });
+    sources.collect()
+}
+
 /// The plane of each scene that is shown; none where all of one scene are.
 fn planes(scenes: &[Scene], asked: Option<&str>) -> Result<Vec<String>, Failure> {
     if scenes.len() == 1 && asked.is_none() {
@@ -104,7 +102,7 @@ fn planes(scenes: &[Scene], asked: Option<&str>) -> Result<Vec<String>, Failure>
 }
 
 /// What stands behind `etendue figure` to make it again.
-fn arguments(request: &Request, sources: &[&SceneSource]) -> String {
+fn arguments(request: &FigureRequest, sources: &[&SceneSource]) -> String {
     let names = sources.iter().map(|source| match source.text {
         Some(_) => source
             .path

@@ -6,7 +6,7 @@ use crate::shot::Shot;
 use crate::subject::FigureData;
 use etendue_compare::{Bandwidth, Theory};
 use etendue_field::{Orientation, VirtualPlane, percent, uncertain};
-use etendue_figures::{Bars, Figure, Plate, Quantity, Scale};
+use etendue_figures::{AxisQuantity, Bars, Figure, Plate, Scale};
 use etendue_report::pictures::light_field_quantity;
 use etendue_store::Failure;
 use etendue_theory::Operator;
@@ -59,7 +59,7 @@ pub(crate) fn steps(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         .collect();
     let both = seen.iter().zip(&spectra);
     let pictures = both.map(|(seen, power)| seen.spectrum(power.view()));
-    let quantity = Quantity::new("|*S*_{2D}|^{2}", "");
+    let quantity = AxisQuantity::new("|*S*_{2D}|^{2}", "");
     let mut rows = compared(&seen, false);
     rows.insert(1, row("2D", quantity, DECIBEL, false, pictures.collect()));
     taken.plate(&Plate {
@@ -88,7 +88,7 @@ pub(crate) fn occluders(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         both.map(|(seen, found)| seen.spectrum(found[i].view()))
             .collect()
     };
-    let power = Quantity::new("|*S*_{0}|^{2}", "");
+    let power = AxisQuantity::new("|*S*_{0}|^{2}", "");
     let rows = vec![
         row(
             "light field",
@@ -100,7 +100,7 @@ pub(crate) fn occluders(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         row("power", power, DECIBEL, true, pictures(0)),
         row(
             "phase",
-            Quantity::new("arg *S*_{0}", "degrees"),
+            AxisQuantity::new("arg *S*_{0}", "degrees"),
             Scale::Phase,
             true,
             pictures(1),
@@ -207,7 +207,7 @@ pub(crate) fn blockers(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         rows: compared(&seen, true),
         feet,
         bars: Some(Bars {
-            quantity: Quantity::new("*H*", "%"),
+            quantity: AxisQuantity::new("*H*", "%"),
             about: format!(
                 "*H*, the share of the energy of the irradiance above {cut:.2} cycles/m, where light leaves the receiver"
             ),

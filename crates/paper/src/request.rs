@@ -35,7 +35,7 @@ impl Wanted {
 
 /// What is asked for.
 #[derive(Clone, Debug)]
-pub struct Request {
+pub struct FigureRequest {
     /// Figures of the paper, or scenes, which make one figure.
     pub wanted: Vec<Wanted>,
     /// Fields of the scenes set to values, for the command in `figure.json`: the scenes have them already.

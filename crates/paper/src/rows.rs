@@ -3,7 +3,7 @@
 use crate::shot::Shot;
 use etendue_compare::PlaneComparison;
 use etendue_field::{Complex, Slices, VirtualPlane};
-use etendue_figures::{Picture, PlateRow, Quantity, Scale};
+use etendue_figures::{AxisQuantity, Picture, PlateRow, Scale};
 use etendue_report::pictures::{
     full_radial, full_radial_quantity, light_field_axes, light_field_quantity, spectrum_axes,
     spectrum_quantity, verdict_lines,
@@ -74,7 +74,7 @@ pub(crate) fn phase(slices: &Slices) -> Array2<f64> {
 
 pub(crate) fn row<'a>(
     name: &'a str,
-    quantity: Quantity,
+    quantity: AxisQuantity,
     scale: Scale,
     shared: bool,
     pictures: Vec<Picture<'a>>,

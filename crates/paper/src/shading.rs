@@ -6,7 +6,7 @@ use crate::subject::FigureData;
 use etendue_field::{
     Complex, EnvironmentMap, Light, Profile, Slices, SphericalGaussian, cis, modulus,
 };
-use etendue_figures::{Curve, CurveKind, CurvePanel, Curves, Figure, Plate, Quantity, stacked};
+use etendue_figures::{AxisQuantity, Curve, CurveKind, CurvePanel, Curves, Figure, Plate, stacked};
 use etendue_store::Failure;
 use etendue_theory::shading::environment::{Glow, irradiance};
 use std::f64::consts::TAU;
@@ -46,7 +46,7 @@ fn product(taken: &FigureData<'_>, shaded: &Seen<'_>) -> Result<Figure, Failure>
     };
     let panel = CurvePanel {
         title: "leaving the sphere".to_owned(),
-        x: Quantity::new("*ρ*", "cycles/m"),
+        x: AxisQuantity::new("*ρ*", "cycles/m"),
         curves: vec![
             Curve::new(
                 CurveKind::Rival,
@@ -70,7 +70,7 @@ fn product(taken: &FigureData<'_>, shaded: &Seen<'_>) -> Result<Figure, Failure>
         title: "The product".to_owned(),
         note: "|*S*_{0}| at *ν* = 0, where the light leaves. Lines: the product in 2D, seen through the same window, with and without the spectrum of the cosine."
             .to_owned(),
-        y: Quantity::new("of that at 0", ""),
+        y: AxisQuantity::new("of that at 0", ""),
         panels: vec![panel],
     })
 }

@@ -7,7 +7,7 @@ use crate::subject::{FigureData, Text};
 use etendue_compare::{Applicability, Convergence, converge};
 use etendue_field::percent;
 use etendue_figures::{
-    Curve, CurveKind, CurvePanel, Curves, Figure, Plate, Quantity, Scale, stacked,
+    AxisQuantity, Curve, CurveKind, CurvePanel, Curves, Figure, Plate, Scale, stacked,
 };
 use etendue_report::pictures::{across, across_axes, light_field_quantity};
 use etendue_store::Failure;
@@ -127,7 +127,7 @@ fn orders(
         let line = |[e, _]: &[f64; 2]| [*e, error * (e / widest).powi(order), 0.0];
         CurvePanel {
             title: etendue_pipeline::table::spaced(&plane.plane),
-            x: Quantity::new("*e*", ""),
+            x: AxisQuantity::new("*e*", ""),
             curves: vec![
                 Curve::new(
                     CurveKind::Rival,
@@ -150,7 +150,7 @@ fn orders(
     taken.curves(&Curves {
         title: title.to_owned(),
         note: note.to_owned(),
-        y: Quantity::new("error", ""),
+        y: AxisQuantity::new("error", ""),
         panels: planes.iter().map(panel).collect(),
     })
 }

@@ -5,7 +5,7 @@ use etendue_transform::random::{Stream, unit, words};
 
 /// The random numbers of one path, in (0, 1), drawn one after another.
 #[derive(Debug)]
-pub(crate) struct Numbers<'a> {
+pub(crate) struct PathNumbers<'a> {
     seed: u64,
     path: u64,
     block: u32,
@@ -18,7 +18,7 @@ pub(crate) struct Numbers<'a> {
 /// Blocks of four numbers that a net has.
 pub(crate) const JOINT: u32 = 2;
 
-impl<'a> Numbers<'a> {
+impl<'a> PathNumbers<'a> {
     pub(crate) fn new(seed: u64, path: u64) -> Self {
         Self {
             seed,

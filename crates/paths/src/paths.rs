@@ -1,8 +1,8 @@
 //! Paths of light through a world.
 
 use crate::lights::LightSampler;
-use crate::numbers::Numbers;
-use crate::scatter::{Bounce, Scatter};
+use crate::numbers::PathNumbers;
+use crate::scatter::{BsdfSample, Scatter};
 use crate::space::{Hit, Ray, SceneGeometry};
 use etendue_world::World;
 use glam::DVec3;
@@ -49,7 +49,7 @@ impl Paths {
         ray: Ray,
         seen: [f64; 2],
         before: u32,
-        numbers: &mut Numbers<'_>,
+        numbers: &mut PathNumbers<'_>,
     ) -> f64 {
         let hit = self.geometry.first(&ray, seen);
         let mut sum = self.shown(&ray, hit.as_ref(), before);
@@ -75,7 +75,7 @@ impl Paths {
         mut ray: Ray,
         mut hit: Hit,
         before: u32,
-        numbers: &mut Numbers<'_>,
+        numbers: &mut PathNumbers<'_>,
         found: &mut dyn FnMut(DVec3, f64),
     ) {
         let mut weight = 1.0;
@@ -165,7 +165,7 @@ impl Paths {
     }
 }
 
-fn onward(hit: &Hit, bounce: &Bounce) -> Ray {
+fn onward(hit: &Hit, bounce: &BsdfSample) -> Ray {
     Ray {
         from: hit.position,
         along: (hit.frame * bounce.wi).normalize(),

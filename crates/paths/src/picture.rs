@@ -1,6 +1,6 @@
 //! Pictures, with the variance of each pixel.
 
-use crate::numbers::Numbers;
+use crate::numbers::PathNumbers;
 use crate::paths::Paths;
 use crate::space::Ray;
 use etendue_world::Camera;
@@ -56,7 +56,8 @@ impl Paths {
         let number = (row * camera.size[0] + column) as u64;
         let (mut mean, mut squares) = (0.0, 0.0);
         for sample in 0..samples {
-            let mut numbers = Numbers::new(seed, number * u64::from(samples) + u64::from(sample));
+            let mut numbers =
+                PathNumbers::new(seed, number * u64::from(samples) + u64::from(sample));
             let radiance = self.seen(camera, [column as f64, row as f64], &mut numbers);
             // Welford 1962: no digits are lost.
             let off = radiance - mean;
@@ -68,7 +69,7 @@ impl Paths {
     }
 
     /// One path to somewhere in a pixel.
-    fn seen(&self, camera: &Camera, pixel: [f64; 2], numbers: &mut Numbers<'_>) -> f64 {
+    fn seen(&self, camera: &Camera, pixel: [f64; 2], numbers: &mut PathNumbers<'_>) -> f64 {
         let [x, y, a, b] = numbers.draw();
         let (sin, cos) = libm::sincos(TAU * b);
         let radius = a.sqrt();

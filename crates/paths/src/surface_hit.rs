@@ -1,6 +1,6 @@
 //! Places that a camera sees: their light, and how near what they reflect is. Renderers that choose where to spend paths ask these.
 
-use crate::numbers::{JOINT, Numbers};
+use crate::numbers::{JOINT, PathNumbers};
 use crate::paths::Paths;
 use crate::scatter::Reflects;
 use crate::space::{Hit, Ray};
@@ -117,7 +117,7 @@ impl Paths {
         let [mut base, mut mean, mut squares] = [0.0; 3];
         for path in 0..paths {
             let key = number * u64::from(paths) + u64::from(path);
-            let mut numbers = Numbers::new(seed, key).of_net(&net, path);
+            let mut numbers = PathNumbers::new(seed, key).of_net(&net, path);
             let mut radiance = 0.0;
             self.scattered(seen.ray, seen.hit, 0, &mut numbers, &mut |wi, light| {
                 if light > 0.0 {
@@ -149,7 +149,7 @@ impl Paths {
         let scatter = self.scatter(&seen.hit);
         let [mut reflected, mut lit, mut blocked, mut sharp] = [0.0; 4];
         for ray in 0..rays {
-            let mut numbers = Numbers::new(seed, number).of_net(&net, ray);
+            let mut numbers = PathNumbers::new(seed, number).of_net(&net, ray);
             if let Some(shadow) = self.shadow(seen, numbers.draw()) {
                 if shadow.nearness > 0.0 {
                     blocked += shadow.light;

@@ -23,7 +23,7 @@ pub const NAMES: [&str; 3] = ["field.npy", "field.json", "full_radial.npz"];
 
 /// `field.json`.
 #[derive(Serialize)]
-struct Index {
+struct FieldIndex {
     axes: [&'static str; 4],
     units: [&'static str; 5],
     cells: [usize; 4],
@@ -33,11 +33,11 @@ struct Index {
     window: etendue_field::Window,
     assignment: etendue_field::Assignment,
     /// ‖4D − slices‖/‖slices‖ of the same photons on shared frequencies up to half of Nyquist, and what it is held against.
-    aliasing: Option<Aliasing>,
+    aliasing: Option<AliasingNumbers>,
 }
 
 #[derive(Serialize)]
-struct Aliasing {
+struct AliasingNumbers {
     frequencies: usize,
     difference: f64,
     /// What aliasing makes of it if the spectrum beyond Nyquist is as strong as just inside.
@@ -181,7 +181,7 @@ fn write(
     results.stream(&format!("{name}/field.npy"), &mut |file| {
         field.write_npy(file).map_err(io::Error::other)
     })?;
-    let index = Index {
+    let index = FieldIndex {
         axes: ["x", "y", "u", "v"],
         units: ["m", "m", "slope", "slope", "W m⁻² sr⁻¹"],
         cells: grid.cells,
@@ -192,7 +192,7 @@ fn write(
         aliasing: measured
             .spectrum
             .aliasing(slices, COMPARED)
-            .map(|a| Aliasing {
+            .map(|a| AliasingNumbers {
                 frequencies: a.compared,
                 difference: a.difference,
                 expected: a.expected,

@@ -64,7 +64,7 @@ fn file_of(save: Save) -> Option<(&'static str, &'static str, u64)> {
 
 /// `photons.json`.
 #[derive(Serialize)]
-struct Index {
+struct PhotonsIndex {
     columns: [&'static str; 5],
     /// First row of each batch, and the number of rows at the end.
     batch_offsets: Vec<u64>,
@@ -129,7 +129,7 @@ pub fn save(results: &mut Results, case: &MeasuredScene, save: Save) -> Result<(
             Ok(())
         })?;
         if save == Save::Photons {
-            let index = Index {
+            let index = PhotonsIndex {
                 columns: ["x", "y", "u", "v", "weight"],
                 batch_offsets: offsets,
                 emitted: case.measurement.batches().map(|b| b.emitted).collect(),

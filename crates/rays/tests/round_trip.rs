@@ -266,6 +266,7 @@ fn refused(bytes: &[u8], message: &str) {
 }
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "a test may be a list of cases")]
 fn malformed_files_are_refused_where_they_are() {
     let good = mcpl_2();
     refused(

@@ -17,7 +17,8 @@ use etendue_compare::{
 };
 use etendue_field::{Side, VirtualPlane, percent};
 use etendue_figures::{
-    Column, Comparison, Figure, Guide, Picture, Scale, Strip, Style, comparison, section, strip,
+    Comparison, Figure, Guide, Picture, Scale, Strip, StripColumn, Style, comparison, section,
+    strip,
 };
 use etendue_pipeline::MeasuredScene;
 use etendue_pipeline::Summary;
@@ -128,6 +129,10 @@ pub fn path(
 }
 
 /// The planes in the order in which light meets them; in the style of a figure with their predicted spectra below. `photons` are those emitted: parts of a measurement are less than the scene asks for.
+#[expect(
+    clippy::too_many_lines,
+    reason = "one drawing, from planes to its rows"
+)]
 pub fn strip_of(
     scene: &Scene,
     photons: u64,
@@ -155,7 +160,7 @@ pub fn strip_of(
         }
         column
     });
-    let mut columns: Vec<Column<'_>> = columns.collect();
+    let mut columns: Vec<StripColumn<'_>> = columns.collect();
     let dashed = dashed(&columns, planes);
     let chain_fails = planes.iter().any(|plane| {
         let chain = plane.report.first_order.as_ref();
@@ -220,7 +225,7 @@ pub fn spectra_are<'a>(planes: impl Iterator<Item = &'a VirtualPlane>) -> &'stat
 }
 
 /// What the dashed lines of a strip are, in words.
-fn dashed(columns: &[Column<'_>], planes: &[PlaneComparison]) -> &'static str {
+fn dashed(columns: &[StripColumn<'_>], planes: &[PlaneComparison]) -> &'static str {
     let most = columns.iter().map(|column| column.guides.len()).max();
     let is_exact = planes.iter().all(|p| p.report.class == Class::Exact);
     match (most, is_exact) {
@@ -262,12 +267,12 @@ fn column<'a>(
     plane: &VirtualPlane,
     applicability: &Applicability,
     compared: &'a PlaneComparison,
-) -> Column<'a> {
+) -> StripColumn<'a> {
     let projection = &compared.projection.mean;
     let words = CoordinateNames::of(plane);
     let [x, u] = words.projection_axes(&projection.grid);
     let [rho, nu] = words.frequency_axes(&compared.measured.grid);
-    Column {
+    StripColumn {
         light_field: Picture {
             x,
             y: u,

@@ -15,19 +15,19 @@ pub trait Bsdf {
 
     /// The only direction possible for the last of three numbers; `None` where there are others.
     #[inline]
-    fn mirrored(&self, _wo: DVec3, _random: f64) -> Option<Bounce> {
+    fn mirrored(&self, _wo: DVec3, _random: f64) -> Option<BsdfSample> {
         None
     }
 
     /// A direction with its weight; `None` where light is absorbed.
     #[inline]
-    fn sample(&self, wo: DVec3, random: [f64; 3]) -> Option<Bounce> {
+    fn sample(&self, wo: DVec3, random: [f64; 3]) -> Option<BsdfSample> {
         if let Some(only) = self.mirrored(wo, random[2]) {
             return Some(only);
         }
         let wi = self.direction(wo, random)?;
         let density = self.density(wi, wo);
-        (density > 0.0).then(|| Bounce {
+        (density > 0.0).then(|| BsdfSample {
             wi,
             weight: self.value(wi, wo) * wi.z.abs() / density,
             density: Some(density),
@@ -37,7 +37,7 @@ pub trait Bsdf {
 
 /// A direction that a path goes on to.
 #[derive(Clone, Copy, Debug)]
-pub struct Bounce {
+pub struct BsdfSample {
     /// Where light comes from.
     pub wi: DVec3,
     /// BSDF times |cos| of wi over its density.
@@ -46,7 +46,7 @@ pub struct Bounce {
     pub density: Option<f64>,
 }
 
-impl Bounce {
+impl BsdfSample {
     /// The only direction possible, with its weight.
     #[inline]
     #[must_use]

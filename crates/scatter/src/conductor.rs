@@ -1,16 +1,16 @@
 //! Metals: a mirror, or microfacets that are mirrors.
 
 use crate::bsdf::before;
-use crate::{Bounce, Bsdf, Microfacets, fresnel};
+use crate::{Bsdf, BsdfSample, Microfacets, fresnel};
 use etendue_field::Fresnel;
 use glam::DVec3;
 
 /// What a smooth mirror sends along wo, before it.
 #[inline]
 #[must_use]
-pub fn mirror(fresnel: &Fresnel, wo: DVec3) -> Bounce {
+pub fn mirror(fresnel: &Fresnel, wo: DVec3) -> BsdfSample {
     let weight = fresnel::reflectance(fresnel, wo.z.min(1.0));
-    Bounce::only(DVec3::new(-wo.x, -wo.y, wo.z), weight)
+    BsdfSample::only(DVec3::new(-wo.x, -wo.y, wo.z), weight)
 }
 
 /// A rough mirror, whose facets are drawn as wo sees them.

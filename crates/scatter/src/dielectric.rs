@@ -4,7 +4,7 @@
 
 use crate::bsdf::mirrored;
 use crate::fresnel::Interface;
-use crate::{Bounce, Bsdf, Microfacets};
+use crate::{Bsdf, BsdfSample, Microfacets};
 use glam::DVec3;
 
 /// A smooth interface, or a thin sheet with such an interface on both sides.
@@ -20,7 +20,7 @@ impl SmoothDielectric {
     /// Reflects or refracts, each as often as light does.
     #[inline]
     #[must_use]
-    pub fn sample(&self, wo: DVec3, random: f64) -> Bounce {
+    pub fn sample(&self, wo: DVec3, random: f64) -> BsdfSample {
         let at = Interface::new(self.index, wo.z);
         let once = at.reflected;
         let reflected = if self.is_thin && once < 1.0 {
@@ -30,12 +30,12 @@ impl SmoothDielectric {
             once
         };
         if random < reflected {
-            Bounce::only(mirrored(wo, DVec3::Z), 1.0)
+            BsdfSample::only(mirrored(wo, DVec3::Z), 1.0)
         } else if self.is_thin {
-            Bounce::only(-wo, 1.0)
+            BsdfSample::only(-wo, 1.0)
         } else {
             let weight = 1.0 / (self.index * self.index);
-            Bounce::only(at.refracted(wo, DVec3::Z), weight)
+            BsdfSample::only(at.refracted(wo, DVec3::Z), weight)
         }
     }
 }

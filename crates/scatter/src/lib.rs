@@ -16,7 +16,7 @@ mod microfacet;
 mod phong;
 mod plastic;
 
-pub use bsdf::{Bounce, Bsdf};
+pub use bsdf::{Bsdf, BsdfSample};
 pub use conductor::{Conductor, mirror};
 pub use dielectric::{RoughDielectric, SmoothDielectric};
 pub use fresnel::reflectance;

@@ -2,7 +2,7 @@
 
 use crate::bsdf::{before, mirrored};
 use crate::fresnel::{Interface, diffuse_reflectance};
-use crate::{Bounce, Bsdf, Microfacets, lambertian};
+use crate::{Bsdf, BsdfSample, Microfacets, lambertian};
 use etendue_field::MicrofacetDistribution;
 use glam::DVec3;
 
@@ -137,12 +137,12 @@ impl Bsdf for Plastic<'_> {
         }
     }
 
-    fn mirrored(&self, wo: DVec3, c: f64) -> Option<Bounce> {
+    fn mirrored(&self, wo: DVec3, c: f64) -> Option<BsdfSample> {
         // A smooth coat takes its share of samples; the rest of the density is the base's.
         let share = self.coat_share(wo);
         (self.coat.facets.is_none() && c < share).then(|| {
             let reflected = Interface::new(self.coat.index, wo.z).reflected;
-            Bounce::only(mirrored(wo, DVec3::Z), reflected * self.specular / share)
+            BsdfSample::only(mirrored(wo, DVec3::Z), reflected * self.specular / share)
         })
     }
 }

@@ -3,7 +3,7 @@
 use crate::examples::{example, has_fields, wanted};
 use crate::messages::{path_of, unfit};
 use crate::nearest::did_you_mean;
-use crate::place::{Place, find, word};
+use crate::place::{ScenePlace, find, word};
 use crate::shown::shown;
 use crate::{SceneError, SceneFile, limits};
 use ron::error::{Error, SpannedError};
@@ -67,10 +67,10 @@ fn syntax(text: &str, path: &str, error: &SpannedError) -> SceneError {
     let whole = value.map_or(start, |value| [value.line, value.column]);
     let name = if path.is_empty() { "the scene" } else { path };
     let code = &error.code;
-    let is_whole = |_: &Place<'_>| [start, end].contains(&whole) || is_shape(code, path);
+    let is_whole = |_: &ScenePlace<'_>| [start, end].contains(&whole) || is_shape(code, path);
     let (at, message) = if let Some((is_whole, message)) = of_names(code, name, path) {
         (if is_whole { whole } else { start }, message)
-    } else if let Some(Place { value, .. }) = value.filter(is_whole) {
+    } else if let Some(ScenePlace { value, .. }) = value.filter(is_whole) {
         let message = format!("{name} is {}; allowed: {}", excerpt(value), wanted(path));
         (whole, message)
     } else {

@@ -5,7 +5,7 @@
 
 /// A value in the text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Place<'a> {
+pub(crate) struct ScenePlace<'a> {
     /// Line, from 1.
     pub(crate) line: usize,
     /// Column in characters, from 1.
@@ -25,7 +25,7 @@ pub(crate) fn steps(path: &str) -> Vec<&str> {
 }
 
 /// The value at a path, or the innermost around it that is written.
-pub(crate) fn find<'a>(text: &'a str, path: &str) -> Option<Place<'a>> {
+pub(crate) fn find<'a>(text: &'a str, path: &str) -> Option<ScenePlace<'a>> {
     let steps = steps(path);
     let mut found: Option<InnermostValue> = None;
     let mut levels = vec![OpenBracket::new(Some(0), true)];
@@ -84,7 +84,7 @@ pub(crate) fn find<'a>(text: &'a str, path: &str) -> Option<Place<'a>> {
     // All of the file is around what is not written at all: that is no place.
     let found = found.filter(|found| found.steps > 0 || steps.is_empty())?;
     let before = &text[..found.start];
-    Some(Place {
+    Some(ScenePlace {
         line: 1 + before.matches('\n').count(),
         column: 1 + before.chars().rev().take_while(|c| *c != '\n').count(),
         value: &text[found.start..found.end],

@@ -16,6 +16,6 @@ mod table;
 mod unshown;
 pub mod values;
 
-pub use points::{Points, scene_at};
-pub use request::Request;
-pub use run::{Finished, run};
+pub use points::{SweepPoints, scene_at};
+pub use request::SweepRequest;
+pub use run::{FinishedSweep, run};

@@ -1,8 +1,8 @@
 //! Curves of a sweep: what each plane's numbers do along its first field.
 
-use crate::table::{BANDWIDTHS, Found, Number, SLOPE, numbers};
-use crate::values::{Point, short, shown};
-use etendue_figures::{Curve, CurveKind, CurvePanel, Curves, Figure, Quantity, Style};
+use crate::table::{BANDWIDTHS, PointResult, SLOPE, TableNumber, numbers};
+use crate::values::{SweepPoint, short, shown};
+use etendue_figures::{AxisQuantity, Curve, CurveKind, CurvePanel, Curves, Figure, Style};
 use etendue_pipeline::table::spaced;
 use etendue_store::Failure;
 
@@ -14,8 +14,13 @@ const MAX_PANELS: usize = 24;
 
 /// The pictures of [`NAMES`], unless they would have too many panels. Of a grid of several fields
 /// there is a panel for each value of all but the first.
-pub(crate) fn drawn(scene: &str, found: &[Found], together: bool) -> Result<Vec<Figure>, Failure> {
-    let mut panels: Vec<(String, Point)> = Vec::new();
+#[expect(clippy::too_many_lines, reason = "one drawing, from panels to axes")]
+pub(crate) fn drawn(
+    scene: &str,
+    found: &[PointResult],
+    together: bool,
+) -> Result<Vec<Figure>, Failure> {
+    let mut panels: Vec<(String, SweepPoint)> = Vec::new();
     for (at, plane) in found
         .iter()
         .flat_map(|at| at.planes().map(move |plane| (at, plane)))
@@ -32,14 +37,14 @@ pub(crate) fn drawn(scene: &str, found: &[Found], together: bool) -> Result<Vec<
         (
             BANDWIDTHS[0],
             "*ρ* of 95 % of the power",
-            Quantity::new("*ρ*_{95}", "cycles/m"),
+            AxisQuantity::new("*ρ*_{95}", "cycles/m"),
         ),
         (
             BANDWIDTHS[1],
             "*ν* of 95 % of the power",
-            Quantity::new("*ν*_{95}", "cycles/slope"),
+            AxisQuantity::new("*ν*_{95}", "cycles/slope"),
         ),
-        (SLOPE, "shear slope", Quantity::new("shear slope", "m")),
+        (SLOPE, "shear slope", AxisQuantity::new("shear slope", "m")),
     ];
     let fields: Vec<&str> = found[0]
         .point
@@ -53,19 +58,19 @@ pub(crate) fn drawn(scene: &str, found: &[Found], together: bool) -> Result<Vec<
     if short(fields[0]) != fields[0] {
         note += &format!(" {}: {}.", short(fields[0]), fields[0]);
     }
-    let figure = |(quantity, about, y): (&str, &str, Quantity)| {
-        let panel = |(plane, others): &(String, Point)| {
+    let figure = |(quantity, about, y): (&str, &str, AxisQuantity)| {
+        let panel = |(plane, others): &(String, SweepPoint)| {
             let at = found
                 .iter()
                 .filter(|at| self::others(at, together) == *others);
-            let of_plane = |at: &Found| {
+            let of_plane = |at: &PointResult| {
                 let plane = at.planes().find(|p| name(p) == plane)?;
                 let number = numbers(plane)
                     .into_iter()
                     .find(|n| n.quantity == quantity)?;
                 Some((at.point[0].1, number))
             };
-            let mut numbers: Vec<(f64, Number)> = at.filter_map(of_plane).collect();
+            let mut numbers: Vec<(f64, TableNumber)> = at.filter_map(of_plane).collect();
             // Lists come in any order.
             numbers.sort_by(|a, b| a.0.total_cmp(&b.0));
             panel(plane, others, &found[0].point[0].0, &numbers)
@@ -82,15 +87,20 @@ pub(crate) fn drawn(scene: &str, found: &[Found], together: bool) -> Result<Vec<
 }
 
 /// Measured and predicted numbers of a plane over the field that is swept.
-fn panel(plane: &str, others: &Point, path: &str, numbers: &[(f64, Number)]) -> CurvePanel {
-    let curve = |kind, name: &str, point: &dyn Fn(&Number) -> Option<[f64; 2]>| {
+fn panel(
+    plane: &str,
+    others: &SweepPoint,
+    path: &str,
+    numbers: &[(f64, TableNumber)],
+) -> CurvePanel {
+    let curve = |kind, name: &str, point: &dyn Fn(&TableNumber) -> Option<[f64; 2]>| {
         let points = numbers
             .iter()
             .filter_map(|(x, number)| point(number).map(|[y, error]| [*x, y, error]));
         Curve::new(kind, name, points.collect())
     };
-    let predicted = |number: &Number| Some([number.predicted?, 0.0]);
-    let measured = |number: &Number| Some([number.measured?, number.error.unwrap_or(0.0)]);
+    let predicted = |number: &TableNumber| Some([number.predicted?, 0.0]);
+    let measured = |number: &TableNumber| Some([number.measured?, number.error.unwrap_or(0.0)]);
     let others = others
         .iter()
         .map(|(path, value)| (short(path).to_owned(), *value));
@@ -100,7 +110,7 @@ fn panel(plane: &str, others: &Point, path: &str, numbers: &[(f64, Number)]) -> 
     };
     CurvePanel {
         title,
-        x: Quantity::new(short(path), ""),
+        x: AxisQuantity::new(short(path), ""),
         is_log: [go_by_factors(numbers.iter().map(|(x, _)| *x)), false],
         curves: vec![
             curve(CurveKind::Theory, "predicted", &predicted),
@@ -127,9 +137,9 @@ fn name(plane: &serde_json::Value) -> &str {
 }
 
 /// The values that tell one panel from another.
-fn others(at: &Found, together: bool) -> Point {
+fn others(at: &PointResult, together: bool) -> SweepPoint {
     if together {
-        Point::new()
+        SweepPoint::new()
     } else {
         at.point[1..].to_vec()
     }

@@ -1,7 +1,7 @@
 //! The points of a sweep: a scene at each.
 
-use crate::request::Request;
-use crate::values::{Point, Setting, Sweep, message_at, points, shown};
+use crate::request::SweepRequest;
+use crate::values::{Setting, Sweep, SweepPoint, message_at, points, shown};
 use etendue_compare::{Applicability, Test};
 use etendue_pipeline::load::{self, SceneSource};
 use etendue_pipeline::{MeasuredScene, Reporter, Summary, judged};
@@ -11,19 +11,19 @@ use std::collections::BTreeMap;
 
 /// What is asked for: a scene at each point of a sweep.
 #[derive(Debug)]
-pub struct Points {
+pub struct SweepPoints {
     pub(crate) source: SceneSource,
     pub(crate) base: Scene,
     pub(crate) sweeps: Vec<Sweep>,
     pub(crate) method: Method,
-    pub(crate) points: Vec<Point>,
+    pub(crate) points: Vec<SweepPoint>,
     /// One for each point.
     pub(crate) scenes: Vec<Scene>,
 }
 
-impl Points {
+impl SweepPoints {
     /// Reads the scene at all points.
-    pub fn read(request: &Request) -> Result<Self, Failure> {
+    pub fn read(request: &SweepRequest) -> Result<Self, Failure> {
         let (set, sweeps) = settings(&request.set);
         let mut source = request.scene.clone();
         source.set.extend(set);
@@ -110,7 +110,11 @@ fn seed_of(scene: &Scene) -> u64 {
 }
 
 /// Fails where nothing is swept, or a field is given its values twice.
-fn check(request: &Request, set: &[(String, String)], sweeps: &[Sweep]) -> Result<(), Failure> {
+fn check(
+    request: &SweepRequest,
+    set: &[(String, String)],
+    sweeps: &[Sweep],
+) -> Result<(), Failure> {
     if sweeps.is_empty() {
         let given: Vec<String> = set
             .iter()
@@ -161,7 +165,7 @@ fn settings(all: &[Setting]) -> (Vec<(String, String)>, Vec<Sweep>) {
 /// The scene with some fields set to numbers besides; `options` are overrides of all points.
 pub fn scene_at(
     source: &SceneSource,
-    point: &Point,
+    point: &SweepPoint,
     options: impl FnOnce(&mut RunFile),
 ) -> Result<Scene, Failure> {
     let mut source = source.clone();

@@ -6,7 +6,7 @@ use etendue_store::Method;
 
 /// A scene with fields that take several values.
 #[derive(Clone, Debug)]
-pub struct Request {
+pub struct SweepRequest {
     /// The scene, with fields set to a value at all points.
     pub scene: SceneSource,
     /// More fields, set to a value or to several.
@@ -25,7 +25,7 @@ pub struct Request {
     pub force: bool,
 }
 
-impl Request {
+impl SweepRequest {
     /// A sweep of fields of a scene, by photons, in all combinations.
     #[must_use]
     pub fn new(scene: SceneSource, set: Vec<Setting>) -> Self {

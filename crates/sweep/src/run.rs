@@ -1,9 +1,9 @@
 //! Running a sweep: points that are not done yet, then the table and curves.
 
 use crate::pictures;
-use crate::points::Points;
-use crate::request::Request;
-use crate::table::{self, BANDWIDTHS, Found, SLOPE};
+use crate::points::SweepPoints;
+use crate::request::SweepRequest;
+use crate::table::{self, BANDWIDTHS, PointResult, SLOPE};
 use crate::unshown::Unshown;
 use crate::values::{Sweep, shown};
 use etendue_compare::Applicability;
@@ -25,7 +25,7 @@ const TABLE: &str = "sweep.csv";
 
 /// A sweep that is done.
 #[derive(Debug)]
-pub struct Finished {
+pub struct FinishedSweep {
     /// The folder of its results.
     pub folder: PathBuf,
     /// The table for a terminal: a row for each plane at each point, and a header.
@@ -38,19 +38,19 @@ pub struct Finished {
 
 /// Runs the points that are not done yet, and writes the table and the pictures. `folder` keeps each point.
 pub fn run(
-    request: &Request,
-    all: &Points,
+    request: &SweepRequest,
+    all: &SweepPoints,
     folder: &Path,
     workers: Option<&Leader<'_>>,
     reporter: &dyn Reporter,
-) -> Result<Finished, Failure> {
+) -> Result<FinishedSweep, Failure> {
     let checked = |scene| {
         let theories = Applicability::of_planes(scene);
         method::check(scene, request.method)?;
         limits::check(scene, &theories, rayon::current_num_threads())
     };
     all.scenes.iter().try_for_each(checked)?;
-    let Points { base, sweeps, .. } = all;
+    let SweepPoints { base, sweeps, .. } = all;
     let arguments = request.scene.arguments;
     check_earlier(folder, SWEEP, base, request.force, arguments)?;
     check_fields(request, folder, sweeps)?;
@@ -66,7 +66,7 @@ pub fn run(
 }
 
 /// Fails where the folder holds a sweep of other fields.
-fn check_fields(request: &Request, folder: &Path, sweeps: &[Sweep]) -> Result<(), Failure> {
+fn check_fields(request: &SweepRequest, folder: &Path, sweeps: &[Sweep]) -> Result<(), Failure> {
     let earlier = read_file(&folder.join(SWEEP), MAX_INDEX_BYTES).ok();
     let earlier: Option<Value> = earlier.and_then(|bytes| serde_json::from_slice(&bytes).ok());
     let Some(fields) = earlier
@@ -90,7 +90,7 @@ fn check_fields(request: &Request, folder: &Path, sweeps: &[Sweep]) -> Result<()
     )))
 }
 
-fn plan(request: &Request, inputs: &[PathBuf]) -> Plan {
+fn plan(request: &SweepRequest, inputs: &[PathBuf]) -> Plan {
     let pictures = pictures::NAMES.iter();
     let pictures =
         pictures.flat_map(|name| ["png", "svg", "csv"].map(|end| format!("{name}.{end}")));
@@ -105,13 +105,13 @@ fn plan(request: &Request, inputs: &[PathBuf]) -> Plan {
 
 /// What each point gives, run now or before.
 fn run_all(
-    request: &Request,
+    request: &SweepRequest,
     folder: &Path,
     inputs: &[PathBuf],
-    all: &Points,
+    all: &SweepPoints,
     workers: Option<&Leader<'_>>,
     reporter: &dyn Reporter,
-) -> Result<Vec<Found>, Failure> {
+) -> Result<Vec<PointResult>, Failure> {
     let bar = reporter.begin(Work::Steps {
         verb: "running",
         total: all.points.len(),
@@ -163,7 +163,7 @@ fn run_all(
     let points = all.points.iter().zip(names).zip(summaries);
     let found = points.map(|((point, folder), summary)| {
         let summary = summary.ok_or_else(|| Failure::cannot_run("a point was not run"))?;
-        Ok(Found {
+        Ok(PointResult {
             point: point.clone(),
             folder,
             summary,
@@ -173,7 +173,11 @@ fn run_all(
 }
 
 /// The folders of the points, none of which leads out of that of the sweep.
-fn folders(request: &Request, folder: &Path, all: &Points) -> Result<Vec<String>, Failure> {
+fn folders(
+    request: &SweepRequest,
+    folder: &Path,
+    all: &SweepPoints,
+) -> Result<Vec<String>, Failure> {
     let name = |scene: &Scene| {
         let name = format!("points/{}", name_of(scene, request));
         match inside(folder, &format!("{name}/{SUMMARY}")) {
@@ -185,14 +189,14 @@ fn folders(request: &Request, folder: &Path, all: &Points) -> Result<Vec<String>
 }
 
 /// The name of a point: the same for the same scene and method.
-fn name_of(scene: &Scene, request: &Request) -> String {
+fn name_of(scene: &Scene, request: &SweepRequest) -> String {
     let what = format!("{} {}", scene.hash(), request.method.words());
     blake3::hash(what.as_bytes()).to_hex()[..16].to_owned()
 }
 
 /// `sweep.json`, all but the hashes of the files.
 #[derive(Debug, Serialize)]
-struct Index<'a> {
+struct SweepIndex<'a> {
     scene: &'a str,
     version: &'a str,
     /// The scene without the fields that are swept.
@@ -207,13 +211,13 @@ struct Index<'a> {
 
 /// Writes the table and the pictures.
 fn finish(
-    request: &Request,
-    all: &Points,
-    found: &[Found],
+    request: &SweepRequest,
+    all: &SweepPoints,
+    found: &[PointResult],
     mut results: Results,
     reporter: &dyn Reporter,
-) -> Result<Finished, Failure> {
-    let Points { base, sweeps, .. } = all;
+) -> Result<FinishedSweep, Failure> {
+    let SweepPoints { base, sweeps, .. } = all;
     let paths: Vec<String> = sweeps.iter().map(|sweep| sweep.path.clone()).collect();
     results.write(TABLE, &table::csv(&paths, found)?)?;
     let stage = reporter.begin(Work::Stage("writing results"));
@@ -222,7 +226,7 @@ fn finish(
         etendue_report::pictures::write(&mut results, name, figure)?;
     }
     let finished = results.finish(|files| {
-        json(&Index {
+        json(&SweepIndex {
             scene: &base.name,
             version: VERSION,
             scene_file: &base.file,
@@ -245,7 +249,7 @@ fn finish(
             .filter(|at| at.summary["verdict"] == verdict)
             .count()
     };
-    Ok(Finished {
+    Ok(FinishedSweep {
         folder: finished.folder,
         rows: rows(&paths, found),
         has_curves: !figures.is_empty(),
@@ -254,7 +258,7 @@ fn finish(
 }
 
 /// The table for the terminal: a row for each plane at each point.
-fn rows(paths: &[String], found: &[Found]) -> Vec<Vec<String>> {
+fn rows(paths: &[String], found: &[PointResult]) -> Vec<Vec<String>> {
     let shown = [
         (BANDWIDTHS[0], "ρ of 95 % [cycles/m]"),
         (BANDWIDTHS[1], "ν of 95 % [cycles/slope]"),
@@ -267,7 +271,7 @@ fn rows(paths: &[String], found: &[Found]) -> Vec<Vec<String>> {
             .iter()
             .flat_map(|(_, name)| [(*name).to_owned(), "predicted".to_owned()]),
     );
-    let row = |at: &Found, plane: &Value| {
+    let row = |at: &PointResult, plane: &Value| {
         let mut row: Vec<String> = at.point.iter().map(|(_, x)| x.to_string()).collect();
         let words = ["name", "verdict"].map(|key| plane[key].as_str().unwrap_or_default());
         row.extend(words.map(str::to_owned));

@@ -1,12 +1,12 @@
 //! The numbers of a sweep as one table in CSV, a row for each number of each plane at each point.
 
-use crate::values::Point;
+use crate::values::SweepPoint;
 use etendue_store::Failure;
 use serde_json::Value;
 
 /// A number of a plane that is measured and predicted.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Number {
+pub(crate) struct TableNumber {
     pub(crate) quantity: String,
     pub(crate) unit: String,
     pub(crate) measured: Option<f64>,
@@ -17,13 +17,13 @@ pub(crate) struct Number {
 
 /// A point of a sweep, and the `summary.json` of its run.
 #[derive(Clone, Debug)]
-pub(crate) struct Found {
-    pub(crate) point: Point,
+pub(crate) struct PointResult {
+    pub(crate) point: SweepPoint,
     pub(crate) folder: String,
     pub(crate) summary: Value,
 }
 
-impl Found {
+impl PointResult {
     pub(crate) fn planes(&self) -> impl Iterator<Item = &Value> {
         self.summary["planes"].as_array().into_iter().flatten()
     }
@@ -34,8 +34,8 @@ pub(crate) const BANDWIDTHS: [&str; 2] = ["bandwidth_95_rho", "bandwidth_95_nu"]
 pub(crate) const SLOPE: &str = "slope";
 
 /// The numbers of a plane: of its whole spectrum, and each parameter.
-pub(crate) fn numbers(plane: &Value) -> Vec<Number> {
-    let of = |quantity: &str, unit: &str, of: &Value, predicted: &str| Number {
+pub(crate) fn numbers(plane: &Value) -> Vec<TableNumber> {
+    let of = |quantity: &str, unit: &str, of: &Value, predicted: &str| TableNumber {
         quantity: quantity.to_owned(),
         unit: unit.to_owned(),
         measured: of["measured"].as_f64(),
@@ -67,25 +67,25 @@ enum Column {
 }
 
 /// What stands in a row.
-struct Row<'a> {
-    at: &'a Found,
+struct TableRow<'a> {
+    at: &'a PointResult,
     plane: &'a Value,
-    number: Number,
+    number: TableNumber,
 }
 
 /// Names and columns: the fields that are swept, then what stands in each row.
-fn columns(paths: &[String], found: &[Found]) -> Vec<(String, Column)> {
+fn columns(paths: &[String], found: &[PointResult]) -> Vec<(String, Column)> {
     let planes = found
         .iter()
         .flat_map(|at| at.planes().map(move |plane| (at, plane)));
     let rows = planes.flat_map(|(at, plane)| {
         let numbers = numbers(plane).into_iter();
-        numbers.map(move |number| Row { at, plane, number })
+        numbers.map(move |number| TableRow { at, plane, number })
     });
-    let rows: Vec<Row<'_>> = rows.collect();
-    let words = |of: &dyn Fn(&Row<'_>) -> String| Column::Words(rows.iter().map(of).collect());
+    let rows: Vec<TableRow<'_>> = rows.collect();
+    let words = |of: &dyn Fn(&TableRow<'_>) -> String| Column::Words(rows.iter().map(of).collect());
     let values =
-        |of: &dyn Fn(&Row<'_>) -> Option<f64>| Column::Numbers(rows.iter().map(of).collect());
+        |of: &dyn Fn(&TableRow<'_>) -> Option<f64>| Column::Numbers(rows.iter().map(of).collect());
     let text = |key: &'static str| {
         words(&move |row| row.plane[key].as_str().unwrap_or_default().to_owned())
     };
@@ -113,7 +113,7 @@ fn columns(paths: &[String], found: &[Found]) -> Vec<(String, Column)> {
 }
 
 /// The table as CSV, all digits, empty where there is no number.
-pub(crate) fn csv(paths: &[String], found: &[Found]) -> Result<Vec<u8>, Failure> {
+pub(crate) fn csv(paths: &[String], found: &[PointResult]) -> Result<Vec<u8>, Failure> {
     let columns = columns(paths, found);
     let mut writer = csv::Writer::from_writer(Vec::new());
     let names = columns.iter().map(|(name, _)| name);

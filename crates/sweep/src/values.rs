@@ -22,7 +22,7 @@ pub enum Setting {
 }
 
 /// The value of each field that is swept.
-pub type Point = Vec<(String, f64)>;
+pub type SweepPoint = Vec<(String, f64)>;
 
 /// Values of one sweep, and points of all together.
 const MAX_POINTS: usize = 1000;
@@ -153,7 +153,7 @@ fn between([from, to]: [f64; 2], i: usize, count: usize, is_log: bool) -> f64 {
 }
 
 /// The points of all sweeps: in step, or all combinations, the last field fastest.
-pub fn points(sweeps: &[Sweep], together: bool) -> Result<Vec<Point>, Failure> {
+pub fn points(sweeps: &[Sweep], together: bool) -> Result<Vec<SweepPoint>, Failure> {
     let counts: Vec<usize> = sweeps.iter().map(|sweep| sweep.values.len()).collect();
     let at = |sweep: &Sweep, i: usize| (sweep.path.clone(), sweep.values[i]);
     if together {
@@ -175,9 +175,9 @@ pub fn points(sweeps: &[Sweep], together: bool) -> Result<Vec<Point>, Failure> {
         let message = format!("a sweep has at most {MAX_POINTS} points in all");
         return Err(Failure::bad_input(message));
     }
-    let one = vec![Point::new()];
+    let one = vec![SweepPoint::new()];
     Ok(sweeps.iter().fold(one, |points, sweep| {
-        let longer = |point: &Point| {
+        let longer = |point: &SweepPoint| {
             let values = (0..sweep.values.len()).map(|i| at(sweep, i));
             let longer = values.map(|value| [point.as_slice(), &[value]].concat());
             longer.collect::<Vec<_>>()
@@ -187,7 +187,7 @@ pub fn points(sweeps: &[Sweep], together: bool) -> Result<Vec<Point>, Failure> {
 }
 
 /// A text about a point, which it then names.
-pub fn message_at(point: &Point, text: String) -> String {
+pub fn message_at(point: &SweepPoint, text: String) -> String {
     if point.is_empty() || text.contains(&shown(point)) {
         text
     } else {
@@ -196,7 +196,7 @@ pub fn message_at(point: &Point, text: String) -> String {
 }
 
 /// A point, for texts.
-pub fn shown(point: &Point) -> String {
+pub fn shown(point: &SweepPoint) -> String {
     let parts = point.iter().map(|(path, x)| format!("{path}={}", tidy(*x)));
     parts.collect::<Vec<_>>().join(", ")
 }

@@ -76,7 +76,7 @@ mod words;
 mod work;
 
 pub use model::{Model, Observed, Over};
-pub use nets::{Budget, REPLICATES, RayNets};
+pub use nets::{REPLICATES, RayBudget, RayNets};
 pub use obstacle::{Obstacle, ObstacleForm};
 pub use parallel::{
     Chain, Harmonics, Operator, Source, at, blurred_projection, blurred_slices, derivative,

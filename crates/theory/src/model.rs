@@ -1,6 +1,6 @@
 //! What every theory answers.
 
-use crate::nets::{Budget, RayNets};
+use crate::nets::{RayBudget, RayNets};
 use crate::parameter::{New, Parameter};
 use crate::plane::Plane;
 use crate::predicted::Predicted;
@@ -26,14 +26,14 @@ pub trait Model: Clone {
     fn change(&mut self, parameter: Parameter, new: New<'_>) -> Option<()>;
 
     /// The slices with their error, a picture, and the derivatives by some of its parameters.
-    fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: Budget) -> Predicted;
+    fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: RayBudget) -> Predicted;
 
     /// Calls `then` with the light field as nets of rays, drawn as [`predict`](Self::predict) draws them. It
     /// is not called where no ray arrives.
-    fn with_rays(&self, over: Over<'_>, budget: Budget, then: &mut dyn FnMut(&dyn RayNets));
+    fn with_rays(&self, over: Over<'_>, budget: RayBudget, then: &mut dyn FnMut(&dyn RayNets));
 
     /// What a prediction takes.
-    fn work(&self, over: Over<'_>, budget: Budget) -> PredictionWork;
+    fn work(&self, over: Over<'_>, budget: RayBudget) -> PredictionWork;
 
     /// The unit of a parameter; empty if it is a pure number.
     fn unit(&self, parameter: Parameter) -> &'static str {

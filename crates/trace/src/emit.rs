@@ -32,7 +32,7 @@ enum EmissionStrategy {
     Sky(FromSky),
     /// Light without extent: each of these with an equal share, slopes along x and y, or positions of
     /// a beam.
-    Even(Vec<Bounds>),
+    Even(Vec<AxisBounds>),
     /// As the light shines.
     Plain(Plain),
 }
@@ -217,7 +217,7 @@ impl Emitter {
 
     /// A ray with slopes of a point or a projector, or positions of a beam, that are evenly drawn
     /// within one of some bounds, and its density with respect to these two.
-    fn even(&self, all: &[Bounds], [words, last]: [[u32; 4]; 2]) -> (TwoPlane, f64) {
+    fn even(&self, all: &[AxisBounds], [words, last]: [[u32; 4]; 2]) -> (TwoPlane, f64) {
         let bounds = match all {
             [only] => only,
             several => &several[random::index(last[3], several.len())],
@@ -261,12 +261,12 @@ fn densities(proposals: &[[Proposal; 2]], [x, y, u, v]: &Columns) -> [f64; ABREA
 }
 
 /// Lowest and highest coordinate along two axes.
-type Bounds = [[f64; 2]; 2];
+type AxisBounds = [[f64; 2]; 2];
 
 /// The slopes of a point or a projector, or positions of a beam, with which light crosses the window
 /// of each plane before the first surface, and those with which it meets that surface, for other
 /// planes; none where that is not known.
-fn even(scene: &Scene) -> Vec<Bounds> {
+fn even(scene: &Scene) -> Vec<AxisBounds> {
     let light = &scene.light;
     if light.has_extent() || matches!(light, Light::Rays { .. }) {
         return Vec::new();
@@ -290,7 +290,7 @@ fn even(scene: &Scene) -> Vec<Bounds> {
     let (across, beyond): (Vec<_>, Vec<_>) = scene.planes.iter().partition(|p| looks_across(p));
     let windows = across.iter().map(|plane| Some(into_window(&plane.window)));
     let surface = (!beyond.is_empty()).then(onto_surface);
-    let lit = |bounds: Bounds| {
+    let lit = |bounds: AxisBounds| {
         let shone = [0, 1].map(|axis| {
             let [low, high] = if light.is_distant() {
                 light.extent(axis)
@@ -301,12 +301,12 @@ fn even(scene: &Scene) -> Vec<Bounds> {
         });
         shone.iter().all(|[low, high]| low < high).then_some(shone)
     };
-    let all: Option<Vec<Bounds>> = windows.chain(surface).map(|bounds| lit(bounds?)).collect();
+    let all: Option<Vec<AxisBounds>> = windows.chain(surface).map(|bounds| lit(bounds?)).collect();
     all.unwrap_or_default()
 }
 
 /// An even density within bounds.
-fn evenly_over([[left, right], [low, high]]: &Bounds, [a, b]: [f64; 2]) -> f64 {
+fn evenly_over([[left, right], [low, high]]: &AxisBounds, [a, b]: [f64; 2]) -> f64 {
     let inside = (*left..=*right).contains(&a) && (*low..=*high).contains(&b);
     if inside {
         1.0 / ((right - left) * (high - low))

@@ -2,7 +2,7 @@
 
 use crate::area_sampler::AreaSampler;
 use crate::line::{direction, start};
-use crate::mesh::Mesh;
+use crate::mesh::BlockerMesh;
 use crate::obstacles::Around;
 use crate::primitive::Primitive;
 use crate::primitive_set::{PrimitiveSet, TaggedPrimitive};
@@ -16,11 +16,11 @@ use std::f64::consts::{PI, TAU};
 #[derive(Debug)]
 pub(crate) struct FootprintSampler {
     primitives: PrimitiveSet<()>,
-    points: Points,
+    points: PatternPoints,
 }
 
 #[derive(Debug)]
-enum Points {
+enum PatternPoints {
     /// Uniform over an area.
     Flat(AreaSampler),
     /// Uniform over the disc in the tangent plane at the vertex.
@@ -44,22 +44,22 @@ impl FootprintSampler {
                 let [a, b, _, d] = surface.corners();
                 (
                     vec![tagged(around.surface(&surface))],
-                    Points::Flat(AreaSampler::One([a, b, d])),
+                    PatternPoints::Flat(AreaSampler::One([a, b, d])),
                 )
             }
             Object::Mesh(i) => {
                 let mesh = &scene.meshes[i];
                 let pieces = AreaSampler::triangles(&mesh.triangles);
                 // As they are, whatever normals they have between them.
-                let mesh = Mesh::new(&mesh.triangles, None, Frame::IDENTITY);
+                let mesh = BlockerMesh::new(&mesh.triangles, None, Frame::IDENTITY);
                 let form = Primitive::Mesh(Box::new(mesh));
-                (vec![tagged(form)], Points::Flat(pieces))
+                (vec![tagged(form)], PatternPoints::Flat(pieces))
             }
             Object::Patch(i) => {
                 let patch = scene.patches[i].patch;
                 (
                     vec![tagged(Primitive::Smooth(Box::new(patch)))],
-                    Points::Smooth(patch),
+                    PatternPoints::Smooth(patch),
                 )
             }
         };
@@ -72,8 +72,8 @@ impl FootprintSampler {
     /// A point of it, from three numbers in (0, 1).
     pub(crate) fn sample(&self, r: [f64; 3]) -> DVec3 {
         match &self.points {
-            Points::Flat(pieces) => pieces.point(r).0,
-            Points::Smooth(patch) => {
+            PatternPoints::Flat(pieces) => pieces.point(r).0,
+            PatternPoints::Smooth(patch) => {
                 let (sin, cos) = libm::sincos(TAU * r[1]);
                 let radius = patch.aperture * r[0].sqrt();
                 patch.point(radius * cos, radius * sin)
@@ -91,8 +91,8 @@ impl FootprintSampler {
             let normal = primitive.normal(point);
             // Per area of the surface.
             let density = match &self.points {
-                Points::Flat(pieces) => 1.0 / pieces.area(),
-                Points::Smooth(patch) => {
+                PatternPoints::Flat(pieces) => 1.0 / pieces.area(),
+                PatternPoints::Smooth(patch) => {
                     normal.dot(patch.frame.d) / (PI * patch.aperture * patch.aperture)
                 }
             };
@@ -132,6 +132,7 @@ mod tests {
     /// For any direction the density over (x, y) integrates to 1, also where lines meet the surface twice, and points follow it: their mean of a
     /// function over the density is the integral of the function.
     #[test]
+    #[expect(clippy::too_many_lines, reason = "a test may be a list of cases")]
     fn lines_follow_the_density() {
         for (surface, slopes) in [
             (

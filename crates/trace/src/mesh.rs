@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 /// A mesh, seen from a leg.
 #[derive(Clone, Debug)]
-pub(crate) struct Mesh {
+pub(crate) struct BlockerMesh {
     triangles: Triangles,
     /// At the corners, if it is smooth.
     normals: Option<Arc<[[DVec3; 3]]>>,
@@ -22,7 +22,7 @@ pub(crate) struct Mesh {
     leg: Option<Frame>,
 }
 
-impl Mesh {
+impl BlockerMesh {
     pub(crate) fn new(
         triangles: &Triangles,
         normals: Option<&Arc<[[DVec3; 3]]>>,
@@ -204,7 +204,7 @@ mod tests {
         for (n, rays) in [(16, 5000), (200, 200)] {
             let triangles = sheet(n);
             for leg in legs() {
-                let mesh = Mesh::new(&triangles, None, leg);
+                let mesh = BlockerMesh::new(&triangles, None, leg);
                 let (mut hits, mut misses) = (0, 0);
                 for index in 0..rays {
                     let r = |block| {
@@ -247,7 +247,7 @@ mod tests {
         const N: u32 = 16;
         let triangles = sheet(N);
         for leg in legs() {
-            let mesh = Mesh::new(&triangles, None, leg);
+            let mesh = BlockerMesh::new(&triangles, None, leg);
             for i in 1..N - 1 {
                 for j in 1..N - 1 {
                     let (x, y) = (0.013 * f64::from(i), -0.017 * f64::from(j));

@@ -2,7 +2,7 @@
 
 use crate::grid::Grid;
 use crate::line::{direction, start};
-use crate::mesh::Mesh;
+use crate::mesh::BlockerMesh;
 use crate::primitive::Primitive;
 use crate::primitive_set::{PrimitiveHit, PrimitiveSet, TaggedPrimitive};
 use etendue_field::{Frame, HalfPlane, Mask, Rectangle, Shape, Side, Specular, TwoPlane};
@@ -13,12 +13,15 @@ use glam::DVec3;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum HitKind {
     Blocker,
-    Surface { object: Object, material: Material },
+    Surface {
+        object: Object,
+        material: ObstacleKind,
+    },
 }
 
 /// What light does that meets a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Material {
+pub(crate) enum ObstacleKind {
     Lambertian {
         albedo: f64,
     },
@@ -82,6 +85,7 @@ impl<T> Layer<T> {
 
 impl Obstacles {
     /// What stands around a leg of the path.
+    #[expect(clippy::too_many_lines, reason = "a case for each kind of obstacle")]
     pub(crate) fn new(scene: &Scene, leg: &Leg) -> Self {
         let mut primitives = Vec::new();
         let (mut half_planes, mut semi_transparent) = (Vec::new(), Vec::new());
@@ -116,7 +120,7 @@ impl Obstacles {
         for (i, surface) in scene.surfaces.iter().enumerate() {
             let object = Object::Surface(i);
             let albedo = surface.albedo;
-            let material = Material::Lambertian { albedo };
+            let material = ObstacleKind::Lambertian { albedo };
             primitives.push(TaggedPrimitive {
                 primitive: around.surface(surface),
                 tag: HitKind::Surface { object, material },
@@ -124,8 +128,8 @@ impl Obstacles {
         }
         for (i, object) in scene.patches.iter().enumerate() {
             let material = match object.event {
-                Event::Specular(event) => Material::Specular(event),
-                Event::Reflects(_) => Material::Reflects,
+                Event::Specular(event) => ObstacleKind::Specular(event),
+                Event::Reflects(_) => ObstacleKind::Reflects,
             };
             primitives.push(TaggedPrimitive {
                 primitive: Primitive::Smooth(Box::new(object.patch.seen_from(&leg.frame))),
@@ -138,8 +142,8 @@ impl Obstacles {
         for (i, mesh) in scene.meshes.iter().enumerate() {
             let object = Object::Mesh(i);
             let material = match (&mesh.smooth, mesh.albedo) {
-                (Some(smooth), _) => Some(Material::Specular(smooth.event)),
-                (None, albedo) => albedo.map(|albedo| Material::Lambertian { albedo }),
+                (Some(smooth), _) => Some(ObstacleKind::Specular(smooth.event)),
+                (None, albedo) => albedo.map(|albedo| ObstacleKind::Lambertian { albedo }),
             };
             let surface = |material| HitKind::Surface { object, material };
             let tag = material.map_or(HitKind::Blocker, surface);
@@ -310,7 +314,7 @@ impl Around {
 
     pub(crate) fn mesh(&self, mesh: &MeshObject) -> Primitive {
         let normals = mesh.smooth.as_ref().map(|smooth| &smooth.normals);
-        Primitive::Mesh(Box::new(Mesh::new(&mesh.triangles, normals, self.0)))
+        Primitive::Mesh(Box::new(BlockerMesh::new(&mesh.triangles, normals, self.0)))
     }
 
     /// A shape in the plane of a frame; across the leg, with axes along its own, distances are exact.

@@ -2,7 +2,7 @@
 
 use crate::grid::Grid;
 use crate::line::{direction, start};
-use crate::mesh::Mesh;
+use crate::mesh::BlockerMesh;
 use etendue_field::{Frame, Patch, Shape, TwoPlane, enclosing};
 use glam::DVec3;
 
@@ -17,7 +17,7 @@ pub(crate) enum Primitive {
     /// A flat shape in the plane of X and Y of a frame.
     Oblique { frame: Box<Frame>, shape: Shape },
     /// Triangles; what is met of it is the part with the number of a triangle.
-    Mesh(Box<Mesh>),
+    Mesh(Box<BlockerMesh>),
     /// A smooth surface.
     Smooth(Box<Patch>),
 }

@@ -164,14 +164,18 @@ impl<T: Clone> PrimitiveSet<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::Mesh;
+    use crate::mesh::BlockerMesh;
     use etendue_field::{Disc, Frame, Rectangle, Shape};
     use etendue_scene::Triangles;
     use etendue_transform::random::{self, Stream};
 
     fn mesh(triangles: Vec<[DVec3; 3]>) -> Primitive {
         let triangles = Triangles::new(triangles, 0.0);
-        Primitive::Mesh(Box::new(Mesh::new(&triangles, None, Frame::IDENTITY)))
+        Primitive::Mesh(Box::new(BlockerMesh::new(
+            &triangles,
+            None,
+            Frame::IDENTITY,
+        )))
     }
 
     /// Squares that share edges, discs and triangles: the cases in which rounding would leak.

@@ -10,11 +10,11 @@ use etendue_field::Profile;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ProfileDensity {
     half: f64,
-    kind: Kind,
+    kind: ProposalKind,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+enum ProposalKind {
     Constant,
     Tent,
     /// In proportion to g(t) = (1 + t²)^(−3/2).
@@ -26,20 +26,20 @@ impl ProfileDensity {
         Self {
             half: profile.half_width(),
             kind: match profile {
-                Profile::Hann(_) => Kind::Tent,
-                Profile::Box(_) | Profile::Gaussian { .. } => Kind::Constant,
+                Profile::Hann(_) => ProposalKind::Tent,
+                Profile::Box(_) | Profile::Gaussian { .. } => ProposalKind::Constant,
             },
         }
     }
 
     pub(crate) fn constant(half: f64) -> Self {
-        let kind = Kind::Constant;
+        let kind = ProposalKind::Constant;
         Self { half, kind }
     }
 
     /// For slopes of light that a surface receives, up to `half`: as the cosine weighs them in 2D (docs/theory.md (6)).
     pub(crate) fn cosine(half: f64) -> Self {
-        let kind = Kind::Cosine;
+        let kind = ProposalKind::Cosine;
         Self { half, kind }
     }
 
@@ -54,12 +54,12 @@ impl ProfileDensity {
     fn cumulative(&self, t: f64) -> f64 {
         let s = (t / self.half).clamp(-1.0, 1.0);
         match self.kind {
-            Kind::Constant => 0.5 * (1.0 + s),
-            Kind::Tent => {
+            ProposalKind::Constant => 0.5 * (1.0 + s),
+            ProposalKind::Tent => {
                 let beyond = 0.5 * (1.0 - s.abs()) * (1.0 - s.abs());
                 if s < 0.0 { beyond } else { 1.0 - beyond }
             }
-            Kind::Cosine => {
+            ProposalKind::Cosine => {
                 let t = s * self.half;
                 0.5 * (1.0 + t / ((1.0 + t * t).sqrt() * self.sine()))
             }
@@ -70,13 +70,13 @@ impl ProfileDensity {
     #[inline(always)]
     pub(crate) fn quantile(&self, p: f64) -> f64 {
         let s = match self.kind {
-            Kind::Constant => 2.0 * p - 1.0,
+            ProposalKind::Constant => 2.0 * p - 1.0,
             // One formula for both sides: a processor guesses the side wrong every other time.
-            Kind::Tent => {
+            ProposalKind::Tent => {
                 let beyond = p.min(1.0 - p).max(0.0);
                 (1.0 - (2.0 * beyond).sqrt()).copysign(p - 0.5)
             }
-            Kind::Cosine => {
+            ProposalKind::Cosine => {
                 let sine = (2.0 * p - 1.0) * self.sine();
                 return sine / (1.0 - sine * sine).sqrt();
             }
@@ -92,9 +92,9 @@ impl ProfileDensity {
             return 0.0;
         }
         match self.kind {
-            Kind::Constant => 0.5 / self.half,
-            Kind::Tent => (1.0 - s) / self.half,
-            Kind::Cosine => {
+            ProposalKind::Constant => 0.5 / self.half,
+            ProposalKind::Tent => (1.0 - s) / self.half,
+            ProposalKind::Cosine => {
                 let secant_squared = 1.0 + t * t;
                 0.5 / (secant_squared * secant_squared.sqrt() * self.sine())
             }
@@ -105,11 +105,11 @@ impl ProfileDensity {
     /// that they are done several numbers at a time.
     #[inline(always)]
     fn each<const N: usize>(&self, t: [f64; N], f: impl Fn(&Self, f64) -> f64) -> [f64; N] {
-        let of = |kind: Kind| Self { kind, ..*self };
+        let of = |kind: ProposalKind| Self { kind, ..*self };
         match self.kind {
-            Kind::Constant => lanes(|i| f(&of(Kind::Constant), t[i])),
-            Kind::Tent => lanes(|i| f(&of(Kind::Tent), t[i])),
-            Kind::Cosine => lanes(|i| f(&of(Kind::Cosine), t[i])),
+            ProposalKind::Constant => lanes(|i| f(&of(ProposalKind::Constant), t[i])),
+            ProposalKind::Tent => lanes(|i| f(&of(ProposalKind::Tent), t[i])),
+            ProposalKind::Cosine => lanes(|i| f(&of(ProposalKind::Cosine), t[i])),
         }
     }
 }
@@ -290,6 +290,7 @@ mod tests {
         clippy::cast_sign_loss,
         reason = "the number of a cell"
     )]
+    #[expect(clippy::too_many_lines, reason = "a test may be a list of cases")]
     fn samples_follow_the_density() {
         const CELLS: usize = 24;
         const SAMPLES: u32 = 400_000;

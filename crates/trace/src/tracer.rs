@@ -7,7 +7,7 @@ use crate::courses::{Both, rounding};
 use crate::emit::{ABREAST, Emitter};
 use crate::heading::Heading;
 use crate::numbers::{Numbers, PhotonNumbers};
-use crate::obstacles::{HitKind, Material, Obstacles};
+use crate::obstacles::{HitKind, ObstacleKind, Obstacles};
 use crate::plane_on_leg::PlaneOnLeg;
 use crate::primitive_set::PrimitiveHit;
 use etendue_field::{Crossing, Frame, Ledger, PhotonSource, Side, TwoPlane, VirtualPlane};
@@ -26,7 +26,7 @@ use std::ops::Range;
 #[derive(Debug)]
 pub struct Tracer {
     emitter: Emitter,
-    legs: Vec<Leg>,
+    legs: Vec<FlightLeg>,
     planes: usize,
     shares: BatchRanges,
     numbers: PhotonNumbers,
@@ -34,7 +34,7 @@ pub struct Tracer {
 
 /// A leg of the path, as photons see it.
 #[derive(Debug)]
-struct Leg {
+struct FlightLeg {
     courses: Both<Course>,
     /// How light begins the leg; `None` for the first.
     bounce: Option<Bounce>,
@@ -82,8 +82,8 @@ impl Tracer {
     pub fn new(scene: &Scene) -> Self {
         // Legs beyond the last plane are of no interest.
         let last = scene.planes.iter().map(|plane| plane.leg).max();
-        let legs = (0..=last.unwrap_or(0)).map(|leg| Leg::new(scene, leg));
-        let legs: Vec<Leg> = legs.collect();
+        let legs = (0..=last.unwrap_or(0)).map(|leg| FlightLeg::new(scene, leg));
+        let legs: Vec<FlightLeg> = legs.collect();
         Self {
             emitter: Emitter::new(scene),
             planes: scene.planes.len(),
@@ -191,11 +191,11 @@ impl Tracer {
         };
         let next = self.legs.get(leg + 1).filter(|_| target.tag.is(this.ends));
         let arrival = || Arrival::new(&ray, distance, target, arrives);
-        if let Material::Lambertian { albedo } = material {
+        if let ObstacleKind::Lambertian { albedo } = material {
             account.stopped += albedo * arrives;
             account.absorbed += (1.0 - albedo) * arrives;
             photon.counts = false;
-        } else if material == Material::Reflects {
+        } else if material == ObstacleKind::Reflects {
             if arrival().is_on_front() {
                 account.stopped += arrives;
             } else {
@@ -206,14 +206,14 @@ impl Tracer {
         let onwards = next.and_then(|next| next.begin(course, &arrival(), words()));
         match onwards {
             Some(flight) => photon.flight = flight,
-            None if matches!(material, Material::Specular(_)) => account.stopped += arrives,
+            None if matches!(material, ObstacleKind::Specular(_)) => account.stopped += arrives,
             None => {}
         }
         onwards.is_some()
     }
 }
 
-impl Leg {
+impl FlightLeg {
     fn new(scene: &Scene, leg: usize) -> Self {
         let this = &scene.path.legs[leg];
         let planes = scene.planes.iter().enumerate();

@@ -1,5 +1,7 @@
 //! The tests of `etendue-trace`, one program for all.
 
+#![allow(clippy::too_many_lines, reason = "a test may be a list of cases")]
+
 mod brdfs;
 mod common;
 mod environment;

@@ -2,7 +2,7 @@
 
 use crate::finite::require_finite;
 use crate::picture_request::PictureRequest;
-use etendue_adaptive::{Layers, Method, Plan, Rendered, Stage};
+use etendue_adaptive::{Layers, Rendered, SampleMethod, SamplePlan, Stage};
 use etendue_paths::Paths;
 use etendue_pipeline::{Progress, Reporter, Work};
 use etendue_store::exr::{Part, exr};
@@ -23,7 +23,7 @@ pub(crate) const FILES: &[&str] = &["bandwidth.png", "samples.png", TIMING];
 /// Renders and writes; returns what is to be said of it.
 pub(crate) fn render(
     request: &PictureRequest,
-    method: Method,
+    method: SampleMethod,
     (paths, camera): (&Paths, &Camera),
     (results, made_from): (&mut Results, &mut Value),
     reporter: &dyn Reporter,
@@ -41,7 +41,7 @@ pub(crate) fn render(
     let samples = request
         .shading_samples
         .map_or(pixels.div_ceil(20), |n| n as usize);
-    let plan = Plan {
+    let plan = SamplePlan {
         method,
         samples,
         each: request.paths,
@@ -49,7 +49,7 @@ pub(crate) fn render(
         is_even: request.isotropic,
         seed: request.seed,
     };
-    let watch = Watch::new(reporter);
+    let watch = StageWatch::new(reporter);
     let bar = &watch.bar;
     let rendered = etendue_adaptive::render(
         paths,
@@ -89,14 +89,14 @@ fn advance(bar: &Mutex<Option<Box<dyn Progress + '_>>>, steps: u64) {
 }
 
 /// What is being done, and for how long each stage was.
-struct Watch<'a> {
+struct StageWatch<'a> {
     reporter: &'a dyn Reporter,
     bar: Mutex<Option<Box<dyn Progress + 'a>>>,
     now: RefCell<Option<(&'static str, Instant)>>,
     seconds: RefCell<BTreeMap<&'static str, f64>>,
 }
 
-impl<'a> Watch<'a> {
+impl<'a> StageWatch<'a> {
     fn new(reporter: &'a dyn Reporter) -> Self {
         Self {
             reporter,

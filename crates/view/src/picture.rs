@@ -30,6 +30,10 @@ pub struct RenderedPicture {
 }
 
 /// Renders a picture into a folder.
+#[expect(
+    clippy::too_many_lines,
+    reason = "one picture from file to result, in the order in which it goes"
+)]
 pub fn render(
     request: &PictureRequest,
     folder: &Path,

@@ -1,7 +1,7 @@
 //! A picture that is asked for.
 
 use crate::world_source::{CameraChoice, WorldSource};
-use etendue_adaptive::{BLOCKER_RAYS, Method};
+use etendue_adaptive::{BLOCKER_RAYS, SampleMethod};
 
 /// A picture that is asked for.
 #[derive(Clone, Debug)]
@@ -11,7 +11,7 @@ pub struct PictureRequest {
     /// The camera.
     pub camera: CameraChoice,
     /// How few shading samples are spent; `None` for a reference.
-    pub method: Option<Method>,
+    pub method: Option<SampleMethod>,
     /// Paths for each pixel of a reference.
     pub samples: u32,
     /// Shading samples of the whole picture; otherwise one for each 20 pixels.
@@ -39,13 +39,13 @@ impl PictureRequest {
     pub const SEED: u64 = 1;
 
     /// Each method by its name.
-    pub const METHODS: [(&str, Option<Method>); 6] = [
+    pub const METHODS: [(&str, Option<SampleMethod>); 6] = [
         ("reference", None),
-        ("uniform", Some(Method::Uniform)),
-        ("predicted", Some(Method::Predicted)),
-        ("printed", Some(Method::Printed)),
-        ("weighted", Some(Method::Weighted)),
-        ("variance", Some(Method::Variance)),
+        ("uniform", Some(SampleMethod::Uniform)),
+        ("predicted", Some(SampleMethod::Predicted)),
+        ("printed", Some(SampleMethod::Printed)),
+        ("weighted", Some(SampleMethod::Weighted)),
+        ("variance", Some(SampleMethod::Variance)),
     ];
 
     /// A reference of a scene as its first camera sees it.
@@ -67,7 +67,7 @@ impl PictureRequest {
 
     /// The method where none is named: a reference, unless a number of shading samples is.
     #[must_use]
-    pub fn usual_method(shading_samples: Option<u32>) -> Option<Method> {
-        shading_samples.map(|_| Method::Predicted)
+    pub fn usual_method(shading_samples: Option<u32>) -> Option<SampleMethod> {
+        shading_samples.map(|_| SampleMethod::Predicted)
     }
 }

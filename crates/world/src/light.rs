@@ -93,4 +93,4 @@ pub struct SkyMap {
 }
 
 /// Radiance of a surface on its front, the same to all directions: an area light.
-pub type Emission = Texture;
+pub type EmittedRadiance = Texture;

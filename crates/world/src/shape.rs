@@ -1,6 +1,6 @@
 //! Shapes and their geometry.
 
-use crate::light::Emission;
+use crate::light::EmittedRadiance;
 use glam::{DAffine3, DVec2, DVec3};
 use std::sync::Arc;
 
@@ -18,7 +18,7 @@ pub struct Shape {
     /// The number of its material.
     pub material: usize,
     /// What it emits on its front, W m⁻² sr⁻¹; `None` for none.
-    pub emission: Option<Emission>,
+    pub emission: Option<EmittedRadiance>,
 }
 
 /// Where a surface is, with its front and its texture coordinates (u, v).

@@ -8,7 +8,7 @@ use etendue_compare::{
 };
 use etendue_field::{Light, ProjectionGrid, VirtualPlane};
 use etendue_scene::{Object, Scene};
-use etendue_theory::{Budget, Model, Predicted};
+use etendue_theory::{Model, Predicted, RayBudget};
 use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -40,7 +40,7 @@ const SEEDS: [u64; 2] = [1, 2];
 /// Seconds of one core that a prediction may take at most, with its derivatives.
 const LONGEST: f64 = 60.0;
 /// As for 2·10⁵ photons of a run.
-const BUDGET: Budget = Budget {
+const BUDGET: RayBudget = RayBudget {
     nodes: 1.1e6,
     error: 3e-3,
 };

@@ -1,6 +1,6 @@
 //! How small a fault of the main scene is still rejected.
 
-use super::{Predict, Tampered, chained, each_rectangle, scale_travel, shifted, unchanged};
+use super::{Predict, TamperedBlock, chained, each_rectangle, scale_travel, shifted, unchanged};
 use crate::progress::progress;
 use crate::report::Bound::Below;
 use crate::report::{Check, ReportSection, Row};
@@ -122,7 +122,7 @@ fn rejected(fault: &SizedFault, scene: &Scene, sound: &Measurement) -> Option<f6
         .take_while(|size| match fault {
             SizedFault::Predicted(predict) => is_rejected(scene, sound, &*predict(*size)),
             SizedFault::Photons(tamper) => {
-                let tampered = Tampered {
+                let tampered = TamperedBlock {
                     tracer: &Tracer::new(scene),
                     crossing: |_, crossing| Some(tamper(*size, crossing)),
                 };

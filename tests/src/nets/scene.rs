@@ -5,7 +5,7 @@ use etendue_compare::{Applicability, Theory};
 use etendue_field::{Complex, Slices, VirtualPlane};
 use etendue_field::{ProjectionGrid, Window};
 use etendue_scene::{Scene, SceneFile, resolve};
-use etendue_theory::{Budget, Model, REPLICATES};
+use etendue_theory::{Model, REPLICATES, RayBudget};
 
 /// What is known of the light field of a scene.
 pub(super) struct SceneOutcome {
@@ -81,7 +81,7 @@ fn outcome(kind: BlockerKind, number: u64) -> Result<Option<SceneOutcome>, Untol
     let mut dice = SceneDice::new(number);
     let text = scene(kind, &mut dice);
     let doublings = if kind.is_chain() { dice.of(3) } else { 0 };
-    let budget = Budget {
+    let budget = RayBudget {
         nodes: 65_536.0 * [1.0, 2.0, 4.0][doublings],
         error: [0.0, 5e-3][dice.of(2)],
     };
@@ -157,7 +157,7 @@ fn theory(scene: &Scene, plane: &VirtualPlane) -> Option<Theory> {
 }
 
 /// A prediction by nets.
-fn found(theory: &Theory, plane: &VirtualPlane, budget: Budget) -> Option<PredictionFound> {
+fn found(theory: &Theory, plane: &VirtualPlane, budget: RayBudget) -> Option<PredictionFound> {
     let picture = ProjectionGrid::new(&plane.window, 1);
     let over = (&plane.window, &plane.grid, &picture);
     let found = match theory {
@@ -178,7 +178,7 @@ fn found(theory: &Theory, plane: &VirtualPlane, budget: Budget) -> Option<Predic
 fn truth(
     theory: &Theory,
     plane: &VirtualPlane,
-    budget: Budget,
+    budget: RayBudget,
     stated: f64,
 ) -> Result<(Slices, f64), Untold> {
     let enough = OF_STATED * stated;
@@ -197,7 +197,7 @@ fn truth(
         }
         return Err(Untold);
     }
-    let more = Budget {
+    let more = RayBudget {
         nodes: HUNDREDFOLD * budget.nodes,
         error: 0.8 * enough,
     };

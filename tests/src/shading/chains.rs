@@ -11,7 +11,7 @@ use etendue_field::Slices;
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_theory::geometry::AffineMap;
-use etendue_theory::scattering::{ReflectionChain, chain, defect};
+use etendue_theory::scattering::{ScatteringChain, chain, defect};
 
 /// Of the exact prediction, which is not asked here.
 const LEVEL: f64 = 0.01;
@@ -19,7 +19,7 @@ const LEVEL: f64 = 0.01;
 const PHOTONS: u64 = 1 << 22;
 const SCENE: &str = "textured_glossy";
 
-type Change = fn(&mut ReflectionChain);
+type Change = fn(&mut ScatteringChain);
 
 fn faults() -> Vec<(&'static str, Change)> {
     vec![
@@ -127,7 +127,7 @@ fn judged(
     scene: &Scene,
     measurement: &Measurement,
     sound: &Prediction,
-    tampered: &ReflectionChain,
+    tampered: &ScatteringChain,
     slices: Slices,
 ) -> FirstOrderReport {
     let view = scattered(scene, &scene.planes[0]).expect("a plane behind a BRDF");

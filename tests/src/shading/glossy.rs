@@ -3,7 +3,7 @@
 use crate::report::Bound::{Above, Below};
 use crate::report::{Check, ReportSection, Row};
 use etendue_compare::{Applicability, criterion, exact_bandwidth, measured_bandwidth};
-use etendue_figures::{Curve, CurveKind, CurvePanel, Curves, Quantity};
+use etendue_figures::{AxisQuantity, Curve, CurveKind, CurvePanel, Curves};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::measure;
 use etendue_theory::shading::Criterion;
@@ -212,7 +212,7 @@ impl GlossyBench {
 /// A sweep: its name, what is swept, and how it changes the bench.
 struct GlossySweep {
     name: &'static str,
-    quantity: Quantity,
+    quantity: AxisQuantity,
     bench: fn(f64) -> GlossyBench,
     values: &'static [f64],
 }
@@ -220,7 +220,7 @@ struct GlossySweep {
 fn sweeps() -> Vec<GlossySweep> {
     let sweep = |name, symbol, unit, values, bench| GlossySweep {
         name,
-        quantity: Quantity::new(symbol, unit),
+        quantity: AxisQuantity::new(symbol, unit),
         bench,
         values,
     };
@@ -449,7 +449,7 @@ pub(crate) fn glossy(photons: Option<u64>) -> (ReportSection, Curves) {
     let picture = Curves {
         title: "How fast a glossy reflection changes with angle".to_owned(),
         note: format!("Durand et al. 2005, section 6.2; {photons} photons for each point"),
-        y: Quantity::new("*B*", "cycles/slope"),
+        y: AxisQuantity::new("*B*", "cycles/slope"),
         panels,
     };
     (section, picture)

@@ -8,13 +8,13 @@ use etendue_field::{Frame, Lobe, ProjectionGrid};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_theory::reflections::{Interaction, ReflectionSystem};
-use etendue_theory::{Budget, Model, Observed};
+use etendue_theory::{Model, Observed, RayBudget};
 use glam::DQuat;
 
 /// Photons by which the subtlest fault is seen.
 const PHOTONS: u64 = 1 << 26;
 /// Errors of a fifth of the photons' noise.
-const BUDGET: Budget = Budget {
+const BUDGET: RayBudget = RayBudget {
     nodes: 2e7,
     error: 1e-3,
 };

@@ -57,7 +57,7 @@ const SMALL: [f64; 2] = [5e-3, 0.05];
 const KINDS: [&str; 3] = ["a mask", "a black mesh", "a surface off the path"];
 
 /// A plane, with what came of it.
-struct Tried {
+struct TriedSmall {
     number: u64,
     kind: usize,
     ending: SmallEnding,
@@ -79,7 +79,7 @@ pub(super) enum SmallEnding {
 pub(crate) fn small(options: &SmallOptions) -> io::Result<ReportSection> {
     let bar = progress(options.scenes, "scenes");
     let numbers = options.first..options.first + options.scenes;
-    let tried: io::Result<Vec<Option<Tried>>> = numbers
+    let tried: io::Result<Vec<Option<TriedSmall>>> = numbers
         .into_par_iter()
         .map(|number| {
             let folder = tempfile::tempdir()?;
@@ -92,7 +92,7 @@ pub(crate) fn small(options: &SmallOptions) -> io::Result<ReportSection> {
                 keep(options, number, &scene, folder.path())?;
             }
             bar.one();
-            Ok(Some(Tried {
+            Ok(Some(TriedSmall {
                 number,
                 kind,
                 ending,
@@ -298,10 +298,10 @@ pub(super) fn ending(scene: &Scene, classes: bool) -> SmallEnding {
     SmallEnding::Judged(class, verdict)
 }
 
-fn section(options: &SmallOptions, tried: &[Option<Tried>]) -> ReportSection {
-    let tried: Vec<&Tried> = tried.iter().flatten().collect();
+fn section(options: &SmallOptions, tried: &[Option<TriedSmall>]) -> ReportSection {
+    let tried: Vec<&TriedSmall> = tried.iter().flatten().collect();
     let row = |(kind, says): (usize, &&str)| {
-        let of_kind: Vec<&&Tried> = tried.iter().filter(|tried| tried.kind == kind).collect();
+        let of_kind: Vec<&&TriedSmall> = tried.iter().filter(|tried| tried.kind == kind).collect();
         let count = |is: &dyn Fn(SmallEnding) -> bool| {
             of_kind.iter().filter(|tried| is(tried.ending)).count()
         };

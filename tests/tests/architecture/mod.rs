@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
 mod modules;
+mod names;
 
 use modules::{Modules, circles, code};
 use std::collections::{BTreeMap, BTreeSet};

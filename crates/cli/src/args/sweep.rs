@@ -3,7 +3,7 @@
 use super::shared::{ForceArgs, PhotonArgs, SceneArgs, ThreadArgs};
 use clap::Args;
 use etendue_pipeline::load::SceneSource;
-use etendue_sweep::Request;
+use etendue_sweep::SweepRequest;
 use etendue_sweep::values::{Setting, Sweep, setting, sweep};
 use std::path::PathBuf;
 
@@ -60,8 +60,8 @@ pub(crate) struct SweepArgs {
 
 impl SweepArgs {
     /// The sweep that is asked for.
-    pub(crate) fn request(&self) -> Request {
-        Request {
+    pub(crate) fn request(&self) -> SweepRequest {
+        SweepRequest {
             scene: SceneSource::file(&self.path, &[]),
             set: self.set.clone(),
             common_seed: self.common_seed,

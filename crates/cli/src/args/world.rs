@@ -3,7 +3,7 @@
 use super::shared::{ForceArgs, ThreadArgs, assignment, one_named, whole_number};
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
-use etendue_adaptive::Method;
+use etendue_adaptive::SampleMethod;
 use etendue_import::{Color, Options};
 use etendue_store::ArgumentStyle;
 use etendue_view::ranges::{self, MAX_ANGLE, MAX_COORDINATE, SIDE};
@@ -150,7 +150,7 @@ impl RenderArgs {
 
 /// How samples of a picture are spent; `None` for a reference.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct RenderMethod(Option<Method>);
+pub(crate) struct RenderMethod(Option<SampleMethod>);
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:

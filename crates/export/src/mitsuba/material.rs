@@ -1,6 +1,6 @@
 //! What surfaces do to light, as Mitsuba's BSDFs.
 
-use super::texture::Varied;
+use super::texture::VariedTexture;
 use super::xml::{black, spectrum};
 use super::{NotInMitsuba, Writer};
 use etendue_field::{Brdf, Fresnel, Lobe, Pattern, Picture, Reflectance, Specular, Term, Weight};
@@ -37,7 +37,7 @@ impl Writer {
             return Err(NotInMitsuba::AngleTable { name: name() });
         }
         let texture = reflectance.texture.as_ref();
-        let textured = |brdf: &Brdf| Varied {
+        let textured = |brdf: &Brdf| VariedTexture {
             pattern: texture,
             range: [0.0, brdf.albedo],
         };
@@ -45,7 +45,7 @@ impl Writer {
             [one] if one.weight == Weight::One => self.brdf(&one.brdf, textured(&one.brdf)),
             [one, zero] => match (&one.weight, &zero.weight) {
                 (Weight::Pattern(pattern), Weight::Rest(rest)) if pattern == rest => {
-                    let weight = Varied {
+                    let weight = VariedTexture {
                         pattern: Some(pattern),
                         range: [0.0, 1.0],
                     };
@@ -82,7 +82,7 @@ impl Writer {
         }
     }
 
-    fn brdf(&mut self, brdf: &Brdf, albedo: Varied<'_>) -> String {
+    fn brdf(&mut self, brdf: &Brdf, albedo: VariedTexture<'_>) -> String {
         match brdf.lobe {
             Lobe::Lambertian => {
                 let albedo = self.varied("reflectance", &albedo);
@@ -112,7 +112,7 @@ impl Writer {
         distribution: &str,
         roughness: f64,
         brdf: &Brdf,
-        albedo: &Varied<'_>,
+        albedo: &VariedTexture<'_>,
     ) -> String {
         let metal = match index(&brdf.fresnel) {
             None => NO_METAL.to_owned(),

@@ -11,14 +11,14 @@ const PERIOD: usize = 512;
 
 /// A number that follows a pattern.
 #[derive(Clone, Copy)]
-pub(super) struct Varied<'a> {
+pub(super) struct VariedTexture<'a> {
     /// `None` where it is the same everywhere, the second of the range.
     pub(super) pattern: Option<&'a Pattern>,
     /// Its values where the pattern is 0 and 1.
     pub(super) range: [f64; 2],
 }
 
-impl Varied<'_> {
+impl VariedTexture<'_> {
     fn at(&self, share: f64) -> f64 {
         let [low, high] = self.range;
         low + share * (high - low)
@@ -36,7 +36,7 @@ impl Writer {
     ///
     /// Checkerboards are pictures too, of four pixels: Mitsuba 3.9.1 takes the colours of its own the other way round
     /// where it is asked for a number.
-    pub(super) fn varied(&mut self, name: &str, varied: &Varied<'_>) -> String {
+    pub(super) fn varied(&mut self, name: &str, varied: &VariedTexture<'_>) -> String {
         match varied.pattern {
             None => spectrum(name, varied.range[1]),
             Some(Pattern::Checkerboard { period }) => {
@@ -60,7 +60,7 @@ impl Writer {
         }
     }
 
-    fn cosine(&mut self, name: &str, varied: &Varied<'_>, grating: &Grating) -> String {
+    fn cosine(&mut self, name: &str, varied: &VariedTexture<'_>, grating: &Grating) -> String {
         let Grating {
             axis,
             frequency,

@@ -10,8 +10,8 @@
 use base64::Engine;
 use etendue_field::Side;
 use etendue_figures::{
-    Axis, Bars, Column, Comparison, Figure, Guide, Picture, PlaneMark, Plate, PlateRow, Quantity,
-    Scale, Section, Segment, SegmentKind, Strip, Style, comparison, plate, strip,
+    Axis, AxisQuantity, Bars, Comparison, Figure, Guide, Picture, PlaneMark, Plate, PlateRow,
+    Scale, Section, Segment, SegmentKind, Strip, StripColumn, Style, comparison, plate, strip,
 };
 use ndarray::{Array2, ArrayView2};
 
@@ -70,7 +70,7 @@ pub fn compare(
         note: "*p* = 0.43, pass",
         x: Axis::edges("*x*", "m", [-0.5, 0.5]),
         y: Axis::edges("*u*", "", [-0.5, 0.5]),
-        quantity: Quantity::new("*L*", "W m⁻² sr⁻¹"),
+        quantity: AxisQuantity::new("*L*", "W m⁻² sr⁻¹"),
         scale,
         measured,
         predicted,
@@ -123,7 +123,7 @@ pub fn path(section: &Section, values: ArrayView2<'_, f64>) -> Figure {
         y: Axis::edges("*u*", "", [-1.0, 1.0]),
         values,
     };
-    let column = || Column {
+    let column = || StripColumn {
         light_field: picture(),
         spectrum: picture(),
         across: None,
@@ -144,9 +144,9 @@ pub fn path(section: &Section, values: ArrayView2<'_, f64>) -> Figure {
         note: "",
         section,
         columns: section.planes.iter().map(|_| column()).collect(),
-        light_field: Quantity::new("*L*", "W m⁻² sr⁻¹"),
-        spectrum: Quantity::new("|*S*|^{2}", "W²"),
-        full_radial: Quantity::new("|*S*|^{2}", "W²"),
+        light_field: AxisQuantity::new("*L*", "W m⁻² sr⁻¹"),
+        spectrum: AxisQuantity::new("|*S*|^{2}", "W²"),
+        full_radial: AxisQuantity::new("|*S*|^{2}", "W²"),
         floor: -60.0,
     };
     strip(&path, &Style::default()).unwrap()
@@ -182,7 +182,7 @@ fn plate_of(count: usize, values: ArrayView2<'_, f64>, ends: fn(usize) -> [f64; 
     };
     let row = |name: &'static str, scale, shared| PlateRow {
         name,
-        quantity: Quantity::new("∬ *L W* d*y* d*v*", "W m^{−2} sr^{−1} m"),
+        quantity: AxisQuantity::new("∬ *L W* d*y* d*v*", "W m^{−2} sr^{−1} m"),
         scale,
         shared,
         pictures: (0..count).map(picture).collect(),
@@ -207,7 +207,7 @@ fn plate_of(count: usize, values: ArrayView2<'_, f64>, ends: fn(usize) -> [f64; 
             count
         ],
         bars: Some(Bars {
-            quantity: Quantity::new("*H* above 1.33 cycles/m", "%"),
+            quantity: AxisQuantity::new("*H* above 1.33 cycles/m", "%"),
             about: "*H*, the share of something".to_owned(),
             measured: some(1.5),
             errors: some(0.2),

@@ -1,6 +1,6 @@
 //! The JSON of a file, checked; and the buffer of a binary one.
 
-use crate::report::{Place, Report, quoted};
+use crate::report::{Report, SourcePlace, quoted};
 use ::gltf::json::validation::{Error, Validate};
 use ::gltf::json::{Path, Root};
 
@@ -28,7 +28,7 @@ pub(super) struct Document {
 }
 
 /// Reads the bytes of a file; `None` after a cause.
-pub(super) fn read(bytes: &[u8], place: &Place, report: &Report) -> Option<Document> {
+pub(super) fn read(bytes: &[u8], place: &SourcePlace, report: &Report) -> Option<Document> {
     let refuse = |message: String| report.cause(place, message);
     let (json, chunk) = match bytes.starts_with(MAGIC) {
         true => chunks(bytes).map_err(refuse).ok()?,
@@ -81,7 +81,7 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
 }
 
 /// Whether all indices are within range and all words are known; else causes.
-fn check(root: &Root, place: &Place, report: &Report) -> bool {
+fn check(root: &Root, place: &SourcePlace, report: &Report) -> bool {
     let version = &root.asset.version;
     if version.split('.').next() != Some("2") {
         let message = format!("asset.version: {}; allowed: 2.0", quoted(version));
@@ -116,7 +116,7 @@ fn check(root: &Root, place: &Place, report: &Report) -> bool {
     !report.has_causes()
 }
 
-fn has_positions(root: &Root, place: &Place, report: &Report) -> bool {
+fn has_positions(root: &Root, place: &SourcePlace, report: &Report) -> bool {
     let count = root.accessors.len();
     let mut is_sound = true;
     for (i, mesh) in root.meshes.iter().enumerate() {

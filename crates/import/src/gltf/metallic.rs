@@ -12,7 +12,7 @@ const INDEX: f64 = 1.5;
 const PBR: &str = "pbrMetallicRoughness";
 
 /// What a dielectric reflects at its surface.
-struct Coat {
+struct DielectricCoat {
     index: f64,
     specular: f64,
 }
@@ -98,7 +98,7 @@ impl GltfReader<'_> {
         diffuse: Texture,
         alpha: &Texture,
     ) -> Option<Material> {
-        let Coat { index, specular } = self.coat(draft)?;
+        let DielectricCoat { index, specular } = self.coat(draft)?;
         if index <= 1.0 || specular <= 0.0 {
             return Some(Material::Diffuse {
                 reflectance: diffuse,
@@ -141,12 +141,12 @@ impl GltfReader<'_> {
         self.within(&path, ior.ior.0, [1.0, 10.0])
     }
 
-    fn coat(&self, draft: &Draft<'_>) -> Option<Coat> {
+    fn coat(&self, draft: &Draft<'_>) -> Option<DielectricCoat> {
         let index = self.index(draft)?;
         let extensions = draft.source.extensions.as_ref();
         let Some(of) = extensions.and_then(|of| of.specular.as_ref()) else {
             let specular = 1.0;
-            return Some(Coat { index, specular });
+            return Some(DielectricCoat { index, specular });
         };
         let path = format!("{}.extensions.KHR_materials_specular", draft.path);
         let factor = self.within(
@@ -166,7 +166,7 @@ impl GltfReader<'_> {
         if !is_plain {
             self.note(&path, "approximated: a factor on what the coat reflects");
         }
-        Some(Coat { index, specular })
+        Some(DielectricCoat { index, specular })
     }
 }
 

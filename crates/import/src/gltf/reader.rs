@@ -5,7 +5,7 @@ use super::raster_key::RasterKey;
 use super::surface::GltfSurface;
 use crate::Color;
 use crate::files::Files;
-use crate::report::{Place, Report};
+use crate::report::{Report, SourcePlace};
 use ::gltf::json::Root;
 use etendue_field::Raster;
 use etendue_world::{Triangles, World};
@@ -22,7 +22,7 @@ pub(super) struct GltfReader<'a> {
     pub(super) chunk: Option<&'a [u8]>,
     pub(super) files: &'a Files,
     pub(super) report: &'a Report,
-    pub(super) place: Place,
+    pub(super) place: SourcePlace,
     pub(super) folder: PathBuf,
     pub(super) color: Color,
     pub(super) world: World,
@@ -44,7 +44,7 @@ impl<'a> GltfReader<'a> {
         document: &'a Document,
         files: &'a Files,
         report: &'a Report,
-        place: Place,
+        place: SourcePlace,
         folder: PathBuf,
     ) -> Self {
         Self {

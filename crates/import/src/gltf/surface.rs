@@ -1,7 +1,7 @@
 //! What surfaces are made of, read and while they are read.
 
 use ::gltf::json::Material as BufferSource;
-use etendue_world::Emission;
+use etendue_world::EmittedRadiance;
 use std::collections::BTreeSet;
 
 /// What a surface is made of.
@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 pub(super) struct GltfSurface {
     /// The number of its material.
     pub(super) material: usize,
-    pub(super) emission: Option<Emission>,
+    pub(super) emission: Option<EmittedRadiance>,
     pub(super) is_double_sided: bool,
     /// The texture coordinates that its pictures go by.
     pub(super) set: Option<u32>,

@@ -108,7 +108,7 @@ impl<'a> MitsubaReader<'a> {
         &self,
         object: &'a MitsubaObject,
         name: &str,
-    ) -> &'a crate::report::Place {
+    ) -> &'a crate::report::SourcePlace {
         let mut all = object.properties.iter();
         let found = all.rfind(|property| property.name == name);
         found.map_or(&object.place, |property| &property.place)

@@ -4,17 +4,17 @@
 //! [`Color`](crate::Color) states: parts below 0 are brought to 0.
 
 /// Red, green and blue.
-type Rgb = [f64; 3];
+type MetalRgb = [f64; 3];
 
 /// n and k of a conductor; `None` for an unknown name.
-pub(super) fn index(name: &str) -> Option<[Rgb; 2]> {
+pub(super) fn index(name: &str) -> Option<[MetalRgb; 2]> {
     let found = NAMED.iter().find(|(known, ..)| *known == name)?;
     Some([found.1, found.2])
 }
 
 /// Names, with n and k.
 #[rustfmt::skip]
-const NAMED: &[(&str, Rgb, Rgb)] = &[
+const NAMED: &[(&str, MetalRgb, MetalRgb)] = &[
     ("Ag", [0.1552762, 0.116728, 0.1383876], [4.828354, 3.122222, 2.146901]),
     ("Al", [1.657501, 0.8804047, 0.5212445], [9.223811, 6.269502, 4.837004]),
     ("AlAs", [3.605296, 3.232938, 2.216319], [0.0006794373, 0.0, 0.007512709]),

@@ -1,6 +1,6 @@
 //! Objects, properties and values of a Mitsuba scene.
 
-use crate::report::Place;
+use crate::report::SourcePlace;
 use glam::{DAffine3, DVec3};
 use std::cell::Cell;
 use std::path::PathBuf;
@@ -15,7 +15,7 @@ pub(super) struct MitsubaObject {
     /// The name of the plugin.
     pub(super) plugin: String,
     pub(super) id: Option<String>,
-    pub(super) place: Place,
+    pub(super) place: SourcePlace,
     /// Where its files are looked for.
     pub(super) folders: Rc<[PathBuf]>,
     /// In the order of the file.
@@ -32,7 +32,7 @@ pub(super) struct ObjectProperty {
     /// Empty for objects without a name.
     pub(super) name: String,
     pub(super) value: Value,
-    pub(super) place: Place,
+    pub(super) place: SourcePlace,
     /// Whether anything asked for it.
     pub(super) is_read: Cell<bool>,
 }

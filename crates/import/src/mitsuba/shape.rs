@@ -174,7 +174,7 @@ impl<'a> MitsubaReader<'a> {
         &mut self,
         object: &'a MitsubaObject,
         is_instance: bool,
-    ) -> Option<etendue_world::Emission> {
+    ) -> Option<etendue_world::EmittedRadiance> {
         let emitter = self.child(object, ObjectKind::Emitter)?;
         if emitter.plugin != "area" {
             self.unsupported(emitter, "area, within a shape");

@@ -1,6 +1,6 @@
 //! A file that is being read, with lines and columns.
 
-use crate::report::Place;
+use crate::report::SourcePlace;
 use std::path::PathBuf;
 use std::rc::Rc;
 
@@ -32,7 +32,7 @@ impl LineCursor {
         }
     }
 
-    pub(super) fn place(&mut self, offset: usize, file: &Rc<str>) -> Place {
+    pub(super) fn place(&mut self, offset: usize, file: &Rc<str>) -> SourcePlace {
         // Elements are met in the order of the text, so all of it is counted once.
         if let Some(passed) = self.text.get(self.offset..offset) {
             for c in passed.chars() {
@@ -44,7 +44,7 @@ impl LineCursor {
             }
             self.offset = offset;
         }
-        Place {
+        SourcePlace {
             file: Rc::clone(file),
             line: self.line,
             column: self.column,

@@ -56,7 +56,7 @@ pub(super) fn upgrade(object: &mut MitsubaObject) {
     });
 }
 
-fn take(object: &mut MitsubaObject, name: &str) -> Option<(f64, crate::report::Place)> {
+fn take(object: &mut MitsubaObject, name: &str) -> Option<(f64, crate::report::SourcePlace)> {
     let at = object.properties.iter().position(|p| p.name == name)?;
     let value = match object.properties[at].value {
         Value::Number(value) => value,

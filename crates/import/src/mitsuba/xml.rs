@@ -7,7 +7,7 @@ use super::source::{LineCursor, SourceFile};
 use super::transform::{Attributes, allow, find, required};
 use super::upgrade;
 use crate::files::Files;
-use crate::report::{Place, Report, quoted};
+use crate::report::{Report, SourcePlace, quoted};
 use roxmltree::{Document, Node};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -56,7 +56,8 @@ impl<'a> Tree<'a> {
         self.file(text, name, Rc::from([folder]), None);
         for name in self.parameters.unused() {
             let message = format!("no `${name}` in the scene, which is set");
-            self.report.cause(&Place::whole("parameters"), message);
+            self.report
+                .cause(&SourcePlace::whole("parameters"), message);
         }
     }
 
@@ -81,7 +82,7 @@ impl<'a> Tree<'a> {
             Ok(document) => document,
             Err(error) => {
                 let at = error.pos();
-                let place = Place {
+                let place = SourcePlace {
                     file: name,
                     line: at.row as usize,
                     column: at.col as usize,
@@ -193,7 +194,7 @@ impl<'a> Tree<'a> {
         node: Node<'_, '_>,
         kind: ObjectKind,
         attributes: &Attributes,
-        place: Place,
+        place: SourcePlace,
         parent: usize,
         source: &mut SourceFile,
         depth: usize,
@@ -225,7 +226,7 @@ impl<'a> Tree<'a> {
         }
     }
 
-    fn name(&mut self, id: String, at: usize, place: &Place) {
+    fn name(&mut self, id: String, at: usize, place: &SourcePlace) {
         match self.ids.get(&id) {
             None => {
                 self.ids.insert(id, at);
@@ -238,7 +239,14 @@ impl<'a> Tree<'a> {
         }
     }
 
-    fn add(&mut self, at: usize, name: String, value: Value, place: &Place, source: &SourceFile) {
+    fn add(
+        &mut self,
+        at: usize,
+        name: String,
+        value: Value,
+        place: &SourcePlace,
+        source: &SourceFile,
+    ) {
         let name = match source.is_old {
             true => upgrade::underscored(&name),
             false => name,
@@ -262,7 +270,7 @@ impl<'a> Tree<'a> {
         &mut self,
         node: Node<'_, '_>,
         attributes: &Attributes,
-        place: &Place,
+        place: &SourcePlace,
         parent: usize,
         source: &mut SourceFile,
         depth: usize,

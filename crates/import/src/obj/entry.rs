@@ -1,13 +1,13 @@
 //! Entries of an MTL file.
 
 use super::map::MtlMap;
-use crate::report::Place;
+use crate::report::SourcePlace;
 
 /// A material of an MTL file, as it is written.
 #[derive(Clone, Debug)]
 pub(super) struct MtlEntry {
     /// Where it begins.
-    pub(super) place: Place,
+    pub(super) place: SourcePlace,
     /// Diffuse reflectance.
     pub(super) kd: Option<[f64; 3]>,
     /// Specular reflectance.
@@ -30,7 +30,7 @@ pub(super) struct MtlEntry {
 }
 
 impl MtlEntry {
-    pub(super) fn new(place: Place) -> Self {
+    pub(super) fn new(place: SourcePlace) -> Self {
         Self {
             place,
             kd: None,

@@ -1,7 +1,7 @@
 //! Statements of MTL files that name a picture.
 
 use crate::range::MAX_NUMBER;
-use crate::report::{Place, Report, quoted};
+use crate::report::{Report, SourcePlace, quoted};
 use etendue_world::Wrap;
 use glam::{DAffine2, DVec2};
 use std::path::PathBuf;
@@ -9,7 +9,7 @@ use std::path::PathBuf;
 /// A picture and how it is placed.
 #[derive(Clone, Debug)]
 pub(super) struct MtlMap {
-    pub(super) place: Place,
+    pub(super) place: SourcePlace,
     pub(super) file: String,
     /// Where it is looked for.
     pub(super) folder: PathBuf,
@@ -37,7 +37,12 @@ const OPTIONS: [(&str, usize); 13] = [
 
 impl MtlMap {
     /// Reads what follows the word; `None` after a cause.
-    pub(super) fn read(text: &str, place: Place, folder: PathBuf, report: &Report) -> Option<Self> {
+    pub(super) fn read(
+        text: &str,
+        place: SourcePlace,
+        folder: PathBuf,
+        report: &Report,
+    ) -> Option<Self> {
         let (mut scale, mut offset, mut wrap) = (DVec2::ONE, DVec2::ZERO, Wrap::Repeat);
         let mut rest = text.trim();
         while rest.starts_with('-') {

@@ -3,7 +3,7 @@
 use super::entry::MtlEntry;
 use super::map::MtlMap;
 use crate::range::MAX_NUMBER;
-use crate::report::{Place, Report, quoted};
+use crate::report::{Report, SourcePlace, quoted};
 use crate::spectrum::from_xyz;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry as Slot;
@@ -20,13 +20,13 @@ pub(super) fn read(
     report: &Report,
     entries: &mut HashMap<String, MtlEntry>,
 ) {
-    let mut left_out: Vec<(Place, String, usize)> = Vec::new();
+    let mut left_out: Vec<(SourcePlace, String, usize)> = Vec::new();
     let mut open: Option<(String, MtlEntry)> = None;
     for (i, line) in text.lines().enumerate() {
         let line = line.split('#').next().unwrap_or_default().trim();
         let end = line.find(char::is_whitespace).unwrap_or(line.len());
         let (word, rest) = (&line[..end], line[end..].trim());
-        let place = Place {
+        let place = SourcePlace {
             file: name.into(),
             line: i + 1,
             column: 1,
@@ -93,7 +93,7 @@ fn close(
 struct MtlStatement<'a> {
     word: &'a str,
     rest: &'a str,
-    place: Place,
+    place: SourcePlace,
     report: &'a Report,
 }
 

@@ -2,7 +2,7 @@
 
 use crate::files::Files;
 use crate::meshes::MeshParts;
-use crate::report::{Place, Report};
+use crate::report::{Report, SourcePlace};
 use crate::{Imported, Options, Refused};
 use etendue_scene::DetailedMesh;
 use etendue_world::{Geometry, Material, Shape, Texture, World};
@@ -23,7 +23,7 @@ pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused
     let mesh = mesh.ok_or_else(|| unsound("no triangle with an area".to_owned()))?;
     let name = file.file_name().unwrap_or_default().to_string_lossy();
     let report = Report::default();
-    let place = Place::whole(&name);
+    let place = SourcePlace::whole(&name);
     if mended {
         let message = "approximated: vertices without a normal have that of a triangle";
         report.note(&place, message);

@@ -6,7 +6,7 @@ use super::surface::ObjSurface;
 use crate::Color;
 use crate::files::Files;
 use crate::meshes::MeshParts;
-use crate::report::{Place, Report, quoted};
+use crate::report::{Report, SourcePlace, quoted};
 use etendue_scene::{DetailedMesh, ObjFile, ObjPart};
 use etendue_world::{Geometry, Shape, World};
 use glam::DAffine3;
@@ -20,7 +20,7 @@ pub(super) struct ObjReader<'a> {
     pub(super) report: &'a Report,
     pub(super) color: Color,
     pub(super) world: World,
-    place: Place,
+    place: SourcePlace,
     folder: PathBuf,
     entries: HashMap<String, MtlEntry>,
     /// Surfaces by the name of their material; `None` after a cause.
@@ -31,7 +31,7 @@ impl<'a> ObjReader<'a> {
     pub(super) fn new(
         files: &'a Files,
         report: &'a Report,
-        place: Place,
+        place: SourcePlace,
         folder: PathBuf,
         color: Color,
     ) -> Self {
@@ -66,8 +66,8 @@ impl<'a> ObjReader<'a> {
         self.world
     }
 
-    fn at(&self, line: usize) -> Place {
-        Place {
+    fn at(&self, line: usize) -> SourcePlace {
+        SourcePlace {
             line,
             column: 1,
             ..self.place.clone()

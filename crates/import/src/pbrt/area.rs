@@ -7,7 +7,7 @@ use super::reader::PbrtReader;
 use super::scene::PbrtShape;
 use super::shape::PbrtSurface;
 use crate::pictures::TransferCurve;
-use etendue_world::{Bitmap, Emission, Filter, Texture, Wrap};
+use etendue_world::{Bitmap, EmittedRadiance, Filter, Texture, Wrap};
 use std::f64::consts::PI;
 
 impl PbrtReader<'_> {
@@ -17,7 +17,7 @@ impl PbrtReader<'_> {
         shape: &PbrtShape,
         uv: Uv,
         is_in_object: bool,
-    ) -> Read<Option<Emission>> {
+    ) -> Read<Option<EmittedRadiance>> {
         let Some(area) = shape.area.map(|area| &self.scene.areas[area]) else {
             return Ok(None);
         };
@@ -45,7 +45,7 @@ impl PbrtReader<'_> {
     }
 
     /// A picture that shines.
-    fn shown(&mut self, area: &Entity, uv: Uv) -> Read<Emission> {
+    fn shown(&mut self, area: &Entity, uv: Uv) -> Read<EmittedRadiance> {
         for name in ["L", "power"] {
             if area.has(name) {
                 let message = format!("{name} beside filename is not supported");
@@ -74,9 +74,9 @@ impl PbrtReader<'_> {
     pub(super) fn powered(
         &self,
         area: Option<&Entity>,
-        emission: Option<Emission>,
+        emission: Option<EmittedRadiance>,
         surface: &PbrtSurface,
-    ) -> Read<Option<Emission>> {
+    ) -> Read<Option<EmittedRadiance>> {
         let (Some(area), Some(Texture::Constant(radiance))) = (area, &emission) else {
             return Ok(emission);
         };

@@ -2,7 +2,7 @@
 
 use super::build::Builder;
 use super::scene::{Instance, PbrtObject};
-use crate::report::{Place, quoted};
+use crate::report::{SourcePlace, quoted};
 
 /// Blocks within one another.
 const MAX_DEPTH: usize = 1 << 12;
@@ -23,7 +23,7 @@ impl Builder<'_> {
         }
     }
 
-    pub(super) fn push(&mut self, kind: char, place: &Place) -> Result<(), String> {
+    pub(super) fn push(&mut self, kind: char, place: &SourcePlace) -> Result<(), String> {
         self.within_world("a block")?;
         if self.stack.len() >= MAX_DEPTH {
             return Err(format!("more than {MAX_DEPTH} blocks in one another"));
@@ -49,7 +49,7 @@ impl Builder<'_> {
         }
     }
 
-    pub(super) fn begin_object(&mut self, name: String, place: &Place) -> Result<(), String> {
+    pub(super) fn begin_object(&mut self, name: String, place: &SourcePlace) -> Result<(), String> {
         if self.object.is_some() {
             return Err("an object within an object".to_owned());
         }
@@ -72,7 +72,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    pub(super) fn instance(&mut self, name: String, place: &Place) -> Result<(), String> {
+    pub(super) fn instance(&mut self, name: String, place: &SourcePlace) -> Result<(), String> {
         self.within_world("ObjectInstance")?;
         if self.object.is_some() {
             return Err("an instance within an object".to_owned());

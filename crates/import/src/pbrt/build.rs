@@ -5,7 +5,7 @@ use super::parameter::PbrtParameter;
 use super::scene::{GraphicsState, MaterialOf, PbrtScene, PbrtShape};
 use super::token::Tokens;
 use crate::files::Files;
-use crate::report::{Place, Report, quoted};
+use crate::report::{Report, SourcePlace, quoted};
 use glam::DAffine3;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -39,7 +39,7 @@ pub(super) struct Builder<'a> {
     pub(super) scene: PbrtScene,
     pub(super) state: GraphicsState,
     /// States to return to, with `a` for attributes and `o` for objects, and where they were left.
-    pub(super) stack: Vec<(GraphicsState, char, Place)>,
+    pub(super) stack: Vec<(GraphicsState, char, SourcePlace)>,
     systems: BTreeMap<String, DAffine3>,
     pub(super) is_world: bool,
     /// The object that shapes go to.
@@ -83,7 +83,7 @@ impl<'a> Builder<'a> {
         self.systems.insert(name, self.state.to_world);
     }
 
-    pub(super) fn go_to_system(&mut self, name: &str, place: &Place) -> Result<(), String> {
+    pub(super) fn go_to_system(&mut self, name: &str, place: &SourcePlace) -> Result<(), String> {
         match self.systems.get(name) {
             Some(map) => self.state.to_world = *map,
             // As pbrt, which only warns.
@@ -117,7 +117,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    pub(super) fn named_material(&mut self, name: &str, place: &Place) {
+    pub(super) fn named_material(&mut self, name: &str, place: &SourcePlace) {
         self.state.material = MaterialOf::Named(name.into(), place.clone());
     }
 
@@ -127,7 +127,7 @@ impl<'a> Builder<'a> {
         word: &str,
         plugin: String,
         own: Vec<Rc<PbrtParameter>>,
-        place: &Place,
+        place: &SourcePlace,
     ) -> Result<(), String> {
         if let Some(kind) = SETTINGS.iter().find(|kind| **kind == word) {
             self.before_world(word)?;
@@ -173,7 +173,7 @@ impl<'a> Builder<'a> {
         &mut self,
         name: String,
         own: Vec<Rc<PbrtParameter>>,
-        place: &Place,
+        place: &SourcePlace,
     ) -> Result<(), String> {
         let entity = self.entity("material", String::new(), own, place, Some(2));
         let shown = quoted(&name);
@@ -189,7 +189,7 @@ impl<'a> Builder<'a> {
         &mut self,
         plugin: String,
         own: Vec<Rc<PbrtParameter>>,
-        place: &Place,
+        place: &SourcePlace,
     ) -> Result<(), String> {
         self.before_world("Camera")?;
         let entity = self.entity("camera", plugin, own, place, None);
@@ -201,7 +201,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn shape(&mut self, plugin: String, own: Vec<Rc<PbrtParameter>>, place: &Place) {
+    fn shape(&mut self, plugin: String, own: Vec<Rc<PbrtParameter>>, place: &SourcePlace) {
         let shape = PbrtShape {
             entity: self.entity("shape", plugin, own, place, Some(0)),
             to_world: self.state.to_world,
@@ -241,7 +241,7 @@ impl<'a> Builder<'a> {
         kind: &str,
         plugin: String,
         own: Vec<Rc<PbrtParameter>>,
-        place: &Place,
+        place: &SourcePlace,
     ) -> Result<(), String> {
         self.within_world("Texture")?;
         let is_spectrum = match kind {
@@ -265,7 +265,7 @@ impl<'a> Builder<'a> {
         kind: &'static str,
         plugin: String,
         own: Vec<Rc<PbrtParameter>>,
-        place: &Place,
+        place: &SourcePlace,
         target: Option<usize>,
     ) -> Entity {
         let defaults = target.map(|at| Rc::clone(&self.state.defaults[at]));

@@ -4,7 +4,7 @@ use super::entity::{CauseGiven, Entity, Read};
 use super::parameter::ParameterKind;
 use super::reader::PbrtReader;
 use super::transform::without_scale;
-use crate::report::{Place, quoted};
+use crate::report::{SourcePlace, quoted};
 use etendue_world::{Camera, Lens, Projection};
 use glam::{DAffine3, DVec3};
 
@@ -36,7 +36,7 @@ const PATHS: [&str; 8] = [
 const SQUARE: f64 = 1e-4;
 
 impl PbrtReader<'_> {
-    pub(super) fn camera(&mut self, whole: &Place) {
+    pub(super) fn camera(&mut self, whole: &SourcePlace) {
         let default = || Entity::default("camera", "perspective", whole.clone());
         let found = self.scene.camera.clone();
         let (entity, map) = found.unwrap_or_else(|| (default(), DAffine3::IDENTITY));
@@ -162,7 +162,7 @@ impl PbrtReader<'_> {
     }
 
     /// Pixels across and down.
-    fn film(&self, whole: &Place) -> Read<[usize; 2]> {
+    fn film(&self, whole: &SourcePlace) -> Read<[usize; 2]> {
         let Some(film) = self.scene.settings.get("Film") else {
             return Ok(SIZE);
         };

@@ -6,7 +6,7 @@ use super::token::{Token, Tokens, number};
 use super::transform::{look_at, matrix, rotation};
 use super::words::is_directive;
 use crate::range::{MAX_NUMBER, holds, in_range};
-use crate::report::{Place, quoted};
+use crate::report::{SourcePlace, quoted};
 use glam::{DAffine3, DVec3};
 
 impl Builder<'_> {
@@ -36,7 +36,7 @@ impl Builder<'_> {
     fn directive(
         &mut self,
         word: &str,
-        place: &Place,
+        place: &SourcePlace,
         tokens: &mut Tokens<'_>,
     ) -> Result<(), String> {
         match word {
@@ -83,13 +83,18 @@ impl Builder<'_> {
     }
 
     /// A directive with the name of a plugin and parameters.
-    fn plugin(&mut self, word: &str, tokens: &mut Tokens<'_>, place: &Place) -> Result<(), String> {
+    fn plugin(
+        &mut self,
+        word: &str,
+        tokens: &mut Tokens<'_>,
+        place: &SourcePlace,
+    ) -> Result<(), String> {
         let name = text(tokens)?;
         let own = parameters(tokens, self.report);
         self.make(word, name, own, place)
     }
 
-    fn texture(&mut self, tokens: &mut Tokens<'_>, place: &Place) -> Result<(), String> {
+    fn texture(&mut self, tokens: &mut Tokens<'_>, place: &SourcePlace) -> Result<(), String> {
         let name = text(tokens)?;
         let kind = text(tokens)?;
         let plugin = text(tokens)?;
@@ -97,7 +102,7 @@ impl Builder<'_> {
         self.make_texture(name, &kind, plugin, own, place)
     }
 
-    fn media(&self, tokens: &mut Tokens<'_>, place: &Place) -> Result<(), String> {
+    fn media(&self, tokens: &mut Tokens<'_>, place: &SourcePlace) -> Result<(), String> {
         let mut names = vec![text(tokens)?];
         if let Some((Token::Text(second), _)) = tokens.peek().cloned() {
             tokens.next();
@@ -113,7 +118,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    fn option(&self, tokens: &mut Tokens<'_>, place: &Place) -> Result<(), String> {
+    fn option(&self, tokens: &mut Tokens<'_>, place: &SourcePlace) -> Result<(), String> {
         let name = text(tokens)?;
         match tokens.peek() {
             Some((Token::Word(word), _)) if is_directive(word) => {

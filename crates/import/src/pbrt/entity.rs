@@ -1,7 +1,7 @@
 //! What a directive makes, and asking it for its parameters, which marks them as read.
 
 use super::parameter::{ParameterKind, ParameterValues, PbrtParameter};
-use crate::report::{Place, Report, quoted};
+use crate::report::{Report, SourcePlace, quoted};
 use glam::{DVec2, DVec3};
 use std::cell::Cell;
 use std::rc::Rc;
@@ -20,7 +20,7 @@ pub(super) struct Entity {
     pub(super) kind: &'static str,
     /// The name of the plugin.
     pub(super) plugin: String,
-    pub(super) place: Place,
+    pub(super) place: SourcePlace,
     /// Its own parameters.
     pub(super) own: Vec<Rc<PbrtParameter>>,
     /// Those of `Attribute` directives before it.
@@ -31,7 +31,7 @@ pub(super) struct Entity {
 
 impl Entity {
     /// What pbrt takes where a file names nothing.
-    pub(super) fn default(kind: &'static str, plugin: &str, place: Place) -> Self {
+    pub(super) fn default(kind: &'static str, plugin: &str, place: SourcePlace) -> Self {
         Self {
             kind,
             plugin: plugin.to_owned(),
@@ -55,7 +55,7 @@ impl Entity {
     }
 
     /// Where a parameter is, or the directive.
-    pub(super) fn place_of(&self, name: &str) -> &Place {
+    pub(super) fn place_of(&self, name: &str) -> &SourcePlace {
         self.find(name).map_or(&self.place, |p| &p.place)
     }
 

@@ -3,14 +3,19 @@
 use super::build::{Builder, DEEPEST_FILES, MOST_FILES};
 use super::token::Tokens;
 use crate::files::Files;
-use crate::report::{Place, quoted};
+use crate::report::{SourcePlace, quoted};
 use flate2::read::MultiGzDecoder;
 use std::io::Read;
 use std::path::Path;
 
 impl Builder<'_> {
     /// `Include` reads a file as if it stood here; after `Import` all is as before but for what was made.
-    pub(super) fn include(&mut self, word: &str, name: &str, place: &Place) -> Result<(), String> {
+    pub(super) fn include(
+        &mut self,
+        word: &str,
+        name: &str,
+        place: &SourcePlace,
+    ) -> Result<(), String> {
         let path = self.files.find(std::slice::from_ref(&self.folder), name);
         let path = path.map_err(|error| format!("file {} {error}", quoted(name)))?;
         if self.open.contains(&path) {

@@ -63,7 +63,7 @@ impl PbrtReader<'_> {
         made
     }
 
-    fn cause_once(&self, place: &crate::report::Place, message: String) {
+    fn cause_once(&self, place: &crate::report::SourcePlace, message: String) {
         if self.is_first(place, &message) {
             self.report.cause(place, message);
         }

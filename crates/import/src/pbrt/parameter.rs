@@ -3,7 +3,7 @@
 use super::token::{LineColumn, Token, Tokens, number};
 use super::words::is_directive;
 use crate::range::MAX_NUMBER;
-use crate::report::{Place, Report, quoted};
+use crate::report::{Report, SourcePlace, quoted};
 use std::cell::Cell;
 use std::rc::Rc;
 
@@ -13,7 +13,7 @@ pub(super) struct PbrtParameter {
     pub(super) kind: ParameterKind,
     pub(super) name: String,
     pub(super) values: ParameterValues,
-    pub(super) place: Place,
+    pub(super) place: SourcePlace,
     /// Whether anything asked for it.
     pub(super) is_read: Cell<bool>,
 }
@@ -111,7 +111,7 @@ pub(super) fn parameters(tokens: &mut Tokens<'_>, report: &Report) -> Vec<Rc<Pbr
 }
 
 /// One value, or a list of them in brackets.
-fn values(tokens: &mut Tokens<'_>, place: &Place, report: &Report) -> ParameterValues {
+fn values(tokens: &mut Tokens<'_>, place: &SourcePlace, report: &Report) -> ParameterValues {
     let mut list = List::default();
     match tokens.peek().cloned() {
         Some((Token::Open, _)) => {
@@ -199,7 +199,7 @@ fn checked(
     values: ParameterValues,
     kind: ParameterKind,
     name: &str,
-    place: &Place,
+    place: &SourcePlace,
     report: &Report,
 ) -> ParameterValues {
     let is_in_range = |v: &f64| v.abs() <= MAX_NUMBER;

@@ -6,7 +6,7 @@ use super::scene::PbrtScene;
 use crate::Color;
 use crate::files::Files;
 use crate::pictures::Pictures;
-use crate::report::{Place, Report, quoted};
+use crate::report::{Report, SourcePlace, quoted};
 use etendue_world::{Texture, Triangles, World};
 use glam::{DAffine2, DMat2, DVec2};
 use std::cell::RefCell;
@@ -74,7 +74,7 @@ impl<'a> PbrtReader<'a> {
     }
 
     /// The world of the scene.
-    pub(super) fn world(mut self, whole: &Place) -> World {
+    pub(super) fn world(mut self, whole: &SourcePlace) -> World {
         self.integrator();
         self.settings();
         self.camera(whole);
@@ -87,14 +87,14 @@ impl<'a> PbrtReader<'a> {
     }
 
     /// A note that is given once, however often its object is used.
-    pub(super) fn note_once(&self, place: &Place, message: &str) {
+    pub(super) fn note_once(&self, place: &SourcePlace, message: &str) {
         if self.is_first(place, message) {
             self.report.note(place, message);
         }
     }
 
     /// Whether this is said for the first time.
-    pub(super) fn is_first(&self, place: &Place, message: &str) -> bool {
+    pub(super) fn is_first(&self, place: &SourcePlace, message: &str) -> bool {
         let (line, column) = (place.line, place.column);
         let key = (line, column, format!("{}: {message}", place.file));
         self.noted.borrow_mut().insert(key)

@@ -2,7 +2,7 @@
 
 use super::entity::Entity;
 use super::parameter::PbrtParameter;
-use crate::report::Place;
+use crate::report::SourcePlace;
 use glam::DAffine3;
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -47,13 +47,13 @@ pub(super) enum MaterialOf {
     Default,
     Number(usize),
     /// With the place where it is asked for.
-    Named(Rc<str>, Place),
+    Named(Rc<str>, SourcePlace),
 }
 
 /// What `ObjectBegin` and `ObjectEnd` enclose.
 #[derive(Debug)]
 pub(super) struct PbrtObject {
-    pub(super) place: Place,
+    pub(super) place: SourcePlace,
     pub(super) shapes: Vec<PbrtShape>,
 }
 
@@ -61,7 +61,7 @@ pub(super) struct PbrtObject {
 #[derive(Debug)]
 pub(super) struct Instance {
     pub(super) name: String,
-    pub(super) place: Place,
+    pub(super) place: SourcePlace,
     pub(super) to_world: DAffine3,
 }
 

@@ -8,8 +8,8 @@ use super::reader::{MOST_SHAPES, PbrtReader};
 use super::scene::PbrtShape;
 use super::texture::Ask;
 use crate::placement::fault;
-use crate::report::{Place, quoted};
-use etendue_world::{Emission, Geometry, Material, Texture};
+use crate::report::{SourcePlace, quoted};
+use etendue_world::{EmittedRadiance, Geometry, Material, Texture};
 use glam::{DAffine3, DVec3};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -62,10 +62,10 @@ impl PbrtReader<'_> {
     }
 
     /// Whether there may be more.
-    fn add(&mut self, shape: etendue_world::Shape, place: &Place) -> bool {
+    fn add(&mut self, shape: etendue_world::Shape, place: &SourcePlace) -> bool {
         if self.world.shapes.len() >= MOST_SHAPES {
             let message = format!("more than {MOST_SHAPES} shapes, with all instances");
-            if self.is_first(&Place::whole(""), &message) {
+            if self.is_first(&SourcePlace::whole(""), &message) {
                 self.report.cause(place, message);
             }
             return false;
@@ -102,7 +102,7 @@ impl PbrtReader<'_> {
         let material = material
             .and_then(|number| Ok(self.masked(entity, number.ok_or(CauseGiven)?, opacity?)));
         let emission = self.shape_emission(shape, uv, is_in_object);
-        let varies = |emission: &Emission| !matches!(emission, Texture::Constant(_));
+        let varies = |emission: &EmittedRadiance| !matches!(emission, Texture::Constant(_));
         let needs_uv = material.is_ok_and(|at| reads_uv(&self.world.materials[at]))
             || emission
                 .as_ref()

@@ -1,6 +1,6 @@
 //! Words, strings and brackets of a pbrt file, with their places.
 
-use crate::report::Place;
+use crate::report::SourcePlace;
 use std::borrow::Cow;
 use std::rc::Rc;
 
@@ -46,8 +46,8 @@ impl<'a> Tokens<'a> {
     }
 
     /// A place in this file.
-    pub(super) fn place(&self, at: LineColumn) -> Place {
-        Place {
+    pub(super) fn place(&self, at: LineColumn) -> SourcePlace {
+        SourcePlace {
             file: Rc::clone(&self.file),
             line: at.line,
             column: at.column,
@@ -55,7 +55,7 @@ impl<'a> Tokens<'a> {
     }
 
     /// Where the next token is looked for.
-    pub(super) fn here(&self) -> Place {
+    pub(super) fn here(&self) -> SourcePlace {
         self.place(self.at)
     }
 

@@ -1,7 +1,7 @@
 //! Rays of a probe that are traced back.
 
 use super::{Budget, Probe};
-use crate::numbers::Numbers;
+use crate::numbers::PathNumbers;
 use etendue_field::{Crossing, Ledger, PhotonSource, TwoPlane, VirtualPlane};
 
 /// Rays of a [`Probe`] traced back: for each plane on its own, lines drawn evenly over its window, with the radiance that a path finds along each.
@@ -39,7 +39,7 @@ impl<'a> BackwardProbe<'a> {
     /// One ray of a plane.
     fn crossing(&self, plane: &VirtualPlane, number: u64) -> Crossing {
         let Probe { paths, legs, .. } = self.probe;
-        let mut numbers = Numbers::new(self.budget.seed, number);
+        let mut numbers = PathNumbers::new(self.budget.seed, number);
         let half = [
             plane.window.x,
             plane.window.y,

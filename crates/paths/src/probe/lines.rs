@@ -6,7 +6,7 @@ use glam::DVec3;
 
 /// A leg of the central ray.
 #[derive(Clone, Debug)]
-pub(super) struct Leg {
+pub(super) struct SurfaceLeg {
     /// At its end, on the side of the camera; D is the way of light.
     pub(super) frame: Frame,
     /// The shape at its end; `None` at the camera.
@@ -17,7 +17,7 @@ pub(super) struct Leg {
     pub(super) slope: f64,
 }
 
-impl Leg {
+impl SurfaceLeg {
     /// The farthest from the central ray that lines of the windows are, at a distance before the end of the leg.
     pub(super) fn wide(&self, distance: f64) -> f64 {
         0.25 * self.reach + self.slope * distance

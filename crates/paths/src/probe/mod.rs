@@ -16,7 +16,7 @@ use etendue_field::{
 };
 use etendue_world::{Camera, Projection};
 use glam::DVec3;
-use lines::Leg;
+use lines::SurfaceLeg;
 
 /// What is asked of a pixel.
 #[derive(Clone, Copy, Debug)]
@@ -42,7 +42,7 @@ pub struct Probe<'a> {
     /// `camera`, and for each surface `leaving_1`, `arriving_1` and so on: light that leaves it towards the camera, and that arrives on the way that
     /// it mirrors there.
     pub planes: Vec<VirtualPlane>,
-    legs: Vec<Leg>,
+    legs: Vec<SurfaceLeg>,
     /// The slope from one pixel to the next.
     pub pixel_slope: f64,
 }
@@ -108,7 +108,7 @@ impl<'a> Probe<'a> {
 
     /// A leg, by the frame at its end, where light is on its way to the camera.
     fn add_leg(&mut self, frame: Frame, shape: Option<usize>, [wide, slope]: [f64; 2]) {
-        self.legs.push(Leg {
+        self.legs.push(SurfaceLeg {
             frame,
             shape,
             reach: 4.0 * wide,

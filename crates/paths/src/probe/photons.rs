@@ -1,10 +1,10 @@
 //! Photons of a probe.
 
-use super::lines::Leg;
+use super::lines::SurfaceLeg;
 use super::lines::seen_by;
 use super::{Budget, Probe, Stop};
 use crate::lights::{EmissionPoint, EmissionTarget, Emitted, chosen, mixed};
-use crate::numbers::Numbers;
+use crate::numbers::PathNumbers;
 use crate::paths::ROULETTE;
 use crate::space::{Hit, Ray};
 use etendue_field::{Crossing, Ledger, PhotonSource, TwoPlane};
@@ -28,7 +28,7 @@ const BLOCK: u64 = 4096;
 const LINES: u64 = 4096;
 
 /// Where light leaves a surface, and how much of it goes which way.
-struct Source<'s> {
+struct LightSource<'s> {
     position: DVec3,
     /// Flux per solid angle along a direction, W sr⁻¹.
     intensity: &'s dyn Fn(DVec3) -> f64,
@@ -41,7 +41,7 @@ impl<'a> PhotonProbe<'a> {
     #[must_use]
     pub fn new(probe: &'a Probe<'a>, budget: Budget) -> Self {
         let targets = probe.stops.iter().zip(&probe.legs);
-        let target = |(stop, leg): (&Stop, &Leg)| EmissionTarget {
+        let target = |(stop, leg): (&Stop, &SurfaceLeg)| EmissionTarget {
             center: stop.position,
             // Of the corners of the window, on a surface at an angle.
             radius: 2.0 * leg.wide(stop.distance) / stop.cosine().max(0.1),
@@ -65,7 +65,7 @@ impl<'a> PhotonProbe<'a> {
         let plane = &planes[plane];
         let half = [plane.window.x, plane.window.u].map(|profile| profile.half_width());
         (0..LINES).find_map(|number| {
-            let mut numbers = Numbers::new(self.budget.seed, number);
+            let mut numbers = PathNumbers::new(self.budget.seed, number);
             let [x, y, u, v] = numbers.draw().map(|drawn: f64| 2.0 * drawn - 1.0);
             let seen = TwoPlane {
                 x: half[0] * x,
@@ -82,9 +82,13 @@ impl<'a> PhotonProbe<'a> {
         })
     }
 
+    #[expect(
+        clippy::too_many_lines,
+        reason = "the life of a photon, from surface to surface"
+    )]
     fn photon(&self, number: u64, record: &mut dyn FnMut(usize, Crossing)) {
         let paths = self.probe.paths;
-        let mut numbers = Numbers::new(self.budget.seed, number);
+        let mut numbers = PathNumbers::new(self.budget.seed, number);
         let emitted = paths
             .lights
             .emit(&paths.geometry, numbers.draw(), &self.targets);
@@ -104,7 +108,7 @@ impl<'a> PhotonProbe<'a> {
         {
             let intensity = |along: DVec3| shine * along.dot(normal).max(0.0);
             self.pass(
-                &Source {
+                &LightSource {
                     position,
                     intensity: &intensity,
                     met: 0,
@@ -130,7 +134,7 @@ impl<'a> PhotonProbe<'a> {
             };
             if !scatter.is_smooth() {
                 self.pass(
-                    &Source {
+                    &LightSource {
                         position: hit.position,
                         intensity: &intensity,
                         met,
@@ -163,7 +167,7 @@ impl<'a> PhotonProbe<'a> {
         &self,
         hit: &Hit,
         arriving: DVec3,
-        numbers: &mut Numbers<'_>,
+        numbers: &mut PathNumbers<'_>,
     ) -> Option<(DVec3, f64)> {
         let scatter = self.probe.paths.scatter(hit);
         let wi = hit.frame.transpose() * -arriving;
@@ -198,8 +202,8 @@ impl<'a> PhotonProbe<'a> {
     /// Draws a way from a place through the windows of each leg, and records it where nothing is in between.
     fn pass(
         &self,
-        source: &Source<'_>,
-        numbers: &mut Numbers<'_>,
+        source: &LightSource<'_>,
+        numbers: &mut PathNumbers<'_>,
         record: &mut dyn FnMut(usize, Crossing),
     ) {
         let Probe {

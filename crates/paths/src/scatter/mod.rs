@@ -7,7 +7,7 @@ mod place;
 mod reflects;
 
 use etendue_field::Lobe;
-pub(crate) use etendue_scatter::Bounce;
+pub(crate) use etendue_scatter::BsdfSample;
 use etendue_scatter::{Bsdf, lambertian, mirror};
 use etendue_world::{self as world, Material, Roughness, Texture};
 use glam::{DVec2, DVec3};
@@ -106,13 +106,13 @@ impl Scatter {
     }
 
     /// A direction wi, from three numbers in (0, 1); `None` where light is absorbed.
-    pub(crate) fn sample(&self, uv: DVec2, wo: DVec3, random: [f64; 3]) -> Option<Bounce> {
+    pub(crate) fn sample(&self, uv: DVec2, wo: DVec3, random: [f64; 3]) -> Option<BsdfSample> {
         let [a, b, c] = random;
         match self {
             Self::TwoSided(sides) => {
                 let (side, turned) = side_of(sides, wo);
                 let bounce = side.sample(uv, turned(wo), random)?;
-                Some(Bounce {
+                Some(BsdfSample {
                     wi: turned(bounce.wi),
                     ..bounce
                 })
@@ -120,11 +120,11 @@ impl Scatter {
             Self::Mask(opacity, of) => {
                 let opacity = opacity.value(uv).clamp(0.0, 1.0);
                 if c >= opacity {
-                    return Some(Bounce::only(-wo, 1.0));
+                    return Some(BsdfSample::only(-wo, 1.0));
                 }
                 let bounce = of.sample(uv, wo, [a, b, c / opacity])?;
                 let density = bounce.density.map(|density| opacity * density);
-                Some(Bounce { density, ..bounce })
+                Some(BsdfSample { density, ..bounce })
             }
             Self::Blend(weight, of) => {
                 self.blended(weight.value(uv).clamp(0.0, 1.0), of, uv, wo, random)
@@ -135,7 +135,7 @@ impl Scatter {
                     Some(rough) => rough.sample(turned(wo), random)?,
                     None => smooth_dielectric(of, wo).sample(turned(wo), c),
                 };
-                Some(Bounce {
+                Some(BsdfSample {
                     wi: turned(bounce.wi),
                     weight: bounce.weight * factor(of, uv, bounce.wi),
                     ..bounce
@@ -144,7 +144,7 @@ impl Scatter {
             _ if wo.z <= 0.0 => None,
             Self::Diffuse(reflectance) => {
                 let wi = lambertian::sample([a, b]);
-                Some(Bounce {
+                Some(BsdfSample {
                     wi,
                     weight: reflectance.value(uv),
                     density: Some(lambertian::density(wi)),
@@ -155,7 +155,7 @@ impl Scatter {
                     Some(rough) => rough.sample(wo, random)?,
                     None => mirror(&fresnel(of), wo),
                 };
-                Some(Bounce {
+                Some(BsdfSample {
                     weight: of.reflectance.value(uv) * bounce.weight,
                     ..bounce
                 })
@@ -173,7 +173,7 @@ impl Scatter {
         uv: DVec2,
         wo: DVec3,
         [a, b, c]: [f64; 3],
-    ) -> Option<Bounce> {
+    ) -> Option<BsdfSample> {
         let bounce = if c < share {
             second.sample(uv, wo, [a, b, c / share])
         } else {
@@ -184,7 +184,7 @@ impl Scatter {
         }
         let density = self.density(uv, bounce.wi, wo);
         let weight = self.value(uv, bounce.wi, wo) / density;
-        Some(Bounce {
+        Some(BsdfSample {
             weight,
             density: Some(density),
             ..bounce

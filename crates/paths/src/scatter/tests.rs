@@ -29,6 +29,7 @@ fn glass(index: f64, roughness: Option<Roughness>) -> Material {
     })
 }
 
+#[expect(clippy::too_many_lines, reason = "a test may be a list of cases")]
 fn materials() -> Vec<(&'static str, Material)> {
     let metal = |roughness| {
         Material::Conductor(Conductor {

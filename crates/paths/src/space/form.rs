@@ -1,7 +1,7 @@
 //! Geometries in coordinates of their own.
 
 use super::local::Local;
-use super::mesh::Mesh;
+use super::mesh::WorldMesh;
 use glam::{DAffine3, DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -13,7 +13,7 @@ pub(crate) enum Form {
     Disc,
     Sphere,
     Cylinder,
-    Mesh(Arc<Mesh>),
+    Mesh(Arc<WorldMesh>),
 }
 
 impl Form {

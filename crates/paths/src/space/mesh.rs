@@ -1,7 +1,7 @@
 //! Triangles of a world as rays meet them.
 
 use super::local::Local;
-use super::triangle::Sight;
+use super::triangle::TriangleRay;
 use etendue_bvh::WideHierarchy;
 use etendue_world::Triangles;
 use glam::{DAffine3, DVec2, DVec3};
@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 /// Triangles with a hierarchy over them.
 #[derive(Debug)]
-pub(crate) struct Mesh {
+pub(crate) struct WorldMesh {
     triangles: Arc<Triangles>,
     hierarchy: WideHierarchy,
     /// The vertices of triangles, in the order in which the hierarchy names them.
@@ -17,7 +17,7 @@ pub(crate) struct Mesh {
     bounds: [DVec3; 2],
 }
 
-impl Mesh {
+impl WorldMesh {
     pub(super) fn new(triangles: Arc<Triangles>) -> Self {
         let corners = triangles.corners();
         let bounds = |i: usize| {
@@ -52,7 +52,7 @@ impl Mesh {
         along: DVec3,
         [from, until]: [f64; 2],
     ) -> Option<(f64, Local)> {
-        let sight = Sight::new(start, along);
+        let sight = TriangleRay::new(start, along);
         let mut first: Option<(f64, usize, DVec2)> = None;
         let mut end = until;
         self.hierarchy.along(start, along, [from, until], |i| {
@@ -71,7 +71,7 @@ impl Mesh {
 
     /// Whether a ray meets it, strictly within bounds.
     pub(super) fn is_met(&self, start: DVec3, along: DVec3, [from, until]: [f64; 2]) -> bool {
-        let sight = Sight::new(start, along);
+        let sight = TriangleRay::new(start, along);
         let mut is_met = false;
         self.hierarchy.along(start, along, [from, until], |i| {
             let corners = places(&self.triangles, self.ordered[i]);

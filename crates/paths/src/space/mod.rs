@@ -10,7 +10,7 @@ use etendue_world::{Geometry, Shape, Triangles, World};
 use form::Form;
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 use local::Local;
-use mesh::Mesh;
+use mesh::WorldMesh;
 use std::sync::Arc;
 
 /// A ray; distances along it are in lengths of `along`, which is 1 long.
@@ -74,7 +74,7 @@ impl SceneGeometry {
     /// The surfaces of a world, with hierarchies over them.
     #[must_use]
     pub fn new(world: &World) -> Self {
-        let mut meshes: Vec<(*const Triangles, Arc<Mesh>)> = Vec::new();
+        let mut meshes: Vec<(*const Triangles, Arc<WorldMesh>)> = Vec::new();
         let placed: Vec<Placed> = world
             .shapes
             .iter()
@@ -153,7 +153,7 @@ impl SceneGeometry {
 }
 
 impl Placed {
-    fn new(shape: &Shape, meshes: &mut Vec<(*const Triangles, Arc<Mesh>)>) -> Self {
+    fn new(shape: &Shape, meshes: &mut Vec<(*const Triangles, Arc<WorldMesh>)>) -> Self {
         let form = match &shape.geometry {
             Geometry::Rectangle => Form::Rectangle,
             Geometry::Disc => Form::Disc,
@@ -162,7 +162,7 @@ impl Placed {
             Geometry::Mesh(triangles) => {
                 let known = meshes.iter().find(|(of, _)| *of == Arc::as_ptr(triangles));
                 let mesh = known.map(|(_, mesh)| Arc::clone(mesh)).unwrap_or_else(|| {
-                    let mesh = Arc::new(Mesh::new(Arc::clone(triangles)));
+                    let mesh = Arc::new(WorldMesh::new(Arc::clone(triangles)));
                     meshes.push((Arc::as_ptr(triangles), Arc::clone(&mesh)));
                     mesh
                 });

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 /// A ray as triangles see it: along its direction, on axes in which that is (x, y, 1).
-pub(super) struct Sight {
+pub(super) struct TriangleRay {
     start: DVec3,
     /// The largest component of the direction, which is the last one here.
     last: usize,
@@ -12,7 +12,7 @@ pub(super) struct Sight {
     per_depth: f64,
 }
 
-impl Sight {
+impl TriangleRay {
     pub(super) fn new(start: DVec3, along: DVec3) -> Self {
         let last = along.abs().max_position();
         let along = turned(along, last);
@@ -73,7 +73,7 @@ mod tests {
             let [a, b, aside, start] = [0, 1, 2, 3].map(|block| numbers(index, block));
             let place = a.lerp(b, 0.1 + 0.4 * (1.0 + numbers(index, 4).x));
             let (start, aside) = (4.0 * start, aside.cross(b - a));
-            let sight = Sight::new(start, (place - start).normalize());
+            let sight = TriangleRay::new(start, (place - start).normalize());
             // The same edge, gone along both ways.
             let [one, other] = [[a, b, place + aside], [b, a, place - aside]];
             let met = [sight.meets(one), sight.meets(other)];
@@ -100,7 +100,7 @@ mod tests {
             if across < 1e-3 {
                 continue;
             }
-            let (at, found) = Sight::new(start, along)
+            let (at, found) = TriangleRay::new(start, along)
                 .meets(corners)
                 .expect("aimed at it");
             // Rounding, more of it for rays along the triangle.

@@ -1,6 +1,6 @@
 //! Two results of one scene held against each other.
 
-use super::planes::{self, Found, PlaneDiff};
+use super::planes::{self, PlaneDiff, PlaneDifference};
 use super::stored::StoredResult;
 use etendue_compare::{Verdict, sidak};
 use etendue_store::Failure;
@@ -34,7 +34,7 @@ impl Diff {
         let planes = planes::of_results(a, b, is_one_scene)?;
         if planes
             .iter()
-            .all(|plane| matches!(plane.found, Found::Missing(_)))
+            .all(|plane| matches!(plane.found, PlaneDifference::Missing(_)))
         {
             let [a, b] = [a, b].map(|result| result.folder.display());
             return Err(Failure::bad_input(format!(

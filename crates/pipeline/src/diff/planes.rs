@@ -13,12 +13,12 @@ use std::f64::consts::SQRT_2;
 #[derive(Debug)]
 pub(super) struct PlaneDiff {
     pub(super) name: String,
-    pub(super) found: Found,
+    pub(super) found: PlaneDifference,
 }
 
 /// What there is to say of a plane.
 #[derive(Debug)]
-pub(super) enum Found {
+pub(super) enum PlaneDifference {
     /// This result does not have it: 0 for the first, 1 for the second.
     Missing(usize),
     /// It is measured in other units, on other frequencies or in another window, in words.
@@ -74,7 +74,7 @@ const SHARED: f64 = 1e-4;
 impl PlaneDiff {
     pub(super) fn compared(&self) -> Option<&Compared> {
         match &self.found {
-            Found::Compared(compared) => Some(compared),
+            PlaneDifference::Compared(compared) => Some(compared),
             _ => None,
         }
     }
@@ -87,10 +87,10 @@ impl PlaneDiff {
     /// Why it is undecided.
     pub(super) fn undecided(&self, level: f64) -> Option<String> {
         match &self.found {
-            Found::Missing(0) => Some("only the second result has this plane".to_owned()),
-            Found::Missing(_) => Some("only the first result has this plane".to_owned()),
-            Found::Unlike(why) => Some(why.clone()),
-            Found::Compared(compared) => {
+            PlaneDifference::Missing(0) => Some("only the second result has this plane".to_owned()),
+            PlaneDifference::Missing(_) => Some("only the first result has this plane".to_owned()),
+            PlaneDifference::Unlike(why) => Some(why.clone()),
+            PlaneDifference::Compared(compared) => {
                 let reason = compared.invalid.as_ref().or(compared.unresolved.as_ref());
                 let is_open = compared.verdict(level) == Verdict::Undecided;
                 reason.filter(|_| is_open).cloned()
@@ -136,8 +136,8 @@ pub(super) fn of_results(
 ) -> Result<Vec<PlaneDiff>, Failure> {
     let common = a.index.planes.iter().map(|plane| {
         let found = match b.plane(&plane.name) {
-            Some(other) => Pair { a, b, is_one_scene }.found(plane, other)?,
-            None => Found::Missing(1),
+            Some(other) => ResultPair { a, b, is_one_scene }.found(plane, other)?,
+            None => PlaneDifference::Missing(1),
         };
         let name = plane.name.clone();
         Ok(PlaneDiff { name, found })
@@ -147,23 +147,23 @@ pub(super) fn of_results(
     let added = added.filter(|plane| a.plane(&plane.name).is_none());
     planes.extend(added.map(|plane| PlaneDiff {
         name: plane.name.clone(),
-        found: Found::Missing(0),
+        found: PlaneDifference::Missing(0),
     }));
     Ok(planes)
 }
 
 /// Two results, of one scene or not.
-struct Pair<'a> {
+struct ResultPair<'a> {
     a: &'a StoredResult,
     b: &'a StoredResult,
     is_one_scene: bool,
 }
 
-impl Pair<'_> {
-    fn found(&self, of_a: &StoredPlane, of_b: &StoredPlane) -> Result<Found, Failure> {
+impl ResultPair<'_> {
+    fn found(&self, of_a: &StoredPlane, of_b: &StoredPlane) -> Result<PlaneDifference, Failure> {
         let (a, b) = (self.a.slices(of_a)?, self.b.slices(of_b)?);
         if let Some(why) = self.unlike(&of_a.name, &a, &b) {
-            return Ok(Found::Unlike(why));
+            return Ok(PlaneDifference::Unlike(why));
         }
         let test = TwoSamples::new(&a.grid, &a.sample, &b.sample);
         let is_identical = self.has_one_seed() && test.difference <= ROUNDING;
@@ -181,7 +181,7 @@ impl Pair<'_> {
             is_identical,
             test,
         };
-        Ok(Found::Compared(Box::new(compared)))
+        Ok(PlaneDifference::Compared(Box::new(compared)))
     }
 
     /// Whether both have the same photons, as far as the scenes let them.

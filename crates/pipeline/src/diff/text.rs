@@ -1,7 +1,7 @@
 //! What `etendue diff` prints.
 
 use super::difference::{Diff, has_other_inputs, is_of_run};
-use super::planes::{Compared, Found, PlaneDiff, ROUNDING};
+use super::planes::{Compared, PlaneDiff, PlaneDifference, ROUNDING};
 use super::stored::{ResultIndex, StoredResult};
 use crate::table::{aligned, grouped, number, percent, with_unit};
 use etendue_compare::{Estimate, Verdict};
@@ -203,7 +203,7 @@ fn verdict(diff: &Diff) -> String {
 }
 
 fn is_identical(plane: &PlaneDiff) -> bool {
-    matches!(&plane.found, Found::Compared(compared) if compared.is_identical)
+    matches!(&plane.found, PlaneDifference::Compared(compared) if compared.is_identical)
 }
 
 fn has_same_bytes(diff: &Diff, plane: &PlaneDiff) -> bool {

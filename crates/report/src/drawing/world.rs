@@ -2,7 +2,7 @@
 
 use super::cut::CuttingPlane;
 use etendue_field::VirtualPlane;
-use etendue_figures::{Object, Segment, World};
+use etendue_figures::{DrawnObject, DrawnWorld, Segment};
 use etendue_scene::{Leg, Scene};
 use glam::DVec3;
 
@@ -12,7 +12,7 @@ const ENDLESS_METRES: f64 = 1e4;
 const STRAIGHT: f64 = 1e-9;
 
 /// The scene to scale; `None` where the path goes straight on and straight back.
-pub(super) fn world(scene: &Scene, planes: &[&VirtualPlane]) -> Option<World> {
+pub(super) fn world(scene: &Scene, planes: &[&VirtualPlane]) -> Option<DrawnWorld> {
     let legs = &scene.path.legs;
     let turns = |leg: &Leg| leg.frame.d.dot(legs[0].frame.d).abs() < 1.0 - STRAIGHT;
     let last = legs.iter().any(turns).then(|| legs.last()).flatten()?;
@@ -24,7 +24,7 @@ pub(super) fn world(scene: &Scene, planes: &[&VirtualPlane]) -> Option<World> {
     let pieces = CuttingPlane { scene, axis: 0 }.pieces(planes);
     let objects = pieces.into_iter().map(|(leg, segment)| {
         let leg = &legs[leg];
-        Object {
+        DrawnObject {
             segment: Segment {
                 start: point(leg, segment.start),
                 end: point(leg, segment.end),
@@ -42,7 +42,7 @@ pub(super) fn world(scene: &Scene, planes: &[&VirtualPlane]) -> Option<World> {
     let farthest = planes.iter().map(|plane| plane.distance);
     let end = farthest.fold(last.start + 0.3 * way, f64::max);
     let corners = legs.iter().map(|leg| point(leg, [leg.start, 0.0]));
-    Some(World {
+    Some(DrawnWorld {
         path: corners.chain([point(last, [end, 0.0])]).collect(),
         objects: objects.collect(),
         planes: marks.collect(),

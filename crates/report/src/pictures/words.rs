@@ -1,7 +1,7 @@
 //! What the coordinates of a plane are called, and axes over them.
 
 use etendue_field::{FrequencyAxis, Orientation, ProjectionGrid, SliceGrid, VirtualPlane};
-use etendue_figures::{Axis, Quantity};
+use etendue_figures::{Axis, AxisQuantity};
 use etendue_spectrum::field::FullRadial;
 
 /// The names of a plane's coordinates: slopes across the central ray, angles on a surface.
@@ -54,9 +54,9 @@ impl CoordinateNames {
         ]
     }
 
-    pub(super) fn light_field_quantity(&self) -> Quantity {
+    pub(super) fn light_field_quantity(&self) -> AxisQuantity {
         let [a, b] = self.across;
-        Quantity::new(&format!("∬ *L W* d{a} d{b}"), "W m^{−2} sr^{−1} m")
+        AxisQuantity::new(&format!("∬ *L W* d{a} d{b}"), "W m^{−2} sr^{−1} m")
     }
 }
 
@@ -87,8 +87,8 @@ pub fn full_radial_axes(plane: &VirtualPlane, of: &FullRadial) -> [Axis; 2] {
 }
 
 /// What a full radial spectrum holds.
-pub fn full_radial_quantity() -> Quantity {
-    Quantity::new("⟨|*ℓ̂*|^{2}⟩", "")
+pub fn full_radial_quantity() -> AxisQuantity {
+    AxisQuantity::new("⟨|*ℓ̂*|^{2}⟩", "")
 }
 
 /// The axes of the light field across the other two coordinates, (y, v).
@@ -102,11 +102,11 @@ pub fn across_axes(plane: &VirtualPlane, grid: &ProjectionGrid) -> [Axis; 2] {
 }
 
 /// What a light field across the ray holds.
-pub fn light_field_quantity() -> Quantity {
+pub fn light_field_quantity() -> AxisQuantity {
     CoordinateNames::ACROSS.light_field_quantity()
 }
 
 /// What a radial spectrum holds.
-pub fn spectrum_quantity() -> Quantity {
-    Quantity::new("⟨|*S*_{φ}|^{2}⟩", "")
+pub fn spectrum_quantity() -> AxisQuantity {
+    AxisQuantity::new("⟨|*S*_{φ}|^{2}⟩", "")
 }

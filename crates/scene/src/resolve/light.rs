@@ -25,6 +25,7 @@ const SHARPEST: f64 = 1e4;
 
 impl Resolver<'_> {
     /// The light, around the origin of the central ray, where its frame is.
+    #[expect(clippy::too_many_lines, reason = "a case for each kind of light")]
     pub(super) fn light(&mut self, light: &LightFile, frame: &Frame) -> Light {
         self.faults.coordinates("light.center", &light.center());
         let area = |shape: Shape, radiance: f64, exponent: f64| Light::Area {

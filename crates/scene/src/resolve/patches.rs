@@ -19,6 +19,10 @@ impl Resolver<'_> {
             .collect()
     }
 
+    #[expect(
+        clippy::too_many_lines,
+        reason = "a case for each form and event of a surface"
+    )]
     fn patch(&mut self, of: &str, surface: &SurfaceFile, light: &Frame) -> Option<PatchObject> {
         let SurfaceFile::Smooth {
             name,

@@ -43,7 +43,7 @@ const MIN_NODES: u32 = 1 << 14;
 
 /// When to stop adding nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Budget {
+pub struct RayBudget {
     /// Most nodes in all; between half of them and all are used.
     pub nodes: f64,
     /// ‖error‖/‖F‖ that is good enough.
@@ -119,7 +119,7 @@ pub(crate) fn sums(
     integrand: &(impl Integrand + ?Sized),
     (window, grid): (&Window, &SliceGrid),
     bins: usize,
-    budget: Budget,
+    budget: RayBudget,
 ) -> Predicted {
     let nets = begin(integrand, grid, bins, 0, REPLICATES);
     let (nets, error) = doubled(integrand, (window, grid), nets, budget);
@@ -133,7 +133,7 @@ pub(crate) fn trial(
     integrand: &(impl Integrand + ?Sized),
     (window, grid): (&Window, &SliceGrid),
 ) -> f64 {
-    const TRIED: Budget = Budget {
+    const TRIED: RayBudget = RayBudget {
         nodes: 0.0,
         error: f64::INFINITY,
     };
@@ -146,7 +146,7 @@ fn doubled(
     integrand: &(impl Integrand + ?Sized),
     (window, grid): (&Window, &SliceGrid),
     mut running: Vec<Running>,
-    budget: Budget,
+    budget: RayBudget,
 ) -> (Vec<Running>, f64) {
     let bins = running[0].projection.nrows();
     let picture = ProjectionGrid::new(window, bins);
@@ -221,7 +221,7 @@ const TRANSFORM: f64 = 300.0;
 
 /// What a prediction by nets takes that ends with its budget: rays, and the transforms of all nets.
 #[must_use]
-pub(crate) fn work_of_nets(grid: &SliceGrid, budget: Budget) -> PredictionWork {
+pub(crate) fn work_of_nets(grid: &SliceGrid, budget: RayBudget) -> PredictionWork {
     let cells: f64 = grid.half_shape().iter().map(|n| *n as f64).product();
     let azimuths = grid.azimuths as f64;
     let replicates = REPLICATES as f64;
@@ -425,7 +425,7 @@ mod tests {
     #[test]
     fn plain_summation() {
         let (window, grid) = (window(Profile::Box(0.5), Profile::Box(0.5)), grid());
-        let budget = Budget {
+        let budget = RayBudget {
             nodes: 0.0,
             error: 0.0,
         };
@@ -470,7 +470,7 @@ mod tests {
     #[test]
     fn any_number_of_threads_gives_the_same_bytes() {
         let (window, grid) = (window(Profile::Box(0.5), Profile::Box(0.5)), grid());
-        let budget = Budget {
+        let budget = RayBudget {
             nodes: 1e5,
             error: 0.0,
         };

@@ -1,6 +1,6 @@
 //! The rays of nets one by one, for sums other than slices.
 
-use super::{Budget, DIMENSIONS, Integrand, NetPoints, REPLICATES, RayNode};
+use super::{DIMENSIONS, Integrand, NetPoints, REPLICATES, RayBudget, RayNode};
 use etendue_field::TwoPlane;
 
 /// A light field at a plane as weighted rays, in independent nets that each stand for all of it.
@@ -28,7 +28,7 @@ impl<'a, I: Integrand> SampledNets<'a, I> {
         clippy::cast_sign_loss,
         reason = "between 1 and 2^29"
     )]
-    pub(crate) fn new(integrand: &'a I, budget: Budget) -> Self {
+    pub(crate) fn new(integrand: &'a I, budget: RayBudget) -> Self {
         let allowed = (budget.nodes / REPLICATES as f64).clamp(1.0, MAX_NODES) as u32;
         let nodes = 1 << allowed.ilog2();
         Self { integrand, nodes }

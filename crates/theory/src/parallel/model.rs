@@ -1,7 +1,7 @@
 //! A chain as a model: its parameters and its prediction.
 
 use crate::model::{Model, Over};
-use crate::nets::{Budget, RayNets, work_of_nets};
+use crate::nets::{RayBudget, RayNets, work_of_nets};
 use crate::parallel::disc_resolution::DiscResolution;
 use crate::parallel::{at, derivative, given, projection, quadrature_error, slices, work};
 use crate::parameter::{New, Parameter, resize, size_word};
@@ -84,7 +84,7 @@ impl Model for Chain {
     }
 
     /// By closed forms, or by nets of rays where these take too long or do not resolve the scene. Rays of a file are summed.
-    fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: Budget) -> Predicted {
+    fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: RayBudget) -> Predicted {
         if let Some(rays) = self.given() {
             return given::predicted(self, rays, over);
         }
@@ -108,14 +108,14 @@ impl Model for Chain {
         }
     }
 
-    fn with_rays(&self, over: Over<'_>, budget: Budget, then: &mut dyn FnMut(&dyn RayNets)) {
+    fn with_rays(&self, over: Over<'_>, budget: RayBudget, then: &mut dyn FnMut(&dyn RayNets)) {
         match self.given() {
             Some(rays) => then(&given::GivenRays::new(self, rays, over.0)),
             None => self.with_sampled(over, budget, then),
         }
     }
 
-    fn work(&self, over: Over<'_>, budget: Budget) -> PredictionWork {
+    fn work(&self, over: Over<'_>, budget: RayBudget) -> PredictionWork {
         if let Some(rays) = self.given() {
             given::work(rays, over.1)
         } else if self.is_sampled(over, budget) {
@@ -140,7 +140,7 @@ impl Chain {
     /// Whether nets of rays take the place of its closed form or quadrature: where that takes longer
     /// than the photons, or does not resolve a pattern.
     #[must_use]
-    pub fn is_sampled(&self, (window, grid, picture): Over<'_>, budget: Budget) -> bool {
+    pub fn is_sampled(&self, (window, grid, picture): Over<'_>, budget: RayBudget) -> bool {
         if self.given().is_some() {
             return false;
         }
@@ -240,7 +240,7 @@ mod tests {
                 nu: axis(0.5),
             };
             let picture = ProjectionGrid::new(&window, 1);
-            let budget = Budget {
+            let budget = RayBudget {
                 nodes: 1e6,
                 error: 1e-3,
             };
@@ -262,7 +262,7 @@ mod tests {
         };
         let picture = ProjectionGrid::new(&window, 64);
         let over = (&window, &grid, &picture);
-        let budget = Budget {
+        let budget = RayBudget {
             nodes: 1.1e6,
             error: 3e-3,
         };

@@ -2,7 +2,7 @@
 //! of rays.
 
 use crate::model::{Model, Observed, Over, ShiftedModels};
-use crate::nets::{Budget, RayNets};
+use crate::nets::{RayBudget, RayNets};
 use crate::predicted::Predicted;
 use crate::rays::Plane;
 use crate::{Chain, Parameter, rays, scattering};
@@ -20,7 +20,12 @@ enum NetDomain {
 impl Chain {
     /// The prediction by nets of rays, with derivatives by some parameters.
     #[must_use]
-    pub fn sampled(&self, parameters: &[Parameter], over: Over<'_>, budget: Budget) -> Predicted {
+    pub fn sampled(
+        &self,
+        parameters: &[Parameter],
+        over: Over<'_>,
+        budget: RayBudget,
+    ) -> Predicted {
         const ONE_KIND: &str = "a parameter changes no kind of chain";
         match self.followed(over.0) {
             NetDomain::Rays(view) => {
@@ -45,7 +50,7 @@ impl Chain {
     pub(super) fn with_sampled(
         &self,
         over: Over<'_>,
-        budget: Budget,
+        budget: RayBudget,
         then: &mut dyn FnMut(&dyn RayNets),
     ) {
         match self.followed(over.0) {

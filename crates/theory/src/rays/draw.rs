@@ -117,6 +117,10 @@ impl<'a> Outer<'a> {
 impl<'a> RaySampler<'a> {
     /// `center` is where the central ray lands and `jacobian` how that changes with the ray; `None`
     /// where they do not tell rays apart. Without a plane all rays land as they tell.
+    #[expect(
+        clippy::too_many_lines,
+        reason = "the coordinates by which each kind of light is aimed, side by side"
+    )]
     pub(super) fn new(
         (system, plane): (&'a SpecularSystem, Option<&Plane>),
         window: &Window,

@@ -4,7 +4,7 @@
 use super::central::CentralHit;
 use super::{SpecularSystem, predict, with_rays};
 use crate::model::{Model, Observed, Over, ShiftedModels};
-use crate::nets::{Budget, RayNets, work_of_nets};
+use crate::nets::{RayBudget, RayNets, work_of_nets};
 use crate::parameter::{New, Parameter, change_curvature, curvatures, resize};
 use crate::predicted::Predicted;
 use crate::work::PredictionWork;
@@ -96,7 +96,7 @@ impl Model for Observed<SpecularSystem> {
         Some(())
     }
 
-    fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: Budget) -> Predicted {
+    fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: RayBudget) -> Predicted {
         let moved = parameters.iter();
         let moved = moved.map(|parameter| ShiftedModels::nearby(self, *parameter));
         let moved: Option<Vec<_>> = moved.collect();
@@ -108,11 +108,11 @@ impl Model for Observed<SpecularSystem> {
         )
     }
 
-    fn with_rays(&self, over: Over<'_>, budget: Budget, then: &mut dyn FnMut(&dyn RayNets)) {
+    fn with_rays(&self, over: Over<'_>, budget: RayBudget, then: &mut dyn FnMut(&dyn RayNets)) {
         with_rays(self, over, budget, then);
     }
 
-    fn work(&self, over: Over<'_>, budget: Budget) -> PredictionWork {
+    fn work(&self, over: Over<'_>, budget: RayBudget) -> PredictionWork {
         work_of_nets(over.1, budget)
     }
 }

@@ -7,19 +7,19 @@ use super::{LegRay, Plane, SpecularSystem};
 use crate::geometry::{AffineMap, SpectrumMap};
 use crate::mask::Masks;
 use crate::model::{Observed, Over, ShiftedModels};
-use crate::nets::{self, Budget, DIMENSIONS, Integrand, RayNets, RayNode};
+use crate::nets::{self, DIMENSIONS, Integrand, RayBudget, RayNets, RayNode};
 use crate::obstacle::PreparedObstacles;
 use crate::predicted::Predicted;
 use etendue_field::{Frame, FrequencyAxis, Light, Mask, SliceGrid, Slices, TwoPlane, Window};
 use glam::DVec3;
 
 /// Of a prediction that needs neither picture nor moments.
-const NO_PICTURES: Budget = Budget {
+const NO_PICTURES: RayBudget = RayBudget {
     nodes: 0.0,
     error: f64::INFINITY,
 };
 /// Rays of a picture and of moments, where slices are by a rule.
-const FOR_PICTURES: Budget = Budget {
+const FOR_PICTURES: RayBudget = RayBudget {
     nodes: 1e6,
     error: 0.0,
 };
@@ -33,7 +33,7 @@ pub(crate) fn predict(
     view: &Observed<SpecularSystem>,
     moved: &[ShiftedModels<Observed<SpecularSystem>>],
     over: Over<'_>,
-    budget: Budget,
+    budget: RayBudget,
 ) -> Predicted {
     let Observed { system, plane } = view;
     let observed = (system, Some(plane));
@@ -52,7 +52,7 @@ pub(crate) fn predict(
 pub(crate) fn with_rays(
     view: &Observed<SpecularSystem>,
     over: Over<'_>,
-    budget: Budget,
+    budget: RayBudget,
     then: &mut dyn FnMut(&dyn RayNets),
 ) {
     let Observed { system, plane } = view;
@@ -85,7 +85,7 @@ pub fn linear(
     view: &Observed<SpecularSystem>,
     over: Over<'_>,
     map: &SpectrumMap<4>,
-    budget: Budget,
+    budget: RayBudget,
 ) -> Predicted {
     let system = &view.system;
     // Rays land as the map has them.
@@ -272,7 +272,7 @@ fn summed(
     observed: (&SpecularSystem, Option<&Plane>),
     way: Option<(Neighbourhood, RayStrategy)>,
     (window, grid, picture): Over<'_>,
-    [of_slices, of_pictures]: [Budget; 2],
+    [of_slices, of_pictures]: [RayBudget; 2],
 ) -> Predicted {
     let draw =
         way.and_then(|(lands, strategy)| RaySampler::new(observed, window, &lands, strategy));

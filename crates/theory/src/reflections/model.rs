@@ -2,7 +2,7 @@
 
 use super::{Interaction, PathSurface, ReflectionSystem, predict};
 use crate::model::{Model, Observed, Over, ShiftedModels};
-use crate::nets::{Budget, RayNets, work_of_nets};
+use crate::nets::{RayBudget, RayNets, work_of_nets};
 use crate::parameter::{New, Parameter, change_curvature, curvatures};
 use crate::predicted::Predicted;
 use crate::rays::shrunk_light;
@@ -135,7 +135,7 @@ impl Model for Observed<ReflectionSystem> {
     }
 
     /// With the difference to the first-order chain.
-    fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: Budget) -> Predicted {
+    fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: RayBudget) -> Predicted {
         let last = self.system.last_scatterer();
         let surface = last.map(|last| self.system.surfaces[last].clone());
         let albedo = surface.filter(PathSurface::is_in_proportion);
@@ -157,11 +157,11 @@ impl Model for Observed<ReflectionSystem> {
         found
     }
 
-    fn with_rays(&self, over: Over<'_>, budget: Budget, then: &mut dyn FnMut(&dyn RayNets)) {
+    fn with_rays(&self, over: Over<'_>, budget: RayBudget, then: &mut dyn FnMut(&dyn RayNets)) {
         predict::with_rays(self, over, budget, then);
     }
 
-    fn work(&self, over: Over<'_>, budget: Budget) -> PredictionWork {
+    fn work(&self, over: Over<'_>, budget: RayBudget) -> PredictionWork {
         work_of_nets(over.1, budget)
     }
 }

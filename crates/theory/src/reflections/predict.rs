@@ -3,7 +3,7 @@
 use super::ReflectionSystem;
 use super::path::FieldPaths;
 use crate::model::{Observed, Over, ShiftedModels};
-use crate::nets::{self, Budget, DIMENSIONS, Integrand, RayNets, RayNode};
+use crate::nets::{self, DIMENSIONS, Integrand, RayBudget, RayNets, RayNode};
 use crate::predicted::Predicted;
 use etendue_field::Slices;
 
@@ -16,7 +16,7 @@ pub(crate) fn predict(
     view: &Observed<ReflectionSystem>,
     moved: &[ShiftedModels<Observed<ReflectionSystem>>],
     over: Over<'_>,
-    budget: Budget,
+    budget: RayBudget,
 ) -> Predicted {
     let (window, grid, picture) = over;
     let of = |view| FieldPaths::new(view, window);
@@ -43,7 +43,7 @@ pub(crate) fn predict(
 pub(crate) fn with_rays(
     view: &Observed<ReflectionSystem>,
     (window, ..): Over<'_>,
-    budget: Budget,
+    budget: RayBudget,
     then: &mut dyn FnMut(&dyn RayNets),
 ) {
     if let Some(paths) = FieldPaths::new(view, window) {

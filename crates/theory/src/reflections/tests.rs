@@ -5,14 +5,14 @@ use crate::numerics::distance;
 use crate::obstacle::ObstacleForm;
 use crate::rays::Plane;
 use crate::testing::window;
-use crate::{Budget, Model, Observed, Parameter, Predicted, scattering};
+use crate::{Model, Observed, Parameter, Predicted, RayBudget, scattering};
 use etendue_field::{
     Brdf, Frame, FrequencyAxis, Fresnel, HalfPlane, Image, Lobe, Mask, Orientation, Profile,
     ProjectionGrid, Quantity, Rectangle, Shape, SliceGrid, Window,
 };
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
-const BUDGET: Budget = Budget {
+const BUDGET: RayBudget = RayBudget {
     nodes: 2e6,
     error: 1e-4,
 };

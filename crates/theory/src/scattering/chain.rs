@@ -15,7 +15,7 @@ use glam::DVec3;
 /// Local coordinates are (s, t, θ, φ): positions along T and B, angles to the local normals, T
 /// lying in the plane of incidence.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ReflectionChain {
+pub struct ScatteringChain {
     /// From (x, y, u, v) at the light to local coordinates of where light comes from: travel,
     /// incidence, curvature.
     pub onto: AffineMap<4>,
@@ -43,7 +43,7 @@ pub struct ReflectionChain {
 /// 2005, Eqs. 9–11 and 19, corrected (docs/theory.md, section 7), which its tests hold them
 /// against.
 #[must_use]
-pub fn chain(view: &Observed<ScatteringSystem>) -> Option<ReflectionChain> {
+pub fn chain(view: &Observed<ScatteringSystem>) -> Option<ScatteringChain> {
     let Observed { system, plane } = view;
     let central = LegRay {
         point: DVec3::ZERO,
@@ -86,7 +86,7 @@ pub fn chain(view: &Observed<ScatteringSystem>) -> Option<ReflectionChain> {
         };
         steps.push(cosine.to_owned());
     }
-    Some(ReflectionChain {
+    Some(ScatteringChain {
         onto,
         off,
         incidence: incidence.theta0,
@@ -101,13 +101,13 @@ pub fn chain(view: &Observed<ScatteringSystem>) -> Option<ReflectionChain> {
 /// How far the maps of a chain are from those of where rays go, in radians, metres, or shares of
 /// them: zero for that of [`chain`].
 #[must_use]
-pub fn defect(view: &Observed<ScatteringSystem>, tried: &ReflectionChain) -> Option<f64> {
+pub fn defect(view: &Observed<ScatteringSystem>, tried: &ScatteringChain) -> Option<f64> {
     let traced = chain(view)?;
     let onto = tried.onto.apart(&traced.onto, &[1.0; 4]);
     Some(onto.max(tried.off.apart(&traced.off, &[1.0; 4])))
 }
 
-impl ReflectionChain {
+impl ScatteringChain {
     /// A of the rays from the light to the plane by way of the mirror direction, z' = A z.
     #[must_use]
     pub fn rays(&self) -> AffineMap<4> {

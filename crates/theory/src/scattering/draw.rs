@@ -7,7 +7,7 @@
 use super::brdf::narrowest;
 use super::exact::Leaving;
 use super::incoming::{LightPart, secant};
-use super::{ReflectionChain, ScatteringSystem};
+use super::{ScatteringChain, ScatteringSystem};
 use crate::geometry::{AffineMap, Matrix, product, times};
 use crate::nets::LinearDensity;
 use crate::sky::SkyDensity;
@@ -93,7 +93,7 @@ impl PlaneRaySampler {
     pub(super) fn new(
         system: &ScatteringSystem,
         window: &Window,
-        chain: Option<&ReflectionChain>,
+        chain: Option<&ScatteringChain>,
         strategy: LightStrategy,
     ) -> Self {
         let profiles = [window.x, window.y, window.u, window.v];
@@ -126,7 +126,7 @@ impl PlaneRaySampler {
 
 impl Mirrored {
     /// `None` where light comes from everywhere, or slopes do not tell angles apart.
-    fn new(system: &ScatteringSystem, chain: &ReflectionChain) -> Option<Self> {
+    fn new(system: &ScatteringSystem, chain: &ScatteringChain) -> Option<Self> {
         let off = chain.off.inverse()?;
         let block = |map: &AffineMap<4>, row: usize, column: usize| -> Matrix<2> {
             crate::geometry::from_fn(|i, j| map.matrix[row + i][column + j])

@@ -2,7 +2,7 @@
 
 use super::ScatteringSystem;
 use super::brdf;
-use super::chain::ReflectionChain;
+use super::chain::ScatteringChain;
 use super::incoming::{IncomingLight, LightPart};
 use crate::geometry::{AffineMap, Matrix};
 use crate::mask::Masks;
@@ -14,7 +14,7 @@ use std::f64::consts::{PI, TAU};
 #[derive(Clone, Debug)]
 pub(super) struct Linear<'a> {
     pub(super) system: &'a ScatteringSystem,
-    chain: &'a ReflectionChain,
+    chain: &'a ScatteringChain,
     /// From the plane to local coordinates of where light goes.
     off: AffineMap<4>,
     /// Positions on the surface to those at its distance across the light's axis, as a matrix.
@@ -26,7 +26,7 @@ pub(super) struct Linear<'a> {
 }
 
 impl<'a> Linear<'a> {
-    pub(super) fn new(system: &'a ScatteringSystem, chain: &'a ReflectionChain) -> Option<Self> {
+    pub(super) fn new(system: &'a ScatteringSystem, chain: &'a ScatteringChain) -> Option<Self> {
         let m = &chain.onto.matrix;
         let [[a, b], [c, d]] = [[m[0][0], m[0][1]], [m[1][0], m[1][1]]];
         let det = a * d - b * c;

@@ -28,7 +28,7 @@ mod predict;
 #[cfg(test)]
 mod tests;
 
-pub use chain::{ReflectionChain, chain, defect};
+pub use chain::{ScatteringChain, chain, defect};
 pub use operator::semi_convolution;
 pub use predict::beside;
 

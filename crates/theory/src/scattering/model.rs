@@ -2,7 +2,7 @@
 
 use super::{ScatteringSystem, chain, predict, with_rays};
 use crate::model::{Model, Observed, Over, ShiftedModels};
-use crate::nets::{Budget, RayNets, work_of_nets};
+use crate::nets::{RayBudget, RayNets, work_of_nets};
 use crate::parameter::{New, Parameter, change_curvature, curvatures};
 use crate::predicted::Predicted;
 use crate::work::PredictionWork;
@@ -73,7 +73,7 @@ impl Model for Observed<ScatteringSystem> {
 
     /// With the difference to the first-order chain. All light is in proportion to an albedo where
     /// no other BRDF is added to it.
-    fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: Budget) -> Predicted {
+    fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: RayBudget) -> Predicted {
         let only = self.system.reflectance.only().map(|brdf| brdf.albedo);
         let factor = only.filter(|albedo| *albedo > 0.0);
         let is_factor = |parameter: &Parameter| *parameter == Parameter::Albedo && factor.is_some();
@@ -91,11 +91,11 @@ impl Model for Observed<ScatteringSystem> {
         found
     }
 
-    fn with_rays(&self, over: Over<'_>, budget: Budget, then: &mut dyn FnMut(&dyn RayNets)) {
+    fn with_rays(&self, over: Over<'_>, budget: RayBudget, then: &mut dyn FnMut(&dyn RayNets)) {
         with_rays(self, chain(self).as_ref(), over, budget, then);
     }
 
-    fn work(&self, over: Over<'_>, budget: Budget) -> PredictionWork {
+    fn work(&self, over: Over<'_>, budget: RayBudget) -> PredictionWork {
         work_of_nets(over.1, budget)
     }
 }

@@ -4,10 +4,10 @@ use super::draw::{LightStrategy, Lights, PlaneRaySampler};
 use super::exact::Leaving;
 use super::incoming::LightPart;
 use super::linear::Linear;
-use super::{ReflectionChain, ScatteringSystem};
+use super::{ScatteringChain, ScatteringSystem};
 use crate::mask::Masks;
 use crate::model::{Observed, Over, ShiftedModels};
-use crate::nets::{self, Budget, DIMENSIONS, Integrand, RayNets, RayNode};
+use crate::nets::{self, DIMENSIONS, Integrand, RayBudget, RayNets, RayNode};
 use crate::predicted::Predicted;
 use crate::rays::{LegRay, Plane};
 use etendue_field::{EnvironmentMap, Light, SliceGrid, TwoPlane, Window};
@@ -25,10 +25,10 @@ use glam::DVec3;
 /// alone adds noise, the less the farther the sides are apart.
 pub(crate) fn predict(
     view: &Observed<ScatteringSystem>,
-    chain: Option<&ReflectionChain>,
+    chain: Option<&ScatteringChain>,
     moved: &[ShiftedModels<Observed<ScatteringSystem>>],
     (window, grid, picture): Over<'_>,
-    budget: Budget,
+    budget: RayBudget,
 ) -> Predicted {
     let strategy = fastest(view, chain, (window, grid));
     let field = ScatteredField::new(view, window, chain, strategy);
@@ -45,9 +45,9 @@ pub(crate) fn predict(
 /// Calls `then` with the rays that [`predict`] sums over nets.
 pub(crate) fn with_rays(
     view: &Observed<ScatteringSystem>,
-    chain: Option<&ReflectionChain>,
+    chain: Option<&ScatteringChain>,
     (window, grid, _): Over<'_>,
-    budget: Budget,
+    budget: RayBudget,
     then: &mut dyn FnMut(&dyn RayNets),
 ) {
     let strategy = fastest(view, chain, (window, grid));
@@ -61,7 +61,7 @@ pub(crate) fn with_rays(
 /// The strategy with the least error in the same time.
 fn fastest(
     view: &Observed<ScatteringSystem>,
-    chain: Option<&ReflectionChain>,
+    chain: Option<&ScatteringChain>,
     (window, grid): (&Window, &SliceGrid),
 ) -> LightStrategy {
     best(&view.system, |strategy| {
@@ -71,8 +71,8 @@ fn fastest(
 }
 
 /// The nodes that take as long as those of a budget do with few lobes of light.
-fn affordable(system: &ScatteringSystem, budget: Budget) -> Budget {
-    Budget {
+fn affordable(system: &ScatteringSystem, budget: RayBudget) -> RayBudget {
+    RayBudget {
         nodes: budget.nodes / cost(system),
         ..budget
     }
@@ -83,9 +83,9 @@ fn affordable(system: &ScatteringSystem, budget: Budget) -> Budget {
 #[must_use]
 pub fn beside(
     view: &Observed<ScatteringSystem>,
-    chain: &ReflectionChain,
+    chain: &ScatteringChain,
     over: Over<'_>,
-    budget: Budget,
+    budget: RayBudget,
 ) -> Predicted {
     predict(view, Some(chain), &[], over, budget)
 }
@@ -132,7 +132,7 @@ impl<'a> ScatteredField<'a> {
     fn new(
         view: &'a Observed<ScatteringSystem>,
         window: &'a Window,
-        chain: Option<&ReflectionChain>,
+        chain: Option<&ScatteringChain>,
         strategy: LightStrategy,
     ) -> Self {
         let system = &view.system;
@@ -282,7 +282,7 @@ struct VariedFields<'a> {
 impl<'a> VariedFields<'a> {
     fn new(
         field: &'a ScatteredField<'a>,
-        chain: Option<&'a ReflectionChain>,
+        chain: Option<&'a ScatteringChain>,
         moved: &'a [ShiftedModels<Observed<ScatteringSystem>>],
         strategy: LightStrategy,
     ) -> Self {

@@ -11,25 +11,25 @@ use etendue_scene::{Event, Object, PatchObject, Scene};
 
 /// A leg of the path, looked along from its end.
 #[derive(Debug)]
-pub(super) struct Leg {
-    pub(super) courses: Both<Course>,
+pub(super) struct BackwardLeg {
+    pub(super) courses: Both<BackwardCourse>,
     /// What it ends on.
     pub(super) ends: Option<Object>,
 }
 
 /// What light meets that goes one way on a leg.
 #[derive(Debug)]
-pub(super) struct Course {
+pub(super) struct BackwardCourse {
     /// In the frame at the light.
     pub(super) frame: Frame,
     pub(super) obstacles: Obstacles,
     /// The surface at its beginning; `None` for the first.
-    pub(super) leaves: Option<Leaves>,
+    pub(super) leaves: Option<LeftSurface>,
 }
 
 /// A ray along which light of a leg may come, in the frame of its way.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Incoming {
+pub(super) struct IncomingRay {
     pub(super) leg: usize,
     pub(super) heading: Heading,
     pub(super) ray: TwoPlane,
@@ -37,7 +37,7 @@ pub(super) struct Incoming {
 
 /// The surface that light leaves at the beginning of a leg.
 #[derive(Debug)]
-pub(super) struct Leaves {
+pub(super) struct LeftSurface {
     pub(super) object: Object,
     /// In the frame of the course.
     pub(super) primitives: PrimitiveSet<()>,
@@ -59,7 +59,7 @@ pub(super) enum Scattering {
     Turned { lens: Frame, event: Specular },
 }
 
-impl Incoming {
+impl IncomingRay {
     /// A ray of the light.
     pub(super) fn from_light(ray: TwoPlane) -> Self {
         Self {
@@ -70,20 +70,22 @@ impl Incoming {
     }
 }
 
-impl Leg {
+impl BackwardLeg {
     pub(super) fn new(scene: &Scene, leg: usize) -> Self {
         Self {
-            courses: Both::new(scene, leg, |_, this| Course {
+            courses: Both::new(scene, leg, |_, this| BackwardCourse {
                 frame: this.frame,
                 obstacles: Obstacles::new(scene, this),
-                leaves: this.leaves.map(|hit| Leaves::new(scene, this, hit.object)),
+                leaves: this
+                    .leaves
+                    .map(|hit| LeftSurface::new(scene, this, hit.object)),
             }),
             ends: scene.path.ends_at(leg).map(|hit| hit.object),
         }
     }
 }
 
-impl Leaves {
+impl LeftSurface {
     pub(super) fn new(scene: &Scene, leg: &etendue_scene::Leg, object: Object) -> Self {
         let around = Around(leg.frame);
         let tagged = |primitive| TaggedPrimitive { primitive, tag: () };

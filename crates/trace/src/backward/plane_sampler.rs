@@ -1,7 +1,7 @@
 //! Scattering rays of one plane are drawn.
 
 use super::end::End;
-use super::leg::Incoming;
+use super::leg::IncomingRay;
 use super::source::TracedLight;
 use crate::courses::Both;
 use crate::heading::Heading;
@@ -50,14 +50,14 @@ impl PlaneSampler {
     }
 
     /// The ray of the leg that the plane has as `seen`, where it is looked at, and dA over dx dy there; `None` if there is none.
-    pub(super) fn leg_ray(&self, seen: &TwoPlane) -> Option<(Incoming, End, f64)> {
+    pub(super) fn leg_ray(&self, seen: &TwoPlane) -> Option<(IncomingRay, End, f64)> {
         let headings = [Heading::Along, Heading::Against];
         headings.into_iter().find_map(|heading| {
             let plane_on_leg = self.planes_on_leg.of(heading)?;
             let (ray, area) = plane_on_leg.leg_ray(seen)?;
             let end = plane_on_leg.crossing(&ray, f64::NEG_INFINITY)?;
             let leg = self.leg;
-            let incoming = Incoming { leg, heading, ray };
+            let incoming = IncomingRay { leg, heading, ray };
             Some((incoming, End::Plane(end, plane_on_leg.side), area))
         })
     }

@@ -2,7 +2,7 @@
 
 use super::connected::{connection, finds};
 use super::end::End;
-use super::leg::{Course, Incoming, Leaves, Leg, Scattering};
+use super::leg::{BackwardCourse, BackwardLeg, IncomingRay, LeftSurface, Scattering};
 use super::plane_sampler::PlaneSampler;
 use super::reflected::Reflection;
 use super::source::TracedLight;
@@ -26,7 +26,7 @@ use glam::DVec3;
 #[derive(Debug)]
 pub struct Backward {
     light: TracedLight,
-    legs: Vec<Leg>,
+    legs: Vec<BackwardLeg>,
     samplers: Vec<PlaneSampler>,
     shares: BatchRanges,
     seed: u64,
@@ -69,7 +69,7 @@ impl Backward {
         Ok(Self {
             light,
             legs: (0..scene.path.legs.len())
-                .map(|leg| Leg::new(scene, leg))
+                .map(|leg| BackwardLeg::new(scene, leg))
                 .collect(),
             samplers,
             shares: BatchRanges::new(&scene.run),
@@ -141,16 +141,20 @@ impl Backward {
 
     /// The radiance that arrives at the end of a ray; `block` numbers the random
     /// numbers of the next surface on its way back.
+    #[expect(
+        clippy::too_many_lines,
+        reason = "a case for each kind of surface that a ray may meet"
+    )]
     fn incident(
         &self,
-        incoming: &Incoming,
+        incoming: &IncomingRay,
         end: End,
         block: u32,
         words: &impl Fn(u32) -> [f64; 4],
     ) -> f64 {
-        let Incoming { leg, heading, ray } = incoming;
+        let IncomingRay { leg, heading, ray } = incoming;
         let this = &self.legs[*leg];
-        let Some(Course {
+        let Some(BackwardCourse {
             frame,
             obstacles,
             leaves,
@@ -233,7 +237,7 @@ impl Backward {
         let frame = &self.legs[leg].courses.along.frame;
         let [point, direction] = [frame.to_local(point), frame.vector_to_local(direction)];
         Heading::of(point, direction).map_or(0.0, |(heading, ray)| {
-            let incoming = Incoming { leg, heading, ray };
+            let incoming = IncomingRay { leg, heading, ray };
             self.arriving(&incoming, heading.turned(point).z, block, words)
         })
     }
@@ -242,12 +246,12 @@ impl Backward {
     /// may stand in the way.
     fn arriving(
         &self,
-        incoming: &Incoming,
+        incoming: &IncomingRay,
         end: f64,
         block: u32,
         words: &impl Fn(u32) -> [f64; 4],
     ) -> f64 {
-        let Incoming { leg, heading, ray } = incoming;
+        let IncomingRay { leg, heading, ray } = incoming;
         // Light begins in the plane across the central ray at its centre.
         if *leg == 0 && end <= 0.0 {
             return 0.0;
@@ -282,7 +286,7 @@ impl Backward {
         let this = &self.legs[leg].courses;
         let pieces = match &this.along.leaves {
             None => None,
-            Some(Leaves {
+            Some(LeftSurface {
                 how: Scattering::Diffuse { pieces, .. },
                 ..
             }) => Some(pieces),
@@ -300,14 +304,14 @@ impl Backward {
             (None, TracedLight::Narrow(light)) => {
                 return connection(light, point).map_or(0.0, |(ray, irradiance)| {
                     let cosine = -direction(&ray).normalize().dot(normal);
-                    let incoming = Incoming::from_light(ray);
+                    let incoming = IncomingRay::from_light(ray);
                     let found = self.arriving(&incoming, point.z, block + 1, words);
                     cosine.max(0.0) * irradiance * found
                 });
             }
             (None, TracedLight::Sky(sky)) => {
                 return sky.irradiance(point, normal, r, |ray, end| {
-                    self.arriving(&Incoming::from_light(*ray), end, block + 1, words)
+                    self.arriving(&IncomingRay::from_light(*ray), end, block + 1, words)
                 });
             }
         };
@@ -322,7 +326,7 @@ impl Backward {
         };
         let [end, begin] = [end, begin].map(|p| heading.turned(p).z);
         // What stands nearer on the same line is not the point that was drawn.
-        let nearer = |leaves: &Leaves| {
+        let nearer = |leaves: &LeftSurface| {
             leaves
                 .primitives
                 .last(&ray, end)
@@ -334,7 +338,7 @@ impl Backward {
         }
         // cos θ cos θ' dA / r².
         let solid = radiance_per_flux * area / way.length_squared().powi(2);
-        let incoming = Incoming { leg, heading, ray };
+        let incoming = IncomingRay { leg, heading, ray };
         solid * self.arriving(&incoming, end, block + 1, words)
     }
 }
@@ -397,7 +401,7 @@ impl Backward {
             return connection(light, at.point).map_or(0.0, |(ray, irradiance)| {
                 let from = frame.vector_to_local(-direction(&ray).normalize());
                 let carried = brdf::sum(brdf, from, *to) * from.z.max(0.0);
-                let incoming = Incoming::from_light(ray);
+                let incoming = IncomingRay::from_light(ray);
                 let found = self.arriving(&incoming, at.point.z, block + 1, words);
                 carried * irradiance * found
             });
@@ -455,7 +459,7 @@ impl Backward {
         let nothing = |_| [0.0; 4];
         // A plane on a surface looks at all that arrives there, as photons are counted.
         let end = End::Plane(plane_on_leg.distance, plane_on_leg.side);
-        let found = self.incident(&Incoming::from_light(at_light), end, 1, &nothing);
+        let found = self.incident(&IncomingRay::from_light(at_light), end, 1, &nothing);
         let weight = found * per_ray * area / density;
         let (ray, weight) = plane_on_leg.at_plane(&at_light, weight)?;
         Some(Crossing { ray, weight })

@@ -2,7 +2,7 @@
 
 use super::scene::{BATCHES, ProbeRequest, ProbedScene};
 use super::words::{ON_GRID, criterion};
-use etendue_figures::{Axis, Comparison, Quantity, Scale, comparison};
+use etendue_figures::{Axis, AxisQuantity, Comparison, Scale, comparison};
 use etendue_paths::{BackwardProbe, Budget, Probe};
 use etendue_pipeline::{Reporter, Work};
 use etendue_report::pictures;
@@ -27,7 +27,7 @@ const MAX_ERROR: f64 = 0.2;
 
 /// What is known of a pixel; NaN where there is nothing, or too much noise.
 #[derive(Clone, Copy, Debug)]
-struct Point {
+struct MapPoint {
     /// The frequency below which 95 % of the power in the window lies, in the azimuth where it is largest, cycles per slope, with its standard error.
     measured: f64,
     error: f64,
@@ -39,7 +39,7 @@ struct Point {
     samples: f64,
 }
 
-impl Point {
+impl MapPoint {
     const UNKNOWN: Self = Self {
         measured: f64::NAN,
         error: f64::NAN,
@@ -50,7 +50,7 @@ impl Point {
 }
 
 /// A number of each pixel.
-type Layer = fn(&Point) -> f64;
+type MapLayer = fn(&MapPoint) -> f64;
 
 /// What a map of bandwidths comes to.
 #[derive(Debug)]
@@ -80,7 +80,7 @@ pub fn map_bandwidths(
         bar.advance(1);
         point
     });
-    let points: Vec<Point> = points.collect::<Result<_, Failure>>()?;
+    let points: Vec<MapPoint> = points.collect::<Result<_, Failure>>()?;
     drop(bar);
     let map = Array2::from_shape_vec((h, w), points).map_err(Failure::cannot_run)?;
     write(case, results, &map, reporter)?;
@@ -89,11 +89,11 @@ pub fn map_bandwidths(
 }
 
 /// The bandwidths behind one pixel of the lattice.
-fn point(case: &ProbedScene<'_>, at: [usize; 2], lattice: [usize; 2]) -> Result<Point, Failure> {
+fn point(case: &ProbedScene<'_>, at: [usize; 2], lattice: [usize; 2]) -> Result<MapPoint, Failure> {
     let pixel = [0, 1].map(|i| (2 * at[i] + 1) * case.camera.size[i] / (2 * lattice[i]));
     let question = case.question(pixel, 4);
     let Some(mut probe) = Probe::new(&case.paths, &case.camera, &question) else {
-        return Ok(Point::UNKNOWN);
+        return Ok(MapPoint::UNKNOWN);
     };
     probe.planes.truncate(1);
     let number = (at[1] * lattice[0] + at[0]) as u64;
@@ -108,7 +108,7 @@ fn point(case: &ProbedScene<'_>, at: [usize; 2], lattice: [usize; 2]) -> Result<
     let noise = estimate::noise(&found, 0).map_err(Failure::cannot_run)?;
     let is_clear = noise.is_some_and(|noise| noise <= MAX_NOISE);
     let nu = nu.filter(|nu| is_clear && nu.error <= MAX_ERROR * nu.value);
-    Ok(Point {
+    Ok(MapPoint {
         measured: nu.map_or(f64::NAN, |nu| nu.value),
         error: nu.map_or(f64::NAN, |nu| nu.error),
         criterion: criterion(&probe.stops[0]).unwrap_or(f64::NAN),
@@ -120,11 +120,11 @@ fn point(case: &ProbedScene<'_>, at: [usize; 2], lattice: [usize; 2]) -> Result<
 fn write(
     case: &ProbedScene<'_>,
     mut results: Results,
-    map: &Array2<Point>,
+    map: &Array2<MapPoint>,
     reporter: &dyn Reporter,
 ) -> Result<(), Failure> {
     let (h, w) = map.dim();
-    let layers: [(&'static str, Layer); 5] = [
+    let layers: [(&'static str, MapLayer); 5] = [
         ("measured", |point| point.measured),
         ("error", |point| point.error),
         ("criterion", |point| point.criterion),
@@ -155,9 +155,12 @@ fn write(
     Ok(())
 }
 
-fn drawn(case: &ProbedScene<'_>, map: &Array2<Point>) -> Result<etendue_figures::Figure, Failure> {
+fn drawn(
+    case: &ProbedScene<'_>,
+    map: &Array2<MapPoint>,
+) -> Result<etendue_figures::Figure, Failure> {
     // Pictures have y upwards.
-    let of = |value: Layer| {
+    let of = |value: MapLayer| {
         let mut rows = map.map(value);
         rows.invert_axis(ArrayAxis(0));
         rows.reversed_axes()
@@ -173,7 +176,7 @@ fn drawn(case: &ProbedScene<'_>, map: &Array2<Point>) -> Result<etendue_figures:
         x: Axis::edges("column", "pixels", [0.0, w]),
         y: Axis::edges("row from below", "pixels", [0.0, h]),
         // A few pixels at the edges of what is curved would take the whole scale.
-        quantity: Quantity::new("log_{10} *B*", "cycles/slope"),
+        quantity: AxisQuantity::new("log_{10} *B*", "cycles/slope"),
         scale: Scale::Linear,
         measured: of(|point| libm::log10(point.measured)).view(),
         predicted: of(|point| libm::log10(expected(point))).view(),
@@ -183,7 +186,7 @@ fn drawn(case: &ProbedScene<'_>, map: &Array2<Point>) -> Result<etendue_figures:
 }
 
 /// What is to be measured: by the criterion, or by the window where that has more.
-fn expected(point: &Point) -> f64 {
+fn expected(point: &MapPoint) -> f64 {
     // NaN stays.
     if point.criterion < point.window {
         point.window
@@ -193,14 +196,14 @@ fn expected(point: &Point) -> f64 {
 }
 
 /// How measured and predicted bandwidths are to each other.
-fn words(map: &Array2<Point>) -> String {
+fn words(map: &Array2<MapPoint>) -> String {
     let seen = map
         .iter()
         .filter(|point| point.measured.is_finite())
         .count();
-    let is_told = |point: &&Point| expected(point).max(point.measured) > 1.15 * point.window;
+    let is_told = |point: &&MapPoint| expected(point).max(point.measured) > 1.15 * point.window;
     let told = map.iter().filter(is_told);
-    let ratio = |point: &Point| point.measured / expected(point);
+    let ratio = |point: &MapPoint| point.measured / expected(point);
     let mut ratios: Vec<f64> = told.map(ratio).filter(|x| x.is_finite()).collect();
     ratios.sort_unstable_by(f64::total_cmp);
     let all = ratios.len();

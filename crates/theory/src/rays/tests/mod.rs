@@ -3,7 +3,7 @@
 use super::*;
 use crate::geometry::{Edition, SpectrumMap};
 use crate::numerics::distance;
-use crate::{Budget, Model, Observed, Predicted};
+use crate::{Model, Observed, Predicted, RayBudget};
 use etendue_field::{
     Complex, Frame, FrequencyAxis, Image, Orientation, Profile, ProjectionGrid, Quantity,
     Rectangle, Shape, SliceGrid, Slices, Window,
@@ -11,7 +11,7 @@ use etendue_field::{
 use glam::DVec3;
 
 /// Two million nodes: errors are far below what these tests look for.
-const BUDGET: Budget = Budget {
+const BUDGET: RayBudget = RayBudget {
     nodes: 2e6,
     error: 1e-5,
 };

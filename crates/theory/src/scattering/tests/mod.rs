@@ -1,7 +1,7 @@
 //! Light that a BRDF scatters, against closed forms and quadrature.
 
 use super::*;
-use crate::Budget;
+use crate::RayBudget;
 use crate::geometry::AffineMap;
 use crate::numerics::distance;
 use crate::rays::Plane;
@@ -34,7 +34,7 @@ fn linearised(
     plane: &Plane,
     window: &Window,
     grid: &SliceGrid,
-    chain: &ReflectionChain,
+    chain: &ScatteringChain,
 ) -> f64 {
     let right = by(system, plane, window, grid, Some(chain));
     let mut near = right.to_first_order.unwrap();
@@ -54,9 +54,9 @@ fn by(
     plane: &Plane,
     window: &Window,
     grid: &SliceGrid,
-    chain: Option<&ReflectionChain>,
+    chain: Option<&ScatteringChain>,
 ) -> Predicted {
-    let budget = Budget {
+    let budget = RayBudget {
         nodes: 2e6,
         error: 1e-4,
     };
@@ -354,7 +354,7 @@ fn wrong_operators_are_seen() {
     let grid = grid([1.2 * e; 2]);
     let right = exact(&system, &plane, &window, &grid);
     let sound = chain(&view(&system, &plane)).unwrap();
-    let error = |system: &ScatteringSystem, chain: &ReflectionChain| {
+    let error = |system: &ScatteringSystem, chain: &ScatteringChain| {
         linearised(system, &plane, &window, &grid, chain)
     };
     let least = error(&system, &sound);
