@@ -10,12 +10,12 @@
 //! |---|---|---|
 //! | travel | [`AffineMap::travel`] | Eq. 3 |
 //! | thin lens | [`AffineMap::thin_lens`] | – |
-//! | light incidence: onto the surface | [`incidence`](Map::<2>::incidence) | Eq. 9 |
-//! | curvature: into local frames | [`2D`](Map::<2>::curvature), [`4D`](Map::<4>::curvature) | 11, 19 |
+//! | light incidence: onto the surface | [`incidence`](AffineMap::<2>::incidence) | Eq. 9 |
+//! | curvature: into local frames | [`2D`](AffineMap::<2>::curvature), [`4D`](AffineMap::<4>::curvature) | 11, 19 |
 //! | mirror | [`AffineMap::mirror`] | Eq. 14 |
-//! | refraction | [`refraction`](Map::<2>::refraction) | – |
-//! | back from the local normals | [`back`](Map::<2>::back) | step 6 |
-//! | outgoing angle: off the surface | [`outgoing`](Map::<2>::outgoing) | Eq. 10 |
+//! | refraction | [`refraction`](AffineMap::<2>::refraction) | – |
+//! | back from the local normals | [`back`](AffineMap::<2>::back) | step 6 |
+//! | outgoing angle: off the surface | [`outgoing`](AffineMap::<2>::outgoing) | Eq. 10 |
 //! | turning the axes | [`AffineMap::rotation`] | section 5.2 |
 //!
 //! In the frame of a light ray the last coordinates are slopes or angles to the central ray; to the

@@ -12,9 +12,9 @@ type PlanarSpectrum<'a> = &'a dyn Fn([f64; 2]) -> Complex;
 /// Steps of a reflection in the order of light (Durand et al. 2005, section 4.1 and Fig. 10).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReflectionStep {
-    /// 1, onto the surface: [`AffineMap::incidence`](Map::<2>::incidence).
+    /// 1, onto the surface: [`AffineMap::incidence`](AffineMap::<2>::incidence).
     Incidence,
-    /// 2, into the frames of the local normals: [`AffineMap::curvature`](Map::<2>::curvature).
+    /// 2, into the frames of the local normals: [`AffineMap::curvature`](AffineMap::<2>::curvature).
     Curvature,
     /// 3, times cosine and other factors of the direction of incidence.
     Cosine,
@@ -22,9 +22,9 @@ pub enum ReflectionStep {
     Mirror,
     /// 5, convolved with the lobe, times factors of the outgoing direction.
     Brdf,
-    /// 6, back from the local normals: [`AffineMap::back`](Map::<2>::back).
+    /// 6, back from the local normals: [`AffineMap::back`](AffineMap::<2>::back).
     Back,
-    /// 7, off the surface: [`AffineMap::outgoing`](Map::<2>::outgoing).
+    /// 7, off the surface: [`AffineMap::outgoing`](AffineMap::<2>::outgoing).
     Outgoing,
 }
 
