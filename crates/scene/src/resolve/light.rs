@@ -22,7 +22,6 @@ impl LightFile {
 
 impl Resolver<'_> {
     /// The light, around the origin of the central ray, where its frame is.
-    #[expect(clippy::too_many_lines, reason = "a case for each kind of light")]
     pub(super) fn light(&mut self, light: &LightFile, frame: &Frame) -> Light {
         let area = |shape: Shape, radiance: f64, exponent: f64| Light::Area {
             shape,
