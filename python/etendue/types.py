@@ -189,7 +189,7 @@ class FormCylinder(TypedDict):
     """A circular cylinder with this curvature; its axis is across `along`."""
 
     Cylinder: float
-    """curvatures of -1e6 to 1e6"""
+    """-1e6 to 1e6"""
 
 
 class FormParaboloid(TypedDict):
@@ -202,7 +202,7 @@ class FormSphere(TypedDict):
     """A sphere with this curvature, 1/R."""
 
     Sphere: float
-    """curvatures of -1e6 to 1e6"""
+    """-1e6 to 1e6"""
 
 
 class Frequencies(TypedDict):
@@ -568,7 +568,7 @@ class Run(TypedDict):
     alpha: NotRequired[float]
     """Share of true scenes the verdict may reject, over all planes. 1e-6 to 0.5"""
     batches: NotRequired[int]
-    """Independent batches the errors come from. 32 to 1024"""
+    """Independent batches the errors come from. 32 to 1024: errors come from the spread of batches"""
     emission: NotRequired["Emission"]
     """How photons leave the light"""
     photons: NotRequired[int]

@@ -9,7 +9,7 @@ use serde_json::{Map, Value};
 pub(crate) fn schema(args: &SchemaArgs) -> Result<u8, Failure> {
     let schema = etendue_scene::schema();
     let text = match args.page {
-        true => page(&schema),
+        true => page(schema),
         false => format!("{schema:#}"),
     };
     deliver(text.trim_end())?;

@@ -15,8 +15,10 @@ pub enum Profile {
     /// exp(−π t² / width²), cut at |t| < cut.
     Gaussian {
         /// The width: the full integral of the uncut Gaussian.
+        #[schemars(title = "a width in the unit of its coordinate", extend("x-ron" = "0.3"))]
         width: f64,
         /// Half-width of the support.
+        #[schemars(title = "a half-width in the unit of its coordinate", extend("x-ron" = "0.5"))]
         cut: f64,
     },
 }

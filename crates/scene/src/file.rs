@@ -1,5 +1,6 @@
 //! Scene files as they are written.
 
+mod allowed;
 mod light;
 mod surface;
 
@@ -11,7 +12,13 @@ pub use surface::{
     TermFile,
 };
 
+pub(crate) use allowed::positive;
+
 use crate::whole::whole;
+use allowed::{
+    any, cycles, depends, direction, factor, length, modulation, name_of_blockers, phase, place,
+    profile_of_place, profile_of_slope, seed, sides, since, told, within,
+};
 use etendue_field::{Orientation, Profile, Quantity};
 use schemars::JsonSchema;
 use serde::de::{Error, Unexpected, Visitor};
@@ -24,18 +31,22 @@ use std::fmt;
 pub struct SceneFile {
     /// What the scene shows, for the reader.
     #[serde(default)]
+    #[schemars(transform = told("a text in quotes", r#""my first scene""#))]
     pub description: String,
     /// Where light comes from.
     pub light: LightFile,
     /// What stands in its way.
     #[serde(default)]
+    #[schemars(transform = told("a list of blockers", r#"[Grating(name: "bars", center: (0, 0, 1), axis: X, frequency: 5)]"#))]
     pub blockers: Vec<BlockersFile>,
     /// What it falls on.
     #[serde(default)]
+    #[schemars(transform = told("a list of surfaces", r#"[Rectangle(name: "floor", center: (0, 0, 2), size: (6, 6))]"#))]
     pub surfaces: Vec<SurfaceFile>,
     /// The central ray.
     pub path: PathFile,
     /// Where light is looked at.
+    #[schemars(transform = told("a list of planes", r#"[(name: "arrival", at: Before("floor"))]"#))]
     pub planes: Vec<PlaneFile>,
     /// The window of every plane that does not state its own.
     pub window: WindowFile,
@@ -43,6 +54,7 @@ pub struct SceneFile {
     pub frequencies: FrequenciesFile,
     /// Whether geometric steps are predicted by the paper's equations as they are printed (9, 10, 11 and 19).
     #[serde(default)]
+    #[schemars(transform = told("true or false", "true"))]
     pub as_printed: bool,
     /// How it is measured.
     #[serde(default)]
@@ -52,63 +64,82 @@ pub struct SceneFile {
 /// Black blockers, most of them in one plane orthogonal to the central ray.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Blockers", deny_unknown_fields)]
+#[schemars(transform = told("blockers", r#"Grating(name: "bars", center: (0, 0, 1), axis: X, frequency: 5)"#))]
 pub enum BlockersFile {
     /// `count[0]` × `count[1]` squares on a jittered grid, edges along X and Y.
     JitteredSquares {
         /// Name, for planes to refer to.
+        #[schemars(transform = name_of_blockers)]
         name: String,
         /// Centre of the grid, world coordinates.
+        #[schemars(transform = place)]
         center: [f64; 3],
         /// Squares along X and along Y.
         #[serde(deserialize_with = "counts")]
+        #[schemars(transform = told("whole numbers along X and Y", "(20, 20)"), transform = depends("1 to 100000 squares in all"))]
         count: [u32; 2],
         /// Distance between grid points.
+        #[schemars(transform = length)]
         pitch: f64,
         /// Side of a square as a share of the pitch.
+        #[schemars(transform = told("a share of the pitch", "0.6"), transform = depends("above 0, at most 1"))]
         fill: f64,
         /// Each square is moved by U(−jitter/2, jitter/2) pitches along X and along Y.
         #[serde(default)]
+        #[schemars(transform = told("a share of the pitch", "0.3"), transform = depends("0 to 1 − fill"))]
         jitter: f64,
         /// Seed of the jitter.
         #[serde(default)]
+        #[schemars(transform = seed)]
         seed: u64,
     },
     /// Opaque shapes one by one; they must not overlap.
     Shapes {
         /// Name.
+        #[schemars(transform = name_of_blockers)]
         name: String,
         /// Point from which their coordinates along X and Y are counted, world coordinates.
+        #[schemars(transform = place)]
         center: [f64; 3],
         /// The shapes.
+        #[schemars(transform = told("a list of shapes", "[Disc(center: (0, 0), radius: 0.1)]"))]
         shapes: Vec<ShapeFile>,
     },
     /// A semi-transparent cosine grating over the whole plane: ½ (1 + m cos(2π f t + p)), t being x or y.
     Grating {
         /// Name.
+        #[schemars(transform = name_of_blockers)]
         name: String,
         /// Point from which t is counted, world coordinates.
+        #[schemars(transform = place)]
         center: [f64; 3],
         /// The axis along which it varies.
         axis: AxisName,
         /// f, cycles per metre.
+        #[schemars(transform = cycles)]
         frequency: f64,
         /// m.
         #[serde(default = "one")]
+        #[schemars(transform = modulation)]
         modulation: f64,
         /// p, radians.
         #[serde(default)]
+        #[schemars(transform = phase, transform = within(-1e3, 1e3))]
         phase: f64,
     },
     /// An opaque triangle mesh, anywhere between the light and the end of the path.
     Mesh {
         /// Name.
+        #[schemars(transform = name_of_blockers)]
         name: String,
         /// Where the mesh's origin is put, world coordinates.
+        #[schemars(transform = place)]
         center: [f64; 3],
         /// The triangles.
         mesh: MeshSource,
         /// Factor on the mesh's coordinates.
         #[serde(default = "one")]
+        #[schemars(transform = factor)]
         scale: f64,
     },
 }
@@ -129,19 +160,24 @@ impl BlockersFile {
 /// A shape in the plane of its blockers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Shape", deny_unknown_fields)]
+#[schemars(transform = told("a shape", "Rectangle(center: (0, 0), size: (0.1, 0.1))"))]
 pub enum ShapeFile {
     /// A rectangle, edges along X and Y.
     Rectangle {
         /// Centre along X and Y.
+        #[schemars(transform = told("a place along X and Y, metres", "(0.1, 0.2)"), transform = any)]
         center: [f64; 2],
         /// Side lengths along X and Y.
+        #[schemars(transform = sides)]
         size: [f64; 2],
     },
     /// A disc.
     Disc {
         /// Centre along X and Y.
+        #[schemars(transform = told("a place along X and Y, metres", "(0.1, 0.2)"), transform = any)]
         center: [f64; 2],
         /// Radius.
+        #[schemars(transform = length)]
         radius: f64,
     },
     /// Everything on one side of a line.
@@ -149,6 +185,7 @@ pub enum ShapeFile {
         /// The axis along which the coordinate is compared with the edge.
         axis: AxisName,
         /// Coordinate of the edge.
+        #[schemars(transform = told("a place in metres", "0.2"), transform = any)]
         edge: f64,
         /// The side that is opaque.
         opaque: HalfName,
@@ -157,6 +194,7 @@ pub enum ShapeFile {
 
 /// An axis across the central ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[schemars(transform = told("an axis, X or Y", "X"))]
 pub enum AxisName {
     /// Along X.
     X,
@@ -177,6 +215,7 @@ impl AxisName {
 
 /// A side of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[schemars(transform = told("a side, Below or Above", "Below"))]
 pub enum HalfName {
     /// Coordinates below the edge.
     Below,
@@ -188,31 +227,40 @@ pub enum HalfName {
 /// next.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Path", deny_unknown_fields)]
+#[schemars(transform = told("the central ray", r#"(direction: (0, 0, 1), x_axis: (1, 0, 0), visits: ["floor"])"#))]
 pub struct PathFile {
     /// Direction in which it leaves the light; any length.
+    #[schemars(transform = direction("(0, 0, 1)"))]
     pub direction: [f64; 3],
     /// The X axis: its part orthogonal to the direction is used.
+    #[schemars(transform = direction("(1, 0, 0)"))]
     pub x_axis: [f64; 3],
     /// Names of the surfaces it visits, in the order of light.
+    #[schemars(transform = told("a list of names of surfaces", r#"["floor"]"#))]
     pub visits: Vec<String>,
     /// Direction in which it leaves the last of them, any length: straight back unless stated.
     #[serde(default)]
+    #[schemars(transform = direction("(0, 0, -1)"))]
     pub leaves: Option<[f64; 3]>,
 }
 
 /// A virtual plane.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Plane", deny_unknown_fields)]
+#[schemars(transform = told("a plane", r#"(name: "arrival", at: Before("floor"))"#))]
 pub struct PlaneFile {
     /// Name: the folder of its results.
+    #[schemars(transform = told("a name in quotes, 1 to 64 letters, digits, - and _", r#""arrival""#))]
     pub name: String,
     /// Where on the path.
     pub at: Place,
     /// What it records.
     #[serde(default)]
+    #[schemars(transform = told("Radiance or DifferentialIrradiance", "Radiance"))]
     pub quantity: Quantity,
     /// What its coordinates are counted from.
     #[serde(default)]
+    #[schemars(transform = told("Orthogonal, Tangent, LocalNormals or Mirrored", "Orthogonal"))]
     pub orientation: Orientation,
     /// Its own window.
     #[serde(default)]
@@ -224,6 +272,7 @@ pub struct PlaneFile {
 
 /// A place on the path.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(transform = told("Emission, Distance(…), or a place before or after something", r#"Before("floor")"#))]
 pub enum Place {
     /// At the light, as it leaves.
     Emission,
@@ -232,35 +281,44 @@ pub enum Place {
     /// In the plane of these blockers, after them; or of this surface, as light leaves it.
     After(String),
     /// At this distance from the light, along the path.
-    Distance(f64),
+    Distance(#[schemars(transform = depends("0 to the end of the path"))] f64),
 }
 
 /// The window: a profile for each coordinate; y and v are as x and u unless stated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Window", deny_unknown_fields)]
+#[schemars(transform = told("a window", "(x: Hann(0.5), u: Hann(0.5))"))]
 pub struct WindowFile {
     /// Along x, metres.
+    #[schemars(transform = profile_of_place)]
     pub x: Profile,
     /// Along y.
     #[serde(default)]
+    #[schemars(transform = profile_of_place)]
     pub y: Option<Profile>,
     /// Along u, slope.
+    #[schemars(transform = profile_of_slope)]
     pub u: Profile,
     /// Along v.
     #[serde(default)]
+    #[schemars(transform = profile_of_slope)]
     pub v: Option<Profile>,
 }
 
 /// The frequencies of the slices.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Frequencies", deny_unknown_fields)]
+#[schemars(transform = told("frequencies", "(rho: (max: 16), nu: (max: 32))"))]
 pub struct FrequenciesFile {
     /// Number K of azimuths πk/K.
     #[serde(default = "eight", deserialize_with = "count")]
+    #[schemars(transform = told("a whole number", "8"), transform = within(1.0, 1024.0))]
     pub azimuths: u32,
     /// Spatial frequency ρ, cycles per metre.
+    #[schemars(transform = told("frequencies in cycles per metre", "(max: 16)"))]
     pub rho: AxisFile,
     /// Angular frequency ν, cycles per unit slope.
+    #[schemars(transform = told("frequencies in cycles per unit slope", "(max: 32)"))]
     pub nu: AxisFile,
 }
 
@@ -269,27 +327,35 @@ pub struct FrequenciesFile {
 #[serde(rename = "Axis", deny_unknown_fields)]
 pub struct AxisFile {
     /// Highest frequency, rounded up to a multiple of the spacing.
+    #[schemars(transform = told("a frequency in the unit of its axis", "16"))]
     pub max: f64,
     /// Spacing; 1/(2 · half-width of the window) unless stated, and never wider.
     #[serde(default)]
+    #[schemars(transform = told("a frequency in the unit of its axis", "0.5"))]
     pub spacing: Option<f64>,
 }
 
 /// How the scene is measured.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Run", deny_unknown_fields, default)]
+#[schemars(transform = told("how the scene is measured", "(photons: 1e7)"))]
 pub struct RunFile {
     /// Photons emitted; 1e7 is a number too.
     #[serde(deserialize_with = "count")]
+    #[schemars(transform = told("a whole number", "1e7"), transform = depends("one for each batch to 10^12"))]
     pub photons: u64,
     /// Seed of the photons.
+    #[schemars(transform = seed)]
     pub seed: u64,
     /// Independent batches the errors come from.
     #[serde(deserialize_with = "count")]
+    #[schemars(transform = told("a whole number", "64"), transform = within(32.0, 1024.0), transform = since("errors come from the spread of batches"))]
     pub batches: u32,
     /// Share of true scenes the verdict may reject, over all planes.
+    #[schemars(transform = told("a share of sound scenes", "0.01"), transform = within(1e-6, 0.5))]
     pub alpha: f64,
     /// Noise, as a share of the spectrum, above which a plane does not pass.
+    #[schemars(transform = told("a share of the spectrum", "0.1"), transform = within(1e-4, 1.0))]
     pub resolution: f64,
     /// How photons leave the light.
     pub emission: Emission,
@@ -350,6 +416,7 @@ impl Visitor<'_> for Count {
 
 /// How photons leave the light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[schemars(transform = told("Aimed or Plain", "Aimed"))]
 pub enum Emission {
     /// At the windows of the planes: a mixture of one proposal for each.
     Aimed,
@@ -359,6 +426,7 @@ pub enum Emission {
 
 /// The numbers that photons are drawn from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[schemars(transform = told("Net or Random", "Net"))]
 pub enum Sampling {
     /// Scrambled Sobol' nets, one for each batch: less noise, most with batches of 2ᵐ photons.
     Net,

@@ -18,9 +18,9 @@
 //! ```
 
 mod curvature;
-mod examples;
 mod fault;
 mod file;
+mod hints;
 mod likely;
 pub mod limits;
 mod mesh;

@@ -31,9 +31,16 @@ pub const SHAPES: usize = 100_000;
 /// Products of shapes of the light and several layers that a prediction may have to go through.
 pub const PRODUCTS: f64 = 1e6;
 
+/// Cells along a side, or rings, of a mesh that is made.
+pub const CELLS: u32 = 2048;
+
 /// Triangles of all meshes that are made, not read from files: a little more than the finest of them
 /// has. Each takes 72 bytes, and about as much again while the hierarchy over them is built.
 pub const MADE_TRIANGLES: u64 = 20_000_000;
+
+/// The largest number of a scene, and the inverse of the smallest size: their products to the sixth power, which a
+/// power spectrum has, stay far inside what f64 holds.
+pub const MAX_NUMBER: f64 = 1e9;
 
 /// Characters of a name, of the scene, of a plane, of blockers or of a surface: it names a folder or
 /// stands in a picture.

@@ -1,6 +1,6 @@
 //! Why a value does not fit a field, in words.
 
-use crate::examples::wanted;
+use crate::hints::wanted;
 use crate::nearest::did_you_mean;
 use serde_path_to_error::{Path, Segment};
 

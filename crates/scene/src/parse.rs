@@ -1,6 +1,6 @@
 //! Reads scene files, and says of one that cannot be read which field is at fault.
 
-use crate::examples::{example, has_fields, wanted};
+use crate::hints::{example, has_fields, wanted};
 use crate::messages::{path_of, unfit};
 use crate::nearest::did_you_mean;
 use crate::place::{ScenePlace, find, word};

@@ -19,14 +19,16 @@ mod reflectance;
 mod surfaces;
 mod things;
 mod triangles;
+mod values;
 
 use crate::fault::SceneError;
 use crate::file::{RunFile, SceneFile};
 use crate::limits::INPUT_BYTES;
 use crate::read::read_below;
 use crate::scene::{CentralRay, Object, Run, Scene};
+use crate::shown::number;
 use etendue_field::{Frame, tidy};
-use faults::{Faults, number, show, vector};
+use faults::{Faults, show, vector};
 use glam::DVec3;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -74,6 +76,7 @@ impl Resolver<'_> {
         if !self.counts(&file) {
             return None;
         }
+        self.faults.values(&file);
         self.name_of_scene(name);
         let frame = self.frame(&file);
         self.run(&file.run);
@@ -147,8 +150,6 @@ impl Resolver<'_> {
 
     fn frame(&mut self, file: &SceneFile) -> Option<Frame> {
         let path = &file.path;
-        self.faults.coordinates("path.direction", &path.direction);
-        self.faults.coordinates("path.x_axis", &path.x_axis);
         let (d, x) = (DVec3::from(path.direction), DVec3::from(path.x_axis));
         let frame = Frame::new(DVec3::from(file.light.center()), d, x);
         if frame.is_none() && d.is_finite() && x.is_finite() {
@@ -181,19 +182,12 @@ impl Resolver<'_> {
     }
 
     fn run(&mut self, run: &RunFile) {
-        if !(32..=1024).contains(&run.batches) {
-            let allowed = "32 to 1024: errors come from the spread of batches";
-            self.faults.add("run.batches", show(run.batches), allowed);
-        }
         // A batch of one photon has a spread, one of none has not.
         let least = u64::from(run.batches);
         if !(least..=1_000_000_000_000).contains(&run.photons) {
             let allowed = format!("{least} (one for each batch) to 10^12");
             self.faults.add("run.photons", show(run.photons), allowed);
         }
-        self.faults.within("run.alpha", run.alpha, 1e-6..=0.5);
-        self.faults
-            .within("run.resolution", run.resolution, 1e-4..=1.0);
     }
 
     /// The level of each plane must be one that a p-value can fall below.

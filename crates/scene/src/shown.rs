@@ -19,6 +19,16 @@ pub fn shown(value: impl Display, most: usize) -> String {
     cut.text
 }
 
+/// A number as people write it.
+pub(crate) fn number(x: f64) -> String {
+    let is_plain = x == 0.0 || !x.is_finite() || (1e-4..1e6).contains(&x.abs());
+    if is_plain {
+        x.to_string()
+    } else {
+        format!("{x:e}")
+    }
+}
+
 /// Text that takes so many more characters.
 struct ShortenedText {
     text: String,

@@ -467,26 +467,9 @@ fn the_volume_of_a_star_is_the_closed_form() {
 }
 
 #[test]
-fn stars_of_impossible_shape_are_refused() {
-    for (star, words) in [
-        (
-            Mesh::star(0.0, 0.0, 0, 8),
-            "radius is 0.0; allowed: 1e-9 to 1e8",
-        ),
-        (Mesh::star(f64::NAN, 0.0, 0, 8), "radius is NaN; allowed"),
-        (
-            Mesh::star(1.0, 1.0, 2, 8),
-            "relief is 1.0; allowed: -0.9 to 0.9",
-        ),
-        (Mesh::star(1.0, 0.1, 2, 1), "rings is 1; allowed: 2 to 2048"),
-        (
-            Mesh::star(1.0, 0.1, 5, 8),
-            "lobes is 5; allowed: 0 to 4, half the rings",
-        ),
-    ] {
-        let told = star.unwrap_err().to_string();
-        assert!(told.contains(words), "{told}");
-    }
+fn stars_with_too_many_lobes_are_refused() {
+    let told = Mesh::star(1.0, 0.1, 5, 8).unwrap_err().to_string();
+    assert_eq!(told, "lobes is 5; allowed: 0 to 4, half the rings");
 }
 
 #[test]

@@ -100,6 +100,45 @@ fn faults_are_reported_together_with_field_value_and_range() {
 }
 
 #[test]
+fn a_number_beyond_its_range_is_told_with_it() {
+    let smooth = |form: &str| {
+        let floor = "Smooth(name: \"floor\", center: (0, 0, 2), facing: (0, 0, -1), aperture: 3, event: Mirror,";
+        FIG9B.replace(
+            "Rectangle(name: \"floor\", center: (0, 0, 2), size: (6, 6), albedo: 0.5",
+            &format!("{floor} form: {form}"),
+        )
+    };
+    for (text, told) in [
+        (
+            edited("center: (0, 0, 1)", "center: (0, -inf, 1)"),
+            "blockers[0].center[1] is -inf; allowed: -1e9 to 1e9",
+        ),
+        (
+            edited("batches: 64", "batches: 31"),
+            "run.batches is 31; allowed: 32 to 1024: errors come from the spread of batches",
+        ),
+        (
+            edited("rho: (max: 16)", "rho: (max: 16, spacing: NaN)"),
+            "frequencies.rho.spacing is NaN; allowed: 1e-9 to 1e9",
+        ),
+        (
+            smooth("Sphere(-2e6)"),
+            "surfaces[0].form is -2e6; allowed: -1e6 to 1e6",
+        ),
+        (
+            smooth("Paraboloid(0, 3e6)"),
+            "surfaces[0].form[1] is 3e6; allowed: -1e6 to 1e6",
+        ),
+    ] {
+        let told_all: Vec<String> = faults(&text).iter().map(ToString::to_string).collect();
+        assert!(
+            told_all.iter().any(|fault| fault == told),
+            "{told}: {told_all:?}"
+        );
+    }
+}
+
+#[test]
 fn each_bad_value_is_named() {
     for (from, to, field) in [
         ("at: Emission", "at: Distance(-0.5)", "planes[0].at"),

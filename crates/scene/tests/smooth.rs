@@ -297,7 +297,7 @@ const BAD: &[(&str, &str, &str)] = &[
     (
         "Star(radius: 0.2, relief: 0, lobes: 0, rings: 60)",
         "Paraboloid(curvatures: (1, NaN), half: 1, cells: 9)",
-        "surfaces[2].mesh.curvatures",
+        "surfaces[2].mesh.curvatures[1]",
     ),
     (
         "Star(radius: 0.2, relief: 0, lobes: 0, rings: 60)",

@@ -122,7 +122,7 @@ const BAD: &[(&str, &str, &str)] = &[
     ),
     ("center: (0.3, 0)", "center: (0.1, 0)", "blockers[0].shapes"),
     ("edge: -0.5", "edge: 0", "blockers[0].shapes"),
-    ("edge: -0.5", "edge: NaN", "blockers[0].shapes[2].edge[0]"),
+    ("edge: -0.5", "edge: NaN", "blockers[0].shapes[2].edge"),
     (
         "center: (0.5, 0, 1)",
         "center: (0.5, 0, 2)",

@@ -1,36 +1,49 @@
 //! Surfaces and what they do to light, as written.
 
+use super::allowed::{
+    albedo, cycles, depends, direction, factor, factors_by_angle, length, modulation, name, phase,
+    place, sides, told, within,
+};
 use super::{AxisName, count, half, one};
+use crate::limits::CELLS;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Where a mesh comes from.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(transform = told("a mesh", r#"File("mesh.obj")"#))]
 pub enum MeshSource {
     /// An OBJ or PLY file; the path is relative to the scene file, and stays inside its folder.
     File(String),
     /// A generated piece of the paraboloid z = −(k₁ x² + k₂ y²)/2 around the origin, facing along z.
     Paraboloid {
         /// k₁ and k₂, per metre: positive if it is convex.
+        #[schemars(transform = told("curvatures along X and Y, per metre", "(1, 0.5)"), transform = within(-1e6, 1e6))]
         curvatures: [f64; 2],
         /// It reaches to ± this along x and along y.
+        #[schemars(transform = length, transform = within(1e-9, 1e8))]
         half: f64,
         /// Cells along a side, of two triangles each.
         #[serde(deserialize_with = "count")]
+        #[schemars(transform = told("a whole number", "16"), transform = within(1.0, f64::from(CELLS)))]
         cells: u32,
     },
     /// A generated closed surface around the origin, r = radius · (1 + relief · sinˡθ · cos lφ) with l lobes around z.
     Star {
         /// Mean radius.
+        #[schemars(transform = length, transform = within(1e-9, 1e8))]
         radius: f64,
         /// Height of the lobes as a share of the radius.
+        #[schemars(transform = told("a share of the radius", "0.3"), transform = within(-0.9, 0.9))]
         relief: f64,
         /// Number of lobes around the axis.
         #[serde(deserialize_with = "count")]
+        #[schemars(transform = told("a whole number", "5"), transform = depends("0 to half the rings"))]
         lobes: u32,
         /// Rings from pole to pole.
         #[serde(deserialize_with = "count")]
+        #[schemars(transform = told("a whole number", "32"), transform = within(2.0, f64::from(CELLS)))]
         rings: u32,
     },
 }
@@ -38,36 +51,46 @@ pub enum MeshSource {
 /// What light falls on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Surface", deny_unknown_fields)]
+#[schemars(transform = told("a surface", r#"Rectangle(name: "floor", center: (0, 0, 2), size: (6, 6))"#))]
 pub enum SurfaceFile {
     /// A Lambertian rectangle, edges along X and Y unless it faces elsewhere.
     Rectangle {
         /// Name, for the path and the planes to refer to.
+        #[schemars(transform = name)]
         name: String,
         /// Centre, world coordinates.
+        #[schemars(transform = place)]
         center: [f64; 3],
         /// Side lengths along X and Y.
+        #[schemars(transform = sides)]
         size: [f64; 2],
         /// Its normal, any length: back along `path.direction` unless stated. Its edges are then along the part of the path's
         /// X axis that is orthogonal to it (of Y, if X is along it), and across.
         #[serde(default)]
+        #[schemars(transform = direction("(0, 0, -1)"))]
         facing: Option<[f64; 3]>,
         /// Reflected over incident flux.
         #[serde(default = "half")]
+        #[schemars(transform = albedo)]
         albedo: f64,
     },
     /// A triangle mesh, Lambertian on both sides unless it is smooth.
     Mesh {
         /// Name.
+        #[schemars(transform = name)]
         name: String,
         /// Where the mesh's origin is put, world coordinates.
+        #[schemars(transform = place)]
         center: [f64; 3],
         /// The triangles.
         mesh: MeshSource,
         /// Factor on the mesh's coordinates.
         #[serde(default = "one")]
+        #[schemars(transform = factor)]
         scale: f64,
         /// Reflected over incident flux, if it is Lambertian.
         #[serde(default = "half")]
+        #[schemars(transform = albedo)]
         albedo: f64,
         /// What it does to light as a smooth surface, with normals interpolated between its vertices.
         #[serde(default)]
@@ -76,18 +99,23 @@ pub enum SurfaceFile {
     /// A smooth piece of a plane, sphere, cylinder or paraboloid that reflects or refracts.
     Smooth {
         /// Name.
+        #[schemars(transform = name)]
         name: String,
         /// Its vertex, world coordinates.
+        #[schemars(transform = place)]
         center: [f64; 3],
         /// Its normal at the vertex, any length.
+        #[schemars(transform = direction("(0, 0, -1)"))]
         facing: [f64; 3],
         /// Its form.
         form: FormFile,
         /// Direction of the first curvature, any length: the path's X axis unless stated (Y, if it faces along X); its part
         /// orthogonal to the normal is used.
         #[serde(default)]
+        #[schemars(transform = direction("(1, 0, 0)"))]
         along: Option<[f64; 3]>,
         /// Its radius, seen along the normal.
+        #[schemars(transform = length)]
         aperture: f64,
         /// What it does.
         event: EventFile,
@@ -109,32 +137,42 @@ impl SurfaceFile {
 /// The form of a smooth surface around its vertex; curvatures per metre, positive if it is convex seen from where it faces.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Form")]
+#[schemars(transform = told("a form with its curvature", "Sphere(0.5)"))]
 pub enum FormFile {
     /// Flat.
     Plane,
     /// A sphere with this curvature, 1/R.
-    Sphere(f64),
+    Sphere(#[schemars(transform = within(-1e6, 1e6))] f64),
     /// A circular cylinder with this curvature; its axis is across `along`.
-    Cylinder(f64),
+    Cylinder(#[schemars(transform = within(-1e6, 1e6))] f64),
     /// A paraboloid with these curvatures at its vertex, the first along `along`.
-    Paraboloid(f64, f64),
+    Paraboloid(
+        #[schemars(transform = within(-1e6, 1e6))] f64,
+        #[schemars(transform = within(-1e6, 1e6))] f64,
+    ),
 }
 
 /// What a smooth surface does to light.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Event", deny_unknown_fields)]
+#[schemars(transform = told("what happens to light", "Refraction(front: 1, back: 1.5)"))]
 pub enum EventFile {
     /// Reflects it all.
     Mirror,
     /// Lets it through by Snell's law; nothing is reflected.
     Refraction {
         /// Index of refraction on the side it faces.
+        #[schemars(transform = told("an index of refraction", "1"), transform = within(0.1, 10.0))]
         front: f64,
         /// Index on the other side.
+        #[schemars(transform = told("an index of refraction", "1.5"), transform = within(0.1, 10.0))]
         back: f64,
     },
     /// A thin lens, flat, with this focal length.
-    ThinLens(f64),
+    ThinLens(
+        #[schemars(transform = depends("a focal length in metres, negative if the lens spreads light, not 0"))]
+         f64,
+    ),
     /// Reflects by a BRDF, on the side it faces; black on the other.
     Reflects {
         /// The BRDF.
@@ -152,6 +190,7 @@ pub enum EventFile {
     /// Reflects by a weighted sum of BRDFs, on the side it faces; black on the other.
     Sum {
         /// The BRDFs with their weights, 1 to 8 of them. The first says where the central ray goes on, as far as the path does not.
+        #[schemars(transform = told("a list of BRDFs with weights", "[(brdf: (lobe: Phong(100)), weight: Checkerboard(0.1))]"))]
         terms: Vec<TermFile>,
         /// What multiplies their sum.
         #[serde(default)]
@@ -162,6 +201,7 @@ pub enum EventFile {
 /// A BRDF of a sum.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Term", deny_unknown_fields)]
+#[schemars(transform = told("a BRDF with its weight", "(brdf: (lobe: Phong(100)), weight: Checkerboard(0.1))"))]
 pub struct TermFile {
     /// The BRDF.
     pub brdf: BrdfFile,
@@ -173,51 +213,59 @@ pub struct TermFile {
 /// A BRDF.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Brdf", deny_unknown_fields)]
+#[schemars(transform = told("a BRDF", "(lobe: Phong(100))"))]
 pub struct BrdfFile {
     /// Its lobe.
     pub lobe: LobeFile,
     /// Factor on it, 0 to 1.
     #[serde(default = "one")]
+    #[schemars(transform = albedo)]
     pub albedo: f64,
     /// Its Fresnel factor.
     #[serde(default)]
     pub fresnel: FresnelFile,
     /// A factor of the angle at which light comes: values at equal steps from the normal to 90 degrees, linear in between; 1 unless stated.
     #[serde(default)]
+    #[schemars(transform = factors_by_angle)]
     pub incoming: Option<Vec<f64>>,
     /// The same of the angle at which light leaves.
     #[serde(default)]
+    #[schemars(transform = factors_by_angle)]
     pub outgoing: Option<Vec<f64>>,
 }
 
 /// The lobe of a BRDF.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Lobe")]
+#[schemars(transform = told("a lobe", "Phong(100)"))]
 pub enum LobeFile {
     /// Alike in all directions.
     Lambertian,
     /// cosⁿ of the angle to the mirror direction, with this n.
-    Phong(f64),
+    Phong(#[schemars(transform = within(0.0, 1e4))] f64),
     /// Microfacets with Beckmann's distribution of normals, with this roughness α.
-    Beckmann(f64),
+    Beckmann(#[schemars(transform = within(1e-3, 1.0))] f64),
     /// Microfacets with the GGX distribution, with this roughness α.
-    Ggx(f64),
+    Ggx(#[schemars(transform = within(1e-3, 1.0))] f64),
 }
 
 /// The share of light that is reflected, by the angle of incidence.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Fresnel", deny_unknown_fields)]
+#[schemars(transform = told("a Fresnel factor", "Dielectric(1.5)"))]
 pub enum FresnelFile {
     /// All of it.
     #[default]
     White,
     /// At a dielectric with this index of refraction.
-    Dielectric(f64),
+    Dielectric(#[schemars(transform = within(0.05, 20.0))] f64),
     /// At a conductor with index n + i k.
     Conductor {
         /// n.
+        #[schemars(transform = told("an index of refraction", "1.5"), transform = within(0.05, 20.0))]
         n: f64,
         /// k.
+        #[schemars(transform = told("an index of absorption", "3"), transform = within(0.0, 20.0))]
         k: f64,
     },
 }
@@ -225,18 +273,22 @@ pub enum FresnelFile {
 /// A number from 0 to 1 at each place of a surface.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Pattern", deny_unknown_fields)]
+#[schemars(transform = told("a pattern", "Checkerboard(0.1)"))]
 pub enum PatternFile {
     /// ½ (1 + m cos(2π f t + p)), t along `along` or across it.
     Cosine {
         /// The axis along which it varies: X is `along`.
         axis: AxisName,
         /// f, cycles per metre.
+        #[schemars(transform = cycles)]
         frequency: f64,
         /// m.
         #[serde(default = "one")]
+        #[schemars(transform = modulation)]
         modulation: f64,
         /// p, radians.
         #[serde(default)]
+        #[schemars(transform = phase)]
         phase: f64,
     },
     /// 1 and 0 by turns on squares; two of their sides make this period.
@@ -244,8 +296,10 @@ pub enum PatternFile {
     /// A picture around the vertex, 0 beyond its edge: X to its right, Y to its top, seen from where the surface faces.
     Picture {
         /// An OpenEXR or PNG file of numbers from 0 to 1; the path is relative to the scene file, and stays inside its folder.
+        #[schemars(transform = told("a file in quotes", r#""picture.exr""#))]
         file: String,
         /// Width along X and height along Y, metres.
+        #[schemars(transform = sides)]
         size: [f64; 2],
     },
 }

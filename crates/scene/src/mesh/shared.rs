@@ -2,10 +2,8 @@
 
 use super::error::fault;
 use crate::fault::Fault;
+use crate::limits::MAX_NUMBER;
 use glam::{DAffine3, DVec3};
-
-/// The largest coordinate, as everywhere in a scene.
-const MAX_COORDINATE: f64 = 1e9;
 
 /// Triangles with shared vertices, in the file's units and frame.
 ///
@@ -109,10 +107,10 @@ pub(super) fn check_corners(count: usize, place: impl FnOnce() -> String) -> Res
 
 /// Requires a coordinate that a scene may hold.
 pub(super) fn check_coordinate(value: f64, place: impl FnOnce() -> String) -> Result<f64, Fault> {
-    if value.abs() <= MAX_COORDINATE {
+    if value.abs() <= MAX_NUMBER {
         Ok(value)
     } else {
-        let allowed = format!("{:?} to {MAX_COORDINATE:?}", -MAX_COORDINATE);
+        let allowed = format!("{:?} to {MAX_NUMBER:?}", -MAX_NUMBER);
         Err(fault(place(), format!("{value:?}"), allowed))
     }
 }

@@ -2,11 +2,11 @@
 
 use super::Resolver;
 use super::apart::{Thing, overlap};
-use super::faults::number;
 use super::jitter::jittered_squares;
 use crate::file::{BlockersFile, HalfName, LightFile, SceneFile, ShapeFile};
 use crate::limits;
 use crate::scene::BlockerLayer;
+use crate::shown::number;
 use etendue_field::{Disc, Frame, Grating, HalfPlane, Mask, Rectangle, Shape, tidy};
 use glam::DVec3;
 
@@ -47,7 +47,6 @@ impl Resolver<'_> {
         else {
             return None;
         };
-        self.faults.coordinates(&format!("{of}.center"), center);
         let center = frame.to_local(DVec3::from(*center));
         self.ahead(of, center.z);
         let (mask, pitch) = self.mask(of, blockers, [center.x, center.y])?;
@@ -79,11 +78,6 @@ impl Resolver<'_> {
                 phase,
                 ..
             } => {
-                self.faults.positive(format!("{of}.frequency"), *frequency);
-                self.faults
-                    .within(format!("{of}.modulation"), *modulation, 0.0..=1.0);
-                self.faults
-                    .within(format!("{of}.phase"), *phase, -1e3..=1e3);
                 let axis = axis.index();
                 let grating = Grating {
                     axis,
@@ -117,7 +111,6 @@ impl Resolver<'_> {
                 format!("1 to {} squares in all", limits::SHAPES),
             );
         }
-        self.faults.positive(format!("{of}.pitch"), pitch);
         if !(fill > 0.0 && fill <= 1.0) {
             let allowed = "above 0, at most 1: a share of the pitch";
             self.faults.add(format!("{of}.fill"), number(fill), allowed);
@@ -150,26 +143,20 @@ impl Resolver<'_> {
         // Where each stands in the file.
         let (mut of_shapes, mut of_half_planes) = (Vec::new(), Vec::new());
         for (i, file) in files.iter().take(limits::SHAPES).enumerate() {
-            let of = format!("{of}.shapes[{i}]");
             match file {
                 ShapeFile::HalfPlane { .. } => of_half_planes.push(i),
                 _ => of_shapes.push(i),
             }
             match *file {
                 ShapeFile::Rectangle { center, size } => {
-                    self.faults.coordinates(&format!("{of}.center"), &center);
-                    self.size(&of, &size);
                     let center = moved(center);
                     shapes.push(Shape::Rectangle(Rectangle { center, size }));
                 }
                 ShapeFile::Disc { center, radius } => {
-                    self.faults.coordinates(&format!("{of}.center"), &center);
-                    self.faults.positive(format!("{of}.radius"), radius);
                     let center = moved(center);
                     shapes.push(Shape::Disc(Disc { center, radius }));
                 }
                 ShapeFile::HalfPlane { axis, edge, opaque } => {
-                    self.faults.coordinates(&format!("{of}.edge"), &[edge]);
                     half_planes.push(HalfPlane {
                         axis: axis.index(),
                         edge: edge + center[axis.index()],

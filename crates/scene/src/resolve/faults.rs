@@ -2,10 +2,9 @@
 
 use crate::fault::Fault;
 use crate::limits;
-use crate::shown::shown;
+use crate::shown::{number, shown};
 use std::collections::HashSet;
 use std::fmt::Debug;
-use std::ops::RangeInclusive;
 
 /// Faults found so far.
 #[derive(Default)]
@@ -48,6 +47,17 @@ impl Faults {
         }
     }
 
+    /// Whether something below a field is at fault.
+    pub(super) fn has_below(&self, field: &str) -> bool {
+        let below = |fault: &Fault| {
+            fault
+                .field
+                .strip_prefix(field)
+                .is_some_and(|of| of.starts_with('.'))
+        };
+        self.all.iter().any(below)
+    }
+
     /// Each fault once: planes share the scene's window and frequencies.
     pub(super) fn once(self) -> Vec<Fault> {
         let mut seen = HashSet::new();
@@ -56,38 +66,7 @@ impl Faults {
         each.filter_map(|(fault, is_new)| is_new.then_some(fault))
             .collect()
     }
-
-    /// Requires a number in a closed range, and tells whether it is there.
-    pub(super) fn within(
-        &mut self,
-        field: impl Into<String>,
-        value: f64,
-        range: RangeInclusive<f64>,
-    ) -> bool {
-        let is_within = range.contains(&value);
-        if !is_within {
-            let [low, high] = [range.start(), range.end()].map(|end| number(*end));
-            self.add(field, number(value), format!("{low} to {high}"));
-        }
-        is_within
-    }
-
-    /// Requires a size, a width or a frequency, and tells whether it is one.
-    pub(super) fn positive(&mut self, field: impl Into<String>, value: f64) -> bool {
-        self.within(field, value, 1.0 / MAX_NUMBER..=MAX_NUMBER)
-    }
-
-    /// Requires coordinates.
-    pub(super) fn coordinates(&mut self, field: &str, values: &[f64]) {
-        for (i, value) in values.iter().enumerate() {
-            self.within(format!("{field}[{i}]"), *value, -MAX_NUMBER..=MAX_NUMBER);
-        }
-    }
 }
-
-/// The largest number a scene may hold, and the inverse of the smallest size: their products to the sixth
-/// power, which a power spectrum has, stay far inside what f64 holds.
-const MAX_NUMBER: f64 = 1e9;
 
 /// Whether a field says where a surface or blockers are, and so what the central ray meets.
 fn is_of_place(field: &str) -> bool {
@@ -107,16 +86,6 @@ fn is_of_place(field: &str) -> bool {
         || starts(of_things("surfaces["), &["event.front", "event.back"])
         || field.ends_with("].event")
         || starts(of_things("blockers["), &["center", "mesh", "scale"])
-}
-
-/// A number as people write it.
-pub(super) fn number(x: f64) -> String {
-    let is_plain = x == 0.0 || !x.is_finite() || (1e-4..1e7).contains(&x.abs());
-    if is_plain {
-        x.to_string()
-    } else {
-        format!("{x:e}")
-    }
 }
 
 /// A vector as it is written.

@@ -69,7 +69,7 @@ fn meshes(file: &SceneFile) -> impl Iterator<Item = &MeshSource> {
 
 /// About the triangles of a mesh that is made; one that is refused is not.
 fn triangles(mesh: &MeshSource) -> u64 {
-    let square = |n: u32| u64::from(if n > 2048 { 0 } else { n }).pow(2);
+    let square = |n: u32| u64::from(if n > limits::CELLS { 0 } else { n }).pow(2);
     match mesh {
         MeshSource::Star { rings, .. } => 4 * square(*rings),
         MeshSource::Paraboloid { cells, .. } => 2 * square(*cells),

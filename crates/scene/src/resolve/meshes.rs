@@ -79,13 +79,6 @@ impl Resolver<'_> {
 
     fn mesh(&mut self, placed: &PlacedMesh<'_>, reach: f64, frame: &Frame) -> Option<MeshObject> {
         let of = &placed.of;
-        self.faults
-            .coordinates(&format!("{of}.center"), placed.center);
-        self.faults.positive(format!("{of}.scale"), placed.scale);
-        if let Some(albedo) = placed.albedo {
-            self.faults
-                .within(format!("{of}.albedo"), albedo, 0.0..=1.0);
-        }
         let mesh = self.source(of, placed.mesh)?;
         let at = MeshPlacement {
             of: placed.of.clone(),
@@ -154,6 +147,8 @@ impl Resolver<'_> {
                 };
                 Mesh::parse(Path::new(path), &bytes).map_err(fault).ok()
             }
+            // Of what size it would be is named already.
+            _ if self.faults.has_below(&format!("{of}.mesh")) => None,
             &MeshSource::Paraboloid {
                 curvatures,
                 half,

@@ -1,14 +1,12 @@
 //! Smooth surfaces of a scene file, checked.
 
 use super::Resolver;
-use super::faults::{number, show, vector};
+use super::faults::{show, vector};
 use crate::file::{EventFile, FormFile, SceneFile, SurfaceFile};
 use crate::scene::{Event, PatchObject};
+use crate::shown::number;
 use etendue_field::{Frame, Patch, Specular, tidy};
 use glam::DVec3;
-
-/// Largest curvature, per metre.
-const SHARPEST: f64 = 1e6;
 
 impl Resolver<'_> {
     /// The smooth surfaces.
@@ -36,26 +34,12 @@ impl Resolver<'_> {
         else {
             return None;
         };
-        self.faults.coordinates(&format!("{of}.center"), center);
-        self.faults.coordinates(&format!("{of}.facing"), facing);
-        if let Some(along) = along {
-            self.faults.coordinates(&format!("{of}.along"), along);
-        }
-        self.faults.positive(format!("{of}.aperture"), *aperture);
         let curvature = match *form {
             FormFile::Plane => [0.0; 3],
             FormFile::Sphere(k) => [k; 3],
             FormFile::Cylinder(k) => [k, 0.0, k],
             FormFile::Paraboloid(k, l) => [k, l, 0.0],
         };
-        // One number may stand for several.
-        if curvature
-            .iter()
-            .any(|k| !(-SHARPEST..=SHARPEST).contains(k))
-        {
-            let allowed = format!("curvatures of -{SHARPEST:e} to {SHARPEST:e}");
-            self.faults.add(format!("{of}.form"), show(form), allowed);
-        }
         // Beyond the half that holds the vertex there is nothing of a sphere or a cylinder.
         if curvature[2] != 0.0 && *aperture > 1.0 / curvature[2].abs() {
             let allowed = format!(
@@ -113,13 +97,7 @@ impl Resolver<'_> {
         Some(match *event {
             EventFile::Reflects { .. } | EventFile::Sum { .. } => return None,
             EventFile::Mirror => Specular::Mirror,
-            EventFile::Refraction { front, back } => {
-                for (side, index) in [("front", front), ("back", back)] {
-                    self.faults
-                        .within(format!("{of}.{side}"), index, 0.1..=10.0);
-                }
-                Specular::Refraction { front, back }
-            }
+            EventFile::Refraction { front, back } => Specular::Refraction { front, back },
             EventFile::ThinLens(focal_length) => {
                 if focal_length == 0.0 || !focal_length.is_finite() {
                     let allowed =

@@ -162,7 +162,6 @@ impl Resolver<'_> {
             let towards = things.center(*object) - hit.point;
             (format!("path.visits[{}]", i + 1), show(next), towards)
         } else if let Some(leaves) = path.leaves {
-            self.faults.coordinates("path.leaves", &leaves);
             let d = world.vector_to_local(DVec3::from(leaves));
             ("path.leaves".to_owned(), vector(&leaves), d)
         } else if things.mirrors(hit.object) {

@@ -1,9 +1,11 @@
 //! Environments, and pictures on surfaces.
 
 use super::Resolver;
-use super::faults::{number, show, vector};
+use super::faults::{show, vector};
 use crate::file::EnvironmentFile;
+use crate::limits::MAX_NUMBER;
 use crate::picture;
+use crate::shown::number;
 use etendue_field::{
     Environment, EnvironmentMap, Frame, LatLong, Light, Pattern, Picture, Raster, SphericalGaussian,
 };
@@ -12,8 +14,6 @@ use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Narrowest lobe of light, radians, and the widest: it is even to a millionth.
-const WIDTHS: [f64; 2] = [1e-4, 1e3];
 /// Widths from the middle of a lobe at which next to nothing is left of it.
 const REACH: f64 = 6.0;
 
@@ -26,9 +26,6 @@ impl Resolver<'_> {
         map: &EnvironmentFile,
         light: &Frame,
     ) -> Light {
-        self.faults.coordinates("light.up", up);
-        self.faults.coordinates("light.front", front);
-        self.faults.positive("light.scale", scale);
         let [y, d] = [up, front].map(|v| light.vector_to_local(DVec3::from(*v)));
         // The poles are where `up` says: it is `front` that gives way.
         let across = y.try_normalize().map_or(DVec3::NAN, |y| d - y * d.dot(y));
@@ -46,11 +43,6 @@ impl Resolver<'_> {
                 let lobes = lobes.iter().enumerate().map(|(i, lobe)| {
                     let of = format!("light.map[{i}]");
                     let from = self.faults_of_direction(&format!("{of}.from"), lobe.from);
-                    let [least, most] = WIDTHS;
-                    self.faults
-                        .within(format!("{of}.width"), lobe.width, least..=most);
-                    self.faults
-                        .positive(format!("{of}.radiance"), lobe.radiance);
                     SphericalGaussian {
                         from,
                         radiance: scale * lobe.radiance,
@@ -60,8 +52,7 @@ impl Resolver<'_> {
                 EnvironmentMap::Lobes(lobes.collect())
             }
             EnvironmentFile::File(path) => {
-                let most = 1e9;
-                let raster = self.picture("light.map", path, &["exr"], most);
+                let raster = self.picture("light.map", path, &["exr"], MAX_NUMBER);
                 let dark = |raster: &Raster| raster.values().iter().all(|value| *value <= 0.0);
                 if raster.as_ref().is_some_and(dark) {
                     let allowed = "a picture with light somewhere";
@@ -90,7 +81,7 @@ impl Resolver<'_> {
             let from = frame.vector_to_world(lobe.from);
             let reach = REACH * lobe.width;
             // A width at fault has been named already.
-            let is_narrow = lobe.width >= WIDTHS[0] && reach < FRAC_PI_2;
+            let is_narrow = lobe.width > 0.0 && reach < FRAC_PI_2;
             if is_narrow && from.z > libm::sin(reach) {
                 let allowed = "a direction before the central ray: an environment shines forward, along path.direction";
                 let DVec3 { x, y, z } = lobe.from;
@@ -101,7 +92,6 @@ impl Resolver<'_> {
     }
 
     fn faults_of_direction(&mut self, of: &str, direction: [f64; 3]) -> DVec3 {
-        self.faults.coordinates(of, &direction);
         let direction = DVec3::from(direction);
         direction.try_normalize().unwrap_or_else(|| {
             if direction.is_finite() {
@@ -114,7 +104,6 @@ impl Resolver<'_> {
 
     /// A picture that varies a BRDF over a surface.
     pub(super) fn picture_pattern(&mut self, of: &str, file: &str, size: [f64; 2]) -> Pattern {
-        self.size(of, &size);
         let raster = self.picture(&format!("{of}.file"), file, &["exr", "png"], 1.0);
         let black = || LatLong::from_fn(1, 1, |_| 0.0).raster().clone();
         Pattern::Picture(Picture {

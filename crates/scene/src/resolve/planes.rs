@@ -1,6 +1,6 @@
 //! Virtual planes: their place on the path, their window and their frequencies.
 
-use super::faults::{names, number, show};
+use super::faults::{names, show};
 use super::{PathStop, Resolver, SAME_PLANE};
 use crate::fault::Fault;
 use crate::file::{
@@ -9,7 +9,7 @@ use crate::file::{
 use crate::limits;
 use crate::nearest::did_you_mean;
 use crate::scene::{CentralRay, Object};
-use crate::shown::shown;
+use crate::shown::{number, shown};
 use etendue_field::{
     Frame, FrequencyAxis, Orientation, Profile, Side, SliceGrid, VirtualPlane, Window, tidy,
 };
@@ -295,12 +295,8 @@ impl Resolver<'_> {
 
     fn profile(&mut self, of: &str, profile: &Profile) {
         match *profile {
-            Profile::Hann(h) | Profile::Box(h) => {
-                self.faults.positive(of, h);
-            }
+            Profile::Hann(_) | Profile::Box(_) => {}
             Profile::Gaussian { width, cut } => {
-                self.faults.positive(format!("{of}.width"), width);
-                self.faults.positive(format!("{of}.cut"), cut);
                 // A series of copies needs as many terms as the cut is wide.
                 if width.is_finite() && cut.is_finite() && cut > 10.0 * width {
                     let allowed = "at most 10 widths: beyond 3.5 the Gaussian is below 1e-16";
@@ -316,10 +312,6 @@ impl Resolver<'_> {
         file: &FrequenciesFile,
         window: &Window,
     ) -> Option<SliceGrid> {
-        if !(1..=1024).contains(&file.azimuths) {
-            self.faults
-                .add(format!("{of}.azimuths"), show(file.azimuths), "1 to 1024");
-        }
         let half_x = window.x.half_width().max(window.y.half_width());
         let half_u = window.u.half_width().max(window.v.half_width());
         let rho = self.axis(&format!("{of}.rho"), &file.rho, half_x);
@@ -334,9 +326,7 @@ impl Resolver<'_> {
     fn axis(&mut self, of: &str, axis: &AxisFile, half_width: f64) -> Option<FrequencyAxis> {
         let natural = 0.5 / half_width;
         let spacing = axis.spacing.unwrap_or(natural);
-        let mut is_sound = self.faults.positive(format!("{of}.max"), axis.max);
         if axis.spacing.is_some() {
-            is_sound &= self.faults.positive(format!("{of}.spacing"), spacing);
             // A window of no width has been named already.
             if natural > 0.0 && spacing > natural * (1.0 + SAME_PLANE) {
                 let natural = tidy(natural);
@@ -344,9 +334,6 @@ impl Resolver<'_> {
                 self.faults
                     .add(format!("{of}.spacing"), number(spacing), allowed);
             }
-        }
-        if !is_sound {
-            return None;
         }
         // Rounding must not add a frequency to a max that is a multiple of the spacing.
         let half = (axis.max / spacing - 1e-9).ceil();

@@ -17,9 +17,6 @@ impl Resolver<'_> {
         light: &Frame,
     ) -> Light {
         let axes = self.axes_of_rays(axes, light);
-        if let Some(flux) = flux {
-            self.faults.positive("light.flux", flux);
-        }
         let rays = self.ray_light(name, &axes, flux);
         // After a fault nobody looks at it.
         let dark = || RayLight::new(vec![of_flux(1.0)], 0.0);
@@ -33,14 +30,10 @@ impl Resolver<'_> {
 
     /// The axes of the file, in the frame at the light.
     fn axes_of_rays(&mut self, [front, up]: [Option<[f64; 3]>; 2], light: &Frame) -> Frame {
-        let mut axis = |field: &str, given: Option<[f64; 3]>, default: DVec3| {
-            let given = given.inspect(|v| self.faults.coordinates(field, v));
+        let axis = |given: Option<[f64; 3]>, default: DVec3| {
             given.map_or(default, |v| light.vector_to_local(DVec3::from(v)))
         };
-        let [d, y] = [
-            axis("light.front", front, DVec3::Z),
-            axis("light.up", up, DVec3::Y),
-        ];
+        let [d, y] = [axis(front, DVec3::Z), axis(up, DVec3::Y)];
         // X is Y × D, and Y gives way to D.
         let frame = Frame::new(DVec3::ZERO, d, y.cross(d));
         if frame.is_none() && d.is_finite() && y.is_finite() {

@@ -6,12 +6,6 @@ use etendue_field::{
     AngleTable, Brdf, Fresnel, Grating, Lobe, MOST_TERMS, Pattern, Reflectance, Term, Weight,
 };
 
-/// Highest exponent of a Phong lobe: it is 0.01 rad wide.
-const SHARPEST: f64 = 1e4;
-/// Lowest roughness: 0.1 % is as good as a mirror.
-const SMOOTHEST: f64 = 1e-3;
-/// Highest index of refraction or absorption.
-const DENSEST: f64 = 20.0;
 /// Most values of a factor of an angle: one for each tenth of a degree.
 const FINEST: usize = 901;
 
@@ -89,46 +83,23 @@ impl Resolver<'_> {
     }
 
     fn brdf(&mut self, of: &str, file: &BrdfFile) -> Brdf {
-        let lobe = format!("{of}.lobe");
-        let mut rough = |roughness: f64| self.faults.within(&lobe, roughness, SMOOTHEST..=1.0);
-        let resolved = match file.lobe {
+        let lobe = match file.lobe {
             LobeFile::Lambertian => Lobe::Lambertian,
-            LobeFile::Phong(exponent) => {
-                self.faults.within(&lobe, exponent, 0.0..=SHARPEST);
-                Lobe::Phong { exponent }
-            }
-            LobeFile::Beckmann(roughness) => {
-                rough(roughness);
-                Lobe::Beckmann { roughness }
-            }
-            LobeFile::Ggx(roughness) => {
-                rough(roughness);
-                Lobe::Ggx { roughness }
-            }
+            LobeFile::Phong(exponent) => Lobe::Phong { exponent },
+            LobeFile::Beckmann(roughness) => Lobe::Beckmann { roughness },
+            LobeFile::Ggx(roughness) => Lobe::Ggx { roughness },
         };
-        self.faults
-            .within(format!("{of}.albedo"), file.albedo, 0.0..=1.0);
-        let fresnel = format!("{of}.fresnel");
-        let least = 1.0 / DENSEST;
         let fresnel = match file.fresnel {
             FresnelFile::White => Fresnel::White,
-            FresnelFile::Dielectric(index) => {
-                self.faults.within(fresnel, index, least..=DENSEST);
-                Fresnel::Dielectric { index }
-            }
-            FresnelFile::Conductor { n, k } => {
-                self.faults
-                    .within(format!("{fresnel}.n"), n, least..=DENSEST);
-                self.faults.within(format!("{fresnel}.k"), k, 0.0..=DENSEST);
-                Fresnel::Conductor { n, k }
-            }
+            FresnelFile::Dielectric(index) => Fresnel::Dielectric { index },
+            FresnelFile::Conductor { n, k } => Fresnel::Conductor { n, k },
         };
         let mut table =
             |field: &str, values: &Option<Vec<f64>>| self.table(&format!("{of}.{field}"), values);
         let incoming = table("incoming", &file.incoming);
         let outgoing = table("outgoing", &file.outgoing);
         Brdf {
-            lobe: resolved,
+            lobe,
             albedo: file.albedo,
             fresnel,
             incoming,
@@ -142,9 +113,6 @@ impl Resolver<'_> {
         if !(2..=FINEST).contains(&count) {
             let (found, allowed) = (format!("{count} values"), format!("2 to {FINEST} values"));
             self.faults.add(of, found, allowed);
-        }
-        for (i, value) in values.iter().enumerate() {
-            self.faults.within(format!("{of}[{i}]"), *value, 0.0..=1.0);
         }
         let values = values.as_slice().into();
         Some(AngleTable { values })
@@ -164,27 +132,22 @@ impl Resolver<'_> {
                     modulation,
                     phase,
                 };
-                Pattern::Cosine(self.grating(of, &grating))
+                Pattern::Cosine(grating.resolved())
             }
-            PatternFile::Checkerboard(period) => {
-                self.faults.positive(of, *period);
-                Pattern::Checkerboard { period: *period }
-            }
+            &PatternFile::Checkerboard(period) => Pattern::Checkerboard { period },
             PatternFile::Picture { file, size } => self.picture_pattern(of, file, *size),
         }
     }
+}
 
+impl GratingFile {
     /// The grating of a picture or a pattern.
-    pub(super) fn grating(&mut self, of: &str, g: &GratingFile) -> Grating {
-        self.faults.positive(format!("{of}.frequency"), g.frequency);
-        self.faults
-            .within(format!("{of}.modulation"), g.modulation, 0.0..=1.0);
-        self.faults.coordinates(&format!("{of}.phase"), &[g.phase]);
+    pub(super) fn resolved(&self) -> Grating {
         Grating {
-            axis: g.axis.index(),
-            frequency: g.frequency,
-            modulation: g.modulation,
-            phase: g.phase,
+            axis: self.axis.index(),
+            frequency: self.frequency,
+            modulation: self.modulation,
+            phase: self.phase,
         }
     }
 }

@@ -28,10 +28,6 @@ impl Resolver<'_> {
             return None;
         };
         let of = format!("surfaces[{i}]");
-        self.faults.coordinates(&format!("{of}.center"), center);
-        self.size(&of, size);
-        self.faults
-            .within(format!("{of}.albedo"), *albedo, 0.0..=1.0);
         let origin = frame.to_local(DVec3::from(*center));
         let frame = if let Some(facing) = facing {
             self.facing(&of, *facing, origin, frame)?
@@ -61,19 +57,12 @@ impl Resolver<'_> {
         light: &Frame,
     ) -> Option<Frame> {
         let of = format!("{of}.facing");
-        self.faults.coordinates(&of, &facing);
         let d = light.vector_to_local(DVec3::from(facing));
         let frame = Frame::new(origin, d, DVec3::X).or_else(|| Frame::new(origin, d, DVec3::Y));
         if frame.is_none() && d.is_finite() {
             self.faults.add(of, vector(&facing), "a direction");
         }
         frame
-    }
-
-    pub(super) fn size(&mut self, of: &str, size: &[f64; 2]) {
-        for (i, side) in size.iter().enumerate() {
-            self.faults.positive(format!("{of}.size[{i}]"), *side);
-        }
     }
 
     /// A finite distance must be in front of the light; an infinite one is a fault of its center.

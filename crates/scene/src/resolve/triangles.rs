@@ -4,6 +4,7 @@
 use super::Resolver;
 use crate::Mesh;
 use crate::file::MeshSource;
+use crate::limits::MAX_NUMBER;
 use glam::DVec3;
 use std::path::Path;
 
@@ -19,9 +20,6 @@ const LEAST_HEIGHT: f64 = 1e-18;
 /// Share of a mesh's area that thin triangles may hold and be dropped: what is missing then is
 /// beneath all noise.
 const MAX_DROPPED_SHARE: f64 = 1e-6;
-/// The largest coordinate, as everywhere in a scene.
-const MAX_COORDINATE: f64 = 1e9;
-
 /// Where a mesh is, and how its faults are told.
 pub(super) struct MeshPlacement<'a> {
     /// The field of the blocker or the surface.
@@ -110,15 +108,15 @@ impl Resolver<'_> {
         corners.sort_unstable();
         corners.dedup();
         let world = |i: u32| at.world(mesh.vertices()[i as usize]);
-        corners.retain(|i| world(*i).abs().max_element() > MAX_COORDINATE);
+        corners.retain(|i| world(*i).abs().max_element() > MAX_NUMBER);
         let Some(first) = corners.first() else {
             return Some(());
         };
         let field = at.field(&format!("vertex {}", at.number(*first)));
         let value = format!("at {} in the world", world(*first));
         let allowed = format!(
-            "coordinates of {:?} to {MAX_COORDINATE:?}{}",
-            -MAX_COORDINATE,
+            "coordinates of {:?} to {MAX_NUMBER:?}{}",
+            -MAX_NUMBER,
             others(corners.len())
         );
         self.faults.add(field, value, allowed);

@@ -1,0 +1,100 @@
+//! What a field of a scene file is, one way to write it, and the numbers it may hold: attributes of its type. The schema,
+//! the hints of messages and the check of all numbers come from them.
+
+use crate::limits::MAX_NUMBER;
+use crate::shown::number;
+use schemars::Schema;
+use serde_json::Value;
+
+/// What it is, and one way to write it.
+pub(super) fn told(what: &'static str, example: &'static str) -> impl FnMut(&mut Schema) {
+    move |schema| {
+        schema.insert("title".into(), what.into());
+        schema.insert("x-ron".into(), example.into());
+    }
+}
+
+/// The least and the largest number.
+pub(super) fn within(least: f64, most: f64) -> impl FnMut(&mut Schema) {
+    move |schema| numbers(schema, |node| bound(node, least, most))
+}
+
+/// The numbers in words, where they depend on other fields: the resolver checks them.
+pub(super) fn depends(words: &'static str) -> impl FnMut(&mut Schema) {
+    move |schema| numbers(schema, |node| node["x-range"] = words.into())
+}
+
+/// Why there are no others.
+pub(super) fn since(reason: &'static str) -> impl FnMut(&mut Schema) {
+    move |schema| {
+        numbers(schema, |node| {
+            let range = node["x-range"].as_str().unwrap_or_default();
+            node["x-range"] = format!("{range}: {reason}").into();
+        });
+    }
+}
+
+/// Any number of a scene.
+pub(super) fn any(schema: &mut Schema) {
+    within(-MAX_NUMBER, MAX_NUMBER)(schema);
+}
+
+/// Sizes, widths, frequencies and strengths: every number of which nothing else is said.
+pub(crate) fn positive(node: &mut Value) {
+    bound(node, 1.0 / MAX_NUMBER, MAX_NUMBER);
+}
+
+/// A direction of any length.
+pub(super) fn direction(example: &'static str) -> impl FnMut(&mut Schema) {
+    move |schema| {
+        told("a direction", example)(schema);
+        any(schema);
+    }
+}
+
+/// What several fields are: in words, by an example and perhaps in numbers.
+macro_rules! shared {
+    ($($name:ident: $what:literal, $example:literal $(, $numbers:expr)?;)*) => {$(
+        pub(super) fn $name(schema: &mut Schema) {
+            told($what, $example)(schema);
+            $($numbers(schema);)?
+        }
+    )*};
+}
+
+shared! {
+    name: "a name in quotes, 1 to 64 characters", "\"floor\"";
+    name_of_blockers: "a name in quotes, 1 to 64 characters", "\"bars\"";
+    seed: "a whole number", "1", depends("0 to 2^64 − 1");
+    place: "a place in the world, metres", "(0, 0, 1)", any;
+    sides: "side lengths along X and Y, metres", "(0.2, 0.1)";
+    length: "a length in metres", "0.2";
+    factor: "a factor", "2";
+    radiance: "a radiance, W m⁻² sr⁻¹", "1";
+    intensity: "an intensity, W sr⁻¹", "1";
+    cycles: "cycles per metre", "5";
+    modulation: "a contrast", "0.9", within(0.0, 1.0);
+    phase: "an angle in radians", "0.3", any;
+    albedo: "a share of the light", "0.5", within(0.0, 1.0);
+    factors_by_angle: "factors from 0 to 1, from the normal to 90 degrees", "[1, 0.7, 0]", within(0.0, 1.0);
+    profile_of_place: "a profile with its half-width in metres", "Hann(0.5)";
+    profile_of_slope: "a profile with its half-width in slope", "Hann(0.5)";
+}
+
+fn bound(node: &mut Value, least: f64, most: f64) {
+    node["x-range"] = format!("{} to {}", number(least), number(most)).into();
+    node["minimum"] = least.into();
+    node["maximum"] = most.into();
+}
+
+/// Tells something of a number, or of each in a list.
+fn numbers(schema: &mut Schema, tell: impl FnOnce(&mut Value)) {
+    let each = if schema.get("items").is_some() {
+        "/items"
+    } else {
+        ""
+    };
+    if let Some(node) = schema.pointer_mut(each) {
+        tell(node);
+    }
+}

@@ -1,0 +1,141 @@
+//! What each field of a scene file is and one way to write it, as the schema has it.
+
+use crate::place::steps;
+use crate::schema::{element, referred, schema};
+use serde_json::Value;
+
+/// What the field at a path is, and one way to write it.
+fn field(path: &str) -> [&'static str; 2] {
+    let node = below(schema(), &steps(path)).unwrap_or(&Value::Null);
+    let words = |node: &'static Value| Some([node["title"].as_str()?, node["x-ron"].as_str()?]);
+    match words(node).or_else(|| words(referred(node))) {
+        Some(words) => words,
+        None if path.is_empty() => [
+            "a scene",
+            "(light: …, path: …, planes: …, window: …, frequencies: …)",
+        ],
+        None if node["type"] == "integer" => ["a whole number", "20"],
+        None if node["type"] == "string" => ["the name of a surface in quotes", "\"floor\""],
+        None => ["a number", "0.1"],
+    }
+}
+
+/// What these steps lead to from a node, whatever the variants on the way.
+fn below(node: &'static Value, steps: &[&str]) -> Option<&'static Value> {
+    let [step, rest @ ..] = steps else {
+        return Some(node);
+    };
+    let node = referred(node);
+    let child = match step.parse() {
+        Ok(place) => element(node, place),
+        Err(_) => &node["properties"][*step],
+    };
+    if child.is_object() {
+        return below(child, rest);
+    }
+    let mut variants = node["oneOf"].as_array().into_iter().flatten();
+    variants.find_map(|variant| {
+        let mut contents = variant["properties"].as_object()?.values();
+        contents.find_map(|content| below(content, steps))
+    })
+}
+
+/// How the field at a path may be written, in words.
+pub(crate) fn wanted(path: &str) -> String {
+    let [what, example] = field(path);
+    format!("{what}, such as {example}")
+}
+
+/// One way to write the field at a path.
+pub(crate) fn example(path: &str) -> &'static str {
+    field(path)[1]
+}
+
+/// Whether the value at a path has named fields.
+pub(crate) fn has_fields(path: &str) -> bool {
+    example(path).contains(": ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::example;
+    use crate::SceneFile;
+    use crate::place::find;
+    use serde_json::Value;
+    use std::collections::BTreeSet;
+    use std::fs;
+    use std::path::Path;
+
+    /// The texts of the scenes of this repository.
+    fn scenes() -> Vec<String> {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+        let folders = [folder.clone(), folder.join("table1"), folder.join("wild")];
+        let files = folders
+            .iter()
+            .flat_map(|folder| fs::read_dir(folder).unwrap());
+        let mut paths: Vec<_> = files.map(|entry| entry.unwrap().path()).collect();
+        paths.retain(|path| path.extension().is_some_and(|e| e == "ron"));
+        paths.sort();
+        paths
+            .iter()
+            .map(|path| fs::read_to_string(path).unwrap())
+            .collect()
+    }
+
+    /// The paths of all fields, written or not.
+    fn fields(node: &Value, path: &str, found: &mut Vec<String>) {
+        if !path.is_empty() {
+            found.push(path.to_owned());
+        }
+        match node {
+            Value::Array(items) => {
+                for (i, item) in items.iter().enumerate() {
+                    fields(item, &format!("{path}[{i}]"), found);
+                }
+            }
+            Value::Object(below) => {
+                for (name, item) in below {
+                    match name.starts_with(char::is_uppercase) {
+                        true => fields(item, path, found),
+                        false if path.is_empty() => fields(item, name, found),
+                        false => fields(item, &format!("{path}.{name}"), found),
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Each field that is written in a scene takes the example instead, and is named when it holds
+    /// what nothing can be.
+    #[test]
+    fn examples_can_be_read_where_they_are_told() {
+        let mut tried = BTreeSet::new();
+        for text in scenes() {
+            let file = serde_json::to_value(SceneFile::parse(&text).unwrap()).unwrap();
+            let mut paths = Vec::new();
+            fields(&file, "", &mut paths);
+            for path in paths {
+                let (around, _) = path.rsplit_once(['.', '[']).unwrap_or_default();
+                // What is not written is found as what is around it, if at all.
+                let written = find(&text, &path);
+                let Some(place) = written.filter(|_| written != find(&text, around)) else {
+                    continue;
+                };
+                let start = place.value.as_ptr().addr() - text.as_ptr().addr();
+                let (before, after) = (&text[..start], &text[start + place.value.len()..]);
+                let changed = |value: &str| SceneFile::parse(&format!("{before}{value}{after}"));
+                let (example, is) = (example(&path), place.value);
+                if let Err(error) = changed(example) {
+                    panic!("{path} is {is}, not {example}: {error}");
+                }
+                let told = changed("{}").unwrap_err().to_string();
+                let named = format!("line {}, column {}: {path}", place.line, place.column);
+                assert!(told.starts_with(&named), "{path}: {told}");
+                assert!(told.ends_with(example), "{path}: {told}");
+                tried.insert(path);
+            }
+        }
+        assert!(tried.len() > 200, "{} fields", tried.len());
+    }
+}
