@@ -4,6 +4,7 @@
 //! asked for. Distances are those of the metric, in which the density is 1 everywhere.
 
 use crate::metric::Metric;
+use etendue_sampling::DiscreteDistribution;
 use etendue_transform::random::{Stream, unit, words};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -58,21 +59,16 @@ fn candidates(
     count: usize,
     seed: u64,
 ) -> Vec<PicturePoint> {
-    let mut total = 0.0;
-    let summed: Vec<f64> = metrics
-        .iter()
-        .map(|metric| {
-            total += metric.map_or(0.0, |metric| metric.determinant().max(0.0).sqrt());
-            total
-        })
-        .collect();
-    if total <= 0.0 {
+    let density = |metric: &Metric| metric.determinant().max(0.0).sqrt();
+    let densities = metrics.iter().map(|m| m.as_ref().map_or(0.0, density));
+    let pixels = DiscreteDistribution::new(densities);
+    if pixels.total() <= 0.0 {
         return Vec::new();
     }
     let draw = |i: usize| {
         let [at, x, y, _] = words(seed, Stream::Jitter, i as u64, 0).map(unit);
-        let pixel = summed.partition_point(|sum| *sum <= at * total);
-        let metric = (*metrics.get(pixel)?)?;
+        let pixel = pixels.sample(at);
+        let metric = metrics[pixel]?;
         Some(PicturePoint {
             at: [(pixel % wide) as f64 + x, (pixel / wide) as f64 + y],
             metric,

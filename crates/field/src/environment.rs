@@ -43,10 +43,14 @@ pub struct SphericalGaussian {
 ///
 /// The axes are those of `OpenEXR`'s latitude–longitude maps: the top is up (Y), longitude is 0 in the middle, to the front (Z), and grows to the
 /// left, π/2 being along X; latitude is π/2 at the top. So light is seen as one does who looks around from within. A pixel is an area, as in
-/// other renderers: the centre of column i of w is at longitude π (1 − (2 i + 1)/w), that of row j of h at latitude π (½ − (j + ½)/h).
+/// other renderers: the centre of column i of w is at longitude π (1 − (2 i + 1)/w), that of row j of h at latitude π (½ − (j + ½)/h). Mitsuba 3
+/// has the centres of the first and the last row at the poles instead, that of row j at latitude π (½ − j/(h − 1)).
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LatLong {
     radiance: Raster,
+    /// Where on the raster the poles are, in pixels from the top.
+    #[serde(skip)]
+    poles: [f64; 2],
 }
 
 fn shared<S: Serializer>(map: &Arc<LatLong>, serializer: S) -> Result<S::Ok, S::Error> {
@@ -103,7 +107,18 @@ impl LatLong {
     /// The map of a picture.
     #[must_use]
     pub fn new(radiance: Raster) -> Self {
-        Self { radiance }
+        let poles = [0.0, radiance.height() as f64];
+        Self { radiance, poles }
+    }
+
+    /// The map of a picture that has the centres of its first and its last row at the poles.
+    #[must_use]
+    pub fn from_pole_to_pole(radiance: Raster) -> Self {
+        let height = radiance.height() as f64;
+        // A single row is everywhere.
+        let half = if height > 1.0 { 0.5 } else { 0.0 };
+        let poles = [half, height - half];
+        Self { radiance, poles }
     }
 
     /// The map with `radiance` at the direction of each pixel's centre; one pixel at least.
@@ -112,7 +127,7 @@ impl LatLong {
         let (width, height) = (width.max(1), height.max(1));
         let pixels = (0..width * height).map(|i| {
             let place = [(i % width) as f64 + 0.5, (i / width) as f64 + 0.5];
-            radiance(toward(width, height, place))
+            radiance(toward(width as f64, [0.0, height as f64], place))
         });
         let raster = Raster::new(width, height, pixels.collect());
         Self::new(raster.unwrap_or_else(|| unreachable!("one value for each pixel")))
@@ -124,21 +139,29 @@ impl LatLong {
         &self.radiance
     }
 
+    /// How far from the top of the raster the upper and the lower pole are, in pixels.
+    #[must_use]
+    pub fn poles(&self) -> [f64; 2] {
+        self.poles
+    }
+
     /// Where on the raster a direction is, in pixels from the left and from the top.
     #[inline]
     #[must_use]
     pub fn place(&self, from: DVec3) -> [f64; 2] {
         let longitude = libm::atan2(from.x, from.z);
         let latitude = libm::atan2(from.y, libm::hypot(from.x, from.z));
-        let [w, h] = [self.radiance.width() as f64, self.radiance.height() as f64];
-        [w * (0.5 - longitude / TAU), h * (0.5 - latitude / PI)]
+        let width = self.radiance.width() as f64;
+        let [top, bottom] = self.poles;
+        let down = (bottom - top) * (0.5 - latitude / PI);
+        [width * (0.5 - longitude / TAU), top + down]
     }
 
     /// The direction of a place on the raster, of unit length.
     #[inline]
     #[must_use]
     pub fn direction(&self, place: [f64; 2]) -> DVec3 {
-        toward(self.radiance.width(), self.radiance.height(), place)
+        toward(self.radiance.width() as f64, self.poles, place)
     }
 
     /// Radiance of light that comes from a direction.
@@ -150,16 +173,13 @@ impl LatLong {
     }
 }
 
-/// The direction of a place on a raster of this size.
-fn toward(width: usize, height: usize, [column, row]: [f64; 2]) -> DVec3 {
-    let longitude = TAU * (0.5 - column / width as f64);
-    let latitude = PI * (0.5 - row / height as f64);
-    let across = libm::cos(latitude);
-    DVec3::new(
-        across * libm::sin(longitude),
-        libm::sin(latitude),
-        across * libm::cos(longitude),
-    )
+/// The direction of a place on a raster of this width and with these poles.
+fn toward(width: f64, [top, bottom]: [f64; 2], [column, row]: [f64; 2]) -> DVec3 {
+    let longitude = TAU * (0.5 - column / width);
+    let latitude = PI * (0.5 - (row - top) / (bottom - top));
+    let (up, across) = libm::sincos(latitude);
+    let (x, z) = libm::sincos(longitude);
+    DVec3::new(across * x, up, across * z)
 }
 
 #[cfg(test)]
@@ -181,6 +201,12 @@ mod tests {
             assert!((map.direction(place) - direction).length() < 1e-15);
             let [column, row] = map.place(direction);
             assert!((column - place[0]).abs() + (row - place[1]).abs() < 1e-14); // likewise
+        }
+        let map = LatLong::from_pole_to_pole(Raster::new(8, 4, vec![1.0; 32]).unwrap());
+        for (direction, row) in [(DVec3::Y, 0.5), (DVec3::X, 2.0), (DVec3::NEG_Y, 3.5)] {
+            let [column, found] = map.place(direction);
+            assert!((found - row).abs() < 1e-14); // likewise
+            assert!((map.direction([column, row]) - direction).length() < 1e-15);
         }
         let radiance = |d: DVec3| 2.0 + d.x + 0.5 * d.y;
         let map = LatLong::from_fn(64, 32, radiance);

@@ -81,6 +81,6 @@ fn skies_keep_their_pixels_and_turn() {
     let Light::Sky(sky) = &world.lights[0] else {
         panic!("{:?}", world.lights);
     };
-    assert_close(sky.radiance.values(), &[3.0, 6.0], 1e-12);
+    assert_close(sky.radiance.raster().values(), &[3.0, 6.0], 1e-12);
     assert_close(&(sky.to_world.y_axis).to_array(), &[0.0, 0.0, 1.0], 1e-15);
 }

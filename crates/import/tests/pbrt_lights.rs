@@ -198,9 +198,10 @@ fn skies_are_squares_of_equal_area() {
         panic!("{:?}", read_sky.world.lights);
     };
     // All light of the map, and the mean of its directions.
-    let (w, h) = (map.radiance.width(), map.radiance.height());
+    let raster = map.radiance.raster();
+    let (w, h) = (raster.width(), raster.height());
     let (mut sum, mut toward) = (0.0, DVec3::ZERO);
-    for (i, value) in map.radiance.values().iter().enumerate() {
+    for (i, value) in raster.values().iter().enumerate() {
         let (sin, cos) = ((i / w) as f64 * PI / (h - 1) as f64).sin_cos();
         let (x, z) = (((i % w) as f64 + 0.5) * 2.0 * PI / w as f64).sin_cos();
         let light = value * sin * (2.0 * PI / w as f64) * (PI / (h - 1) as f64);

@@ -3,9 +3,9 @@
 use crate::numbers::PathNumbers;
 use crate::paths::Paths;
 use crate::space::Ray;
+use etendue_sampling::disc;
 use etendue_world::Camera;
 use rayon::prelude::*;
-use std::f64::consts::TAU;
 
 /// What a camera sees, W m⁻² sr⁻¹: rows from the top, each from the left.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,9 +71,8 @@ impl Paths {
     /// One path to somewhere in a pixel.
     fn seen(&self, camera: &Camera, pixel: [f64; 2], numbers: &mut PathNumbers<'_>) -> f64 {
         let [x, y, a, b] = numbers.draw();
-        let (sin, cos) = libm::sincos(TAU * b);
-        let radius = a.sqrt();
-        let look = camera.look([pixel[0] + x, pixel[1] + y], [radius * cos, radius * sin]);
+        let lens = disc(1.0, [a, b]).to_array();
+        let look = camera.look([pixel[0] + x, pixel[1] + y], lens);
         let ray = Ray {
             from: look.from,
             along: look.along,

@@ -1,6 +1,6 @@
 //! Pictures of one pixel whose radiance is known.
 
-use etendue_field::Raster;
+use etendue_field::{LatLong, Raster};
 use etendue_paths::Paths;
 use etendue_world::{
     Camera, Dielectric, Falloff, Geometry, Lens, Light, Material, Projection, Shape, SkyMap,
@@ -250,7 +250,8 @@ fn a_sky_is_where_its_pixels_are() {
     let mut values = vec![0.0; 64 * 32];
     // Column 16 of 64 is a quarter turn from −Z to X, row 8 of 0 to 31 at 46° from Y.
     values[8 * 64 + 16] = 100.0;
-    let map = Arc::new(Raster::new(64, 32, values).unwrap());
+    let raster = Raster::new(64, 32, values).unwrap();
+    let map = Arc::new(LatLong::from_pole_to_pole(raster));
     let sky = |to_world| {
         Light::Sky(SkyMap {
             to_world,

@@ -2,7 +2,8 @@
 
 use crate::bsdf::before;
 use crate::{Bsdf, lambertian};
-use etendue_field::{Frame, power};
+use etendue_field::power;
+use etendue_sampling::about;
 use glam::DVec3;
 use std::f64::consts::TAU;
 
@@ -32,8 +33,8 @@ impl Phong {
         let (sin, cos) = libm::sincos(TAU * b);
         let along = power(a, 1.0 / (self.exponent + 1.0));
         let across = ((1.0 - along) * (1.0 + along)).sqrt();
-        let around = Frame::IDENTITY.turned_to(mirror_direction(wo));
-        around.vector_to_world(DVec3::new(across * cos, across * sin, along))
+        let local = DVec3::new(across * cos, across * sin, along);
+        about(mirror_direction(wo), local)
     }
 }
 

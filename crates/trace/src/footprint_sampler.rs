@@ -8,9 +8,10 @@ use crate::primitive::Primitive;
 use crate::primitive_set::{PrimitiveSet, TaggedPrimitive};
 use crate::reach::footprint;
 use etendue_field::{Frame, Patch, TwoPlane, VirtualPlane};
+use etendue_sampling::disc;
 use etendue_scene::{Object, Scene};
 use glam::DVec3;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 /// A surface, and a density over its points; in the frame at the light.
 #[derive(Debug)]
@@ -74,9 +75,8 @@ impl FootprintSampler {
         match &self.points {
             PatternPoints::Flat(pieces) => pieces.point(r).0,
             PatternPoints::Smooth(patch) => {
-                let (sin, cos) = libm::sincos(TAU * r[1]);
-                let radius = patch.aperture * r[0].sqrt();
-                patch.point(radius * cos, radius * sin)
+                let at = disc(patch.aperture, [r[0], r[1]]);
+                patch.point(at.x, at.y)
             }
         }
     }

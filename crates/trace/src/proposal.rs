@@ -281,20 +281,11 @@ impl Proposal {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use etendue_sampling::chi_square::RectangleCells;
     use etendue_transform::random::{self, Stream};
 
-    /// χ² of samples against the density integrated over 24 × 24 cells, and the density's whole integral.
     #[test]
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "the number of a cell"
-    )]
-    #[expect(clippy::too_many_lines, reason = "a test may be a list of cases")]
     fn samples_follow_the_density() {
-        const CELLS: usize = 24;
-        const SAMPLES: u32 = 400_000;
-        const SUB: usize = 64;
         let hann = Profile::Hann;
         let tent = |half| ProfileDensity::new(&Profile::Hann(half));
         for (distance, light, space, slope) in [
@@ -317,46 +308,14 @@ mod tests {
         ] {
             let proposal =
                 Proposal::new(distance, light, ProfileDensity::new(&space), slope).unwrap();
-
-            // Cells over the light and over the slopes; cells cut by the window's edge are integrated finely.
-            let half = slope.half;
-            let mut counts = vec![0.0; CELLS * CELLS];
-            for index in 0..u64::from(SAMPLES) {
-                let r = random::words(9, Stream::Photon, index, 0).map(random::unit);
-                let [[x], [u]] = proposal.samples([[r[0]], [r[1]]]);
-                let at = |t: f64, low: f64, high: f64| {
-                    ((t - low) / (high - low) * CELLS as f64) as usize
-                };
-                let (i, j) = (at(x, light[0], light[1]), at(u, -half, half));
-                counts[i.min(CELLS - 1) * CELLS + j.min(CELLS - 1)] += 1.0;
-            }
-            let (mut total, mut chi2, mut cells) = (0.0, 0.0, 0.0_f64);
-            let n = CELLS * SUB;
-            for i in 0..CELLS {
-                for j in 0..CELLS {
-                    let mut p = 0.0;
-                    for k in 0..SUB * SUB {
-                        let center = |c: usize, s: usize| (c * SUB + s) as f64 + 0.5;
-                        let x = light[0] + (light[1] - light[0]) * center(i, k / SUB) / n as f64;
-                        let u = half * (2.0 * center(j, k % SUB) / n as f64 - 1.0);
-                        p += proposal.densities([&[x], &[u]])[0];
-                    }
-                    p *= (light[1] - light[0]) * 2.0 * half / (n * n) as f64;
-                    total += p;
-                    let expected = p * f64::from(SAMPLES);
-                    if expected > 10.0 {
-                        chi2 += (counts[i * CELLS + j] - expected).powi(2) / expected;
-                        cells += 1.0;
-                    }
-                }
-            }
-            // Midpoint rule of 1536 steps: each of four jumps is misplaced by up to half a step, 3e-4.
-            assert!(
-                (total - 1.0).abs() < 1.3e-3,
-                "integral {total} at {distance}"
-            );
-            let bound = cells + 5.0 * (2.0 * cells).sqrt(); // five standard deviations of χ²
-            assert!(chi2 < bound, "χ² {chi2} in {cells} cells at {distance}");
+            let cells = RectangleCells::new([light, [-slope.half, slope.half]], [24, 24]);
+            let samples = (0..100_000).map(|index| {
+                let [a, b, ..] = random::words(9, Stream::Photon, index, 0).map(random::unit);
+                let [[x], [u]] = proposal.samples([[a], [b]]);
+                Some([x, u])
+            });
+            let found = cells.compare(samples, |[x, u]| proposal.densities([&[x], &[u]])[0]);
+            assert!(found.agrees(), "{found:?} at {distance}");
         }
     }
 

@@ -1,7 +1,8 @@
 //! Points and directions from even random numbers.
 
 use etendue_field::Shape;
-use std::f64::consts::{PI, TAU};
+use glam::DVec2;
+use std::f64::consts::PI;
 
 /// π: the flux a Lambertian surface sends out per radiance and area.
 pub(crate) const LAMBERTIAN: f64 = PI;
@@ -14,9 +15,8 @@ pub(crate) fn point(shape: &Shape, r: [f64; 2]) -> [f64; 2] {
             low + r[axis] * (high - low)
         }),
         Shape::Disc(disc) => {
-            let (sin, cos) = libm::sincos(TAU * r[1]);
-            let radius = disc.radius * r[0].sqrt();
-            [disc.center[0] + radius * cos, disc.center[1] + radius * sin]
+            let from_center = etendue_sampling::disc(disc.radius, r);
+            (DVec2::from(disc.center) + from_center).to_array()
         }
     }
 }

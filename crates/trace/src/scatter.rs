@@ -6,10 +6,10 @@ use crate::proposal::{Aim, ProfileDensity};
 use crate::reach::{looks_at_surface, outline, reach, reflects};
 use crate::sampling::LAMBERTIAN;
 use etendue_field::{Frame, Mixture, Profile};
+use etendue_sampling::{about, cosine_hemisphere};
 use etendue_scene::{Emission, Scene};
 use etendue_transform::random;
 use glam::DVec3;
-use std::f64::consts::TAU;
 
 /// How light leaves the surface at the beginning of a leg: a density over slopes at each of its
 /// points, and a strategy to sample it. Directions are in the frame of the leg, 1 along D or against it: (u, v, ±1).
@@ -54,16 +54,11 @@ pub(crate) enum Spread<'a> {
 const ANY_SLOPE: f64 = 1e6;
 
 impl Spread<'_> {
-    /// A direction in which light leaves, in any length, where the surface has this normal.
+    /// A direction in which light leaves, where the surface has this normal.
     #[inline]
     fn sample(&self, normal: DVec3, [a, b]: [f64; 2]) -> DVec3 {
         match self {
-            Self::Cosine => {
-                let (sin, cos) = libm::sincos(TAU * b);
-                let slope = (a / (1.0 - a)).sqrt();
-                let local = DVec3::new(slope * cos, slope * sin, 1.0);
-                Frame::IDENTITY.turned_to(normal).vector_to_world(local)
-            }
+            Self::Cosine => about(normal, cosine_hemisphere([a, b])),
             Self::Lobe { brdf, frame, wi } => {
                 frame.vector_to_world(brdf::towards(brdf, *wi, [a, b]))
             }

@@ -1,7 +1,7 @@
 //! Lights that are no surfaces.
 
 use crate::Texture;
-use etendue_field::Raster;
+use etendue_field::LatLong;
 use glam::{DAffine3, DMat3, DVec3};
 use std::sync::Arc;
 
@@ -79,17 +79,13 @@ impl Falloff {
     }
 }
 
-/// Radiance from far away, by direction: pixels over longitude and latitude, bilinear between their centres.
-///
-/// In coordinates of the map, Y is up. With `w` columns and `h` rows, light from (x, y, z) is at column w · atan2(x, −z) / 2π, which goes round, and
-/// at row ½ + (h − 1) · acos(y) / π. The centre of the first pixel is at column ½ and row ½: so those of the first row are at the upper pole, of the last at
-/// the lower one, and columns are apart by 2π / w. Mitsuba 3 has it so.
+/// Radiance from far away, by direction.
 #[derive(Clone, Debug)]
 pub struct SkyMap {
     /// Rotates directions of the map to those of the world.
     pub to_world: DMat3,
     /// W m⁻² sr⁻¹.
-    pub radiance: Arc<Raster>,
+    pub radiance: Arc<LatLong>,
 }
 
 /// Radiance of a surface on its front, the same to all directions: an area light.

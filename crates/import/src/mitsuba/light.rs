@@ -4,7 +4,7 @@ use super::mesh::z_of;
 use super::object::MitsubaObject;
 use super::reader::MitsubaReader;
 use super::transform::is_rigid;
-use etendue_field::Raster;
+use etendue_field::{LatLong, Raster};
 use etendue_world::{Falloff, Light, SkyMap};
 use glam::{DAffine3, DVec3};
 use std::sync::Arc;
@@ -153,7 +153,7 @@ impl<'a> MitsubaReader<'a> {
         let radiance = Raster::new(pixels.width(), pixels.height(), values)?;
         Some(Light::Sky(SkyMap {
             to_world: to_world.matrix3,
-            radiance: Arc::new(radiance),
+            radiance: Arc::new(LatLong::from_pole_to_pole(radiance)),
         }))
     }
 

@@ -4,7 +4,7 @@ use super::entity::{CauseGiven, Entity, Read};
 use super::reader::PbrtReader;
 use super::transform::without_scale;
 use crate::pictures::TransferCurve;
-use etendue_field::Raster;
+use etendue_field::{LatLong, Raster};
 use etendue_world::{Light, SkyMap};
 use glam::{DAffine3, DVec3};
 use std::f64::consts::{FRAC_2_PI, PI, TAU};
@@ -56,7 +56,7 @@ impl PbrtReader<'_> {
         self.note_once(&entity.place, &message);
         Ok(Light::Sky(SkyMap {
             to_world: turned?.0.matrix3,
-            radiance: Arc::new(radiance),
+            radiance: Arc::new(LatLong::from_pole_to_pole(radiance)),
         }))
     }
 }
@@ -72,7 +72,7 @@ fn illuminance(square: &Raster) -> f64 {
     (0..side * side).map(at).sum::<f64>() * pixel
 }
 
-/// The picture by longitude and latitude, as [`SkyMap`] has it; each pixel is the mean over its area.
+/// The picture by longitude and latitude, from pole to pole; each pixel is the mean over its area.
 fn longitudes(square: &Raster, scale: f64) -> Option<Raster> {
     let side = square.width();
     let (w, h) = (4 * side, 2 * side + 1);

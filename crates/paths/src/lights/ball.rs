@@ -1,10 +1,11 @@
 //! Spheres that shine.
 
-use super::incoming::{Incoming, emitted, way};
+use super::incoming::{Incoming, emitted};
 use crate::space::{Hit, Ray, SceneGeometry};
+use etendue_sampling::Cone;
 use etendue_world::Texture;
 use glam::{DAffine3, DVec3};
-use std::f64::consts::TAU;
+use std::f64::consts::PI;
 
 /// A sphere that shines outwards, looked for within the cone in which it is seen.
 #[derive(Debug)]
@@ -25,51 +26,45 @@ impl ShiningSphere {
         }
     }
 
-    /// 1 − cos of half of the cone's angle; `None` from within, where nothing shines.
-    fn cone(&self, at: DVec3) -> Option<f64> {
-        let sine2 = self.radius * self.radius / (self.center - at).length_squared();
-        // Without cancelling where the cone is narrow.
-        (sine2 < 1.0).then(|| sine2 / (1.0 + (1.0 - sine2).sqrt()))
+    /// The cone in which it is seen; `None` from within, where nothing shines.
+    fn cone(&self, at: DVec3) -> Option<Cone> {
+        Cone::around_sphere(self.center - at, self.radius)
     }
 
     pub(super) fn sample(
         &self,
         geometry: &SceneGeometry,
         at: DVec3,
-        [a, b]: [f64; 2],
+        random: [f64; 2],
     ) -> Option<Incoming> {
         let cone = self.cone(at)?;
-        let (axis, distance) = way(at, self.center);
-        let fall = a * cone;
-        let sine = (fall * (2.0 - fall)).sqrt();
-        let (sin, cos) = libm::sincos(TAU * b);
-        let (s, t) = axis.any_orthonormal_pair();
-        let toward = (sine * (cos * s + sin * t) + (1.0 - fall) * axis).normalize();
+        let toward = cone.sample(random);
         let ray = Ray {
             from: at,
             along: toward,
         };
-        let hit = geometry.meets(self.shape, &ray, [0.0, 2.0 * (distance + self.radius)])?;
-        let density = 1.0 / (TAU * cone);
+        let far = 2.0 * (at.distance(self.center) + self.radius);
+        let hit = geometry.meets(self.shape, &ray, [0.0, far])?;
         let radiance = emitted(&self.emission, hit.uv, hit.normal, -toward);
         Some(Incoming {
             toward,
             distance: hit.distance,
-            weight: radiance / density,
-            density: Some(density),
+            weight: radiance * cone.solid_angle(),
+            density: Some(1.0 / cone.solid_angle()),
         })
     }
 
     /// A place drawn evenly over its area, its normal, and the radiance there over the density of places.
     pub(super) fn emit(&self, geometry: &SceneGeometry, [a, b]: [f64; 2]) -> (DVec3, DVec3, f64) {
         let (place, normal, uv) = geometry.placed(self.shape).sample(0, [a, b]);
-        let area = 2.0 * TAU * self.radius * self.radius;
+        let area = 4.0 * PI * self.radius * self.radius;
         (place, normal, self.emission.value(uv) * area)
     }
 
     pub(super) fn of_hit(&self, from: DVec3, along: DVec3, hit: &Hit) -> (f64, f64) {
         let radiance = emitted(&self.emission, hit.uv, hit.normal, -along);
-        let density = self.cone(from).map_or(0.0, |cone| 1.0 / (TAU * cone));
-        (radiance, density)
+        // A hit is within the cone, whatever rounding says at its edge.
+        let density = self.cone(from).map(|cone| 1.0 / cone.solid_angle());
+        (radiance, density.unwrap_or(0.0))
     }
 }

@@ -2,8 +2,9 @@
 
 use super::{LightSampler, SampledLight};
 use crate::space::{Ray, SceneGeometry};
-use glam::{DMat3, DVec3};
-use std::f64::consts::{PI, TAU};
+use etendue_sampling::{Cone, about, cosine_hemisphere, disc};
+use glam::DVec3;
+use std::f64::consts::PI;
 
 /// A photon on its way.
 #[derive(Clone, Copy, Debug)]
@@ -47,14 +48,9 @@ impl LightSampler {
         targets: &[EmissionTarget],
     ) -> Option<Emitted> {
         let count = self.lights.len() as f64;
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a number of a light"
-        )]
-        let light = self.lights.get((light * count) as usize)?;
+        let (light, rest) = self.pick(light)?;
         let random = [d, e, by];
-        let mut emitted = light.emit(geometry, [a, b, c], &Draw { targets, random })?;
+        let mut emitted = light.emit(geometry, [a, b, c, rest], &Draw { targets, random })?;
         emitted.flux *= count;
         if let Some(flash) = &mut emitted.flash {
             flash.shine *= count;
@@ -64,31 +60,30 @@ impl LightSampler {
 }
 
 impl SampledLight {
-    fn emit(&self, geometry: &SceneGeometry, place: [f64; 3], draw: &Draw<'_>) -> Option<Emitted> {
-        let [a, b, c] = place;
+    fn emit(&self, geometry: &SceneGeometry, place: [f64; 4], draw: &Draw<'_>) -> Option<Emitted> {
+        let [a, b, c, _] = place;
         match self {
-            Self::ShiningShape(surface) => Some(draw.flashed(surface.emit(geometry, place)?)),
+            Self::ShiningShape(surface) => Some(draw.flashed(surface.emit(geometry, [a, b, c])?)),
             Self::ShiningSphere(ball) => Some(draw.flashed(ball.emit(geometry, [a, b]))),
             Self::Point {
                 position,
                 intensity,
-            } => Some(draw.away(*position, DVec3::Z, -1.0, &|_| *intensity)),
+            } => Some(draw.away(*position, &Cone::SPHERE, &|_| *intensity)),
             Self::Spot {
                 to_local, cutoff, ..
             } => {
                 let to_world = to_local.inverse();
                 let intensity = |along| self.intensity(to_local.transform_vector3(along));
-                let axis = to_world.matrix3.z_axis;
-                Some(draw.away(to_world.translation, axis, libm::cos(*cutoff), &intensity))
+                let cone = Cone::new(to_world.matrix3.z_axis, libm::cos(*cutoff));
+                Some(draw.away(to_world.translation, &cone, &intensity))
             }
             Self::Directional { toward, irradiance } => {
                 Some(draw.afar(geometry, *toward, *irradiance))
             }
             Self::Sky(sky) => {
-                let toward = sky.sample([a, b, c]);
-                let density = sky.density(toward);
-                let irradiance = sky.radiance(toward) / density;
-                (density > 0.0).then(|| draw.afar(geometry, toward, irradiance))
+                let toward = sky.sample(place);
+                let (radiance, density) = sky.radiance_and_density(toward);
+                (density > 0.0).then(|| draw.afar(geometry, toward, radiance / density))
             }
         }
     }
@@ -109,7 +104,7 @@ impl Draw<'_> {
         let [a, b, _] = self.random;
         let along = match self.target() {
             Some(target) => target.toward(position, [a, b]),
-            None => about(normal, (1.0 - a).sqrt(), b),
+            None => about(normal, cosine_hemisphere([a, b])),
         };
         let cosine = along.dot(normal).max(0.0);
         let density = self.density(cosine / PI, |target| target.density(position, along));
@@ -127,26 +122,14 @@ impl Draw<'_> {
         }
     }
 
-    /// A photon from a point: evenly within a cone, whose half angle has the cosine `end`, or aimed.
-    fn away(
-        &self,
-        from: DVec3,
-        axis: DVec3,
-        end: f64,
-        intensity: &dyn Fn(DVec3) -> f64,
-    ) -> Emitted {
+    /// A photon from a point: within a cone, or aimed.
+    fn away(&self, from: DVec3, cone: &Cone, intensity: &dyn Fn(DVec3) -> f64) -> Emitted {
         let [a, b, _] = self.random;
         let along = match self.target() {
             Some(target) => target.toward(from, [a, b]),
-            None => about(axis, 1.0 - a * (1.0 - end), b),
+            None => cone.sample([a, b]),
         };
-        let is_within = along.dot(axis) >= end;
-        let plain = if is_within {
-            1.0 / (TAU * (1.0 - end))
-        } else {
-            0.0
-        };
-        let density = self.density(plain, |target| target.density(from, along));
+        let density = self.density(cone.density(along), |target| target.density(from, along));
         Emitted {
             ray: Ray { from, along },
             flux: intensity(along) / density,
@@ -163,9 +146,8 @@ impl Draw<'_> {
             radius: 1.001 * geometry.radius,
         };
         let aimed = self.target().unwrap_or(&whole);
-        let (s, t) = toward.any_orthonormal_pair();
-        let (sin, cos) = libm::sincos(TAU * b);
-        let place = aimed.center + aimed.radius * a.sqrt() * (cos * s + sin * t);
+        let across = disc(aimed.radius, [a, b]).extend(0.0);
+        let place = aimed.center + about(toward, across);
         let density = |disc: &EmissionTarget| {
             let off = place - disc.center;
             let is_in = off.length_squared() - off.dot(toward).powi(2) <= disc.radius.powi(2);
@@ -213,37 +195,16 @@ pub(crate) fn mixed(
 }
 
 impl EmissionTarget {
-    /// 1 − cos of half of the cone in which it is seen; all around from within.
-    fn cone(&self, from: DVec3) -> f64 {
-        let sine2 = self.radius * self.radius / (self.center - from).length_squared();
-        if sine2 < 1.0 {
-            sine2 / (1.0 + (1.0 - sine2).sqrt())
-        } else {
-            2.0
-        }
+    /// The cone in which it is seen; all around from within.
+    fn cone(&self, from: DVec3) -> Cone {
+        Cone::around_sphere(self.center - from, self.radius).unwrap_or(Cone::SPHERE)
     }
 
-    pub(crate) fn toward(&self, from: DVec3, [a, b]: [f64; 2]) -> DVec3 {
-        let axis = (self.center - from).normalize_or(DVec3::Z);
-        about(axis, 1.0 - a * self.cone(from), b)
+    pub(crate) fn toward(&self, from: DVec3, random: [f64; 2]) -> DVec3 {
+        self.cone(from).sample(random)
     }
 
     pub(crate) fn density(&self, from: DVec3, along: DVec3) -> f64 {
-        let axis = (self.center - from).normalize_or(DVec3::Z);
-        let cone = self.cone(from);
-        if axis.dot(along) >= 1.0 - cone {
-            1.0 / (TAU * cone)
-        } else {
-            0.0
-        }
+        self.cone(from).density(along)
     }
-}
-
-/// The direction at an angle of this cosine to an axis; `turn` is its azimuth over 2π.
-fn about(axis: DVec3, cosine: f64, turn: f64) -> DVec3 {
-    let (s, t) = axis.any_orthonormal_pair();
-    let frame = DMat3::from_cols(s, t, axis);
-    let sine = ((1.0 - cosine) * (1.0 + cosine)).max(0.0).sqrt();
-    let (sin, cos) = libm::sincos(TAU * turn);
-    frame * DVec3::new(sine * cos, sine * sin, cosine)
 }

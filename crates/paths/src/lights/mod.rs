@@ -9,6 +9,7 @@ mod sky;
 use crate::space::{Hit, SceneGeometry};
 use ball::ShiningSphere;
 pub(crate) use emit::{EmissionPoint, EmissionTarget, Emitted, chosen, mixed};
+use etendue_field::whole;
 use etendue_world::{Falloff, Geometry, Light, Shape, Texture, World};
 use glam::{DAffine3, DVec3};
 pub(crate) use incoming::Incoming;
@@ -66,19 +67,21 @@ impl LightSampler {
         [a, b, c, d]: [f64; 4],
     ) -> Option<Incoming> {
         let count = self.lights.len() as f64;
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a number of a light"
-        )]
-        let light = self.lights.get((d * count) as usize)?;
-        let found = light.sample(geometry, at, [a, b, c])?;
+        let (light, d) = self.pick(d)?;
+        let found = light.sample(geometry, at, [a, b, c, d])?;
         let density = found.density.map(|density| density / count);
         Some(Incoming {
             weight: found.weight * count,
             density,
             ..found
         })
+    }
+
+    /// A light, each with the same chance, and the number in (0, 1) that is left of the one that it is picked by.
+    fn pick(&self, r: f64) -> Option<(&SampledLight, f64)> {
+        let place = r * self.lights.len() as f64;
+        let light = self.lights.get(whole(place))?;
+        Some((light, place.fract()))
     }
 
     /// The radiance that a shape emits where a ray along `along` meets it, and the density with which [`Self::sample`] looks there.
@@ -97,11 +100,11 @@ impl LightSampler {
     /// The radiance that comes from far away along a direction, and the density with which [`Self::sample`] looks there: a sum over lights.
     pub(crate) fn of_sky(&self, toward: DVec3) -> impl Iterator<Item = (f64, f64)> {
         let count = self.lights.len() as f64;
-        let skies = self.lights.iter().filter_map(|light| match light {
-            SampledLight::Sky(sky) => Some(sky),
+        let skies = self.lights.iter().filter_map(move |light| match light {
+            SampledLight::Sky(sky) => Some(sky.radiance_and_density(toward)),
             _ => None,
         });
-        skies.map(move |sky| (sky.radiance(toward), sky.density(toward) / count))
+        skies.map(move |(radiance, density)| (radiance, density / count))
     }
 }
 
@@ -153,7 +156,8 @@ impl From<&Light> for SampledLight {
 }
 
 impl SampledLight {
-    fn sample(&self, geometry: &SceneGeometry, at: DVec3, [a, b, c]: [f64; 3]) -> Option<Incoming> {
+    fn sample(&self, geometry: &SceneGeometry, at: DVec3, r: [f64; 4]) -> Option<Incoming> {
+        let [a, b, c, _] = r;
         match self {
             Self::ShiningShape(surface) => surface.sample(geometry, at, [a, b, c]),
             Self::ShiningSphere(ball) => ball.sample(geometry, at, [a, b]),
@@ -187,16 +191,14 @@ impl SampledLight {
                 density: None,
             }),
             Self::Sky(sky) => {
-                let toward = sky.sample([a, b, c]);
-                let density = sky.density(toward);
-                let weight = sky.radiance(toward) / density;
-                let found = Incoming {
+                let toward = sky.sample(r);
+                let (radiance, density) = sky.radiance_and_density(toward);
+                (density > 0.0).then(|| Incoming {
                     toward,
                     distance: f64::INFINITY,
-                    weight,
+                    weight: radiance / density,
                     density: Some(density),
-                };
-                (density > 0.0).then_some(found)
+                })
             }
         }
     }

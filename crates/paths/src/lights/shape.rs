@@ -2,6 +2,7 @@
 
 use super::incoming::{Incoming, emitted, way};
 use crate::space::{Hit, SceneGeometry};
+use etendue_sampling::DiscreteDistribution;
 use etendue_world::Texture;
 use glam::{DVec2, DVec3};
 
@@ -10,26 +11,21 @@ use glam::{DVec2, DVec3};
 pub(super) struct ShiningShape {
     shape: usize,
     emission: Texture,
-    /// The areas of its pieces, summed up to each.
-    summed: Vec<f64>,
+    /// Its pieces by their areas.
+    pieces: DiscreteDistribution,
 }
 
 impl ShiningShape {
     pub(super) fn new(shape: usize, areas: &[f64], emission: Texture) -> Self {
-        let sum = |sum: &mut f64, area: &f64| {
-            *sum += area;
-            Some(*sum)
-        };
-        let summed = areas.iter().scan(0.0, sum).collect();
         Self {
             shape,
             emission,
-            summed,
+            pieces: DiscreteDistribution::new(areas.iter().copied()),
         }
     }
 
-    pub(super) fn area(&self) -> f64 {
-        self.summed.last().copied().unwrap_or_default()
+    fn area(&self) -> f64 {
+        self.pieces.total()
     }
 
     pub(super) fn sample(
@@ -56,10 +52,8 @@ impl ShiningShape {
         geometry: &SceneGeometry,
         [a, b, c]: [f64; 3],
     ) -> Option<(DVec3, DVec3, DVec2)> {
-        let wanted = c * self.area();
-        let piece = self.summed.partition_point(|sum| *sum <= wanted);
-        let piece = piece.min(self.summed.len().checked_sub(1)?);
-        Some(geometry.placed(self.shape).sample(piece, [a, b]))
+        let placed = geometry.placed(self.shape);
+        (self.area() > 0.0).then(|| placed.sample(self.pieces.sample(c), [a, b]))
     }
 
     /// A place, its normal, and the radiance there over the density of places.

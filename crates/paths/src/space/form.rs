@@ -2,6 +2,7 @@
 
 use super::local::Local;
 use super::mesh::WorldMesh;
+use etendue_sampling::{disc, sphere};
 use glam::{DAffine3, DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -111,23 +112,21 @@ impl Form {
 
     /// A place drawn evenly over the area of a piece.
     pub(crate) fn sample(&self, piece: usize, [a, b]: [f64; 2]) -> (DVec3, Local) {
-        let (sin, cos) = libm::sincos(TAU * b);
         match self {
             Self::Rectangle => {
                 let place = 2.0 * DVec2::new(a, b) - 1.0;
                 (place.extend(0.0), self.flat(place))
             }
             Self::Disc => {
-                let place = a.sqrt() * DVec2::new(cos, sin);
+                let place = disc(1.0, [a, b]);
                 (place.extend(0.0), self.flat(place))
             }
             Self::Sphere => {
-                let z = 1.0 - 2.0 * a;
-                let radius = (1.0 - z * z).max(0.0).sqrt();
-                let place = DVec3::new(radius * cos, radius * sin, z);
+                let place = sphere([a, b]);
                 (place, ball(place))
             }
             Self::Cylinder => {
+                let (sin, cos) = libm::sincos(TAU * b);
                 let place = DVec3::new(cos, sin, a);
                 (place, tube(place))
             }

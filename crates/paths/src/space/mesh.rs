@@ -3,6 +3,7 @@
 use super::local::Local;
 use super::triangle::TriangleRay;
 use etendue_bvh::WideHierarchy;
+use etendue_sampling::triangle;
 use etendue_world::Triangles;
 use glam::{DAffine3, DVec2, DVec3};
 use std::sync::Arc;
@@ -124,10 +125,9 @@ impl WorldMesh {
     }
 
     /// A place drawn evenly over a triangle.
-    pub(super) fn sample(&self, triangle: usize, [a, b]: [f64; 2]) -> (DVec3, Local) {
-        let root = a.sqrt();
-        let place = DVec2::new(root * (1.0 - b), root * b);
-        let corners = self.triangles.corners()[triangle];
+    pub(super) fn sample(&self, number: usize, random: [f64; 2]) -> (DVec3, Local) {
+        let place = triangle(random);
+        let corners = self.triangles.corners()[number];
         let [p, q, r] = places(&self.triangles, corners);
         (
             p + place.x * (q - p) + place.y * (r - p),

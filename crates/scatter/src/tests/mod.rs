@@ -1,13 +1,14 @@
 //! All models: samples against densities, energy, reciprocity, and faults that these tests see.
 
-mod cells;
 mod models;
 
 use crate::{Bsdf, RoughDielectric, SmoothDielectric, mirror};
-use cells::{Cells, SAMPLES, numbers};
 use etendue_field::Fresnel;
 use glam::DVec3;
-use models::{Model, all, beckmann, conductor, dielectric, ggx, modified_phong, phong, plastic};
+use models::{
+    Model, SAMPLES, all, beckmann, conductor, dielectric, ggx, modified_phong, numbers, phong,
+    plastic,
+};
 
 /// Angles of incidence, up to grazing.
 const ANGLES: [f64; 4] = [0.0, 0.6, 1.2, 1.5];
@@ -29,7 +30,7 @@ fn each(mut check: impl FnMut(&Model, DVec3, String)) {
 #[test]
 fn samples_follow_their_density() {
     each(|model, wo, name| {
-        let found = Cells::new(model, wo).compare(model, wo, |wi| model.bsdf.density(wi, wo));
+        let found = model.compare(wo, |wi| model.bsdf.density(wi, wo));
         assert!(found.agrees(), "{name}: {found:?}");
     });
 }
@@ -74,7 +75,7 @@ fn means(model: &Model, wo: DVec3) -> [[f64; 2]; 2] {
 fn white_furnace() {
     each(|model, wo, name| {
         let carried = |wi: DVec3| model.bsdf.value(wi, wo) * wi.z.abs();
-        let exact: f64 = Cells::new(model, wo).integrals(carried).iter().sum();
+        let exact: f64 = model.cells(wo).integrals(carried).iter().sum();
         let [[mean, error], [flux, flux_error]] = means(model, wo);
         // Four and a half standard errors, and the midpoint rule over the cells.
         let bound = 4.5 * error + 2e-3;
@@ -177,7 +178,7 @@ fn light_goes_both_ways() {
 fn planted_faults_are_seen() {
     let wo = at(0.6);
     let seen = |what: &str, model: &Model, fault: &dyn Fn(DVec3) -> f64| {
-        let found = Cells::new(model, wo).compare(model, wo, fault);
+        let found = model.compare(wo, fault);
         assert!(!found.agrees(), "{what} of {}: {found:?}", model.name);
     };
     let white = |facets| conductor(facets, Fresnel::White);

@@ -4,6 +4,8 @@ use crate::{
     Bsdf, Coat, Conductor, Microfacets, ModifiedPhong, Phong, Plastic, RoughDielectric, lambertian,
 };
 use etendue_field::{Fresnel, MicrofacetDistribution};
+use etendue_sampling::chi_square::{ChiSquare, SphereCells};
+use etendue_transform::random::{self, Stream};
 use glam::DVec3;
 
 /// A model of what a surface does to light.
@@ -22,6 +24,32 @@ fn model(name: String, max_weight: f64, bsdf: impl Bsdf + 'static) -> Model {
         bsdf: Box::new(bsdf),
         index: 1.0,
         max_weight,
+    }
+}
+
+pub(super) const SAMPLES: u32 = 100_000;
+
+pub(super) fn numbers() -> impl Iterator<Item = [f64; 3]> {
+    (0..u64::from(SAMPLES)).map(|index| {
+        let [a, b, c, _] = random::words(5, Stream::Photon, index, 0).map(random::unit);
+        [a, b, c]
+    })
+}
+
+impl Model {
+    /// Directions that it draws.
+    fn drawn(&self, wo: DVec3) -> impl Iterator<Item = Option<DVec3>> {
+        numbers().map(move |random| self.bsdf.direction(wo, random))
+    }
+
+    /// Cells about the mirror direction of wo.
+    pub(super) fn cells(&self, wo: DVec3) -> SphereCells {
+        SphereCells::new(DVec3::new(-wo.x, -wo.y, wo.z), self.drawn(wo).flatten())
+    }
+
+    /// Its samples against a density.
+    pub(super) fn compare(&self, wo: DVec3, density: impl Fn(DVec3) -> f64) -> ChiSquare {
+        self.cells(wo).compare(self.drawn(wo), density)
     }
 }
 

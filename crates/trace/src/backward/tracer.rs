@@ -14,7 +14,7 @@ use crate::line::{direction, start};
 use crate::sampling::{LAMBERTIAN, point};
 use crate::sky::Sky;
 use etendue_field::{Crossing, Frame, Ledger, Light, PhotonSource, Specular, TwoPlane};
-use etendue_scatter::lambertian;
+use etendue_sampling::{about, cosine_hemisphere};
 use etendue_scene::{Object, Scene};
 use etendue_transform::random::{self, Stream};
 use glam::DVec3;
@@ -354,8 +354,7 @@ impl Backward {
         block: u32,
         words: &impl Fn(u32) -> [f64; 4],
     ) -> f64 {
-        let towards = lambertian::sample([r[0], r[1]]);
-        let towards = Frame::IDENTITY.turned_to(normal).vector_to_world(towards);
+        let towards = about(normal, cosine_hemisphere([r[0], r[1]]));
         LAMBERTIAN * self.along(leg, point, -towards, block + 1, words)
     }
 }

@@ -1,0 +1,37 @@
+//! Things drawn in proportion to their weights.
+
+/// Weights of things, summed up to each and with it.
+#[derive(Clone, Debug)]
+pub struct DiscreteDistribution {
+    sums: Vec<f64>,
+}
+
+impl DiscreteDistribution {
+    /// A distribution with these weights, none of which is negative.
+    #[must_use]
+    pub fn new(weights: impl IntoIterator<Item = f64>) -> Self {
+        let mut sum = 0.0;
+        let sums = weights.into_iter().map(|weight| {
+            sum += weight;
+            sum
+        });
+        Self {
+            sums: sums.collect(),
+        }
+    }
+
+    /// The sum of all weights.
+    #[inline]
+    #[must_use]
+    pub fn total(&self) -> f64 {
+        self.sums.last().copied().unwrap_or(0.0)
+    }
+
+    /// The number of a thing with a weight above 0; 0 if there is none.
+    #[inline]
+    #[must_use]
+    pub fn sample(&self, r: f64) -> usize {
+        let wanted = r * self.total();
+        self.sums.partition_point(|sum| *sum < wanted)
+    }
+}
