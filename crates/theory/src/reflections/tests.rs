@@ -1,7 +1,6 @@
 //! Light that several surfaces send on, held against theories and sums of its own.
 
 use super::*;
-use crate::numerics::distance;
 use crate::obstacle::ObstacleForm;
 use crate::rays::Plane;
 use crate::testing::window;
@@ -98,7 +97,7 @@ fn across(origin: DVec3, d: DVec3, x: DVec3) -> Plane {
 /// How far two predictions are apart in their errors.
 fn apart(a: &Predicted, b: &Predicted) -> f64 {
     let error = libm::hypot(a.error.unwrap(), b.error.unwrap());
-    distance(&a.slices, &b.slices) / error
+    a.slices.relative_difference(&b.slices) / error
 }
 
 /// Differences of two predictions in their errors: the mean over as many frequencies as there are

@@ -2,7 +2,6 @@
 
 use super::*;
 use crate::geometry::{Edition, SpectrumMap};
-use crate::numerics::distance;
 use crate::{Model, Observed, Predicted, RayBudget};
 use etendue_field::{
     Complex, Frame, FrequencyAxis, Image, Orientation, Profile, ProjectionGrid, Quantity,
