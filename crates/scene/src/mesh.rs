@@ -8,6 +8,7 @@
 
 mod detailed;
 mod error;
+mod extension;
 mod files;
 mod obj;
 mod paraboloid;
