@@ -1,8 +1,7 @@
 //! Mesh files told apart by their extension.
 
-use super::error::fault;
 use super::text;
-use crate::fault::Fault;
+use crate::fault::{Fault, fault};
 use std::path::Path;
 
 /// Reads bytes as the extension of `file` says.

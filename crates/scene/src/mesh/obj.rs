@@ -3,10 +3,9 @@
 pub(super) mod detailed;
 pub(super) mod parts;
 
-use super::error::fault;
 use super::shared::{Mesh, check_coordinate, check_corners, fan};
 use super::text::{LineWords, Lines, number, quoted};
-use crate::fault::Fault;
+use crate::fault::{Fault, fault};
 use glam::DVec3;
 use std::borrow::Cow;
 

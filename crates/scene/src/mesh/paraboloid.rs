@@ -1,8 +1,7 @@
 //! The mesh of a paraboloid.
 
-use super::error::fault;
 use super::shared::Mesh;
-use crate::fault::Fault;
+use crate::fault::{Fault, fault};
 use glam::DVec3;
 
 impl Mesh {

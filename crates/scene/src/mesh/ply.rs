@@ -4,9 +4,8 @@ mod body;
 pub(super) mod detailed;
 mod header;
 
-use super::error::fault;
 use super::shared::{check_coordinate, check_corners};
-use crate::fault::Fault;
+use crate::fault::{Fault, fault};
 use body::PlyRow;
 use glam::DVec3;
 use header::PlyElement;

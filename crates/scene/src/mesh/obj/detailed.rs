@@ -1,10 +1,9 @@
 //! OBJ files with their normals and texture coordinates.
 
 use super::super::detailed::{DetailedMesh, check};
-use super::super::error::fault;
 use super::super::text::{LineWords, number, quoted};
 use super::{CornerFault, corner, place, statements, triangles, vertices, without_mark};
-use crate::fault::Fault;
+use crate::fault::{Fault, fault};
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 
