@@ -34,14 +34,19 @@ pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
         .iter()
         .flat_map(|scene| load::inputs(&args.scene.source(), scene))
         .collect();
-    let claim = |path: &PathBuf| OutputFile::claim(path, args.force.force, &inputs);
+    let claim = |path: &PathBuf| OutputFile::claim(path, args.work.force.force, &inputs);
     let csv = args.csv.as_ref().map(claim).transpose()?;
-    let rows = on_threads(&args.threads, || {
+    let rows = on_threads(&args.work.threads, || {
         let is_long = args.measure && scenes.len() > 1;
-        let bar = progress::steps("measuring", scenes.len(), "scenes", args.quiet || !is_long);
+        let bar = progress::steps(
+            "measuring",
+            scenes.len(),
+            "scenes",
+            args.work.quiet || !is_long,
+        );
         let each = scenes.iter().zip(&points).map(|(scene, point)| {
             bar.set_message(shown(point));
-            let rows = of(args, scene, point, args.quiet || is_long);
+            let rows = of(args, scene, point, args.work.quiet || is_long);
             bar.inc(1);
             rows
         });

@@ -26,7 +26,7 @@ const LEAST_BATCHES: usize = 32;
 /// `etendue compare`: returns the exit code.
 pub(crate) fn compare(args: &CompareArgs) -> Result<u8, Failure> {
     let mut watch = Stopwatch::start();
-    let stage = progress::stage("reading", args.quiet);
+    let stage = progress::stage("reading", args.work.quiet);
     let (case, inputs) = read(args)?;
     stage.finish_and_clear();
     watch.lap("read");
@@ -34,19 +34,19 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<u8, Failure> {
         &case.scene,
         &[],
         inputs,
-        args.force.force,
+        args.work.force.force,
         ArgumentStyle::Command,
     );
     check_earlier(
-        &args.out,
+        &args.out.folder,
         SUMMARY,
         &case.scene,
-        args.force.force,
+        args.work.force.force,
         ArgumentStyle::Command,
     )?;
-    let results = Results::claim(&args.out, plan)?;
+    let results = Results::claim(&args.out.folder, plan)?;
     let (held, all) = (case.measurement.batches().len(), case.scene.run.batches);
-    if !args.quiet && held < all as usize {
+    if !args.work.quiet && held < all as usize {
         say(&format!("{held} of {all} batches were measured"));
     }
     let ending = Ending {
@@ -55,9 +55,11 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<u8, Failure> {
             compact: false,
         },
         expect: args.expect,
-        quiet: args.quiet,
+        quiet: args.work.quiet,
     };
-    on_threads(&args.threads, || conclude(&case, &ending, results, watch))
+    on_threads(&args.work.threads, || {
+        conclude(&case, &ending, results, watch)
+    })
 }
 
 /// All that was measured and predicted, if it fits together, and the files it was read from.

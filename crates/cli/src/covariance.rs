@@ -25,7 +25,6 @@ use etendue_store::sealed::json;
 use etendue_store::stored::VERSION;
 use etendue_store::{ArgumentStyle, COVARIANCE, Plan, Results};
 use serde_json::json as tree_of;
-use std::path::Path;
 
 /// The picture of a plane, and what is behind it.
 const NAMES: [&str; 3] = ["covariance.png", "covariance.svg", "covariance.csv"];
@@ -40,18 +39,17 @@ pub(crate) fn covariance(args: &CovarianceArgs) -> Result<u8, Failure> {
     choose(&mut scene, &args.plane)?;
     let theories = Applicability::of_planes(&scene);
     method::check(&scene, args.photons.method)?;
-    let default = || Path::new("out").join(format!("{}-covariance", scene.name));
-    let folder = args.out.clone().unwrap_or_else(default);
+    let folder = args.out.or_named(format!("{}-covariance", scene.name));
     let planes = scene.planes.iter();
     let files = planes.flat_map(|plane| NAMES.map(|file| format!("{}/{file}", plane.name)));
     let plan = Plan {
         index: COVARIANCE,
         files: files.collect(),
         inputs: load::inputs(&args.scene.source(), &scene),
-        force: args.force.force,
+        force: args.work.force.force,
         arguments: ArgumentStyle::Command,
     };
-    let (results, reports) = on_threads(&args.threads, || {
+    let (results, reports) = on_threads(&args.work.threads, || {
         limits::check(&scene, &theories, rayon::current_num_threads())?;
         check_memory(&scene.planes)?;
         let mut results = Results::claim(&folder, plan.clone())?;
@@ -60,9 +58,15 @@ pub(crate) fn covariance(args: &CovarianceArgs) -> Result<u8, Failure> {
             &scene,
             method,
             0..scene.run.batches,
-            &Terminal::new(args.quiet),
+            &Terminal::new(args.work.quiet),
         )?;
-        let predictions = predicted(&scene, &theories, method, None, &Terminal::new(args.quiet))?;
+        let predictions = predicted(
+            &scene,
+            &theories,
+            method,
+            None,
+            &Terminal::new(args.work.quiet),
+        )?;
         let source = source(&scene, method)?;
         let mut reports = Vec::new();
         for (index, prediction) in predictions.iter().enumerate() {
@@ -70,14 +74,14 @@ pub(crate) fn covariance(args: &CovarianceArgs) -> Result<u8, Failure> {
                 (&*source, &measurement, index),
                 &theories[index],
                 prediction,
-                args.quiet,
+                args.work.quiet,
             )?;
             draw(&mut results, &scene, &measurement, index, &report)?;
             reports.push(report);
         }
         Ok((results, reports))
     })?;
-    if !args.quiet {
+    if !args.work.quiet {
         deliver(&said::text(&reports))?;
     }
     let mut index = tree_of!({
@@ -95,8 +99,8 @@ pub(crate) fn covariance(args: &CovarianceArgs) -> Result<u8, Failure> {
         index["files"] = tree_of!(files);
         json(&index)
     })?;
-    say_replaced(&finished, args.quiet);
-    if !args.quiet {
+    say_replaced(&finished, args.work.quiet);
+    if !args.work.quiet {
         deliver(&format!("results in {}", finished.folder.display()))?;
     }
     Ok(0)

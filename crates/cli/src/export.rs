@@ -8,17 +8,13 @@ use etendue_store::sealed::json;
 use etendue_store::stored::VERSION;
 use etendue_store::{ArgumentStyle, EXPORT, Plan, Results};
 use serde_json::json as tree_of;
-use std::path::Path;
 
 /// `etendue export`: returns the exit code.
 pub(crate) fn export(args: &ExportArgs) -> Result<u8, Failure> {
     let scene = load::scene(&args.scene.source(), |_| ())?;
     // One other program is known so far, and clap has checked that it is meant.
     let export = etendue_export::mitsuba(&scene).map_err(Failure::bad_input)?;
-    let folder = args
-        .out
-        .clone()
-        .unwrap_or_else(|| Path::new("out").join(format!("{}-mitsuba", scene.name)));
+    let folder = args.out.or_named(format!("{}-mitsuba", scene.name));
     let plan = Plan {
         index: EXPORT,
         files: export.files.iter().map(|(name, _)| name.clone()).collect(),

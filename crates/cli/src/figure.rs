@@ -21,19 +21,19 @@ pub(crate) fn figure(args: &FigureArgs) -> Result<u8, Failure> {
         style: args.style.clone(),
         quality: args.quality,
         out: args.out.clone(),
-        force: args.force.force,
+        force: args.work.force.force,
         arguments,
     };
     let subjects = subjects(&request)?;
     for warning in subjects.iter().flat_map(|subject| subject.warnings()) {
-        if !args.quiet {
+        if !args.work.quiet {
             warnings::warn(warning);
         }
     }
-    on_threads(&args.threads, || {
-        let terminal = Terminal::new(args.quiet);
+    on_threads(&args.work.threads, || {
+        let terminal = Terminal::new(args.work.quiet);
         let worst = make_all(&request, &subjects, &terminal)?;
-        if !args.quiet {
+        if !args.work.quiet {
             say(&format!("figures in {}", args.out.display()));
         }
         Ok(code_of(worst))

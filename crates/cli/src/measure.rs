@@ -28,19 +28,24 @@ pub(crate) fn measure(args: &MeasureArgs) -> Result<u8, Failure> {
         )));
     }
     let method = args.photons.method;
-    let (results, held) = on_threads(&args.threads, || {
-        warnings::tell(&scene, args.quiet);
+    let (results, held) = on_threads(&args.work.threads, || {
+        warnings::tell(&scene, args.work.quiet);
         limits::check_memory(&scene, &theories, rayon::current_num_threads())?;
         let files = batches::names(&scene.planes);
         let mut results = load::stage(
-            &args.out,
+            &args.out.folder,
             MEASUREMENT,
             files,
             &scene,
             &args.scene.source(),
-            args.force.force,
+            args.work.force.force,
         )?;
-        let measurement = measured(&scene, method, batches.clone(), &Terminal::new(args.quiet))?;
+        let measurement = measured(
+            &scene,
+            method,
+            batches.clone(),
+            &Terminal::new(args.work.quiet),
+        )?;
         batches::write(&mut results, &measurement)?;
         let held = Held {
             seed: scene.run.seed,
@@ -52,8 +57,8 @@ pub(crate) fn measure(args: &MeasureArgs) -> Result<u8, Failure> {
     })?;
     let index = Index::new(&scene, held.clone());
     let finished = index.finish(results)?;
-    say_replaced(&finished, args.quiet);
-    if !args.quiet {
+    say_replaced(&finished, args.work.quiet);
+    if !args.work.quiet {
         say(&format!(
             "{}: measured batches {}..{} of {}, {} photons, seed {}",
             scene.name,

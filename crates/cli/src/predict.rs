@@ -27,17 +27,17 @@ pub(crate) fn predict_with(
     let scene = load::scene(&args.scene.source(), |run| args.photons.set(run))?;
     let theories = Applicability::of_planes(&scene);
     method::check(&scene, args.photons.method)?;
-    let (results, content) = on_threads(&args.threads, || {
-        warnings::tell(&scene, args.quiet);
+    let (results, content) = on_threads(&args.work.threads, || {
+        warnings::tell(&scene, args.work.quiet);
         limits::check(&scene, &theories, rayon::current_num_threads())?;
         let files = predictions::names(&scene.planes);
         let mut results = load::stage(
-            &args.out,
+            &args.out.folder,
             PREDICTION,
             files,
             &scene,
             &args.scene.source(),
-            args.force.force,
+            args.work.force.force,
         )?;
         let method = args.photons.method;
         let predictions = predicted(
@@ -45,14 +45,14 @@ pub(crate) fn predict_with(
             &theories,
             method,
             workers,
-            &Terminal::new(args.quiet),
+            &Terminal::new(args.work.quiet),
         )?;
         let content = predictions::write(&mut results, &scene, method, &predictions)?;
         Ok((results, content))
     })?;
     let finished = Index::new(&scene, content).finish(results)?;
-    say_replaced(&finished, args.quiet);
-    if !args.quiet {
+    say_replaced(&finished, args.work.quiet);
+    if !args.work.quiet {
         let planes = scene.planes.len();
         say(&format!("{}: predicted {planes} planes", scene.name));
         say(&format!("prediction in {}", finished.folder.display()));

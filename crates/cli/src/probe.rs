@@ -11,8 +11,8 @@ use etendue_view::{map_bandwidths, probe_pixel};
 /// `etendue probe`: returns the exit code.
 pub(crate) fn probe(args: &ProbeArgs) -> Result<u8, Failure> {
     let request = args.request();
-    let terminal = Terminal::new(args.quiet);
-    let (code, words, folder) = on_threads(&args.threads, || {
+    let terminal = Terminal::new(args.work.quiet);
+    let (code, words, folder) = on_threads(&args.work.threads, || {
         Ok(match (args.pixel, args.map) {
             (Some(pixel), _) => {
                 let found = probe_pixel(&request, pixel, &terminal)?;
@@ -25,7 +25,7 @@ pub(crate) fn probe(args: &ProbeArgs) -> Result<u8, Failure> {
             (None, None) => unreachable!("clap asks for one of them"),
         })
     })?;
-    if !args.quiet {
+    if !args.work.quiet {
         deliver(&words)?;
         deliver(&format!("results: {}", folder.display()))?;
     }

@@ -35,20 +35,17 @@ pub(crate) fn run_with(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u
     let scene = load::scene(&args.scene.source(), |run| args.photons.set(run))?;
     let theories = Applicability::of_planes(&scene);
     method::check(&scene, args.photons.method)?;
-    let folder = args
-        .out
-        .clone()
-        .unwrap_or_else(|| Path::new("out").join(&scene.name));
+    let folder = args.out.or_named(&scene.name);
     let inputs = load::inputs(&args.scene.source(), &scene);
     let plan = plan(
         &scene,
         &args.save,
         inputs,
-        args.force.force,
+        args.work.force.force,
         ArgumentStyle::Command,
     );
-    on_threads(&args.threads, || {
-        warnings::tell(&scene, args.quiet);
+    on_threads(&args.work.threads, || {
+        warnings::tell(&scene, args.work.quiet);
         limits::check(&scene, &theories, rayon::current_num_threads())?;
         if args.save.contains(&Save::Field) {
             field::check_memory(&scene)?;
@@ -57,7 +54,7 @@ pub(crate) fn run_with(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u
             &folder,
             SUMMARY,
             &scene,
-            args.force.force,
+            args.work.force.force,
             ArgumentStyle::Command,
         )?;
         let begin = |plan: Plan| {
@@ -114,7 +111,7 @@ fn finished(folder: &Path, scene: &Scene, args: &RunArgs) -> Option<u8> {
     let summary = summary_of(folder, scene, args.photons.method)?;
     CheckpointStore::of(folder, scene, args.photons.method).remove();
     let verdict: Verdict = serde_json::from_value(summary["verdict"].clone()).ok()?;
-    if !args.quiet {
+    if !args.work.quiet {
         say(&format!(
             "verdict: {}; the run is done: {}",
             word(verdict),
@@ -136,13 +133,13 @@ fn stages(
     place: ResultPlace<'_>,
 ) -> Result<u8, Failure> {
     let mut watch = Stopwatch::start();
-    if !args.quiet {
+    if !args.work.quiet {
         let kept = args.save.iter();
         for announcement in kept.filter_map(|save| photons::announcement(&scene, *save)) {
             say(&announcement);
         }
     }
-    let terminal = Terminal::new(args.quiet);
+    let terminal = Terminal::new(args.work.quiet);
     let method = args.photons.method;
     let kept = CheckpointStore::of(place.folder, &scene, method);
     let checkpointing = Checkpointing {
@@ -189,7 +186,7 @@ fn stages(
             compact: args.compact,
         },
         expect: args.expect,
-        quiet: args.quiet,
+        quiet: args.work.quiet,
     };
     let code = conclude(&case, &ending, results, watch)?;
     kept.remove();

@@ -6,7 +6,6 @@ use etendue_pipeline::{load, method};
 use etendue_report::shell_word;
 use etendue_store::Failure;
 use etendue_store::Method;
-use std::path::Path;
 
 /// `etendue split`: returns the exit code.
 pub(crate) fn split(args: &SplitArgs) -> Result<u8, Failure> {
@@ -18,8 +17,7 @@ pub(crate) fn split(args: &SplitArgs) -> Result<u8, Failure> {
             "--parts {parts}: the scene has {batches} batches, and a part is one at least"
         )));
     }
-    let out = args.out.clone();
-    let out = out.unwrap_or_else(|| Path::new("out").join(&scene.name));
+    let out = args.out.or_named(&scene.name);
     let below = |name: &str| shell_word(&out.join(name).to_string_lossy());
     let work = SplitWork {
         name: shell_word(&scene.name),

@@ -9,7 +9,6 @@ use etendue_pipeline::Leader;
 use etendue_pipeline::table::aligned;
 use etendue_store::Failure;
 use etendue_sweep::{FinishedSweep, SweepPoints, run};
-use std::path::Path;
 
 /// `etendue sweep`: returns the exit code.
 pub(crate) fn sweep(args: &SweepArgs) -> Result<u8, Failure> {
@@ -18,19 +17,18 @@ pub(crate) fn sweep(args: &SweepArgs) -> Result<u8, Failure> {
 
 /// The same, with other processes that run points as well.
 pub(crate) fn sweep_with(args: &SweepArgs, workers: Option<&Leader<'_>>) -> Result<u8, Failure> {
-    on_threads(&args.threads, || {
+    on_threads(&args.work.threads, || {
         let request = args.request();
         let all = SweepPoints::read(&request)?;
-        let name = || Path::new("out").join(format!("{}-sweep", all.name()));
-        let folder = args.out.clone().unwrap_or_else(name);
-        if !args.quiet {
+        let folder = args.out.or_named(format!("{}-sweep", all.name()));
+        if !args.work.quiet {
             for warning in all.warnings() {
                 warnings::warn(&warning);
             }
         }
-        let terminal = Terminal::new(args.quiet);
+        let terminal = Terminal::new(args.work.quiet);
         let finished = run(&request, &all, &folder, workers, &terminal)?;
-        if !args.quiet {
+        if !args.work.quiet {
             print(&finished);
         }
         let [_, fail, undecided] = finished.verdicts;

@@ -56,9 +56,9 @@ fn is_shared(command: &Command) -> bool {
 /// Does whatever the process that leads asks for, until it is dismissed.
 fn follow(command: &Command, workers: &dyn Workers) {
     let followed = match command {
-        Command::Run(args) => with_job(&args.scene, &args.photons, &args.threads, workers),
-        Command::Predict(args) => with_job(&args.scene, &args.photons, &args.threads, workers),
-        Command::Sweep(args) => on_threads(&args.threads, || {
+        Command::Run(args) => with_job(&args.scene, &args.photons, &args.work.threads, workers),
+        Command::Predict(args) => with_job(&args.scene, &args.photons, &args.work.threads, workers),
+        Command::Sweep(args) => on_threads(&args.work.threads, || {
             let points = SweepPoints::read(&args.request())?;
             follow_points(workers, points.scenes(), &|number| {
                 points.summary(number, &Silent)

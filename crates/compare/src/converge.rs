@@ -1,7 +1,6 @@
 //! How the first-order chain becomes exact as the neighbourhood of the central ray shrinks.
 
 use crate::applicability::Applicability;
-use crate::first_order::distance;
 use crate::system::print;
 use crate::theories::Theory;
 use etendue_field::{FrequencyAxis, ProjectionGrid, SliceGrid, VirtualPlane, Window};
@@ -90,7 +89,7 @@ fn by_rays(
     let exact = view.predict(&[], over, BUDGET);
     let linear = rays::linear(&view, over, &chain.map, BUDGET);
     let own = |prediction: &Predicted| prediction.error.unwrap_or(0.0);
-    let error = distance(&linear.slices, &exact.slices);
+    let error = linear.slices.independent_relative_difference(&exact.slices);
     Some([error, own(&exact).max(own(&linear))])
 }
 
@@ -108,7 +107,7 @@ fn by_paths(
     let exact = view.predict(&[], over, BUDGET);
     let mut linear = exact.to_first_order?;
     linear.half += &exact.slices.half;
-    Some(distance(&linear, &exact.slices))
+    Some(linear.independent_relative_difference(&exact.slices))
 }
 
 /// The slope of ln error over ln e.

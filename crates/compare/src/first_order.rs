@@ -10,7 +10,6 @@ use etendue_spectrum::Measurement;
 use etendue_theory::geometry::{AffineMap, Edition, Matrix};
 use etendue_theory::rays::{self, SpecularSystem};
 use etendue_theory::{Observed, Over, Predicted};
-use ndarray::Array3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
@@ -112,7 +111,7 @@ impl FirstOrder {
         let (corrected, mut linear) = by(Edition::Corrected)?;
         let matrix = corrected.map.rays().matrix;
         let mut chain = FirstOrderChain {
-            error: distance(&linear.slices, &exact.slices),
+            error: linear.slices.independent_relative_difference(&exact.slices),
             defect: rays::defect(view, &corrected.map, over.0)?,
             radiance_defect: rays::radiance_defect(view, &corrected.map)?,
             matrix,
@@ -146,7 +145,7 @@ impl FirstOrder {
         let slices = near(&exact.slices);
         Some(Self {
             chain: FirstOrderChain {
-                error: distance(&slices, &exact.slices),
+                error: slices.independent_relative_difference(&exact.slices),
                 defect,
                 radiance_defect: 0.0,
                 matrix,
@@ -235,15 +234,4 @@ fn variance(profile: &Profile) -> f64 {
 
 fn diagonal(entries: [f64; 4]) -> Matrix<4> {
     std::array::from_fn(|i| std::array::from_fn(|j| if i == j { entries[i] } else { 0.0 }))
-}
-
-/// ‖a − b‖/‖b‖ over the independent frequencies.
-pub(crate) fn distance(a: &Slices, b: &Slices) -> f64 {
-    let norm = |array: &Array3<etendue_field::Complex>| -> f64 {
-        let grid = b.grid;
-        let cells = array.indexed_iter();
-        let cells = cells.filter(|((_, m, n), _)| grid.is_independent(*m, *n));
-        cells.map(|(_, v)| v.norm_sqr()).sum()
-    };
-    (norm(&(&a.half - &b.half)) / norm(&b.half)).sqrt()
 }

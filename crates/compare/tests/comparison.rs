@@ -2,47 +2,14 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
+use crate::made_up::{noise, plane};
 use etendue_compare::{
     Applicability, Class, PredictedParameter, Prediction, Residuals, Test, Verdict, compare, sidak,
 };
-use etendue_field::{
-    Complex, Frame, FrequencyAxis, Ledger, PlaneTally, Profile, Projection, ProjectionGrid,
-    Quantity, Side, SliceGrid, Slices, VirtualPlane, Window,
-};
+use etendue_field::{Complex, Ledger, PlaneTally, Projection, ProjectionGrid, Slices};
 use etendue_spectrum::{Batch, Measurement, PROJECTION_BINS, PlaneBatch};
-use etendue_transform::random::{self, Stream};
-use glam::DVec3;
 
 const BATCHES: u32 = 64;
-
-fn plane() -> VirtualPlane {
-    let hann = Profile::Hann(0.5);
-    let axis = FrequencyAxis {
-        half: 6,
-        spacing: 1.0,
-    };
-    VirtualPlane {
-        name: "plane".into(),
-        distance: 0.0,
-        leg: 0,
-        orientation: etendue_field::Orientation::Orthogonal,
-        longitude: 0.0,
-        side: Side::After,
-        quantity: Quantity::default(),
-        frame: Frame::new(DVec3::ZERO, DVec3::Z, DVec3::X).unwrap(),
-        window: Window {
-            x: hann,
-            y: hann,
-            u: hann,
-            v: hann,
-        },
-        grid: SliceGrid {
-            azimuths: 2,
-            rho: axis,
-            nu: axis,
-        },
-    }
-}
 
 /// A smooth spectrum and its derivative by its width.
 fn spectrum(width: f64) -> [Slices; 2] {
@@ -63,15 +30,6 @@ const TEST: Test = Test {
     resolution: 0.5,
     seed: 1,
 };
-
-/// A complex number whose parts have unit variance: sums of twelve uniform numbers.
-fn noise(seed: u64, index: u64) -> Complex {
-    let part = |from: u32| -> f64 {
-        let words = (0..3).flat_map(|b| random::words(seed, Stream::Photon, index, from + b));
-        words.map(random::unit).sum::<f64>() - 6.0
-    };
-    Complex::new(part(0), part(3))
-}
 
 /// Batches around `truth` with noise of the given size on each.
 fn measurement(truth: &Slices, size: f64, seed: u64) -> Measurement {

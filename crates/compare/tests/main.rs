@@ -2,6 +2,7 @@
 
 mod applicability;
 mod comparison;
+mod made_up;
 mod small_objects;
 mod two_samples;
 mod work;

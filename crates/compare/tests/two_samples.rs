@@ -2,49 +2,16 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
+use crate::made_up::{noise, plane};
 use etendue_compare::{Estimate, Sample, TwoSamples, noise_dof, pull};
-use etendue_field::{
-    Complex, Frame, FrequencyAxis, Ledger, Orientation, PlaneTally, Profile, Projection,
-    ProjectionGrid, Quantity, Side, SliceGrid, Slices, VirtualPlane, Window,
-};
+use etendue_field::{Complex, Ledger, PlaneTally, Projection, ProjectionGrid, Slices};
 use etendue_spectrum::{
     Batch, Measurement, PROJECTION_BINS, PlaneBatch, RayMoments, estimate::slices,
 };
-use etendue_transform::random::{self, Stream};
-use glam::DVec3;
 use ndarray::Array3;
 
 const BATCHES: usize = 32;
 const SEEDS: u64 = 200;
-
-fn plane() -> VirtualPlane {
-    let hann = Profile::Hann(0.5);
-    let axis = FrequencyAxis {
-        half: 6,
-        spacing: 1.0,
-    };
-    VirtualPlane {
-        name: "plane".into(),
-        distance: 0.0,
-        leg: 0,
-        orientation: Orientation::Orthogonal,
-        longitude: 0.0,
-        side: Side::After,
-        quantity: Quantity::default(),
-        frame: Frame::new(DVec3::ZERO, DVec3::Z, DVec3::X).unwrap(),
-        window: Window {
-            x: hann,
-            y: hann,
-            u: hann,
-            v: hann,
-        },
-        grid: SliceGrid {
-            azimuths: 2,
-            rho: axis,
-            nu: axis,
-        },
-    }
-}
 
 /// A smooth spectrum.
 fn truth() -> Array3<Complex> {
@@ -53,15 +20,6 @@ fn truth() -> Array3<Complex> {
         let square = (m * m) as f64 + grid.nu.value(n).powi(2);
         Complex::new(libm::exp(-square / 20.0), 0.0)
     })
-}
-
-/// A complex number whose parts have unit variance: sums of twelve uniform numbers.
-fn noise(seed: u64, index: u64) -> Complex {
-    let part = |from: u32| -> f64 {
-        let words = (0..3).flat_map(|b| random::words(seed, Stream::Photon, index, from + b));
-        words.map(random::unit).sum::<f64>() - 6.0
-    };
-    Complex::new(part(0), part(3))
 }
 
 /// Slices of one batch: the truth and noise that, as a Hann window makes it, has the shares 1/2, 1,

@@ -54,6 +54,38 @@ impl Slices {
         }
         power / self.grid.azimuths as f64
     }
+
+    /// ‖self − reference‖/‖reference‖ over the values at ρ ≥ 0; 0 if the two are equal.
+    #[must_use]
+    pub fn relative_difference(&self, reference: &Self) -> f64 {
+        self.relative_difference_where(reference, |_, _| true)
+    }
+
+    /// The same over the independent frequencies: the line ρ = 0, where the values at −ν repeat
+    /// those at ν, counts once.
+    #[must_use]
+    pub fn independent_relative_difference(&self, reference: &Self) -> f64 {
+        self.relative_difference_where(reference, |m, n| self.grid.is_independent(m, n))
+    }
+
+    fn relative_difference_where(
+        &self,
+        reference: &Self,
+        counts: impl Fn(usize, usize) -> bool,
+    ) -> f64 {
+        let (mut difference, mut size) = (0.0, 0.0);
+        for (((_, m, n), a), b) in self.half.indexed_iter().zip(&reference.half) {
+            if counts(m, n) {
+                difference += (a - b).norm_sqr();
+                size += b.norm_sqr();
+            }
+        }
+        if difference == 0.0 {
+            0.0
+        } else {
+            (difference / size).sqrt()
+        }
+    }
 }
 
 /// Spreads values on the half-plane ρ ≥ 0, [azimuth, ρ ≥ 0, ν], over all frequencies [azimuth, ρ, ν], by

@@ -1,6 +1,5 @@
 //! The files that a scene may name.
 
-use crate::{Options, Refused};
 use etendue_scene::read_file;
 use std::cell::Cell;
 use std::io;
@@ -27,23 +26,6 @@ impl Files {
             root: root.canonicalize()?,
             left: Cell::new(MOST_BYTES),
         })
-    }
-
-    /// The files of a scene, the path of its own file and its bytes.
-    pub(crate) fn open(
-        file: &Path,
-        options: &Options,
-    ) -> Result<(Self, PathBuf, Vec<u8>), Refused> {
-        let unread = |error: String| Refused::because(file, error);
-        let folder = file.parent().unwrap_or(Path::new(""));
-        let root = options.root.as_deref().unwrap_or(folder);
-        let files = Self::below(root).map_err(|error| unread(error.to_string()))?;
-        // The scene itself is named by who asks, and need not be below the root.
-        let path = file
-            .canonicalize()
-            .map_err(|error| unread(error.to_string()))?;
-        let bytes = files.read(&path).map_err(unread)?;
-        Ok((files, path, bytes))
     }
 
     /// The path of the file or folder `name`, looked for from one folder after the other.
@@ -75,6 +57,11 @@ impl Files {
         Ok(bytes)
     }
 
+    /// The text of a file that [`Self::find`] gave.
+    pub(crate) fn read_text(&self, path: &Path) -> Result<String, String> {
+        text(self.read(path)?)
+    }
+
     /// How many bytes may still be read or unpacked.
     pub(crate) fn left(&self) -> u64 {
         self.left.get()
@@ -88,4 +75,9 @@ impl Files {
             format!("is too much: at most {MOST_BYTES} bytes are read for one scene")
         })
     }
+}
+
+/// The text that bytes of a file are.
+pub(crate) fn text(bytes: Vec<u8>) -> Result<String, String> {
+    String::from_utf8(bytes).map_err(|_| "is no UTF-8".to_owned())
 }

@@ -31,21 +31,20 @@ mod surface;
 mod texture;
 mod uri;
 
-use crate::files::Files;
-use crate::report::{Report, SourcePlace};
+use crate::main_file::MainFile;
+use crate::report::Report;
 use crate::{Imported, Options, Refused};
 use etendue_world::World;
 use std::path::Path;
 
 pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused> {
-    let (files, path, bytes) = Files::open(file, options)?;
-    let name = file.file_name().unwrap_or_default().to_string_lossy();
-    let place = SourcePlace::whole(&name);
+    let file = MainFile::open(file, options)?;
+    let (bytes, place) = (file.read()?, file.place());
     let report = Report::default();
     let mut world = World::default();
     if let Some(document) = container::read(&bytes, &place, &report) {
-        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-        let mut reader = reader::GltfReader::new(&document, &files, &report, place, folder);
+        let (files, folder) = (&file.files, file.folder());
+        let mut reader = reader::GltfReader::new(&document, files, &report, place, folder);
         reader.color = options.color;
         world = reader.world();
     }

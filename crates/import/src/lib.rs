@@ -6,6 +6,7 @@
 mod cie;
 mod files;
 mod gltf;
+mod main_file;
 mod meshes;
 mod mitsuba;
 mod note;

@@ -30,25 +30,17 @@ mod upgrade;
 mod value;
 mod xml;
 
-use crate::files::Files;
+use crate::files;
+use crate::main_file::MainFile;
 use crate::report::Report;
 use crate::{Imported, Options, Refused};
 use etendue_world::World;
 use std::path::Path;
 
 pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused> {
-    let folder = file.parent().unwrap_or(Path::new(""));
-    let unread = |error: String| Refused::because(file, error);
-    let root = options.root.as_deref().unwrap_or(folder);
-    let files = Files::below(root).map_err(|error| unread(error.to_string()))?;
-    // The scene itself is named by who asks, and need not be below the root.
-    let path = file
-        .canonicalize()
-        .map_err(|error| unread(error.to_string()))?;
-    let bytes = files.read(&path).map_err(unread)?;
-    let text = String::from_utf8(bytes).map_err(|_| unread("is no UTF-8".to_owned()))?;
-    let name = file.file_name().unwrap_or_default().to_string_lossy();
-    read(&text, &name, &path, &files, options)
+    let file = MainFile::open(file, options)?;
+    let text = files::text(file.read()?).map_err(|error| file.refused(error))?;
+    read(&text, &file, options)
 }
 
 pub(crate) fn import_text(
@@ -56,23 +48,17 @@ pub(crate) fn import_text(
     folder: &Path,
     options: &Options,
 ) -> Result<Imported, Refused> {
-    let unread = |error: std::io::Error| Refused::because(folder, error.to_string());
-    let root = options.root.as_deref().unwrap_or(folder);
-    let files = Files::below(root).map_err(unread)?;
-    let path = folder.canonicalize().map_err(unread)?.join("text.xml");
-    read(text, "text", &path, &files, options)
+    read(
+        text,
+        &MainFile::of_text(folder, "text.xml", options)?,
+        options,
+    )
 }
 
-fn read(
-    text: &str,
-    name: &str,
-    path: &Path,
-    files: &Files,
-    options: &Options,
-) -> Result<Imported, Refused> {
-    let report = Report::default();
+fn read(text: &str, file: &MainFile<'_>, options: &Options) -> Result<Imported, Refused> {
+    let (files, report) = (&file.files, Report::default());
     let mut tree = xml::Tree::new(files, &report, &options.set);
-    tree.read(text, name, path);
+    tree.read(text, &file.name, &file.path);
     let (objects, ids) = (tree.objects, tree.ids);
     let mut world = World::default();
     if !objects.is_empty() {

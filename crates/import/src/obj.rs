@@ -16,28 +16,19 @@ mod surface;
 
 pub(crate) use ply::import as import_ply;
 
-use crate::files::Files;
-use crate::report::{Report, SourcePlace};
+use crate::main_file::MainFile;
+use crate::report::Report;
 use crate::{Imported, Options, Refused};
 use etendue_scene::ObjFile;
 use std::path::Path;
 
 pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused> {
-    let (files, path, bytes) = Files::open(file, options)?;
-    let name = file.file_name().unwrap_or_default().to_string_lossy();
-    let read = ObjFile::parse(&bytes);
-    let read =
-        read.map_err(|fault| Refused::because(file, format!("is no sound mesh: {fault}")))?;
-    drop(bytes);
+    let file = MainFile::open(file, options)?;
+    let read = ObjFile::parse(&file.read()?);
+    let read = read.map_err(|fault| file.refused(format!("is no sound mesh: {fault}")))?;
     let report = Report::default();
-    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-    let reader = reader::ObjReader::new(
-        &files,
-        &report,
-        SourcePlace::whole(&name),
-        folder,
-        options.color,
-    );
+    let (place, folder) = (file.place(), file.folder());
+    let reader = reader::ObjReader::new(&file.files, &report, place, folder, options.color);
     let world = reader.world(read);
     report.finish(world)
 }

@@ -50,23 +50,15 @@ mod token;
 mod transform;
 mod words;
 
-use crate::files::Files;
-use crate::report::{Report, SourcePlace};
+use crate::main_file::MainFile;
+use crate::report::Report;
 use crate::{Imported, Options, Refused};
 use std::path::Path;
 
 pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused> {
-    let folder = file.parent().unwrap_or(Path::new(""));
-    let unread = |error: String| Refused::because(file, error);
-    let root = options.root.as_deref().unwrap_or(folder);
-    let files = Files::below(root).map_err(|error| unread(error.to_string()))?;
-    // The scene itself is named by who asks, and need not be below the root.
-    let path = file
-        .canonicalize()
-        .map_err(|error| unread(error.to_string()))?;
-    let text = include::read(&files, &path).map_err(unread)?;
-    let name = file.file_name().unwrap_or_default().to_string_lossy();
-    read(&text, &name, &path, &files, options)
+    let file = MainFile::open(file, options)?;
+    let text = include::read(&file.files, &file.path).map_err(|error| file.refused(error))?;
+    read(&text, &file, options)
 }
 
 pub(crate) fn import_text(
@@ -74,29 +66,21 @@ pub(crate) fn import_text(
     folder: &Path,
     options: &Options,
 ) -> Result<Imported, Refused> {
-    let unread = |error: std::io::Error| Refused::because(folder, error.to_string());
-    let root = options.root.as_deref().unwrap_or(folder);
-    let files = Files::below(root).map_err(unread)?;
-    let path = folder.canonicalize().map_err(unread)?.join("text.pbrt");
-    read(text, "text", &path, &files, options)
+    read(
+        text,
+        &MainFile::of_text(folder, "text.pbrt", options)?,
+        options,
+    )
 }
 
-fn read(
-    text: &str,
-    name: &str,
-    path: &Path,
-    files: &Files,
-    options: &Options,
-) -> Result<Imported, Refused> {
-    let report = Report::default();
-    let whole = SourcePlace::whole(name);
+fn read(text: &str, file: &MainFile<'_>, options: &Options) -> Result<Imported, Refused> {
+    let (files, report, whole) = (&file.files, Report::default(), file.place());
     for (name, _) in &options.set {
         let message = format!("{name} is set, but pbrt's files have no parameters of their own");
         report.cause(&whole, message);
     }
-    let scene = build::Builder::new(files, &report, path).build(text, name);
-    let folder = path.parent().unwrap_or(path).to_owned();
-    let reader = reader::PbrtReader::new(&scene, files, &report, options.color, folder);
+    let scene = build::Builder::new(files, &report, &file.path).build(text, &file.name);
+    let reader = reader::PbrtReader::new(&scene, files, &report, options.color, file.folder());
     let world = reader.world(&whole);
     leftover::tell(&scene, &report);
     report.finish(world)

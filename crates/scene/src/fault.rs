@@ -17,6 +17,20 @@ pub struct Fault {
     pub memory: bool,
 }
 
+/// A fault of a file: the place in it, what is there, and what is allowed.
+pub(crate) fn fault(
+    place: impl Into<String>,
+    value: impl ToString,
+    allowed: impl Into<String>,
+) -> Fault {
+    Fault {
+        field: place.into(),
+        value: value.to_string(),
+        allowed: allowed.into(),
+        memory: false,
+    }
+}
+
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {

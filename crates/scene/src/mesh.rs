@@ -7,7 +7,7 @@
 //! keep both as independent readers of sound files.
 
 mod detailed;
-mod error;
+mod extension;
 mod files;
 mod obj;
 mod paraboloid;

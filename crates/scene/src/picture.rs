@@ -1,6 +1,6 @@
 //! Pictures: read from OpenEXR and PNG files, as one number for each pixel.
 
-use crate::fault::Fault;
+use crate::fault::{Fault, fault};
 use etendue_field::Raster;
 use exr::meta::MetaData;
 use exr::prelude::{AnyChannels, FlatSamples, ReadChannels, ReadLayers};
@@ -87,15 +87,6 @@ pub fn read_channels(file: &Path, bytes: &[u8]) -> Result<Channels, Fault> {
 fn extension(file: &Path) -> String {
     let extension = file.extension().unwrap_or_default().to_string_lossy();
     extension.to_ascii_lowercase()
-}
-
-fn fault(place: impl Into<String>, value: impl ToString, allowed: impl Into<String>) -> Fault {
-    Fault {
-        field: place.into(),
-        value: value.to_string(),
-        allowed: allowed.into(),
-        memory: false,
-    }
 }
 
 /// Refuses a picture that is too large, or larger than its file of `length` bytes can hold.

@@ -20,3 +20,18 @@ pub struct Plane {
     /// What is recorded. Differential irradiance on a surface is radiance times cos θ cos² φ.
     pub quantity: Quantity,
 }
+
+impl Plane {
+    /// The radiance across the central ray of a frame, on no surface.
+    #[must_use]
+    pub fn orthogonal(frame: Frame) -> Self {
+        Self {
+            frame,
+            orientation: Orientation::Orthogonal,
+            longitude: 0.0,
+            patch: None,
+            arriving: false,
+            quantity: Quantity::Radiance,
+        }
+    }
+}

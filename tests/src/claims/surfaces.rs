@@ -268,10 +268,7 @@ fn cosine(photons: u64) -> Claim {
             predictions: whole.predictions.clone(),
         };
         number(&[(&flat, 0), (&whole, 0)], &|slices| {
-            let pairs = slices[0].half.iter().zip(&slices[1].half);
-            let apart: f64 = pairs.map(|(a, b)| (a - b).norm_sqr()).sum();
-            let all: f64 = slices[1].half.iter().map(|s| s.norm_sqr()).sum();
-            (apart / all).sqrt()
+            slices[0].relative_difference(&slices[1])
         })
     });
     // Photons of one scene, weighted twice: there is no prediction of the difference.

@@ -113,7 +113,7 @@ fn outcome(kind: BlockerKind, number: u64) -> Result<Option<SceneOutcome>, Untol
 
 fn measured(found: &PredictionFound, truth: &Slices) -> Measured {
     Measured {
-        ratio: distance(&found.slices, truth) / found.error,
+        ratio: found.slices.relative_difference(truth) / found.error,
         pairs: found
             .replicates
             .chunks_exact(2)
@@ -130,7 +130,7 @@ fn of_pair(pair: &[Slices], truth: &Slices, error: f64) -> f64 {
     mean.half += &pair[1].half;
     mean.half /= Complex::from(2.0);
     let of_all = (REPLICATES as f64 / 2.0).sqrt();
-    (distance(&mean, truth) / (of_all * error)).powi(2)
+    (mean.relative_difference(truth) / (of_all * error)).powi(2)
 }
 
 impl PredictionFound {
@@ -212,14 +212,6 @@ fn within(slices: &Slices, plane: &VirtualPlane) -> Slices {
         *value = slices.half[at];
     }
     lower
-}
-
-/// ‖a − b‖/‖b‖.
-fn distance(a: &Slices, b: &Slices) -> f64 {
-    let squared = |of: &mut dyn Iterator<Item = Complex>| of.map(|z| z.norm_sqr()).sum::<f64>();
-    let both = a.half.iter().zip(&b.half);
-    let apart = squared(&mut both.map(|(a, b)| a - b));
-    (apart / squared(&mut b.half.iter().copied())).sqrt()
 }
 
 /// Residuals of the replicates at one frequency.

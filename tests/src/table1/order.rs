@@ -3,7 +3,7 @@
 use super::TableRun;
 use crate::predicted;
 use crate::report::{Bound::AtMost, Check};
-use etendue_field::{FrequencyAxis, Orientation, SliceGrid, Slices, Specular, Window};
+use etendue_field::{FrequencyAxis, Orientation, SliceGrid, Specular, Window};
 use etendue_theory::geometry::Edition;
 use etendue_theory::rays::{self, SpecularSystem};
 use etendue_theory::{Model, Observed, Parameter};
@@ -89,7 +89,7 @@ pub(super) fn fall(outcome: &TableRun, index: usize) -> Fall {
         let (window, grid) = (narrowed(&at.window, size), widened(&at.grid, size));
         let exact = predicted::traced(&view, &window, &grid).slices;
         let linear = predicted::linear(&view, &window, &grid, &map.map);
-        distance(&linear, &exact)
+        linear.independent_relative_difference(&exact)
     });
     let logs = [0, 1, 2, 3].map(|i: usize| [SIZES[i].ln(), errors[i].ln()]);
     Fall {
@@ -127,17 +127,4 @@ fn widened(grid: &SliceGrid, size: f64) -> SliceGrid {
         rho: axis(grid.rho),
         nu: axis(grid.nu),
     }
-}
-
-/// ‖a − b‖/‖b‖ over the independent frequencies.
-pub(super) fn distance(a: &Slices, b: &Slices) -> f64 {
-    let grid = b.grid;
-    let mut sums = [0.0; 2];
-    for ((at, a), b) in a.half.indexed_iter().zip(&b.half) {
-        if grid.is_independent(at.1, at.2) {
-            sums[0] += (a - b).norm_sqr();
-            sums[1] += b.norm_sqr();
-        }
-    }
-    (sums[0] / sums[1]).sqrt()
 }

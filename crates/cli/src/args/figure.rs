@@ -1,6 +1,6 @@
 //! Arguments of commands that draw.
 
-use super::shared::{ForceArgs, ThreadArgs, assignment, one_of};
+use super::shared::{ForceArgs, WorkArgs, assignment, one_of};
 use clap::Args;
 use clap::builder::TypedValueParser;
 use etendue_paper::Quality;
@@ -82,12 +82,5 @@ pub(crate) struct FigureArgs {
     pub(crate) quality: Quality,
 
     #[command(flatten)]
-    pub(crate) force: ForceArgs,
-
-    #[command(flatten)]
-    pub(crate) threads: ThreadArgs,
-
-    /// Print nothing but errors
-    #[arg(long)]
-    pub(crate) quiet: bool,
+    pub(crate) work: WorkArgs,
 }

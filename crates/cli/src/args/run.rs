@@ -1,6 +1,9 @@
 //! Arguments of commands on scenes: run and its stages, checks and comparisons.
 
-use super::shared::{ForceArgs, PhotonArgs, SceneArgs, ThreadArgs, one_of, share};
+use super::shared::{
+    FolderArgs, ForceArgs, PhotonArgs, SceneArgs, StageFolderArgs, ThreadArgs, WorkArgs, one_of,
+    share,
+};
 use clap::builder::TypedValueParser;
 use clap::{Args, ValueEnum};
 use etendue_pipeline::photons::Save;
@@ -16,24 +19,17 @@ use std::time::Duration;
   etendue run scenes/fig9b.ron --save mcpl,tm25                        rays for other programs (docs/rays.md)
   etendue run scenes/fig9b.ron --photons 2^33 --resume --time 2h      again and again, until it is done
 
-Photon counts may be written 10_000_000, 1e7 or 2^23.
+Results are in out/NAME unless --out names another folder. Photon counts may be written 10_000_000, 1e7 or 2^23.
 Powers of two have least noise, in 64 batches or 2^m.")]
 pub(crate) struct RunArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
 
-    /// Folder for the results [default: out/NAME]
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) out: FolderArgs,
 
     #[command(flatten)]
     pub(crate) photons: PhotonArgs,
-
-    #[command(flatten)]
-    pub(crate) force: ForceArgs,
-
-    #[command(flatten)]
-    pub(crate) threads: ThreadArgs,
 
     /// Goes on until noise alone is at most this share of the spectrum at each plane: with 2^20
     /// photons first, then as many as that takes, up to --photons [default: 2^40]; exit code 3 if
@@ -61,9 +57,8 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "OUTCOME")]
     pub(crate) expect: Option<Expect>,
 
-    /// Print nothing but errors
-    #[arg(long)]
-    pub(crate) quiet: bool,
+    #[command(flatten)]
+    pub(crate) work: WorkArgs,
 }
 
 #[derive(Debug, Args)]
@@ -77,9 +72,8 @@ pub(crate) struct MeasureArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
 
-    /// Folder for the measurement
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) out: StageFolderArgs,
 
     #[command(flatten)]
     pub(crate) photons: PhotonArgs,
@@ -89,14 +83,7 @@ pub(crate) struct MeasureArgs {
     pub(crate) batches: Option<Range<u32>>,
 
     #[command(flatten)]
-    pub(crate) force: ForceArgs,
-
-    #[command(flatten)]
-    pub(crate) threads: ThreadArgs,
-
-    /// Print nothing but errors
-    #[arg(long)]
-    pub(crate) quiet: bool,
+    pub(crate) work: WorkArgs,
 }
 
 #[derive(Debug, Args)]
@@ -104,7 +91,8 @@ pub(crate) struct MeasureArgs {
   etendue split scenes/fig9b.ron --photons 2^36 --parts 32               a command for each part, and two for the end
   etendue split scenes/fig9b.ron --photons 2^36 --parts 32 --slurm > job.sh && sh job.sh
 
-Parts may run in any order, anywhere: the result has the bytes of one run.")]
+Parts may run in any order, anywhere: the result has the bytes of one run. Their folders are inside that of the results,
+out/NAME unless --out names another.")]
 pub(crate) struct SplitArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
@@ -117,9 +105,8 @@ pub(crate) struct SplitArgs {
     #[arg(long)]
     pub(crate) slurm: bool,
 
-    /// Folder for the results, with those of the parts inside [default: out/NAME]
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) out: FolderArgs,
 
     #[command(flatten)]
     pub(crate) photons: PhotonArgs,
@@ -135,23 +122,15 @@ pub(crate) struct PredictArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
 
-    /// Folder for the prediction
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) out: StageFolderArgs,
 
     /// Those of the measurement: where there is no theory, the other method measures as many
     #[command(flatten)]
     pub(crate) photons: PhotonArgs,
 
     #[command(flatten)]
-    pub(crate) force: ForceArgs,
-
-    #[command(flatten)]
-    pub(crate) threads: ThreadArgs,
-
-    /// Print nothing but errors
-    #[arg(long)]
-    pub(crate) quiet: bool,
+    pub(crate) work: WorkArgs,
 }
 
 #[derive(Debug, Args)]
@@ -169,23 +148,15 @@ pub(crate) struct CompareArgs {
     #[arg(long, value_name = "DIR")]
     pub(crate) predicted: PathBuf,
 
-    /// Folder for the results
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: PathBuf,
-
     #[command(flatten)]
-    pub(crate) force: ForceArgs,
-
-    #[command(flatten)]
-    pub(crate) threads: ThreadArgs,
+    pub(crate) out: StageFolderArgs,
 
     /// Succeed when measured and predicted disagree, fail when they agree
     #[arg(long, value_name = "OUTCOME")]
     pub(crate) expect: Option<Expect>,
 
-    /// Print nothing but errors
-    #[arg(long)]
-    pub(crate) quiet: bool,
+    #[command(flatten)]
+    pub(crate) work: WorkArgs,
 }
 
 #[derive(Debug, Args)]
@@ -248,7 +219,9 @@ pub(crate) struct CheckArgs {
 #[derive(Debug, Args)]
 #[command(after_help = "Example:
   etendue export --to mitsuba scenes/fig9b.ron --out out/mitsuba
-  python tests/peers/mitsuba_light_field.py --help         records the same light field with Mitsuba and compares spectra")]
+  python tests/peers/mitsuba_light_field.py --help         records the same light field with Mitsuba and compares spectra
+
+Files are in out/NAME-mitsuba unless --out names another folder.")]
 pub(crate) struct ExportArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
@@ -257,9 +230,8 @@ pub(crate) struct ExportArgs {
     #[arg(long, value_name = "PROGRAM")]
     pub(crate) to: Program,
 
-    /// Folder for its files [default: out/NAME-mitsuba]
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) out: FolderArgs,
 
     #[command(flatten)]
     pub(crate) force: ForceArgs,

@@ -6,7 +6,7 @@ use etendue_field::tidy;
 use etendue_pipeline::load::SceneSource;
 use etendue_scene::RunFile;
 use etendue_store::Method;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// How a scene is measured, where it is not as the scene says.
 #[derive(Debug, Args)]
@@ -78,6 +78,44 @@ pub(crate) struct ThreadArgs {
     /// Threads [default: one for each core]; the results do not depend on it
     #[arg(long = "threads", value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) count: Option<u16>,
+}
+
+/// How a long command works.
+#[derive(Debug, Args)]
+pub(crate) struct WorkArgs {
+    #[command(flatten)]
+    pub(crate) force: ForceArgs,
+
+    #[command(flatten)]
+    pub(crate) threads: ThreadArgs,
+
+    /// Print no progress, warnings or summary
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+/// Where the results of a scene go.
+#[derive(Debug, Args)]
+pub(crate) struct FolderArgs {
+    /// Folder for the results [default: below out, named after the scene]
+    #[arg(long = "out", value_name = "DIR")]
+    pub(crate) folder: Option<PathBuf>,
+}
+
+impl FolderArgs {
+    /// The folder that is asked for, or else `out/NAME`.
+    pub(crate) fn or_named(&self, name: impl AsRef<Path>) -> PathBuf {
+        let named = || Path::new("out").join(name);
+        self.folder.clone().unwrap_or_else(named)
+    }
+}
+
+/// Where a stage of `run` leaves its results.
+#[derive(Debug, Args)]
+pub(crate) struct StageFolderArgs {
+    /// Folder for the results
+    #[arg(long = "out", value_name = "DIR")]
+    pub(crate) folder: PathBuf,
 }
 
 #[derive(Debug, Args)]

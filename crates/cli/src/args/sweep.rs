@@ -1,6 +1,6 @@
 //! Arguments of commands on several values of a scene, and of covariances.
 
-use super::shared::{ForceArgs, PhotonArgs, SceneArgs, ThreadArgs};
+use super::shared::{FolderArgs, PhotonArgs, SceneArgs, WorkArgs};
 use clap::Args;
 use etendue_pipeline::load::SceneSource;
 use etendue_sweep::SweepRequest;
@@ -13,7 +13,7 @@ use std::path::PathBuf;
   etendue sweep scenes/fig9b.ron --set blockers.0.pitch=0.05..0.4:4log --set blockers.0.fill=0.3,0.6 --photons 2^20
   etendue sweep scenes/fig9b.ron --together --set surfaces.0.center.2=1.5,2,3 --set surfaces.0.albedo=0.2,0.5,0.8
 
-Leaves in its folder
+Leaves in its folder, out/NAME-sweep unless --out names another,
   sweep.csv                            a row for each plane at each point and each number: the frequencies that hold 95 % of the power,
                                        the shear slope, and each parameter, measured with its standard error and predicted
   bandwidth_rho, bandwidth_nu, slope   curves over the field that is named first, as PNG, SVG and CSV; a grid with more than 24
@@ -40,22 +40,14 @@ pub(crate) struct SweepArgs {
     #[arg(long)]
     pub(crate) together: bool,
 
-    /// Folder for the results [default: out/NAME-sweep]
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) out: FolderArgs,
 
     #[command(flatten)]
     pub(crate) photons: PhotonArgs,
 
     #[command(flatten)]
-    pub(crate) force: ForceArgs,
-
-    #[command(flatten)]
-    pub(crate) threads: ThreadArgs,
-
-    /// Print nothing but errors
-    #[arg(long)]
-    pub(crate) quiet: bool,
+    pub(crate) work: WorkArgs,
 }
 
 impl SweepArgs {
@@ -69,7 +61,7 @@ impl SweepArgs {
             photons: self.photons.photons,
             seed: self.photons.seed,
             method: self.photons.method,
-            force: self.force.force,
+            force: self.work.force.force,
         }
     }
 }
@@ -110,14 +102,7 @@ pub(crate) struct BandwidthArgs {
     pub(crate) photons: PhotonArgs,
 
     #[command(flatten)]
-    pub(crate) force: ForceArgs,
-
-    #[command(flatten)]
-    pub(crate) threads: ThreadArgs,
-
-    /// No progress bars
-    #[arg(long)]
-    pub(crate) quiet: bool,
+    pub(crate) work: WorkArgs,
 }
 
 #[derive(Debug, Args)]
@@ -132,7 +117,8 @@ The covariance of the power spectrum |L|² over (ρx, ρy, νu, νv): ∫ P Ω �
   measured    of the photons, noise taken out by crossing groups of batches, with standard errors
 Light fields with edges have no such moments: theirs are of the band, and a remark says so. Photons are traced once, and once or twice
 more for each plane, onto a 4D grid.
-Leaves in its folder covariance.json, and for each plane covariance.png, .svg and .csv: the spectrum at azimuth 0 with ellipses.")]
+Leaves in its folder, out/NAME-covariance unless --out names another, covariance.json, and for each plane covariance.png,
+.svg and .csv: the spectrum at azimuth 0 with ellipses.")]
 pub(crate) struct CovarianceArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
@@ -141,20 +127,12 @@ pub(crate) struct CovarianceArgs {
     #[arg(long, value_name = "NAME")]
     pub(crate) plane: Vec<String>,
 
-    /// Folder for the results [default: out/NAME-covariance]
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) out: FolderArgs,
 
     #[command(flatten)]
     pub(crate) photons: PhotonArgs,
 
     #[command(flatten)]
-    pub(crate) force: ForceArgs,
-
-    #[command(flatten)]
-    pub(crate) threads: ThreadArgs,
-
-    /// Print nothing but errors
-    #[arg(long)]
-    pub(crate) quiet: bool,
+    pub(crate) work: WorkArgs,
 }

@@ -1,6 +1,6 @@
 //! Arguments of commands that take scenes of other programs.
 
-use super::shared::{ForceArgs, ThreadArgs, assignment, one_named, whole_number};
+use super::shared::{FolderArgs, WorkArgs, assignment, one_named, whole_number};
 use clap::Args;
 use clap::builder::RangedU64ValueParser;
 use etendue_adaptive::SampleMethod;
@@ -143,7 +143,7 @@ impl RenderArgs {
             blocker_rays: self.blocker_rays,
             isotropic: self.isotropic,
             seed: self.seed,
-            force: self.force.force,
+            force: self.work.force.force,
         }
     }
 }
@@ -173,7 +173,7 @@ pub(crate) struct ImportArgs {
   etendue render scenes/worlds/creatures.xml --shading-samples 20000
   etendue render scenes/worlds/creatures.xml --shading-samples 20000 --method uniform --out out/uniform
 
-Leaves in its folder
+Leaves in its folder, out/NAME unless --out names another,
   picture.exr    radiance and its standard error, as two parts of one channel Y
   picture.npz    the same as arrays radiance and error [row, column], float64
   picture.png    to look at: its brightest hundredth is white
@@ -223,19 +223,11 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "N", default_value_t = PictureRequest::SEED)]
     pub(crate) seed: u64,
 
-    /// Folder for the picture [default: out/NAME]
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) out: FolderArgs,
 
     #[command(flatten)]
-    pub(crate) force: ForceArgs,
-
-    #[command(flatten)]
-    pub(crate) threads: ThreadArgs,
-
-    /// Print nothing but errors
-    #[arg(long)]
-    pub(crate) quiet: bool,
+    pub(crate) work: WorkArgs,
 }
 
 #[derive(Debug, Args)]
@@ -248,7 +240,8 @@ pub(crate) struct RenderArgs {
 Follows the ray through a pixel from the camera to the surface it meets, and on as a mirror would send it. At the camera, where light
 leaves each surface and where it arrives there, the light field is measured: by rays traced back, and by photons from the lights. The
 verdict is theirs against each other, so a sky or a mirror that photons cannot connect to leaves it undecided.
-Leaves in its folder the arrays and pictures that `run` makes of each plane, and probe.json. Exit codes are those of run.
+Leaves in its folder, out/NAME-X-Y unless --out names another, the arrays and pictures that `run` makes of each plane, and
+probe.json. Exit codes are those of run.
 A map leaves map.exr and map.npz with measured, error, criterion, window and samples (a pixel and direction), and map.png, .svg and .csv.")]
 pub(crate) struct ProbeArgs {
     #[command(flatten)]
@@ -289,19 +282,11 @@ pub(crate) struct ProbeArgs {
     #[arg(long, conflicts_with = "map")]
     pub(crate) covariance: bool,
 
-    /// Folder for the results [default: out/NAME-X-Y]
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) out: FolderArgs,
 
     #[command(flatten)]
-    pub(crate) force: ForceArgs,
-
-    #[command(flatten)]
-    pub(crate) threads: ThreadArgs,
-
-    /// Print nothing but errors
-    #[arg(long)]
-    pub(crate) quiet: bool,
+    pub(crate) work: WorkArgs,
 }
 
 impl ProbeArgs {
@@ -320,8 +305,8 @@ impl ProbeArgs {
             photons: self.photons.unwrap_or(ProbeRequest::PHOTONS),
             seed: self.seed,
             covariance: self.covariance,
-            out: self.out.clone(),
-            force: self.force.force,
+            out: self.out.folder.clone(),
+            force: self.work.force.force,
         }
     }
 }

@@ -61,8 +61,7 @@ impl Tree<'_> {
                 false => Ok(()),
             };
         }
-        let bytes = self.files.read(&path).map_err(told)?;
-        let text = String::from_utf8(bytes).map_err(|_| told("is no UTF-8".to_owned()))?;
+        let text = self.files.read_text(&path).map_err(told)?;
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
         let folders = std::iter::once(folder).chain(source.folders.iter().cloned());
         self.open.push(path);

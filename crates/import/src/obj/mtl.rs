@@ -20,7 +20,7 @@ pub(super) fn read(
     report: &Report,
     entries: &mut HashMap<String, MtlEntry>,
 ) {
-    let mut left_out: Vec<(SourcePlace, String, usize)> = Vec::new();
+    let mut unknown: Vec<(SourcePlace, String, usize)> = Vec::new();
     let mut open: Option<(String, MtlEntry)> = None;
     for (i, line) in text.lines().enumerate() {
         let line = line.split('#').next().unwrap_or_default().trim();
@@ -50,21 +50,24 @@ pub(super) fn read(
             report,
         };
         if !statement.apply(entry, folder) {
-            let known = left_out.iter_mut().find(|(_, known, _)| known == word);
+            let known = unknown.iter_mut().find(|(_, known, _)| known == word);
             match known {
                 Some((_, _, count)) => *count += 1,
-                None => left_out.push((statement.place, word.to_owned(), 1)),
+                None => unknown.push((statement.place, word.to_owned(), 1)),
             }
         }
     }
     close(open, report, entries);
-    for (place, word, count) in left_out {
-        let times = if count > 1 {
-            format!(", {count} times")
-        } else {
-            String::new()
-        };
-        report.note(&place, format!("{} left out{times}", quoted(&word)));
+    for (place, word, count) in unknown {
+        report.note(&place, left_out(&quoted(&word), count));
+    }
+}
+
+/// Says that a statement is left out, and how often it is there.
+pub(super) fn left_out(word: &str, count: usize) -> String {
+    match count {
+        1 => format!("{word} left out"),
+        _ => format!("{word} left out, {count} times"),
     }
 }
 

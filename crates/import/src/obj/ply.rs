@@ -1,8 +1,8 @@
 //! PLY files: one mesh.
 
-use crate::files::Files;
+use crate::main_file::MainFile;
 use crate::meshes::MeshParts;
-use crate::report::{Report, SourcePlace};
+use crate::report::Report;
 use crate::{Imported, Options, Refused};
 use etendue_scene::DetailedMesh;
 use etendue_world::{Geometry, Material, Shape, Texture, World};
@@ -12,18 +12,17 @@ use std::sync::Arc;
 
 /// One diffuse surface of reflectance 0.5 on both sides.
 pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused> {
-    let (_, _, bytes) = Files::open(file, options)?;
-    let unsound = |error: String| Refused::because(file, format!("is no sound mesh: {error}"));
-    let read = DetailedMesh::parse(file, &bytes).map_err(|fault| unsound(fault.to_string()))?;
+    let scene = MainFile::open(file, options)?;
+    let unsound = |error: String| scene.refused(format!("is no sound mesh: {error}"));
+    let read = DetailedMesh::parse(file, &scene.read()?);
+    let read = read.map_err(|fault| unsound(fault.to_string()))?;
     let mut parts = MeshParts::from(read);
     parts.drop_empty();
     parts.face_normals();
     let mended = parts.mend_normals();
     let mesh = parts.finish();
     let mesh = mesh.ok_or_else(|| unsound("no triangle with an area".to_owned()))?;
-    let name = file.file_name().unwrap_or_default().to_string_lossy();
-    let report = Report::default();
-    let place = SourcePlace::whole(&name);
+    let (report, place) = (Report::default(), scene.place());
     if mended {
         let message = "approximated: vertices without a normal have that of a triangle";
         report.note(&place, message);

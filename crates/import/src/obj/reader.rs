@@ -1,7 +1,7 @@
 //! Parts of OBJ files, as shapes.
 
 use super::entry::MtlEntry;
-use super::mtl;
+use super::mtl::{self, left_out};
 use super::surface::ObjSurface;
 use crate::Color;
 use crate::files::Files;
@@ -52,13 +52,7 @@ impl<'a> ObjReader<'a> {
             self.library(*line, names);
         }
         for (line, word, count) in &file.left_out {
-            let times = if *count > 1 {
-                format!(", {count} times")
-            } else {
-                String::new()
-            };
-            self.report
-                .note(&self.at(*line), format!("{word} left out{times}"));
+            self.report.note(&self.at(*line), left_out(word, *count));
         }
         for part in joined(file.parts) {
             self.part(&file.mesh, &part);

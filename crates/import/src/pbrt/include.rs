@@ -2,7 +2,7 @@
 
 use super::build::{Builder, DEEPEST_FILES, MOST_FILES};
 use super::token::Tokens;
-use crate::files::Files;
+use crate::files::{Files, text};
 use crate::report::{SourcePlace, quoted};
 use flate2::read::MultiGzDecoder;
 use std::io::Read;
@@ -56,7 +56,7 @@ impl Builder<'_> {
 
 /// The text of a file, unpacked if its name ends in .gz.
 pub(super) fn read(files: &Files, path: &Path) -> Result<String, String> {
-    String::from_utf8(bytes(files, path)?).map_err(|_| "is no UTF-8".to_owned())
+    text(bytes(files, path)?)
 }
 
 /// The bytes of a file, unpacked if its name ends in .gz.

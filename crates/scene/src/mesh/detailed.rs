@@ -1,8 +1,8 @@
 //! Meshes with normals and texture coordinates.
 
-use super::error::fault;
+use super::extension::by_extension;
 use super::shared::check_coordinate;
-use super::{obj, ply, text};
+use super::{obj, ply};
 use crate::fault::Fault;
 use glam::{DVec2, DVec3};
 use std::path::Path;
@@ -30,17 +30,9 @@ impl DetailedMesh {
     /// # Errors
     /// The first fault found.
     pub fn parse(file: &Path, bytes: &[u8]) -> Result<Self, Fault> {
-        let extension = file.extension().unwrap_or_default().to_string_lossy();
-        match extension.to_ascii_lowercase().as_str() {
-            "obj" | "ply" if bytes.is_empty() => Err(fault("the file", "empty", "a mesh")),
-            "obj" => obj::detailed::read(bytes),
-            "ply" => ply::detailed::read(bytes),
-            _ => Err(fault(
-                "the extension",
-                text::quoted(extension.as_bytes()),
-                "obj, ply",
-            )),
-        }
+        by_extension(file, bytes, obj::detailed::read, |bytes| {
+            ply::detailed::read(bytes, true)
+        })
     }
 }
 

@@ -1,8 +1,8 @@
 //! Meshes from files and to files.
 
-use super::error::fault;
+use super::extension::by_extension;
 use super::shared::Mesh;
-use super::{obj, ply, text};
+use super::{obj, ply};
 use crate::fault::Fault;
 use std::path::Path;
 
@@ -19,17 +19,10 @@ impl Mesh {
     /// The first fault found: the place in the file, the value and what is allowed. Elements are counted
     /// as the format counts them, OBJ from 1 and PLY from 0; lines and corners from 1.
     pub fn parse(file: &Path, bytes: &[u8]) -> Result<Self, Fault> {
-        let extension = file.extension().unwrap_or_default().to_string_lossy();
-        match extension.to_ascii_lowercase().as_str() {
-            "obj" | "ply" if bytes.is_empty() => Err(fault("the file", "empty", "a mesh")),
-            "obj" => obj::read(bytes),
-            "ply" => ply::read(bytes),
-            _ => Err(fault(
-                "the extension",
-                text::quoted(extension.as_bytes()),
-                "obj, ply",
-            )),
-        }
+        by_extension(file, bytes, obj::read, |bytes| {
+            let mesh = ply::detailed::read(bytes, false)?;
+            Self::new(mesh.vertices, mesh.triangles)
+        })
     }
 
     /// The mesh as a binary little-endian PLY file, exact: coordinates as `double`, indices as `uint`.

@@ -3,10 +3,9 @@
 pub(super) mod detailed;
 pub(super) mod parts;
 
-use super::error::fault;
 use super::shared::{Mesh, check_coordinate, check_corners, fan};
 use super::text::{LineWords, Lines, number, quoted};
-use crate::fault::Fault;
+use crate::fault::{Fault, fault};
 use glam::DVec3;
 use std::borrow::Cow;
 
@@ -36,14 +35,10 @@ const PASSED_OVER: [&[u8]; 19] = [
 pub(super) fn read(bytes: &[u8]) -> Result<Mesh, Fault> {
     let bytes = without_mark(bytes);
     let vertices = vertices(bytes)?;
-    if vertices.is_empty() {
-        return Err(fault("vertices (`v` lines)", 0, "at least 3"));
-    }
     // Faces may name vertices that follow them, so they wait for all vertices.
-    let triangles = triangles(bytes, vertices.len())?;
-    if triangles.is_empty() {
-        return Err(fault("faces (`f` lines)", 0, "at least 1"));
-    }
+    let triangles = triangles(bytes, |word, [before, ..]| {
+        corner(word, before, vertices.len())
+    })?;
     Mesh::new(vertices, triangles)
 }
 
@@ -75,7 +70,7 @@ fn statements(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, [u8]>)> {
     })
 }
 
-/// Points of the `v` lines; what follows the three coordinates (weight, color) is passed over.
+/// Points of the `v` lines, at least one; what follows the three coordinates (weight, color) is passed over.
 fn vertices(bytes: &[u8]) -> Result<Vec<DVec3>, Fault> {
     let mut vertices = Vec::new();
     for (line, statement) in statements(bytes) {
@@ -90,7 +85,10 @@ fn vertices(bytes: &[u8]) -> Result<Vec<DVec3>, Fault> {
             }
         }
     }
-    Ok(vertices)
+    match vertices.is_empty() {
+        true => Err(fault("vertices (`v` lines)", 0, "at least 3")),
+        false => Ok(vertices),
+    }
 }
 
 fn vertex(line: usize, index: usize, mut words: LineWords<'_>) -> Result<DVec3, Fault> {
@@ -106,24 +104,28 @@ fn vertex(line: usize, index: usize, mut words: LineWords<'_>) -> Result<DVec3, 
     Ok(point)
 }
 
-/// Triangles of the `f` lines, among `count` vertices.
-fn triangles(bytes: &[u8], count: usize) -> Result<Vec<[u32; 3]>, Fault> {
-    let mut triangles = Vec::new();
-    let (mut before, mut face) = (0, 0);
-    let mut corners = Vec::new();
+/// Triangles of the `f` lines, at least one. `index` numbers a corner by its word and by how many `v`, `vt` and `vn` lines are above it.
+fn triangles(
+    bytes: &[u8],
+    mut index: impl FnMut(&[u8], [usize; 3]) -> Result<u32, CornerFault>,
+) -> Result<Vec<[u32; 3]>, Fault> {
+    let (mut triangles, mut corners) = (Vec::new(), Vec::new());
+    let (mut before, mut face) = ([0; 3], 0);
     for (line, statement) in statements(bytes) {
         let mut words = LineWords(&statement);
         match words.next() {
-            Some(b"v") => before += 1,
+            Some(b"v") => before[0] += 1,
+            Some(b"vt") => before[1] += 1,
+            Some(b"vn") => before[2] += 1,
             Some(b"f") => {
                 face += 1;
                 corners.clear();
                 for word in words {
-                    let index = corner(word, before, count).map_err(|(value, allowed)| {
+                    let found = index(word, before).map_err(|(value, allowed)| {
                         let what = format!("face {face}, corner {}", corners.len() + 1);
                         fault(place(line, &what), value, allowed)
                     })?;
-                    corners.push(index);
+                    corners.push(found);
                 }
                 check_corners(corners.len(), || {
                     place(line, &format!("face {face}, number of corners"))
@@ -133,12 +135,18 @@ fn triangles(bytes: &[u8], count: usize) -> Result<Vec<[u32; 3]>, Fault> {
             _ => {}
         }
     }
-    Ok(triangles)
+    match triangles.is_empty() {
+        true => Err(fault("faces (`f` lines)", 0, "at least 1")),
+        false => Ok(triangles),
+    }
 }
 
+/// What is wrong with a corner: its value, and what is allowed.
+type CornerFault = (String, String);
+
 /// Index of a corner such as `7`, `7/3`, `7//5` or `-1/-1/-1`: from 1 on, or back from the last vertex of the
-/// `before` above this line. A fault is a value and what is allowed.
-fn corner(word: &[u8], before: usize, count: usize) -> Result<u32, (String, String)> {
+/// `before` above this line.
+fn corner(word: &[u8], before: usize, count: usize) -> Result<u32, CornerFault> {
     let mut parts = word.split(|b| *b == b'/');
     let vertex: Option<i64> = parts.next().and_then(number);
     let others_sound = parts.clone().count() <= 2

@@ -4,38 +4,11 @@ mod body;
 pub(super) mod detailed;
 mod header;
 
-use super::error::fault;
-use super::shared::{Mesh, check_coordinate, check_corners, fan};
-use crate::fault::Fault;
-use body::{Body, PlyRow};
+use super::shared::{check_coordinate, check_corners};
+use crate::fault::{Fault, fault};
+use body::PlyRow;
 use glam::DVec3;
-use header::{PlyElement, PlyHeader};
-
-pub(super) fn read(bytes: &[u8]) -> Result<Mesh, Fault> {
-    let (header, data) = PlyHeader::read(bytes)?;
-    let axes = axes(header.element("vertex")?)?;
-    let list = list(header.element("face")?)?;
-    let count = header.element("vertex")?.count;
-    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
-    let mut corners = Vec::new();
-    let mut body = Body::new(data, header.encoding);
-    for element in &header.elements {
-        body.rows(element, |row, values| match element.name.as_str() {
-            "vertex" => {
-                vertices.push(vertex(row, axes.map(|axis| values[axis][0]))?);
-                Ok(())
-            }
-            "face" => {
-                face(row, &values[list], count, &mut corners)?;
-                triangles.extend(fan(&corners));
-                Ok(())
-            }
-            _ => Ok(()),
-        })?;
-    }
-    body.end()?;
-    Mesh::new(vertices, triangles)
-}
+use header::PlyElement;
 
 /// Where among a vertex's properties x, y and z are.
 fn axes(element: &PlyElement) -> Result<[usize; 3], Fault> {

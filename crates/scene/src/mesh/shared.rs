@@ -1,7 +1,6 @@
 //! Triangles with shared vertices, and what a mesh may hold.
 
-use super::error::fault;
-use crate::fault::Fault;
+use crate::fault::{Fault, fault};
 use crate::limits::MAX_NUMBER;
 use glam::{DAffine3, DVec3};
 

@@ -1,8 +1,7 @@
 //! The mesh of a sphere with a relief.
 
-use super::error::fault;
 use super::shared::Mesh;
-use crate::fault::Fault;
+use crate::fault::{Fault, fault};
 use glam::DVec3;
 use std::f64::consts::PI;
 

@@ -1,7 +1,6 @@
 //! How far a prediction in closed form may be off.
 
 use crate::Chain;
-use crate::numerics::distance;
 use crate::parallel::slices::{fineness, slices_at_fineness};
 use crate::parallel::slope::Slope;
 use etendue_field::{SliceGrid, Slices, Window};
@@ -38,7 +37,7 @@ pub fn quadrature_error(
     if path.has_discs() {
         let finer = fineness(&path, window, grid).finer();
         let finer = slices_at_fineness(&path, window, grid, &finer);
-        error += distance(slices, &finer) / (1.0 - 0.8_f64.powi(ORDER));
+        error += slices.relative_difference(&finer) / (1.0 - 0.8_f64.powi(ORDER));
     }
     Some(error)
 }
@@ -103,7 +102,7 @@ mod tests {
         let coarse = DiscResolution(vec![Discs::Rule(12)]);
         let coarse = slices_at_fineness(&path, &window, &grid(), &coarse);
         let said = quadrature_error(&chain, &window, &grid(), &coarse).unwrap();
-        let true_error = distance(&coarse, &slices(&chain, &window, &grid()));
+        let true_error = coarse.relative_difference(&slices(&chain, &window, &grid()));
         // The coarse one is far worse than either; four fifths to the fourth for a lower order.
         let most = 1.0 / (1.0 - 0.8_f64.powi(ORDER));
         assert!((said / true_error / most - 1.0).abs() < 1e-3);

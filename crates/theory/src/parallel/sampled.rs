@@ -6,9 +6,7 @@ use crate::nets::{RayBudget, RayNets};
 use crate::predicted::Predicted;
 use crate::rays::Plane;
 use crate::{Chain, Parameter, rays, scattering};
-use etendue_field::{
-    Brdf, Frame, Fresnel, Lobe, Orientation, Patch, Quantity, Reflectance, Window,
-};
+use etendue_field::{Brdf, Frame, Fresnel, Lobe, Patch, Quantity, Reflectance, Window};
 use glam::DVec3;
 
 /// What nets sum over.
@@ -90,16 +88,8 @@ impl Chain {
         let distance = path.distance;
         let layers = layers.map(|layer| (distance - layer.distance, layer.mask.clone()));
         let (light, layers) = (self.source.light.clone(), layers.collect());
-        let across = |frame| Plane {
-            frame,
-            orientation: Orientation::Orthogonal,
-            longitude: 0.0,
-            patch: None,
-            arriving: false,
-            quantity: Quantity::Radiance,
-        };
         let Some(reflection) = path.reflection else {
-            let mut plane = across(Frame::IDENTITY.travelled(distance));
+            let mut plane = Plane::orthogonal(Frame::IDENTITY.travelled(distance));
             if path.cosines > 0 {
                 plane.quantity = Quantity::DifferentialIrradiance;
             }
@@ -129,7 +119,7 @@ impl Chain {
             },
             reflectance: diffuse(reflection.albedo),
         };
-        let plane = across(facing.travelled(reflection.after));
+        let plane = Plane::orthogonal(facing.travelled(reflection.after));
         NetDomain::Scattering(Box::new(Observed { system, plane }))
     }
 }

@@ -19,11 +19,11 @@
 //! This module shares no intersection and no sampling with the tracers.
 //!
 //! ```
-//! use etendue_field::{FrequencyAxis, Frame, Image, Light, Orientation, Patch, Profile,
-//! # ProjectionGrid, Quantity, SliceGrid, Specular, Window};
-//! use etendue_theory::{Budget, Model, Observed};
+//! use etendue_field::{FrequencyAxis, Frame, Image, Light, Patch, Profile,
+//! # ProjectionGrid, SliceGrid, Specular, Window};
+//! use etendue_theory::{RayBudget, Model, Observed};
 //! use etendue_theory::geometry::Edition;
-//! use etendue_theory::rays::{Element, Plane, System, chain, linear};
+//! use etendue_theory::rays::{SpecularSurface, Plane, SpecularSystem, chain, linear};
 //! use glam::DVec3;
 //!
 //! // A beam straight onto a hollow mirror of radius 2 m, a metre away, looked at half-way to its focus.
@@ -33,17 +33,10 @@
 //!     curvature: [-0.5; 3],
 //!     aperture: 0.3,
 //! };
-//! let mirror = Element { name: "mirror".into(), patch, event: Specular::Mirror };
+//! let mirror = SpecularSurface { name: "mirror".into(), patch, event: Specular::Mirror };
 //! let light = Light::Beam { irradiance: 1.0, image };
-//! let system = System { light, layers: vec![], obstacles: vec![], elements: vec![mirror] };
-//! let plane = Plane {
-//!     frame: Frame::new(0.5 * DVec3::Z, -DVec3::Z, -DVec3::X).unwrap(),
-//!     orientation: Orientation::Orthogonal,
-//!     longitude: 0.0,
-//!     patch: None,
-//!     arriving: false,
-//!     quantity: Quantity::Radiance,
-//! };
+//! let system = SpecularSystem { light, layers: vec![], obstacles: vec![], elements: vec![mirror] };
+//! let plane = Plane::orthogonal(Frame::new(0.5 * DVec3::Z, -DVec3::Z, -DVec3::X).unwrap());
 //! let view = Observed { system, plane };
 //! let first = chain(&view, Edition::Corrected).unwrap();
 //! assert!((first.foci[0] - 1.0).abs() < 1e-12);
@@ -53,7 +46,7 @@
 //! let grid = SliceGrid { azimuths: 2, rho: axis, nu: axis };
 //! let picture = ProjectionGrid::new(&window, 16);
 //! let over = (&window, &grid, &picture);
-//! let budget = Budget { nodes: 1e6, error: 1e-3 };
+//! let budget = RayBudget { nodes: 1e6, error: 1e-3 };
 //! let right = view.predict(&[], over, budget);
 //! let near = linear(&view, over, &first.map, budget);
 //! // Slopes of 0.02 are small.

@@ -9,7 +9,6 @@
 use super::region::{Finder, RayField};
 use super::sums::sums;
 use crate::nets::RayNode;
-use crate::numerics::distance;
 use etendue_field::{SliceGrid, Slices};
 use rayon::prelude::*;
 
@@ -55,7 +54,7 @@ impl<F: RayField> Finder<'_, F> {
             count = finer(count);
             let nodes = self.nodes(count);
             let fine = sums(&nodes, &trial);
-            let error = FINER_ERROR * distance(&coarse, &fine) + edges / count as f64;
+            let error = FINER_ERROR * coarse.relative_difference(&fine) + edges / count as f64;
             if error <= TARGET_ERROR || !is_affordable(finer(count)) {
                 return (error <= MAX_ERROR).then(|| (sums(&nodes, grid), error));
             }

@@ -1,14 +1,13 @@
 //! Light that several surfaces send on, held against theories and sums of its own.
 
 use super::*;
-use crate::numerics::distance;
 use crate::obstacle::ObstacleForm;
 use crate::rays::Plane;
 use crate::testing::window;
 use crate::{Model, Observed, Parameter, Predicted, RayBudget, scattering};
 use etendue_field::{
-    Brdf, Frame, FrequencyAxis, Fresnel, HalfPlane, Image, Lobe, Mask, Orientation, Profile,
-    ProjectionGrid, Quantity, Rectangle, Shape, SliceGrid, Window,
+    Brdf, Frame, FrequencyAxis, Fresnel, HalfPlane, Image, Lobe, Mask, Profile, ProjectionGrid,
+    Rectangle, Shape, SliceGrid, Window,
 };
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
@@ -85,20 +84,13 @@ fn system(light: Light, surfaces: Vec<PathSurface>) -> ReflectionSystem {
 
 /// Across a ray through a point.
 fn across(origin: DVec3, d: DVec3, x: DVec3) -> Plane {
-    Plane {
-        frame: Frame::new(origin, d, x).unwrap(),
-        orientation: Orientation::Orthogonal,
-        longitude: 0.0,
-        patch: None,
-        arriving: false,
-        quantity: Quantity::Radiance,
-    }
+    Plane::orthogonal(Frame::new(origin, d, x).unwrap())
 }
 
 /// How far two predictions are apart in their errors.
 fn apart(a: &Predicted, b: &Predicted) -> f64 {
     let error = libm::hypot(a.error.unwrap(), b.error.unwrap());
-    distance(&a.slices, &b.slices) / error
+    a.slices.relative_difference(&b.slices) / error
 }
 
 /// Differences of two predictions in their errors: the mean over as many frequencies as there are

@@ -1,6 +1,7 @@
 //! The BRDFs of `etendue_field::Brdf`, by formulas of theory's own.
 
-use etendue_field::{AngleTable, Brdf, Complex, Fresnel, Lobe, Mixture, square_root};
+use crate::shading::unpolarised_reflectance;
+use etendue_field::{AngleTable, Brdf, Complex, Fresnel, Lobe, Mixture};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -137,17 +138,12 @@ fn beckmann_shadow(cos: f64, roughness: f64) -> f64 {
 
 /// The share of unpolarised light reflected at an angle with this cosine.
 pub(super) fn reflectance(fresnel: Fresnel, cos: f64) -> f64 {
-    let (n, k) = match fresnel {
+    let index = match fresnel {
         Fresnel::White => return 1.0,
-        Fresnel::Dielectric { index } => (index, 0.0),
-        Fresnel::Conductor { n, k } => (n, k),
+        Fresnel::Dielectric { index } => Complex::from(index),
+        Fresnel::Conductor { n, k } => Complex::new(n, k),
     };
-    // With complex amplitudes: n' cos' = √(n'² − sin²).
-    let squared = Complex::new(n, k).powi(2);
-    let inner = square_root(squared - (1.0 - cos * cos));
-    let across = (inner - cos) / (inner + cos);
-    let along = (squared * cos - inner) / (squared * cos + inner);
-    0.5 * (across.norm_sqr() + along.norm_sqr())
+    unpolarised_reflectance(index, cos, 1.0 - cos * cos)
 }
 
 #[cfg(test)]

@@ -36,8 +36,8 @@ pub enum FresnelFactor {
 }
 
 impl FresnelFactor {
-    /// The share of unpolarised radiance that is reflected: the mean of both polarisations (Born
-    /// and Wolf 1999, section 1.5). θ from the normal, in radians, |θ| ≤ π/2.
+    /// The share of unpolarised radiance that is reflected. θ from the normal, in radians,
+    /// |θ| ≤ π/2.
     #[must_use]
     pub fn reflectance(&self, theta: f64) -> f64 {
         let (sine, cosine) = libm::sincos(theta);
@@ -48,12 +48,7 @@ impl FresnelFactor {
                 return normal_reflectance + (1.0 - normal_reflectance) * (1.0 - cosine).powi(5);
             }
         };
-        let square = index * index;
-        // The index times the cosine beyond.
-        let beyond = square_root(square - sine * sine);
-        let across = (cosine - beyond) / (cosine + beyond);
-        let along = (square * cosine - beyond) / (square * cosine + beyond);
-        0.5 * (across.norm_sqr() + along.norm_sqr())
+        unpolarised_reflectance(index, cosine, sine * sine)
     }
 
     /// The transform of F(θ) cos⁺(θ), Ω in cycles per radian: the kernel that Fresnel reflection
@@ -94,6 +89,17 @@ impl FresnelFactor {
         ends.sort_by(f64::total_cmp);
         ends
     }
+}
+
+/// The share of unpolarised radiance that an interface of complex index reflects at an angle with
+/// this cosine and squared sine: the mean of both polarisations (Born and Wolf 1999, section 1.5).
+pub(crate) fn unpolarised_reflectance(index: Complex, cosine: f64, squared_sine: f64) -> f64 {
+    let square = index * index;
+    // The index times the cosine beyond.
+    let beyond = square_root(square - squared_sine);
+    let across = (cosine - beyond) / (cosine + beyond);
+    let along = (square * cosine - beyond) / (square * cosine + beyond);
+    0.5 * (across.norm_sqr() + along.norm_sqr())
 }
 
 #[cfg(test)]

@@ -58,6 +58,7 @@ pub use diffuse::{g_hat, g_hat_3d};
 pub use energy::energy_below;
 pub use flatland::{DiffuseStep, Flatland};
 pub use fresnel::FresnelFactor;
+pub(crate) use fresnel::unpolarised_reflectance;
 pub use lobe::PlanarLobe;
 pub use product::{Lattice, TextureWave, angular_product, semi_convolution, texture};
 pub use reflection::{Factor, PlanarReflection, ReflectionStep, SeparableTerm};

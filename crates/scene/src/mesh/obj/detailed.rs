@@ -1,11 +1,9 @@
 //! OBJ files with their normals and texture coordinates.
 
 use super::super::detailed::{DetailedMesh, check};
-use super::super::error::fault;
-use super::super::shared::{check_corners, fan};
 use super::super::text::{LineWords, number, quoted};
-use super::{corner, place, statements, vertices, without_mark};
-use crate::fault::Fault;
+use super::{CornerFault, corner, place, statements, triangles, vertices, without_mark};
+use crate::fault::{Fault, fault};
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 
@@ -15,15 +13,22 @@ type CornerKey = (u32, Option<u32>, Option<u32>);
 pub(in super::super) fn read(bytes: &[u8]) -> Result<DetailedMesh, Fault> {
     let bytes = without_mark(bytes);
     let places = vertices(bytes)?;
-    if places.is_empty() {
-        return Err(fault("vertices (`v` lines)", 0, "at least 3"));
-    }
     let uvs: Vec<[f64; 2]> = rows(bytes, b"vt")?;
     let normals: Vec<[f64; 3]> = rows(bytes, b"vn")?;
-    let (keys, triangles) = faces(bytes, [places.len(), uvs.len(), normals.len()])?;
-    if triangles.is_empty() {
-        return Err(fault("faces (`f` lines)", 0, "at least 1"));
-    }
+    let counts = [places.len(), uvs.len(), normals.len()];
+    let mut known: HashMap<CornerKey, u32> = HashMap::new();
+    let mut keys = Vec::new();
+    // Each different corner is a vertex.
+    let triangles = triangles(bytes, |word, before| {
+        let key = key(word, before, counts)?;
+        // As many different corners as a u32 counts do not fit into a file that fits into memory.
+        let next = u32::try_from(keys.len()).unwrap_or(u32::MAX);
+        let index = *known.entry(key).or_insert(next);
+        if index == next {
+            keys.push(key);
+        }
+        Ok(index)
+    })?;
     let uv = |i: Option<u32>| i.map_or(DVec2::ZERO, |i| uvs[i as usize].into());
     let normal = |i: Option<u32>| i.map_or(DVec3::ZERO, |i| normals[i as usize].into());
     let has = |any: bool| any.then_some(());
@@ -62,46 +67,8 @@ fn rows<const N: usize>(bytes: &[u8], word: &[u8]) -> Result<Vec<[f64; N]>, Faul
     Ok(rows)
 }
 
-/// All different corners, and triangles of them.
-fn faces(bytes: &[u8], counts: [usize; 3]) -> Result<(Vec<CornerKey>, Vec<[u32; 3]>), Fault> {
-    let mut known: HashMap<CornerKey, u32> = HashMap::new();
-    let (mut keys, mut triangles, mut corners) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut before, mut face) = ([0; 3], 0);
-    for (line, statement) in statements(bytes) {
-        let mut words = LineWords(&statement);
-        match words.next() {
-            Some(b"v") => before[0] += 1,
-            Some(b"vt") => before[1] += 1,
-            Some(b"vn") => before[2] += 1,
-            Some(b"f") => {
-                face += 1;
-                corners.clear();
-                for word in words {
-                    let key = key(word, before, counts).map_err(|(value, allowed)| {
-                        let what = format!("face {face}, corner {}", corners.len() + 1);
-                        fault(place(line, &what), value, allowed)
-                    })?;
-                    // As many different corners as a u32 counts do not fit into a file that fits into memory.
-                    let next = u32::try_from(keys.len()).unwrap_or(u32::MAX);
-                    let index = *known.entry(key).or_insert(next);
-                    if index == next {
-                        keys.push(key);
-                    }
-                    corners.push(index);
-                }
-                check_corners(corners.len(), || {
-                    place(line, &format!("face {face}, number of corners"))
-                })?;
-                triangles.extend(fan(&corners));
-            }
-            _ => {}
-        }
-    }
-    Ok((keys, triangles))
-}
-
-/// A corner such as `7`, `7/3`, `7//5` or `-1/-1/-1`. A fault is a value and what is allowed.
-fn key(word: &[u8], before: [usize; 3], counts: [usize; 3]) -> Result<CornerKey, (String, String)> {
+/// A corner such as `7`, `7/3`, `7//5` or `-1/-1/-1`.
+fn key(word: &[u8], before: [usize; 3], counts: [usize; 3]) -> Result<CornerKey, CornerFault> {
     let first = corner(word, before[0], counts[0])?;
     let mut others = word.split(|b| *b == b'/').skip(1);
     let mut other = |i: usize| match others.next() {

@@ -1,9 +1,8 @@
 //! The data of a PLY file.
 
-use super::super::error::fault;
 use super::super::text::{LineWords, Lines, number, quoted};
 use super::header::{Encoding, PlyElement, PlyProperty, Scalar};
-use crate::fault::Fault;
+use crate::fault::{Fault, fault};
 
 /// The data behind the header, read from the front. ASCII files hold a row a line; blank lines are passed over.
 pub(super) struct Body<'a> {

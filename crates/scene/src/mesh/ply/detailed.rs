@@ -11,12 +11,14 @@ use glam::{DVec2, DVec3};
 /// Names of texture coordinates.
 const UVS: [[&str; 2]; 3] = [["u", "v"], ["s", "t"], ["texture_u", "texture_v"]];
 
-pub(in super::super) fn read(bytes: &[u8]) -> Result<DetailedMesh, Fault> {
+/// Vertices and faces, with the normals and texture coordinates if they are asked for.
+pub(in super::super) fn read(bytes: &[u8], has_shading: bool) -> Result<DetailedMesh, Fault> {
     let (header, data) = PlyHeader::read(bytes)?;
     let element = header.element("vertex")?;
     let axes = axes(element)?;
-    let normal = columns(element, ["nx", "ny", "nz"]);
+    let normal = columns(element, ["nx", "ny", "nz"]).filter(|_| has_shading);
     let uv = UVS.iter().find_map(|names| columns(element, *names));
+    let uv = uv.filter(|_| has_shading);
     let list = list(header.element("face")?)?;
     let count = element.count;
     let mut mesh = DetailedMesh {

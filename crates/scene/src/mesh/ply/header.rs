@@ -1,8 +1,7 @@
 //! The header of a PLY file.
 
-use super::super::error::fault;
 use super::super::text::{LineWords, Lines, number, quoted};
-use crate::fault::Fault;
+use crate::fault::{Fault, fault};
 use std::collections::HashSet;
 
 /// What a PLY file says of its data.

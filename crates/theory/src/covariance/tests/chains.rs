@@ -8,8 +8,8 @@ use crate::rays::{self, Plane, SpecularSurface};
 use crate::testing::{chain_of, opaque};
 use crate::{Chain, Observed, Operator, scattering};
 use etendue_field::{
-    Brdf, Disc, Frame, Fresnel, Grating, Image, Light, Lobe, Mask, Orientation, Patch, Pattern,
-    Profile, Quantity, Reflectance, Shape, Specular, Window,
+    Brdf, Disc, Frame, Fresnel, Grating, Image, Light, Lobe, Mask, Patch, Pattern, Profile,
+    Reflectance, Shape, Specular, Window,
 };
 use std::f64::consts::{PI, TAU};
 
@@ -96,24 +96,13 @@ fn patch() -> Patch {
     }
 }
 
-fn across(frame: Frame) -> Plane {
-    Plane {
-        frame,
-        orientation: Orientation::Orthogonal,
-        longitude: 0.0,
-        patch: None,
-        arriving: false,
-        quantity: Quantity::Radiance,
-    }
-}
-
 /// 0.7 m on the way that the surface mirrors.
 fn beyond() -> Plane {
     let leg = Frame::IDENTITY.travelled(1.0);
     let normal = patch().frame.d;
     let mirrored = |v: glam::DVec3| v - 2.0 * v.dot(normal) * normal;
     let frame = Frame::new(leg.origin, mirrored(leg.d), mirrored(leg.x)).unwrap();
-    across(frame.travelled(0.7))
+    Plane::orthogonal(frame.travelled(0.7))
 }
 
 fn layers() -> Vec<(f64, Mask)> {

@@ -34,23 +34,9 @@ impl<'a> WalkedRay<'a> {
         let shading = ray.secant_squared().powi(-2 * self.cosines);
         let masks = self.masks.iter().map(|(distance, mask)| {
             let then = ray.travelled(-distance);
-            passes(mask, then.x, then.y)
+            mask.transmittance(then.x, then.y)
         });
         shading * masks.product::<f64>()
-    }
-}
-
-fn passes(mask: &Mask, x: f64, y: f64) -> f64 {
-    match mask {
-        Mask::Opaque {
-            shapes,
-            half_planes,
-        } => {
-            let met = shapes.iter().any(|s| s.contains(x, y))
-                || half_planes.iter().any(|h| h.contains(x, y));
-            f64::from(u8::from(!met))
-        }
-        Mask::Grating(grating) => grating.transmittance(x, y),
     }
 }
 

@@ -150,7 +150,9 @@ fn the_sky_on_a_sphere() {
         let found = exact(&under(&environment, vec![]), &plane, &window, &grid);
         let off = |plane: &Plane, sign: f64| {
             let radiance = |z| on_sphere_by_hand(&environment, plane, sign, z);
-            distance(&found.slices, &by_rule(&radiance, &window, &grid))
+            found
+                .slices
+                .relative_difference(&by_rule(&radiance, &window, &grid))
         };
         let right = off(&plane, 1.0);
         let stated = found.error.unwrap();
@@ -212,7 +214,9 @@ fn the_sky_past_a_grating() {
                 let passes = grating.transmittance(at.x, at.y);
                 passes * environment.radiance(ray.direction)
             };
-            distance(&found.slices, &by_rule(&radiance, &window, &grid))
+            found
+                .slices
+                .relative_difference(&by_rule(&radiance, &window, &grid))
         };
         assert!(off(0.4) < OF_NETS, "{}", off(0.4));
         let beside = off(0.5);
@@ -258,10 +262,14 @@ fn the_sky_behind_a_mirror_and_in_glass() {
                 0.0
             }
         };
-        let off = distance(&found.slices, &by_rule(&radiance, &window, &grid));
+        let off = found
+            .slices
+            .relative_difference(&by_rule(&radiance, &window, &grid));
         assert!(off < OF_NETS, "{event:?}: {off}");
         let unturned = |[_, _, u, v]: [f64; 4]| environment.radiance(DVec3::new(u, v, 1.0));
-        let wrong = distance(&found.slices, &by_rule(&unturned, &window, &grid));
+        let wrong = found
+            .slices
+            .relative_difference(&by_rule(&unturned, &window, &grid));
         assert!(wrong > 0.1, "{event:?}: {wrong}");
     }
 }

@@ -68,11 +68,11 @@ fn projector_over_a_distance() {
         let grid = grid(3, [0.3, 0.25]);
         let got = exact(&system, &after(&system, d), &window, &grid);
         let expected = at_distance(d, 0.3, &window, &grid, true);
-        let off = distance(&got.slices, &expected);
+        let off = got.slices.relative_difference(&expected);
         assert!(off < GOOD && got.error.unwrap() < GOOD, "{off:e}");
         // The test sees that factor.
         let without = at_distance(d, 0.3, &window, &grid, false);
-        let told = distance(&got.slices, &without);
+        let told = got.slices.relative_difference(&without);
         assert!(told > 10.0 * GOOD, "{told}");
     }
 }
@@ -91,7 +91,7 @@ fn beam_over_a_distance() {
         Complex::from(a * b * libm::exp(-PI * (a * a * x * x + b * b * y * y)))
     });
     // The cut leaves exp(−π (0.49/0.16 + 0.49/0.09)) outside.
-    let off = distance(&got.slices, &expected);
+    let off = got.slices.relative_difference(&expected);
     assert!(off < 1e-9, "{off:e}");
 }
 
@@ -121,13 +121,13 @@ fn area_lights_agree_with_polygons() {
         };
         system.layers = vec![(0.6, Mask::Grating(grating))];
         let got = exact(&system, &after(&system, 1.5), &window, &grid);
-        let off = distance(&got.slices, &expected);
+        let off = got.slices.relative_difference(&expected);
         let said = got.error.unwrap();
         assert!(off < OF_NETS && off < 2.0 * said, "{off:e}, said {said:e}");
         // A grating a centimetre farther is told apart.
         system.layers = vec![(0.61, Mask::Grating(grating))];
         let moved = exact(&system, &after(&system, 1.5), &window, &grid);
-        let told = distance(&moved.slices, &expected);
+        let told = moved.slices.relative_difference(&expected);
         assert!(told > 3.0 * said, "{told}");
     }
 }
@@ -157,7 +157,10 @@ fn shadow(light: Light, mask: Mask) -> (f64, f64) {
     let mut system = system(light, vec![]);
     system.layers = vec![(0.6, mask)];
     let got = exact(&system, &after(&system, 1.5), &window, &grid);
-    (distance(&got.slices, &expected), got.error.unwrap())
+    (
+        got.slices.relative_difference(&expected),
+        got.error.unwrap(),
+    )
 }
 
 #[test]
@@ -197,9 +200,9 @@ fn plane_mirror_is_a_travel() {
             full[[grid.azimuths - k, i, n]]
         };
     }
-    let off = distance(&got.slices, &turned);
+    let off = got.slices.relative_difference(&turned);
     assert!(off < 1e-9, "{off:e}"); // the same lattice of rays, turned over
-    assert!(distance(&got.slices, &expected.slices) > 0.01);
+    assert!(got.slices.relative_difference(&expected.slices) > 0.01);
 }
 
 #[test]

@@ -2,7 +2,6 @@
 
 use super::*;
 use crate::geometry::{Edition, SpectrumMap};
-use crate::numerics::distance;
 use crate::{Model, Observed, Predicted, RayBudget};
 use etendue_field::{
     Complex, Frame, FrequencyAxis, Image, Orientation, Profile, ProjectionGrid, Quantity,
@@ -86,17 +85,6 @@ fn projector(width: [f64; 2]) -> Light {
     }
 }
 
-fn across(frame: Frame) -> Plane {
-    Plane {
-        frame,
-        orientation: Orientation::Orthogonal,
-        longitude: 0.0,
-        patch: None,
-        arriving: false,
-        quantity: Quantity::Radiance,
-    }
-}
-
 fn element(name: &str, patch: Patch, event: Specular) -> SpecularSurface {
     SpecularSurface {
         name: name.into(),
@@ -112,7 +100,7 @@ fn after(system: &SpecularSystem, distance: f64) -> Plane {
         .unwrap()
         .last()
         .map_or(Frame::IDENTITY, |hit| hit.leaving);
-    across(last.travelled(distance))
+    Plane::orthogonal(last.travelled(distance))
 }
 
 /// A surface across a leg: its normal is −D turned by θ₀ within the plane at the angle `azimuth`

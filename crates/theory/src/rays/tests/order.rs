@@ -15,7 +15,7 @@ fn error(system: &SpecularSystem, plane: &Plane, widths: [f64; 2], e: f64, print
     assert!(right.slices.at_zero() > 0.0);
     let map = chain(&view(&system, plane), print).unwrap().map;
     let first = linear(&system, plane, &window, &grid, &map);
-    distance(&first.slices, &right.slices)
+    first.slices.relative_difference(&right.slices)
 }
 
 /// The power of e with which it falls.

@@ -94,7 +94,7 @@ fn derivatives_by_every_parameter() {
         let mut forward = moved.slices.clone();
         forward.half -= &prediction.slices.half;
         forward.half /= Complex::from(1e-4);
-        let off = distance(&forward, slope);
+        let off = forward.relative_difference(slope);
         // Half the second derivative times 10⁻⁴; what quadratures leave does not cancel.
         assert!(off < 0.02, "{name}: {off}");
         assert!(

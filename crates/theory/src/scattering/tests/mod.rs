@@ -3,7 +3,6 @@
 use super::*;
 use crate::RayBudget;
 use crate::geometry::AffineMap;
-use crate::numerics::distance;
 use crate::rays::Plane;
 use crate::testing::{chain_of, opaque, window};
 use crate::{Model, Observed, Operator, Parameter, Predicted, slices};
@@ -39,7 +38,7 @@ fn linearised(
     let right = by(system, plane, window, grid, Some(chain));
     let mut near = right.to_first_order.unwrap();
     near.half += &right.slices.half;
-    distance(&near, &right.slices)
+    near.relative_difference(&right.slices)
 }
 
 fn view(system: &ScatteringSystem, plane: &Plane) -> Observed<ScatteringSystem> {
@@ -204,7 +203,7 @@ fn flat_lambertian_surface_is_the_receiver() {
     system.layers = vec![(0.6, opaque(blocker))];
     let plane = across(0.0, 0.2);
     let found = exact(&system, &plane, &window, &grid);
-    let apart = distance(&found.slices, &known);
+    let apart = found.slices.relative_difference(&known);
     // The error stated is the error made: over so many frequencies the two differ by little.
     let error = found.error.unwrap();
     let ratio = apart / error;
@@ -213,7 +212,7 @@ fn flat_lambertian_surface_is_the_receiver() {
     // Without the mask it is another field.
     system.layers.clear();
     let open = exact(&system, &plane, &window, &grid);
-    assert!(distance(&open.slices, &known) > 0.05);
+    assert!(open.slices.relative_difference(&known) > 0.05);
 }
 
 /// Maps read off by differences are the corrected operators of docs/theory.md, section 7.
@@ -366,7 +365,9 @@ fn wrong_operators_are_seen() {
     sheared.onto.matrix[2][0] *= -1.0;
     assert!(error(&system, &sheared) > 3.0 * least);
     let exact_error = |other: &ScatteringSystem| {
-        distance(&exact(other, &plane, &window, &grid).slices, &right.slices)
+        exact(other, &plane, &window, &grid)
+            .slices
+            .relative_difference(&right.slices)
     };
     let sharper = view(&system, &plane)
         .with(Parameter::Lobe, 1.05 / (0.25 * e * e))

@@ -5,8 +5,8 @@ mod spectra;
 
 use super::Receiver;
 use crate::parallel::chain::{MaskLayer, ParallelEmitter};
-use crate::testing::square;
-use etendue_field::{Disc, Grating, HalfPlane, Light, Mask, Rectangle, Shape};
+use crate::testing::{disc, opaque, square};
+use etendue_field::{Grating, HalfPlane, Light, Mask, Rectangle, Shape};
 
 fn area(shape: Shape, exponent: f64) -> Light {
     Light::Area {
@@ -16,19 +16,8 @@ fn area(shape: Shape, exponent: f64) -> Light {
     }
 }
 
-fn disc(center: [f64; 2], radius: f64) -> Shape {
-    Shape::Disc(Disc { center, radius })
-}
-
 fn rectangle(center: [f64; 2], size: [f64; 2]) -> Shape {
     Shape::Rectangle(Rectangle { center, size })
-}
-
-fn opaque(shapes: Vec<Shape>) -> Mask {
-    Mask::Opaque {
-        shapes,
-        half_planes: vec![],
-    }
 }
 
 /// A light, masks at distances before a receiver, and the distance of the light.
@@ -81,17 +70,7 @@ impl TestReceiver {
             .map(|(before, mask)| {
                 let way = 1.0 - before / self.distance;
                 let (x, y) = (a + way * (x - a), b + way * (y - b));
-                match mask {
-                    Mask::Opaque {
-                        shapes,
-                        half_planes,
-                    } => {
-                        let met = shapes.iter().any(|s| s.contains(x, y))
-                            || half_planes.iter().any(|h| h.contains(x, y));
-                        f64::from(u8::from(!met))
-                    }
-                    Mask::Grating(grating) => grating.transmittance(x, y),
-                }
+                mask.transmittance(x, y)
             })
             .product()
     }

@@ -3,9 +3,7 @@
 use super::*;
 use crate::numerics::quadrature::integrate;
 use crate::testing::{blockers, window};
-use etendue_field::{
-    Complex, FrequencyAxis, Profile, ProjectionGrid, SliceGrid, Slices, TwoPlane, Window,
-};
+use etendue_field::{Complex, FrequencyAxis, Profile, ProjectionGrid, SliceGrid, TwoPlane, Window};
 use std::f64::consts::{PI, TAU};
 
 fn grid(azimuths: usize, half: usize, [rho, nu]: [f64; 2]) -> SliceGrid {
@@ -19,12 +17,6 @@ fn grid(azimuths: usize, half: usize, [rho, nu]: [f64; 2]) -> SliceGrid {
 
 fn hann() -> Window {
     window(Profile::Hann(0.5), Profile::Hann(0.4))
-}
-
-/// ‖a − b‖ / ‖b‖.
-fn distance(a: &Slices, b: &Slices) -> f64 {
-    let difference = (&a.half - &b.half).map(Complex::norm_sqr).sum();
-    (difference / b.half.map(Complex::norm_sqr).sum()).sqrt()
 }
 
 #[test]
@@ -174,7 +166,7 @@ fn error_falls_with_the_square_of_the_spacing() {
         let receiver = bench.after(after);
         let slices = |nodes| receiver.table(&hann(), nodes).slices(&grid);
         let fine = slices(1024);
-        let errors = [32, 64, 128, 256].map(|n| distance(&slices(n), &fine));
+        let errors = [32, 64, 128, 256].map(|n| slices(n).relative_difference(&fine));
         let order = libm::log2(errors[0] / errors[3]) / 3.0;
         // Where kinks fall between nodes is chance, the rest is second order.
         assert!((1.6..3.5).contains(&order), "{after}: {errors:?} {order}");
@@ -194,7 +186,7 @@ fn error_is_told() {
         let zero = receiver.table(&window, nodes).at([0.0; 4]);
         assert!((slices.at_zero() - zero).norm() < 1e-12 * zero.norm()); // rounding of two sums
         let told = receiver.quadrature_error(&window, &grid, &slices).unwrap();
-        let truth = distance(&slices, &receiver.table(&window, 1000).slices(&grid));
+        let truth = slices.relative_difference(&receiver.table(&window, 1000).slices(&grid));
         // An estimate, not a bound: right to a factor of a few, both below the aim.
         assert!(
             truth < 3.0 * told + 1e-9 && told < 1e-4,

@@ -1,0 +1,25 @@
+//! Mesh files told apart by their extension.
+
+use super::text;
+use crate::fault::{Fault, fault};
+use std::path::Path;
+
+/// Reads bytes as the extension of `file` says.
+pub(super) fn by_extension<T>(
+    file: &Path,
+    bytes: &[u8],
+    obj: fn(&[u8]) -> Result<T, Fault>,
+    ply: fn(&[u8]) -> Result<T, Fault>,
+) -> Result<T, Fault> {
+    let extension = file.extension().unwrap_or_default().to_string_lossy();
+    match extension.to_ascii_lowercase().as_str() {
+        "obj" | "ply" if bytes.is_empty() => Err(fault("the file", "empty", "a mesh")),
+        "obj" => obj(bytes),
+        "ply" => ply(bytes),
+        _ => Err(fault(
+            "the extension",
+            text::quoted(extension.as_bytes()),
+            "obj, ply",
+        )),
+    }
+}
