@@ -21,14 +21,14 @@
 //! shown as it is.
 //!
 //! ```
-//! use etendue_figures::{Axis, Comparison, Quantity, Scale, comparison};
+//! use etendue_figures::{Axis, AxisQuantity, Comparison, Scale, comparison};
 //! let power = ndarray::array![[0.0, 1.0], [0.5, 0.2]];
 //! let figure = comparison(&Comparison {
 //!     title: "Radial spectrum at the receiver",
 //!     note: "p = 0.43, pass",
 //!     x: Axis::centers("*ρ*", "cycles/m", [0.0, 16.0], 2),
 //!     y: Axis::centers("*ν*", "cycles/slope", [0.0, 32.0], 2),
-//!     quantity: Quantity::new("|*S*|^{2}", "W² m⁻⁴ sr⁻² m⁴"),
+//!     quantity: AxisQuantity::new("|*S*|^{2}", "W² m⁻⁴ sr⁻² m⁴"),
 //!     scale: Scale::Decibel { floor: -60.0 },
 //!     measured: power.view(),
 //!     predicted: power.view(),

@@ -36,14 +36,14 @@
 //! **The print.** What the paper prints differs in places; [`Edition`] has both.
 //!
 //! ```
-//! use etendue_theory::geometry::Map;
+//! use etendue_theory::geometry::AffineMap;
 //!
 //! // A concave mirror of radius 2 m, met at 0.3 rad, focuses parallel light at R/2 · cos 0.3.
-//! let map = Map::<2>::mirror_reflection(0.3, -0.5);
+//! let map = AffineMap::<2>::mirror_reflection(0.3, -0.5);
 //! let f = map.focus().unwrap();
 //! assert!((f - 0.3_f64.cos()).abs() < 1e-15);
 //! // There the position of a ray depends on its direction alone.
-//! let [x, _] = map.then(&Map::travel(f)).apply([0.01, 0.002]);
+//! let [x, _] = map.then(&AffineMap::travel(f)).apply([0.01, 0.002]);
 //! assert!((x + f * 0.002).abs() < 1e-15);
 //! ```
 
