@@ -1,6 +1,6 @@
 """What planes, azimuths, surfaces and triangles cost a photon, as lines through counts of instructions.
 
-usage: costs.py PROGRAM          e.g. costs.py target/quick/etendue
+usage: costs.py PROGRAM          e.g. costs.py target/release/etendue
 
 Needs valgrind. Instructions are the same on a busy machine; each line is a least-squares fit, with the largest distance of
 a count from it. What its photons do not cost, transforms and the start of the program,

@@ -18,33 +18,21 @@
 //! ```
 
 mod curvature;
-mod fault;
-mod file;
-mod hints;
 mod likely;
-pub mod limits;
 mod mesh;
-mod messages;
-mod nearest;
-mod overrides;
-mod parse;
 mod picture;
-mod place;
 mod read;
 mod resolve;
 mod scene;
-mod schema;
-mod shown;
 mod triangles;
 mod warnings;
-mod whole;
 
-pub use fault::{Fault, SceneError};
-pub use file::{
+pub use etendue_scenefile::{
     AxisFile, AxisName, BlockersFile, BrdfFile, BulbFile, Emission, EnvironmentFile, EventFile,
-    FormFile, FrequenciesFile, FresnelFile, GratingFile, HalfName, ImageFile, LightFile, LobeFile,
-    MeshSource, PathFile, PatternFile, Place, PlaneFile, RunFile, Sampling, SceneFile, ShapeFile,
-    SphericalGaussianFile, SurfaceFile, TermFile, WindowFile,
+    Fault, FormFile, FrequenciesFile, FresnelFile, GratingFile, HalfName, ImageFile, LightFile,
+    LobeFile, MeshSource, PathFile, PatternFile, Place, PlaneFile, RunFile, Sampling, SceneError,
+    SceneFile, ShapeFile, SphericalGaussianFile, SurfaceFile, TermFile, WindowFile, limits, schema,
+    shown,
 };
 pub use mesh::{DetailedMesh, Mesh, ObjFile, ObjPart};
 pub use picture::{Channels, read_channels};
@@ -54,6 +42,4 @@ pub use scene::{
     BlockerLayer, CentralRay, Event, Hit, Leg, MeshObject, Object, PatchObject, Run, Scene,
     SmoothMesh, Surface, scene_hash,
 };
-pub use schema::schema;
-pub use shown::shown;
 pub use triangles::Triangles;

@@ -1,8 +1,8 @@
 //! Likely mistakes of a sound scene: of units, of grids, and arrays that are too small.
 
-use crate::file::{FrequenciesFile, PlaneFile};
 use crate::scene::{BlockerLayer, Scene};
 use etendue_field::{Light, Mask, VirtualPlane, Window, tidy};
+use etendue_scenefile::{FrequenciesFile, PlaneFile};
 use serde_json::Value;
 use std::collections::BTreeSet;
 

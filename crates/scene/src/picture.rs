@@ -1,7 +1,7 @@
 //! Pictures: read from OpenEXR and PNG files, as one number for each pixel.
 
-use crate::fault::{Fault, fault};
 use etendue_field::Raster;
+use etendue_scenefile::{Fault, fault};
 use exr::meta::MetaData;
 use exr::prelude::{AnyChannels, FlatSamples, ReadChannels, ReadLayers};
 use std::io::Cursor;

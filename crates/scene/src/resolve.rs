@@ -19,15 +19,14 @@ mod reflectance;
 mod surfaces;
 mod things;
 mod triangles;
-mod values;
 
-use crate::fault::SceneError;
-use crate::file::{RunFile, SceneFile};
-use crate::limits::INPUT_BYTES;
 use crate::read::read_below;
 use crate::scene::{CentralRay, Object, Run, Scene};
-use crate::shown::number;
 use etendue_field::{Frame, tidy};
+use etendue_scenefile::SceneError;
+use etendue_scenefile::limits::INPUT_BYTES;
+use etendue_scenefile::number;
+use etendue_scenefile::{RunFile, SceneFile};
 use faults::{Faults, show, vector};
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -76,7 +75,9 @@ impl Resolver<'_> {
         if !self.counts(&file) {
             return None;
         }
-        self.faults.values(&file);
+        for fault in file.numbers_out_of_range() {
+            self.faults.add(fault.field, fault.value, fault.allowed);
+        }
         self.name_of_scene(name);
         let frame = self.frame(&file);
         self.run(&file.run);

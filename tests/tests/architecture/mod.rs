@@ -23,7 +23,8 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("sampling", &["field"]),
     ("scatter", &["field", "sampling"]),
     ("explorer", &["field", "theory", "transform"]),
-    ("scene", &["bvh", "field", "rays", "transform"]),
+    ("scenefile", &["field"]),
+    ("scene", &["bvh", "field", "rays", "scenefile", "transform"]),
     (
         "trace",
         &["bvh", "field", "sampling", "scatter", "scene", "transform"],

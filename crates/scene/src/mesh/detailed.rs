@@ -3,7 +3,7 @@
 use super::extension::by_extension;
 use super::shared::check_coordinate;
 use super::{obj, ply};
-use crate::fault::Fault;
+use etendue_scenefile::Fault;
 use glam::{DVec2, DVec3};
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! Mesh files told apart by their extension.
 
 use super::text;
-use crate::fault::{Fault, fault};
+use etendue_scenefile::{Fault, fault};
 use std::path::Path;
 
 /// Reads bytes as the extension of `file` says.

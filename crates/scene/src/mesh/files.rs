@@ -3,7 +3,7 @@
 use super::extension::by_extension;
 use super::shared::Mesh;
 use super::{obj, ply};
-use crate::fault::Fault;
+use etendue_scenefile::Fault;
 use std::path::Path;
 
 impl Mesh {

@@ -5,7 +5,7 @@ pub(super) mod parts;
 
 use super::shared::{Mesh, check_coordinate, check_corners, fan};
 use super::text::{LineWords, Lines, number, quoted};
-use crate::fault::{Fault, fault};
+use etendue_scenefile::{Fault, fault};
 use glam::DVec3;
 use std::borrow::Cow;
 

@@ -1,7 +1,7 @@
 //! The mesh of a paraboloid.
 
 use super::shared::Mesh;
-use crate::fault::Fault;
+use etendue_scenefile::Fault;
 use glam::DVec3;
 
 impl Mesh {

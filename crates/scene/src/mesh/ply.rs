@@ -5,8 +5,8 @@ pub(super) mod detailed;
 mod header;
 
 use super::shared::{check_coordinate, check_corners};
-use crate::fault::{Fault, fault};
 use body::PlyRow;
+use etendue_scenefile::{Fault, fault};
 use glam::DVec3;
 use header::PlyElement;
 

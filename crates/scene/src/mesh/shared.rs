@@ -1,7 +1,7 @@
 //! Triangles with shared vertices, and what a mesh may hold.
 
-use crate::fault::{Fault, fault};
-use crate::limits::MAX_NUMBER;
+use etendue_scenefile::limits::MAX_NUMBER;
+use etendue_scenefile::{Fault, fault};
 use glam::{DAffine3, DVec3};
 
 /// Triangles with shared vertices, in the file's units and frame.

@@ -1,7 +1,7 @@
 //! The mesh of a sphere with a relief.
 
 use super::shared::Mesh;
-use crate::fault::{Fault, fault};
+use etendue_scenefile::{Fault, fault};
 use glam::DVec3;
 use std::f64::consts::PI;
 

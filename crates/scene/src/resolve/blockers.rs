@@ -3,11 +3,11 @@
 use super::Resolver;
 use super::apart::{Thing, overlap};
 use super::jitter::jittered_squares;
-use crate::file::{BlockersFile, HalfName, LightFile, SceneFile, ShapeFile};
-use crate::limits;
 use crate::scene::BlockerLayer;
-use crate::shown::number;
 use etendue_field::{Disc, Frame, Grating, HalfPlane, Mask, Rectangle, Shape, tidy};
+use etendue_scenefile::limits;
+use etendue_scenefile::number;
+use etendue_scenefile::{BlockersFile, HalfName, LightFile, SceneFile, ShapeFile};
 use glam::DVec3;
 
 /// Rectangles a prediction makes of a disc, about.

@@ -1,8 +1,8 @@
 //! The faults of a scene file, as they are found.
 
-use crate::fault::Fault;
-use crate::limits;
-use crate::shown::{number, shown};
+use etendue_scenefile::Fault;
+use etendue_scenefile::limits;
+use etendue_scenefile::{number, shown};
 use std::collections::HashSet;
 use std::fmt::Debug;
 

@@ -1,6 +1,6 @@
 //! Fields of a scene file by the name of what they hold.
 
-use crate::file::{BlockersFile, SceneFile, SurfaceFile};
+use etendue_scenefile::{BlockersFile, SceneFile, SurfaceFile};
 
 /// What has a name: `blockers[0]`, `surfaces[0]`.
 pub(super) fn fields<'a>(file: &'a SceneFile, name: &'a str) -> impl Iterator<Item = String> + 'a {

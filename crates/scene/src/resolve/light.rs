@@ -1,24 +1,9 @@
 //! Lights of a scene file, checked.
 
 use super::Resolver;
-use crate::file::{BulbFile, GratingFile, ImageFile, LightFile};
+use super::reflectance::grating_of;
 use etendue_field::{Disc, Frame, Image, Light, Rectangle, Shape};
-
-impl LightFile {
-    /// Where the central ray leaves it, world coordinates.
-    pub(super) fn center(&self) -> [f64; 3] {
-        match self {
-            Self::Rectangle { center, .. }
-            | Self::Disc { center, .. }
-            | Self::Point { center, .. }
-            | Self::Spot { center, .. }
-            | Self::Projector { center, .. }
-            | Self::Beam { center, .. }
-            | Self::Environment { center, .. }
-            | Self::Rays { center, .. } => *center,
-        }
-    }
-}
+use etendue_scenefile::{BulbFile, ImageFile, LightFile};
 
 impl Resolver<'_> {
     /// The light, around the origin of the central ray, where its frame is.
@@ -81,7 +66,7 @@ fn image_of(file: &ImageFile) -> Image {
     let grating = file.grating.as_ref();
     Image {
         width: file.width,
-        grating: grating.map(GratingFile::resolved),
+        grating: grating.map(grating_of),
     }
 }
 

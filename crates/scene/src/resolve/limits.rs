@@ -1,8 +1,10 @@
 //! How many things there are, before any of them is looked at.
 
 use super::Resolver;
-use crate::file::{BlockersFile, EnvironmentFile, LightFile, MeshSource, SceneFile, SurfaceFile};
-use crate::limits;
+use etendue_scenefile::limits;
+use etendue_scenefile::{
+    BlockersFile, EnvironmentFile, LightFile, MeshSource, SceneFile, SurfaceFile,
+};
 
 impl Resolver<'_> {
     /// Names what there is too much of, and tells whether there is nothing of that.

@@ -4,11 +4,11 @@ use super::Resolver;
 use super::faults::show;
 use super::triangles::MeshPlacement;
 use crate::Mesh;
-use crate::fault::Fault;
-use crate::file::{BlockersFile, EventFile, FormFile, MeshSource, SceneFile, SurfaceFile};
 use crate::scene::{MeshObject, SmoothMesh};
 use crate::triangles::Triangles;
 use etendue_field::Frame;
+use etendue_scenefile::Fault;
+use etendue_scenefile::{BlockersFile, EventFile, FormFile, MeshSource, SceneFile, SurfaceFile};
 use glam::DVec3;
 use std::path::Path;
 

@@ -3,9 +3,9 @@
 use super::faults::show;
 use super::fields::fields;
 use super::{PathStop, Resolver};
-use crate::file::{BlockersFile, SceneFile, SurfaceFile};
-use crate::limits;
-use crate::shown::is_printable;
+use etendue_scenefile::is_printable;
+use etendue_scenefile::limits;
+use etendue_scenefile::{BlockersFile, SceneFile, SurfaceFile};
 
 impl Resolver<'_> {
     /// The name of the scene is a folder of results.

@@ -2,10 +2,10 @@
 
 use super::Resolver;
 use super::faults::{show, vector};
-use crate::file::{EventFile, FormFile, SceneFile, SurfaceFile};
 use crate::scene::{Event, PatchObject};
-use crate::shown::number;
 use etendue_field::{Frame, Patch, Specular, tidy};
+use etendue_scenefile::number;
+use etendue_scenefile::{EventFile, FormFile, SceneFile, SurfaceFile};
 use glam::DVec3;
 
 impl Resolver<'_> {

@@ -3,10 +3,10 @@
 use super::Resolver;
 use super::faults::{names, show, vector};
 use super::things::Things;
-use crate::file::{SceneFile, SurfaceFile};
-use crate::nearest::did_you_mean;
 use crate::scene::{CentralRay, Event, Hit, Leg, MeshObject, Object, PatchObject};
 use etendue_field::{Frame, Light, Specular, TwoPlane, interpolated_normal, triangle_distance};
+use etendue_scenefile::did_you_mean;
+use etendue_scenefile::{SceneFile, SurfaceFile};
 use glam::DVec3;
 
 /// Share of a leg within which it does not meet again what it has just left.

@@ -2,13 +2,13 @@
 
 use super::Resolver;
 use super::faults::{show, vector};
-use crate::file::EnvironmentFile;
-use crate::limits::MAX_NUMBER;
 use crate::picture;
-use crate::shown::number;
 use etendue_field::{
     Environment, EnvironmentMap, Frame, LatLong, Light, Pattern, Picture, Raster, SphericalGaussian,
 };
+use etendue_scenefile::EnvironmentFile;
+use etendue_scenefile::limits::MAX_NUMBER;
+use etendue_scenefile::number;
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 use std::path::Path;

@@ -2,17 +2,17 @@
 
 use super::faults::{names, show};
 use super::{PathStop, Resolver, SAME_PLANE};
-use crate::fault::Fault;
-use crate::file::{
-    AxisFile, BlockersFile, FrequenciesFile, Place, PlaneFile, SceneFile, SurfaceFile, WindowFile,
-};
-use crate::limits;
-use crate::nearest::did_you_mean;
 use crate::scene::{CentralRay, Object};
-use crate::shown::{number, shown};
 use etendue_field::{
     Frame, FrequencyAxis, Orientation, Profile, Side, SliceGrid, VirtualPlane, Window, tidy,
 };
+use etendue_scenefile::Fault;
+use etendue_scenefile::did_you_mean;
+use etendue_scenefile::limits;
+use etendue_scenefile::{
+    AxisFile, BlockersFile, FrequenciesFile, Place, PlaneFile, SceneFile, SurfaceFile, WindowFile,
+};
+use etendue_scenefile::{number, shown};
 
 /// A place on the path.
 #[derive(Clone, Copy)]

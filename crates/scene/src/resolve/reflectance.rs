@@ -1,9 +1,11 @@
 //! BRDFs and what varies them over a surface.
 
 use super::Resolver;
-use crate::file::{BrdfFile, EventFile, FresnelFile, GratingFile, LobeFile, PatternFile, TermFile};
 use etendue_field::{
     AngleTable, Brdf, Fresnel, Grating, Lobe, MOST_TERMS, Pattern, Reflectance, Term, Weight,
+};
+use etendue_scenefile::{
+    BrdfFile, EventFile, FresnelFile, GratingFile, LobeFile, PatternFile, TermFile,
 };
 
 /// Most values of a factor of an angle: one for each tenth of a degree.
@@ -132,7 +134,7 @@ impl Resolver<'_> {
                     modulation,
                     phase,
                 };
-                Pattern::Cosine(grating.resolved())
+                Pattern::Cosine(grating_of(&grating))
             }
             &PatternFile::Checkerboard(period) => Pattern::Checkerboard { period },
             PatternFile::Picture { file, size } => self.picture_pattern(of, file, *size),
@@ -140,14 +142,12 @@ impl Resolver<'_> {
     }
 }
 
-impl GratingFile {
-    /// The grating of a picture or a pattern.
-    pub(super) fn resolved(&self) -> Grating {
-        Grating {
-            axis: self.axis.index(),
-            frequency: self.frequency,
-            modulation: self.modulation,
-            phase: self.phase,
-        }
+/// The grating of a picture or a pattern.
+pub(super) fn grating_of(file: &GratingFile) -> Grating {
+    Grating {
+        axis: file.axis.index(),
+        frequency: file.frequency,
+        modulation: file.modulation,
+        phase: file.phase,
     }
 }

@@ -2,9 +2,9 @@
 
 use super::Resolver;
 use super::faults::vector;
-use crate::file::{SceneFile, SurfaceFile};
 use crate::scene::Surface;
 use etendue_field::{Frame, tidy};
+use etendue_scenefile::{SceneFile, SurfaceFile};
 use glam::DVec3;
 
 impl Resolver<'_> {

@@ -3,8 +3,8 @@
 
 use super::Resolver;
 use crate::Mesh;
-use crate::file::MeshSource;
-use crate::limits::MAX_NUMBER;
+use etendue_scenefile::MeshSource;
+use etendue_scenefile::limits::MAX_NUMBER;
 use glam::DVec3;
 use std::path::Path;
 

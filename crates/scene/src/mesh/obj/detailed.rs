@@ -3,7 +3,7 @@
 use super::super::detailed::{DetailedMesh, check};
 use super::super::text::{LineWords, number, quoted};
 use super::{CornerFault, corner, place, statements, triangles, vertices, without_mark};
-use crate::fault::{Fault, fault};
+use etendue_scenefile::{Fault, fault};
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 

@@ -3,7 +3,7 @@
 use super::super::detailed::DetailedMesh;
 use super::super::text::LineWords;
 use super::{detailed, statements, without_mark};
-use crate::fault::Fault;
+use etendue_scenefile::Fault;
 use std::ops::Range;
 
 /// Statements that change what is seen, and are left out.

@@ -2,7 +2,7 @@
 
 use super::super::text::{LineWords, Lines, number, quoted};
 use super::header::{Encoding, PlyElement, PlyProperty, Scalar};
-use crate::fault::{Fault, fault};
+use etendue_scenefile::{Fault, fault};
 
 /// The data behind the header, read from the front. ASCII files hold a row a line; blank lines are passed over.
 pub(super) struct Body<'a> {

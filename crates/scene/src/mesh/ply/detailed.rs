@@ -5,7 +5,7 @@ use super::super::shared::fan;
 use super::body::Body;
 use super::header::{PlyElement, PlyHeader};
 use super::{axes, face, list, vertex};
-use crate::fault::Fault;
+use etendue_scenefile::Fault;
 use glam::{DVec2, DVec3};
 
 /// Names of texture coordinates.

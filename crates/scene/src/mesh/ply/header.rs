@@ -1,7 +1,7 @@
 //! The header of a PLY file.
 
 use super::super::text::{LineWords, Lines, number, quoted};
-use crate::fault::{Fault, fault};
+use etendue_scenefile::{Fault, fault};
 use std::collections::HashSet;
 
 /// What a PLY file says of its data.

@@ -1,6 +1,6 @@
 //! Whether each number of a scene file is one that its field may hold.
 
-use super::faults::Faults;
+use crate::fault::{Fault, fault};
 use crate::file::SceneFile;
 use crate::schema::{element, referred, schema, variant};
 use crate::shown::number;
@@ -11,23 +11,30 @@ use serde::ser::{
 use serde_json::Value;
 use std::fmt;
 
-impl Faults {
-    /// Names each number beyond the ends that the schema has for it.
-    pub(super) fn values(&mut self, file: &SceneFile) {
+impl SceneFile {
+    /// Each number beyond the ends that the schema has for it.
+    #[must_use]
+    #[expect(
+        clippy::missing_panics_doc,
+        reason = "no field of a scene file is a map"
+    )]
+    pub fn numbers_out_of_range(&self) -> Vec<Fault> {
+        let mut faults = Vec::new();
         let walk = ValueWalk {
-            faults: self,
+            faults: &mut faults,
             path: &mut String::new(),
             node: schema(),
             place: 0,
         };
-        let done = file.serialize(walk);
+        let done = self.serialize(walk);
         done.expect("no field of a scene file is a map");
+        faults
     }
 }
 
 /// Goes through a scene file as if to write it, beside its schema.
 struct ValueWalk<'a> {
-    faults: &'a mut Faults,
+    faults: &'a mut Vec<Fault>,
     path: &'a mut String,
     /// What the schema has for the value at the path.
     node: &'static Value,
@@ -42,7 +49,7 @@ impl ValueWalk<'_> {
         let [least, most] = ["minimum", "maximum"].map(|end| self.node[end].as_f64());
         let is_within = |(least, most)| (least..=most).contains(&value);
         if !least.zip(most).is_none_or(is_within) {
-            self.faults.add(&*self.path, shown(), range);
+            self.faults.push(fault(&*self.path, shown(), range));
         }
     }
 

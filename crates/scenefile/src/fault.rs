@@ -18,11 +18,8 @@ pub struct Fault {
 }
 
 /// A fault of a file: the place in it, what is there, and what is allowed.
-pub(crate) fn fault(
-    place: impl Into<String>,
-    value: impl ToString,
-    allowed: impl Into<String>,
-) -> Fault {
+#[must_use]
+pub fn fault(place: impl Into<String>, value: impl ToString, allowed: impl Into<String>) -> Fault {
     Fault {
         field: place.into(),
         value: value.to_string(),

@@ -131,6 +131,23 @@ pub enum LightFile {
     },
 }
 
+impl LightFile {
+    /// Where the central ray leaves it, world coordinates.
+    #[must_use]
+    pub fn center(&self) -> [f64; 3] {
+        match self {
+            Self::Rectangle { center, .. }
+            | Self::Disc { center, .. }
+            | Self::Point { center, .. }
+            | Self::Spot { center, .. }
+            | Self::Projector { center, .. }
+            | Self::Beam { center, .. }
+            | Self::Environment { center, .. }
+            | Self::Rays { center, .. } => *center,
+        }
+    }
+}
+
 /// Radiance by the direction light comes from; in coordinates whose second axis is `up` and whose third is `front`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Environment")]

@@ -4,7 +4,8 @@ use crate::limits;
 use strsim::osa_distance;
 
 /// ` (did you mean …?)` with the known name that is most like this one, or nothing where none is.
-pub(crate) fn did_you_mean<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+#[must_use]
+pub fn did_you_mean<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     let lower = |name: &str| -> String {
         // Longer names are refused anyway.
         let start = name.chars().take(limits::NAME);

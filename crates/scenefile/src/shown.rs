@@ -20,7 +20,8 @@ pub fn shown(value: impl Display, most: usize) -> String {
 }
 
 /// A number as people write it.
-pub(crate) fn number(x: f64) -> String {
+#[must_use]
+pub fn number(x: f64) -> String {
     let is_plain = x == 0.0 || !x.is_finite() || (1e-4..1e6).contains(&x.abs());
     if is_plain {
         x.to_string()
@@ -55,7 +56,8 @@ impl Write for ShortenedText {
 }
 
 /// Whether a character can be seen, or is the plain space, or is a mark on the character before it.
-pub(crate) fn is_printable(c: char) -> bool {
+#[must_use]
+pub fn is_printable(c: char) -> bool {
     if c.is_ascii() {
         return !c.is_ascii_control();
     }

@@ -1,0 +1,30 @@
+//! Scene files as they are written: read from RON or JSON, described by a schema, and checked field by field.
+//!
+//! What a field is, how it is written and which numbers it may hold stand on the types of [`SceneFile`], once. The
+//! schema, the hints of messages and the check of all numbers come from there. Whether things fit together is for
+//! `etendue-scene`, which resolves a file to a scene.
+
+mod fault;
+mod file;
+mod hints;
+pub mod limits;
+mod messages;
+mod nearest;
+mod overrides;
+mod parse;
+mod place;
+mod schema;
+mod shown;
+mod values;
+mod whole;
+
+pub use fault::{Fault, SceneError, fault};
+pub use file::{
+    AxisFile, AxisName, BlockersFile, BrdfFile, BulbFile, Emission, EnvironmentFile, EventFile,
+    FormFile, FrequenciesFile, FresnelFile, GratingFile, HalfName, ImageFile, LightFile, LobeFile,
+    MeshSource, PathFile, PatternFile, Place, PlaneFile, RunFile, Sampling, SceneFile, ShapeFile,
+    SphericalGaussianFile, SurfaceFile, TermFile, WindowFile,
+};
+pub use nearest::did_you_mean;
+pub use schema::schema;
+pub use shown::{is_printable, number, shown};
