@@ -1,6 +1,6 @@
 //! Covariance tracing beside the spectra of a scene.
 
-mod said;
+mod table;
 
 use crate::args::CovarianceArgs;
 use crate::print::{deliver, say_replaced};
@@ -82,7 +82,7 @@ pub(crate) fn covariance(args: &CovarianceArgs) -> Result<u8, Failure> {
         Ok((results, reports))
     })?;
     if !args.work.quiet {
-        deliver(&said::text(&reports))?;
+        deliver(&table::text(&reports))?;
     }
     let mut index = tree_of!({
         "scene": scene.name,

@@ -2,10 +2,10 @@
 
 use crate::chain::chain;
 use crate::class::Class;
-use crate::dark;
 use crate::parallel::obstacles_to_theory;
 use crate::system::{in_the_way, print, reflected, system, too_fine};
 use crate::theories::{Theory, is_same};
+use crate::unlit;
 use crate::validity::{OffPatches, off_patches, unforeseen_by_rays, unforeseen_by_scattering};
 use etendue_field::{Orientation, Side, VirtualPlane, Window};
 use etendue_scene::{BlockerLayer, Scene};
@@ -120,7 +120,7 @@ impl Applicability {
             };
         }
         // Light that goes other ways than theory's might pass beside what stands in these.
-        let dark = dark::reason(scene, plane, &theory);
+        let dark = unlit::reason(scene, plane, &theory);
         Self {
             theory,
             reasons,

@@ -4,6 +4,7 @@ use crate::agreement::{Agreement, UNSEEN};
 use crate::class::Class;
 use crate::first_order::FirstOrderReport;
 use crate::full_radial::FullRadialComparison;
+use crate::heavy_rays::too_few;
 use crate::noise::noise_dof;
 use crate::prediction::Prediction;
 use crate::report::{
@@ -12,7 +13,6 @@ use crate::report::{
 };
 use crate::residuals::{Residuals, largest};
 use crate::score::{ParameterReport, score};
-use crate::uneven::too_few;
 use crate::verdict::{Test, Verdict};
 use etendue_field::{SliceGrid, Slices, VirtualPlane, percent, tidy};
 use etendue_spectrum::bandwidth::{SliceBandwidth, Widest, bandwidth_nu, bandwidth_rho, widest};

@@ -1,7 +1,7 @@
 //! The sampling criteria of Durand et al. 2005, section 6.2, as printed and corrected, beside photons.
 
 use crate::quality::Quality;
-use crate::shot::resolved;
+use crate::scene_run::resolved;
 use crate::subject::{FigureData, Text};
 use etendue_compare::{Applicability, criterion, measured_bandwidth};
 use etendue_figures::{AxisQuantity, Curve, CurveKind, CurvePanel, Curves, Figure};

@@ -1,12 +1,12 @@
 //! Making a figure: its scenes run, drawn, and written with data and recipe.
 
-use crate::own;
 use crate::quality::Quality;
 use crate::recipe::{RECIPES, Recipe, named};
 use crate::request::{FigureRequest, Wanted};
-use crate::shot::{self, Shot};
+use crate::scene_run::{self, Shot};
 use crate::style;
 use crate::subject::{FigureData, Subject};
+use crate::user_figures;
 use etendue_compare::{FullRadialReport, HighFrequencyShare, Verdict};
 use etendue_figures::Style;
 use etendue_pipeline::table::word;
@@ -23,7 +23,7 @@ use std::collections::BTreeMap;
 pub fn subjects(request: &FigureRequest) -> Result<Vec<Subject>, Failure> {
     let is_scene = |wanted: &Wanted| matches!(wanted, Wanted::Scene(_));
     if request.wanted.iter().any(is_scene) {
-        Ok(vec![own::subject(request)?])
+        Ok(vec![user_figures::subject(request)?])
     } else {
         of_paper(request)
     }
@@ -241,7 +241,7 @@ fn write(results: &mut Results, subject: &Subject, taken: &FigureData<'_>) -> Re
         results.write("figure.csv", figure.csv.as_bytes())?;
     }
     if !taken.shots.is_empty() {
-        results.write("figure.npz", &shot::arrays(taken.shots)?)?;
+        results.write("figure.npz", &scene_run::arrays(taken.shots)?)?;
     }
     for (name, text) in &subject.texts {
         results.write(&format!("{name}.ron"), text.as_bytes())?;

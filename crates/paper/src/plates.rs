@@ -2,7 +2,7 @@
 
 use crate::flat::Flat;
 use crate::rows::{DECIBEL, Seen, compared, feet, phase, power, row};
-use crate::shot::Shot;
+use crate::scene_run::Shot;
 use crate::subject::FigureData;
 use etendue_compare::{Bandwidth, Theory};
 use etendue_field::{Orientation, VirtualPlane, percent, uncertain};

@@ -1,9 +1,9 @@
 //! What each figure of the paper is made of.
 
 use crate::plates::{blockers, lights, occluders, parameterisations, steps};
+use crate::scene_run::resolved;
 use crate::scenes::{TWIST, scene};
 use crate::shading::{adaptive, environment};
-use crate::shot::resolved;
 use crate::spaces::{coordinates, directions};
 use crate::subject::{FigureData, Subject, Text};
 use crate::table1::operators;
@@ -257,7 +257,7 @@ pub(crate) fn named(name: &str) -> Result<&'static Recipe, Failure> {
 mod tests {
     use super::*;
     use crate::quality::Quality;
-    use crate::shot::Shot;
+    use crate::scene_run::Shot;
     use etendue_figures::Style;
     use etendue_pipeline::Silent;
 

@@ -1,6 +1,6 @@
 //! What figures show of the planes of their scenes, row by row.
 
-use crate::shot::Shot;
+use crate::scene_run::Shot;
 use etendue_compare::PlaneComparison;
 use etendue_field::{Complex, Slices, VirtualPlane};
 use etendue_figures::{AxisQuantity, Picture, PlateRow, Scale};

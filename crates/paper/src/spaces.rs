@@ -1,8 +1,8 @@
 //! Figs. 3 and 13: coordinates of rays, and what it costs to take them for each other.
 
 use crate::rows::{Seen, compared, feet, row};
+use crate::scene_run::resolved;
 use crate::scenes::TWIST;
-use crate::shot::resolved;
 use crate::subject::{FigureData, Text};
 use etendue_compare::{Applicability, Convergence, converge};
 use etendue_field::percent;

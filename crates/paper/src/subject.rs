@@ -1,7 +1,7 @@
 //! A figure to be made, and what it is drawn from.
 
 use crate::quality::Quality;
-use crate::shot::Shot;
+use crate::scene_run::Shot;
 use etendue_figures::{Curves, Figure, Plate, Style, curves, plate};
 use etendue_pipeline::Reporter;
 use etendue_report::pictures;

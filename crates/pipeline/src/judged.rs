@@ -4,7 +4,7 @@ use crate::case::MeasuredScene;
 use crate::inquiry::inquire;
 use crate::reporter::{Reporter, Work};
 use crate::summary::Summary;
-use crate::{aimed, field};
+use crate::{aim_check, field};
 use etendue_compare::{PlaneComparison, Test, compare};
 use etendue_store::{Failure, Results};
 
@@ -44,6 +44,6 @@ pub fn judged(case: &MeasuredScene, test: &Test) -> Result<Vec<PlaneComparison>,
         compare(&case.measurement, i, prediction, test).map_err(Failure::cannot_run)
     });
     let mut planes = compared.collect::<Result<Vec<_>, _>>()?;
-    aimed::leave_open(case, &mut planes);
+    aim_check::leave_open(case, &mut planes);
     Ok(planes)
 }

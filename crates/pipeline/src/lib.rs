@@ -8,12 +8,12 @@
     reason = "a Failure carries the whole message for the user, written where it occurs"
 )]
 
-mod aimed;
+mod aim_check;
 mod case;
 pub mod checkpoint;
 pub mod diff;
 pub mod field;
-mod follow;
+mod follower;
 mod inquiry;
 mod job;
 mod judge;
@@ -32,7 +32,7 @@ pub mod target;
 mod workers;
 
 pub use case::MeasuredScene;
-pub use follow::{follow_job, follow_points, report_failure};
+pub use follower::{follow_job, follow_points, report_failure};
 pub use job::{Job, Options, Outcome};
 pub use judged::{Judged, judged};
 pub use measure::measured;

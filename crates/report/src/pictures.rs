@@ -1,16 +1,16 @@
 //! The pictures of a run: light field and spectrum of each plane, and the strip along the path.
 
-mod across;
+mod cross_section;
 mod words;
 
-pub use across::across;
+pub use cross_section::across;
 pub use words::{
     across_axes, full_radial_axes, full_radial_quantity, light_field_axes, light_field_quantity,
     spectrum_axes, spectrum_quantity,
 };
 
 use crate::drawing;
-use across::differs_across;
+use cross_section::differs_across;
 use etendue_compare::{
     Applicability, Class, FullRadialComparison, PlaneComparison, PlaneReport, Prediction, Theory,
     Verdict, stands_before,

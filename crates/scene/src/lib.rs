@@ -18,8 +18,8 @@
 //! ```
 
 mod curvature;
-mod likely;
 mod mesh;
+mod mistakes;
 mod picture;
 mod read;
 mod resolve;

@@ -1,6 +1,5 @@
 //! From a scene file to a checked scene.
 
-mod apart;
 mod blockers;
 mod faults;
 mod fields;
@@ -10,6 +9,8 @@ mod limits;
 mod meshes;
 mod names;
 mod normals;
+mod obstacles;
+mod overlap;
 mod patches;
 mod path;
 mod pictures;
@@ -17,7 +18,6 @@ mod planes;
 mod rays;
 mod reflectance;
 mod surfaces;
-mod things;
 mod triangles;
 
 use crate::read::read_below;
@@ -29,9 +29,9 @@ use etendue_scenefile::number;
 use etendue_scenefile::{RunFile, SceneFile};
 use faults::{Faults, show, vector};
 use glam::DVec3;
+use obstacles::Things;
 use std::collections::BTreeMap;
 use std::path::Path;
-use things::Things;
 
 /// Checks a scene file and resolves it to a scene; paths of meshes and pictures are relative to `folder`, `memory` is what
 /// this machine can hold, in bytes.

@@ -1,7 +1,7 @@
 //! What a sound scene should still be told of: likely mistakes, and smooth meshes too coarse for their
 //! normals.
 
-use crate::likely::mistakes;
+use crate::mistakes::mistakes;
 use crate::scene::{Leg, MeshObject, Object, Scene, SmoothMesh};
 use etendue_field::{Frame, Light, TwoPlane, VirtualPlane, interpolated_normal, tidy};
 use glam::DVec3;

@@ -14,7 +14,7 @@ pub use surface::{
 
 pub(crate) use allowed::positive;
 
-use crate::whole::whole;
+use crate::whole_number::whole;
 use allowed::{
     any, cycles, depends, direction, factor, length, modulation, name_of_blockers, phase, place,
     profile_of_place, profile_of_slope, seed, sides, since, told, within,

@@ -4,20 +4,21 @@
 //! schema, the hints of messages and the check of all numbers come from there. Whether things fit together is for
 //! `etendue-scene`, which resolves a file to a scene.
 
+mod display;
 mod fault;
 mod file;
 mod hints;
 pub mod limits;
 mod messages;
-mod nearest;
 mod overrides;
 mod parse;
 mod place;
 mod schema;
-mod shown;
+mod suggestion;
 mod values;
-mod whole;
+mod whole_number;
 
+pub use display::{is_printable, number, shown};
 pub use fault::{Fault, SceneError, fault};
 pub use file::{
     AxisFile, AxisName, BlockersFile, BrdfFile, BulbFile, Emission, EnvironmentFile, EventFile,
@@ -25,6 +26,5 @@ pub use file::{
     MeshSource, PathFile, PatternFile, Place, PlaneFile, RunFile, Sampling, SceneFile, ShapeFile,
     SphericalGaussianFile, SurfaceFile, TermFile, WindowFile,
 };
-pub use nearest::did_you_mean;
 pub use schema::schema;
-pub use shown::{is_printable, number, shown};
+pub use suggestion::did_you_mean;

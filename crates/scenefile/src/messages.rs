@@ -1,7 +1,7 @@
 //! Why a value does not fit a field, in words.
 
 use crate::hints::wanted;
-use crate::nearest::did_you_mean;
+use crate::suggestion::did_you_mean;
 use serde_path_to_error::{Path, Segment};
 
 /// A path as messages have it, without names of variants.

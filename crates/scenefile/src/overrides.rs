@@ -1,9 +1,9 @@
 //! Fields set on the command line.
 
+use crate::display::shown;
 use crate::messages::unfit;
-use crate::nearest::did_you_mean;
-use crate::shown::shown;
-use crate::whole::whole;
+use crate::suggestion::did_you_mean;
+use crate::whole_number::whole;
 use crate::{SceneError, SceneFile, limits};
 use serde_json::Value;
 

@@ -1,10 +1,10 @@
 //! Reads scene files, and says of one that cannot be read which field is at fault.
 
+use crate::display::shown;
 use crate::hints::{example, has_fields, wanted};
 use crate::messages::{path_of, unfit};
-use crate::nearest::did_you_mean;
 use crate::place::{ScenePlace, find, word};
-use crate::shown::shown;
+use crate::suggestion::did_you_mean;
 use crate::{SceneError, SceneFile, limits};
 use ron::error::{Error, SpannedError};
 use serde::Deserialize;

@@ -1,9 +1,9 @@
 //! Whether each number of a scene file is one that its field may hold.
 
+use crate::display::number;
 use crate::fault::{Fault, fault};
 use crate::file::SceneFile;
 use crate::schema::{element, referred, schema, variant};
-use crate::shown::number;
 use serde::ser::{
     Impossible, Serialize, SerializeSeq, SerializeStruct, SerializeStructVariant, SerializeTuple,
     SerializeTupleStruct, SerializeTupleVariant, Serializer,

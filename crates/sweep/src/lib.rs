@@ -10,10 +10,10 @@
 
 mod pictures;
 mod points;
+mod quiet_reporter;
 mod request;
 mod run;
 mod table;
-mod unshown;
 pub mod values;
 
 pub use points::{SweepPoints, scene_at};

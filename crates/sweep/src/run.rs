@@ -2,9 +2,9 @@
 
 use crate::pictures;
 use crate::points::SweepPoints;
+use crate::quiet_reporter::Unshown;
 use crate::request::SweepRequest;
 use crate::table::{self, BANDWIDTHS, PointResult, SLOPE};
-use crate::unshown::Unshown;
 use crate::values::{Sweep, shown};
 use etendue_compare::Applicability;
 use etendue_field::{decimals, fixed, uncertain};

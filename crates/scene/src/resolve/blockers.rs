@@ -1,8 +1,8 @@
 //! Blockers: layers of shapes, gratings.
 
 use super::Resolver;
-use super::apart::{Thing, overlap};
 use super::jitter::jittered_squares;
+use super::overlap::{Thing, overlap};
 use crate::scene::BlockerLayer;
 use etendue_field::{Disc, Frame, Grating, HalfPlane, Mask, Rectangle, Shape, tidy};
 use etendue_scenefile::limits;

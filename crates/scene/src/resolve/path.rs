@@ -2,7 +2,7 @@
 
 use super::Resolver;
 use super::faults::{names, show, vector};
-use super::things::Things;
+use super::obstacles::Things;
 use crate::scene::{CentralRay, Event, Hit, Leg, MeshObject, Object, PatchObject};
 use etendue_field::{Frame, Light, Specular, TwoPlane, interpolated_normal, triangle_distance};
 use etendue_scenefile::did_you_mean;

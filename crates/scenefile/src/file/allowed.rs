@@ -1,8 +1,8 @@
 //! What a field of a scene file is, one way to write it, and the numbers it may hold: attributes of its type. The schema,
 //! the hints of messages and the check of all numbers come from them.
 
+use crate::display::number;
 use crate::limits::MAX_NUMBER;
-use crate::shown::number;
 use schemars::Schema;
 use serde_json::Value;
 

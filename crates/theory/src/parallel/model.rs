@@ -3,7 +3,7 @@
 use crate::model::{Model, Over};
 use crate::nets::{RayBudget, RayNets, work_of_nets};
 use crate::parallel::disc_resolution::DiscResolution;
-use crate::parallel::{at, derivative, given, projection, quadrature_error, slices, work};
+use crate::parallel::{at, derivative, projection, quadrature_error, ray_list, slices, work};
 use crate::parameter::{New, Parameter, resize, size_word};
 use crate::predicted::Predicted;
 use crate::work::PredictionWork;
@@ -86,7 +86,7 @@ impl Model for Chain {
     /// By closed forms, or by nets of rays where these take too long or do not resolve the scene. Rays of a file are summed.
     fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: RayBudget) -> Predicted {
         if let Some(rays) = self.given() {
-            return given::predicted(self, rays, over);
+            return ray_list::predicted(self, rays, over);
         }
         if self.is_sampled(over, budget) {
             return self.sampled(parameters, over, budget);
@@ -110,14 +110,14 @@ impl Model for Chain {
 
     fn with_rays(&self, over: Over<'_>, budget: RayBudget, then: &mut dyn FnMut(&dyn RayNets)) {
         match self.given() {
-            Some(rays) => then(&given::GivenRays::new(self, rays, over.0)),
+            Some(rays) => then(&ray_list::GivenRays::new(self, rays, over.0)),
             None => self.with_sampled(over, budget, then),
         }
     }
 
     fn work(&self, over: Over<'_>, budget: RayBudget) -> PredictionWork {
         if let Some(rays) = self.given() {
-            given::work(rays, over.1)
+            ray_list::work(rays, over.1)
         } else if self.is_sampled(over, budget) {
             work_of_nets(over.1, budget)
         } else {

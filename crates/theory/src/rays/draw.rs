@@ -6,7 +6,7 @@
 //! the rays do. A window that is narrow beside what the first order leaves out is met by few of
 //! them: rays of all four coordinates are followed back from it as they go.
 
-use super::back::Back;
+use super::backward::Back;
 use super::emission::{EmissionMeasure, point_of};
 use super::{Plane, SpecularSystem};
 use crate::geometry::{AffineMap, Matrix};

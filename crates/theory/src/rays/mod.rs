@@ -54,7 +54,7 @@
 //! assert!(off.abs() < 1e-3 && right.error < Some(1e-4));
 //! ```
 
-mod back;
+mod backward;
 mod central;
 mod chain;
 mod coordinates;

@@ -4,14 +4,14 @@
 //! sum, so that a fault in it cannot hide between them.
 
 mod block;
-mod fine;
+mod fine_grid;
 mod kernel;
 mod spread;
 
 use block::Block;
 use etendue_field::{FrequencyAxis, SliceGrid, Slices, TwoPlane};
 use fearless_simd::{Level, dispatch};
-use fine::{FineTransform, Workspace};
+use fine_grid::{FineTransform, Workspace};
 use kernel::{Kernel, UPSAMPLING, WIDTH};
 use ndarray::Axis;
 use spread::{Placement, spread};

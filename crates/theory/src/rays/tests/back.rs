@@ -1,6 +1,6 @@
 //! Rays followed back come from where rays go, with the density of that.
 
-use super::super::back::Back;
+use super::super::backward::Back;
 use super::*;
 use crate::geometry::{AffineMap, from_fn};
 
