@@ -58,7 +58,7 @@ impl ValueWalk<'_> {
         Self { node, ..self }
     }
 
-    fn go<T: Serialize + ?Sized>(&mut self, value: &T, step: &str, node: &'static Value) -> Done {
+    fn go<T: Serialize + ?Sized>(&mut self, value: &T, step: &str, node: &'static Value) -> Walked {
         let length = self.path.len();
         self.path.push_str(step);
         value.serialize(ValueWalk {
@@ -71,13 +71,13 @@ impl ValueWalk<'_> {
         Ok(())
     }
 
-    fn field<T: Serialize + ?Sized>(&mut self, name: Name, value: &T) -> Done {
+    fn field<T: Serialize + ?Sized>(&mut self, name: Name, value: &T) -> Walked {
         let dot = if self.path.is_empty() { "" } else { "." };
         let node = &referred(self.node)["properties"][name];
         self.go(value, &format!("{dot}{name}"), node)
     }
 
-    fn next<T: Serialize + ?Sized>(&mut self, value: &T) -> Done {
+    fn next<T: Serialize + ?Sized>(&mut self, value: &T) -> Walked {
         let place = self.place;
         self.place += 1;
         self.go(value, &format!("[{place}]"), element(self.node, place))
@@ -85,12 +85,12 @@ impl ValueWalk<'_> {
 }
 
 type Name = &'static str;
-type Done = Result<(), fmt::Error>;
+type Walked = Result<(), fmt::Error>;
 
 /// What holds no number.
 macro_rules! pass {
     ($($name:ident($($of:ty),*);)*) => {
-        $(fn $name(self, $(_: $of),*) -> Done { Ok(()) })*
+        $(fn $name(self, $(_: $of),*) -> Walked { Ok(()) })*
     };
 }
 
@@ -124,25 +124,25 @@ impl Serializer for ValueWalk<'_> {
         serialize_tuple_struct(Name, usize); serialize_struct(Name, usize);
     }
 
-    fn serialize_f64(mut self, value: f64) -> Done {
+    fn serialize_f64(mut self, value: f64) -> Walked {
         self.check(value, || number(value));
         Ok(())
     }
 
-    fn serialize_u32(self, value: u32) -> Done {
+    fn serialize_u32(self, value: u32) -> Walked {
         self.serialize_u64(value.into())
     }
 
-    fn serialize_u64(mut self, value: u64) -> Done {
+    fn serialize_u64(mut self, value: u64) -> Walked {
         self.check(value as f64, || value.to_string());
         Ok(())
     }
 
-    fn serialize_some<T: Serialize + ?Sized>(self, value: &T) -> Done {
+    fn serialize_some<T: Serialize + ?Sized>(self, value: &T) -> Walked {
         value.serialize(self)
     }
 
-    fn serialize_newtype_struct<T: Serialize + ?Sized>(self, _: Name, value: &T) -> Done {
+    fn serialize_newtype_struct<T: Serialize + ?Sized>(self, _: Name, value: &T) -> Walked {
         value.serialize(self)
     }
 
@@ -152,7 +152,7 @@ impl Serializer for ValueWalk<'_> {
         _: u32,
         name: Name,
         value: &T,
-    ) -> Done {
+    ) -> Walked {
         value.serialize(self.variant(name))
     }
 
@@ -187,11 +187,11 @@ macro_rules! inside {
             type Ok = ();
             type Error = fmt::Error;
 
-            fn $name<T: Serialize + ?Sized>(&mut self, $($key: Name,)? value: &T) -> Done {
+            fn $name<T: Serialize + ?Sized>(&mut self, $($key: Name,)? value: &T) -> Walked {
                 self.$go($($key,)? value)
             }
 
-            fn end(self) -> Done {
+            fn end(self) -> Walked {
                 Ok(())
             }
         }
