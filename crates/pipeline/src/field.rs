@@ -11,12 +11,10 @@ use etendue_store::Failure;
 use etendue_store::Method;
 use etendue_store::Results;
 use etendue_store::machine;
-use etendue_store::npz::Npz;
+use etendue_store::npz::{Npz, write_npy};
 use etendue_store::sealed::json;
 use ndarray::{Array1, Array4};
-use ndarray_npy::WriteNpyExt;
 use serde::Serialize;
-use std::io;
 
 /// The files of a plane.
 pub const NAMES: [&str; 3] = ["field.npy", "field.json", "full_radial.npz"];
@@ -179,7 +177,7 @@ fn write(
     } = measured;
     let field: &Array4<f64> = &measured.field;
     results.stream(&format!("{name}/field.npy"), &mut |file| {
-        field.write_npy(file).map_err(io::Error::other)
+        write_npy(file, field)
     })?;
     let index = FieldIndex {
         axes: ["x", "y", "u", "v"],

@@ -33,11 +33,12 @@ mod file;
 pub mod gz;
 pub mod mcpl;
 mod npy;
+mod npy_header;
 mod set;
 pub mod tm25;
 
 pub use convert::{Converted, convert};
 pub use fault::{Fault, FilePosition};
 pub use file::{Format, MEMORY, MEMORY_FREE, RayFile};
-pub use npy::npy_header;
+pub use npy_header::NpyHeader;
 pub use set::{PHOTON_ENERGY_LENGTH, PowerUnit, RaySet, Wavelengths};

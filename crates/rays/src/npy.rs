@@ -3,29 +3,15 @@
 
 use crate::cursor::ByteCursor;
 use crate::set::{length, unit};
-use crate::{Fault, PowerUnit, RaySet, Wavelengths};
+use crate::{Fault, NpyHeader, PowerUnit, RaySet, Wavelengths};
 
 /// By how much the length of a direction may differ from 1: f32 that became f64, with room.
 const LENGTH_SLACK: f64 = 1e-5;
 
-/// Header of an NPY file, version 1.0, of f64 [rows, columns] in C order; padded to a multiple of 64 bytes.
-#[must_use]
-pub fn npy_header(rows: u64, columns: usize) -> Vec<u8> {
-    let fields =
-        format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({rows}, {columns}), }}");
-    let preamble = 10;
-    let length = (preamble + fields.len() + 1).next_multiple_of(64) - preamble;
-    let mut header = b"\x93NUMPY\x01\x00".to_vec();
-    // The fields are about 80 bytes: the length fits 16 bits.
-    header.extend(u16::try_from(length).unwrap_or(u16::MAX).to_le_bytes());
-    header.extend(format!("{fields:<width$}\n", width = length - 1).bytes());
-    header
-}
-
 /// # Errors
 /// A ray that [`read`] refuses.
 pub(crate) fn write(set: &RaySet) -> Result<Vec<u8>, Fault> {
-    let mut bytes = npy_header(set.len() as u64, 8);
+    let mut bytes = NpyHeader::new("<f8", &[set.len() as u64, 8]).bytes();
     for (ray, ([x, y, z], [kx, ky, kz])) in set.positions.iter().zip(&set.directions).enumerate() {
         let wavelength = set.wavelength(ray).unwrap_or(f64::NAN);
         let row = [*x, *y, *z, *kx, *ky, *kz, set.powers[ray], wavelength];
@@ -96,29 +82,17 @@ pub(crate) fn read(bytes: &[u8]) -> Result<RaySet, Fault> {
 
 /// Where numbers begin, and how many rows and columns there are.
 fn shape(bytes: &[u8]) -> Result<(usize, usize, usize), Fault> {
-    let mut cursor = ByteCursor::new(bytes, 0, true);
-    if !cursor
-        .take(8, "the signature of NPY")?
-        .starts_with(b"\x93NUMPY\x01")
-    {
-        return Err(Fault::byte(0, "no NPY file of version 1"));
-    }
-    let length = cursor.take(2, "the length of the header")?;
-    let length = usize::from(u16::from_le_bytes([length[0], length[1]]));
-    let header = String::from_utf8_lossy(cursor.take(length, "the header")?).replace(' ', "");
     let refused = || {
-        let message = "an array of f64 ('<f8') in C order, [rays, 7] or [rays, 8], is expected";
-        Fault::byte(10, message)
+        let message = "an NPY file of an array of f64 ('<f8') in C order, [rays, 7] or [rays, 8], is expected";
+        Fault::byte(0, message)
     };
-    let plain = header.contains("'descr':'<f8'") && header.contains("'fortran_order':False");
-    let shape = header
-        .split_once("'shape':(")
-        .and_then(|(_, rest)| rest.split_once(')'))
-        .and_then(|(shape, _)| shape.split_once(','))
-        .filter(|_| plain)
-        .ok_or_else(refused)?;
-    match (shape.0.parse(), shape.1.parse()) {
-        (Ok(rays), Ok(columns @ (7 | 8))) => Ok((cursor.at(), rays, columns)),
+    let (header, start) = NpyHeader::read(bytes).ok_or_else(refused)?;
+    let is_plain = header.descr == "<f8" && !header.fortran_order;
+    match header.shape[..] {
+        [rays, columns @ (7 | 8)] if is_plain => {
+            let rays = usize::try_from(rays).map_err(|_| refused())?;
+            Ok((start, rays, if columns == 7 { 7 } else { 8 }))
+        }
         _ => Err(refused()),
     }
 }

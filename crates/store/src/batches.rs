@@ -3,12 +3,11 @@
 use crate::Failure;
 use crate::Method;
 use crate::Results;
-use crate::npz::{Npz, NpzFile};
+use crate::npz::{Npz, NpzFile, Number};
 use crate::stored::Stored;
 use etendue_field::{Ledger, PlaneTally, Projection, ProjectionGrid, Slices, VirtualPlane};
 use etendue_spectrum::{Batch, Measurement, PROJECTION_BINS, PlaneBatch, RayMoments};
 use ndarray::{Array1, Array2, Array3, Array4, ArrayView, Axis, Dimension, RemoveAxis, stack};
-use ndarray_npy::WritableElement;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
@@ -105,7 +104,7 @@ fn add_stacked<'a, A, D>(
     arrays: impl Iterator<Item = ArrayView<'a, A, D>>,
 ) -> Result<Npz, Failure>
 where
-    A: Clone + WritableElement + 'a,
+    A: Number + 'a,
     D: Dimension,
     D::Larger: RemoveAxis,
 {

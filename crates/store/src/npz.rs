@@ -2,17 +2,95 @@
 
 use crate::Failure;
 use etendue_field::{Complex, SliceGrid};
-use ndarray::{Array, Array1, ArrayBase, ArrayView, Data, Dimension, IntoDimension};
-use ndarray_npy::{
-    NpzWriter, ReadNpyExt, ReadableElement, ViewElement, ViewNpyError, ViewNpyExt, WritableElement,
-};
+use etendue_rays::NpyHeader;
+use ndarray::{Array, Array1, ArrayBase, Data, Dimension, IntoDimension, ShapeBuilder};
 use std::fmt::{self, Display};
-use std::io::{Cursor, Read};
+use std::io::{self, Cursor, Read, Write};
 use std::path::PathBuf;
-use zip::ZipArchive;
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipArchive, ZipWriter};
+
+/// A number that an array may hold.
+pub trait Number: Copy {
+    /// Its type as NumPy writes it, with the lowest byte first.
+    const DESCR: &'static str;
+    /// Appends its bytes.
+    fn write(self, bytes: &mut Vec<u8>);
+    /// The number of as many bytes as it has.
+    fn read(bytes: &[u8]) -> Option<Self>;
+    /// Whether it is neither infinite nor NaN.
+    fn is_finite(self) -> bool;
+}
+
+/// Numbers that the standard library reads and writes.
+macro_rules! plain_number {
+    ($type:ty, $descr:literal, $is_finite:expr) => {
+        impl Number for $type {
+            const DESCR: &'static str = $descr;
+
+            fn write(self, bytes: &mut Vec<u8>) {
+                bytes.extend(self.to_le_bytes());
+            }
+
+            fn read(bytes: &[u8]) -> Option<Self> {
+                Some(Self::from_le_bytes(bytes.try_into().ok()?))
+            }
+
+            fn is_finite(self) -> bool {
+                let is_finite: fn(Self) -> bool = $is_finite;
+                is_finite(self)
+            }
+        }
+    };
+}
+
+plain_number!(f32, "<f4", Self::is_finite);
+plain_number!(f64, "<f8", Self::is_finite);
+plain_number!(u32, "<u4", |_| true);
+plain_number!(u64, "<u8", |_| true);
+
+impl Number for Complex {
+    const DESCR: &'static str = "<c16";
+
+    fn write(self, bytes: &mut Vec<u8>) {
+        self.re.write(bytes);
+        self.im.write(bytes);
+    }
+
+    fn read(bytes: &[u8]) -> Option<Self> {
+        let (re, im) = bytes.split_at_checked(size_of::<f64>())?;
+        Some(Self::new(f64::read(re)?, f64::read(im)?))
+    }
+
+    fn is_finite(self) -> bool {
+        self.re.is_finite() && self.im.is_finite()
+    }
+}
+
+/// Writes an array as an NPY file, in C order.
+pub fn write_npy<A, S, D>(file: &mut dyn Write, array: &ArrayBase<S, D>) -> io::Result<()>
+where
+    A: Number,
+    S: Data<Elem = A>,
+    D: Dimension,
+{
+    /// Numbers that are turned into bytes at a time.
+    const BLOCK: usize = 1 << 13;
+    let shape: Vec<u64> = array.shape().iter().map(|length| *length as u64).collect();
+    file.write_all(&NpyHeader::new(A::DESCR, &shape).bytes())?;
+    let mut bytes = Vec::with_capacity(BLOCK * size_of::<A>());
+    for number in array {
+        number.write(&mut bytes);
+        if bytes.len() >= BLOCK * size_of::<A>() {
+            file.write_all(&bytes)?;
+            bytes.clear();
+        }
+    }
+    file.write_all(&bytes)
+}
 
 /// Named arrays in the making of a file.
-pub struct Npz(NpzWriter<Cursor<Vec<u8>>>);
+pub struct Npz(ZipWriter<Cursor<Vec<u8>>>);
 
 impl fmt::Debug for Npz {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -30,18 +108,23 @@ impl Npz {
     /// No arrays yet.
     #[must_use]
     pub fn new() -> Self {
-        Self(NpzWriter::new(Cursor::new(Vec::new())))
+        Self(ZipWriter::new(Cursor::new(Vec::new())))
     }
 
     /// Adds an array by its name.
     pub fn add<A, S, D>(mut self, name: &str, array: &ArrayBase<S, D>) -> Result<Self, Failure>
     where
-        A: WritableElement,
+        A: Number,
         S: Data<Elem = A>,
         D: Dimension,
     {
+        let options = SimpleFileOptions::default()
+            .compression_method(CompressionMethod::Stored)
+            .large_file(array.len().saturating_mul(size_of::<A>()) >= MAX_SMALL_FILE);
         self.0
-            .add_array(name, array)
+            .start_file(format!("{name}.npy"), options)
+            .map_err(io::Error::from)
+            .and_then(|()| write_npy(&mut self.0, array))
             .map_err(|e| Failure::cannot_run(format!("array {name}: {e}")))?;
         Ok(self)
     }
@@ -58,6 +141,9 @@ impl Npz {
         Ok(finished.into_inner())
     }
 }
+
+/// Larger arrays than this need the 64-bit fields of ZIP, which NumPy reads.
+const MAX_SMALL_FILE: usize = 1 << 31;
 
 /// The axes of arrays [azimuth, ρ ≥ 0, ν].
 fn half_axes(grid: &SliceGrid) -> [(&'static str, Array1<f64>); 3] {
@@ -85,58 +171,6 @@ impl fmt::Debug for NpzFile {
     }
 }
 
-/// A number an array may hold.
-pub trait Number: ReadableElement + ViewElement + Copy {
-    /// Whether it is neither infinite nor NaN.
-    fn is_finite(self) -> bool;
-}
-
-impl Number for f64 {
-    fn is_finite(self) -> bool {
-        self.is_finite()
-    }
-}
-
-impl Number for Complex {
-    fn is_finite(self) -> bool {
-        self.re.is_finite() && self.im.is_finite()
-    }
-}
-
-impl Number for u32 {
-    fn is_finite(self) -> bool {
-        true
-    }
-}
-
-impl Number for u64 {
-    fn is_finite(self) -> bool {
-        true
-    }
-}
-
-/// Whether the header of an NPY file is short and flat, as those of arrays of numbers are: the library takes
-/// time that doubles with each bracket inside another.
-fn has_plain_header(bytes: &[u8]) -> bool {
-    /// Those of Étendue and of NumPy have 118.
-    const LONGEST: usize = 1024;
-    let header = &bytes[..bytes.len().min(LONGEST)];
-    let length = match header {
-        // Magic, version, and the length in two or four bytes.
-        [0x93, b'N', b'U', b'M', b'P', b'Y', 1, _, a, b, ..] => {
-            Some(10 + usize::from(u16::from_le_bytes([*a, *b])))
-        }
-        [0x93, b'N', b'U', b'M', b'P', b'Y', 2 | 3, _, a, b, 0, 0, ..] => {
-            Some(12 + usize::from(u16::from_le_bytes([*a, *b])))
-        }
-        _ => None,
-    };
-    let header = length.and_then(|length| header.get(..length));
-    // One for the dictionary and one for the shape.
-    let opening = |byte: &&u8| matches!(byte, b'{' | b'(' | b'[');
-    header.is_some_and(|header| header.iter().filter(opening).count() <= 2)
-}
-
 /// The most an NPY file has before its numbers.
 const HEADER: usize = 1 << 16;
 
@@ -161,23 +195,33 @@ impl NpzFile {
         shape: I,
     ) -> Result<Array<A, I::Dim>, Failure> {
         let shape = shape.into_dimension();
-        let found: Array<A, I::Dim> =
-            self.finite(name, shape.size().saturating_mul(size_of::<A>()))?;
-        if found.raw_dim() != shape {
+        let bytes = shape.size().saturating_mul(size_of::<A>());
+        let (found, numbers) = self.numbers(name, bytes)?;
+        let wanted = shape.slice().iter().map(|length| *length as u64);
+        if !wanted.eq(found.shape.iter().copied()) {
             let is = format!(
                 "its shape is {:?}; must be {:?}",
-                found.shape(),
+                found.shape,
                 shape.slice()
             );
             return Err(self.fault(name, is));
         }
-        Ok(found.as_standard_layout().into_owned())
+        Array::from_shape_vec(shape.set_f(found.fortran_order), numbers)
+            .map(|array| array.as_standard_layout().into_owned())
+            .map_err(|e| self.fault(name, e))
     }
 
     /// The numbers of an axis, of any length.
     pub fn axis(&mut self, name: &str) -> Result<Array1<f64>, Failure> {
         // What is not compressed is no larger than the file.
-        self.finite(name, self.length)
+        let (found, numbers) = self.numbers(name, self.length)?;
+        match found.shape[..] {
+            [_] => Ok(Array1::from(numbers)),
+            _ => {
+                let is = format!("its shape is {:?}; must have one axis", found.shape);
+                Err(self.fault(name, is))
+            }
+        }
     }
 
     /// Whether the file is long enough for so many numbers of eight bytes, as it is where nothing is compressed.
@@ -185,28 +229,41 @@ impl NpzFile {
         numbers <= self.length / size_of::<f64>()
     }
 
-    /// An array of finite numbers that needs at most `bytes`.
-    fn finite<A: Number, D: Dimension>(
+    /// The finite numbers of an array that needs at most `bytes`, in the order of the file.
+    fn numbers<A: Number>(
         &mut self,
         name: &str,
         bytes: usize,
-    ) -> Result<Array<A, D>, Failure> {
+    ) -> Result<(NpyHeader, Vec<A>), Failure> {
         let bytes = self.entry(name, bytes)?;
-        if !has_plain_header(&bytes) {
+        let Some((header, start)) = NpyHeader::read(&bytes) else {
             return Err(self.fault(name, "its header is not one of an array of numbers"));
-        }
-        // A view takes no memory, whatever size the file claims the array to have: it sees that it is too short.
-        let found = match ArrayView::<A, D>::view_npy(&bytes) {
-            Ok(view) => view.to_owned(),
-            Err(ViewNpyError::MisalignedData) => {
-                Array::read_npy(&bytes[..]).map_err(|e| self.fault(name, e))?
-            }
-            Err(e) => return Err(self.fault(name, e)),
         };
-        if !found.iter().all(|number| number.is_finite()) {
+        if header.descr != A::DESCR {
+            let is = format!("its numbers are '{}'; must be '{}'", header.descr, A::DESCR);
+            return Err(self.fault(name, is));
+        }
+        let data = &bytes[start..];
+        let counted = |count: u64, length: &u64| count.checked_mul(*length);
+        let count = header.shape.iter().try_fold(1, counted);
+        if count.and_then(|count| count.checked_mul(size_of::<A>() as u64))
+            != Some(data.len() as u64)
+        {
+            let is = format!(
+                "its shape is {:?}, and {} bytes of numbers follow",
+                header.shape,
+                data.len()
+            );
+            return Err(self.fault(name, is));
+        }
+        let numbers: Vec<A> = data
+            .chunks_exact(size_of::<A>())
+            .filter_map(A::read)
+            .collect();
+        if !numbers.iter().all(|number| number.is_finite()) {
             return Err(self.fault(name, "it holds numbers that are not finite"));
         }
-        Ok(found)
+        Ok((header, numbers))
     }
 
     /// Whether it has an array of this name.

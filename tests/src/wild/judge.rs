@@ -64,14 +64,16 @@ pub(super) struct JudgedScene {
 /// Fewer rays than this in the window are too few for the spread of 64 batches: about ten in each.
 pub(crate) const HANDFUL: u64 = 640;
 
-/// The seed of the first run, and others.
-const FIRST: u64 = 1;
-const OTHERS: [u64; 2] = [2, 3];
+/// The seed of the first run of a scene, which is its own, and those of two more runs.
+fn seeds(file: &SceneFile) -> [u64; 3] {
+    [0, 1, 2].map(|i| file.run.seed + i)
+}
 
 /// Runs a scene, and looks into what fails.
 pub(super) fn judge(runner: &Runner, file: &SceneFile) -> io::Result<JudgedScene> {
     let mut judged = JudgedScene::default();
-    let planes = match runner.run(file, FIRST, false)? {
+    let [first, ..] = seeds(file);
+    let planes = match runner.run(file, first, false)? {
         RunEnding::Done(planes) => planes,
         RunEnding::Refused(why) => {
             judged.refused = Some(why);
@@ -89,7 +91,7 @@ pub(super) fn judge(runner: &Runner, file: &SceneFile) -> io::Result<JudgedScene
     judged.count(runner, file, &planes, false)?;
     let open = |p: &PlaneSummary| p.is_undecided() && !p.is_reference();
     if planes.iter().any(open) {
-        match runner.run(file, FIRST, true)? {
+        match runner.run(file, first, true)? {
             RunEnding::Done(planes) => judged.count(runner, file, &planes, true)?,
             other => judged.troubles.extend(trouble(&other)),
         }
@@ -122,8 +124,8 @@ impl JudgedScene {
         }
         self.fails += 1;
         let mut again = Vec::new();
-        for seed in OTHERS {
-            if let RunEnding::Done(planes) = runner.run(file, seed, backward)? {
+        for seed in &seeds(file)[1..] {
+            if let RunEnding::Done(planes) = runner.run(file, *seed, backward)? {
                 let failing = planes.into_iter().filter(PlaneSummary::fails);
                 again.extend(failing.map(|plane| plane.name));
             }
@@ -193,7 +195,7 @@ fn who(
         String::new()
     } else {
         let by = if backward { "photons" } else { "backward rays" };
-        let ending = runner.run(file, FIRST, !backward)?;
+        let ending = runner.run(file, file.run.seed, !backward)?;
         let found = match &ending {
             RunEnding::Done(planes) => planes.iter().find(|p| p.name == plane.name),
             _ => None,
@@ -247,20 +249,16 @@ pub(super) fn persists(
     file: &SceneFile,
     trouble: &SceneTrouble,
 ) -> io::Result<bool> {
+    let [first, second, _] = seeds(file);
+    let ending = || runner.run(file, first, false);
     match trouble {
-        SceneTrouble::Panic => Ok(matches!(
-            runner.run(file, FIRST, false)?,
-            RunEnding::Panic(_)
-        )),
-        SceneTrouble::Hang => Ok(matches!(runner.run(file, FIRST, false)?, RunEnding::Hang)),
-        SceneTrouble::Killed => Ok(matches!(
-            runner.run(file, FIRST, false)?,
-            RunEnding::Killed(_)
-        )),
+        SceneTrouble::Panic => Ok(matches!(ending()?, RunEnding::Panic(_))),
+        SceneTrouble::Hang => Ok(matches!(ending()?, RunEnding::Hang)),
+        SceneTrouble::Killed => Ok(matches!(ending()?, RunEnding::Killed(_))),
         SceneTrouble::Wrong {
             plane, backward, ..
         } => {
-            for seed in [FIRST, OTHERS[0]] {
+            for seed in [first, second] {
                 let RunEnding::Done(planes) = runner.run(file, seed, *backward)? else {
                     return Ok(false);
                 };

@@ -37,6 +37,8 @@ pub(crate) fn scene(seed: u64, index: u64, photons: u64, folder: &Path) -> io::R
     if draw.one_in(4) {
         file.run.sampling = Sampling::Random;
     }
+    // With one seed for all scenes their failures by chance would come together.
+    file.run.seed = u64::from(draw.whole(1, 1 << 30));
     Ok(file)
 }
 

@@ -51,7 +51,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
             "world",
         ],
     ),
-    ("store", &["compare", "field", "scene", "spectrum"]),
+    ("store", &["compare", "field", "rays", "scene", "spectrum"]),
     (
         "pipeline",
         &[

@@ -3,7 +3,7 @@
 use crate::case::MeasuredScene;
 use etendue_field::{Crossing, VirtualPlane};
 use etendue_rays::mcpl::{self, PHOTON, Particle, WATTS, stat_sum_comment};
-use etendue_rays::{npy_header, tm25};
+use etendue_rays::{NpyHeader, tm25};
 use etendue_trace::PlaneInWorld;
 use std::io;
 
@@ -86,7 +86,7 @@ impl<'a> Content<'a> {
 
     pub(super) fn begin(&self) -> Vec<u8> {
         match self {
-            Self::Npy(rows) => npy_header(*rows, 5),
+            Self::Npy(rows) => NpyHeader::new("<f8", &[*rows, 5]).bytes(),
             Self::Mcpl(_, header, rows) => header.bytes(*rows),
             Self::Tm25(_, header, rows) => header.bytes(*rows),
         }
