@@ -17,21 +17,25 @@ pub(crate) use shared::{PhotonArgs, SceneArgs, ThreadArgs};
 pub(crate) use sweep::{BandwidthArgs, CovarianceArgs, SweepArgs};
 pub(crate) use world::{ImportArgs, ProbeArgs, RenderArgs};
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use std::ffi::OsString;
+use std::fmt::Write;
 
 /// Measures the space-angle frequency content of light and compares it with theory.
 #[derive(Debug, Parser)]
 #[command(
     version,
     about,
-    after_help = "Examples:
+    help_template = "{about-with-newline}\n{usage-heading} {usage}\n{before-help}{after-help}",
+    after_help = "Options:
+  -h, --help     Print help, here or after a command
+  -V, --version  Print the version
+
+First steps:
   etendue run scenes/fig9b.ron                          measure, predict, compare, draw
-  etendue run scenes/fig9b.ron --photons 1e8 --out d    more photons, results in d
-  etendue run scenes/fig9b.ron --set blockers.0.pitch=0.05
-  etendue check scenes/fig9b.ron                        what the scene says, nothing traced
-  etendue measure | predict | compare                   the stages of run, over files
-  etendue diff results/fig9b out/fig9b                  two results of one scene
-  etendue sweep scenes/fig9b.ron --set blockers.0.pitch=0.05..0.4:8
+  etendue check scenes/fig9b.ron                        show how a scene is understood
+  etendue run scenes/fig9b.ron --set blockers.0.pitch=0.05 --out out/fine
+  etendue render scenes/worlds/glossy.xml               a picture of a Mitsuba scene
 
 Exit codes: 0 pass, 1 disagreement, 2 bad input, 3 cannot run (directory, memory, interrupted), 4 undecided"
 )]
@@ -42,42 +46,131 @@ pub(crate) struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Trace a scene, measure its spectra, predict them, compare and draw.
+    /// Trace a scene, predict its spectra, compare and draw.
     Run(RunArgs),
-    /// Measure a scene, whole or some of its batches, for `compare`.
+    /// Check a scene and show how it is understood; nothing is traced.
+    Check(CheckArgs),
+    /// Run a scene with several values of its fields; table and curves.
+    Sweep(SweepArgs),
+    /// Measure a scene, or some of its batches, for `compare`.
     Measure(MeasureArgs),
     /// Predict a scene, for `compare`.
     Predict(PredictArgs),
-    /// Print the commands that measure a scene in parts, on as many machines, and put them together.
-    Split(SplitArgs),
-    /// Compare what was measured with what was predicted; writes what `run` writes.
+    /// Compare measured and predicted files; writes what `run` writes.
     Compare(CompareArgs),
-    /// Validate a scene; print the chain read off it and the class of each plane; with --draw, draw it.
-    Check(CheckArgs),
-    /// Shrink the neighbourhood of the central ray: how fast the first-order chain comes to the exact prediction.
-    Converge(ConvergeArgs),
-    /// Compare two results of one scene: slices, parameters, predictions and the scenes, field by field.
+    /// Print commands that measure a scene in parts on several machines.
+    Split(SplitArgs),
+    /// Compare two results of one scene.
     Diff(DiffArgs),
-    /// Put the pages of several results side by side.
+    /// Show the pages of several results side by side.
     Report(ReportArgs),
-    /// Make figures of Durand et al. 2005 anew: measured and predicted, with data and recipe.
+    /// Reproduce the figures of Durand et al. 2005, or draw your scenes.
     Figure(FigureArgs),
-    /// Run a scene with fields that take several values: one table of every plane's numbers, and curves.
-    Sweep(SweepArgs),
-    /// How fast a glossy reflection changes with angle: the paper's criteria, corrected and as printed, and measured.
+    /// Measure how finely a glossy reflection must be sampled.
     Bandwidth(BandwidthArgs),
-    /// Covariance tracing beside the spectra of a scene: 4 × 4 matrices traced along the chain, exact and measured.
+    /// Compare covariance tracing with measured spectra.
     Covariance(CovarianceArgs),
-    /// Write a scene for another program, which then can be asked for the same light field.
-    Export(ExportArgs),
-    /// Read a scene of Mitsuba 3, and say what it holds and what is left out.
+    /// Measure how fast first-order maps approach the real geometry.
+    Converge(ConvergeArgs),
+    /// Show what a scene file of another program holds.
     Import(ImportArgs),
-    /// Render what a camera of such a scene sees, with errors: by paths that end at any light.
+    /// Render a scene of another program, with errors.
     Render(RenderArgs),
-    /// Measure the light field behind a pixel of such a scene, along the ray through it.
+    /// Measure the light field behind a pixel of such a scene.
     Probe(ProbeArgs),
-    /// Say what a ray file holds (IES TM-25, MCPL, NPY), and write its rays in another of these formats.
+    /// Write a scene for Mitsuba 3.
+    Export(ExportArgs),
+    /// Inspect a ray file or convert it to another format.
     Rays(RaysArgs),
-    /// Print the JSON schema of scene files, or what it says as a page: each field with its range, default and an example.
+    /// Print the JSON schema of scene files, or a page of all fields.
     Schema(SchemaArgs),
+}
+
+/// The commands by what they are for, as help lists them.
+const GROUPS: [(&str, &[&str]); 4] = [
+    (
+        "Measure and compare",
+        &[
+            "run", "check", "sweep", "measure", "predict", "compare", "split", "diff",
+        ],
+    ),
+    (
+        "Look at results and the paper",
+        &["report", "figure", "bandwidth", "covariance", "converge"],
+    ),
+    (
+        "Scenes of other programs",
+        &["import", "render", "probe", "export"],
+    ),
+    ("Files", &["rays", "schema"]),
+];
+
+/// A list of the commands in their groups.
+fn grouped(command: &clap::Command) -> String {
+    let mut list = String::new();
+    for (heading, names) in GROUPS {
+        let _ = writeln!(list, "\n{heading}:");
+        for name in names {
+            let about = command
+                .find_subcommand(name)
+                .and_then(clap::Command::get_about);
+            let about = about.map(ToString::to_string).unwrap_or_default();
+            let _ = writeln!(list, "  {name:<10}  {about}");
+        }
+    }
+    list
+}
+
+impl Cli {
+    /// The command with its grouped help.
+    fn grouped_command() -> clap::Command {
+        let command = <Self as CommandFactory>::command();
+        let list = grouped(&command);
+        command.before_help(list.trim_end().to_owned())
+    }
+
+    /// Parses a command line whose first word is the program.
+    pub(crate) fn parse_line(
+        line: impl IntoIterator<Item = impl Into<OsString> + Clone>,
+    ) -> Result<Self, clap::Error> {
+        let matches = Self::grouped_command().try_get_matches_from(line)?;
+        Self::from_arg_matches(&matches)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Cli, GROUPS};
+
+    #[test]
+    fn each_command_is_in_one_group() {
+        let command = Cli::grouped_command();
+        let mut listed: Vec<_> = GROUPS
+            .iter()
+            .flat_map(|(_, names)| *names)
+            .copied()
+            .collect();
+        let mut named: Vec<_> = command
+            .get_subcommands()
+            .map(|c| c.get_name().to_owned())
+            .collect();
+        listed.sort_unstable();
+        named.sort_unstable();
+        assert_eq!(listed, named);
+    }
+
+    #[test]
+    fn help_fits_80_columns() {
+        let help = Cli::grouped_command().render_help().to_string();
+        let list = help.split("Options:").next().unwrap_or_default();
+        let too_long: Vec<_> = list
+            .lines()
+            .filter(|line| line.chars().count() > 80)
+            .collect();
+        assert!(too_long.is_empty(), "{too_long:?}");
+        assert!(
+            list.contains("Scenes of other programs:\n  import "),
+            "{help}"
+        );
+    }
 }

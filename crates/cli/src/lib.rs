@@ -33,7 +33,6 @@ mod warnings;
 mod workers;
 
 use args::{Cli, Command};
-use clap::Parser;
 use exit::{ended, not_parsed};
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -49,7 +48,7 @@ pub fn main() -> ExitCode {
 ///
 /// Signals are those of the command from then on.
 pub fn command(line: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u8 {
-    let command = match Cli::try_parse_from(line) {
+    let command = match Cli::parse_line(line) {
         Ok(cli) => cli.command,
         Err(error) => return not_parsed(&error),
     };

@@ -10,6 +10,9 @@ use etendue_pipeline::table::aligned;
 use etendue_store::Failure;
 use etendue_sweep::{FinishedSweep, SweepPoints, run};
 
+/// Undecided planes whose reasons are printed.
+const MAX_REASONS: usize = 4;
+
 /// `etendue sweep`: returns the exit code.
 pub(crate) fn sweep(args: &SweepArgs) -> Result<u8, Failure> {
     sweep_with(args, None)
@@ -46,6 +49,7 @@ fn print(finished: &FinishedSweep) {
         rows,
         has_curves,
         verdicts: [pass, fail, undecided],
+        undecided: reasons,
     } = finished;
     say(&aligned(rows.clone()).join("\n"));
     if !has_curves {
@@ -55,5 +59,15 @@ fn print(finished: &FinishedSweep) {
     say(&format!(
         "{all} points: {pass} pass, {fail} fail, {undecided} undecided"
     ));
+    for reason in reasons.iter().take(MAX_REASONS) {
+        say(&format!("  undecided: {reason}"));
+    }
+    if let Some(more) = reasons
+        .len()
+        .checked_sub(MAX_REASONS)
+        .filter(|more| *more > 0)
+    {
+        say(&format!("  and {more} more planes"));
+    }
     say(&format!("sweep in {}", folder.display()));
 }

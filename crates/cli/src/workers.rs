@@ -4,7 +4,6 @@ use crate::args::{Cli, Command, PhotonArgs, RunArgs, SceneArgs, ThreadArgs};
 use crate::exit::{ended, not_parsed};
 use crate::threads::on_threads;
 use crate::{interrupt, predict, run, sweep};
-use clap::Parser;
 use etendue_pipeline::{
     Job, Leader, Options, Silent, Workers, follow_job, follow_points, report_failure,
 };
@@ -15,7 +14,7 @@ use std::ffi::OsString;
 /// What a command line comes to in a workers; returns the exit code. `run`, `predict` and `sweep` are for many.
 pub fn command_of_workers(line: impl IntoIterator<Item = OsString>, workers: &dyn Workers) -> u8 {
     let leads = workers.number() == 0;
-    let command = match Cli::try_parse_from(line) {
+    let command = match Cli::parse_line(line) {
         Ok(cli) => cli.command,
         Err(error) => {
             // Whoever sees the terminal says it.

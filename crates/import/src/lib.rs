@@ -43,6 +43,10 @@ pub fn import(file: &Path, options: &Options) -> Result<Imported, Refused> {
         "ply" => obj::import_ply(file, options),
         "xml" => mitsuba::import(file, options),
         "pbrt" => pbrt::import(file, options),
+        "ron" | "json" => Err(Refused::because(
+            file,
+            "a scene of Étendue; run and check read it. Allowed here: gltf, glb (glTF 2.0), obj, ply, pbrt (pbrt-v4), xml (Mitsuba 3)".to_owned(),
+        )),
         other => Err(Refused::because(
             file,
             format!(

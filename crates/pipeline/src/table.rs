@@ -8,10 +8,12 @@ use etendue_field::{decimals, fixed, tidy, uncertain};
 
 /// The table of planes, that of parameters, and the verdict, as `etendue run` prints them.
 pub fn text(summary: &Summary) -> String {
-    let ledger = summary.ledger_imbalance.map(|imbalance| {
-        let imbalance = imbalance.abs();
-        format!(", flux accounted for to {imbalance:.0e}")
-    });
+    let ledger = summary
+        .ledger_imbalance
+        .map(|imbalance| match imbalance.abs() {
+            0.0 => ", flux conserved exactly".to_owned(),
+            imbalance => format!(", flux conserved to {imbalance:.0e}"),
+        });
     let mut lines = vec![
         format!(
             "{}: {} photons, seed {}{}",

@@ -27,10 +27,12 @@ pub fn stored_data(folder: &Path) -> Result<String, Failure> {
     let shown = folder.join(NAME);
     let fault = |what: &str| Failure::bad_input(format!("{}: {what}", shown.display()));
     let hash = etendue_store::hash_of(folder, SUMMARY, NAME).ok_or_else(|| {
-        let folder = folder.display();
-        Failure::bad_input(format!(
-            "{folder} is no whole result with a {NAME}: run the scene again with this version"
-        ))
+        let shown = folder.display();
+        Failure::bad_input(if folder.is_dir() {
+            format!("{shown} holds no complete result with a {NAME}: run its scene again with this version")
+        } else {
+            format!("{shown}: no such folder")
+        })
     })?;
     let bytes = read_file(&shown, MAX_PAGE_BYTES).map_err(|e| fault(&e.to_string()))?;
     if hash != blake3::hash(&bytes).to_hex().as_str() {

@@ -2,7 +2,7 @@
 
 use crate::scene::{BlockerLayer, Scene};
 use etendue_field::{Light, Mask, VirtualPlane, Window, tidy};
-use etendue_scenefile::{FrequenciesFile, PlaneFile};
+use etendue_scenefile::{FrequenciesFile, PlaneFile, WindowFile};
 use serde_json::Value;
 use std::collections::BTreeSet;
 
@@ -10,6 +10,8 @@ use std::collections::BTreeSet;
 const MANY_METRES: f64 = 100.0;
 /// What a length of a metre is less than.
 const NEAR: f64 = 10.0;
+/// Larger slopes, beyond 79° from the central ray, are rarely meant.
+const STEEP: f64 = 5.0;
 
 /// Each likely mistake in words.
 pub(crate) fn mistakes(scene: &Scene) -> Vec<String> {
@@ -19,7 +21,8 @@ pub(crate) fn mistakes(scene: &Scene) -> Vec<String> {
         told.extend(coarse(i, file, plane, &scene.file.frequencies));
         told.extend(past_edges(scene, plane));
     }
-    long(scene).into_iter().chain(told).collect()
+    let steep = steep(&scene.file.window);
+    long(scene).into_iter().chain(steep).chain(told).collect()
 }
 
 /// Lengths that seem to be in millimetres.
@@ -40,6 +43,13 @@ fn long(scene: &Scene) -> Option<String> {
     lengths.sort_by(|(_, a), (_, b)| a.total_cmp(b));
     let (_, median) = lengths.get(lengths.len() / 2)?;
     let (path, longest) = lengths.last()?;
+    if *median >= MANY_METRES {
+        return Some(format!(
+            "lengths are about {} m, up to {} m ({path}): are those millimetres?",
+            tidy(*median),
+            tidy(*longest)
+        ));
+    }
     (*longest >= MANY_METRES && *median < NEAR).then(|| {
         format!(
             "{path} is {} m, among lengths of about {} m: are those millimetres?",
@@ -47,6 +57,20 @@ fn long(scene: &Scene) -> Option<String> {
             tidy(*median)
         )
     })
+}
+
+/// Slopes that seem to be angles in degrees.
+fn steep(window: &WindowFile) -> Option<String> {
+    let axes = [("u", Some(&window.u)), ("v", window.v.as_ref())];
+    let (name, slope) = axes
+        .into_iter()
+        .filter_map(|(name, profile)| Some((name, profile?.half_width())))
+        .find(|(_, slope)| *slope > STEEP)?;
+    Some(format!(
+        "window.{name} reaches a slope of {}, {:.0}° from the central ray: is that an angle in degrees?",
+        tidy(slope),
+        libm::atan(slope).to_degrees()
+    ))
 }
 
 /// All lengths below a node, each with the path of its field.

@@ -30,5 +30,9 @@ pub(crate) fn unfit(error: &serde_path_to_error::Error<serde_json::Error>) -> St
         Some(found) if told.starts_with("unknown ") => did_you_mean(found, names),
         _ => String::new(),
     };
+    let told = match told {
+        "expected value" => "no value of JSON stands here",
+        other => other,
+    };
     format!("{field}: {told}{meant}; allowed: {}", wanted(&field))
 }

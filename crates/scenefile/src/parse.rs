@@ -21,6 +21,14 @@ impl SceneFile {
         if text.trim_start().starts_with('{') {
             return json(text);
         }
+        if text.trim_start().starts_with('<') {
+            let message = "this is XML, such as a scene of Mitsuba 3, which render, import and probe read; allowed: a scene in RON or JSON";
+            return Err(SceneError::Syntax {
+                line: 1,
+                column: 1,
+                message: message.to_owned(),
+            });
+        }
         let options = ron::Options::default()
             .with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
         options.from_str(text).map_err(|error| {
@@ -153,7 +161,7 @@ fn unexpected(code: &Error, text: &str, [line, column]: [usize; 2]) -> String {
     let found = shown(&rest[..word(rest)], EXCERPT);
     let allowed = match code {
         Error::Eof => {
-            return "the file ends here; allowed: what is missing, and a bracket that closes it"
+            return "the file ends here, and a bracket is still open; allowed: its missing fields and `)`"
                 .into();
         }
         Error::ExpectedComma if rest.starts_with('^') => {

@@ -34,6 +34,8 @@ pub struct FinishedSweep {
     pub has_curves: bool,
     /// How many points pass, fail, and are undecided.
     pub verdicts: [usize; 3],
+    /// Why planes are undecided, each with its point and plane.
+    pub undecided: Vec<String>,
 }
 
 /// Runs the points that are not done yet, and writes the table and the pictures. `folder` keeps each point.
@@ -254,7 +256,17 @@ fn finish(
         rows: rows(&paths, found),
         has_curves: !figures.is_empty(),
         verdicts: ["pass", "fail", "undecided"].map(count),
+        undecided: found.iter().flat_map(undecided).collect(),
     })
+}
+
+/// Why planes of a point are undecided.
+fn undecided(at: &PointResult) -> Vec<String> {
+    let reasons = at.planes().filter_map(|plane| {
+        let [name, reason] = ["name", "undecided"].map(|key| plane[key].as_str());
+        Some(format!("{}, {}: {}", at.folder, name?, reason?))
+    });
+    reasons.collect()
 }
 
 /// The table for the terminal: a row for each plane at each point.

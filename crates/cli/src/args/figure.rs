@@ -25,7 +25,7 @@ fn qualities() -> impl TypedValueParser<Value = Quality> {
 #[command(after_help = "Example:
   etendue report out/fig9a out/fig9b out/fig9c --out out/fig9.html
 
-Each run leaves such a page of its own, report.html, among its results. It holds all it shows and asks nothing of the network.")]
+Each run writes a page of its own, report.html. Pages are complete in one file and need no network.")]
 pub(crate) struct ReportArgs {
     /// Folders of `etendue run` or `compare`
     #[arg(value_name = "DIR", required = true)]
@@ -43,19 +43,19 @@ pub(crate) struct ReportArgs {
 #[command(after_help = "Examples:
   etendue figure 9
   etendue figure all --quality draft --out out/figures
-  etendue figure my.ron                                      light field and spectra along the path of a scene of one's own
-  etendue figure a.ron b.ron --plane receiver --out out      scenes side by side at a plane, in one range of colors
+  etendue figure my.ron                                      light field and spectra along the path of your scene
+  etendue figure a.ron b.ron --plane receiver --out out      two scenes side by side at one plane
 
-Figures of Durand et al. 2005: 1, 3 to 15, and table1. Those of kernels, 5 and 12, are theory alone; all others are measured,
-and predicted beside it. Each has a folder with
-  figure.png, .svg, .pdf   the PDF at most 7 inches wide, two columns of a journal; text is text
+Figures of Durand et al. 2005: 1, 3 to 17, and table1. Figures 5 and 12 show kernels, from theory alone; all others are measured
+and predicted. Each figure gets a folder with
+  figure.png, .svg, .pdf   the PDF is at most 7 inches wide (two columns of a journal)
   figure.npz               light fields and spectra of all planes (docs/conventions.md)
   figure.csv               the numbers of curves and bars
-  figure.json              whether each plane agrees with theory, and the command that makes the figure again
-  NAME.ron                 its scenes; those of one's own stand in figure.json as they were run
-Exit codes are those of run, of the worst plane.")]
+  figure.json              the verdict of each plane, and the command that makes the figure again
+  NAME.ron                 its scenes; figure.json holds your scenes as they were run
+Exit codes are those of run, for the worst plane.")]
 pub(crate) struct FigureArgs {
-    /// Figures of the paper (1, 3 to 15, table1, or all), or scene files, which make one figure
+    /// Figures of the paper (1, 3 to 17, table1, or all), or scene files, drawn as one figure
     #[arg(value_name = "NAME|SCENE.ron", required = true)]
     pub(crate) names: Vec<String>,
 

@@ -6,15 +6,15 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
-  etendue rays led.tm25ray                          what it holds: rays, power, units, wavelengths, texts
+  etendue rays led.tm25ray                          show rays, power, units, wavelengths and texts
   etendue rays led.tm25ray --out led.mcpl.gz        the same rays as photons of MCPL
   etendue rays out/fig9b/receiver/photons.mcpl --out rays.npy
 
-The format of FILE is told by its first bytes, that of the other file by its ending:
+The first bytes of FILE determine its format; the ending of the output file determines the other:
   .tm25ray          IES TM-25: mm, nm, W or lm, single precision
   .mcpl, .mcpl.gz   MCPL: cm, MeV, ms, weights; a photon of energy E has the wavelength hc/E
   .npy              f64 [rays, 8]: x, y, z (m), kx, ky, kz, power, wavelength (m; NaN where it is not known)
-A note says what another format cannot hold. In its own format a file keeps all it has. docs/rays.md has the units.")]
+A note lists what the other format cannot hold. Copies in the same format keep everything. docs/rays.md has the units.")]
 pub(crate) struct RaysArgs {
     /// Ray file: IES TM-25, MCPL (also in gzip) or NPY
     #[arg(value_name = "FILE")]

@@ -17,10 +17,10 @@ use std::time::Duration;
   etendue run scenes/fig9b.ron --photons 1e8 --seed 7 --threads 2 --out out/more
   etendue run scenes/fig9b.ron --set planes.3.at='Distance(1.5)' --save photons
   etendue run scenes/fig9b.ron --save mcpl,tm25                        rays for other programs (docs/rays.md)
-  etendue run scenes/fig9b.ron --photons 2^33 --resume --time 2h      again and again, until it is done
+  etendue run scenes/fig9b.ron --photons 2^33 --resume --time 2h      repeat until done
 
 Results are in out/NAME unless --out names another folder. Photon counts may be written 10_000_000, 1e7 or 2^23.
-Powers of two have least noise, in 64 batches or 2^m.")]
+Powers of two give the least noise, with 64 or another power of two batches.")]
 pub(crate) struct RunArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
@@ -31,17 +31,17 @@ pub(crate) struct RunArgs {
     #[command(flatten)]
     pub(crate) photons: PhotonArgs,
 
-    /// Goes on until noise alone is at most this share of the spectrum at each plane: with 2^20
-    /// photons first, then as many as that takes, up to --photons [default: 2^40]; exit code 3 if
-    /// these do not do
+    /// Trace until the noise is at most this share of the spectrum at each plane: 2^20 photons
+    /// first, then as many as needed, up to --photons [default: 2^40]; exit code 3 if these do not
+    /// suffice
     #[arg(long, value_name = "SHARE", value_parser = share)]
     pub(crate) target_error: Option<f64>,
 
-    /// Go on from the batches that a run of the same command has left; several processes may share the work
+    /// Continue from the batches that an earlier run of the same command has kept; several processes may share the work
     #[arg(long, conflicts_with_all = ["target_error", "expect"])]
     pub(crate) resume: bool,
 
-    /// Begin no more batches after this time, such as 90s, 30m or 1h 30m; what is done is kept for --resume
+    /// Stop beginning batches after this time, such as 90s, 30m or 1h 30m; finished batches are kept for --resume
     #[arg(long, value_name = "TIME", value_parser = humantime::parse_duration, conflicts_with = "target_error")]
     pub(crate) time: Option<Duration>,
 
@@ -67,7 +67,7 @@ pub(crate) struct RunArgs {
   etendue measure scenes/fig9b.ron --photons 1e8 --batches 0..32 --out out/a     on one machine,
   etendue measure scenes/fig9b.ron --photons 1e8 --batches 32..64 --out out/b    on another
 
-Batches of one scene, seed and photon count fit together, wherever they were measured.")]
+Batches with the same scene, seed and photon count can be combined, wherever they were measured.")]
 pub(crate) struct MeasureArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
@@ -78,7 +78,7 @@ pub(crate) struct MeasureArgs {
     #[command(flatten)]
     pub(crate) photons: PhotonArgs,
 
-    /// Batches to measure, A up to but without B [default: all]; --photons counts those of all
+    /// Batches to measure, A..B with B excluded [default: all]; --photons counts the photons of all batches
     #[arg(long, value_name = "A..B", value_parser = range, allow_hyphen_values = true)]
     pub(crate) batches: Option<Range<u32>>,
 
@@ -88,20 +88,20 @@ pub(crate) struct MeasureArgs {
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
-  etendue split scenes/fig9b.ron --photons 2^36 --parts 32               a command for each part, and two for the end
+  etendue split scenes/fig9b.ron --photons 2^36 --parts 32               a command for each part, then predict and compare
   etendue split scenes/fig9b.ron --photons 2^36 --parts 32 --slurm > job.sh && sh job.sh
 
-Parts may run in any order, anywhere: the result has the bytes of one run. Their folders are inside that of the results,
+Parts may run in any order on any machine; the result has the same bytes as one run. Their folders are inside the results folder,
 out/NAME unless --out names another.")]
 pub(crate) struct SplitArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
 
-    /// Parts, each of about as many batches
+    /// Number of parts, with about equally many batches
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) parts: u32,
 
-    /// Print a script for Slurm: an array of jobs, and one that depends on all
+    /// Print a script for Slurm: an array of jobs, and a last job that depends on all of them
     #[arg(long)]
     pub(crate) slurm: bool,
 
@@ -117,7 +117,7 @@ pub(crate) struct SplitArgs {
   etendue predict scenes/fig9b.ron --out out/predicted
   etendue predict scenes/fig9b.ron --set blockers.0.pitch=0.05 --out out/narrow
 
-A prediction serves measurements of its scene with any seed and number of photons.")]
+A prediction can be compared with measurements of its scene with any seed and number of photons.")]
 pub(crate) struct PredictArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
@@ -125,7 +125,7 @@ pub(crate) struct PredictArgs {
     #[command(flatten)]
     pub(crate) out: StageFolderArgs,
 
-    /// Those of the measurement: where there is no theory, the other method measures as many
+    /// As in the measurement: where no theory applies, the other method measures as many
     #[command(flatten)]
     pub(crate) photons: PhotonArgs,
 
@@ -138,9 +138,9 @@ pub(crate) struct PredictArgs {
   etendue compare --measured out/all --predicted out/predicted --out out/fig9b
   etendue compare --measured out/a out/b --predicted out/predicted --out out/fig9b
 
-Parts of a measurement may come in any order. 32 batches are enough; what is reported is of those there are.")]
+Parts of a measurement may be given in any order. At least 32 batches are needed; the report covers the given batches.")]
 pub(crate) struct CompareArgs {
-    /// Folders of `etendue measure`: a measurement, whole or in parts
+    /// Folders of `etendue measure`, with all or some batches
     #[arg(long, value_name = "DIR", num_args = 1.., required = true)]
     pub(crate) measured: Vec<PathBuf>,
 
@@ -164,8 +164,8 @@ pub(crate) struct CompareArgs {
   etendue converge scenes/table1/concave_oblique.ron
   etendue converge scenes/table1/concave_oblique.ron --set as_printed=true      the paper's printed formulas stay off
 
-Widths of light and windows times e, frequencies over e: the error of first-order maps falls as e, and as e² at normal incidence.
-No order is given where an error is down to that of the quadrature.")]
+Light and windows are scaled by e and frequencies by 1/e. The error of first-order maps then falls as e, and as e² at normal incidence.
+No order is printed where the error reaches that of the quadrature.")]
 pub(crate) struct ConvergeArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
@@ -176,17 +176,17 @@ pub(crate) struct ConvergeArgs {
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
-  etendue diff results/fig9b out/fig9b                 of two versions of the program
-  etendue diff out/seed1 out/seed2                     is a disagreement chance?
-  etendue diff out/photons out/backward                of two methods
+  etendue diff results/fig9b out/fig9b                 two versions of the program
+  etendue diff out/seed1 out/seed2                     was a disagreement chance?
+  etendue diff out/photons out/backward                two methods
 
-Tested are, over all planes together at level α: the measured slices, by χ² of their difference over both variances, and each
-parameter of the chain, by its pull. Both results need noise of their own: other seeds, or other methods. Results with one
-seed share photons; they are then the same number for number, or undecided. Predictions of one scene must be equal within
-their stated errors. Of scenes with another window or other frequencies at a plane, the plane is not compared.
+Tests, over all planes together at level α, the measured slices (χ² of their difference over the sum of both variances) and each
+parameter of the chain (difference over its standard error). Both results need independent noise: different seeds or methods.
+Results with the same seed share photons; they are then identical, or undecided. Predictions of one scene must be equal within
+their stated errors. A plane with another window or other frequencies is not compared.
 
-The test assumes that each result is a mean of many independent batches, so that its noise is normal, and that the noise of both
-is correlated alike from frequency to frequency; where it is not, p is too large rather than too small.
+The test assumes that each result is a mean of many independent batches, hence has normal noise, and that the noise of both
+is correlated in the same way between frequencies; otherwise p is too large rather than too small.
 
 Exit codes: 0 the same but for noise, 1 different, 2 bad input, 4 undecided")]
 pub(crate) struct DiffArgs {
@@ -194,11 +194,11 @@ pub(crate) struct DiffArgs {
     #[arg(value_name = "A")]
     pub(crate) a: PathBuf,
 
-    /// Another
+    /// Folder of another result
     #[arg(value_name = "B")]
     pub(crate) b: PathBuf,
 
-    /// Probability of finding a difference where there is none
+    /// Probability of reporting a difference where there is none
     #[arg(long, value_name = "SHARE", default_value = "1%", value_parser = share)]
     pub(crate) alpha: f64,
 }
@@ -219,14 +219,14 @@ pub(crate) struct CheckArgs {
 #[derive(Debug, Args)]
 #[command(after_help = "Example:
   etendue export --to mitsuba scenes/fig9b.ron --out out/mitsuba
-  python tests/peers/mitsuba_light_field.py --help         records the same light field with Mitsuba and compares spectra
+  python tests/peers/mitsuba_light_field.py --help         record the same light field with Mitsuba and compare spectra
 
 Files are in out/NAME-mitsuba unless --out names another folder.")]
 pub(crate) struct ExportArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
 
-    /// The program
+    /// Program that will read the files
     #[arg(long, value_name = "PROGRAM")]
     pub(crate) to: Program,
 

@@ -13,14 +13,13 @@ use std::path::PathBuf;
   etendue sweep scenes/fig9b.ron --set blockers.0.pitch=0.05..0.4:4log --set blockers.0.fill=0.3,0.6 --photons 2^20
   etendue sweep scenes/fig9b.ron --together --set surfaces.0.center.2=1.5,2,3 --set surfaces.0.albedo=0.2,0.5,0.8
 
-Leaves in its folder, out/NAME-sweep unless --out names another,
-  sweep.csv                            a row for each plane at each point and each number: the frequencies that hold 95 % of the power,
-                                       the shear slope, and each parameter, measured with its standard error and predicted
-  bandwidth_rho, bandwidth_nu, slope   curves over the field that is named first, as PNG, SVG and CSV; a grid with more than 24
-                                       panels has none
-  points/                              a run for each point: the same command goes on where it was stopped, and one with other
-                                       values of the same fields runs only what is new
-Values are numbers. Exit codes are those of run, of the worst point: one true point in a hundred fails by chance.")]
+Writes to out/NAME-sweep, or to the folder of --out:
+  sweep.csv                            a row for each point, plane and number: the frequencies that hold 95 % of the power,
+                                       the shear slope and each parameter, measured with standard error, and predicted
+  bandwidth_rho, bandwidth_nu, slope   curves over the first field, as PNG, SVG and CSV (no curves for more than 24 panels)
+  points/                              a run for each point. The same command continues an interrupted sweep, and a command
+                                       with other values of the same fields runs only the new points
+Values are numbers. Exit codes are those of run, for the worst point; one correct point in a hundred fails by chance.")]
 pub(crate) struct SweepArgs {
     /// Scene file, in RON
     #[arg(value_name = "SCENE.ron")]
@@ -73,14 +72,14 @@ impl SweepArgs {
   etendue bandwidth scenes/bandwidth.ron --sweep surfaces.0.facing.0=0..1:5      tan of the angle of incidence
   etendue bandwidth scenes/bandwidth_edge.ron --measure --csv edge.csv
 
-One row for each plane across the ray that leaves a smooth surface with a BRDF, and each value of the sweep; several sweeps go in step.
+One row for each plane across the ray that leaves a smooth surface with a BRDF, and for each value of the sweep; several sweeps advance together.
   k           curvature of the surface in the plane of incidence, 1/m, convex positive
-  θ0, θ1      angles of incidence and of view, degrees, signed alike: in the mirror direction θ1 = −θ0
+  θ0, θ1      angles of incidence and of view, degrees, with one sign convention: θ1 = −θ0 in the mirror direction
   d, d'       distance from the surface to the plane, and from the last blockers (without any, from the light) to the surface, m
-  lobe        what holds 95 % of the energy of the lobe's spectrum, cycles per radian
-  B, B'       what the reflection at d needs, cycles per unit slope: Eq. 20, light from far away, and Eq. 21, an edge or a narrow light at d'
-  exact       with --measure: that of the predicted spectrum, window and light included; beside it the measured one and its standard error
-Criteria say nothing of windows: those of the scene must hold the lobe, and its frequencies the spectrum.")]
+  lobe        frequency below which the lobe's spectrum has 95 % of its energy, cycles per radian
+  B, B'       bandwidth of the reflection at d, cycles per unit slope: by Eq. 20 for light from far away, by Eq. 21 for an edge or narrow light at d'
+  exact       with --measure: bandwidth of the predicted spectrum, window and light included, then the measured one with its standard error
+The criteria ignore windows: the windows of the scene must contain the lobe, and its frequencies the spectrum.")]
 pub(crate) struct BandwidthArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
@@ -111,14 +110,14 @@ pub(crate) struct BandwidthArgs {
   etendue covariance scenes/fig9b.ron --plane receiver --photons 2^22 --out out/covariance
 
 The covariance of the power spectrum |L|² over (ρx, ρy, νu, νv): ∫ P Ω Ωᵀ/∫ P, cycles² over the units of the coordinates.
-  traced      by covariance tracing (Belcour et al. 2013) along the chain of the plane, its window last, at all frequencies
-  in band     the same Gaussian within the plane's frequencies, as all that follows
-  exact       of the predicted spectrum, between parallel planes; other planes have it at azimuth 0 alone
-  measured    of the photons, noise taken out by crossing groups of batches, with standard errors
-Light fields with edges have no such moments: theirs are of the band, and a remark says so. Photons are traced once, and once or twice
-more for each plane, onto a 4D grid.
-Leaves in its folder, out/NAME-covariance unless --out names another, covariance.json, and for each plane covariance.png,
-.svg and .csv: the spectrum at azimuth 0 with ellipses.")]
+  traced      covariance tracing (Belcour et al. 2013) along the chain of the plane, with its window, over all frequencies
+  in band     the same Gaussian restricted to the plane's frequencies, like the rows below
+  exact       the predicted spectrum: complete between parallel planes, at azimuth 0 alone for other planes
+  measured    the photons, with standard errors; products of different groups of batches remove the noise
+The moments of light fields with edges diverge; theirs are restricted to the band, and a remark says so. Photons are traced once,
+and once or twice more for each plane to fill a 4D grid.
+Writes to out/NAME-covariance, or to the folder of --out: covariance.json, and for each plane covariance.png, .svg and .csv,
+the spectrum at azimuth 0 with ellipses.")]
 pub(crate) struct CovarianceArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,

@@ -28,11 +28,11 @@ pub(crate) struct WorldArgs {
     #[arg(value_name = "SCENE")]
     pub(crate) path: PathBuf,
 
-    /// The folder that no file of the scene may lie out of, links followed [default: that of the scene file]
+    /// Folder that must contain all files of the scene, after links are resolved [default: that of the scene file]
     #[arg(long, value_name = "DIR")]
     pub(crate) root: Option<PathBuf>,
 
-    /// The one number that each colour becomes
+    /// Convert colours to this number
     #[arg(long, value_name = "CHANNEL", default_value = "luminance", value_parser = one_named(Color::ALL))]
     pub(crate) color: Color,
 
@@ -158,8 +158,8 @@ pub(crate) struct RenderMethod(Option<SampleMethod>);
   etendue import scenes/cbox/cbox.xml --root . --set res=64
   etendue import helmet.glb
 
-Prints what the scene holds, and a note for all that is left out or approximated, with its line. A scene that cannot be
-followed is refused with all causes: exit code 2.")]
+Prints the contents of the scene, and a note with the line of everything that is left out or approximated. A scene that cannot be
+rendered is refused with all causes and exit code 2.")]
 pub(crate) struct ImportArgs {
     #[command(flatten)]
     pub(crate) scene: WorldArgs,
@@ -173,19 +173,19 @@ pub(crate) struct ImportArgs {
   etendue render scenes/worlds/creatures.xml --shading-samples 20000
   etendue render scenes/worlds/creatures.xml --shading-samples 20000 --method uniform --out out/uniform
 
-Leaves in its folder, out/NAME unless --out names another,
-  picture.exr    radiance and its standard error, as two parts of one channel Y
+Writes to out/NAME, or to the folder of --out:
+  picture.exr    radiance and its standard error, as two parts with one channel Y
   picture.npz    the same as arrays radiance and error [row, column], float64
-  picture.png    to look at: its brightest hundredth is white
-Scenes of OBJ, of PLY and often of glTF have no camera, and may have no light: --look-from with --look-at, and --sky.
-With few shading samples (Durand et al. 2005, section 6.2), the same and more: picture.exr and picture.npz have the maps that led to the
-samples (bandwidth, curvature, blockers, shadow, density, samples, variance), picture.npz their places (points), bandwidth.png and samples.png show
-two of them, and timing.json says how long each stage took. Methods:
-  uniform     blue noise, even over all that is shaded
-  predicted   by the criteria of the paper, Eqs. 20 and 21, corrected
-  printed     by the same as they are printed, to see what their approximations cost
-  weighted    half by these, half by the error found between a first quarter of the samples: the least error
-  variance    by the standard deviation among a first quarter of the samples, and by no theory
+  picture.png    for viewing; the brightest hundredth of the pixels is white
+OBJ, PLY and many glTF files have no camera or light: add them with --look-from, --look-at and --sky.
+With few shading samples (Durand et al. 2005, section 6.2), picture.exr and picture.npz also have the maps behind the samples
+(bandwidth, curvature, blockers, shadow, density, samples, variance), picture.npz has their places (points), bandwidth.png and
+samples.png show two maps, and timing.json has the seconds of each stage. Methods:
+  uniform     blue noise of even density
+  predicted   density by the paper's criteria, Eqs. 20 and 21, corrected
+  printed     density by these criteria as printed
+  weighted    half by the criteria, half by the error between a first quarter of the samples
+  variance    density by the standard deviation of a first quarter of the samples, without theory
 Pixels are boxes, whatever filter the file names: each is the mean of the radiance over its area.")]
 pub(crate) struct RenderArgs {
     #[command(flatten)]
@@ -237,12 +237,12 @@ pub(crate) struct RenderArgs {
   etendue probe cbox.xml --pixel 128,200 --covariance
   etendue probe cbox.xml --map 64x40
 
-Follows the ray through a pixel from the camera to the surface it meets, and on as a mirror would send it. At the camera, where light
-leaves each surface and where it arrives there, the light field is measured: by rays traced back, and by photons from the lights. The
-verdict is theirs against each other, so a sky or a mirror that photons cannot connect to leaves it undecided.
-Leaves in its folder, out/NAME-X-Y unless --out names another, the arrays and pictures that `run` makes of each plane, and
-probe.json. Exit codes are those of run.
-A map leaves map.exr and map.npz with measured, error, criterion, window and samples (a pixel and direction), and map.png, .svg and .csv.")]
+Follows the ray through a pixel from the camera to the first surface, and on in the mirror direction. Measures the light field at the
+camera, and where light leaves and reaches each surface, in two ways: by rays traced back and by photons from the lights. The verdict
+compares the two. Photons cannot connect through a mirror or to a sky; such planes stay undecided.
+Writes to out/NAME-X-Y, or to the folder of --out: probe.json, and for each plane the arrays and pictures of `run`.
+Exit codes are those of run.
+A map writes map.exr and map.npz with measured, error, criterion, window and samples (per pixel and direction), and map.png, .svg and .csv.")]
 pub(crate) struct ProbeArgs {
     #[command(flatten)]
     pub(crate) scene: WorldArgs,

@@ -372,7 +372,10 @@ impl Resolver<'_> {
             self.faults.all.push(Fault {
                 field: "frequencies of all planes".to_owned(),
                 value: format!("{} of spectra over {batches} batches", gigabytes(bytes)),
-                allowed: format!("what memory holds here, {}", gigabytes(memory as f64)),
+                allowed: format!(
+                    "what memory holds here, {}: lower frequencies, a smaller window, or lengths in metres",
+                    gigabytes(memory as f64)
+                ),
                 memory: true,
             });
         }

@@ -96,10 +96,18 @@ pub(super) fn lines(
     let open = found.iter().filter(|found| verdict(found) != Verdict::Pass);
     lines.extend(open.filter_map(|found| {
         let report = &found.comparison.report;
-        // How many photons it counts there are rays here, and both may be too few.
+        // The comparison counts rays as photons, and both may be too few.
         let why = report.undecided.as_ref()?.split("; needs").next()?;
         let [rays, photons] = ["rays", "photons"].map(|name| arguments.name(name));
-        Some(format!("{}: {why}; more {rays} or {photons}", report.name))
+        let times = report.photons_needed.map(|n| n / request.rays as f64);
+        let more = match times {
+            Some(times) => format!(
+                "about {} times as many {rays} and {photons} decide it",
+                times.ceil()
+            ),
+            None => format!("more {rays} or {photons} may decide it"),
+        };
+        Some(format!("{}: {why}; {more}", report.name))
     }));
     if probe.stops.len() < usize::from(request.surfaces) {
         let count = probe.stops.len();
