@@ -224,6 +224,7 @@ fn scenes_that_were_wrong_do_not_fail() {
     holds("fine_grating_floor", &[("leaving", Exact)]);
     holds("wide_gaussian_sky", &[("outgoing", FirstOrder)]);
     holds("leaning_mesh", &[("on_it", FirstOrder)]);
+    holds("at_a_tilted_sky", &[("sky", FirstOrder)]);
     let legs = [("outgoing", FirstOrder), ("beyond", FirstOrder)];
     holds("blocker_in_later_leg", &legs);
     let twice = [("outgoing", Reference), ("beyond", Reference)];

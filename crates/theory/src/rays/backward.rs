@@ -1,7 +1,7 @@
 //! Rays of a plane, followed back to the light as they go.
 
 use super::trace::LegRay;
-use super::{Plane, SpecularSurface, SpecularSystem};
+use super::{AT_LIGHT, Plane, SpecularSurface, SpecularSystem};
 use etendue_field::Specular;
 use glam::DVec3;
 
@@ -43,8 +43,8 @@ impl Back {
             ..last
         });
         let travel = -ray.point.z / ray.direction.z;
-        // Light begins in the plane z = 0 and goes forward.
-        if travel <= 0.0 || ray.direction.z >= 0.0 {
+        // Light begins in the plane z = 0 and travels forward.
+        if travel < -AT_LIGHT || ray.direction.z >= 0.0 {
             return None;
         }
         let at = ray.point + travel * ray.direction;

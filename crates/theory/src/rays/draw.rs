@@ -8,7 +8,7 @@
 
 use super::backward::Back;
 use super::emission::{EmissionMeasure, point_of};
-use super::{Plane, SpecularSystem};
+use super::{AT_LIGHT, Plane, SpecularSystem};
 use crate::geometry::{AffineMap, Matrix};
 use crate::nets::{DIMENSIONS, LinearDensity, Target};
 use crate::sky::SkyDensity;
@@ -221,7 +221,7 @@ impl<'a> RaySampler<'a> {
                 let density = of_x * of_y * of_light / spread;
                 // Light from behind has met the front of the surface at another point.
                 let is_hidden = plane.arriving && normal.dot(along) >= 0.0;
-                let arrives = point.z > 0.0 && !is_hidden;
+                let arrives = point.z > -AT_LIGHT && !is_hidden;
                 arrives.then(|| (placed(slopes, [start.x, start.y]), density))
             }
             By::Aim {

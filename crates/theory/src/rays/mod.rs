@@ -85,6 +85,10 @@ pub(crate) use trace::{LegRay, bent};
 use crate::obstacle::Obstacle;
 use etendue_field::{Light, Mask, Patch, Specular};
 
+/// How far behind the plane of the light a point of a plane may seem to be and still be lit, in
+/// metres: the rounding of a tilted plane at the light itself. No object is this close.
+const AT_LIGHT: f64 = 1e-9;
+
 /// A light and the specular surfaces its central ray visits, in the frame at the light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpecularSystem {
