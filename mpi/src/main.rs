@@ -1,12 +1,15 @@
-//! `etendue-mpi run`, `predict` and `sweep`: batches, planes and points that are shared by all processes of an MPI job.
+//! `etendue-mpi run`, `predict` and `sweep`: batches, planes and points shared by all processes of
+//! an MPI job.
 //!
 //! `mpirun -n 32 etendue-mpi run scenes/fig9b.ron --photons 2^36 --threads 4 --resume`
 //!
-//! Rank 0 does what `etendue` does, works as well, and hands out pieces as other ranks ask for them. Nothing is summed by MPI:
-//! it carries bytes, and the result has those of `etendue run`. The arguments are those of `etendue`, parsed by its own crate.
+//! Rank 0 does the same as `etendue`, works as well, and hands out pieces to other ranks on
+//! request. MPI sums nothing: it carries bytes, and the result has the same bytes as that of
+//! `etendue run`. The arguments are those of `etendue`, parsed by its own crate.
 //!
-//! Why `ferrompi`: it needs no libclang, its calls return errors instead of aborting, and both MPICH and Open MPI are tested there.
-//! `mpi` (rsmpi) generates its bindings by libclang, which the nodes of clusters often lack.
+//! Reasons for `ferrompi`: it needs no libclang, its calls return errors instead of aborting, and
+//! it is tested with both MPICH and Open MPI. `mpi` (rsmpi) generates its bindings with libclang,
+//! which cluster nodes often lack.
 
 use etendue::command_of_workers;
 use etendue_pipeline::Workers;
@@ -19,7 +22,7 @@ use std::time::Duration;
 /// The tag of all messages.
 const TAG: i32 = 0;
 
-/// How long to wait before looking again whether a message has come. Waiting inside MPI would take a core of those that measure.
+/// Pause between checks for a message. Waiting inside MPI would occupy a core that could measure.
 const PAUSE: Duration = Duration::from_micros(200);
 
 /// All ranks of the job.

@@ -1,4 +1,4 @@
-//! Keyword arguments of Python, held against what is allowed.
+//! Python keyword arguments, with checks of their values.
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -7,10 +7,10 @@ use std::fmt::Display;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
-/// The keyword arguments that a caller has given. One that is left out, or is `None`, leaves what it would set as it is.
+/// The keyword arguments of a caller. One that is left out or `None` keeps its default.
 pub(crate) struct Arguments<'a, 'py>(pub(crate) &'a Bound<'py, PyDict>);
 
-/// The exception of a value that is not allowed.
+/// The exception for a value that is not allowed.
 fn wrong(name: &str, value: &Bound<'_, PyAny>, allowed: impl Display) -> PyErr {
     let shown = value
         .repr()
@@ -18,7 +18,7 @@ fn wrong(name: &str, value: &Bound<'_, PyAny>, allowed: impl Display) -> PyErr {
     PyValueError::new_err(format!("{name} is {shown}; allowed: {allowed}"))
 }
 
-/// A number that is whole, though Python has it as 1e6.
+/// A whole number, also if Python has it as 1e6.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -30,7 +30,7 @@ fn whole_float(value: &Bound<'_, PyAny>) -> Option<u64> {
 }
 
 impl<'py> Arguments<'_, 'py> {
-    /// The value of an argument, if it is given.
+    /// The value of an argument, if given.
     pub(crate) fn get(&self, name: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
         Ok(self.0.get_item(name)?.filter(|value| !value.is_none()))
     }
@@ -83,7 +83,7 @@ impl<'py> Arguments<'_, 'py> {
         })
     }
 
-    /// A number.
+    /// A floating-point number.
     pub(crate) fn number(
         &self,
         name: &str,
@@ -96,7 +96,7 @@ impl<'py> Arguments<'_, 'py> {
         })
     }
 
-    /// Whether something is so.
+    /// A truth value.
     pub(crate) fn flag(&self, name: &str, to: &mut bool) -> PyResult<()> {
         self.set(name, to, "True or False", |value| value.extract().ok())
     }
@@ -111,7 +111,7 @@ impl<'py> Arguments<'_, 'py> {
         self.set(name, to, "a path", |value| value.extract().ok().map(Some))
     }
 
-    /// One of some values by its name.
+    /// One of several named values.
     pub(crate) fn one_of<T: Copy>(
         &self,
         name: &str,
@@ -142,7 +142,7 @@ impl<'py> Arguments<'_, 'py> {
         Ok(point)
     }
 
-    /// Pixels across and down, as two numbers or as text, such as 64x48.
+    /// Width and height in pixels, as two numbers or as text, such as 64x48.
     pub(crate) fn size(
         &self,
         name: &str,

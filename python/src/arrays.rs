@@ -1,4 +1,4 @@
-//! Arrays of Rust that NumPy takes over: the memory stays where it is, and belongs to the NumPy array from then on.
+//! Rust arrays passed to NumPy without a copy: the NumPy array takes ownership of the memory.
 
 use ndarray::{Array, Dimension};
 use numpy::{Element, PyArray};

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
 
-/// Draws figures; returns the folder of the first.
+/// Draws figures; returns the folder of the first figure.
 #[pyfunction]
 pub(crate) fn figure(
     py: Python<'_>,

@@ -1,4 +1,4 @@
-//! What a scene of another program holds.
+//! The content of a scene of another program.
 
 use crate::arguments::Arguments;
 use crate::live::alive;
@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
 
-/// Reads a scene; returns a dictionary of what it holds.
+/// Reads a scene; returns a dictionary of its content.
 #[pyfunction]
 pub(crate) fn import_scene<'py>(
     py: Python<'py>,

@@ -1,4 +1,4 @@
-//! Scenes, and what is measured and predicted of them.
+//! Scenes, with their measurements and predictions.
 
 use crate::live::alive;
 use crate::outcome::Outcome;
@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use std::sync::Arc;
 
-/// A scene, and how it is measured.
+/// A scene with its measurement settings.
 #[pyclass(frozen, module = "etendue._etendue")]
 pub(crate) struct Job(Arc<etendue_pipeline::Job>);
 
@@ -23,7 +23,7 @@ pub(crate) struct Job(Arc<etendue_pipeline::Job>);
 #[pyclass(frozen, module = "etendue._etendue")]
 pub(crate) struct Measurement(etendue_spectrum::Measurement);
 
-/// What a measurement is held against.
+/// The prediction that a measurement is compared with.
 #[pyclass(frozen, module = "etendue._etendue")]
 pub(crate) struct Prediction(Vec<etendue_compare::Prediction>);
 
@@ -59,7 +59,7 @@ impl Job {
         &self.0.scene().name
     }
 
-    /// The scene file in JSON, defaults and overrides included.
+    /// The scene file in JSON, including defaults and overrides.
     fn json(&self) -> String {
         serde_json::to_string(&self.0.scene().file).unwrap_or_default()
     }
@@ -78,7 +78,7 @@ impl Job {
         self.0.scene().warnings()
     }
 
-    /// Of each plane its name, class, steps of its chain, and what no theory describes.
+    /// For each plane its name, class, steps of its chain, and the parts that no theory describes.
     fn planes(&self) -> Vec<(String, String, Vec<String>, Vec<String>)> {
         let scene = self.0.scene();
         let planes = scene.planes.iter().zip(self.0.theories());
@@ -131,8 +131,8 @@ impl Job {
         found.map(Outcome)
     }
 
-    /// Photons at a plane, with columns x, y, u, v and weight, in the order of their batches; of each batch how many there are, and how
-    /// many were emitted.
+    /// Photons at a plane, with columns x, y, u, v and weight, in the order of their batches; for
+    /// each batch the number of them, and of emitted photons.
     #[expect(clippy::type_complexity, reason = "a tuple of Python")]
     fn crossings<'py>(
         &self,
@@ -163,7 +163,8 @@ impl Job {
         Ok((PyArray2::from_owned_array(py, rows), counts, emitted))
     }
 
-    /// The spectrum of anybody's rays, by the window and the frequencies of the first plane. `batch` has the number of each.
+    /// The spectrum of a user's rays, with the window and the frequencies of the first plane.
+    /// `batch` holds the batch number of each ray.
     fn spectrum<'py>(
         &self,
         py: Python<'py>,
@@ -231,7 +232,7 @@ impl Measurement {
         self.0.emitted()
     }
 
-    /// This and others in one.
+    /// Merges this measurement with others.
     fn merged(&self, py: Python<'_>, others: Vec<Bound<'_, Self>>) -> PyResult<Self> {
         let others = others.iter().map(|other| other.get().0.clone());
         let merged = others

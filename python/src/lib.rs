@@ -1,6 +1,7 @@
-//! The Rust side of the Python package: a scene, what is measured and predicted of it, and arrays that become NumPy's without a copy.
+//! The Rust side of the Python package: a scene, its measurements and predictions, and arrays that
+//! become NumPy's without a copy.
 //!
-//! Everything a user sees is in `etendue/*.py`; this is what it stands on.
+//! The user's interface is in `etendue/*.py`, which builds on this module.
 
 mod arguments;
 mod arrays;
@@ -19,7 +20,7 @@ mod world;
 
 use pyo3::prelude::*;
 
-/// The native part of `etendue`.
+/// The native module of `etendue`.
 #[pymodule(gil_used = false)]
 mod _etendue {
     #[pymodule_export]

@@ -1,4 +1,4 @@
-//! Long work that Python can follow and stop.
+//! Long work with progress reports and cancellation from Python.
 
 use crate::raised::raised;
 use etendue_pipeline::{Progress, Reporter, Work};
@@ -13,29 +13,29 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::Duration;
 
-/// How long Python waits before it looks for Ctrl-C, and tells progress.
+/// Interval at which Python checks for Ctrl-C and reports progress.
 const TICK: Duration = Duration::from_millis(50);
 
-/// How long work that was stopped has to remove its files before the caller goes on without it.
+/// Time for stopped work to remove its files before the caller continues without it.
 const GRACE: Duration = Duration::from_millis(500);
 
-/// What the thread that works and the one that waits tell each other.
+/// State shared by the working thread and the waiting one.
 #[derive(Default)]
 pub(crate) struct Live {
     is_stopped: AtomicBool,
     works: Mutex<Works>,
 }
 
-/// Work that goes on, and work that has ended.
+/// Current and finished work.
 #[derive(Default)]
 struct Works {
     begun: u64,
-    /// One within the other, the innermost last.
+    /// Nested work, the innermost last.
     in_hand: Vec<Arc<Counted>>,
     ended: Option<Arc<Counted>>,
 }
 
-/// How much of some work is done.
+/// The progress of some work.
 struct Counted {
     number: u64,
     verb: &'static str,
@@ -44,7 +44,7 @@ struct Counted {
     done: AtomicU64,
 }
 
-/// What unwinds a thread that is to stop.
+/// The payload that unwinds a thread that is to stop.
 struct Stopped;
 
 impl Live {
@@ -52,14 +52,14 @@ impl Live {
         self.works.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Unwinds if the work is to stop. This is no panic, and prints nothing.
+    /// Unwinds if the work is to stop. It is not a panic, and prints nothing.
     fn check(&self) {
         if self.is_stopped.load(Ordering::Relaxed) {
             resume_unwind(Box::new(Stopped));
         }
     }
 
-    /// Follows work in which so many of these things are traced.
+    /// Reports progress of work that traces `total` of these items.
     pub(crate) fn trace(&self, total: u64, things: &'static str) -> Tracing<'_> {
         let work = Work::Steps {
             verb: "tracing",
@@ -72,7 +72,8 @@ impl Live {
         }
     }
 
-    /// Tells `progress` how much of the innermost work is done; of the last one, when there is none.
+    /// Reports the progress of the innermost work to `progress`; that of the last one, if there is
+    /// none.
     fn report(&self, progress: &Bound<'_, PyAny>) -> PyResult<()> {
         let works = self.works();
         let counted = works.in_hand.last().or(works.ended.as_ref()).cloned();
@@ -108,7 +109,7 @@ impl Reporter for Live {
                 total,
                 things,
             } => (verb, things, total as u64),
-            // There is nothing to count.
+            // Stages are not counted.
             Work::Stage(_) => return Box::new(Bar(self, None)),
         };
         let mut works = self.works();
@@ -125,7 +126,7 @@ impl Reporter for Live {
     }
 }
 
-/// Work that is counted, or a stage that is not.
+/// Work with a count, or a stage without one.
 struct Bar<'a>(&'a Live, Option<Arc<Counted>>);
 
 impl Progress for Bar<'_> {
@@ -155,7 +156,7 @@ impl Drop for Bar<'_> {
     }
 }
 
-/// Rays that are traced, batch by batch.
+/// Tracing of rays, batch by batch.
 pub(crate) struct Tracing<'a> {
     live: &'a Live,
     bar: Box<dyn Progress + 'a>,
@@ -171,9 +172,10 @@ impl Watch for Tracing<'_> {
     }
 }
 
-/// Does work on so many threads, one for each core unless said. Meanwhile other threads of Python go on, `progress` is told how much is
-/// done, and Ctrl-C is seen: then the work is stopped at the next block of photons or the next step. This returns when it has ended, or
-/// soon; at once, where no work is counted.
+/// Runs work on the given number of threads, by default one for each core. Meanwhile other Python
+/// threads continue, `progress` receives the progress, and Ctrl-C is detected: then the work stops
+/// at the next block of photons or the next step. The function returns when the work has ended, or
+/// soon after; at once if the work is not counted.
 pub(crate) fn alive<T: Send + 'static>(
     py: Python<'_>,
     threads: Option<usize>,
@@ -189,7 +191,7 @@ pub(crate) fn alive<T: Send + 'static>(
             Ok(pool) => pool.install(|| work(&of_thread)),
             Err(error) => Err(Failure::cannot_run(error)),
         };
-        // Nobody listens where Ctrl-C came.
+        // After Ctrl-C there is no receiver.
         let _ = tell.send(found);
     });
     let mut told = told;

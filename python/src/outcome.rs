@@ -1,4 +1,4 @@
-//! What a comparison comes to.
+//! The result of a comparison.
 
 use crate::arrays::Arrays;
 use crate::raised::raised;
@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
 
-/// A scene whose planes are measured, predicted and compared.
+/// A scene with its planes measured, predicted and compared.
 #[pyclass(frozen, module = "etendue._etendue")]
 pub(crate) struct Outcome(pub(crate) etendue_pipeline::Outcome);
 

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
 
-/// Measures the light field behind a pixel into a folder; returns what is to be said of it.
+/// Measures the light field behind a pixel into a folder; returns the report on it.
 #[pyfunction]
 pub(crate) fn probe(
     py: Python<'_>,

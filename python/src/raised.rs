@@ -18,7 +18,7 @@ create_exception!(
     "What was asked for cannot be done here: memory, disk, a folder that holds something else."
 );
 
-/// The exception of a failure. Exit code 2 of the command is bad input.
+/// The exception for a failure. Exit code 2 of the command is bad input.
 pub(crate) fn raised(py: Python<'_>, failure: Failure) -> PyErr {
     if failure.code != 2 {
         return CannotRun::new_err(failure.message);

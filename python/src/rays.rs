@@ -1,4 +1,4 @@
-//! The estimator for anybody's rays.
+//! The estimator for a user's rays.
 
 use crate::arrays::Arrays;
 use crate::live::Live;
@@ -16,15 +16,15 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Rays summed at a time.
+/// Number of rays summed at a time.
 const BLOCK: usize = 4096;
 
-/// Rays of somebody else, in batches.
+/// A user's rays, in batches.
 pub(crate) struct Rays(Vec<Vec<Crossing>>);
 
 impl Rays {
-    /// Rays with columns x, y, u, v and weight. A weight is multiplied by the number of batches: so the mean over batches is the sum over
-    /// all rays.
+    /// Creates rays from columns x, y, u, v and weight. Weights are multiplied by the number of
+    /// batches, which makes the mean over batches the sum over all rays.
     pub(crate) fn new(
         columns: &[PyReadonlyArray1<'_, f64>; 5],
         batch: &PyReadonlyArray1<'_, u32>,
@@ -71,7 +71,7 @@ impl Rays {
 
 impl PhotonSource for Rays {
     fn emitted(&self, _batch: u32) -> u64 {
-        // What a batch comes to is its sum.
+        // The result of a batch is its sum.
         1
     }
 

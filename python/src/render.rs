@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
 
-/// Renders what a camera sees into a folder.
+/// Renders the picture of a camera into a folder.
 #[pyfunction]
 pub(crate) fn render(
     py: Python<'_>,

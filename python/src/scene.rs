@@ -1,4 +1,4 @@
-//! Scenes as Python gives them.
+//! Scenes as Python arguments.
 
 use etendue_pipeline::load::SceneSource;
 use etendue_store::ArgumentStyle;
@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 /// A scene file, or the text of one.
 #[derive(FromPyObject)]
 pub(crate) enum SceneArgument {
-    /// Text in RON or JSON, the name of the scene, and the folder in which its meshes and pictures are.
+    /// Text in RON or JSON, the name of the scene, and the folder of its meshes and pictures.
     Text((String, String, PathBuf)),
     /// The path of a file.
     File(PathBuf),

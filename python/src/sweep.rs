@@ -1,4 +1,4 @@
-//! A scene with fields that take several values.
+//! Sweeps of scene fields over several values.
 
 use crate::arguments::Arguments;
 use crate::live::alive;
@@ -11,10 +11,10 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
 
-/// What a field is set to.
+/// The value of a field.
 #[derive(FromPyObject)]
 pub(crate) enum Values {
-    /// A value, or a range or list of them, as text.
+    /// A value, a range or a list, as text.
     Text(String),
     /// Several numbers.
     Numbers(Vec<f64>),
@@ -31,7 +31,7 @@ fn setting((path, values): (String, Values)) -> PyResult<Setting> {
     setting.map_err(PyValueError::new_err)
 }
 
-/// Runs a sweep, and leaves its table and its points in a folder.
+/// Runs a sweep, and writes its table and its points to a folder.
 #[pyfunction]
 pub(crate) fn sweep(
     py: Python<'_>,

@@ -1,9 +1,10 @@
-//! How long each stage of a run takes: photons, their sums on slices, and Fourier transforms.
+//! Benchmarks of the stages of a run: photons, their sums on slices, and Fourier transforms.
 //!
 //!     cargo bench -p etendue-validation
 //!     cargo bench -p etendue-validation -- photons      # those whose name holds a word
 //!
-//! Throughput is in photons, crossings or cells a second, on one thread but for the 4D transform.
+//! Throughput is in photons, crossings or cells per second, on one thread except for the 4D
+//! transform.
 
 #![allow(clippy::unwrap_used, reason = "a benchmark may panic")]
 
@@ -18,7 +19,7 @@ use etendue_transform::random::Stream;
 use std::hint::black_box;
 use std::path::Path;
 
-/// Photons of a batch: a net of them, large enough that its first block does not count.
+/// Photons per batch: one net, large enough for the cost of its first block to be negligible.
 const PHOTONS: u64 = 1 << 16;
 
 /// A scene of the repository, in batches of [`PHOTONS`].
@@ -30,7 +31,7 @@ fn scene(name: &str) -> Scene {
     resolve(name, file, path.parent().unwrap(), u64::MAX).unwrap()
 }
 
-/// Rays of a batch as they leave the light: points of a net, aimed rays of them, and their weights.
+/// Emission of a batch: points of a net, aimed rays from them, and their weights.
 fn emission(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("emission");
     group.sample_size(20);
@@ -59,7 +60,7 @@ fn emission(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Emission, hits, bounces and crossings of all planes of a batch.
+/// Tracing of a batch: emission, hits, bounces and crossings of all planes.
 fn photons(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("photons");
     group.sample_size(20);
@@ -76,7 +77,7 @@ fn photons(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// The crossings of a plane, deposited on the slices of its grid; and the slices made of the sum.
+/// Deposition of a plane's crossings on the slices of its grid, and the slices of the sum.
 fn slices(criterion: &mut Criterion) {
     let scene = scene("bench_peer");
     let mut rays = Vec::new();
@@ -113,7 +114,7 @@ fn field(criterion: &mut Criterion) {
         group.bench_function(format!("{n}^4"), |bencher| {
             bencher.iter(|| {
                 plan.forward(&mut data);
-                // As large as before, or it would overflow in the end.
+                // Rescales the data, to avoid overflow after many transforms.
                 data.iter_mut().for_each(|z| *z /= n.pow(2) as f64);
             });
         });

@@ -1,11 +1,12 @@
-//! The page on glossy reflections.
+//! Generates the page on glossy reflections.
 
 use crate::shading::glossy;
 use etendue_figures::Style;
 use std::fs;
 use std::process::ExitCode;
 
-/// Measures, prints what was found, and writes the page, its picture and the numbers behind that, unless photons are given.
+/// Measures, prints the results, and writes the page, its picture and the numbers behind it, unless
+/// photons are given.
 #[expect(
     clippy::print_stdout,
     clippy::print_stderr,

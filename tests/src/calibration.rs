@@ -1,4 +1,5 @@
-//! Over many seeds p must be uniform, χ²/dof must be 1 and pulls must have unit variance.
+//! Calibration over many seeds: p must be uniform, χ²/dof must be 1 and pulls must have unit
+//! variance.
 
 use crate::progress::progress;
 use crate::report::Bound::{AtLeast, Below};
@@ -11,19 +12,19 @@ use etendue_spectrum::{Batch, Measurement};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// What the seeds gave, plane by plane.
+/// The results of all seeds at one plane.
 struct CalibratedPlane {
     name: String,
     p_values: Vec<f64>,
     chi2: Vec<f64>,
-    /// (measured − scene) / error of every parameter.
+    /// The pull of every parameter: (measured − scene) / error.
     pulls: Vec<f64>,
 }
 
-/// Batches that are not independent, as p takes them to be.
+/// A violation of the independence of batches, which p assumes.
 #[derive(Clone, Copy)]
 enum DependenceFault {
-    /// The second half of the batches holds the photons of the first.
+    /// The second half of the batches has the photons of the first.
     SharedPhotons,
     /// The last batch is the first, counted twice.
     CountedTwice,
@@ -40,16 +41,17 @@ const FAULTS: [(DependenceFault, &str); 2] = [
     ),
 ];
 
-/// Compares `fig9b` at `photons` over seeds, and judges the statistics.
+/// Compares `fig9b` at `photons` photons over seeds, and checks the statistics.
 ///
-/// Then judges them again as if σ had been 10 % too small and too large, and with batches that are
-/// not independent: all must be found out.
+/// Then checks them again with σ 10 % too small and too large, and with dependent batches: all
+/// these faults must be detected.
 pub(crate) fn calibration(
     seeds: Range<u64>,
     photons: u64,
     sampling: Sampling,
 ) -> Vec<ReportSection> {
-    // Fewer seeds do not tell 3 % of variance, and later ones only calibrate once more.
+    // With fewer seeds 3 % of variance cannot be resolved, and later ones only repeat the
+    // calibration.
     let count = seeds.end - seeds.start;
     let plants = count >= 1000 && seeds.start == 1;
     let faults = FAULTS.iter().filter(|_| plants);
@@ -74,7 +76,7 @@ pub(crate) fn calibration(
     sections
 }
 
-/// The measurement with batches that are not independent.
+/// The measurement with dependent batches.
 fn planted(measurement: &Measurement, fault: DependenceFault) -> Measurement {
     let batches: Vec<&Batch> = measurement.batches().collect();
     let mut planted = Measurement::new(measurement.planes().to_vec());
@@ -94,7 +96,7 @@ fn planted(measurement: &Measurement, fault: DependenceFault) -> Measurement {
     planted
 }
 
-/// What the seeds give with each of the faults, or without.
+/// The results of the seeds with each of the faults, and without.
 fn sample(
     seeds: Range<u64>,
     scene: &Scene,
@@ -153,8 +155,9 @@ fn judge(planes: &[CalibratedPlane], seeds: u64, scene: &Scene, scale: f64) -> R
         .iter()
         .flat_map(|p| p.p_values.iter().copied())
         .collect();
-    // Binomial standard deviations of a plane. Planes of a seed share photons, so that all of them together spread by less than one
-    // plane and by more than as many that are independent: two deviations of one plane bound them, three each plane.
+    // Binomial standard deviation at a plane. Planes of a seed share photons, so their total
+    // spreads less than one plane and more than as many independent ones: it is bounded by two
+    // deviations of one plane, and each plane by three.
     let deviation = (0.1 * 0.9 / seeds as f64).sqrt();
     let [allowed, allowed_each] = [2.0, 3.0].map(|n| n * deviation);
     let below = |p: &[f64]| p.iter().filter(|p| **p < 0.1).count() as f64 / p.len() as f64;
@@ -164,7 +167,7 @@ fn judge(planes: &[CalibratedPlane], seeds: u64, scene: &Scene, scale: f64) -> R
         let [chi2, error] = mean(&chi2);
         let squares: Vec<f64> = plane.pulls.iter().map(|z| (z / scale).powi(2)).collect();
         let [pull, pull_error] = mean(&squares);
-        // A pull from R = 64 batches is Student's: its square has the mean 63/61.
+        // A pull from R = 64 batches has Student's distribution: the mean of its square is 63/61.
         let expected_pull = 63.0 / 61.0;
         let share = (below(&plane.p_values) - 0.1).abs();
         let level = 1.0 - 0.99_f64.powf(1.0 / planes.len() as f64);

@@ -1,4 +1,4 @@
-//! Faults planted in the prediction or in the photons: a comparison is judged by what it rejects.
+//! Faults planted in the prediction or in the photons, which a comparison must reject.
 
 mod smallest;
 
@@ -58,7 +58,7 @@ pub(crate) fn planted(photons: u64, seed: u64) -> ReportSection {
     }
 }
 
-/// Faults that only other scenes can show, each planted in the scene named.
+/// Faults that only other scenes can reveal, each planted in the named scene.
 pub(crate) fn planted_elsewhere(photons: u64, seed: u64) -> ReportSection {
     let mut rows = Vec::new();
     let mut checks = Vec::new();
@@ -109,7 +109,7 @@ pub(crate) fn planted_elsewhere(photons: u64, seed: u64) -> ReportSection {
 
 type PlantedFaults = Vec<(&'static str, Box<Predict>)>;
 
-/// A prediction from a chain that was tampered with; `None` where that changes nothing.
+/// A prediction from a modified chain; `None` if the modification has no effect.
 fn chained(change: impl Fn(&mut Chain) + 'static) -> Box<Predict> {
     Box::new(move |scene, plane| {
         let mut tampered = chain(scene, plane);
@@ -225,10 +225,10 @@ fn move_layer(chain: &mut Chain, nth: usize, by: f64) {
     }
 }
 
-/// The row without a fault.
+/// The name of the row without a fault.
 const NONE: &str = "none";
 
-/// The slices predicted for a plane; `None` where the fault changes nothing.
+/// The slices predicted for a plane; `None` if the fault has no effect.
 type Predict = dyn Fn(&Scene, &VirtualPlane) -> Option<Slices>;
 
 fn row(scene: &Scene, measurement: &Measurement, name: &'static str, predict: &Predict) -> Row {
@@ -347,7 +347,7 @@ fn scale(chain: &mut Chain, parameter: Parameter, factor: f64) {
     *chain = chain.with(parameter, factor * value).expect("the same");
 }
 
-/// Multiplies the `nth` travel of a chain, if it has so many.
+/// Multiplies the `nth` travel of a chain, if it exists.
 fn scale_travel(chain: &mut Chain, nth: usize, factor: f64) {
     let is_travel = |p: &Parameter| matches!(p, Parameter::Travel(_));
     if let Some(travel) = chain.parameters().into_iter().filter(is_travel).nth(nth) {
@@ -377,7 +377,7 @@ fn each_rectangle(chain: &mut Chain, change: impl Fn(&mut Rectangle)) {
     });
 }
 
-/// The slices of the field moved by `shift` along x.
+/// The slices of the field shifted by `shift` along x.
 fn shifted(mut slices: Slices, shift: f64) -> Slices {
     let grid = slices.grid;
     for ((k, m, _), value) in slices.half.indexed_iter_mut() {
@@ -387,7 +387,7 @@ fn shifted(mut slices: Slices, shift: f64) -> Slices {
     slices
 }
 
-/// A tracer whose crossings are tampered with before they are recorded; the number counts them in a block.
+/// A tracer that modifies crossings before they are recorded; the number counts them in a block.
 struct TamperedBlock<'a, F> {
     tracer: &'a Tracer,
     crossing: F,

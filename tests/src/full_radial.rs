@@ -12,11 +12,11 @@ use etendue_spectrum::field::{FieldMeasurement, FieldOptions, measure_field};
 use etendue_trace::{Backward, Tracer};
 use rayon::prelude::*;
 
-/// A plane of a scene, and what predicts its full radial spectrum.
+/// A plane of a scene, with the method that predicts its full radial spectrum.
 struct Case {
     scene: &'static str,
     plane: &'static str,
-    /// Words of the scene that are set.
+    /// Fields of the scene that are set.
     set: &'static [(&'static str, &'static str)],
     by: &'static str,
 }
@@ -33,7 +33,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("glossy", text!("table1/glossy")),
 ];
 
-/// Fewer frequencies than the scenes have, so that 200 seeds take minutes.
+/// Fewer frequencies than in the scene files, so that 200 seeds take minutes.
 const FEWER: &[(&str, &str)] = &[("frequencies.rho.max", "6"), ("frequencies.nu.max", "8")];
 
 const CASES: &[Case] = &[
@@ -57,7 +57,7 @@ const CASES: &[Case] = &[
     },
 ];
 
-/// Faults of predictions of the first case: a word of the scene that is predicted, and its value.
+/// Faults of predictions of the first case: a field of the predicted scene, and its value.
 const FAULTS: &[(&str, &str, &str)] = &[
     ("surfaces.0.center", "(0, 0, 2.02)", "a shear 1 % too large"),
     ("blockers.0.pitch", "0.21", "blockers of another pitch"),
@@ -66,7 +66,7 @@ const FAULTS: &[(&str, &str, &str)] = &[
 ];
 
 impl Case {
-    /// The scene with that plane alone.
+    /// The scene with only that plane.
     fn scene(&self, photons: u64, seed: u64, set: &[(&str, &str)]) -> Scene {
         let found = TEXTS.iter().find(|(name, _)| *name == self.scene);
         let (name, text) = found.expect("a scene of these");
@@ -135,7 +135,7 @@ pub(crate) fn full_radial(seeds: u64, photons: u64) -> Vec<ReportSection> {
     ]
 }
 
-/// Photons of each seed against the prediction of a case.
+/// Compares photons of each seed with the prediction of a case.
 fn over_seeds(case: &Case, seeds: u64, photons: u64) -> (String, Vec<FullRadialReport>) {
     let prediction = predicted(&case.scene(photons, 1, &[]));
     let title = format!("{} {}: {}", case.scene, case.plane, case.by);
@@ -148,7 +148,7 @@ fn over_seeds(case: &Case, seeds: u64, photons: u64) -> (String, Vec<FullRadialR
     )
 }
 
-/// Photons against backward rays, as where no theory applies.
+/// Compares photons with backward rays, as where no theory applies.
 fn against_rays(case: &Case, seeds: u64, photons: u64) -> (String, Vec<FullRadialReport>) {
     let title = format!("{} {}: backward rays", case.scene, case.plane);
     (
@@ -240,7 +240,7 @@ fn calibrated(
     }
 }
 
-/// Predictions with a fault against photons without one.
+/// Compares predictions that have a fault with photons that have none.
 fn faults(photons: u64) -> ReportSection {
     const LEVEL: f64 = 0.002;
     let case = &CASES[0];
@@ -279,7 +279,7 @@ fn faults(photons: u64) -> ReportSection {
     }
 }
 
-/// The spectrum as it is, instead of as a grid has it.
+/// The continuous spectrum, without the aliasing of a grid.
 fn alias_free(scene: &Scene) -> PredictedField {
     use etendue_compare::Theory;
     let plane = &scene.planes[0];
@@ -305,7 +305,7 @@ fn alias_free(scene: &Scene) -> PredictedField {
     }
 }
 
-/// The calibration must fail where groups share photons.
+/// The calibration must fail if groups share photons.
 fn dependent(seeds: u64, photons: u64, is_sound: bool) -> ReportSection {
     let case = &CASES[0];
     let prediction = predicted(&case.scene(photons, 1, &[]));

@@ -1,11 +1,13 @@
 //! Statistical validation of Étendue.
 //!
-//! `short` is a few minutes, for every change; `suite` goes through all scenes without smooth surfaces and writes `docs/suite.md`; `table1` through the
-//! operators of the paper, `shading` through what surfaces do to light, `claims` through what the paper says in words, and `main` is the full account of the main scene: each writes its part of
-//! `docs/validation.md`; `all` writes the whole of it, with every row of the paper's Table 1.
-//! `second` holds what theory and the tracers share against a second implementation.
-//! `hostile` and `kills` attack the program `etendue` from outside; `wild` hunts for scenes on which it is wrong.
-//! `assumptions` switches off what is checked of a scene before theory is believed.
+//! `short` takes a few minutes, for every change; `suite` runs all scenes without smooth surfaces
+//! and writes `docs/suite.md`; `table1` checks the operators of the paper, `shading` the reflection
+//! of light at surfaces, `claims` the statements in the paper's text, and `main` all results of the
+//! main scene: each writes its part of `docs/validation.md`; `all` writes the whole of it, with
+//! every row of the paper's Table 1. `second` compares the code shared by theory and tracers with a
+//! second implementation. `hostile` and `kills` attack the program `etendue` from outside; `wild`
+//! searches for scenes on which it is wrong. `assumptions` disables the checks of a scene that
+//! precede a prediction.
 
 #![allow(clippy::too_many_lines, reason = "checks are lists of rows")]
 
@@ -65,88 +67,97 @@ struct ValidationCli {
 
 #[derive(Debug, Subcommand)]
 enum ValidationCommand {
-    /// A short form of all of it.
+    /// A short form of the whole validation.
     Short,
-    /// p uniform, χ²/dof = 1 and unit pulls over many seeds.
+    /// Check that over many seeds p is uniform, χ²/dof is 1 and pulls have unit variance.
     Calibration {
-        /// How many seeds.
+        /// Number of seeds.
         #[arg(long, default_value_t = 1000)]
         seeds: u64,
-        /// The first of them. Faults are planted with the first thousand alone.
+        /// First seed. Faults are planted only with the first thousand.
         #[arg(long, default_value_t = 1)]
         first: u64,
-        /// Photons for each.
+        /// Photons per seed.
         #[arg(long, default_value_t = 100_000)]
         photons: u64,
     },
-    /// Planted faults must be rejected.
+    /// Check that planted faults are rejected.
     Faults {
         /// Photons.
         #[arg(long, default_value_t = 1 << 23)]
         photons: u64,
     },
-    /// Every plane, its parameters, and the receiver's noise floor up to a number of photons.
+    /// Check every plane, its parameters, and the receiver's noise floor up to a number of photons.
     Noise {
         /// Photons of the longest run.
         #[arg(long, default_value_t = 1_000_000_000)]
         most: u64,
     },
-    /// Every scene without smooth surfaces, predicted and traced both ways, and the faults only they can show; into docs/suite.md.
+    /// Predict every scene without smooth surfaces and trace it both ways, with faults only these
+    /// scenes can reveal; into docs/suite.md.
     Suite {
-        /// Photons for each scene, instead of those in the files.
+        /// Photons per scene, instead of those in the files.
         #[arg(long)]
         photons: Option<u64>,
     },
     /// Table 1 of the paper, every operator in 2D and in 4D, misprints and planted faults; into docs/validation.md.
     Table1 {
-        /// Photons for each scene, instead of those in the files.
+        /// Photons per scene, instead of those in the files.
         #[arg(long)]
         photons: Option<u64>,
     },
     /// Cosines, BRDFs, textures, environments and the sampling criteria of the paper; into docs/validation.md.
     Shading {
-        /// Photons for each scene, instead of those in the files.
+        /// Photons per scene, instead of those in the files.
         #[arg(long)]
         photons: Option<u64>,
     },
-    /// What the paper says in words, with photons; into docs/validation.md.
+    /// Statements in the paper's text, checked with photons; into docs/validation.md.
     Claims {
-        /// Photons for each scene, instead of a million and more.
+        /// Photons per scene, instead of a million or more.
         #[arg(long)]
         photons: Option<u64>,
     },
-    /// The sampling criteria against photons, into docs/bandwidth.md with its picture.
+    /// The sampling criteria compared with photons, into docs/bandwidth.md with its picture.
     Bandwidth {
-        /// Photons for each point; then nothing is written.
+        /// Photons per point; if given, nothing is written.
         #[arg(long)]
         photons: Option<u64>,
     },
-    /// p of the full radial spectrum uniform over many seeds, and faults planted in its predictions.
+    /// Check that p of the full radial spectrum is uniform over many seeds, and that faults in its
+    /// predictions are rejected.
     FullRadial {
-        /// How many seeds.
+        /// Number of seeds.
         #[arg(long, default_value_t = 200)]
         seeds: u64,
-        /// Photons for each.
+        /// Photons per seed.
         #[arg(long, default_value_t = 1 << 16)]
         photons: u64,
     },
-    /// Errors that predictions by nets of rays state, against the truth; into docs/nets.md.
+    /// Stated errors of predictions by nets of rays, compared with the true errors; into
+    /// docs/nets.md.
     Nets,
-    /// What theory and the tracers share, against a second implementation of it; exit code 1 if they differ or a planted fault is not seen.
+    /// The code shared by theory and tracers, compared with a second implementation; exit code 1 if
+    /// they differ or a planted fault is not detected.
     Second,
-    /// Mutated scenes, meshes, pictures and stored stages as input of the program; exit code 1 if it does not bear one.
+    /// Mutated scenes, meshes, pictures and stored stages as input of the program; exit code 1 if
+    /// it fails on one.
     Hostile(hostile::HostileOptions),
-    /// The program killed, started twice at once and on full disks; exit code 1 if it leaves a broken result or loses a file.
+    /// Kill the program, start it twice at once and run it on full disks; exit code 1 if it leaves
+    /// a broken result or loses a file.
     Kills(kills::KillOptions),
-    /// Random scenes of the whole vocabulary; exit code 1 after a panic, a hang or a wrong verdict.
+    /// Random scenes with all features; exit code 1 after a panic, a hang or a wrong verdict.
     Wild(wild::WildOptions),
-    /// Random scenes that break one assumption of theory, predicted all the same; exit code 1 if photons never reject one.
+    /// Random scenes that violate one assumption of theory, predicted nevertheless; exit code 1 if
+    /// photons never reject one of them.
     Assumptions(assumptions::AssumptionOptions),
     /// Small objects in the light of random scenes; exit code 1 if photons reject a prediction.
     Small(wild::SmallOptions),
-    /// Random scenes whose light several surfaces send on; exit code 1 if photons reject a prediction.
+    /// Random scenes with several reflecting or refracting surfaces; exit code 1 if photons reject
+    /// a prediction.
     Several(wild::SmallOptions),
-    /// Measured parameters and slopes of random scenes in stated errors, and what predictions cost; exit code 1 if errors are not those made.
+    /// Pulls of measured parameters and slopes over random scenes, and the cost of predictions;
+    /// exit code 1 if stated errors are wrong.
     Pulls(pulls::PullOptions),
     /// The main scene: every plane, noise floors, calibration and planted faults; into docs/validation.md.
     Main,
@@ -154,7 +165,7 @@ enum ValidationCommand {
     All,
 }
 
-/// The seed of every single run: fixed beforehand, and not chosen.
+/// The seed of every single run: fixed in advance, and not chosen by its results.
 const SEED: u64 = 1;
 
 #[expect(
@@ -234,7 +245,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Prints sections that are no part of a page.
+/// Prints sections that are not part of a page.
 #[expect(
     clippy::print_stdout,
     clippy::print_stderr,
@@ -254,7 +265,8 @@ fn printed(outcome: std::io::Result<Vec<ReportSection>>) -> ExitCode {
     }
 }
 
-/// The page that a command writes a part of: its file, the title of the part, the command's name and what is shown.
+/// The page that a command writes a part of: its file, the title of the part, the command's name
+/// and a description.
 fn page(command: &ValidationCommand) -> Option<[&'static str; 4]> {
     Some(match command {
         ValidationCommand::Main => [
@@ -306,10 +318,10 @@ fn page(command: &ValidationCommand) -> Option<[&'static str; 4]> {
     })
 }
 
-/// A page with one of its parts, which begin with their titles, replaced or added.
+/// A page with one of its parts replaced or added; parts begin with their titles.
 fn with_part(page: &str, title: &str, part: &str) -> String {
     let heading = format!("# {title}\n");
-    // `##` begins a section of a part.
+    // A part may contain `##` headings.
     let starts = page.match_indices("\n# ").map(|(at, _)| at + 1);
     let mut cuts: Vec<usize> = std::iter::once(0).chain(starts).collect();
     cuts.push(page.len());
@@ -351,7 +363,7 @@ fn sections(command: &ValidationCommand) -> Vec<ReportSection> {
             full_radial::full_radial(seeds, photons)
         }
         ValidationCommand::Bandwidth { photons } => vec![shading::glossy(photons).0],
-        // These have reports of their own.
+        // These commands write their own reports.
         ValidationCommand::Nets
         | ValidationCommand::Second
         | ValidationCommand::Hostile(_)
@@ -378,7 +390,7 @@ fn faults(photons: u64) -> Vec<ReportSection> {
     ]
 }
 
-/// By both kinds of numbers.
+/// Calibration with both kinds of random numbers.
 fn calibrations(seeds: Range<u64>, photons: u64) -> Vec<ReportSection> {
     let kinds = [Sampling::Net, Sampling::Random].into_iter();
     let sections = kinds.flat_map(|kind| calibration::calibration(seeds.clone(), photons, kind));

@@ -1,4 +1,4 @@
-//! χ², p and the noise floor as the photons grow.
+//! χ², p and the noise floor for increasing numbers of photons.
 
 use crate::SEED;
 use crate::report::Bound::Below;
@@ -34,7 +34,8 @@ pub(crate) fn planes(photons: u64, seed: u64) -> ReportSection {
 pub(crate) fn parameters(photons: u64, seed: u64) -> ReportSection {
     let reports = reports(&fig9b(photons, seed));
     let mut rows = Vec::new();
-    // Two-sided 1 % for the largest of ten normal numbers, Šidák: level 0.1 %, quantile 3.29.
+    // The two-sided 1 % bound for the largest of ten normal numbers (Šidák): level 0.1 %, quantile
+    // 3.29.
     let bound = 3.29;
     for plane in &reports {
         for p in &plane.parameters {
@@ -73,7 +74,7 @@ pub(crate) fn parameters(photons: u64, seed: u64) -> ReportSection {
     }
 }
 
-/// How the noise of photons from nets is to that of photons from random numbers, over all
+/// The ratio of the noise of photons from nets to that of photons from random numbers, over all
 /// frequencies of a plane.
 pub(crate) fn gain(photons: u64, batches: u32) -> ReportSection {
     let variances = |sampling: Sampling| {
@@ -107,7 +108,7 @@ pub(crate) fn gain(photons: u64, batches: u32) -> ReportSection {
             .to_vec();
         row.insert(0, name.clone());
         row.push(format!("{:.2} %", 100.0 * worse));
-        // 1000 independent frequencies and 64 batches tell a total to 0.03 dB.
+        // 1000 independent frequencies and 64 batches determine a total to 0.03 dB.
         let check = Check::new("total", total, Below(-0.1), "three of its errors, dB");
         Row::new(row, vec![check])
     };
@@ -131,7 +132,7 @@ pub(crate) fn gain(photons: u64, batches: u32) -> ReportSection {
     }
 }
 
-/// The receiver plane at growing numbers of photons.
+/// The receiver plane at increasing numbers of photons.
 pub(crate) fn floor(photons: &[u64], seed: u64) -> ReportSection {
     let mut rows: Vec<Row> = Vec::new();
     let mut before = None;
@@ -147,7 +148,7 @@ pub(crate) fn floor(photons: &[u64], seed: u64) -> ReportSection {
         }
         let [random, net] = floors;
         let last = rows.len() - 1;
-        // 64 batches at about 1000 uncorrelated frequencies tell a mean σ² to 0.4 %, 0.017 dB.
+        // 64 batches at about 1000 uncorrelated frequencies determine a mean σ² to 0.4 %, 0.017 dB.
         let reason = "four of the errors of a difference, dB";
         let off = net - random;
         rows[last]
@@ -207,7 +208,7 @@ fn row(scene: &Scene, report: &PlaneReport) -> Row {
 /// All planes of a scene, measured and compared.
 ///
 /// # Panics
-/// When the scene has too few batches, which resolving excludes.
+/// If the scene has too few batches, which resolving excludes.
 fn reports(scene: &Scene) -> Vec<PlaneReport> {
     let measurement = traced(scene);
     let test = Test::of(scene);

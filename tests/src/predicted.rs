@@ -1,17 +1,17 @@
-//! Slices that theory predicts for a system, tampered with or not.
+//! Slices predicted by theory, modified or not.
 
 use etendue_field::{ProjectionGrid, SliceGrid, Slices, VirtualPlane, Window};
 use etendue_theory::geometry::SpectrumMap;
 use etendue_theory::scattering::{self, ScatteringChain};
 use etendue_theory::{Model, Observed, Predicted, RayBudget, rays};
 
-/// Rays of a prediction: errors of a fifth of the photons' noise.
+/// Rays of a prediction: their error is a fifth of the photons' noise.
 const BUDGET: RayBudget = RayBudget {
     nodes: 5e6,
     error: 5e-4,
 };
 
-/// Behind specular surfaces.
+/// The prediction behind specular surfaces, by rays.
 pub(crate) fn traced(
     view: &Observed<rays::SpecularSystem>,
     window: &Window,
@@ -21,7 +21,7 @@ pub(crate) fn traced(
     view.predict(&[], (window, grid, &picture), BUDGET)
 }
 
-/// Behind specular surfaces, by a chain.
+/// The prediction behind specular surfaces, by a chain.
 pub(crate) fn linear(
     view: &Observed<rays::SpecularSystem>,
     window: &Window,
@@ -32,7 +32,7 @@ pub(crate) fn linear(
     rays::linear(view, (window, grid, &picture), map, BUDGET).slices
 }
 
-/// Behind a surface with a BRDF: as it is, and by a chain.
+/// The predictions behind a surface with a BRDF: exact, and by a chain.
 pub(crate) fn scattered(
     view: &Observed<scattering::ScatteringSystem>,
     plane: &VirtualPlane,

@@ -1,19 +1,19 @@
-//! How far long work is: a bar on a terminal, and a line at each twentieth of the work elsewhere.
+//! Progress of long work: a bar on a terminal, and elsewhere a line for each twentieth of the work.
 
 use indicatif::{ProgressBar, ProgressStyle};
 use std::time::Duration;
 
-/// Lines from beginning to end where there is no terminal.
+/// Number of progress lines where there is no terminal.
 const LINES: u64 = 20;
 
-/// Things done of a known number.
+/// Progress of a known number of items.
 #[derive(Clone)]
 pub(crate) struct CountedProgress {
     bar: ProgressBar,
     things: &'static str,
 }
 
-/// Begins work on `count` things.
+/// Begins work on `count` items.
 pub(crate) fn progress(count: u64, things: &'static str) -> CountedProgress {
     let bar = ProgressBar::new(count);
     let style = format!("{{bar:40}} {{human_pos}} of {{human_len}} {things}  {{eta}} left");
@@ -24,7 +24,7 @@ pub(crate) fn progress(count: u64, things: &'static str) -> CountedProgress {
 }
 
 impl CountedProgress {
-    /// One more is done.
+    /// Counts one finished item.
     #[expect(clippy::print_stderr, reason = "the report goes to standard output")]
     pub(crate) fn one(&self) {
         self.bar.inc(1);
@@ -40,12 +40,12 @@ impl CountedProgress {
         }
     }
 
-    /// Writes something else to the terminal.
+    /// Hides the bar while `tell` writes to the terminal.
     pub(crate) fn suspend(&self, tell: impl FnOnce()) {
         self.bar.suspend(tell);
     }
 
-    /// All is done.
+    /// Ends the progress display.
     pub(crate) fn end(&self) {
         self.bar.finish_and_clear();
     }

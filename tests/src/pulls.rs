@@ -1,9 +1,9 @@
 //! Pulls of measured parameters and slopes, and the cost of predictions, over random scenes.
 //!
-//! A pull is the distance of a measured value from the scene's, or of a measured slope from the
-//! predicted one, in stated errors, taken from Student's distribution to the normal one. If the
-//! errors are right, pulls have mean 0 and standard deviation 1, and their tails are those of a
-//! normal distribution.
+//! A pull is the deviation of a measured value from the scene's, or of a measured slope from the
+//! predicted one, divided by its stated error and converted from Student's distribution to the
+//! normal one. If the errors are right, pulls have mean 0 and standard deviation 1, and the tails
+//! of a normal distribution.
 
 use crate::progress::progress;
 use crate::report::Bound::Below;
@@ -20,42 +20,43 @@ use std::fs;
 use std::io;
 use std::path::PathBuf;
 
-/// Which scenes are measured, and with how many photons.
+/// Options of the measured scenes and their photons.
 #[derive(Debug, clap::Args)]
 pub(crate) struct PullOptions {
-    /// Scenes.
+    /// Number of scenes.
     #[arg(long, default_value_t = 300)]
     scenes: u64,
-    /// Number of the first.
+    /// Index of the first scene.
     #[arg(long, default_value_t = 0)]
     first: u64,
-    /// Another seed gives other scenes.
+    /// Seed of the random scenes.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Photons of each scene.
+    /// Photons per scene.
     #[arg(long, default_value_t = 1_000_000)]
     photons: u64,
-    /// A folder that all scenes are written to.
+    /// Folder to which all scenes are written.
     #[arg(long)]
     keep: Option<PathBuf>,
 }
 
-/// Shares of a normal distribution beyond 2, 3 and 4 standard deviations.
+/// Fractions of a normal distribution beyond 2, 3 and 4 standard deviations.
 const NORMAL: [(f64, f64); 3] = [(2.0, 0.0455), (3.0, 0.0027), (4.0, 6.3e-5)];
-/// How far the mean may be from 0 and the standard deviation from 1, beside their standard errors.
+/// Permitted deviation of the mean from 0 and of the standard deviation from 1, in addition to
+/// their standard errors.
 const MAX_DEVIATION: f64 = 0.05;
-/// Standard errors that a deviation may have: one figure in 400 is beyond by chance.
+/// Permitted standard errors of a deviation: one figure in 400 exceeds them by chance.
 const MAX_ERRORS: f64 = 3.0;
-/// Noise as a share of the spectrum above which a plane is not judged.
+/// Maximum noise relative to the spectrum of a plane that is judged.
 const MAX_NOISE: f64 = 0.25;
-/// Fewest scenes of a group that is judged: errors over fewer scenes are not known themselves.
+/// Minimum number of scenes of a group that is judged: errors over fewer scenes are uncertain.
 const MIN_SCENES: usize = 10;
-/// Rows of the tables of single pulls and scenes.
+/// Maximum number of rows in the tables of single pulls and scenes.
 const LISTED: usize = 12;
-/// CPU seconds that no prediction exceeds where its photons take fewer.
+/// Maximum CPU seconds of a prediction whose photons take less time.
 const MAX_SECONDS: f64 = 10.0;
 
-/// One measured number in stated errors.
+/// The pull of one measured number.
 struct Pull {
     scene: u64,
     plane: String,
@@ -64,7 +65,7 @@ struct Pull {
     value: f64,
 }
 
-/// CPU seconds of a scene.
+/// The CPU seconds of a scene.
 struct Cost {
     scene: u64,
     traced: f64,
@@ -103,8 +104,8 @@ pub(crate) fn pulls(options: &PullOptions) -> io::Result<Vec<ReportSection>> {
     ])
 }
 
-/// A scene of the hunt for wrong scenes and one of those for nets by turns; `None` where it is not
-/// sound.
+/// Draws scenes alternately from `wild` and from the generator for nets; `None` if the scene is
+/// invalid.
 fn drawn(options: &PullOptions, number: u64) -> io::Result<Option<Scene>> {
     let folder = tempfile::tempdir()?;
     let file = if number.is_multiple_of(2) {
@@ -116,7 +117,8 @@ fn drawn(options: &PullOptions, number: u64) -> io::Result<Option<Scene>> {
         return Ok(None);
     };
     file.run.photons = options.photons;
-    // Photons of one seed are the same in all scenes, and so would their noise be.
+    // Different seeds, because photons of one seed are the same in all scenes, and so is their
+    // noise.
     file.run.seed = options.seed + number;
     file.run.resolution = MAX_NOISE;
     if let Some(kept) = &options.keep {
@@ -126,8 +128,8 @@ fn drawn(options: &PullOptions, number: u64) -> io::Result<Option<Scene>> {
     Ok(resolve("scene", file, folder.path(), u64::MAX).ok())
 }
 
-/// Adds the pulls of a scene, and returns what it costs. `None` if no plane has a theory, or the
-/// work is refused.
+/// Adds the pulls of a scene, and returns its cost. `None` if no theory applies to any plane, or
+/// the work is refused.
 fn judged(scene: &Scene, number: u64, pulls: &mut Vec<Pull>) -> io::Result<Option<Cost>> {
     let planes = scene.planes.iter();
     let theories: Vec<Applicability> = planes
@@ -168,7 +170,8 @@ fn judged(scene: &Scene, number: u64, pulls: &mut Vec<Pull>) -> io::Result<Optio
             0 => measurement.batches().len(),
             replicates => replicates.min(measurement.batches().len()),
         };
-        // Noise above the resolution: errors of so few photons are not those of a normal law.
+        // The noise exceeds the resolution: errors from so few photons are not normally
+        // distributed.
         if report.exact_verdict() == Verdict::Undecided {
             continue;
         }
@@ -190,7 +193,7 @@ fn judged(scene: &Scene, number: u64, pulls: &mut Vec<Pull>) -> io::Result<Optio
             add("shear slope", (measured - predicted) / error);
         }
         for parameter in &report.parameters {
-            // What the photons do not determine is not reported as measured.
+            // Parameters that the photons do not determine are not reported as measured.
             if parameter.detectable < parameter.scene.abs() {
                 let word = parameter.name.split(' ').next().unwrap_or_default();
                 add(
@@ -203,15 +206,15 @@ fn judged(scene: &Scene, number: u64, pulls: &mut Vec<Pull>) -> io::Result<Optio
     Ok(Some(cost))
 }
 
-/// The number as far out on a normal distribution as `t` is on Student's with so many degrees of
-/// freedom, to 0.01 where these are 30 or more (Abramowitz and Stegun 1964, 26.7.8): an error comes
-/// from the spread of a few dozen batches.
+/// The normal quantile that corresponds to the quantile `t` of Student's distribution with this
+/// many degrees of freedom, to 0.01 for 30 or more (Abramowitz and Stegun 1964, 26.7.8): an error
+/// comes from the spread of a few dozen batches.
 fn normal(t: f64, freedom: usize) -> f64 {
     let freedom = freedom as f64;
     t * (1.0 - 0.25 / freedom) / (1.0 + t * t / (2.0 * freedom)).sqrt()
 }
 
-/// The theory of a plane, and how it is evaluated.
+/// A name for the theory of a plane and its evaluation.
 fn kind(theory: &Applicability, prediction: &Prediction) -> &'static str {
     let nets = !prediction.replicates.is_empty();
     let is_rule = prediction.quadrature_error.is_some();
@@ -228,16 +231,16 @@ fn kind(theory: &Applicability, prediction: &Prediction) -> &'static str {
 
 /// User and system time of this process.
 fn cpu_seconds() -> io::Result<f64> {
-    /// Linux reports times in hundredths of a second, whatever its clock.
+    /// Linux reports times in hundredths of a second, whatever its clock rate.
     const TICK: f64 = 0.01;
     let stat = fs::read_to_string("/proc/self/stat")?;
-    // The name of the program, in parentheses, may hold spaces.
+    // The program name, in parentheses, may contain spaces.
     let fields = stat.rsplit(')').next().unwrap_or_default();
     let ticks = fields.split_whitespace().skip(11).take(2);
     Ok(ticks.filter_map(|t| t.parse::<f64>().ok()).sum::<f64>() * TICK)
 }
 
-/// The pulls of each group in a row.
+/// A row for the pulls of each group.
 fn grouped(
     pulls: &[Pull],
     options: &PullOptions,
@@ -283,7 +286,7 @@ fn row(name: &str, pulls: &[&Pull], is_judged: bool) -> Row {
     }
     let count = pulls.len() as f64;
     let total = |of: &dyn Fn(f64) -> f64| pulls.iter().map(|p| of(p.value)).sum::<f64>() / count;
-    // The pulls of a scene depend on each other, so errors are over scenes.
+    // The pulls of a scene are dependent, so errors are computed over scenes.
     let error = |of: &dyn Fn(f64) -> f64| {
         let all = total(of);
         let apart = scenes
@@ -344,7 +347,7 @@ fn largest(pulls: &[Pull]) -> ReportSection {
     }
 }
 
-/// What predictions cost, beside the photons.
+/// The cost of predictions, compared with that of photons.
 fn cost(costs: &[Cost]) -> ReportSection {
     let ratio = |cost: &Cost| cost.predicted / cost.traced.max(0.01);
     let mut sorted: Vec<&Cost> = costs.iter().collect();

@@ -1,9 +1,9 @@
-//! What a validation found: figures held against bounds, in tables, and how all of it reads.
+//! Validation results: figures checked against bounds, in tables, and their formatting.
 
 use crate::rows::Line;
 use etendue_compare::{PlaneReport, Verdict};
 
-/// What a figure must be. What is not a number is none of these.
+/// The requirement on a figure. NaN meets none of them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Bound {
     Below(f64),
@@ -12,7 +12,7 @@ pub(crate) enum Bound {
     Above(f64),
 }
 
-/// A figure, what it must be, and why that.
+/// A figure, the requirement on it, and the reason for that.
 #[derive(Clone, Debug)]
 pub(crate) struct Check {
     pub(crate) id: &'static str,
@@ -21,7 +21,7 @@ pub(crate) struct Check {
     reason: &'static str,
 }
 
-/// The check of p of photons against the exact prediction.
+/// The name of the check of p of photons against the exact prediction.
 pub(crate) const EXACT: &str = "exact";
 
 impl Check {
@@ -34,19 +34,19 @@ impl Check {
         }
     }
 
-    /// Of what holds or does not: the figure is 1 or 0.
+    /// A check of a fact: the figure is 1 or 0.
     pub(crate) fn fact(id: &'static str, holds: bool, reason: &'static str) -> Self {
         Self::new(id, f64::from(holds), Bound::AtLeast(1.0), reason)
     }
 
-    /// Of p, at a level; where there is no p it counts as 0.
+    /// A check of p, at a level; a missing p counts as 0.
     pub(crate) fn p(id: &'static str, p: Option<f64>, level: f64) -> Self {
         let bound = Bound::AtLeast(level);
         Self::new(id, p.unwrap_or(0.0), bound, "α over all planes")
     }
 
-    /// Of photons against the exact prediction, as a run judges them: p, or that the stated error of the prediction is below the resolution and may be
-    /// all they disagree with.
+    /// A check of photons against the exact prediction, judged as in a run: by p, or because the
+    /// stated error of the prediction is below the resolution and may explain the difference.
     pub(crate) fn exact(report: &PlaneReport, level: f64) -> Self {
         let check = Self::p(EXACT, report.p_value, level);
         if check.passes() || report.exact_verdict() != Verdict::Pass {
@@ -59,7 +59,7 @@ impl Check {
         }
     }
 
-    /// Of what must not be once.
+    /// A check that something never occurs.
     pub(crate) fn none(id: &'static str, count: usize) -> Self {
         Self::new(id, count as f64, Bound::AtMost(0.0), "none is borne")
     }
@@ -68,7 +68,7 @@ impl Check {
         self.held().2
     }
 
-    /// What the figure must be in words, the bound, and whether it is.
+    /// The requirement in words, the bound, and whether the figure meets it.
     fn held(&self) -> (&'static str, f64, bool) {
         let figure = self.figure;
         match self.bound {
@@ -90,17 +90,17 @@ fn failed(checks: &[Check]) -> impl Iterator<Item = &Check> {
     checks.iter().filter(|check| !check.passes())
 }
 
-/// The larger figure; what is not a number is as far off as can be.
+/// The larger figure; NaN counts as the largest.
 pub(crate) fn worse(a: f64, b: f64) -> f64 {
     if b.is_nan() { f64::INFINITY } else { a.max(b) }
 }
 
-/// A row of a table, and what is required of it.
+/// A row of a table, and the checks of it.
 #[derive(Clone, Debug)]
 pub(crate) struct Row {
     pub(crate) cells: Vec<String>,
     pub(crate) checks: Vec<Check>,
-    /// The rows of the paper's Table 1 that this says something of.
+    /// The rows of the paper's Table 1 to which this row applies.
     pub(crate) lines: Vec<Line>,
 }
 
@@ -120,7 +120,7 @@ impl Row {
         }
     }
 
-    /// Whether something is required of it, and all of that holds.
+    /// Whether the row has checks, and all of them pass.
     pub(crate) fn passes(&self) -> bool {
         !self.checks.is_empty() && failed(&self.checks).next().is_none()
     }
@@ -134,16 +134,16 @@ impl Row {
     }
 }
 
-/// One validation: a table in Markdown, and what is required of its rows and of all of it.
+/// One validation: a table in Markdown, and the checks of its rows and of the whole.
 #[derive(Debug)]
 pub(crate) struct ReportSection {
     pub(crate) title: String,
-    /// What was done and what is required, in words.
+    /// A description of the procedure and the requirements.
     pub(crate) text: String,
-    /// Where rows have a cell less, the last column is for their verdicts.
+    /// The column headings; if rows have one cell less, the last column is for their verdicts.
     pub(crate) header: Vec<&'static str>,
     pub(crate) rows: Vec<Row>,
-    /// Beyond those of the rows.
+    /// Checks in addition to those of the rows.
     pub(crate) checks: Vec<Check>,
 }
 
@@ -152,7 +152,8 @@ impl ReportSection {
         self.failures().is_empty()
     }
 
-    /// The same with a fault planted: now its checks must not all hold, as they do without it.
+    /// The section with a planted fault: now at least one of its checks must fail, although all
+    /// pass without the fault.
     pub(crate) fn planted(mut self, title: String, text: &str, is_sound: bool) -> Self {
         let is_seen = !self.passes();
         self.rows.iter_mut().for_each(|row| row.checks.clear());
@@ -168,7 +169,7 @@ impl ReportSection {
     }
 
     pub(crate) fn markdown(&self) -> String {
-        // A bar within a cell would end it.
+        // A vertical bar would end a cell.
         let line = |cells: &[String]| {
             let cells: Vec<String> = cells.iter().map(|c| c.replace('|', "\\|")).collect();
             format!("| {} |\n", cells.join(" | "))
@@ -196,7 +197,7 @@ impl ReportSection {
         )
     }
 
-    /// A line for each check that does not hold, after what its row begins with.
+    /// A line for each failed check, preceded by the start of its row.
     fn failures(&self) -> String {
         let of_row = |row: &Row| {
             let line = |check: &Check| format!("* {}: {}", row.cells[..2].join(", "), check.told());

@@ -1,9 +1,9 @@
-//! Every row of the paper's Table 1, and what the sections of a whole validation have found of it.
+//! Every row of the paper's Table 1, with the results of a whole validation for it.
 
 use crate::report::Bound::AtLeast;
 use crate::report::{Check, EXACT, ReportSection, Row};
 
-/// A row of the paper's Table 1; rows of sections name those they say something of.
+/// A row of the paper's Table 1; rows of sections refer to the rows they apply to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Line {
     Travel,
@@ -69,7 +69,7 @@ impl Line {
     }
 }
 
-/// Every row, of the sections of all parts.
+/// The results for every row, from the sections of all parts.
 pub(crate) fn rows(sections: &[ReportSection]) -> ReportSection {
     ReportSection {
         title: "Every row".to_owned(),
@@ -95,7 +95,7 @@ pub(crate) fn rows(sections: &[ReportSection]) -> ReportSection {
 fn row(line: Line, sections: &[ReportSection]) -> Row {
     let all = sections.iter().flat_map(|section| &section.rows);
     let of_line = all.filter(|row| row.lines.contains(&line));
-    // With photons are those that have a p.
+    // Rows with a p are those checked with photons.
     let (planes, others): (Vec<&Row>, Vec<&Row>) = of_line.partition(|row| exact(row).is_some());
     let mut cells = line.words().map(str::to_owned).to_vec();
     let mut checks = Vec::new();
@@ -161,7 +161,7 @@ mod tests {
     #[test]
     fn words_do_not_make_a_failing_check_pass() {
         let p = || section(&["texture", "pass"], vec![Check::p(EXACT, Some(0.3), 0.01)]);
-        // Off by too much, by what is not a number, or held against nothing.
+        // A figure that is too large, NaN, or unchecked.
         for checks in [off(1e-6), off(f64::NAN), Vec::new()] {
             let planted = section(&["texture", "pass"], checks);
             let shown = planted.markdown();

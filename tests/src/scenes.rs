@@ -1,4 +1,4 @@
-//! The scenes validation is made on, and the measurement of them.
+//! The scenes used for validation, and their measurement.
 
 use etendue_compare::{Applicability, Class, PlaneComparison, Prediction, Test, compare};
 use etendue_field::PhotonSource;
@@ -12,7 +12,8 @@ macro_rules! scene {
     };
 }
 
-/// Every scene of the repository that has a verdict of its own and is neither one of shading nor below `table1`, and its text.
+/// Every scene of the repository that has its own verdict and belongs neither to shading nor to
+/// `table1`, with its text.
 pub(crate) const SUITE: &[(&str, &str)] = &[
     scene!("travel"),
     scene!("fig1"),
@@ -39,10 +40,10 @@ pub(crate) const SUITE: &[(&str, &str)] = &[
     scene!("two_glossy"),
 ];
 
-/// A scene of the suite, with the photons and the seed of its file unless others are given.
+/// A scene of the suite, with the photons and the seed of its file by default.
 ///
 /// # Panics
-/// When there is no such scene, or it is not sound.
+/// If there is no such scene, or it is invalid.
 pub(crate) fn named(name: &str, photons: Option<u64>, seed: Option<u64>) -> Scene {
     let text = SUITE.iter().find(|(known, _)| *known == name);
     let (_, text) = text.expect("a scene of the suite");
@@ -57,20 +58,20 @@ pub(crate) fn fig9b(photons: u64, seed: u64) -> Scene {
     named("fig9b", Some(photons), Some(seed))
 }
 
-/// `fig9b` with the receiver plane alone: all photons are aimed at its window.
+/// `fig9b` with only the receiver plane: all photons are aimed at its window.
 pub(crate) fn receiver(photons: u64, seed: u64) -> Scene {
     let mut scene = fig9b(photons, seed);
     scene.planes.retain(|plane| plane.name == "receiver");
     scene
 }
 
-/// A scene whose photons are drawn from these numbers.
+/// A scene whose photons use this kind of random numbers.
 pub(crate) fn sampled(mut scene: Scene, sampling: Sampling) -> Scene {
     scene.run.sampling = sampling;
     scene
 }
 
-/// What photons are drawn from, in words.
+/// A description of the photons' random numbers.
 pub(crate) fn words(sampling: Sampling) -> &'static str {
     match sampling {
         Sampling::Net => "nets",
@@ -78,7 +79,8 @@ pub(crate) fn words(sampling: Sampling) -> &'static str {
     }
 }
 
-/// Gives a run so many photons, and the resolution that goes with them: noise falls with their root.
+/// Changes the number of photons of a run, and scales its resolution accordingly: noise decreases
+/// with their root.
 pub(crate) fn emit(run: &mut RunFile, photons: Option<u64>) {
     let Some(photons) = photons else { return };
     let more_noise = (run.photons as f64 / photons as f64).sqrt();
@@ -96,16 +98,16 @@ pub(crate) fn traced(scene: &Scene) -> Measurement {
     measured(scene, &Tracer::new(scene))
 }
 
-/// Measures a scene backwards; `None` where there is no backward tracer.
+/// Measures a scene backwards; `None` if there is no backward tracer for it.
 pub(crate) fn traced_backwards(scene: &Scene) -> Option<Measurement> {
     let backward = Backward::new(scene).ok()?;
     Some(measured(scene, &backward))
 }
 
-/// The predictions of all planes of a scene; where theory has no word, `reference` speaks.
+/// The predictions of all planes of a scene; where no theory applies, `reference` is used.
 ///
 /// # Panics
-/// When a plane needs a reference and there is none.
+/// If a plane needs a reference and there is none.
 pub(crate) fn predicted(scene: &Scene, reference: Option<&Measurement>) -> Vec<Prediction> {
     let planes = scene.planes.iter().enumerate();
     planes
@@ -119,20 +121,20 @@ pub(crate) fn predicted(scene: &Scene, reference: Option<&Measurement>) -> Vec<P
         .collect()
 }
 
-/// What a reference measurement says of plane `index`.
+/// The prediction of plane `index` from a reference measurement.
 ///
 /// # Panics
-/// When it has too few batches.
+/// If it has too few batches.
 pub(crate) fn referred(scene: &Scene, index: usize, reference: &Measurement) -> Prediction {
     let theory = Applicability::new(scene, &scene.planes[index]);
     let reference = Prediction::reference(scene, index, &theory, reference, index);
     reference.expect("a scene has 32 batches")
 }
 
-/// A plane held against a prediction.
+/// Compares a plane with a prediction.
 ///
 /// # Panics
-/// When the measurement has too few batches.
+/// If the measurement has too few batches.
 pub(crate) fn compared(
     scene: &Scene,
     measurement: &Measurement,

@@ -1,4 +1,4 @@
-//! Every scene of the repository: its prediction, and the two tracers against each other.
+//! Every scene of the repository: its prediction, and the two tracers compared with each other.
 
 use crate::report::Bound::{Above, AtLeast, AtMost, Below};
 use crate::report::{Check, ReportSection, Row};
@@ -7,7 +7,7 @@ use etendue_compare::{PlaneComparison, PlaneReport, Verdict, sidak};
 use etendue_scene::Scene;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// A scene of the suite, run.
+/// The results of a scene of the suite.
 struct SuiteRun {
     scene: Scene,
     planes: Vec<PlaneComparison>,
@@ -15,10 +15,10 @@ struct SuiteRun {
     backward: Vec<Option<f64>>,
 }
 
-/// Share of true suites that may be rejected, over all planes of the suite.
+/// False rejection rate over all planes of the suite.
 const ALPHA: f64 = 0.01;
 
-/// The whole suite, with the photons of the files or with `photons` for each scene.
+/// Runs the whole suite, with the photons of the files or with `photons` for each scene.
 pub(crate) fn suite(photons: Option<u64>) -> Vec<ReportSection> {
     let scenes: Vec<Scene> = SUITE
         .iter()
@@ -117,7 +117,7 @@ fn outcome<'a>(outcomes: &'a [SuiteRun], name: &str) -> Option<&'a SuiteRun> {
     outcomes.iter().find(|o| o.scene.name == name)
 }
 
-/// Two occluders that block everything together, and a lot of light alone (Durand et al. 2005, Fig. 7).
+/// Two occluders that block everything together, but little alone (Durand et al. 2005, Fig. 7).
 fn occluders(outcomes: &[SuiteRun]) -> ReportSection {
     let mut rows = Vec::new();
     let at = |name: &str| {
@@ -132,7 +132,7 @@ fn occluders(outcomes: &[SuiteRun]) -> ReportSection {
         ("fig7_two", 0, 0.0),
     ] {
         let through = at(name).map_or(0, |plane| plane.report.crossed);
-        // A short suite has fewer photons than the million asked for.
+        // A short suite has fewer photons than the required million.
         let wanted = outcome(outcomes, name)
             .map_or(0, |o| o.scene.run.photons / 4)
             .min(least);
@@ -150,7 +150,8 @@ fn occluders(outcomes: &[SuiteRun]) -> ReportSection {
         outcome(outcomes, "fig7_two"),
     ) {
         (Some(one), Some(other), Some(both)) => {
-            // Open minus what each takes away: F − (F − F₁) − (F − F₂) = F₁ + F₂ − F.
+            // Open minus the light that each occluder blocks: F − (F − F₁) − (F − F₂) = F₁ + F₂ −
+            // F.
             let open = etendue_compare::chain(&both.scene, &both.scene.planes[2]);
             let open = etendue_theory::Chain {
                 operators: open.operators.into_iter().filter(travels).collect(),
@@ -282,7 +283,7 @@ fn furnace(outcomes: &[SuiteRun]) -> ReportSection {
                 known += factor * hann(x) * hann(y);
             }
         }
-        // Cells, and the window over slopes: (half-width)².
+        // The sum over cells, and the window over slopes: (half-width)².
         known *= (2.0 * half / f64::from(nodes)).powi(2) * plane.window.u.half_width().powi(2);
         let zero = [0, 0, plane.grid.nu.half];
         let (measured, error) = (compared.measured.half[zero].re, compared.sigma[zero]);

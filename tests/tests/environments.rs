@@ -1,5 +1,5 @@
-//! Light of environments on a leg and on surfaces: photons tell what theory predicts from what it
-//! would predict with a fault.
+//! Light of environments on a leg and on surfaces: photons distinguish predictions with and without
+//! a fault.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -12,14 +12,14 @@ use etendue_theory::{Model, Observed, Predicted, RayBudget};
 use etendue_trace::Tracer;
 use glam::{DQuat, DVec3};
 
-/// Of a prediction: a few times the error that the photons of these tests have.
+/// The budget of a prediction: its error is a few times that of the photons in these tests.
 const BUDGET: RayBudget = RayBudget {
     nodes: 2e6,
     error: 1e-3,
 };
-/// Photons of each scene.
+/// Photons per scene.
 const PHOTONS: u64 = 1 << 22;
-/// Planes that are true are rejected with this probability in all.
+/// False rejection rate over all planes.
 const ALPHA: f64 = 0.01;
 
 type Fault = (&'static str, fn(&mut Observed<SpecularSystem>));
@@ -42,7 +42,7 @@ fn predicted(scene: &Scene, plane: usize, fault: fn(&mut Observed<SpecularSystem
     view.predict(&[], (&plane.window, &plane.grid, &picture), BUDGET)
 }
 
-/// Photons accept the prediction of a plane, and reject each fault.
+/// Checks that photons accept the prediction of a plane, and reject each fault.
 fn tells(scene: &Scene, photons: &Measurement, name: &str, faults: &[Fault]) {
     let plane = scene.planes.iter().position(|p| p.name == name).unwrap();
     let p = |fault: fn(&mut Observed<SpecularSystem>)| {
@@ -58,19 +58,19 @@ fn tells(scene: &Scene, photons: &Measurement, name: &str, faults: &[Fault]) {
     }
 }
 
-/// The axes of a surface turned about its normal, by half a turn.
+/// The axes of a surface rotated about its normal by half a turn.
 fn turned_round(view: &mut Observed<SpecularSystem>) {
     let frame = &mut view.plane.frame;
     (frame.x, frame.y) = (-frame.x, -frame.y);
 }
 
-/// A hollow sphere for a convex one.
+/// Replaces a convex sphere by a hollow one.
 fn hollow(view: &mut Observed<SpecularSystem>) {
     let patch = view.plane.patch.as_mut().unwrap();
     patch.curvature = patch.curvature.map(|k| -k);
 }
 
-/// A sphere that is a hundredth more curved.
+/// Increases the curvature of a sphere by one per cent.
 fn more_curved(view: &mut Observed<SpecularSystem>) {
     let patch = view.plane.patch.as_mut().unwrap();
     patch.curvature = patch.curvature.map(|k| 1.01 * k);
@@ -84,7 +84,7 @@ fn mirrored(view: &mut Observed<SpecularSystem>) {
     view.plane.orientation = Orientation::Mirrored;
 }
 
-/// The environment turned by a degree.
+/// The environment rotated by a degree.
 fn turned_light(view: &mut Observed<SpecularSystem>) {
     let Light::Environment { environment } = &mut view.system.light else {
         panic!("an environment");
@@ -103,7 +103,8 @@ fn traced(scene: &Scene) -> Measurement {
     measure(&tracer, &scene.planes, 0..scene.run.batches, &|_| ())
 }
 
-/// Fig. 3: five suns behind a grating, by slopes and by angles. Half a turn changes nothing of them.
+/// Fig. 3: five suns behind a grating, in slopes and in angles. They are symmetric under half a
+/// turn.
 #[test]
 fn two_parameterisations() {
     let scene = scene("fig3");

@@ -1,4 +1,4 @@
-//! Mutated scene files: whatever is in the file, the answer is a scene or a fault, never a panic.
+//! Mutated scene files: any file gives a scene or an error, never a panic.
 
 use etendue_compare::{Applicability, Prediction, Test, compare};
 use etendue_field::Mask;
@@ -8,7 +8,7 @@ use etendue_trace::Tracer;
 use etendue_transform::random::{self, Stream};
 use rayon::prelude::*;
 
-/// A scene of each kind of light, blockers and planes; the first is fuzzed most.
+/// A scene with each kind of light, blockers and planes; the first is mutated most often.
 const SCENES: [&str; 6] = [
     include_str!("../../scenes/fig9b.ron"),
     include_str!("../../scenes/disc_light.ron"),
@@ -18,7 +18,7 @@ const SCENES: [&str; 6] = [
     include_str!("../../scenes/mesh_blocker.ron"),
 ];
 
-/// Numbers and words that break things.
+/// Critical numbers and words.
 const TOKENS: [&str; 24] = [
     "0",
     "-0.0",
@@ -75,7 +75,7 @@ fn mutated(index: u64) -> String {
             0 => drop(tokens.remove(at)),
             1 => tokens.insert(at, tokens[at].clone()),
             2 => tokens.truncate(at.max(1)),
-            // Most mutations replace a number, so that many get past the syntax.
+            // Most mutations replace a number, so that many keep the syntax valid.
             _ => {
                 let numbers: Vec<usize> = (0..tokens.len())
                     .filter(|i| tokens[*i].starts_with(|c: char| c.is_ascii_digit()))
@@ -92,7 +92,7 @@ fn mutated(index: u64) -> String {
     tokens.concat()
 }
 
-/// Words, numbers and single characters.
+/// Splits a text into words, numbers and single characters.
 fn split(text: &str) -> Vec<String> {
     let mut tokens: Vec<String> = Vec::new();
     let word = |c: char| c.is_alphanumeric() || c == '_' || c == '.';
@@ -107,15 +107,15 @@ fn split(text: &str) -> Vec<String> {
 
 #[test]
 fn no_mutated_scene_file_panics() {
-    // `etendue-validation hostile` tries more of them.
+    // `etendue-validation hostile` tries more mutations.
     let found: Vec<[bool; 2]> = (0..8_000).into_par_iter().map(tried).collect();
     let count = |k: usize| found.iter().filter(|found| found[k]).count();
     let [sound, run] = [count(0), count(1)];
-    // The mutations are worth something: neither all refused nor all harmless.
+    // The mutations are useful: neither all refused nor all harmless.
     assert!(sound > 400 && run > 24, "{sound} sound scenes, {run} run");
 }
 
-/// Whether a mutated file is a sound scene, and whether that was run.
+/// Whether a mutated file is a valid scene, and whether it was run.
 fn tried(index: u64) -> [bool; 2] {
     let text = mutated(index);
     let resolved =
@@ -139,7 +139,8 @@ fn tried(index: u64) -> [bool; 2] {
     [true, is_run]
 }
 
-/// Few photons, frequencies and blockers: it is the values that may break something, not their number.
+/// Few photons, frequencies and blockers: the values of fields may break something, rather than the
+/// number of items.
 fn make_small(scene: &mut Scene) {
     scene.run.photons = 200;
     scene.run.batches = 32;
@@ -157,7 +158,7 @@ fn make_small(scene: &mut Scene) {
         let some = mesh.triangles.iter().take(200).copied().collect();
         mesh.triangles = Triangles::new(some, 0.0);
     }
-    // A receiver's prediction takes seconds, whatever the frequencies.
+    // Predictions at a receiver take seconds, for any frequencies.
     scene.planes.retain(|plane| plane.leg == 0);
 }
 
@@ -172,7 +173,7 @@ fn whole_run(scene: &Scene) {
             prediction.slices.half.iter().all(|s| s.is_finite()),
             "{plane:?}"
         );
-        // Batches without a photon leave too few for errors: an error, not a panic.
+        // Too many batches without a photon are an error, not a panic.
         if let Ok(comparison) = compare(&measurement, i, &prediction, &test) {
             assert!(
                 comparison.radial.power.iter().all(|p| p.is_finite()),

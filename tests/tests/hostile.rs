@@ -9,7 +9,7 @@ use std::time::SystemTime;
 
 const VALIDATION: &str = env!("CARGO_BIN_EXE_etendue-validation");
 
-/// Attacks the program and requires that it bears it.
+/// Runs an attack on the program, which must pass.
 fn attack(arguments: &[&str]) {
     let output = Command::new(VALIDATION)
         .args(arguments)
@@ -23,15 +23,15 @@ fn attack(arguments: &[&str]) {
     assert_eq!(output.status.code(), Some(0), "{report}\n{message}");
 }
 
-/// The program beside the validation. It is of another package: tests of this one alone do not
-/// build it.
+/// The program in the same folder as the validation. It belongs to another package, which tests of
+/// this one alone do not build.
 fn program() -> PathBuf {
     let path = Path::new(VALIDATION).with_file_name("etendue");
     let built = fs::metadata(&path).and_then(|file| file.modified());
     let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates");
     if built.is_err() || built.unwrap() < changed(&crates) {
         let folder = path.parent().and_then(Path::file_name).unwrap();
-        // The folder of a profile has its name, but for that of `dev`.
+        // The folder of a profile has the profile's name, except for `dev`.
         let profile = match folder.to_str().unwrap() {
             "debug" => "dev",
             profile => profile,
@@ -43,7 +43,7 @@ fn program() -> PathBuf {
     path
 }
 
-/// When the newest source was changed; tests do not matter.
+/// The time of the last change of a source file, without tests.
 fn changed(folder: &Path) -> SystemTime {
     let entries = fs::read_dir(folder).unwrap().map(|e| e.unwrap().path());
     let times = entries.map(|path| {
@@ -68,6 +68,6 @@ fn mutated_input_is_borne() {
 #[test]
 #[ignore = "long: half a minute; .ci/run runs it"]
 fn kills_leave_whole_results_or_none() {
-    // Nothing is mounted by an ordinary test.
+    // An ordinary test mounts nothing.
     attack(&["kills", "--count", "12", "--full-disk", "limit"]);
 }

@@ -1,4 +1,4 @@
-//! Scenes that must pass and scenes that must not, end to end: from scene text to verdict.
+//! Scenes that must pass and scenes that must fail, end to end: from scene text to verdict.
 
 use etendue_compare::{
     Applicability, Class, FirstOrderChain, Prediction, Test, Theory, Verdict, compare,
@@ -11,7 +11,7 @@ use etendue_trace::Tracer;
 
 const FIG9B: &str = include_str!("../../scenes/fig9b.ron");
 
-/// Photons of each run: noise is 2 to 4 % of each spectrum.
+/// Photons per run: noise is 2 to 4 % of each spectrum.
 const PHOTONS: u64 = 400_000;
 
 /// fig9b with parts of its text replaced.
@@ -23,12 +23,12 @@ fn scene(edits: &[(&str, &str)]) -> Scene {
     }
     let mut file = SceneFile::parse(&text).expect("the edited scene is a scene file");
     file.run.photons = PHOTONS;
-    // Plain emission leaves 16 % of noise: enough to see what is looked for here.
+    // Unaimed emission leaves 16 % of noise, which is low enough here.
     file.run.resolution = 0.5;
     resolve("test", file, ".".as_ref(), u64::MAX).expect("the edited scene is sound")
 }
 
-/// The verdicts of all planes of `traced`, held against the predictions of `predicted`.
+/// The verdicts of all planes of `traced` on the predictions of `predicted`.
 fn verdicts(traced: &Scene, predicted: &Scene) -> Vec<Verdict> {
     let measurement = measure(
         &Tracer::new(traced),
@@ -52,7 +52,8 @@ fn verdicts(traced: &Scene, predicted: &Scene) -> Vec<Verdict> {
         .collect()
 }
 
-/// What is beside, behind, large, small, far, turned or dark must agree as fig9b does.
+/// Scenes with objects beside or behind the light, large or small, distant, rotated or dark must
+/// agree as fig9b does.
 #[test]
 fn other_scenes_agree() {
     let fin = r#"(name: "floor", center: (0, 0, 2), size: (6, 6), albedo: 0.5),
@@ -131,7 +132,7 @@ fn other_scenes_agree() {
     }
 }
 
-/// A prediction that forgets the surface beside the ray is rejected behind it, and only there.
+/// A prediction without the surface beside the ray is rejected behind that surface, and only there.
 #[test]
 fn a_forgotten_surface_is_noticed() {
     let fin = r#"surfaces: [Rectangle(name: "fin", center: (0.25, 0, 1.5), size: (0.3, 0.3)),"#;
@@ -148,7 +149,8 @@ fn a_forgotten_surface_is_noticed() {
     );
 }
 
-/// The closed form takes the receiver to be endless: where a window sees its edge, paths are followed.
+/// The closed form assumes an infinite receiver: where a window contains its edge, paths are
+/// traced.
 #[test]
 fn the_edge_of_the_receiver_is_left_to_paths() {
     let classes = |size: &str| -> Vec<Class> {
@@ -165,7 +167,7 @@ fn the_edge_of_the_receiver_is_left_to_paths() {
     assert!(small[..4].iter().all(|c| *c == Class::Exact));
 }
 
-/// A black receiver sends nothing back, and nothing is what is predicted.
+/// A black receiver reflects nothing, as predicted.
 #[test]
 fn a_black_receiver_is_dark() {
     let black = scene(&[("albedo: 0.5", "albedo: 0")]);
@@ -194,8 +196,7 @@ fn scene_files() -> Vec<Scene> {
     resolved.collect()
 }
 
-/// A first-order chain in which a step is left out or doubled fails, wherever that
-/// changes it.
+/// A first-order chain in which a step is omitted or doubled fails, if this changes the chain.
 #[test]
 fn every_step_of_a_chain_counts() {
     let (mut steps, mut changed) = (0, 0);
@@ -247,7 +248,7 @@ fn every_step_of_a_chain_counts() {
             }
         }
     }
-    // The others are identities, such as a turn by nothing.
+    // The other steps are identities, such as a rotation by zero.
     assert!(
         changed > 1000 && changed > steps * 9 / 10,
         "{changed} of {steps}"

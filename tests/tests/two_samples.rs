@@ -1,4 +1,4 @@
-//! Two results of one scene, photon against photon: the test of `etendue diff` over many seeds.
+//! Two results of one scene, photons against photons: the test of `etendue diff` over many seeds.
 
 use crate::statistics::uniformity;
 use etendue_compare::{Sample, TwoSamples, noise_dof};
@@ -22,7 +22,7 @@ fn scene(seed: u64) -> Scene {
     scene
 }
 
-/// What a result of `scene` keeps of each plane.
+/// The data of each plane in a result of `scene`.
 fn samples(scene: &Scene, source: &dyn PhotonSource) -> Vec<Sample> {
     let batches = scene.run.batches;
     let measurement = measure(source, &scene.planes, 0..batches, &|_| ());
@@ -61,13 +61,13 @@ fn p_is_uniform_over_200_pairs_of_seeds() {
     for seed in 1..=200 {
         let a = photons(2 * seed);
         let b = photons(2 * seed + 1);
-        // The tracers have noise of unlike size and correlation.
+        // The tracers have noise of different size and correlation.
         let c = backward(2 * seed + 1);
         for (i, plane) in planes.iter().enumerate() {
             let test = |other: &Sample| TwoSamples::new(&plane.grid, &a[i], other).p_value;
             p[i].extend(test(&b[i]));
             across[i].extend(test(&c[i]));
-            // A harness fault: σ of one of both is 15 % too small.
+            // A planted fault: σ of one of the two is 15 % too small.
             let mut small = b[i].clone();
             small.sigma *= 0.85;
             planted[i].extend(test(&small));
@@ -88,7 +88,7 @@ fn p_is_uniform_over_200_pairs_of_seeds() {
                 "{name} at {}: p of uniformity {uniform:.3}, {low} of 200 below 5 %",
                 plane.name
             );
-            // Ten tests at 1 % together.
+            // A joint level for ten tests at 1 %.
             assert!(uniform > 1e-3, "{line}");
         }
     }

@@ -1,4 +1,4 @@
-//! Scenes on which theory was once wrong, sure by mistake, or without an answer (docs/wild.md).
+//! Scenes on which theory was once wrong, wrongly certain, or without an answer (docs/wild.md).
 
 #![allow(
     clippy::unwrap_used,
@@ -39,7 +39,7 @@ fn scene(name: &str) -> Scene {
     edited(name, &[])
 }
 
-/// With so many rays that many of each batch meet a bright pixel through the lobe.
+/// Enough rays for many of each batch to hit a bright pixel through the lobe.
 const MORE: (&str, &str) = ("photons: 200_000", "photons: 2_000_000");
 
 fn measured(scene: &Scene, source: &dyn PhotonSource) -> Measurement {
@@ -60,7 +60,7 @@ fn report(
     plane: usize,
     prediction: &Prediction,
 ) -> PlaneReport {
-    // Noise of a half is enough to tell predictions that are off by as much.
+    // Noise of a half is low enough to detect predictions with an error of that size.
     let test = Test {
         resolution: 0.5,
         ..Test::of(scene)
@@ -82,8 +82,7 @@ fn by_reference(scene: &Scene, plane: usize, reference: &Measurement) -> Predict
     Prediction::reference(scene, plane, &theory, reference, plane).unwrap()
 }
 
-/// The prediction of rays as they go, without the chain of affine maps, which has a verdict of its
-/// own.
+/// The prediction by exact rays, without the affine chain, which has its own verdict.
 fn as_it_is(scene: &Scene, plane: usize) -> Prediction {
     Prediction {
         first_order: None,
@@ -91,7 +90,7 @@ fn as_it_is(scene: &Scene, plane: usize) -> Prediction {
     }
 }
 
-/// What is printed of a plane: a row of docs/wild.md.
+/// The printed row of docs/wild.md for a plane.
 fn row(scene: &Scene, class: Class, by: &str, seconds: f64, report: &PlaneReport) {
     let percent = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{:.2} %", 100.0 * x));
     println!(
@@ -106,9 +105,8 @@ fn row(scene: &Scene, class: Class, by: &str, seconds: f64, report: &PlaneReport
     );
 }
 
-/// Every plane of a scene has its class, and no verdict is that it fails: by photons, and by
-/// backward rays
-/// where photons leave it undecided and the light has them.
+/// Checks that every plane of a scene has its class, and that no verdict is a failure: by photons,
+/// and by backward rays where photons are undecided and a backward tracer exists.
 fn holds(name: &str, planes: &[(&str, Class)]) {
     holds_in(&scene(name), planes);
 }
@@ -163,8 +161,8 @@ fn scenes_that_took_long_have_an_answer() {
     holds("big_map", &on_and_off);
 }
 
-/// Nets of photons have less noise than a fine mesh is off its osculating patch: that is in the stated
-/// error of the prediction, without which this scene failed.
+/// The noise of photon nets is lower than the deviation of a fine mesh from its osculating patch:
+/// the stated error of the prediction includes it, and without it this scene failed.
 #[test]
 fn a_mesh_beside_its_patch_is_no_disagreement() {
     let folder = Path::new(FOLDER).join("../table1");
@@ -187,7 +185,7 @@ fn a_mesh_beside_its_patch_is_no_disagreement() {
     }
 }
 
-/// What is stated for the triangles of a mesh is what photons are off by.
+/// The stated error for the triangles of a mesh equals the deviation of photons.
 #[test]
 #[ignore = "long: half a minute; .ci/run runs it"]
 fn triangles_are_as_far_off_as_is_stated() {
@@ -198,7 +196,8 @@ fn triangles_are_as_far_off_as_is_stated() {
     assert_eq!(judged.verdict, Verdict::Pass);
     let [stated, seen] = [prediction.mesh_error, judged.excess].map(Option::unwrap);
     let ratio = stated / seen;
-    // Stated is a sample with its standard error added, seen has a noise of a fifth of itself.
+    // The stated error is a sample plus its standard error, and the observed one has a noise of a
+    // fifth of itself.
     assert!(
         (1.0..1.3).contains(&ratio),
         "{stated:e} stated, {seen:e} seen"
@@ -235,7 +234,7 @@ fn scenes_that_were_wrong_do_not_fail() {
     holds("projector_two_occluders", &dark);
 }
 
-/// The chain to first order is the prediction as it is plus a difference, and has its noise.
+/// The first-order chain is the exact prediction plus a difference, and has the same noise.
 #[test]
 fn the_chain_of_a_small_map_does_not_fail() {
     use Class::FirstOrder;
@@ -243,7 +242,7 @@ fn the_chain_of_a_small_map_does_not_fail() {
     holds_in(&edited("small_map_phong", &[MORE]), &planes);
 }
 
-/// Nets decide a grating that nodes of a receiver do not resolve, and those nodes are still wrong.
+/// Nets resolve a grating that nodes of a receiver do not, and those nodes are still wrong.
 #[test]
 fn a_fine_grating_is_decided() {
     let scene = scene("fine_grating_floor");
@@ -262,8 +261,8 @@ fn a_fine_grating_is_decided() {
     assert_eq!(verdict(&scene, &photons, &by_nodes), Verdict::Fail);
 }
 
-/// A small map under a narrow lobe, on the surface and off it; a lobe a fifth wider is told from
-/// it.
+/// A small map under a narrow lobe, on the surface and off it; a lobe a fifth wider is
+/// distinguished from it.
 #[test]
 fn a_small_map_is_decided() {
     let scene = edited("small_map_phong", &[MORE]);
@@ -278,10 +277,10 @@ fn a_small_map_is_decided() {
     }
 }
 
-/// Widths beyond which the tail of a lobe of the sky was once taken to be dark.
+/// Widths beyond which the tail of a sky lobe was once treated as dark.
 const CUT: f64 = 5.0;
 
-/// The tail of a wide glow is light; without it the same rays say so.
+/// The tail of a wide lobe is light; a prediction without it is rejected.
 #[test]
 fn a_wide_glow_is_decided() {
     let scene = scene("wide_gaussian_sky");
@@ -307,19 +306,19 @@ fn a_wide_glow_is_decided() {
     assert_eq!(verdict(&scene, &rays, &cut), Verdict::Fail);
 }
 
-/// Rays are followed past what stops light after the mirror.
+/// Rays are tested against occluders after the mirror.
 #[test]
 fn a_blocker_in_a_later_leg_is_decided() {
     is_followed_past("blocker_in_later_leg", &["edge"]);
 }
 
-/// A disc that shades a ten-thousandth of the window is not missed.
+/// A disc that shadows a ten-thousandth of the window is detected.
 #[test]
 fn a_small_disc_in_a_later_leg_is_decided() {
     is_followed_past("corner_disc", &["disc"]);
 }
 
-/// Light that meets a surface twice is left to the other tracer; rays of theory meet it once.
+/// Light that meets a surface twice is left to the other tracer; theory's rays meet it once.
 #[test]
 fn a_hollow_met_twice_is_decided() {
     let scene = edited("hollow_twice", &[MORE]);
@@ -330,7 +329,7 @@ fn a_hollow_met_twice_is_decided() {
     }
 }
 
-/// And light that the surface itself keeps from its other side.
+/// The same holds for light that the surface itself blocks from its other side.
 #[test]
 fn a_surface_in_its_own_shadow_is_decided() {
     let scene = scene("self_shadow");
@@ -342,7 +341,7 @@ fn a_surface_in_its_own_shadow_is_decided() {
     }
 }
 
-/// Both tracers agree, and a theory that knows nothing of the reason does not agree with them.
+/// Checks that both tracers agree, and that a theory which ignores the reason disagrees with them.
 fn decided_by_reference(
     scene: &Scene,
     plane: usize,
@@ -359,7 +358,7 @@ fn decided_by_reference(
     assert_eq!(wrong.verdict, Verdict::Fail);
 }
 
-/// Two half-planes that leave nothing make darkness with a reason; a gap between them ends it.
+/// Two half-planes without a gap are reported as a cause of darkness; with a gap they are not.
 #[test]
 fn darkness_behind_two_occluders_is_decided() {
     let scene = scene("projector_two_occluders");
@@ -381,7 +380,7 @@ fn darkness_behind_two_occluders_is_decided() {
     }
 }
 
-/// Enough for half a per cent of each of these scenes.
+/// Enough rays for half a per cent in each of these scenes.
 const BUDGET: RayBudget = RayBudget {
     nodes: 1e6,
     error: 5e-3,
@@ -429,7 +428,8 @@ fn replaced(like: Prediction, slices: Slices, replicates: Vec<Slices>) -> Predic
     }
 }
 
-/// Squares that cover a window of the same size across the path leave light for one on a surface.
+/// Squares that cover a window of the same size across the path leave light for a window on a
+/// surface.
 #[test]
 fn what_goes_by_squares_is_decided() {
     let scene = scene("squares_before_the_glass");
@@ -438,7 +438,7 @@ fn what_goes_by_squares_is_decided() {
     assert!(photons(&scene).tally(0).inside > 1000);
 }
 
-/// Where most light of a sky comes from low, what comes from above is looked after all the same.
+/// Where most light of a sky arrives at low elevation, light from above is sampled nevertheless.
 #[test]
 fn a_low_sky_is_decided() {
     let scene = scene("low_sky");
@@ -446,8 +446,8 @@ fn a_low_sky_is_decided() {
     assert_eq!(reasons, ["light that meets glass out of turn"]);
 }
 
-/// Rays do not go on from the triangles of a mesh as they do from the patch that osculates it: one
-/// is met again, the other is round.
+/// Rays continue differently from the triangles of a mesh and from its osculating patch: in one
+/// scene they meet the mesh again, in the other it is round.
 #[test]
 fn meshes_unlike_their_patches_are_decided() {
     let glass = scene("glass_star");
@@ -469,7 +469,8 @@ fn meshes_unlike_their_patches_are_decided() {
     }
 }
 
-/// Blockers, or a mesh that light visits later, stand where only few rays of the window meet them.
+/// Blockers, or a mesh that light visits later, are at a place where only few rays of the window
+/// meet them.
 #[test]
 #[ignore = "long: half a minute; .ci/run runs it"]
 fn what_stands_in_the_way_of_a_brdf_is_decided() {
@@ -482,7 +483,7 @@ fn what_stands_in_the_way_of_a_brdf_is_decided() {
     });
 }
 
-/// What only some rays meet is in the prediction, which is wrong without it.
+/// Checks that obstacles met by only some rays are in the prediction, which is wrong without them.
 fn is_followed_past(name: &str, obstacles: &[&str]) {
     let scene = scene(name);
     let plane = scene.planes.len() - 1;
@@ -524,14 +525,14 @@ fn is_followed_past(name: &str, obstacles: &[&str]) {
     assert!(measured.iter().any(wrong), "{name}");
 }
 
-/// A mirror reaches before the mask in front of it; so narrow a window is found by no ray that is
-/// drawn from the light.
+/// A mirror extends to before the mask in front of it; no ray sampled from the light hits so narrow
+/// a window.
 #[test]
 fn a_sliver_of_slopes_is_decided() {
     is_followed_past("sliver_of_slopes", &["slit"]);
 }
 
-/// What bulges towards a light without extent does not shadow its own tangent plane.
+/// A surface that is convex towards a point light does not shadow its own tangent plane.
 #[test]
 fn a_plane_behind_its_surface_is_decided() {
     let scene = scene("before_a_trough");
@@ -539,14 +540,14 @@ fn a_plane_behind_its_surface_is_decided() {
     assert_eq!(verdict(&scene, &photons(&scene), &reference), Verdict::Pass);
 }
 
-/// A wall beside the light reaches behind it, where no light goes forward.
+/// A wall beside the light extends behind it, where no light is emitted.
 #[test]
 fn a_wall_that_reaches_behind_the_light_is_decided() {
     holds("beside_the_light", &[("p", Class::FirstOrder)]);
 }
 
-/// What light visits later stands in a corner of a window before the first surface, where few rays
-/// of a projector go that are drawn to all of a wide wall.
+/// A surface that light visits later is in a corner of a window before the first surface; few
+/// projector rays sampled over the whole of a wide wall get there.
 #[test]
 fn a_later_surface_beside_the_first_leg_is_decided() {
     let scene = scene("beside_the_beam");
@@ -555,8 +556,8 @@ fn a_later_surface_beside_the_first_leg_is_decided() {
     });
 }
 
-/// Backward rays drawn at angles beyond a right angle find no light, though a whole turn further
-/// there is some.
+/// Backward rays sampled at angles beyond a right angle find no light, although there is some a
+/// full turn further.
 #[test]
 fn angles_beyond_a_turn_are_decided() {
     let scene = scene("angles_beyond_a_turn");
@@ -566,15 +567,14 @@ fn angles_beyond_a_turn_are_decided() {
     }
 }
 
-/// A mirror so close to the light that a part of it stands before the mask: no ray drawn from the
-/// light to the mirror is likely to meet that part.
+/// A mirror so close to the light that a part of it is before the mask: rays sampled from the light
+/// to the mirror are unlikely to hit that part.
 #[test]
 fn a_mirror_close_to_the_light_is_decided() {
     is_followed_past("close_to_the_mirror", &["mask"]);
 }
 
-/// The light of a sky that comes into the window is looked after, however faint beside what shines
-/// from behind.
+/// Light of a sky that enters the window is sampled, however faint compared with light from behind.
 #[test]
 fn a_sky_from_behind_is_decided() {
     let scene = scene("sky_from_behind");
@@ -584,8 +584,8 @@ fn a_sky_from_behind_is_decided() {
     });
 }
 
-/// Photons are counted where they first meet a surface that turns by more than a right angle, and at the coordinates
-/// that backward rays have there.
+/// Photons are recorded where they first meet a surface that curves by more than a right angle,
+/// with the same coordinates as backward rays there.
 #[test]
 fn a_ridge_under_a_sky_is_decided() {
     let scene = scene("ridge_under_a_sky");
@@ -593,7 +593,7 @@ fn a_ridge_under_a_sky_is_decided() {
     assert_eq!(verdict(&scene, &photons(&scene), &reference), Verdict::Pass);
 }
 
-/// A window that ends with a jump cuts the light of a projector: rules of few rays may agree on it
+/// A discontinuous window cuts the light of a projector: quadratures with few rays may agree on it
 /// by chance.
 #[test]
 fn a_box_before_a_projector_is_decided() {
@@ -612,19 +612,20 @@ fn irradiance_after_a_floor_is_decided() {
     holds("irradiance_after_floor", &[("p", Class::FirstOrder)]);
 }
 
-/// A wall that light visits later stands beside its first leg.
+/// A wall that light visits later is beside its first leg.
 #[test]
 fn a_wall_in_the_way_is_decided() {
     decided_against_chain("wall_in_the_way", Class::Reference);
 }
 
-/// The chain after a floor has the coordinates of the path, not those of the wall it leads to.
+/// The chain after a floor uses the coordinates of the path, not those of the wall to which it
+/// leads.
 #[test]
 fn a_plane_on_the_next_wall_is_decided() {
     decided_against_chain("on_the_next_wall", Class::FirstOrder);
 }
 
-/// The only plane has its class, and the chain between parallel planes is wrong.
+/// Checks that the only plane has its class, and that the chain between parallel planes is wrong.
 fn decided_against_chain(name: &str, class: Class) {
     let scene = scene(name);
     holds_in(&scene, &[("p", class)]);
@@ -635,8 +636,8 @@ fn decided_against_chain(name: &str, class: Class) {
     });
 }
 
-/// Light that a blocker keeps from meeting a hollow surface again does not count before the blocker;
-/// what a floor inside it stops goes on from the floor.
+/// Light that a blocker keeps from meeting a hollow surface again does not count before the
+/// blocker; light stopped by a floor inside the surface continues from the floor.
 #[test]
 fn light_that_would_meet_its_surface_again_is_decided() {
     for name in ["stopped_in_a_hollow", "floor_in_a_hollow"] {
@@ -647,8 +648,8 @@ fn light_that_would_meet_its_surface_again_is_decided() {
     }
 }
 
-/// A window so narrow that hardly any ray lands in it which is aimed by the chain of affine maps:
-/// rays followed back from it as they go have next to no noise.
+/// A window so narrow that hardly any ray aimed by the affine chain lands in it: exact rays traced
+/// back from it have almost no noise.
 #[test]
 fn a_narrow_window_is_decided() {
     for name in ["pinhole_beyond_glass", "pinhole_on_a_mirror"] {
@@ -661,8 +662,9 @@ fn a_narrow_window_is_decided() {
     }
 }
 
-/// Photons drawn by the sky alone hardly ever come from where a lobe looks: some are drawn by the
-/// cosine, and while a few of these carry the light they do not contradict the other tracer.
+/// Photons sampled by the sky alone rarely come from the direction of a lobe: some are sampled by
+/// the cosine, and as long as only a few of these carry the light they do not contradict the other
+/// tracer.
 #[test]
 fn a_dim_part_of_the_sky_is_found() {
     let few = scene("dim_lobe_of_a_sky");
@@ -674,18 +676,18 @@ fn a_dim_part_of_the_sky_is_found() {
         let batches = measured.at_plane(0).map(|batch| batch.slices.at_zero());
         batches.sum::<f64>()
     });
-    // Photons have a noise of 15 %; without those by the cosine they find 10⁻⁹ of the light.
+    // Photons have a noise of 15 %; without cosine sampling they find 10⁻⁹ of the light.
     assert!((found / there - 1.0).abs() < 0.5, "{found} of {there}");
 }
 
-/// A plane on the surface after the one with a BRDF has coordinates of its own.
+/// A plane on the surface after one with a BRDF has its own coordinates.
 #[test]
 fn a_plane_before_a_second_surface_is_decided() {
     let planes = [("tangent", Class::FirstOrder), ("local", Class::FirstOrder)];
     holds("before_second_after_brdf", &planes);
 }
 
-/// A refracting mesh that light comes to from behind refracts the other way round.
+/// A refracting mesh lit from behind refracts in the opposite direction.
 #[test]
 fn a_mesh_met_from_behind_is_decided() {
     let turned = edited(
@@ -704,7 +706,7 @@ fn a_mesh_met_from_behind_is_decided() {
     );
 }
 
-/// Light of an environment begins in a plane, and what lies behind it is dark for both tracers.
+/// Light of an environment begins in a plane, and everything behind it is dark for both tracers.
 #[test]
 fn a_surface_behind_the_plane_of_the_sky_is_decided() {
     let scene = scene("behind_the_sky_plane");
@@ -712,7 +714,7 @@ fn a_surface_behind_the_plane_of_the_sky_is_decided() {
     assert_eq!(verdict(&scene, &photons(&scene), &reference), Verdict::Pass);
 }
 
-/// Light interpolates between the normals of a mesh: a coarse one is no smooth surface.
+/// Normals of a mesh are interpolated: a coarse mesh is not a smooth surface.
 #[test]
 fn a_coarse_mesh_is_decided() {
     let area = [
@@ -725,7 +727,7 @@ fn a_coarse_mesh_is_decided() {
     );
 }
 
-/// On a thin lens there is no chain of affine maps, beyond it there is; rays are right on both.
+/// On a thin lens there is no affine chain, beyond it there is one; rays are right in both cases.
 #[test]
 fn a_plane_on_a_lens_is_decided() {
     let scene = scene("on_a_lens");

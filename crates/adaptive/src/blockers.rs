@@ -1,4 +1,5 @@
-//! How near blockers are, at sparse points of the picture and reconstructed between them.
+//! The nearness of blockers, measured at sparse points of the picture and reconstructed between
+//! them.
 
 use crate::criterion::shaded;
 use crate::cutoffs::Cutoffs;
@@ -9,13 +10,16 @@ use etendue_paths::{Nearness, Paths};
 use etendue_world::Camera;
 use rayon::prelude::*;
 
-/// Pixels from one point to the next: an 800 × 500 picture has 20,000, as many as Durand et al. 2005 took.
+/// Pixels between adjacent points: an 800 × 500 picture has 20,000 points, as in Durand et al.
+/// 2005.
 const STEP: usize = 4;
 
-/// Rays of a point unless others are asked for: a sixth of the hundred of Durand et al. 2005, with which they would be most of the work.
+/// Default number of rays per point: a sixth of the hundred of Durand et al. 2005, which would
+/// dominate the cost.
 pub const BLOCKER_RAYS: u32 = 16;
 
-/// The nearness of what each pixel shows, by `rays` of each point to what is reflected, and as many to lights.
+/// The nearness at each pixel, from `rays` rays of each point to what is reflected, and as many to
+/// lights.
 pub(crate) fn nearness(
     visible: &Visible,
     (paths, camera, cutoffs, seed): (&Paths, &Camera, &Cutoffs, u64),
@@ -29,7 +33,7 @@ pub(crate) fn nearness(
             let at = [i % w, i / w].map(|i| (i as f64 + 0.5) * STEP as f64);
             let seen = paths.view(&camera.look(at, [0.0; 2])).surface?;
             progress(1);
-            // Nothing shows what is nearer than a pixel is wide.
+            // Blockers nearer than the width of a pixel cannot be resolved.
             let nearest = seen.distance() * pixel_angle(camera);
             let Nearness { reflected, shadow } =
                 paths.nearness(&seen, rays, nearest, seed, i as u64);
@@ -51,7 +55,7 @@ pub(crate) fn nearness(
     })
 }
 
-/// The slope from one pixel to the next, in the middle of the picture.
+/// The slope between adjacent pixels at the centre of the picture.
 fn pixel_angle(camera: &Camera) -> f64 {
     let [w, h] = camera.size.map(|n| 0.5 * n as f64);
     let [a, b] = [w, w + 1.0].map(|x| camera.look([x, h], [0.0; 2]).along);

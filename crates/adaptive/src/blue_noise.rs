@@ -1,7 +1,9 @@
-//! Blue noise of a density: points that are random but keep their distance (Yuksel 2015, *Sample Elimination for Generating Poisson Disk Sample Sets*).
+//! Blue noise with a given density: random points that keep their distance (Yuksel 2015, *Sample
+//! Elimination for Generating Poisson Disk Sample Sets*).
 //!
-//! More candidates than needed are drawn by the density. The one whose neighbours crowd it most is left out again and again, until as many are left as are
-//! asked for. Distances are those of the metric, in which the density is 1 everywhere.
+//! More candidates than needed are drawn from the density. The candidate most crowded by its
+//! neighbours is removed repeatedly until the required number is left. Distances use the metric, in
+//! which the density is 1 everywhere.
 
 use crate::metric::Metric;
 use etendue_sampling::DiscreteDistribution;
@@ -9,17 +11,17 @@ use etendue_transform::random::{Stream, unit, words};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// Candidates for each point that is kept.
+/// Number of candidates per point kept.
 const CANDIDATES: usize = 5;
 
-/// The power of Yuksel 2015, Eq. 3.
+/// The eighth power, from Yuksel 2015, Eq. 3.
 fn eighth(x: f64) -> f64 {
     let square = x * x;
     let fourth = square * square;
     fourth * fourth
 }
 
-/// A point of the picture, pixels to the right and down from its top left.
+/// A point of the picture, in pixels to the right and down from its top left.
 pub(crate) type PixelPosition = [f64; 2];
 
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +30,7 @@ pub(crate) struct PicturePoint {
     pub(crate) metric: Metric,
 }
 
-/// Points over a picture `wide` pixels across, `count` of them at most, in order of pixels.
+/// At most `count` points over a picture `wide` pixels across, in order of pixels.
 pub(crate) fn blue_noise(
     metrics: &[Option<Metric>],
     wide: usize,
@@ -51,8 +53,8 @@ pub(crate) fn blue_noise(
         .collect()
 }
 
-/// Random points by the density. They are independent of each other: more even ones would be less crowded where they are dense, and elimination would
-/// leave too many there.
+/// Random points drawn from the density. They are independent: stratified points would be less
+/// crowded in dense regions, and elimination would leave too many there.
 fn candidates(
     metrics: &[Option<Metric>],
     wide: usize,
@@ -77,16 +79,16 @@ fn candidates(
     (0..CANDIDATES * count).filter_map(draw).collect()
 }
 
-/// How crowded each candidate is.
+/// The weights of the candidates, which measure crowding.
 #[derive(Debug)]
 struct Crowd {
-    /// Neighbours of each, with what they add to its weight.
+    /// The neighbours of each candidate, with their contributions to its weight.
     neighbours: Vec<Vec<(u32, f64)>>,
     weights: Vec<f64>,
     queue: BinaryHeap<Candidate>,
 }
 
-/// A candidate with a weight that it had once; weights only shrink.
+/// A candidate with a possibly outdated weight; weights only decrease.
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
     weight: f64,
@@ -114,7 +116,7 @@ impl Ord for Candidate {
     }
 }
 
-/// The largest radius that discs of density 1 can have (Yuksel 2015, Eq. 1).
+/// The maximum radius of discs of density 1 (Yuksel 2015, Eq. 1).
 fn largest_radius() -> f64 {
     (2.0 * 3.0_f64.sqrt()).recip().sqrt()
 }
@@ -122,7 +124,8 @@ fn largest_radius() -> f64 {
 impl Crowd {
     fn new(points: &[PicturePoint], wide: usize, high: usize) -> Self {
         let most = 2.0 * largest_radius();
-        // Candidates that chance has put close together do not crowd their region as a whole (Yuksel 2015, Eq. 4).
+        // Limits the weight of candidates that are close by chance: they do not crowd their whole
+        // region (Yuksel 2015, Eq. 4).
         let kept = (CANDIDATES as f64).recip();
         let least = most * (1.0 - kept * kept.sqrt()) * 0.65;
         let grid = PointGrid::new(points, wide, high);
@@ -181,14 +184,14 @@ impl Crowd {
     }
 }
 
-/// Which points are in which square of the picture.
+/// A grid of the points by squares of the picture.
 #[derive(Debug)]
 struct PointGrid {
     cells: Vec<Vec<u32>>,
     size: [usize; 2],
 }
 
-/// Pixels along a square.
+/// Width of a square in pixels.
 const CELL: usize = 3;
 
 impl PointGrid {
@@ -202,7 +205,7 @@ impl PointGrid {
         Self { cells, size }
     }
 
-    /// The points of all squares that a distance from a point reaches.
+    /// Visits the points of all squares within a distance of a point.
     fn near(&self, point: &PicturePoint, radius: f64, mut found: impl FnMut(u32)) {
         let reach = point.metric.reach(radius);
         let [columns, rows] = [0, 1].map(|k: usize| {
@@ -241,7 +244,8 @@ mod tests {
         squares.fold(f64::INFINITY, f64::min).sqrt()
     }
 
-    /// Random points have some nearest neighbours at distance 0; those of Yuksel keep three quarters of the largest radius (his Table 1 has 0.73 to 0.82 of 2 r).
+    /// Random points have some nearest neighbours at distance 0; Yuksel's keep three quarters of
+    /// the maximum radius (his Table 1 has 0.73 to 0.82 of 2 r).
     #[test]
     fn points_keep_their_distance() {
         let even = vec![Some(Metric::even(0.05)); 100 * 80];
@@ -252,7 +256,7 @@ mod tests {
         let closest = all
             .map(|i| nearest(&points, i))
             .fold(f64::INFINITY, f64::min);
-        // Random points of this number are at some 0.03 once.
+        // This many random points have a minimum distance of about 0.03.
         assert!(closest > 0.6 * 2.0 * largest_radius(), "{closest}");
     }
 
@@ -263,17 +267,18 @@ mod tests {
             .collect();
         let points = blue_noise(&metrics, 120, 1200, 5);
         let left = points.iter().filter(|point| point.at[0] < 60.0).count();
-        // 0.02 · 6000; elimination moves some across the edge.
+        // The expected number is 0.02 · 6000; elimination moves some points across the edge.
         assert!((left as f64 - 120.0).abs() < 12.0, "{left}");
     }
 
-    /// Below the frequency of neighbours blue noise has next to no power, where random points have 1.
+    /// Below the frequency of neighbours blue noise has almost no power, whereas random points have
+    /// 1.
     #[test]
     fn low_frequencies_are_quiet() {
         let even = vec![Some(Metric::even(0.1)); 100 * 100];
         let points = blue_noise(&even, 100, 1000, 7);
         let power = |frequency: [f64; 2]| {
-            // A window, so that the edge of the picture is no signal.
+            // A window suppresses the edge of the picture.
             let hann = |x: f64| 1.0 - libm::cos(std::f64::consts::TAU * x / 100.0);
             let [mut re, mut im, mut all] = [0.0; 3];
             for PicturePoint { at, .. } in &points {
@@ -293,7 +298,8 @@ mod tests {
             };
             (0..24).map(at).sum::<f64>() / 24.0
         };
-        // Neighbours in rows of triangles would be 3.4 pixels apart, and their rows repeat 0.34 times a pixel.
+        // In a triangular lattice neighbours would be 3.4 pixels apart, with rows that repeat 0.34
+        // times per pixel.
         let [low, peak] = [ring(0.1), ring(0.34)];
         assert!(low < 0.15 && peak > 1.5, "{low} {peak}");
     }

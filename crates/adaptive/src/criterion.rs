@@ -1,10 +1,14 @@
-//! How fast light may change across the picture, by the criteria of Durand et al. 2005, Eqs. 20 and 21, corrected.
+//! The bandwidth of light across the picture, by the criteria of Durand et al. 2005, Eqs. 20 and
+//! 21, corrected.
 //!
-//! A lobe shows light about its axis, up to its cutoff Ω_ρ. From pixel to pixel the axis turns by ∂r, and what is at a distance d' moves before it by the
-//! part of the step ∂p on the surface that is across r, over d'. So the bandwidth along a direction of the picture is Ω_ρ |∂r + ∂p/d'| cycles per pixel. In the
-//! plane of incidence of a sphere that is Ω_ρ |1 + d (cos θ₀/d' + 2k)/cos θ₁| times the angle of a pixel: Eq. 21 with what its print lacks, and without d'
-//! it is Eq. 20. What is found by finite differences on the screen has the angle of view, the distance and both curvatures in it, as the paper says. As
-//! printed, the equations are functions of the larger curvature, and alike in all directions.
+//! A lobe reflects light about its axis, up to its cutoff Ω_ρ. From pixel to pixel the axis turns
+//! by ∂r, and objects at a distance d' move relative to it by the component across r of the step ∂p
+//! on the surface, divided by d'. So the bandwidth along a direction of the picture is Ω_ρ |∂r +
+//! ∂p/d'| cycles per pixel. In the plane of incidence of a sphere this is Ω_ρ |1 + d (cos θ₀/d' +
+//! 2k)/cos θ₁| times the angle of a pixel: Eq. 21 with its missing factors, and without d' it is
+//! Eq. 20. Finite differences on the screen include the angle of view, the distance and both
+//! curvatures, as the paper states. As printed, the equations are functions of the larger
+//! curvature, and isotropic.
 
 use crate::metric::Metric;
 use crate::visible::{OFFSETS, SeenPlace, SeenSurface, Visible};
@@ -12,7 +16,7 @@ use etendue_paths::Nearness;
 use etendue_theory::shading::Criterion;
 use glam::DVec3;
 
-/// The squared bandwidth of a pixel, (cycles per pixel)²; `None` where nothing is to be shaded.
+/// The squared bandwidth of a pixel, (cycles per pixel)²; `None` if nothing is to be shaded.
 pub(crate) fn criterion(
     visible: &Visible,
     pixel: [usize; 2],
@@ -28,7 +32,7 @@ pub(crate) fn criterion(
     Some(lobe.plus(shadow))
 }
 
-/// The same by Eqs. 20 and 21 as printed, seen from `eye`, where a surface has a lobe.
+/// The squared bandwidth by Eqs. 20 and 21 as printed, seen from `eye`, if the surface has a lobe.
 pub(crate) fn printed(
     visible: &Visible,
     pixel: [usize; 2],
@@ -64,14 +68,15 @@ pub(crate) fn printed(
     Some(lobe.plus(of_position.times(nearness.shadow * nearness.shadow)))
 }
 
-/// The larger curvature of the surface in a pixel, per unit of length, above 0 where it is convex; NaN where nothing is shaded.
+/// The larger curvature of the surface in a pixel, per unit of length, positive if convex; NaN if
+/// nothing is shaded.
 pub(crate) fn curvature(visible: &Visible, pixel: [usize; 2]) -> f64 {
     let places = visible.of_pixel(pixel);
     let first = places.iter().find_map(shaded);
     first.map_or(f64::NAN, |first| bend(&steps(places, first.shape)))
 }
 
-/// The larger principal curvature by how normals turn from pixel to pixel.
+/// The larger principal curvature, from the change of normals between pixels.
 fn bend(steps: &[PixelStep; 2]) -> f64 {
     let [a, b] = steps;
     let lengths = of_columns(a.position, b.position);
@@ -92,7 +97,7 @@ fn bend(steps: &[PixelStep; 2]) -> f64 {
     0.5 * both + root.copysign(both)
 }
 
-/// The surface of a place, if light is scattered there at all.
+/// The surface at a point, if it scatters light.
 pub(crate) fn shaded(place: &SeenPlace) -> Option<&SeenSurface> {
     place
         .surface
@@ -100,7 +105,7 @@ pub(crate) fn shaded(place: &SeenPlace) -> Option<&SeenSurface> {
         .filter(|surface| surface.cutoff > 0.0 && surface.factors.iter().any(|f| *f > 0.0))
 }
 
-/// How things change from one pixel to the next.
+/// The change of quantities from one pixel to the next.
 #[derive(Clone, Copy, Debug, Default)]
 struct PixelStep {
     axis: DVec3,
@@ -108,7 +113,8 @@ struct PixelStep {
     position: DVec3,
 }
 
-/// Steps to the right and down: slopes of the plane through the places of a pixel, when all are on one shape.
+/// Steps to the right and down: slopes of the plane through the points of a pixel, if they are all
+/// on one shape.
 fn steps(places: &[SeenPlace], shape: usize) -> [PixelStep; 2] {
     let mut steps = [PixelStep::default(); 2];
     for (place, offset) in places.iter().zip(OFFSETS) {
@@ -126,12 +132,12 @@ fn steps(places: &[SeenPlace], shape: usize) -> [PixelStep; 2] {
     steps
 }
 
-/// The part of a step that is across a direction.
+/// The component of a step across a direction.
 fn across(step: DVec3, along: DVec3) -> DVec3 {
     step - step.dot(along) * along
 }
 
-/// JᵀJ of a Jacobian by its columns.
+/// JᵀJ of a Jacobian given by its columns.
 fn of_columns(right: DVec3, down: DVec3) -> Metric {
     Metric {
         xx: right.length_squared(),
@@ -190,7 +196,8 @@ mod tests {
         (Paths::new(&world), camera)
     }
 
-    /// Eqs. 20 and 21 as theory has them, in the plane of incidence, against finite differences over one pixel.
+    /// Theory's Eqs. 20 and 21 in the plane of incidence, compared with finite differences over one
+    /// pixel.
     #[test]
     #[expect(clippy::too_many_lines, reason = "a test may be a list of cases")]
     fn screen_differences_are_the_criteria() {
@@ -230,10 +237,11 @@ mod tests {
                     },
                 )
                 .unwrap();
-                // A pixel's angle falls with the cosine of its direction, twice.
+                // The angle of a pixel is proportional to the squared cosine of its direction.
                 let off = (column as f64 - 400.0) * slope;
                 let found = metric.xx.sqrt() / (slope / (1.0 + off * off));
-                // Finite differences over a pixel, and the change of the cosine within it.
+                // The tolerance covers finite differences over a pixel, and the change of the
+                // cosine within it.
                 assert!(
                     (found / expected - 1.0).abs() < 0.02,
                     "{column} {nearness}: {found} {expected}"
@@ -244,7 +252,8 @@ mod tests {
                     theory.printed_environment()
                 };
                 farthest = farthest.max((found / printed - 1.0).abs());
-                // What methods take as printed is what theory has as printed, and the curvature that of the ball.
+                // The printed criterion of the methods equals that of theory, and the curvature is
+                // that of the ball.
                 let drawn = super::printed(
                     &visible,
                     [column, 400],
@@ -263,7 +272,7 @@ mod tests {
                 assert!((curvature - 1.0).abs() < 0.02, "{curvature}");
             }
         }
-        // As printed they lack the 1 and a cosine, which is seen.
+        // The printed equations lack the 1 and a cosine, which makes a visible difference.
         assert!(farthest > 0.05, "{farthest}");
     }
 }

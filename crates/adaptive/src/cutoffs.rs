@@ -1,4 +1,4 @@
-//! The cutoffs of lobes, each found once.
+//! A cache of the cutoffs of lobes.
 
 use etendue_compare::lobe_cutoff;
 use etendue_field::Lobe;
@@ -7,17 +7,17 @@ use etendue_theory::shading::COSINE_CUTOFF;
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 
-/// Cycles per radian of what has no lobe but shows things as they are: more than any picture has pixels for.
+/// Cutoff in cycles per radian for mirrors: higher than the resolution of any picture.
 const MIRROR: f64 = 1e4;
 
-/// The cutoffs of lobes, each found once.
+/// A cache of the cutoffs of lobes.
 #[derive(Debug, Default)]
 pub(crate) struct Cutoffs {
     known: Mutex<BTreeMap<[u64; 2], f64>>,
 }
 
 impl Cutoffs {
-    /// Cycles per radian.
+    /// The cutoff in cycles per radian.
     pub(crate) fn of(&self, reflects: Reflects) -> f64 {
         match reflects {
             Reflects::Nothing => 0.0,
@@ -65,7 +65,7 @@ impl Cutoffs {
     }
 }
 
-/// To a few per cent, so that textures on roughness have few lobes.
+/// Rounds to a few per cent, so that textured roughness gives few different lobes.
 fn rounded(width: f64) -> f64 {
     let steps = 16.0;
     libm::exp2((steps * libm::log2(width.max(1e-4))).round() / steps)

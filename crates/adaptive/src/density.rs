@@ -1,17 +1,18 @@
-//! How densely each pixel is sampled, so that a number of samples is spent where the criterion is high.
+//! Sampling densities of pixels: distributes a number of samples by the criterion.
 
 use crate::metric::Metric;
 
-/// Samples are no denser than this many a pixel, which is what a pixel's places tell apart.
+/// Maximum number of samples per pixel, equal to the number of points per pixel.
 const DENSEST: f64 = 4.0;
 
-/// Nor are they farther apart than this many pixels.
+/// Maximum distance of samples in pixels.
 const MAX_SPACING: f64 = 32.0;
 
-/// No direction is sampled this many times denser than another: finite differences are not better known.
+/// Maximum anisotropy of the density: finite differences are not more accurate.
 const LONGEST: f64 = 3.0;
 
-/// Metrics whose squares of determinants, samples a pixel, add up to `samples`, in proportion to what is wanted as far as bounds allow.
+/// Metrics whose root determinants, the samples per pixel, add up to `samples`, proportional to
+/// `wanted` within the bounds.
 pub(crate) fn scaled(wanted: &[Option<Metric>], samples: f64) -> Vec<Option<Metric>> {
     let rates: Vec<Option<f64>> = wanted
         .iter()
@@ -23,7 +24,7 @@ pub(crate) fn scaled(wanted: &[Option<Metric>], samples: f64) -> Vec<Option<Metr
         let rates = rates.iter().flatten();
         rates.map(|rate| bounded(*rate, scale)).sum()
     };
-    // The sum grows with the scale: halving until it is rounding.
+    // The sum increases with the scale: bisection until rounding.
     let [mut low, mut high] = [-100.0, 100.0];
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
@@ -46,9 +47,11 @@ pub(crate) fn scaled(wanted: &[Option<Metric>], samples: f64) -> Vec<Option<Metr
     wanted.iter().zip(&rates).map(of).collect()
 }
 
-/// What a squared bandwidth asks for: the same in all directions by its larger one, as the paper does, or by both.
+/// The metric for a squared bandwidth: isotropic by the larger eigenvalue, as in the paper, or
+/// anisotropic.
 pub(crate) fn wanted(squared: Metric, is_even: bool) -> Metric {
-    // Twice the bandwidth along each direction, as Shannon has it; and enough that what has none is sampled.
+    // Twice the bandwidth along each direction (Shannon), plus a minimum for pixels without
+    // bandwidth.
     let shannon = squared
         .times(4.0)
         .plus(Metric::even((4.0 * MAX_SPACING).powi(-2)));
@@ -59,7 +62,7 @@ pub(crate) fn wanted(squared: Metric, is_even: bool) -> Metric {
     }
 }
 
-/// The same with its density raised to a power.
+/// The metric with its density raised to a power.
 pub(crate) fn to_power(metric: Metric, power: f64) -> Metric {
     let density = metric.determinant().max(0.0).sqrt();
     if density > 0.0 {

@@ -1,9 +1,11 @@
 //! Pictures with few shading samples, placed where light has high frequencies (Durand et al. 2005, *A Frequency Analysis of Light Transport*, section
 //! 6.2 and Figs. 15 to 17).
 //!
-//! Places that the camera sees are found at full resolution (`visible`). From them and from the distance of blockers at sparse points (`blockers`) the
-//! criteria say how fast light changes across the picture (`criterion`), and so how densely to sample it (`density`). Samples are blue noise of that
-//! density (`blue_noise`); only they are shaded. What lies between is reconstructed over places alike (`reconstruct`).
+//! Points visible to the camera are found at full resolution (`visible`). From them and from the
+//! distance of blockers at sparse points (`blockers`) the criteria give the bandwidth of light
+//! across the picture (`criterion`), and so the sampling density (`density`). Samples are blue
+//! noise of that density (`blue_noise`); only they are shaded. The picture between them is
+//! reconstructed from similar points (`reconstruct`).
 
 mod blockers;
 mod blue_noise;

@@ -1,4 +1,4 @@
-//! The ways to spend shading samples, from a camera to a picture.
+//! The methods to distribute shading samples, from a camera to a picture.
 
 use crate::blockers::nearness;
 use crate::blue_noise::{PicturePoint, blue_noise};
@@ -12,98 +12,102 @@ use crate::visible::{FOUR, SeenSurface, Visible, at};
 use etendue_paths::Paths;
 use etendue_world::Camera;
 
-/// Where shading samples go.
+/// The distribution of shading samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SampleMethod {
-    /// Evenly over all that is shaded.
+    /// Uniformly over all shaded pixels.
     Uniform,
     /// By the criteria of Durand et al. 2005, Eqs. 20 and 21, corrected.
     Predicted,
-    /// By the same as printed, to see what their approximations cost.
+    /// By the same criteria as printed, to show the cost of their approximations.
     Printed,
-    /// Half by the criteria, and half by the light that is really there: by the error that planes through some of a first quarter of the samples have at
-    /// the others.
+    /// By the criteria and, in equal parts, by the measured light: by the error that planes through
+    /// half of a first quarter of the samples have at the other half.
     Weighted,
-    /// By that alone: the standard deviation of a first quarter of the samples, which are even.
+    /// By measured light alone: the standard deviation of a first quarter of the samples, which is
+    /// uniform.
     Variance,
 }
 
-/// What is asked for.
+/// Options of a picture.
 #[derive(Clone, Copy, Debug)]
 pub struct SamplePlan {
-    /// Where samples go.
+    /// The distribution of samples.
     pub method: SampleMethod,
-    /// Shading samples.
+    /// Number of shading samples.
     pub samples: usize,
-    /// Paths of each.
+    /// Paths per sample.
     pub each: u32,
-    /// Rays by which the distance of blockers is found at each point; Durand et al. 2005 take a hundred.
+    /// Rays per point to find the distance of blockers; Durand et al. 2005 use a hundred.
     pub blocker_rays: u32,
-    /// Samples are as dense along all directions, as in the paper, or along each as it needs.
+    /// Whether sample densities are isotropic, as in the paper, or adapted to each direction.
     pub is_even: bool,
-    /// Of all random numbers.
+    /// Seed of all random numbers.
     pub seed: u64,
 }
 
-/// A part of the work, told before it begins.
+/// A stage of the work, reported before it begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// What is seen, four places a pixel.
+    /// Finding visible points, four per pixel.
     Visibility,
-    /// How near blockers are.
+    /// Measuring the nearness of blockers.
     Blockers,
-    /// The criteria.
+    /// Evaluating the criteria.
     Criterion,
-    /// Which points are shaded.
+    /// Choosing the points to shade.
     Samples,
-    /// Their light.
+    /// Shading the points.
     Shading,
-    /// What lies between.
+    /// Reconstruction between the points.
     Reconstruction,
 }
 
-/// Numbers of each pixel, rows from the top; NaN where nothing is shaded.
+/// Layers with a number for each pixel, rows from the top; NaN where nothing is shaded.
 #[derive(Clone, Debug, Default)]
 pub struct Layers {
     /// The larger bandwidth by the criterion, cycles per pixel.
     pub bandwidth: Vec<f64>,
-    /// The larger curvature by finite differences on the screen, per unit of length, above 0 where it is convex.
+    /// The larger curvature by finite differences on the screen, per unit of length, positive if
+    /// convex.
     pub curvature: Vec<f64>,
-    /// 1/distance of what is reflected, per unit of length.
+    /// 1/distance of the reflected objects, per unit of length.
     pub blockers: Vec<f64>,
-    /// The highest frequency of half shadows, cycles per unit of length.
+    /// The highest frequency of penumbrae, cycles per unit of length.
     pub shadow: Vec<f64>,
-    /// Shading samples a pixel that were asked for.
+    /// Requested shading samples per pixel.
     pub density: Vec<f64>,
     /// Shading samples in the pixel.
     pub samples: Vec<f64>,
-    /// The variance of shading samples about the pixel, their noise taken off.
+    /// The variance of shading samples around the pixel, after noise removal.
     pub variance: Vec<f64>,
 }
 
 /// A picture from few samples.
 #[derive(Clone, Debug)]
 pub struct Rendered {
-    /// Pixels in a row, and rows.
+    /// Width and height in pixels.
     pub size: [usize; 2],
-    /// W m⁻² sr⁻¹, rows from the top.
+    /// Radiance, W m⁻² sr⁻¹, rows from the top.
     pub radiance: Vec<f64>,
-    /// Where samples were taken: pixels to the right and down from the top left.
+    /// Positions of samples: pixels to the right and down from the top left.
     pub points: Vec<[f64; 2]>,
-    /// Of these, samples of places that no other sample was near.
+    /// Number of these samples that were added at points far from all others.
     pub added: usize,
-    /// What led to it.
+    /// The layers behind the picture.
     pub layers: Layers,
 }
 
-/// The share of samples that are taken first where they decide on the others.
+/// The share of samples taken first, if they determine the others.
 const FIRST_SHARE: f64 = 0.25;
 
-/// What a plane through samples leaves falls as the fourth power of their distance, its square as the inverse square of their density n. Its sum over the
-/// picture is least for a fixed number of samples where n ∝ (c² B⁴)^(1/3), c being the contrast and B the bandwidth.
+/// The squared error of a plane through samples decreases as the fourth power of their distance,
+/// the inverse square of their density n. Its sum over the picture is minimal for a fixed number of
+/// samples if n ∝ (c² B⁴)^(1/3), with the contrast c and the bandwidth B.
 const POWER: f64 = 2.0 / 3.0;
 
-/// Renders a picture; `stage` is told what begins with how many steps, `progress` of steps.
+/// Renders a picture; `stage` receives the next stage and its number of steps, `progress` the
+/// number of finished steps.
 #[must_use]
 pub fn render(
     paths: &Paths,
@@ -145,7 +149,7 @@ struct AdaptiveRun<'a> {
 }
 
 impl AdaptiveRun<'_> {
-    /// All samples of the method, each with the metric of all.
+    /// Takes all samples of the method, each with the metric of all samples.
     fn samples(&mut self) -> Vec<ShadedSample> {
         let even = self.visible.pixels(|pixel| {
             let places = self.visible.of_pixel(pixel);
@@ -209,13 +213,14 @@ impl AdaptiveRun<'_> {
         .collect()
     }
 
-    /// The square of the relative error that planes through one half of the samples have at the other half, noise taken off, about each pixel.
+    /// The squared relative error around each pixel that planes through one half of the samples
+    /// have at the other half, after noise removal.
     fn missed(&self, samples: &[(ShadedSample, f64)]) -> Vec<f64> {
         let lights = samples.iter().map(|(sample, _)| sample.light(sample.value));
         let dark = 0.01 * lights.sum::<f64>() / samples.len().max(1) as f64;
         let mut found = Vec::new();
         for half in 0..2 {
-            // In the order of pixels, so that both halves are everywhere.
+            // Alternates in the order of pixels, so that both halves cover the picture.
             let of = |odd: usize| samples.iter().skip(odd).step_by(2);
             let sparse: Vec<ShadedSample> = of(half)
                 .map(|(sample, _)| ShadedSample {
@@ -251,7 +256,7 @@ impl AdaptiveRun<'_> {
         })
     }
 
-    /// What the criteria ask for.
+    /// The metrics by the criteria.
     fn predicted(&mut self) -> Vec<Option<Metric>> {
         let [w, h] = self.visible.size;
         let Shader {
@@ -303,12 +308,13 @@ impl AdaptiveRun<'_> {
         self.shader.shade(points, first, self.progress)
     }
 
-    /// The standard deviation of samples about each pixel over their mean, noise taken off.
+    /// The relative standard deviation of samples around each pixel, after noise removal.
     fn contrast(&mut self, samples: &[(ShadedSample, f64)]) -> Vec<f64> {
         let wider: Vec<ShadedSample> = samples
             .iter()
             .map(|(sample, noise)| {
-                // Textures are no contrast of what has one part: their factor is put back later.
+                // Textures give no contrast on materials with one part: their factor is multiplied
+                // in later.
                 let factors = match sample.surface.factors {
                     [base, 0.0] => [1.0, base],
                     [base, lobe] => [base, lobe],
@@ -352,7 +358,7 @@ impl AdaptiveRun<'_> {
         self.layers.density = metrics.iter().map(density).collect();
     }
 
-    /// The picture that samples make.
+    /// Reconstructs the picture from samples.
     fn picture(mut self, mut samples: Vec<ShadedSample>) -> Rendered {
         (self.stage)(Stage::Reconstruction, 1);
         let mut values = reconstruct(self.visible, &samples, SampleFit::Plane);
@@ -383,7 +389,7 @@ impl AdaptiveRun<'_> {
         }
     }
 
-    /// Shades one place of each small patch that no sample is near, and gives its value to the patch.
+    /// Shades one point of each small patch far from all samples, and uses its value for the patch.
     fn fill(&self, values: &mut [Option<[f64; 2]>], samples: &mut Vec<ShadedSample>) -> usize {
         let wide = self.visible.size[0];
         let mut added: Vec<ShadedSample> = Vec::new();
@@ -417,16 +423,16 @@ impl AdaptiveRun<'_> {
     }
 }
 
-/// Pixels across a patch that no sample was near.
+/// Width in pixels of a patch far from all samples.
 const PATCH: f64 = 2.0;
 
-/// So many of the last samples are asked whether a place is near them: those of some rows.
+/// Number of recent samples that are checked for nearness: those of some rows.
 const RECENT: usize = 256;
 
-/// Contrasts are taken over neighbours this many times farther than the reconstruction's.
+/// Contrasts use neighbours this many times farther away than the reconstruction.
 const WIDER: f64 = 2.0;
 
-/// No contrast counts as less: a first sample in four may have missed it.
+/// Minimum contrast: a first sample in four may have missed it.
 const MIN_CONTRAST: f64 = 0.02;
 
 #[expect(
@@ -438,13 +444,13 @@ fn pixel_at(at: [f64; 2], size: [usize; 2]) -> [usize; 2] {
     [0, 1].map(|k: usize| (at[k].max(0.0) as usize).min(size[k] - 1))
 }
 
-/// The number of that pixel.
+/// The index of the pixel at a position.
 fn pixel_of(at: [f64; 2], size: [usize; 2]) -> usize {
     let [column, row] = pixel_at(at, size);
     row * size[0] + column
 }
 
-/// Metrics of two sets of samples together.
+/// The sums of the metrics of two sets of samples.
 fn sums(a: &[Option<Metric>], b: &[Option<Metric>]) -> Vec<Option<Metric>> {
     let both = a.iter().zip(b);
     both.map(|(a, b)| Some(a.as_ref()?.plus(*b.as_ref()?)))

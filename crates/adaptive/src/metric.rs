@@ -1,20 +1,21 @@
-//! Symmetric matrices that say how fast light changes along each direction of the picture.
+//! Symmetric matrices for the bandwidth of light along directions of the picture.
 
 /// A symmetric 2 × 2 matrix over the picture, columns to the right and rows down, per pixel².
 ///
-/// Of a criterion it is the square of a bandwidth in cycles per pixel along each direction; of samples it makes distances: neighbours are about 1 apart.
+/// For a criterion it is the squared bandwidth in cycles per pixel along each direction; for
+/// samples it defines distances, in which neighbours are about 1 apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Metric {
-    /// Along columns.
+    /// The entry along columns.
     pub xx: f64,
-    /// Of both.
+    /// The mixed entry.
     pub xy: f64,
-    /// Along rows.
+    /// The entry along rows.
     pub yy: f64,
 }
 
 impl Metric {
-    /// The same along all directions.
+    /// An isotropic metric.
     #[must_use]
     pub fn even(square: f64) -> Self {
         Self {
@@ -42,7 +43,7 @@ impl Metric {
         }
     }
 
-    /// The square of the length of a step.
+    /// The squared length of a step.
     #[must_use]
     pub(crate) fn square(&self, [x, y]: [f64; 2]) -> f64 {
         x * (self.xx * x + self.xy * y) + y * (self.xy * x + self.yy * y)
@@ -60,20 +61,21 @@ impl Metric {
         mean + (off * off + self.xy * self.xy).sqrt()
     }
 
-    /// Half the extents of the ellipse of steps no longer than `radius`, along columns and rows.
+    /// The half-extents of the ellipse of steps up to length `radius`, along columns and rows.
     #[must_use]
     pub(crate) fn reach(&self, radius: f64) -> [f64; 2] {
         let determinant = self.determinant();
         [self.yy, self.xx].map(|across| radius * (across / determinant).sqrt())
     }
 
-    /// The same, made rounder until no direction has more than `most` times the length of another.
+    /// The metric made rounder until the lengths of directions differ by at most a factor of
+    /// `most`.
     #[must_use]
     pub(crate) fn rounder(self, most: f64) -> Self {
         let large = self.largest();
         let small = self.xx + self.yy - large;
         let wanted = large / (most * most);
-        // Adding the same to all directions.
+        // Adds an isotropic part.
         let added = (wanted - small) / (1.0 - (most * most).recip());
         self.plus(Self::even(added.max(0.0)))
     }

@@ -1,5 +1,6 @@
-//! What lies between samples: at each place a plane is fitted to the samples about it, those alike in shape, normal and position counting most (a bilateral
-//! filter, Tomasi and Manduchi 1998, whose width is that of the samples' metric, as Durand et al. 2005, section 6.2, have it).
+//! Reconstruction between samples: at each point a plane is fitted to the samples around it,
+//! weighted by similarity in shape, normal and position (a bilateral filter, Tomasi and Manduchi
+//! 1998, whose width is that of the samples' metric, as in Durand et al. 2005, section 6.2).
 
 use crate::blue_noise::PixelPosition;
 use crate::criterion::shaded;
@@ -8,49 +9,52 @@ use crate::visible::{FOUR, SeenSurface, Visible, at};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// A value at a place of the picture.
+/// A value at a point of the picture.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShadedSample {
     pub(crate) at: PixelPosition,
     pub(crate) metric: Metric,
     pub(crate) surface: SeenSurface,
-    /// Of base and lobe.
+    /// The values of base and lobe.
     pub(crate) value: [f64; 2],
 }
 
 impl ShadedSample {
-    /// The light of a value of base and lobe, with the factors of the surface.
+    /// The radiance for values of base and lobe, with the factors of the surface.
     pub(crate) fn light(&self, value: [f64; 2]) -> f64 {
         let [base, lobe] = self.surface.factors;
         base * value[0] + lobe * value[1]
     }
 }
 
-/// Standard deviation of the filter where neighbours are about 1 apart: with less, some places see one sample alone; with more, detail that was paid for is lost.
+/// Standard deviation of the filter in units in which neighbours are about 1 apart: with less, some
+/// points use only one sample; with more, sampled detail is lost.
 const WIDTH: f64 = 0.5;
 
-/// Beyond this many standard deviations a sample does not count, in the first round and in those for places that no sample reached.
+/// Cutoffs of the filter in standard deviations: for the first round, and for later rounds at
+/// points that no sample reached.
 const REACHES: [f64; 3] = [3.0, 9.0, 27.0];
 
-/// Standard deviation of normals: a right angle is another face, what a metric's distance turns by is not.
+/// Standard deviation of normals: a right angle is another face, but the turn over a metric's
+/// distance is not.
 const NORMALS: f64 = 0.35;
 
-/// Standard deviation of the angle at which a sample stands above the surface of a place.
+/// Standard deviation of the elevation angle of a sample above the surface at a point.
 const HEIGHTS: f64 = 0.2;
 
-/// Rows of pixels of a band, which one thread works on.
+/// Pixel rows per band, the unit of work of a thread.
 const BAND: usize = 8;
 
-/// How a value is found from samples.
+/// The method of reconstruction from samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum SampleFit {
-    /// Their mean.
+    /// The mean of the samples.
     Mean,
-    /// A plane through them.
+    /// A plane through the samples.
     Plane,
 }
 
-/// The values at all places; `None` where nothing is shaded or no sample is near.
+/// The values at all points; `None` if nothing is shaded or no sample is near.
 pub(crate) fn reconstruct(
     visible: &Visible,
     samples: &[ShadedSample],
@@ -61,7 +65,7 @@ pub(crate) fn reconstruct(
     (0..bands).into_par_iter().flat_map_iter(of).collect()
 }
 
-/// Sums over samples at one place, of positions from there in units of the metric.
+/// Sums over samples at one point, with positions relative to it in units of the metric.
 #[derive(Clone, Copy, Debug)]
 struct LocalSums {
     weight: f64,
@@ -112,9 +116,10 @@ impl LocalSums {
         })
     }
 
-    /// The plane through a value, where the place is.
+    /// The value of the fitted plane at the point.
     fn plane(&self, of: &ValueSums) -> f64 {
-        // About the mean of positions, with as much spread added as makes the slope of few samples small.
+        // Relative to the mean position, with added spread to keep the slope from few samples
+        // small.
         let [x, y] = self.x.map(|x| x / self.weight);
         let mean = of.value / self.weight;
         let ridge = 0.1 * WIDTH * WIDTH;
@@ -168,7 +173,7 @@ impl<'a> Band<'a> {
         self.sums.iter().map(|sums| sums.values(fit)).collect()
     }
 
-    /// Adds a sample to all places it reaches.
+    /// Adds a sample to all points within its reach.
     fn splat(&mut self, sample: &ShadedSample, radius: f64, missing: &[bool]) {
         let size = self.visible.size;
         let reach = sample.metric.reach(radius);
@@ -203,7 +208,7 @@ impl<'a> Band<'a> {
     }
 }
 
-/// How unlike two places of a shape are, in squares of standard deviations.
+/// The dissimilarity of two points of a shape, in squared standard deviations.
 fn unlike(place: &SeenSurface, sample: &SeenSurface) -> f64 {
     let turned = (place.normal - sample.normal).length_squared() / (NORMALS * NORMALS);
     let between = sample.position - place.position;
@@ -212,11 +217,11 @@ fn unlike(place: &SeenSurface, sample: &SeenSurface) -> f64 {
         return turned;
     }
     let height = between.dot(place.normal);
-    // On a curved surface normals turn by twice that angle; beyond it the sample is on another sheet.
+    // On a curved surface normals turn by twice that angle; a larger angle means another sheet.
     turned + height * height / (length * HEIGHTS * HEIGHTS)
 }
 
-/// Pixels that are at least in part between two ends.
+/// Pixels that overlap an interval.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

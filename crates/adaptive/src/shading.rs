@@ -8,20 +8,21 @@ use etendue_paths::Paths;
 use etendue_world::Camera;
 use rayon::prelude::*;
 
-/// What shading needs to know.
+/// The context for shading.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shader<'a> {
     pub(crate) paths: &'a Paths,
     pub(crate) camera: &'a Camera,
     pub(crate) cutoffs: &'a Cutoffs,
-    /// Paths of each sample.
+    /// Paths per sample.
     pub(crate) each: u32,
     pub(crate) seed: u64,
 }
 
 impl Shader<'_> {
-    /// The shading of points, without the factors of their surface, and the variance of each with them; points where nothing is seen are left out. Point i is number
-    /// `first` + i to the random numbers.
+    /// Shades points, without the factors of their surface, and estimates the variance of each with
+    /// them; points where nothing is visible are left out. Point i uses random numbers of index
+    /// `first` + i.
     pub(crate) fn shade(
         &self,
         points: &[PicturePoint],

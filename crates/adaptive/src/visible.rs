@@ -1,4 +1,4 @@
-//! What the pixels of a picture see.
+//! The points visible in the pixels of a picture.
 
 use crate::cutoffs::Cutoffs;
 use etendue_paths::{Paths, Reflects, SurfaceHit};
@@ -7,10 +7,11 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Places of a pixel.
+/// Number of points per pixel.
 pub(crate) const FOUR: usize = 4;
 
-/// Where they are in it. No two are in one row or column, so that edges near these directions get four steps and not two.
+/// Positions of the points in a pixel. No two share a row or column, so edges near these directions
+/// get four steps instead of two.
 pub(crate) const OFFSETS: [[f64; 2]; FOUR] = [
     [0.375, 0.125],
     [0.875, 0.375],
@@ -18,41 +19,44 @@ pub(crate) const OFFSETS: [[f64; 2]; FOUR] = [
     [0.625, 0.875],
 ];
 
-/// Place `i` of a pixel, in pixels to the right and down from the top left of the picture.
+/// Position of point `i` of a pixel, in pixels to the right and down from the top left of the
+/// picture.
 pub(crate) fn at(pixel: [usize; 2], i: usize) -> [f64; 2] {
     [0, 1].map(|k: usize| pixel[k] as f64 + OFFSETS[i][k])
 }
 
-/// Places that are seen, four for each pixel.
+/// Visible points, four for each pixel.
 #[derive(Debug)]
 pub(crate) struct Visible {
-    /// Pixels in a row, and rows.
+    /// Width and height in pixels.
     pub(crate) size: [usize; 2],
-    /// Those of a pixel after each other, pixels in rows from the top.
+    /// The points, grouped by pixel, pixels in rows from the top.
     pub(crate) places: Vec<SeenPlace>,
 }
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SeenPlace {
-    /// What sources themselves send, W m⁻² sr⁻¹.
+    /// Radiance emitted by sources, W m⁻² sr⁻¹.
     pub(crate) emitted: f64,
     pub(crate) surface: Option<SeenSurface>,
 }
 
-/// A surface where it is seen.
+/// A visible surface point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SeenSurface {
     pub(crate) shape: usize,
     pub(crate) position: DVec3,
-    /// On the side that is seen.
+    /// The normal on the visible side.
     pub(crate) normal: DVec3,
-    /// The middle of the directions that light comes from: the mirror direction, or the normal of what has no lobe.
+    /// The central direction of incident light: the mirror direction, or the normal of a material
+    /// without a lobe.
     pub(crate) axis: DVec3,
     /// Whether the axis is the mirror direction.
     pub(crate) has_lobe: bool,
-    /// The highest frequency that the material keeps of these, cycles per radian; 0 of what is black.
+    /// The highest frequency that the material preserves around the axis, cycles per radian; 0 if
+    /// it is black.
     pub(crate) cutoff: f64,
-    /// The factors of base and lobe, as textures have them. Shading is what remains.
+    /// The texture factors of base and lobe. They are divided out of the shading.
     pub(crate) factors: [f64; 2],
 }
 
@@ -77,7 +81,7 @@ impl SeenSurface {
 }
 
 impl Visible {
-    /// `progress` is told of pixels.
+    /// Finds the visible points; `progress` receives the number of finished pixels.
     pub(crate) fn new(
         paths: &Paths,
         camera: &Camera,
@@ -105,18 +109,18 @@ impl Visible {
         }
     }
 
-    /// The places of a pixel.
+    /// The points of a pixel.
     pub(crate) fn of_pixel(&self, [column, row]: [usize; 2]) -> &[SeenPlace] {
         &self.places[self.range([column, row])]
     }
 
-    /// The numbers of its places.
+    /// The indices of a pixel's points.
     pub(crate) fn range(&self, [column, row]: [usize; 2]) -> Range<usize> {
         let first = FOUR * (row * self.size[0] + column);
         first..first + FOUR
     }
 
-    /// Something of each pixel.
+    /// Computes a value for each pixel.
     pub(crate) fn pixels<T: Send>(&self, of: impl Fn([usize; 2]) -> T + Sync) -> Vec<T> {
         let [w, h] = self.size;
         (0..w * h)

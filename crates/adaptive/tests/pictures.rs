@@ -1,4 +1,4 @@
-//! Pictures of few shading samples whose radiance is known, and what all of them keep.
+//! Pictures of few shading samples with known radiance, and properties that all methods have.
 
 use etendue_adaptive::{Rendered, SampleMethod, SamplePlan, render};
 use etendue_paths::Paths;
@@ -12,7 +12,7 @@ const ALL: [SampleMethod; 4] = [
     SampleMethod::Variance,
 ];
 
-/// A ball of radius 1 that reflects half, in even light.
+/// A ball of radius 1 and reflectance one half, in uniform light.
 fn ball() -> World {
     World {
         shapes: vec![Shape {
@@ -59,7 +59,7 @@ fn picture(world: &World, method: SampleMethod, samples: usize, seed: u64) -> Re
     render(&paths, &camera([96, 60]), &plan, &|_, _| {}, &|_| {})
 }
 
-/// A convex diffuse ball in even light has half of it everywhere.
+/// A convex diffuse ball in uniform light reflects half of it everywhere.
 #[test]
 fn even_light_stays_even() {
     for method in ALL {
@@ -67,7 +67,7 @@ fn even_light_stays_even() {
         let lit = found.radiance.iter().filter(|x| **x < 2.0).count();
         assert!(lit > 1000, "{method:?}: {lit} pixels of the ball");
         for radiance in &found.radiance {
-            // Pixels at the edge have some of both, in quarters; the rest is noise of 128 paths.
+            // Pixels at the edge mix both in quarters; the rest is noise of 128 paths.
             let quarters = (radiance - 1.5) / 0.375;
             assert!(
                 (quarters - quarters.round()).abs() < 0.15,
@@ -91,7 +91,7 @@ fn the_same_bytes_on_any_threads() {
     }
 }
 
-/// As many samples as asked for, to those whose pixel turned out to show nothing just there.
+/// The number of samples is as requested, except for those whose points hit nothing.
 #[test]
 fn samples_are_spent() {
     for method in ALL {
@@ -102,7 +102,8 @@ fn samples_are_spent() {
     }
 }
 
-/// A sphere's criterion grows to its edge, and samples with it; even ones do not.
+/// The criterion of a sphere increases towards its edge, and samples with it; uniform samples do
+/// not.
 #[test]
 fn predicted_samples_gather_at_the_edge() {
     let far = |method: SampleMethod| {
@@ -111,13 +112,13 @@ fn predicted_samples_gather_at_the_edge() {
         let outside = found.points.iter().filter(edge).count() as f64;
         outside / found.points.len() as f64
     };
-    // The disc seen has a radius of some 31 pixels: 30 % of its area is beyond 26.
+    // The visible disc has a radius of about 31 pixels: 30 % of its area is beyond 26.
     let [even, predicted] = [SampleMethod::Uniform, SampleMethod::Predicted].map(far);
     assert!((even - 0.3).abs() < 0.06, "{even}");
     assert!(predicted > even + 0.1, "{predicted} {even}");
 }
 
-/// Without light, or without anything in view, there is a dark picture.
+/// Without light, or with nothing in view, the picture is black.
 #[test]
 fn nothing_to_see_is_dark() {
     let dark = World {

@@ -1,4 +1,4 @@
-//! A hierarchy with two boxes in a node, for scenes of few things.
+//! A hierarchy with two boxes in a node, for scenes with few primitives.
 
 use crate::build::{TreeKind, bvh};
 use crate::space::{Space, vector};
@@ -15,8 +15,8 @@ pub struct BinaryHierarchy {
 }
 
 impl BinaryHierarchy {
-    /// Over boxes, by number, given by their lowest and highest corners. `origins` is the largest
-    /// coordinate a ray starts from.
+    /// Builds a hierarchy over indexed boxes, given by their lowest and highest corners. `origins`
+    /// is the largest coordinate a ray starts from.
     #[must_use]
     pub fn new(count: usize, origins: f64, bounds: impl Fn(usize) -> [DVec3; 2] + Sync) -> Self {
         let space = Space::around((0..count).map(&bounds), origins);
@@ -24,15 +24,15 @@ impl BinaryHierarchy {
         Self { bvh, space }
     }
 
-    /// The boxes, in the order in which [`Self::along`] names them.
+    /// Returns the boxes, in the order in which [`Self::along`] visits them.
     #[must_use]
     pub fn order(&self) -> &[u32] {
         &self.bvh.primitive_indices
     }
 
-    /// Names the boxes that a ray may meet from `from` on, the nearer ones about first. Distances
-    /// are in lengths of `direction`, which is at least 1 long. `meet` tells how far boxes still
-    /// matter; before anything is met, that is `until`.
+    /// Visits the boxes that a ray may meet beyond `from`, approximately front to back. Distances
+    /// are in lengths of `direction`, which is at least 1 long. `meet` returns the distance up to
+    /// which boxes still matter; before anything is met, that is `until`.
     #[inline]
     pub fn along(
         &self,

@@ -1,4 +1,4 @@
-//! Trees built by obvhs, two boxes in a node.
+//! Trees built by obvhs, with two boxes in a node.
 
 use crate::leaf::MAX_LEAF;
 use crate::space::Space;
@@ -12,27 +12,27 @@ use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use rayon::prelude::*;
 use std::time::Duration;
 
-/// What becomes of a tree.
+/// The use of a binary tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum TreeKind {
-    /// Rays go through it as it is.
+    /// Rays traverse it directly.
     Binary,
     /// It is collapsed to a tree with eight boxes in a node.
     Collapsed,
 }
 
-/// More boxes than these are built in parts of as many, each by one thread. What the builder needs,
-/// some 150 bytes for each box, is then held for a part at a time.
+/// Larger sets of boxes are built in parts of this size, each by one thread. The builder's memory,
+/// about 150 bytes for each box, is then needed for one part at a time.
 const PART: usize = 1 << 15;
 
-/// Up to so many boxes the builder takes its time: a tenth of a second makes rays up to twice as
-/// fast. With more it takes seconds, for a few percent.
+/// The most boxes for which the tree is optimised by reinsertion: a tenth of a second makes rays up
+/// to twice as fast. With more boxes it takes seconds and gains a few per cent.
 const MAX_REINSERTED: usize = 1 << 13;
 
-/// What opening a node takes, in triangles of a leaf that are tried: these come several at a time.
+/// Cost of opening a node, in triangle tests of a leaf, several of which run at a time.
 const OPENING: f32 = 3.0;
 
-/// The tree over boxes, two in a node, by number, given by their lowest and highest corners.
+/// Builds the binary tree over indexed boxes, given by their lowest and highest corners.
 pub(crate) fn bvh(
     count: usize,
     space: &Space,
@@ -53,7 +53,7 @@ pub(crate) fn bvh(
     joined(parts, kind)
 }
 
-/// The tree over some of them.
+/// Builds the tree over some of the boxes.
 fn built(numbers: Vec<u32>, kind: TreeKind, boxed: impl Fn(&u32) -> Aabb) -> Bvh2 {
     let boxes: Vec<Aabb> = numbers.iter().map(boxed).collect();
     let preset = if boxes.len() <= MAX_REINSERTED {
@@ -61,7 +61,7 @@ fn built(numbers: Vec<u32>, kind: TreeKind, boxed: impl Fn(&u32) -> Aabb) -> Bvh
     } else {
         BvhBuildParams::fast_build()
     };
-    // Without pre-splits: they are for triangles.
+    // Without pre-splits, which are for triangles.
     let parameters = BvhBuildParams {
         pre_split: false,
         ..preset
@@ -81,7 +81,7 @@ fn built(numbers: Vec<u32>, kind: TreeKind, boxed: impl Fn(&u32) -> Aabb) -> Bvh
     finished(bvh, kind)
 }
 
-/// A tree as rays ask it: nodes lie in the order in which they are opened.
+/// Finishes a tree for traversal: nodes are stored in the order in which they are opened.
 fn finished(mut bvh: Bvh2, kind: TreeKind) -> Bvh2 {
     if kind == TreeKind::Binary {
         bvh.reorder_in_stack_traversal_order();
@@ -91,7 +91,7 @@ fn finished(mut bvh: Bvh2, kind: TreeKind) -> Bvh2 {
     bvh
 }
 
-/// One tree over what several have.
+/// Joins several trees into one.
 fn joined(mut parts: Vec<Bvh2>, kind: TreeKind) -> Bvh2 {
     let root = |i: &u32| *parts[*i as usize].nodes[0].aabb();
     let one_each = BvhBuildParams {
@@ -113,7 +113,7 @@ fn joined(mut parts: Vec<Bvh2>, kind: TreeKind) -> Bvh2 {
         }
         let part = of_parts[bvh.nodes[leaf].first_index as usize] as usize;
         let part = std::mem::take(&mut parts[part]);
-        // The root takes the place of the leaf, what is below it comes after all else.
+        // The root replaces the leaf; the nodes below it are appended.
         let [nodes, boxes] = [bvh.nodes.len() - 1, bvh.primitive_indices.len()].map(number);
         let mut moved = part.nodes.iter().map(|node| {
             let by = if node.is_leaf() { boxes } else { nodes };
@@ -129,7 +129,7 @@ fn joined(mut parts: Vec<Bvh2>, kind: TreeKind) -> Bvh2 {
         bvh.primitive_indices.extend(&part.primitive_indices);
     }
     bvh.parents = Vec::new();
-    // Parts overlap: some nodes belong elsewhere.
+    // Parts overlap: some nodes belong elsewhere in the tree.
     ReinsertionOptimizer::default().run(&mut bvh, 0.01, None);
     if kind == TreeKind::Binary {
         bvh.max_depth = bvh.max_depth.max(bvh.depth(0) + 1);

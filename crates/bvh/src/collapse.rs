@@ -1,30 +1,33 @@
-//! From a tree with two boxes in a node to one with eight, such that a ray opens as few nodes as can be.
+//! Converts a binary tree to one with eight boxes in a node, minimising the number of nodes that a
+//! ray opens.
 
 use crate::leaf::MAX_LEAF;
 use crate::wide::{Node, WIDTH, Wide};
 use obvhs::bvh2::Bvh2;
 
-/// What visiting a leaf takes, in openings of a node.
+/// Cost of visiting a leaf, in openings of a node.
 const VISIT: f32 = 1.5;
 
-/// The most boxes that together stand for what is below a node of the tree of two, and which: see [`costs`].
+/// The largest number of boxes that together represent the subtree of a node of the binary tree,
+/// and the choice of them: see [`costs`].
 struct Collapse<'a> {
     bvh: &'a Bvh2,
     costs: Vec<[f32; WIDTH]>,
 }
 
-/// The tree of eight made of one of two, and its leaves: the first of their boxes, and how many.
+/// Returns the eight-wide tree made from a binary tree, with its leaves: the first of their boxes,
+/// and the number of boxes.
 ///
 /// # Panics
 ///
-/// When a leaf has more than [`MAX_LEAF`].
+/// If a leaf has more than [`MAX_LEAF`].
 pub(crate) fn collapsed(bvh: &Bvh2) -> (Wide, Vec<[u32; 2]>) {
-    // As many as there can be: memory is taken once it is written to.
+    // The largest possible number: memory is only used once it is written to.
     let most = bvh.nodes.len() / 2 + 1;
     let (mut nodes, mut leaves) = (Vec::with_capacity(most), Vec::with_capacity(most));
     nodes.push(Node::EMPTY);
     let mut deepest = 0;
-    // Nodes of two, where their places are and how deep.
+    // Nodes of the binary tree, with their positions and depths.
     let mut todo: Vec<(usize, usize, usize)> = Vec::new();
     if !bvh.nodes.is_empty() {
         todo.push((0, 0, 1));
@@ -57,8 +60,9 @@ pub(crate) fn collapsed(bvh: &Bvh2) -> (Wide, Vec<[u32; 2]>) {
     (Wide::new(nodes, deepest), leaves)
 }
 
-/// What rays take below each node of two if it becomes at most 1, 2 … boxes of a node of eight: areas times what opening them takes (Ylitie, Karras
-/// and Laine 2017, *Efficient incoherent ray traversal on GPUs through compressed wide BVHs*, section 3.1).
+/// Returns the cost of rays below each node of the binary tree if it becomes at most 1, 2 … boxes
+/// of an eight-wide node: areas times the cost of opening (Ylitie, Karras and Laine 2017,
+/// *Efficient incoherent ray traversal on GPUs through compressed wide BVHs*, section 3.1).
 fn costs(bvh: &Bvh2) -> Vec<[f32; WIDTH]> {
     let mut costs = vec![[0.0; WIDTH]; bvh.nodes.len()];
     let mut order = Vec::with_capacity(bvh.nodes.len());
@@ -73,7 +77,7 @@ fn costs(bvh: &Bvh2) -> Vec<[f32; WIDTH]> {
             todo.extend([of.first_index, of.first_index + 1]);
         }
     }
-    // What is below comes before.
+    // Children are processed before their parents.
     for node in order.into_iter().rev() {
         let node = node as usize;
         let of = &bvh.nodes[node];
@@ -93,7 +97,8 @@ fn costs(bvh: &Bvh2) -> Vec<[f32; WIDTH]> {
     costs
 }
 
-/// How many of some boxes the first of two has so that both take least, and what they take.
+/// Returns the number of boxes for the first of two children that minimises the total cost, and
+/// that cost.
 fn shared([first, second]: &[[f32; WIDTH]; 2], boxes: usize) -> (usize, f32) {
     let cost = |of_first: usize| first[of_first - 1] + second[boxes - of_first - 1];
     let mut best = (1, cost(1));
@@ -106,7 +111,7 @@ fn shared([first, second]: &[[f32; WIDTH]; 2], boxes: usize) -> (usize, f32) {
 }
 
 impl Collapse<'_> {
-    /// The nodes of two that become the boxes of a node of eight.
+    /// Returns the nodes of the binary tree that become the boxes of an eight-wide node.
     fn children(&self, root: usize) -> Vec<usize> {
         let mut children = Vec::with_capacity(WIDTH);
         if self.bvh.nodes[root].is_leaf() {
@@ -122,7 +127,7 @@ impl Collapse<'_> {
         let (of_first, _) = shared(&[self.costs[first], self.costs[first + 1]], boxes);
         for (child, mut boxes) in [(first, of_first), (first + 1, boxes - of_first)] {
             let costs = &self.costs[child];
-            // Fewer that take no more.
+            // Uses fewer boxes at equal cost.
             while boxes > 1 && costs[boxes - 1] >= costs[boxes - 2] {
                 boxes -= 1;
             }

@@ -1,7 +1,8 @@
-//! A few triangles that are tried together, in f32: which of them a ray may meet.
+//! Tests of a few triangles together in f32, to find those that a ray may meet.
 //!
-//! Seen along the ray, a triangle is hit if the ray is on the same side of its three edges (Woop, Benthin and Wald 2013, *Watertight ray/triangle
-//! intersection*). Here a triangle is left out only if the ray is on different sides by more than all rounding.
+//! As seen along the ray, a triangle is hit if the ray is on the same side of its three edges
+//! (Woop, Benthin and Wald 2013, *Watertight ray/triangle intersection*). Here a triangle is
+//! rejected only if the ray is on different sides by more than all rounding errors.
 
 use crate::single::single;
 use crate::wide::Visit;
@@ -11,23 +12,25 @@ use glam::{DVec3, Vec3A};
 /// The most triangles, or boxes, of a leaf.
 pub(crate) const MAX_LEAF: usize = 4;
 
-/// A number for each triangle.
+/// One number for each triangle.
 type Lanes<S> = f32x4<S>;
 
 #[derive(Clone)]
 pub(crate) struct Leaf {
-    /// [corner, axis, triangle], in lengths such that the largest coordinate of all triangles is 1.
+    /// Corners [corner, axis, triangle], scaled such that the largest coordinate of all triangles
+    /// is 1.
     corners: [[[f32; MAX_LEAF]; 3]; 3],
     first: u32,
     count: u32,
 }
 
-/// A ray, its direction made (x, y, 1) on axes of its own.
+/// A ray with its direction scaled to (x, y, 1) in permuted axes.
 pub(crate) struct LeafRay {
     origin: [f32; 3],
     axes: [usize; 3],
     slopes: [f32; 2],
-    /// By how much coordinates across the ray may be wrong. Rounding of corners, origin and slopes makes 4e-6 of it.
+    /// Bound on the error of coordinates across the ray. Rounding of corners, origin and slopes
+    /// causes 4e-6 of it.
     tolerance: f32,
 }
 
@@ -35,7 +38,7 @@ impl LeafRay {
     #[inline]
     pub(crate) fn new(origin: Vec3A, direction: DVec3, tolerance: f32) -> Self {
         let size = direction.abs();
-        // The largest component becomes 1.
+        // The largest component is scaled to 1.
         let axes = if size.x > size.y && size.x > size.z {
             [1, 2, 0]
         } else if size.y > size.z {
@@ -72,22 +75,22 @@ impl Leaf {
         }
     }
 
-    /// The triangles that a ray may meet, a bit for each.
+    /// Returns the triangles that a ray may meet, one bit for each.
     #[inline(always)]
     fn candidates<S: Simd>(&self, simd: S, sight: &LeafRay) -> u32 {
         let a = self.across(simd, sight, 0);
         let b = self.across(simd, sight, 1);
         let c = self.across(simd, sight, 2);
         let [u, v, w] = [side(b, c), side(c, a), side(a, b)];
-        // What two coordinates that are wrong by so much do to a product, for all products.
+        // The error of a product due to the errors of two coordinates, for all products.
         let size = size(a) + size(b) + size(c) + 2.0 * sight.tolerance;
         let error = size * sight.tolerance;
-        // What is no number is not left out.
+        // NaN does not lead to rejection.
         let out = u.min(v).min(w).simd_lt(-error) & u.max(v).max(w).simd_gt(error);
         !u32::try_from(out.to_bitmask()).unwrap_or_default() & ((1 << self.count) - 1)
     }
 
-    /// Where a corner of each triangle is across the ray.
+    /// Returns the position of a corner of each triangle across the ray.
     #[inline(always)]
     fn across<S: Simd>(&self, simd: S, sight: &LeafRay, corner: usize) -> [Lanes<S>; 2] {
         let [x, y, z] = sight.axes;
@@ -99,7 +102,7 @@ impl Leaf {
     }
 }
 
-/// On which side of an edge the ray is.
+/// Returns which side of an edge the ray is on.
 #[inline(always)]
 fn side<S: Simd>(p: [Lanes<S>; 2], q: [Lanes<S>; 2]) -> Lanes<S> {
     p[0] * q[1] - p[1] * q[0]
@@ -110,7 +113,7 @@ fn size<S: Simd>(p: [Lanes<S>; 2]) -> Lanes<S> {
     p[0].abs() + p[1].abs()
 }
 
-/// Leaves of triangles, of which those are named that a ray may meet.
+/// Leaves of triangles, which pass on the triangles that a ray may meet.
 pub(crate) struct TriangleLeaves<'a, M> {
     pub(crate) leaves: &'a [Leaf],
     pub(crate) sight: LeafRay,

@@ -1,4 +1,4 @@
-//! Single precision, which names candidates.
+//! Single-precision numbers, used to find candidates.
 
 #[inline]
 #[expect(

@@ -1,30 +1,30 @@
-//! Where boxes are in f32, and by how much they grow.
+//! Conversion of boxes to f32, and their padding.
 
 use crate::single::single;
 use glam::{DVec3, Vec3A};
 use obvhs::aabb::Aabb;
 use obvhs::ploc::morton::morton_encode_u64_unorm;
 
-/// Where boxes are: f32 counts from the middle of all of them.
+/// The coordinates of boxes in f32, relative to the centre of all boxes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Space {
     pub(crate) center: DVec3,
-    /// The largest coordinate from there.
+    /// The largest coordinate relative to the centre.
     size: f64,
-    /// By how much boxes grow.
+    /// The padding of boxes.
     pub(crate) padding: f64,
-    /// Makes coordinates those of `leaf`, about 1 and less.
+    /// The factor to the coordinates of `leaf`, which are at most about 1.
     pub(crate) unit: f64,
 }
 
-/// Boxes grow by this share of `Space::size`: f32 rounding is 6e-8 of it, a ray adds a few of
-/// those.
+/// Padding relative to `Space::size`: f32 rounding is 6e-8 of it, and a ray adds a few roundings.
 const PADDING: f64 = 1e-5;
 
-/// And by this share of the largest coordinate that a ray begins at: some roundings of f64.
+/// Additional padding relative to the largest coordinate that a ray begins at: several roundings of
+/// f64.
 const ROUNDING: f64 = 1e-13;
 
-/// The largest coordinate of a box, which f32 still holds four times over. The farthest corner of a
+/// The largest coordinate of a box; f32 can represent four times as much. The farthest corner of a
 /// patch is at 1e28.
 const MAX_EXTENT: f64 = 1e36;
 
@@ -40,12 +40,13 @@ impl Space {
             center,
             size,
             padding: PADDING * size + ROUNDING * farthest,
-            // Without a size, or with one that f64 cannot turn over, all triangles are candidates.
+            // If the size is zero, or its reciprocal is not finite in f64, all triangles are
+            // candidates.
             unit: 1.0 / size,
         }
     }
 
-    /// The box to look for.
+    /// Returns the padded box.
     pub(crate) fn padded(&self, [low, high]: [DVec3; 2]) -> Aabb {
         let (low, high) = (
             low - self.center - self.padding,
@@ -59,20 +60,20 @@ impl Space {
         }
     }
 
-    /// A place as triangles in leaves have it.
+    /// Returns a point in the coordinates of triangles in leaves.
     pub(crate) fn scaled(&self, place: DVec3) -> Vec3A {
         vector(self.unit * (place - self.center))
     }
 
-    /// Where the middle of a box is on a curve that fills the space.
+    /// Returns the position of the centre of a box on a space-filling curve.
     pub(crate) fn place(&self, [low, high]: [DVec3; 2]) -> u64 {
         let middle = 0.5 * (low + high) - self.center;
-        // From 0 to below 1.
+        // In the range from 0 to below 1.
         morton_encode_u64_unorm(0.5 + 0.49 * middle / self.size)
     }
 
-    /// Where to begin looking along a ray: at `from`, or, if that is far from everything, where it
-    /// comes near; f32 would lose it on the way.
+    /// Returns where to begin along a ray: at `from`, or, if that is far from everything, where the
+    /// ray comes near, because f32 would lose precision on the way.
     #[inline]
     pub(crate) fn begin(&self, start: DVec3, direction: DVec3, from: f64) -> f64 {
         let start = start - self.center;
@@ -82,13 +83,13 @@ impl Space {
         }
         let comes_near = |at: f64, d: f64| (-at - (2.0 * self.size).copysign(d)) / d;
         let near = [0, 1, 2].map(|axis| comes_near(start[axis], direction[axis]));
-        // Along an axis a ray does not come nearer: NaN, or beyond all numbers.
+        // Along such an axis a ray does not come nearer: NaN, or infinite.
         let near = near.into_iter().filter(|t| t.is_finite());
         near.fold(from, f64::max)
     }
 
-    /// How far a ray that begins to be looked at `begin` along itself is followed in f32 for boxes up to `at`: boxes this far are
-    /// still opened, and what is met is decided in f64.
+    /// Returns how far a ray that begins at `begin` along itself is followed in f32 for boxes up to
+    /// `at`: boxes up to this distance are opened, and intersections are decided in f64.
     #[inline]
     pub(crate) fn limit(&self, at: f64, begin: f64) -> f32 {
         single((at - begin) * (1.0 + PADDING) + self.padding)

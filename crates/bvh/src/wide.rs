@@ -1,4 +1,4 @@
-//! A tree with eight boxes in a node, all held against a ray at once.
+//! A tree with eight boxes in a node, all tested against a ray at once.
 
 use fearless_simd::{Simd, f32x8, prelude::*};
 use glam::Vec3A;
@@ -7,51 +7,53 @@ use glam::Vec3A;
 #[derive(Clone)]
 pub(crate) struct Wide {
     nodes: Vec<Node>,
-    /// Places that a way through it may need to remember.
+    /// The stack size that a traversal may need.
     memory: usize,
 }
 
-/// Boxes in a node.
+/// Number of boxes in a node.
 pub(crate) const WIDTH: usize = 8;
 
-/// Of a tree of as many levels as any with a million triangles, ways are remembered without asking for memory.
+/// Stack size without allocation, enough for the depth of any tree with a million triangles.
 const STACK: usize = 96;
 
 #[derive(Clone)]
 #[repr(align(32))]
 pub(crate) struct Node {
-    /// Lowest x of all boxes, highest x, lowest y and so on. A place without a box is what no ray meets.
+    /// Lowest x of all boxes, highest x, lowest y and so on. An empty slot has bounds that no ray
+    /// meets.
     planes: [[f32; WIDTH]; 6],
-    /// Numbers of nodes, and of leaves with [`LEAF`].
+    /// Indices of nodes, and of leaves with [`LEAF`].
     children: [u32; WIDTH],
 }
 
-/// Tells leaves from nodes.
+/// The bit that distinguishes leaves from nodes.
 const LEAF: u32 = 1 << 31;
 
-/// A ray as nodes see it.
+/// A ray prepared for box tests.
 pub(crate) struct NodeRay {
     origin: [f32; 3],
-    /// One over its direction.
+    /// The reciprocal of its direction.
     turned: [f32; 3],
-    /// Which plane comes first, along each axis.
+    /// The plane that comes first, along each axis.
     first: [usize; 3],
     until: f32,
 }
 
-/// No component of a direction is nearer to zero: over any way it moves a ray by nothing, and one over it is a number.
+/// The smallest absolute component of a direction: over any distance it does not move a ray, and
+/// its reciprocal is finite.
 const MIN_COMPONENT: f32 = 1e-20;
 
-/// A child that is still to be looked at, and how far along the ray its box begins.
+/// A child still to be visited, and the distance along the ray at which its box begins.
 #[derive(Clone, Copy, Default)]
 struct Waiting {
     near: f32,
     child: u32,
 }
 
-/// What is done with the leaves that a ray comes to.
+/// The operation on the leaves that a ray reaches.
 pub(crate) trait Visit {
-    /// How far boxes still matter.
+    /// Returns the distance up to which boxes still matter.
     fn visit<S: Simd>(&mut self, simd: S, leaf: usize) -> f32;
 }
 
@@ -75,13 +77,13 @@ impl NodeRay {
 }
 
 impl Wide {
-    /// Of nodes, of which so many lie below one another.
+    /// Builds a tree from nodes with a given depth.
     pub(crate) fn new(nodes: Vec<Node>, depth: usize) -> Self {
         let memory = WIDTH * depth;
         Self { nodes, memory }
     }
 
-    /// Visits the leaves whose boxes a ray meets, the nearer ones about first.
+    /// Visits the leaves whose boxes a ray meets, approximately front to back.
     #[inline(always)]
     pub(crate) fn along<S: Simd>(&self, simd: S, ray: &NodeRay, visit: impl Visit) {
         if self.memory <= STACK {
@@ -110,7 +112,7 @@ impl Wide {
                 node = &self.nodes[only as usize];
                 continue;
             }
-            // The nearest one will be on top.
+            // The nearest child ends on top.
             let before = count;
             while met != 0 {
                 let i = met.trailing_zeros() as usize % WIDTH;
@@ -155,7 +157,7 @@ impl Node {
     };
 
     pub(crate) fn inner(place: usize) -> u32 {
-        // Fewer than boxes, of which there are at most 2³².
+        // There are fewer than boxes, of which there are at most 2³².
         u32::try_from(place).unwrap_or(LEAF) & !LEAF
     }
 
@@ -163,7 +165,7 @@ impl Node {
         Self::inner(place) | LEAF
     }
 
-    /// Puts a child at one of its places, in a box from its lowest to its highest corner.
+    /// Stores a child in one of the slots, with a box from its lowest to its highest corner.
     pub(crate) fn set(&mut self, place: usize, [low, high]: [[f32; 3]; 2], child: u32) {
         for axis in 0..3 {
             self.planes[2 * axis][place] = low[axis];
@@ -172,7 +174,7 @@ impl Node {
         self.children[place] = child;
     }
 
-    /// Which boxes a ray meets, a bit for each, and how far along it they begin.
+    /// Returns the boxes that a ray meets, one bit for each, and the distances at which they begin.
     #[inline(always)]
     fn meets<S: Simd>(&self, simd: S, ray: &NodeRay, until: f32) -> (u32, [f32; WIDTH]) {
         let [x, y, z] = ray.first;
@@ -188,7 +190,7 @@ impl Node {
         (u32::try_from(met).unwrap_or_default(), near.into())
     }
 
-    /// How far along the ray it crosses planes.
+    /// Returns the distances along the ray at which it crosses planes.
     #[inline(always)]
     fn crossing<S: Simd>(&self, simd: S, ray: &NodeRay, axis: usize, plane: usize) -> f32x8<S> {
         let plane = f32x8::simd_from(simd, self.planes[plane]);

@@ -1,4 +1,4 @@
-//! A hierarchy with eight boxes in a node, for many triangles and rays that go anywhere.
+//! A hierarchy with eight boxes in a node, for many triangles and incoherent rays.
 
 use crate::build::{TreeKind, bvh};
 use crate::collapse;
@@ -14,7 +14,7 @@ use std::fmt;
 /// A hierarchy over boxes or triangles.
 #[derive(Clone)]
 pub struct WideHierarchy {
-    /// Numbers as they were given, in the order of leaves.
+    /// The original indices, in the order of leaves.
     order: Vec<u32>,
     tree: Wide,
     leaves: TreeLeaves,
@@ -22,17 +22,17 @@ pub struct WideHierarchy {
     level: Level,
 }
 
-/// What is in the leaves of a tree.
+/// The contents of the leaves of a tree.
 #[derive(Clone)]
 enum TreeLeaves {
-    /// The first and the number of them.
+    /// The first box and the number of boxes.
     Boxes(Vec<[u32; 2]>),
     Triangles(Vec<Leaf>),
 }
 
 impl WideHierarchy {
-    /// Over boxes, by number, given by their lowest and highest corners. `origins` is the largest
-    /// coordinate a ray starts from.
+    /// Builds a hierarchy over indexed boxes, given by their lowest and highest corners. `origins`
+    /// is the largest coordinate a ray starts from.
     #[must_use]
     pub fn new(count: usize, origins: f64, bounds: impl Fn(usize) -> [DVec3; 2] + Sync) -> Self {
         let space = Space::around((0..count).map(&bounds), origins);
@@ -47,7 +47,7 @@ impl WideHierarchy {
         }
     }
 
-    /// Over triangles, by number, given by their corners.
+    /// Builds a hierarchy over indexed triangles, given by their corners.
     #[must_use]
     pub fn over_triangles(
         count: usize,
@@ -70,15 +70,15 @@ impl WideHierarchy {
         Self { leaves, ..boxes }
     }
 
-    /// The boxes or triangles, in the order in which [`Self::along`] names them.
+    /// Returns the boxes or triangles, in the order in which [`Self::along`] visits them.
     #[must_use]
     pub fn order(&self) -> &[u32] {
         &self.order
     }
 
-    /// Names the boxes or triangles that a ray may meet from `from` on, the nearer ones about first.
-    /// Distances are in lengths of `direction`, which is at least 1 long. `meet` tells how far they
-    /// still matter; before anything is met, that is `until`.
+    /// Visits the boxes or triangles that a ray may meet beyond `from`, approximately front to
+    /// back. Distances are in lengths of `direction`, which is at least 1 long. `meet` returns the
+    /// distance up to which they still matter; before anything is met, that is `until`.
     #[inline]
     pub fn along(
         &self,
@@ -111,7 +111,7 @@ impl WideHierarchy {
     }
 }
 
-/// Leaves of boxes, named one after the other.
+/// Leaves of boxes, passed on one after the other.
 struct Boxes<'a, M> {
     leaves: &'a [[u32; 2]],
     meet: M,

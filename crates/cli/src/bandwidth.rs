@@ -100,13 +100,13 @@ fn header(args: &BandwidthArgs) -> Vec<String> {
     header
 }
 
-/// What is known of a plane at a point of the sweep.
+/// The numbers of one plane at one point of the sweep.
 #[derive(Clone, Debug)]
 struct BandwidthRow {
     /// The values swept.
     point: Vec<f64>,
     plane: String,
-    /// In the order of the header, `None` where there is none.
+    /// The numbers in the order of the header; `None` where there is none.
     numbers: Vec<Option<f64>>,
     warnings: Vec<String>,
 }
@@ -120,7 +120,7 @@ impl BandwidthRow {
         cells
     }
 
-    /// With all digits; empty where there is no number.
+    /// The row with all digits; fields without a number are empty.
     fn record(&self) -> Vec<String> {
         let digits = |x: &f64| format!("{x:?}");
         let mut cells: Vec<String> = self.point.iter().map(digits).collect();
@@ -141,7 +141,7 @@ fn csv_of(header: &[String], rows: &[BandwidthRow]) -> Result<Vec<u8>, Failure> 
     writer.into_inner().map_err(Failure::cannot_run)
 }
 
-/// A row for each plane with a criterion.
+/// Returns a row for each plane with a criterion.
 fn of(
     args: &BandwidthArgs,
     scene: &Scene,
@@ -200,7 +200,7 @@ fn of(
     planes.into_iter().map(row).collect()
 }
 
-/// What the criteria do not know of.
+/// Effects that the criteria do not cover.
 fn beyond_criteria(plane: &VirtualPlane, applicability: &Applicability) -> Vec<String> {
     let Theory::Scattering(view) = &applicability.theory else {
         return Vec::new();
@@ -223,7 +223,8 @@ fn beyond_criteria(plane: &VirtualPlane, applicability: &Applicability) -> Vec<S
     warnings
 }
 
-/// A bandwidth at the end of the grid is that of the grid. Of a spectrum that is even all over it, it is 95 % of where the last cell ends, half a step beyond the largest frequency.
+/// Warns of a bandwidth at the end of the grid: the grid limits it. For a spectrum that is flat
+/// over the grid, it is 95 % of where the last cell ends, half a step beyond the largest frequency.
 fn warning(plane: &VirtualPlane, bandwidth: f64) -> Option<String> {
     const NEAR: f64 = 0.9;
     let nu = plane.grid.nu;

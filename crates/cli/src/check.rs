@@ -1,4 +1,4 @@
-//! `etendue check`: what a scene says, and which theory applies to each plane.
+//! `etendue check`: describes a scene, and which theory applies to each plane.
 
 use crate::args::CheckArgs;
 use crate::print::{deliver, say};
@@ -35,14 +35,14 @@ pub(crate) fn check(args: &CheckArgs) -> Result<u8, Failure> {
         say(&format!("\ndrawn in {}", path.display()));
     }
     warnings::tell(&scene, false);
-    // As many threads as `run` takes unless told otherwise.
+    // As many threads as `run` uses by default.
     let threads = available_parallelism().map_or(1, NonZero::get);
     limits::check(&scene, &theories, threads)?;
     say(&expected(&scene, &theories, threads));
     Ok(0)
 }
 
-/// What a run takes, about.
+/// The approximate cost of a run.
 fn expected(scene: &Scene, theories: &[Applicability], threads: usize) -> String {
     let [photons, predictions] = seconds(scene, theories).map(|seconds| seconds / threads as f64);
     let gigabytes = Memory::new(scene, theories, threads).total() / 1e9;
@@ -51,7 +51,7 @@ fn expected(scene: &Scene, theories: &[Applicability], threads: usize) -> String
     )
 }
 
-/// The lengths of the legs, with what they end on.
+/// The lengths of the legs, with the surface at which each ends.
 fn length(scene: &Scene) -> String {
     let legs = scene.path.legs.iter().enumerate();
     let ends = legs.filter_map(|(i, leg)| {
@@ -61,7 +61,7 @@ fn length(scene: &Scene) -> String {
     ends.collect::<Vec<_>>().join(", ")
 }
 
-/// Where the rays of the light go, z' = A z, and where parallel ones meet.
+/// The ray map of the light, z' = A z, and where parallel rays meet.
 fn rays(chain: &AffineChain) -> Vec<String> {
     let matrix = chain.map.rays().matrix;
     let row = |(name, row): (&str, &[f64; 4])| {

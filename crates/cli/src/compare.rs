@@ -1,4 +1,4 @@
-//! `etendue compare`: what was measured against what was predicted, from files.
+//! `etendue compare`: compares measurement and prediction, read from files.
 
 use crate::args::CompareArgs;
 use crate::conclude::{Ending, conclude};
@@ -20,7 +20,7 @@ use serde_json::json;
 use std::ops::Range;
 use std::path::PathBuf;
 
-/// The fewest batches errors are taken from, as in a scene.
+/// The fewest batches that errors are computed from; scenes have the same limit.
 const LEAST_BATCHES: usize = 32;
 
 /// `etendue compare`: returns the exit code.
@@ -62,7 +62,8 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<u8, Failure> {
     })
 }
 
-/// All that was measured and predicted, if it fits together, and the files it was read from.
+/// Reads the measurement and the predictions, if they fit together, and returns the files they were
+/// read from.
 fn read(args: &CompareArgs) -> Result<(MeasuredScene, Vec<PathBuf>), Failure> {
     let shards = args.measured.iter();
     let shards: Vec<Stored<Held>> = shards
@@ -95,7 +96,7 @@ fn read(args: &CompareArgs) -> Result<(MeasuredScene, Vec<PathBuf>), Failure> {
     Ok((case, inputs))
 }
 
-/// Batches of different experiments are no replicates of each other.
+/// Checks that batches belong to the same experiment: others are not replicates of each other.
 fn same_experiment(first: &Stored<Held>, shard: &Stored<Held>) -> Result<(), Failure> {
     first.check_scene(shard, true)?;
     let words = |stored: &Stored<Held>| {
@@ -129,7 +130,7 @@ fn merged(shards: &[Stored<Held>], scene: &Scene) -> Result<Measurement, Failure
     Ok(all)
 }
 
-/// The batches that are not there, as ranges.
+/// The missing batches, as ranges.
 fn missing(measurement: &Measurement, all: u32) -> String {
     let mut ranges: Vec<Range<u32>> = Vec::new();
     for batch in (0..all).filter(|batch| !measurement.contains(*batch)) {

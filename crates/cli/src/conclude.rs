@@ -1,4 +1,4 @@
-//! The end of a command that compares: writes the result, prints it, and has the exit code.
+//! The end of a command that compares: writes the result, prints it and determines the exit code.
 
 use crate::args::Expect;
 use crate::print::{say, say_replaced};
@@ -10,7 +10,7 @@ use etendue_pipeline::{Judged, MeasuredScene, Reporter, Stopwatch, Summary, Work
 use etendue_report::{OutputOptions, write_result};
 use etendue_store::{Failure, Results};
 
-/// What a user wants of the end of a command.
+/// The user's options for the end of a command.
 #[derive(Debug)]
 pub(crate) struct Ending<'a> {
     pub(crate) options: OutputOptions<'a>,
@@ -53,8 +53,8 @@ pub(crate) fn conclude(
     Ok(exit_code(ending.expect, &summary))
 }
 
-/// What is expected is that photons agree with every exact prediction, and that a first-order chain
-/// has a wrong map.
+/// The exit code under `--expect`: photons are expected to agree with every exact prediction, and a
+/// first-order chain to have a wrong map.
 fn exit_code(expect: Option<Expect>, summary: &Summary) -> u8 {
     let is_wrong = |plane: &PlaneReport| {
         let chain = plane.first_order.as_ref();
@@ -73,7 +73,7 @@ fn exit_code(expect: Option<Expect>, summary: &Summary) -> u8 {
     code_of(verdict)
 }
 
-/// The exit code that a verdict has.
+/// The exit code for a verdict.
 pub(crate) fn code_of(verdict: Verdict) -> u8 {
     match verdict {
         Verdict::Pass => 0,

@@ -1,4 +1,4 @@
-//! `etendue converge`: how fast the first-order chain comes to the exact prediction.
+//! `etendue converge`: how fast the first-order chain converges to the exact prediction.
 
 use crate::args::ConvergeArgs;
 use crate::print::{deliver, say};

@@ -26,7 +26,7 @@ use etendue_store::stored::VERSION;
 use etendue_store::{ArgumentStyle, COVARIANCE, Plan, Results};
 use serde_json::json as tree_of;
 
-/// The picture of a plane, and what is behind it.
+/// The picture of a plane, and its data.
 const NAMES: [&str; 3] = ["covariance.png", "covariance.svg", "covariance.csv"];
 
 /// `etendue covariance`: returns the exit code.
@@ -106,7 +106,7 @@ pub(crate) fn covariance(args: &CovarianceArgs) -> Result<u8, Failure> {
     Ok(0)
 }
 
-/// Keeps the planes that are asked for.
+/// Keeps the planes that the user selected.
 fn choose(scene: &mut Scene, names: &[String]) -> Result<(), Failure> {
     let known = |name: &String| scene.planes.iter().any(|plane| plane.name == *name);
     if let Some(name) = names.iter().find(|name| !known(name)) {
@@ -122,7 +122,7 @@ fn choose(scene: &mut Scene, names: &[String]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The numbers of a plane: its photons once more, on a 4D grid.
+/// The numbers of a plane: traces its photons again, on a 4D grid.
 fn of_plane(
     (source, measurement, index): (&dyn PhotonSource, &Measurement, usize),
     applicability: &Applicability,

@@ -1,4 +1,4 @@
-//! `etendue diff`: two results of one scene held against each other.
+//! `etendue diff`: compares two results of one scene.
 
 use crate::args::DiffArgs;
 use crate::conclude::code_of;

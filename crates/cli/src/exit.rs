@@ -5,7 +5,7 @@ use etendue_store::Failure;
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 
-/// Prints the fault of a command line, or the help or the version that it asks for; returns the exit code.
+/// Prints a command-line error, or the requested help or version; returns the exit code.
 pub(crate) fn not_parsed(error: &clap::Error) -> u8 {
     match error.print() {
         Err(e) if !error.use_stderr() && e.kind() != ErrorKind::BrokenPipe => ended(
@@ -16,13 +16,13 @@ pub(crate) fn not_parsed(error: &clap::Error) -> u8 {
     }
 }
 
-/// The exit code of what a command came to; a failure is told, unless somebody else tells it.
+/// The exit code for the outcome of a command. Prints a failure, unless another process does.
 pub(crate) fn ended(outcome: Result<u8, Failure>, quiet: bool) -> u8 {
     match outcome {
         Ok(code) => code,
         Err(failure) => {
             if !quiet {
-                // A reader that has gone does not change the exit code.
+                // A closed standard error does not change the exit code.
                 let message = printable(&failure.message, MAX_ERROR_LINES);
                 let _ = writeln!(std::io::stderr(), "error: {message}");
             }

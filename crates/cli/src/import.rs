@@ -1,4 +1,4 @@
-//! `etendue import`: what a scene of another program holds.
+//! `etendue import`: describes a scene of another program.
 
 use crate::args::ImportArgs;
 use crate::print::deliver;

@@ -1,20 +1,20 @@
-//! How a run ends before its time.
+//! Interruption of a run by signals and lack of memory.
 //!
-//! The first SIGINT, SIGTERM or SIGHUP removes the files that wait to become a result and ends the process
-//! with exit code 3; a second one ends it at once, whatever it is doing. Where memory cannot be had, Rust says
-//! so and aborts: that is exit code 3 too. A file that the system allows no further growth is an error of the
-//! write, not the death of the process.
+//! The first SIGINT, SIGTERM or SIGHUP removes the unfinished files of a result and ends the
+//! process with exit code 3; a second one ends the process at once. If an allocation fails, Rust
+//! prints a message and aborts: this is exit code 3 too. A file that reaches the system's size
+//! limit is a write error and does not kill the process.
 
 use etendue_store::{CANNOT_RUN, Failure, unfinished};
 
-/// Ends the process in good order.
+/// Removes unfinished files and ends the process.
 #[cfg(unix)]
 fn end() {
     use std::io::Write;
     use std::sync::mpsc;
     use std::time::Duration;
     unfinished::abandon(|message| {
-        // A reader that has gone, or that reads no more, must not keep the process.
+        // A standard error that is closed, or that nobody reads, must not block the process.
         let (told, wait) = mpsc::channel();
         std::thread::spawn(move || {
             let _ = writeln!(std::io::stderr(), "\n{message}");
@@ -26,7 +26,7 @@ fn end() {
     });
 }
 
-/// Lets signals end the process as said above.
+/// Installs the signal handlers described above.
 #[cfg(unix)]
 pub(crate) fn install() -> Result<(), Failure> {
     use etendue_store::machine;
@@ -39,13 +39,13 @@ pub(crate) fn install() -> Result<(), Failure> {
         let code = CANNOT_RUN.into();
         let asked = Arc::new(AtomicBool::new(false));
         let mut signals = vec![SIGINT, SIGTERM];
-        // `nohup` has it ignored: so it stays.
+        // `nohup` makes the process ignore SIGHUP, and this is kept.
         if !machine::ignores(SIGHUP) {
             signals.push(SIGHUP);
         }
         let mut each = Signals::new(&signals)?;
         for signal in signals {
-            // In this order the first signal finds the flag down, and puts it up.
+            // In this order the first signal finds the flag clear, and sets it.
             register_conditional_shutdown(signal, code, Arc::clone(&asked))?;
             register(signal, Arc::clone(&asked))?;
         }
@@ -60,7 +60,7 @@ pub(crate) fn install() -> Result<(), Failure> {
     install().map(drop).map_err(Failure::cannot_run)
 }
 
-/// Elsewhere the system ends the process, and the next one removes what it left.
+/// On other systems the process ends at once, and the next one removes what it left.
 #[cfg(not(unix))]
 pub(crate) fn install() -> Result<(), Failure> {
     Ok(())

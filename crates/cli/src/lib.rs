@@ -1,7 +1,7 @@
-//! The `etendue` command: parses, calls the stages, writes what they give.
+//! The `etendue` command: parses arguments, calls the stages and writes their results.
 //!
-//! `run` measures a scene, predicts it, compares and draws; `measure`, `predict` and `compare` are its stages
-//! over files; `check` says what a scene says.
+//! `run` measures a scene, predicts it, compares and draws; `measure`, `predict` and `compare` are
+//! its stages over files; `check` describes a scene.
 
 mod args;
 mod bandwidth;
@@ -38,15 +38,15 @@ use std::ffi::OsString;
 use std::process::ExitCode;
 pub use workers::command_of_workers;
 
-/// The program: its exit code.
+/// Runs the program; returns its exit code.
 #[must_use]
 pub fn main() -> ExitCode {
     ExitCode::from(command(std::env::args_os()))
 }
 
-/// Does what a command line says, whose first word is the program; returns the exit code.
+/// Runs a command line whose first word is the program; returns the exit code.
 ///
-/// Signals are those of the command from then on.
+/// The command's signal handlers stay installed afterwards.
 pub fn command(line: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u8 {
     let command = match Cli::parse_line(line) {
         Ok(cli) => cli.command,

@@ -1,4 +1,5 @@
-//! The program `etendue`: all of it is in the library of the same name, which other programs have inside.
+//! The program `etendue`: all of its code is in the library of the same name, which other programs
+//! can embed.
 
 use std::process::ExitCode;
 

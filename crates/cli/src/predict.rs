@@ -19,7 +19,7 @@ pub(crate) fn predict(args: &PredictArgs) -> Result<u8, Failure> {
     predict_with(args, None)
 }
 
-/// The same, with other processes that predict as well.
+/// Like [`predict()`], with other processes that predict as well.
 pub(crate) fn predict_with(
     args: &PredictArgs,
     workers: Option<&Leader<'_>>,

@@ -1,17 +1,18 @@
-//! What commands print, in characters that a terminal takes as they are.
+//! Printing for commands, in characters that are safe on a terminal.
 
 use etendue_scene::shown;
 use etendue_store::{Failure, Finished};
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 
-/// Prints to standard output. A reader that has gone, or a full disk behind it, changes nothing that was
-/// done: the result and the exit code stand.
+/// Prints to standard output. A closed pipe or a full disk changes neither the result nor the exit
+/// code.
 pub(crate) fn say(text: &str) {
     let _ = deliver(text);
 }
 
-/// Prints what a command is for: that it cannot be written is a failure, unless the reader has gone.
+/// Prints the main output of a command: failing to write it is an error, unless the reader has
+/// closed the pipe.
 pub(crate) fn deliver(text: &str) -> Result<(), Failure> {
     let text = printable(text, usize::MAX);
     match writeln!(std::io::stdout(), "{text}") {
@@ -22,19 +23,19 @@ pub(crate) fn deliver(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Says which files of somebody else are no more, since `--force` was there.
+/// Names the files of others that were replaced because of `--force`.
 pub(crate) fn say_replaced(finished: &Finished, quiet: bool) {
     if let Some(message) = finished.replaced_message().filter(|_| !quiet) {
         say(&message);
     }
 }
 
-/// Lines of an error, and characters of a line.
+/// Maximum number of lines of an error.
 pub(crate) const MAX_ERROR_LINES: usize = 20;
 const MAX_LINE_LENGTH: usize = 2000;
 
-/// Text of at most so many lines, in characters that a terminal takes as they are: names of files and what
-/// stands in them come from anywhere.
+/// Text cut to so many lines, in characters that are safe on a terminal: file names and their
+/// content may hold anything.
 pub(crate) fn printable(text: &str, lines: usize) -> String {
     let mut all = text.split('\n');
     let shown = all

@@ -5,7 +5,7 @@ use crate::warnings;
 use etendue_pipeline::{Progress, Reporter, Work};
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 
-/// Prints what a run tells, and shows how far it is.
+/// Prints the messages of a run, and shows its progress.
 #[derive(Debug)]
 pub(crate) struct Terminal {
     quiet: bool,
@@ -13,7 +13,7 @@ pub(crate) struct Terminal {
 }
 
 impl Terminal {
-    /// With `quiet`, warnings of a run alone are printed.
+    /// With `quiet`, only warnings of a run are printed.
     pub(crate) fn new(quiet: bool) -> Self {
         let bars = MultiProgress::new();
         Self { quiet, bars }
@@ -46,7 +46,7 @@ impl Reporter for Terminal {
     }
 }
 
-/// A bar that goes away with its work.
+/// A progress bar that disappears when its work ends.
 struct Bar(ProgressBar);
 
 impl Drop for Bar {
@@ -87,7 +87,7 @@ pub(crate) fn photons(total: u64, quiet: bool) -> ProgressBar {
     bar
 }
 
-/// Things done, the one at hand by its name, and time left: on a terminal, where there are several.
+/// Steps done, name of the current one, and time left: on a terminal, if there are several.
 pub(crate) fn steps(
     verb: &'static str,
     total: usize,

@@ -15,7 +15,7 @@ use std::path::Path;
 
 /// Most bytes of a ray file.
 const MOST_BYTES: u64 = 1 << 34;
-/// Characters of a text that are shown, and texts.
+/// Maximum number of characters of a text that are shown, and of texts.
 const LONGEST: usize = 200;
 const MOST_TEXTS: usize = 20;
 
@@ -61,9 +61,10 @@ fn format_of(path: &Path) -> Result<Format, Failure> {
     })
 }
 
-/// Requires the memory that reading may take; gzip says only afterwards how much it holds.
+/// Checks that there is enough memory to read a file; the unpacked size of gzip is known only
+/// afterwards.
 fn check_memory(path: &Path, length: usize) -> Result<(), Failure> {
-    // The file itself, and what is written of it.
+    // The file itself, and its description.
     let needed = (length * (MEMORY + 2) + MEMORY_FREE) as u64;
     let free = machine::available_memory();
     if needed > free {
@@ -245,7 +246,7 @@ fn of_mcpl(file: &McplFile) -> Vec<(&'static str, String)> {
     rows
 }
 
-/// Text of a file on one line.
+/// A text of the file, on one line.
 fn text(bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(bytes).replace('\n', " ");
     shown(&text, LONGEST)

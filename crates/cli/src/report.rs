@@ -33,7 +33,7 @@ pub(crate) fn report(args: &ReportArgs) -> Result<u8, Failure> {
     Ok(0)
 }
 
-/// A folder as seen from another, with a / at its end.
+/// A relative path from one folder to another, with a trailing /.
 fn address(folder: &Path, from: &Path) -> String {
     let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let [folder, from] = [folder, from].map(absolute);

@@ -29,7 +29,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<u8, Failure> {
     run_with(args, None)
 }
 
-/// The same, with other processes that measure as well.
+/// Like [`run()`], with other processes that measure as well.
 pub(crate) fn run_with(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u8, Failure> {
     check_saved(&args.save)?;
     let scene = load::scene(&args.scene.source(), |run| args.photons.set(run))?;
@@ -69,7 +69,7 @@ pub(crate) fn run_with(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u
             if let Some(code) = finished(&folder, &scene, args) {
                 return Ok(code);
             }
-            // Others have a part in it: it is nobody's until it is measured.
+            // Other processes share the folder, so nobody owns the result until it is measured.
             results = None;
         }
         stages(
@@ -86,7 +86,7 @@ pub(crate) fn run_with(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u
     })
 }
 
-/// Fails where something is to be saved twice.
+/// Fails if something is to be saved twice.
 fn check_saved(save: &[Save]) -> Result<(), Failure> {
     let mut each = save.iter().enumerate();
     let Some((_, twice)) = each.find(|(i, what)| save[..*i].contains(what)) else {
@@ -96,17 +96,18 @@ fn check_saved(save: &[Save]) -> Result<(), Failure> {
     Err(Failure::bad_input(format!("--save: {name} is given twice")))
 }
 
-/// Where a result is going to be.
+/// The place of a future result.
 struct ResultPlace<'a> {
     folder: &'a Path,
     plan: Plan,
-    /// `None` where several processes measure.
+    /// `None` if several processes measure.
     results: Option<Results>,
-    /// Other processes, which this one leads.
+    /// The other processes, led by this one.
     workers: Option<&'a Leader<'a>>,
 }
 
-/// The exit code of a run that is done, whose verdict is told once more. Batches that a process has left are removed.
+/// The exit code of a finished run; prints its verdict again. Batches left by a process are
+/// removed.
 fn finished(folder: &Path, scene: &Scene, args: &RunArgs) -> Option<u8> {
     let summary = summary_of(folder, scene, args.photons.method)?;
     CheckpointStore::of(folder, scene, args.photons.method).remove();
@@ -121,7 +122,7 @@ fn finished(folder: &Path, scene: &Scene, args: &RunArgs) -> Option<u8> {
     Some(code_of(verdict))
 }
 
-/// Somebody has removed the result that was there a moment ago.
+/// The error that somebody has just removed the result.
 fn gone(folder: &Path) -> Failure {
     Failure::cannot_run(format!("the result in {} is gone", folder.display()))
 }

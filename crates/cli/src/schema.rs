@@ -1,4 +1,4 @@
-//! `etendue schema`: what a scene file may hold, for editors and as a page of the book.
+//! `etendue schema`: the schema of scene files, for editors and as a page of the book.
 
 use crate::args::SchemaArgs;
 use crate::print::deliver;
@@ -16,10 +16,10 @@ pub(crate) fn schema(args: &SchemaArgs) -> Result<u8, Failure> {
     Ok(0)
 }
 
-/// What stands above the tables.
+/// The text above the tables.
 const HEAD: &str = include_str!("schema/head.md");
 
-/// All types, each where it is met first, with their fields.
+/// All types in order of first use, with their fields.
 fn page(schema: &Value) -> String {
     let mut types = vec![("Scene", schema)];
     let mut next = 0;
@@ -61,7 +61,7 @@ fn named_below<'a>(node: &'a Value, met: &mut Vec<&'a str>) {
     }
 }
 
-/// The fields of a node: those that must be stated, then the others by name.
+/// The fields of a node: required fields first, then the others by name.
 fn fields(node: &Value) -> impl Iterator<Item = (&str, &Value)> {
     let required = node["required"].as_array().into_iter().flatten();
     let required = required.filter_map(Value::as_str);
@@ -93,7 +93,7 @@ fn content(node: &Value) -> String {
     }
 }
 
-/// A variant in a line, with its fields if they have names.
+/// A variant on one line, with its fields if they are named.
 fn variant(node: &Value) -> String {
     let about = description(node);
     if let Some(name) = node["const"].as_str() {
@@ -109,7 +109,7 @@ fn variant(node: &Value) -> String {
     format!("\n* `{name}(…)`: {about}{}\n", holds(inside))
 }
 
-/// What stands between the brackets of a variant without names.
+/// The content of the parentheses of a variant with unnamed fields.
 fn holds(node: &Value) -> String {
     let many = node["prefixItems"].as_array();
     let each = many.map_or(node, |many| &many[0]);
@@ -124,14 +124,14 @@ fn holds(node: &Value) -> String {
     }
 }
 
-/// The named type of a node, or of what it lists.
+/// The named type of a node, or of its list items.
 fn type_of(node: &Value) -> Option<&str> {
     let mut met = Vec::new();
     named(node, &mut met);
     met.first().copied()
 }
 
-/// Fields, one in a row.
+/// A table of fields, one per row.
 fn table(node: &Value) -> String {
     let mut text = String::from("\n| field | meaning | value | unless stated | example |\n");
     text.push_str("|---|---|---|---|---|\n");

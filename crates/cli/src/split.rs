@@ -24,7 +24,7 @@ pub(crate) fn split(args: &SplitArgs) -> Result<u8, Failure> {
         scene: scene_words(args),
         parts,
         batches,
-        // Digits stand behind it.
+        // A prefix; digits follow it.
         part: below("parts/"),
         predicted: below("predicted"),
         out: shell_word(&out.to_string_lossy()),
@@ -37,7 +37,7 @@ pub(crate) fn split(args: &SplitArgs) -> Result<u8, Failure> {
     Ok(0)
 }
 
-/// The scene and how it is measured, as on the command line.
+/// The scene and the measurement options, as on the command line.
 fn scene_words(args: &SplitArgs) -> String {
     let mut words = vec![args.scene.path.to_string_lossy().into_owned()];
     for (path, value) in &args.scene.set {
@@ -62,7 +62,7 @@ fn scene_words(args: &SplitArgs) -> String {
     words.collect::<Vec<_>>().join(" ")
 }
 
-/// Work to be split, in the words of a shell.
+/// Work to be split, quoted for a shell.
 struct SplitWork {
     name: String,
     scene: String,
@@ -95,7 +95,7 @@ impl SplitWork {
         format!("etendue compare --measured {part}* --predicted {predicted} --out {out}")
     }
 
-    /// A command for each part, then those that come after all.
+    /// A command for each part, then the commands that follow when all parts are done.
     fn commands(&self) -> String {
         let Self { parts, batches, .. } = self;
         let first = |part: u32| u64::from(*batches) * u64::from(part) / u64::from(*parts);
@@ -107,7 +107,7 @@ impl SplitWork {
         each.chain(after).collect::<Vec<_>>().join("\n")
     }
 
-    /// A script that hands these to Slurm.
+    /// A script that submits the commands to Slurm.
     fn slurm(&self) -> String {
         let Self {
             name,

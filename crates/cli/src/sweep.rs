@@ -18,7 +18,7 @@ pub(crate) fn sweep(args: &SweepArgs) -> Result<u8, Failure> {
     sweep_with(args, None)
 }
 
-/// The same, with other processes that run points as well.
+/// Like [`sweep()`], with other processes that run points as well.
 pub(crate) fn sweep_with(args: &SweepArgs, workers: Option<&Leader<'_>>) -> Result<u8, Failure> {
     on_threads(&args.work.threads, || {
         let request = args.request();

@@ -3,7 +3,7 @@
 use crate::args::ThreadArgs;
 use etendue_store::Failure;
 
-/// Does `work` on so many threads, one for each core unless said.
+/// Runs `work` on the given number of threads, by default one for each core.
 pub(crate) fn on_threads<T: Send>(
     threads: &ThreadArgs,
     work: impl FnOnce() -> Result<T, Failure> + Send,

@@ -3,7 +3,8 @@
 use etendue_scene::Scene;
 use std::io::Write;
 
-/// To standard error, unless the user asked for quiet: standard output is that of the result.
+/// Prints the warnings to standard error, unless the user asked for quiet: standard output is for
+/// the result.
 pub(crate) fn tell(scene: &Scene, quiet: bool) {
     let warnings = if quiet { Vec::new() } else { scene.warnings() };
     for warning in warnings {
@@ -11,8 +12,8 @@ pub(crate) fn tell(scene: &Scene, quiet: bool) {
     }
 }
 
-/// One of them.
+/// Prints one warning.
 pub(crate) fn warn(warning: &str) {
-    // A reader that has gone changes nothing.
+    // A closed standard error is ignored.
     let _ = writeln!(std::io::stderr(), "warning: {warning}");
 }

@@ -11,13 +11,14 @@ use etendue_store::Failure;
 use etendue_sweep::SweepPoints;
 use std::ffi::OsString;
 
-/// What a command line comes to in a workers; returns the exit code. `run`, `predict` and `sweep` are for many.
+/// Runs a command line on a group of processes; returns the exit code. `run`, `predict` and `sweep`
+/// share their work.
 pub fn command_of_workers(line: impl IntoIterator<Item = OsString>, workers: &dyn Workers) -> u8 {
     let leads = workers.number() == 0;
     let command = match Cli::parse_line(line) {
         Ok(cli) => cli.command,
         Err(error) => {
-            // Whoever sees the terminal says it.
+            // Only the process with the terminal prints it.
             if leads {
                 return not_parsed(&error);
             }
@@ -40,7 +41,7 @@ pub fn command_of_workers(line: impl IntoIterator<Item = OsString>, workers: &dy
         Command::Sweep(args) => sweep::sweep_with(args, Some(&led)),
         _ => Ok(0),
     });
-    // The others wait for work, because there is no more or something failed.
+    // The other processes are idle: there is no more work, or something failed.
     let dismissed = led.dismiss_all();
     ended(outcome.and_then(|code| dismissed.map(|()| code)), false)
 }
@@ -52,7 +53,7 @@ fn is_shared(command: &Command) -> bool {
     }
 }
 
-/// Does whatever the process that leads asks for, until it is dismissed.
+/// Follows the orders of the leading process until dismissed.
 fn follow(command: &Command, workers: &dyn Workers) {
     let followed = match command {
         Command::Run(args) => with_job(&args.scene, &args.photons, &args.work.threads, workers),

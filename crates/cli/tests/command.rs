@@ -1,4 +1,4 @@
-//! The command as a user meets it: exit codes, messages, files, threads, and being killed.
+//! The command as a user meets it: exit codes, messages, files, threads and kills.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -8,7 +8,8 @@ use std::path::Path;
 use std::process::{Output, Stdio};
 use std::time::{Duration, Instant};
 
-/// `etendue run fig9b` into `out`, with more arguments. Noise of so few photons is 18 % of a spectrum.
+/// Runs `etendue run fig9b` into `out`, with more arguments. The noise of so few photons is 18 % of
+/// a spectrum.
 fn run(out: &Path, arguments: &[&str]) -> Output {
     etendue()
         .arg("run")
@@ -33,7 +34,8 @@ fn is_result(folder: &Path) -> bool {
     })
 }
 
-/// A plane that only photons aimed at another one see does not fail by the part that these see.
+/// A plane crossed by photons aimed at another plane does not fail because these cover only part of
+/// it.
 #[test]
 fn a_window_seen_in_part_is_undecided() {
     let folder = tempfile::tempdir().unwrap();
@@ -81,7 +83,7 @@ fn a_run_passes_and_leaves_a_result() {
             files.keys()
         );
     }
-    // Only the promise of same bytes is listed.
+    // Only the reproducible files are listed.
     let listed = String::from_utf8(files["summary.json"].clone()).unwrap();
     assert!(!listed.contains("timing.json"));
 }
@@ -112,7 +114,8 @@ fn threads_do_not_change_a_byte() {
     }
 }
 
-/// What is expected is a wrong map in a first-order chain beside an exact prediction that holds.
+/// `--expect disagreement` succeeds for a wrong map in a first-order chain beside an exact
+/// prediction that holds.
 #[test]
 fn expecting_disagreement_turns_the_exit_code() {
     let folder = tempfile::tempdir().unwrap();
@@ -134,13 +137,13 @@ fn expecting_disagreement_turns_the_exit_code() {
     let corrected = ["--set", "as_printed=false"];
     assert_eq!(code("corrected", &corrected), Some(0));
     assert_eq!(code("no_fault", &[corrected, expect].concat()), Some(1));
-    // In too much noise nothing shows that the exact prediction holds.
+    // With too much noise, nothing shows that the exact prediction holds.
     let few = ["--set", "run.resolution=0.001"];
     assert_eq!(code("few", &[few, expect].concat()), Some(4));
 }
 
-/// A chain that is wrong in amplitude alone is not said to send rays wrong, and its failure is in the
-/// picture and on the page.
+/// A chain that is wrong only in amplitude is not reported to have a wrong map; its failure is in
+/// the picture and on the page.
 #[test]
 fn a_failing_chain_is_told_and_drawn() {
     let folder = tempfile::tempdir().unwrap();
@@ -155,7 +158,7 @@ fn a_failing_chain_is_told_and_drawn() {
         (told, read("path.svg"), read("report.html"))
     };
     let (told, picture, page) = run("printed", &[]);
-    // cos² 37.24° of the radiance is left.
+    // cos² 37.24° of the radiance remains.
     assert!(told.contains("leaves the central ray 63.375 %"), "{told}");
     assert!(!told.contains("its rays stay"), "{told}");
     assert!(picture.contains("chain 36.6") && picture.contains("off the chain"));
@@ -423,7 +426,7 @@ fn bad_arguments_are_refused() {
     assert_eq!(missing.status.code(), Some(2));
 }
 
-/// Killed at twenty moments spread over a run and beyond its end: what is left is a whole result or none.
+/// Killing a run at twenty moments, during and beyond its run time, leaves a whole result or none.
 #[test]
 fn a_killed_run_leaves_no_half_result() {
     let folder = tempfile::tempdir().unwrap();
@@ -432,7 +435,8 @@ fn a_killed_run_leaves_no_half_result() {
     let whole = start.elapsed();
     let mut complete = 0;
     for i in 0..20u32 {
-        // One folder for all: an earlier result must not vouch for the files of a later, killed run.
+        // All runs use one folder: an earlier result must not vouch for the files of a later,
+        // killed run.
         let out = folder.path().join("killed");
         let mut child = etendue()
             .arg("run")
@@ -449,8 +453,8 @@ fn a_killed_run_leaves_no_half_result() {
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        // Moments a golden section apart, spread without order over twice the time of a run: half of them hit
-        // it, and on a machine that has slowed down some still come after its end.
+        // Moments follow the golden ratio over twice the time of a run: half of them hit it, and on
+        // a machine that has slowed down some still come after its end.
         let share = f64::from(i) * 0.618_034 % 1.0 * 2.0;
         std::thread::sleep(Duration::from_secs_f64(whole.as_secs_f64() * share));
         child.kill().unwrap();
@@ -469,7 +473,7 @@ fn a_killed_run_leaves_no_half_result() {
     );
 }
 
-/// What a command is for goes to standard output: where that is full, the command has failed.
+/// A command fails if its main output cannot be written because standard output is full.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_standard_output_is_a_failure() {

@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// A lamp that fills the window of its first plane, and is cut by that of the second.
+/// A lamp that fills the window of its first plane, and is cut by the window of the second.
 const LAMP: &str = r#"(
     light: Rectangle(center: (0, 0, 0), size: (4, 4)),
     blockers: [Shapes(name: "edge", center: (0, 0, 0.5), shapes: [HalfPlane(axis: X, edge: 0.02, opaque: Above)])],
@@ -45,7 +45,7 @@ fn light_that_fills_the_window_has_its_covariance_and_edges_are_told() {
     for (i, h) in [0.1, 0.1, 0.2, 0.2].into_iter().enumerate() {
         let expected = 1.0 / (12.0 * h * h);
         let traced = entry(full, "traced", i, i);
-        // The lamp's own is 1/(8π² · 4/3), after travel of half a metre.
+        // The lamp's variance is 1/(8π² · 4/3), after travel of half a metre.
         assert!((traced / expected - 1.0).abs() < 2e-3, "{i}: {traced}");
         let exact = entry(full, "exact", i, i);
         // On its own grid such a window has three frequencies, all within the band.
@@ -55,7 +55,7 @@ fn light_that_fills_the_window_has_its_covariance_and_edges_are_told() {
     }
     let said = |plane: &Value| plane["remarks"].to_string();
     assert!(!said(full).contains("edges"), "{}", said(full));
-    // The half-plane's edge is seen along x, and makes a tail without end.
+    // The edge of the half-plane lies along x, and gives the spectrum an infinite tail.
     let cut = &index["planes"][1];
     assert!(said(cut).contains("edges"), "{}", said(cut));
     assert!(cut["growth"][0].as_f64().unwrap() > 1.3);
@@ -117,7 +117,8 @@ const ROOM: &str = r#"<scene version="3.0.0">
 </scene>
 "#;
 
-/// A diffuse floor lit evenly: what leaves it is the window, and travel to the camera shears it.
+/// A diffuse floor lit evenly: the spectrum leaving it is that of the window, which travel to the
+/// camera shears.
 #[test]
 fn a_probe_propagates_the_covariance_to_the_camera() {
     let folder = tempfile::tempdir().unwrap();
@@ -136,7 +137,7 @@ fn a_probe_propagates_the_covariance_to_the_camera() {
         let [a, b] = ["measured", "propagated"].map(|of| number(of, "value", i, j));
         let error = ["measured", "propagated"].map(|of| number(of, "error", i, j));
         let both = error[0].hypot(error[1]);
-        // Travel takes the window's own tails past the end of the band: a few thousandths of its moment.
+        // Travel shears the tails of the window beyond the band: a few thousandths of its moment.
         let scale = (number("measured", "value", i, i) * number("measured", "value", j, j)).sqrt();
         assert!(
             (a - b).abs() < 4.0 * both + 0.01 * scale,

@@ -1,4 +1,4 @@
-//! Files of a stage that someone has changed: `compare` refuses them, naming the file and the array.
+//! Changed stage files: `compare` refuses them and names the file and the array.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -20,7 +20,7 @@ const LEDGER: &str = "a/ledger.npz";
 const BATCHES: &str = "a/receiver/batches.npz";
 const PREDICTION: &str = "p/receiver/prediction.npz";
 
-/// Tries other content for a file, and puts the old one back.
+/// Replaces the content of a file temporarily.
 struct Swap {
     path: PathBuf,
     whole: Vec<u8>,
@@ -156,7 +156,7 @@ fn a_changed_index_is_refused() {
         let _index = changed(&folder.join(name), change);
         refused(folder, COMPARE, &[&[&name[..2]], parts].concat());
     }
-    // Above, the index got the hash of what it then was; without it no bit may change.
+    // The cases above had a matching hash in the index; without it any changed bit is detected.
     for name in [a, p] {
         let whole = fs::read(folder.join(name)).unwrap();
         for i in 0..75 {
@@ -172,7 +172,7 @@ fn a_changed_index_is_refused() {
             refused(folder, COMPARE, &[name]);
         }
     }
-    // No refusal had another reason.
+    // The unmodified files pass, so no refusal had another reason.
     assert_eq!(call(folder, COMPARE).status.code(), Some(0));
 }
 
@@ -189,7 +189,7 @@ fn changed_files_are_refused() {
                 let _file = Swap::new(folder.join(file), bytes);
                 refused(folder, COMPARE, &[file, "is damaged"]);
             }
-            // With the hash of what is there it is seen all the same.
+            // With a matching hash it is detected all the same.
             refused_with(folder, file, bytes, &[]);
         }
         fs::remove_file(folder.join(file)).unwrap();
@@ -199,7 +199,8 @@ fn changed_files_are_refused() {
     assert_eq!(call(folder, COMPARE).status.code(), Some(0));
 }
 
-/// Each array of each file in turn: missing, of another kind, larger than any memory, not an array.
+/// Each array of each file in turn is missing, of another type, too large for memory, or not an
+/// array.
 #[test]
 fn foreign_arrays_are_refused() {
     let stages = stages();
@@ -312,7 +313,7 @@ fn wrong_numbers_are_refused() {
     assert_eq!(call(folder, COMPARE).status.code(), Some(0));
 }
 
-/// Headers that the library would take for ever over, or overflow the stack.
+/// Headers on which the library would hang or overflow the stack.
 #[test]
 fn nested_headers_are_refused_at_once() {
     let stages = stages();
@@ -336,7 +337,7 @@ fn nested_headers_are_refused_at_once() {
     }
 }
 
-/// Pipes, devices and links out of the folder are no parts.
+/// Pipes, devices and links out of the folder are refused as parts.
 #[cfg(unix)]
 #[test]
 fn parts_are_regular_files_below_their_folder() {
@@ -361,7 +362,8 @@ fn parts_are_regular_files_below_their_folder() {
     assert_eq!(call(folder, COMPARE).status.code(), Some(0));
 }
 
-/// A scene is its bytes: parts measured with another mesh do not fit, and the copies of meshes are checked.
+/// The meshes are part of a scene: parts measured with another mesh do not fit, and the copies of
+/// meshes are checked.
 #[test]
 fn meshes_are_part_of_the_scene() {
     let folder = tempfile::tempdir().unwrap();
@@ -400,6 +402,6 @@ fn meshes_are_part_of_the_scene() {
         &["a/measurement.inputs/tri.obj is damaged"],
     );
     fs::write(&copy, whole).unwrap();
-    // So few photons may leave it undecided.
+    // So few photons may leave the verdict undecided.
     ends("compare --measured b a --predicted p --out out", &[0, 1]);
 }

@@ -70,7 +70,7 @@ fn two_results_are_told_apart_when_they_differ() {
         &[&seeds[..], &[same, "the same, but run"]].concat(),
     );
     found(&folder, "a backward", 0, &["method backward", same]);
-    // Shared photons: the same bytes, or undecided.
+    // Shared photons: identical bytes, or undecided.
     found(
         &folder,
         "a again",
@@ -205,7 +205,7 @@ fn damaged_folders_are_refused_by_name() {
     fs::remove_file(&summary).unwrap();
     refuses(path, &["cannot read b/summary.json"]);
 
-    // Indices that were made anew around anything.
+    // Indices rewritten to match changed files.
     let mut tree: serde_json::Value = serde_json::from_slice(&index).unwrap();
     tree["batches"] = 2.into();
     fs::write(&summary, sealed(tree.clone())).unwrap();
@@ -268,7 +268,7 @@ fn the_same_photons_are_compared_number_by_number() {
     ]);
     let parts = ["run.alpha: 0.01 and 0.02", "the same numbers"];
     found(&folder, "a b", 0, &parts);
-    // Light has not met the blockers at the first plane.
+    // The first plane is before the blockers, so it does not differ.
     let (code, text) = diff(folder.path(), "a pitch");
     assert_eq!(code, Some(1), "{text}");
     let light = text
@@ -279,7 +279,7 @@ fn the_same_photons_are_compared_number_by_number() {
         light.ends_with("same") && light.contains("0.000 %"),
         "{text}"
     );
-    // A difference far below the noise, behind noise that both share.
+    // A difference far below the noise, hidden by noise common to both.
     found(
         &folder,
         "a fill",
@@ -323,7 +323,7 @@ fn call_report(folder: &Path) -> std::process::Output {
         .unwrap()
 }
 
-/// The folders of `results/` are whole: each listed file is there as it was written, and small.
+/// The folders of `results/` are complete: each listed file is unchanged, and small.
 #[test]
 fn committed_results_are_whole() {
     let results = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../results");

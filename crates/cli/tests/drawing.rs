@@ -1,4 +1,4 @@
-//! `etendue check --draw`: what a drawing of a scene shows.
+//! `etendue check --draw`: the content of the drawing of a scene.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -21,7 +21,7 @@ fn drawing(scene: &str) -> String {
 
 #[test]
 fn a_cut_through_y_is_drawn_where_it_shows_something_else() {
-    // Bars along Y, and squares that jitter alone makes uneven.
+    // Bars along Y, and squares that are irregular only through jitter.
     for (scene, is_other) in [
         ("grating", true),
         ("fig9b", false),
@@ -54,7 +54,7 @@ fn surfaces_are_hatched_evenly_and_glass_is_not() {
     };
     assert_eq!(strokes("table1/lens"), 0);
     assert_eq!(strokes("table1/refraction_in"), 0);
-    // A sphere is drawn in pieces shorter than the first stroke.
+    // A sphere is drawn in segments shorter than the first stroke.
     assert!(strokes("table1/environment") > 20);
 }
 

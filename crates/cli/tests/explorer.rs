@@ -1,4 +1,4 @@
-//! The explorer's numbers are the command's.
+//! The numbers of the explorer equal those of the command.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -56,7 +56,8 @@ fn numbers_are_those_of_the_saved_scene() {
             let closed = (plane.spectrum(&setup), plane.field(&setup, CELLS));
             let followed = plane.followed(&setup);
             let off = apart(followed.as_ref().unwrap_or(&closed), &command);
-            // The same sums; where frames differ by rounding, its digits.
+            // Both compute the same sums; where frames differ by rounding, the digits of the
+            // explorer do.
             assert!(off < 1e-12, "{text}, {}: {off:e}", plane.name());
             if plane == PathPlace::Arrived {
                 let mut moved = setup.clone();

@@ -28,7 +28,7 @@ fn a_figure_is_pictures_arrays_and_recipe() {
     assert_eq!(start("svg"), b"<svg");
     let index = json(&path.join("f1/7/figure.json"));
     assert_eq!(index["command"], "etendue figure 7 --quality draft");
-    // Both occluders together leave no light, as theory says.
+    // Both occluders together block all light, as predicted.
     let dark = &index["planes"][5];
     assert_eq!(
         [&dark["scene"], &dark["plane"]],
@@ -43,7 +43,7 @@ fn a_figure_is_pictures_arrays_and_recipe() {
     let (one, other, both) = (slice("fig7_one"), slice("fig7_other"), slice("fig7_two"));
     assert_eq!(one.dim().0, rho.len());
     assert!(both.iter().all(|s| s.norm() == 0.0));
-    // The occluders are mirror images: so are their slices, S(−ρ, −ν) = S*(ρ, ν), but for noise.
+    // The occluders are mirror images, and so are their slices, S(−ρ, −ν) = S*(ρ, ν), up to noise.
     let peak = one.iter().map(|s| s.norm()).fold(0.0, f64::max);
     let off = (&one - &other.mapv(|s| s.conj()))
         .iter()
@@ -117,7 +117,8 @@ fn photons_tell_the_criteria_from_their_print() {
                 (found.unwrap()[1] - measured).abs()
             };
             let [corrected, printed] = [0, 1].map(|i| nearest(&lines[i]));
-            // Nearest points of lines are off by 0.12, the criteria by 1 %. Below 2 the window sets what is seen.
+            // Nearest points of lines are off by 0.12, the criteria by 1 %. Below 2 the window
+            // determines the spectrum.
             let slack = 4.0 * error + 0.2;
             if measured > 2.0 {
                 assert!(corrected < slack, "{panel} at {x}: off by {corrected}");
@@ -138,7 +139,7 @@ fn an_unknown_figure_is_refused_and_names_those_there_are() {
     );
 }
 
-/// A folder with a scene, the same with narrower blockers, and a style.
+/// A folder with a scene, the same scene with narrower blockers, and a style.
 fn own() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();

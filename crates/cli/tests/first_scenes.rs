@@ -1,4 +1,4 @@
-//! The mistakes of first scenes, and what the command says of each.
+//! Typical mistakes in first scenes, and the messages for them.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -27,7 +27,7 @@ const SCENE: &str = r#"(
 )
 "#;
 
-/// `etendue check` of the scene in which the second text stands for the first.
+/// Runs `etendue check` on the scene with the first text replaced by the second.
 fn check(from: &str, to: &str, arguments: &[&str]) -> Output {
     assert!(SCENE.contains(from), "{from} is not in the scene");
     let folder = tempfile::tempdir().unwrap();
@@ -46,7 +46,7 @@ fn refused(output: &Output, message: &str) {
     assert_eq!(output.status.code(), Some(2), "{told}");
 }
 
-/// What is in the scene, what a beginner writes there, and the whole message after the name of the file.
+/// The text in the scene, the beginner's text, and the whole message after the file name.
 const MISTAKES: &[[&str; 3]] = &[
     // A number for a vector.
     [
@@ -150,7 +150,7 @@ const MISTAKES: &[[&str; 3]] = &[
         "pitch: 20cm",
         "line 6, column 22: blockers[0]: `cm` stands here; allowed: a number without a unit",
     ],
-    // A number as the command line has it.
+    // A number in the notation of the command line.
     [
         "pitch: 0.2",
         "pitch: 2^20",
@@ -226,7 +226,7 @@ const MISTAKES: &[[&str; 3]] = &[
 
 const CUT: &str = "line 15, column 7: the scene: the file ends here; allowed: what is missing, and a bracket that closes it";
 
-/// What is set on the command line, and the message.
+/// Settings on the command line, and their messages.
 const SET: &[[&str; 2]] = &[
     [
         "blockers.0.pich=0.1",
@@ -253,7 +253,7 @@ fn mistakes_are_told_with_their_place_and_what_is_wanted() {
     }
 }
 
-/// A file that ends where it should go on.
+/// A file that is cut short.
 #[test]
 fn a_file_cut_short_is_told_where_it_ends() {
     let [_, end] = SCENE
@@ -279,7 +279,7 @@ fn what_is_set_is_told_by_what_has_set_it() {
     refused(&output.output().unwrap(), message);
 }
 
-/// Likely mistakes: the scene is described as ever, and the command succeeds.
+/// Likely mistakes give warnings: the scene is described as usual, and the command succeeds.
 #[test]
 fn likely_mistakes_are_warned_of() {
     for (from, to, warning) in [
@@ -309,7 +309,7 @@ fn likely_mistakes_are_warned_of() {
     }
 }
 
-/// The scenes of this repository are no mistakes, and each says what it takes.
+/// The scenes of this repository give no warnings, and each reports its cost.
 #[test]
 fn sound_scenes_are_not_warned_of() {
     for name in [

@@ -1,4 +1,5 @@
-//! Signals end a run, whatever has become of its standard error; memory that cannot be had ends in words.
+//! Signals end a run, whatever the state of its standard error; lack of memory ends it with a
+//! message.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -7,7 +8,7 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// A run without end that has begun to trace.
+/// An endless run that has begun to trace.
 fn begun(out: &Path, stderr: Stdio) -> Child {
     let child = etendue()
         .arg("run")
@@ -49,18 +50,18 @@ fn code(child: &mut Child) -> Option<i32> {
 fn signals_end_a_run_though_nobody_reads_its_errors() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
-    // Under `nohup` SIGHUP is ignored, and stays so.
+    // `nohup` ignores SIGHUP, and the run keeps ignoring it.
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
     let ignored = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
     let hangup = (ignored.unwrap_or(0) & 1 == 0).then_some("HUP");
     for signal in ["INT", "TERM"].into_iter().chain(hangup) {
-        // The reader goes before anything is written.
+        // The reader closes the pipe before anything is written.
         let mut child = begun(&out, Stdio::piped());
         drop(child.stderr.take());
         send(signal, &child);
         assert_eq!(code(&mut child), Some(3), "{signal}");
-        // Nor does it leave what it had begun.
+        // The run leaves no unfinished files either.
         assert_eq!(std::fs::read_dir(&out).unwrap().count(), 0, "{signal}");
     }
 }
@@ -74,7 +75,7 @@ fn signals_end_a_run_that_cannot_write_its_errors() {
     let out = folder.path().join("out");
     for signals in [&["INT"][..], &["INT", "TERM"]] {
         let (_reader, mut writer) = std::io::pipe().unwrap();
-        // What a pipe holds on Linux.
+        // The capacity of a pipe on Linux.
         writer.write_all(&[b'x'; 65_536]).unwrap();
         let mut child = begun(&out, writer.into());
         for signal in signals {
@@ -104,7 +105,7 @@ fn memory_that_cannot_be_had_is_said() {
     }
 }
 
-/// A signal that comes at any moment of the first steps leaves no lock.
+/// A signal at any moment during start-up leaves no lock.
 #[test]
 fn a_signal_leaves_no_lock() {
     let folder = tempfile::tempdir().unwrap();

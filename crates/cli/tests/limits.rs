@@ -1,4 +1,4 @@
-//! Commands refuse what would not end or not fit, before they begin.
+//! Commands refuse work that would take too long or not fit in memory, before they begin.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -16,7 +16,7 @@ fn refused(arguments: &[&str]) -> Output {
     output
 }
 
-/// Nets of rays, which take the place of closed forms here, hold the spectra of all replicates.
+/// Nets of rays, used here instead of closed forms, hold the spectra of all replicates.
 const FINE: [&str; 6] = [
     "--set",
     "blockers.0.frequency=1e6",

@@ -1,4 +1,4 @@
-//! Results own only what they wrote: nobody else's file is replaced or removed, whatever happens.
+//! Results own only the files they wrote: files of others are never replaced or removed.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -33,13 +33,13 @@ fn folder() -> TempDir {
     folder
 }
 
-/// The command ends well.
+/// The command succeeds.
 fn passes(folder: &Path, arguments: &str) {
     let output = call(folder, arguments);
     assert_eq!(output.status.code(), Some(0), "{arguments}: {output:?}");
 }
 
-/// The command cannot run and says so in a line with these parts; all files stay as they are.
+/// The command fails with a one-line message that has these parts; all files stay unchanged.
 fn stays(folder: &Path, arguments: &str, parts: &[&str]) {
     let before = files(folder);
     let start = Instant::now();
@@ -50,7 +50,7 @@ fn stays(folder: &Path, arguments: &str, parts: &[&str]) {
         assert!(message.contains(part), "{arguments}: {part}: {message}");
     }
     assert!(files(folder) == before, "{arguments} changed something");
-    // Refused before, not after the work.
+    // The command is refused before the work, not after it.
     assert!(start.elapsed() < Duration::from_secs(20), "{arguments}");
 }
 
@@ -73,7 +73,7 @@ fn inputs_are_never_among_results() {
     let mesh = SCENE.replace("tri.obj", "out/measurement.inputs/tri.obj");
     fs::write(folder.path().join("t.ron"), mesh).unwrap();
     passes(folder.path(), "measure s.ron --out out");
-    // The copy of the first measurement is the mesh of the second.
+    // The second measurement uses the mesh copy of the first.
     let before = files(folder.path());
     for force in ["", " --force"] {
         let arguments = format!("measure t.ron --out out{force} {ENDLESS}");
@@ -106,7 +106,8 @@ fn files_of_somebody_else_stay() {
         );
         fs::remove_dir_all(at("out")).unwrap();
     }
-    // One of an earlier result that was changed since is somebody's too; one that only lies there never matters.
+    // A file of an earlier result that was changed since is protected too; an unrelated file in the
+    // folder is no obstacle.
     passes(folder.path(), "run s.ron --out out");
     fs::write(at("out/light/notes.txt"), "mine").unwrap();
     passes(folder.path(), "run s.ron --out out");
@@ -256,7 +257,8 @@ fn one_writer_at_a_time() {
             "{output}"
         );
     }
-    // Killed, it leaves what the next one removes; the earlier result stays whole until then.
+    // A killed run leaves files that the next run removes; the earlier result stays whole until
+    // then.
     first.kill().unwrap();
     first.wait().unwrap();
     let mut left = files(&at("out"));
@@ -280,7 +282,8 @@ fn call_without_quiet(folder: &Path, arguments: &str) -> String {
     String::from_utf8(output.stderr).unwrap()
 }
 
-/// A process that died while its files moved: the next one ends what it began, at whichever step it was.
+/// If a process died while its files moved, the next one completes the move, at whichever step it
+/// was.
 #[test]
 fn a_move_that_was_cut_short_is_ended() {
     let folder = folder();
@@ -318,7 +321,7 @@ fn a_move_that_was_cut_short_is_ended() {
     }
 }
 
-/// Arguments as a shell takes them to be no syntax of its own.
+/// Arguments quoted for a shell.
 fn quoted(arguments: &str) -> String {
     let words = arguments.split(' ').map(|word| format!("'{word}'"));
     words.collect::<Vec<_>>().join(" ")
@@ -332,7 +335,7 @@ fn a_failed_move_is_undone() {
     passes(folder.path(), "run s.ron --out out --seed 1");
     let before = files(&at("out"));
     passes(folder.path(), "run s.ron --out new --seed 2");
-    // A dead process had begun to move; somebody's file is in the way of the last one.
+    // A dead process had begun to move; a file of somebody else blocks the last move.
     let waiting = at("out/.etendue-unfinished");
     fs::create_dir_all(&waiting).unwrap();
     for (name, bytes) in files(&at("new")) {
@@ -356,7 +359,7 @@ fn a_failed_move_is_undone() {
     assert_eq!(left.remove("path.svg").unwrap(), b"mine");
     assert!(left.iter().all(|(name, bytes)| before[name] == *bytes));
     assert_eq!(left.len() + 1, before.len());
-    // Told to, it replaces the file and says so.
+    // With `--force`, the command replaces the file and prints its name.
     let output = etendue()
         .current_dir(folder.path())
         .args(["run", "s.ron", "--out", "out", "--seed", "3", "--force"])

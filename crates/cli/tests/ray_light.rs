@@ -1,4 +1,4 @@
-//! A ray file as light: photons against the sum over its rays, planted faults, and what is refused.
+//! A ray file as light: photons against the sum over its rays, planted faults, and refusals.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -86,7 +86,7 @@ fn resolved(folder: &Path, edits: &[(&str, &str)]) -> Result<Scene, SceneError> 
     )
 }
 
-/// What photons of a scene come to against the prediction of another.
+/// Verdicts of the photons of one scene against the prediction of another.
 fn verdicts(traced: &Scene, predicted: &Scene) -> Vec<Verdict> {
     let measurement = measure(
         &Tracer::new(traced),
@@ -132,14 +132,14 @@ fn photons_agree_with_the_sum_over_rays() {
     }
 }
 
-/// Each fault is seen at the planes it is before, and at no other.
+/// Each fault is detected at the planes behind it, and at no other.
 #[test]
 fn planted_faults_are_seen() {
     let folder = folder();
     let sound = resolved(folder.path(), &[]).unwrap();
     let [pass, fail] = [Verdict::Pass, Verdict::Fail];
     for (edits, expected) in [
-        // A bar of 3 mm that is 1 mm wider.
+        // A bar of 3 mm made 1 mm wider.
         (
             [(
                 "center: (0, 0), size: (0.003, 0.06)",
@@ -147,7 +147,7 @@ fn planted_faults_are_seen() {
             )],
             [pass, pass, fail, fail],
         ),
-        // The screen 0.5 mm further off.
+        // The screen moved away by 0.5 mm.
         (
             [("center: (0, 0, 0.05)", "center: (0, 0, 0.0505)")],
             [pass, pass, pass, fail],
@@ -171,7 +171,7 @@ fn planted_faults_are_seen() {
     }
 }
 
-/// Power is that of the file, in W, whatever it states it in; rays that go back are left out.
+/// Power is taken from the file, in W, whatever its unit; rays that go back are left out.
 #[test]
 fn power_is_in_watts() {
     let folder = folder();
@@ -235,7 +235,8 @@ fn what_makes_no_light_is_refused() {
     }
 }
 
-/// The command refuses planes that nothing could judge, warns of rays that go back, and leaves the same bytes on any number of threads.
+/// The command refuses planes at which no verdict is possible, warns of rays that go back, and
+/// writes the same bytes on any number of threads.
 #[test]
 fn the_command_knows_what_it_can_judge() {
     let folder = folder();

@@ -117,7 +117,8 @@ fn refused_rays(folder: &TempDir, arguments: &str, code: i32, part: &str) {
     );
 }
 
-/// What a light of radiance 1 sends out is π times its area; what arrives is that times the form factor, by another way: the flux of the NPY file.
+/// A light of radiance 1 emits π times its area; the received flux is that times the form factor,
+/// computed independently from the flux of the NPY file.
 #[test]
 fn saved_rays_have_the_flux_of_their_plane() {
     let folder = tempfile::tempdir().unwrap();
@@ -160,7 +161,8 @@ fn saved_rays_have_the_flux_of_their_plane() {
         };
         assert!(file.notes().is_empty(), "{:?}", file.notes());
     }
-    // Positions are those of the world: the floor is at z = 2.236…, of the light at 0.3.
+    // Positions are in world coordinates: the floor is at z = 2.236…, measured from the light at
+    // 0.3.
     let floor = read(&out.join("receiver/photons.mcpl"));
     assert!(
         floor
@@ -177,7 +179,7 @@ fn saved_rays_have_the_flux_of_their_plane() {
             "{from:?}"
         ); // half its diagonal
     }
-    // The same bytes once more, on other threads.
+    // A second run on other threads gives the same bytes.
     let first = fs::read(out.join("receiver/photons.mcpl")).unwrap();
     call(
         folder.path(),

@@ -7,7 +7,8 @@ use crate::common::{SCENE, call, json};
 use std::fs;
 use std::path::Path;
 
-/// Runs of the small scene in `a` and, with another pitch and a name that would end the data of a page, in `b`.
+/// Runs of the small scene in `a` and, with another pitch and a name that would close the page's
+/// data tag, in `b`.
 fn runs() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
@@ -27,7 +28,7 @@ fn runs() -> tempfile::TempDir {
     folder
 }
 
-/// What stands in a page between the tags of data, each parsed.
+/// The contents of the data tags of a page, each parsed.
 fn data(page: &Path) -> Vec<serde_json::Value> {
     let text = fs::read_to_string(page).unwrap();
     let blocks = text.split("class=\"run-data\">").skip(1);
@@ -55,7 +56,7 @@ fn a_page_holds_what_its_run_found() {
     }
     assert_eq!(run["scene_file"], summary["scene_file"]);
     assert!(run["path"].as_str().unwrap().starts_with("<svg"));
-    // It names nothing outside of itself but the namespace of SVG.
+    // The page refers to nothing external but the SVG namespace.
     let text = fs::read_to_string(&page)
         .unwrap()
         .replace("http://www.w3.org/2000/svg", "");
@@ -94,7 +95,7 @@ fn a_scene_that_the_explorer_knows_leads_there() {
     for name in ["known", "other"] {
         let run = format!("run {name}.ron --photons 4096 --out {name}");
         let code = call(path, &run).status.code();
-        // So few photons leave the known one undecided.
+        // So few photons may leave the expected verdict undecided.
         assert!([Some(0), Some(4)].contains(&code), "{name}");
         let is_known = name == "known";
         let summary = json(&path.join(name).join("summary.json"));
@@ -138,7 +139,7 @@ fn what_is_no_whole_result_is_refused() {
             .contains("damaged")
     );
     assert!(!path.join("out").exists());
-    // A page of another is not replaced, and none that is read.
+    // A page of another result is not replaced, and neither is a page that is an input.
     assert_eq!(
         call_report(path, "report a --out small.ron").status.code(),
         Some(3)
@@ -151,7 +152,7 @@ fn what_is_no_whole_result_is_refused() {
     );
 }
 
-/// Whoever changes a page and makes its index anew brings no markup into a page of several runs.
+/// A changed page with a matching index cannot inject markup into a page of several runs.
 #[test]
 fn pages_are_made_from_data() {
     let folder = runs();
@@ -181,13 +182,13 @@ fn pages_are_made_from_data() {
     };
     const MARKUP: &str = "</SCRIPT><img src=x onerror=alert(1)>";
     let data = "class=\"run-data\">";
-    // Beside the data, it is none.
+    // Markup beside the data makes the data invalid.
     for to in [format!("{data}{MARKUP}"), format!("{data}0{MARKUP}")] {
         let output = forge(data, &to);
         assert_eq!(output.status.code(), Some(2), "{output:?}");
         assert!(!path.join("both.html").exists());
     }
-    // In the data, it is text.
+    // Markup in the data is shown as text.
     let output = forge("\"words\":\"", &format!("\"words\":\"{MARKUP}"));
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     let both = fs::read_to_string(path.join("both.html")).unwrap();

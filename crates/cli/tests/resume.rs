@@ -1,4 +1,4 @@
-//! `etendue run --resume` and `--time`: a run goes on from the batches that one before it has left.
+//! `etendue run --resume` and `--time`: a run continues from the batches left by an earlier one.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 const RUN: &str = "run small.ron --photons 2^22 --threads 2";
 
-/// A folder with the scene, and in `whole` the result of a run that was left alone.
+/// A folder with the scene, and in `whole` the result of an uninterrupted run.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("small.ron"), SCENE).unwrap();
@@ -19,7 +19,7 @@ fn folder() -> tempfile::TempDir {
     folder
 }
 
-/// The result is that of the run that was left alone, and nothing is beside it.
+/// Checks that the result is that of the uninterrupted run, with no other files beside it.
 fn is_whole(folder: &Path, out: &str) {
     let [mut found, mut whole] = [out, "whole"].map(|name| files(&folder.join(name)));
     for files in [&mut found, &mut whole] {
@@ -37,7 +37,7 @@ fn batches(folder: &Path, out: &str) -> Vec<PathBuf> {
     left(folder, out, "batch")
 }
 
-/// The files of batches that end so.
+/// The batch files with this ending.
 fn left(folder: &Path, out: &str, end: &str) -> Vec<PathBuf> {
     let below = |folder: PathBuf| fs::read_dir(folder).into_iter().flatten().flatten();
     let keys = below(folder.join(out).join("batches"));
@@ -83,7 +83,7 @@ fn a_run_goes_on_where_its_time_was_up() {
     }
     assert!(ended > 0, "the time was never up");
     is_whole(path, "parts");
-    // What is done is told, and stays.
+    // A finished run prints its result again and keeps it.
     let again = call(path, &format!("{RUN} --out parts --resume"));
     assert_eq!(again.status.code(), Some(0));
     is_whole(path, "parts");
@@ -101,7 +101,7 @@ fn a_run_goes_on_where_it_was_killed_or_damaged() {
     }
     let mut left = batches(path, "parts");
     if left.is_empty() {
-        // A slow machine: then these are made in order.
+        // On a slow machine these batches are made in sequence.
         call(path, &format!("{RUN} --out parts --resume --time 300ms"));
         left = batches(path, "parts");
     }
@@ -124,7 +124,7 @@ fn processes_share_a_run() {
     let folder = folder();
     let path = folder.path();
     let mut all: Vec<Child> = (0..3).map(|_| started(path, "parts")).collect();
-    // One dies on the way.
+    // One process dies during the run.
     std::thread::sleep(Duration::from_millis(60));
     all[0].kill().unwrap();
     all[0].wait().unwrap();
@@ -150,7 +150,7 @@ fn batches_of_another_run_are_not_taken() {
     }
 }
 
-/// Another process has written the result, and removed the batches, while this one was at one.
+/// Another process has written the result and removed the batches while this one worked on one.
 #[test]
 fn what_another_process_ends_is_not_begun_anew() {
     let folder = folder();
@@ -164,7 +164,7 @@ fn what_another_process_ends_is_not_begun_anew() {
         fs::create_dir_all(to.parent().unwrap()).unwrap();
         fs::write(to, bytes).unwrap();
     }
-    // The process may put its batch there at this very moment.
+    // The process may write its batch at this very moment.
     while fs::remove_dir_all(path.join("parts/batches")).is_err() {}
     assert_eq!(child.wait().unwrap().code(), Some(0));
     is_whole(path, "parts");
@@ -183,7 +183,7 @@ fn ended(folder: &Path, arguments: &str) -> (Option<i32>, String) {
         .spawn()
         .unwrap();
     let begun = Instant::now();
-    // A part of a batch takes about a second of one thread; the rest is for a busy machine.
+    // A part of a batch takes about a second of one thread; the margin is for a busy machine.
     let mut by_itself = true;
     while by_itself && child.try_wait().unwrap().is_none() {
         std::thread::sleep(Duration::from_millis(20));
@@ -198,7 +198,7 @@ fn ended(folder: &Path, arguments: &str) -> (Option<i32>, String) {
     (output.status.code(), message)
 }
 
-/// How many parts are kept of batches on the way.
+/// The number of parts kept of unfinished batches.
 fn parts(folder: &Path) -> u32 {
     let names = left(folder, "long", "begun").into_iter();
     let parts = names.map(|path| {
@@ -235,7 +235,7 @@ fn time_is_up_within_a_batch() {
     assert_ne!(fs::read(&damaged).unwrap_or_default(), b"no batch");
 }
 
-/// What a process that dies within a batch had kept a few seconds before is there.
+/// The parts kept a few seconds before a process dies within a batch survive.
 #[test]
 fn a_killed_process_leaves_the_beginning_of_its_batch() {
     let folder = tempfile::tempdir().unwrap();
@@ -257,11 +257,11 @@ fn a_killed_process_leaves_the_beginning_of_its_batch() {
     }
     child.kill().unwrap();
     child.wait().unwrap();
-    // A newer beginning takes the place of an older one.
+    // A newer partial batch replaces an older one.
     assert_eq!(left(path, "long", "begun").len(), 1);
 }
 
-/// A process that died just before it would have removed the batches of a run that is done.
+/// A process died just before removing the batches of a finished run.
 #[test]
 fn batches_of_a_run_that_is_done_are_removed() {
     let folder = folder();

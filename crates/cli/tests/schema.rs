@@ -1,4 +1,4 @@
-//! `etendue schema`: the pages of the book are what it prints, and it prints what scenes are.
+//! `etendue schema`: the pages of the book equal its output, and scenes match the schema.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -28,7 +28,7 @@ fn committed_pages_are_what_the_program_prints() {
     }
 }
 
-/// The scene that a result holds is the scene once more.
+/// The scene stored in a result parses to the same scene.
 #[test]
 fn results_hold_a_scene_that_runs() {
     let folder = tempfile::tempdir().unwrap();

@@ -8,7 +8,7 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::process::Command;
 
-/// A folder with the scene, under a name that a shell must be told, and in `whole` the result of one run.
+/// A folder with the scene, under a name that needs quoting, and in `whole` the result of one run.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("my scene.ron"), SCENE).unwrap();
@@ -42,7 +42,7 @@ fn split(folder: &Path, more: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// Runs a line or a script of a shell, to which `etendue` is known.
+/// Runs a shell line or script, with `etendue` on its path.
 fn shell(folder: &Path, text: &str) {
     let programs = Path::new(env!("CARGO_BIN_EXE_etendue")).parent().unwrap();
     let path = std::env::var("PATH").unwrap();
@@ -82,7 +82,7 @@ fn parts_in_any_order_are_one_run() {
 fn the_script_for_slurm_is_one_run() {
     let folder = folder();
     let path = folder.path();
-    // Runs what it is given, as often as the array says, and waits for nothing.
+    // A fake `sbatch` that runs its script as often as the array states, and ignores dependencies.
     let sbatch = r#"#!/bin/sh
 set -eu
 last=0

@@ -1,4 +1,5 @@
-//! The stages over files: together they write what `run` writes, and what does not fit together is refused.
+//! The stages over files: together they write the same as `run`, and parts that do not fit together
+//! are refused.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -43,7 +44,7 @@ fn one_folder_may_hold_all_stages() {
 fn part_of_a_measurement_is_reported_as_what_it_is() {
     let stages = stages();
     let folder = stages.path();
-    // A prediction does not depend on how the scene is measured.
+    // A prediction does not depend on the settings of the measurement.
     let predict = "predict small.ron --set run.photons=1000 --set run.seed=3 --out other";
     call(folder, predict);
     let output = call(

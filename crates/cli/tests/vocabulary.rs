@@ -24,7 +24,8 @@ const LIGHT: &str =
     "Rectangle(center: (0.1, 0.2, 0.30000000000000004), size: (0.2, 0.17320508075688773))";
 const POINT: &str = "Point(center: (0.1, 0.2, 0.30000000000000004))";
 const LAYER: &str = "blockers: [";
-/// A mesh of a file, and one of too many triangles to follow rays past, so that another tracer judges.
+/// A mesh from a file, and one with too many triangles for the exact prediction, so that another
+/// tracer judges.
 const MESH: &str = r#"blockers: [Mesh(name: "tetra", center: (0.1, 0.2, 1), mesh: File("meshes/tetra.obj"), scale: 0.1),
     Mesh(name: "ball", center: (-0.1, 0.1, 1), mesh: Star(radius: 0.03, relief: 0, lobes: 0, rings: 20)), "#;
 const TETRA: &str =
@@ -44,7 +45,8 @@ fn backward_rays_agree_and_keep_no_ledger() {
     assert!(summary["planes"][1]["in_window"].as_u64().unwrap() > 1000);
 }
 
-/// A point is looked for where it is, but not behind a mirror that turns its light first.
+/// An aim point is searched for at its place, but not behind a mirror that reflects the light
+/// first.
 #[test]
 fn a_point_is_found_backwards_unless_a_mirror_turns_its_light() {
     let beyond = ("at: Emission", "at: Distance(0.5)");
@@ -77,7 +79,7 @@ fn a_mesh_goes_through_all_stages() {
         let output = call(path, arguments);
         assert_eq!(output.status.code(), Some(0), "{arguments}: {output:?}");
     }
-    // The stages have all they need.
+    // The files of the stages are self-contained.
     fs::remove_dir_all(path.join("meshes")).unwrap();
     let output = call(path, "compare --measured m --predicted p --out compared");
     assert_eq!(output.status.code(), Some(0), "{output:?}");
@@ -120,7 +122,7 @@ fn the_light_field_is_written_on_its_grid() {
     let cells: Vec<usize> = serde_json::from_value(index["cells"].clone()).unwrap();
     assert_eq!(field.shape(), cells.as_slice());
     let width: Vec<f64> = serde_json::from_value(index["width"].clone()).unwrap();
-    // The field's sum is ∫ L W, which the slices have at zero.
+    // The sum of the light field is ∫ L W, which is the value of the slices at zero.
     let sum: f64 = field.sum() * width.iter().product::<f64>();
     let slices: ndarray::Array3<etendue_field::Complex> =
         array(&plane.join("slices.npz"), "measured");

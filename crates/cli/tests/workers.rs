@@ -1,4 +1,4 @@
-//! Several processes on one job: here threads that send bytes to each other, as ranks of MPI do.
+//! Several processes on one job: here threads that exchange bytes, as MPI ranks do.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -15,12 +15,12 @@ use std::thread;
 
 type Message = (usize, Vec<u8>);
 
-/// A process of a workers that lives in threads.
+/// A worker process that is simulated by a thread.
 struct Member {
     number: usize,
     to: Vec<Sender<Message>>,
     inbox: Mutex<Receiver<Message>>,
-    /// How many messages this one has sent.
+    /// The number of messages this process has sent.
     sent: AtomicUsize,
 }
 
@@ -44,7 +44,8 @@ impl Workers for Member {
     }
 }
 
-/// Does what `lines` say, one for each process; returns the exit code of the first, and what each of the others has sent.
+/// Runs `lines`, one for each process; returns the exit code of the first, and the number of
+/// messages each other process has sent.
 fn in_crew_of(lines: &[String]) -> (u8, Vec<usize>) {
     let (to, inboxes): (Vec<_>, Vec<_>) = lines.iter().map(|_| channel()).unzip();
     let members = inboxes.into_iter().enumerate();
@@ -63,7 +64,8 @@ fn in_crew_of(lines: &[String]) -> (u8, Vec<usize>) {
             scope.spawn(move || command_of_workers(words, member))
         };
         let others: Vec<_> = (1..lines.len()).map(begin).collect();
-        // The one that leads begins when the others have said that they are there: work this small is done before they are heard otherwise.
+        // The leader begins when the others have reported: otherwise work this small is done before
+        // they do.
         for (member, process) in members[1..].iter().zip(&others) {
             while member.sent.load(Ordering::Relaxed) == 0 && !process.is_finished() {
                 thread::yield_now();
@@ -79,7 +81,8 @@ fn in_crew_of(lines: &[String]) -> (u8, Vec<usize>) {
     )
 }
 
-/// `lines` in a workers leave the files that `line` alone leaves, whatever `{}` stands for; times apart.
+/// Checks that `lines` on several processes leave the same files as `line` alone, whatever `{}`
+/// stands for, except for times.
 fn same_files(path: &Path, line: &str, processes: usize) -> Vec<usize> {
     let scene = path.join("small.ron").display().to_string();
     let with = |out: &str| {
@@ -118,10 +121,11 @@ fn runs_predictions_and_sweeps_have_the_bytes_of_one_process() {
         "predict SCENE --threads 1 --photons 2^16 --out OUT",
         "sweep SCENE --threads 1 --photons 4096 --set blockers.0.pitch=0.05..0.2:4 --out OUT",
     ] {
-        // Whoever is first takes the next piece, so a busy machine may leave nothing to the others: then again.
+        // Whichever process is first takes the next piece, so on a busy machine the others may get
+        // nothing: then it is repeated.
         let helped = (0..20).any(|_| {
             let sent = same_files(folder().path(), line, 3);
-            // One word to say that it is there, and one for each order that it has followed.
+            // One message reports the process as present, and one follows each order.
             sent.iter().sum::<usize>() > 2
         });
         assert!(helped, "{line}: nobody helped");
@@ -133,7 +137,7 @@ fn processes_with_other_scenes_are_refused() {
     let folder = folder();
     let path = folder.path().join("small.ron").display().to_string();
     let out = folder.path().join("out").display().to_string();
-    // So many photons that the second process is heard before the first is done alone.
+    // Enough photons for the second process to report before the first has finished alone.
     let line = |seed| {
         format!("etendue run {path} --quiet --threads 1 --photons 2^21 --seed {seed} --out {out}")
     };

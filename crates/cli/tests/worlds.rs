@@ -22,7 +22,7 @@ const ROOM: &str = r#"<scene version="3.0.0">
 </scene>
 "#;
 
-/// The room with something in it replaced.
+/// A folder with the room scene, in which one text is replaced.
 fn folder(from: &str, to: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     assert!(ROOM.contains(from));
@@ -43,14 +43,14 @@ fn call(path: &Path, line: &str) -> Output {
         .unwrap()
 }
 
-/// What a command says that succeeds.
+/// The output of a command that succeeds.
 fn done(path: &Path, line: &str) -> String {
     let output = call(path, line);
     assert_eq!(output.status.code(), Some(0), "{line}: {output:?}");
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// What a command says that refuses its input.
+/// The message of a command that refuses its input.
 fn refused(path: &Path, line: &str) -> String {
     let output = call(path, line);
     assert_eq!(output.status.code(), Some(2), "{line}: {output:?}");
@@ -155,13 +155,13 @@ fn a_probe_names_surfaces_and_judges_planes() {
     let path = folder.path();
     let line = "probe room.xml --pixel 12,8 --window 4 --rays 2^14 --photons 2^20 --out p";
     let output = call(path, line);
-    // Chance fails one probe in a hundred; these bytes never change.
+    // One probe in a hundred fails by chance; these bytes never change.
     assert!(matches!(output.status.code(), Some(0 | 4)), "{output:?}");
     let found = json(&path.join("p/probe.json"));
     let surface = &found["surfaces"][0];
     assert_eq!(surface["shape"], "ball");
     let curvature = surface["curvature"][0].as_f64().unwrap();
-    // By finite differences over a few pixels.
+    // Estimated by finite differences over a few pixels.
     assert!((curvature - 2.0).abs() < 0.05, "{curvature}");
     let names = found["planes"].as_array().unwrap().iter();
     let names: Vec<&str> = names

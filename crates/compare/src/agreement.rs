@@ -1,4 +1,4 @@
-//! How far measured and predicted are apart, and what that means.
+//! How far measurement and prediction are apart, and what the difference means.
 
 use crate::prediction::Prediction;
 use crate::residuals::Residuals;
@@ -6,11 +6,11 @@ use crate::verdict::Test;
 use etendue_field::Slices;
 use ndarray::Array3;
 
-/// The largest error of a quadrature that cannot be seen, as a share of the noise: it adds a
-/// thousandth to χ², and goes without a warning.
+/// The largest quadrature error that is ignored, as a share of the noise: it adds a thousandth to
+/// χ² and causes no warning.
 pub(crate) const UNSEEN: f64 = 1.0 / 30.0;
 
-/// How far measured and predicted are apart, over the independent frequencies.
+/// The difference of measurement and prediction, summed over the independent frequencies.
 pub(crate) struct Agreement {
     /// Σ|S − F|².
     difference: f64,
@@ -46,7 +46,7 @@ impl Agreement {
         }
     }
 
-    /// The signed root of a square, as a share of the prediction.
+    /// The signed root of a squared quantity, relative to the norm of the prediction.
     fn relative(&self, squared: f64) -> Option<f64> {
         (self.predicted > 0.0).then(|| (squared.abs() / self.predicted).sqrt().copysign(squared))
     }
@@ -63,12 +63,13 @@ impl Agreement {
         self.relative(self.difference - self.noise)
     }
 
-    /// Noise as a share of the spectrum, of the larger of the two.
+    /// The noise relative to the larger of the measured and predicted spectra.
     pub(crate) fn resolution(&self) -> f64 {
         (self.noise / self.predicted.max(self.measured)).sqrt()
     }
 
-    /// Whether the error of a prediction without replicates may be all that photons disagree with.
+    /// Whether the error of a prediction without replicates may explain the whole disagreement with
+    /// the photons.
     pub(crate) fn is_explained(&self, prediction: &Prediction) -> bool {
         let error = prediction.systematic_error();
         let (Some(error), Some(noise), Some(excess)) = (error, self.noise_limit(), self.excess())
@@ -78,8 +79,9 @@ impl Agreement {
         error > excess.max(UNSEEN * noise)
     }
 
-    /// Photons that bring the noise to the resolution; `None` where the error of the prediction
-    /// alone is above that, or noise is not what keeps the test from a verdict.
+    /// The number of photons that brings the noise down to the resolution. `None` where the error
+    /// of the prediction alone exceeds the resolution, or where noise is not what prevents a
+    /// verdict.
     pub(crate) fn photons_needed(
         &self,
         emitted: u64,

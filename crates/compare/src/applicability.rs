@@ -1,4 +1,4 @@
-//! Which theory applies to a plane, decided once.
+//! Decides, once for each plane, which theory applies.
 
 use crate::chain::chain;
 use crate::class::Class;
@@ -11,25 +11,27 @@ use etendue_field::{Orientation, Side, VirtualPlane, Window};
 use etendue_scene::{BlockerLayer, Scene};
 use etendue_theory::{rays, reflections, scattering};
 
-/// What theory says of a plane: which one applies, or why none does.
+/// The theory that applies to a plane, or the reasons why none does.
 #[derive(Clone, Debug)]
 pub struct Applicability {
-    /// The theory, with what it needs to know of the scene.
+    /// The theory, with the facts of the scene that it needs.
     pub theory: Theory,
-    /// What light meets on its way that no theory describes, in words; empty where one applies.
+    /// Descriptions of what light meets on its way that no theory covers; empty where a theory
+    /// applies.
     pub reasons: Vec<String>,
-    /// What keeps a theory of fewer surfaces from the plane, in words, where that of several surfaces
-    /// takes its place; else empty.
+    /// Descriptions of what rules out a theory of fewer surfaces where the theory of several
+    /// surfaces is used instead; otherwise empty.
     pub declined: Vec<String>,
-    /// Why no light reaches the plane, in words; `None` where some may.
+    /// Why no light reaches the plane, in words; `None` where some light may.
     pub dark: Option<String>,
-    /// How far smooth meshes lead rays beside where their osculating patches do; `None` without one.
+    /// How far smooth meshes send rays from where their osculating patches send them; `None`
+    /// without such a mesh.
     pub off_patches: Option<OffPatches>,
 }
 
 impl Theory {
-    /// What of a scene is not as the theory takes it to be, in words. Blockers that light meets where
-    /// the central ray does not become obstacles of the theory.
+    /// Describes in words what in a scene violates the assumptions of the theory. Blockers that
+    /// light meets where the central ray does not become obstacles of the theory.
     fn obstacles(
         &mut self,
         scene: &Scene,
@@ -49,24 +51,25 @@ impl Theory {
         found
     }
 
-    /// Makes an obstacle of blockers that light meets from a leg on.
+    /// Makes an obstacle of blockers that light meets from the leg `from` on.
     fn take(&mut self, layer: &BlockerLayer, from: usize) {
         let (layers, obstacles) = match self {
             Self::Specular(view) => (&mut view.system.layers, &mut view.system.obstacles),
             Self::Scattering(view) => (&mut view.system.layers, &mut view.system.obstacles),
             Self::Parallel(_) | Self::Reflections(_) | Self::None => return,
         };
-        // Not twice on the first leg.
+        // A layer is not added twice on the first leg.
         layers.retain(|known| from > 0 || !is_same(known, layer));
         obstacles.push(in_the_way(layer, from));
     }
 }
 
-/// Share of its distance by which a plane stands off what is right at it: more than rounding, and far below what phases show.
+/// The distance, as a share of the plane's own, by which a plane stands off an object at the same
+/// place: more than rounding, and too small to change phases visibly.
 const AT_PLANE: f64 = 1e-12;
 
 impl Applicability {
-    /// Decides for all planes of a scene.
+    /// Decides which theory applies to each plane of a scene.
     #[must_use]
     pub fn of_planes(scene: &Scene) -> Vec<Self> {
         let planes = scene.planes.iter();
@@ -80,12 +83,12 @@ impl Applicability {
         if plane.leg > 0 || found.reasons.is_empty() || !too_fine(scene).is_empty() {
             return found;
         }
-        // Rays of the first leg are followed past what does not lie across it.
+        // On the first leg, rays are followed past objects that do not lie across it.
         let Some(mut view) = system(scene, plane) else {
             return found;
         };
         if plane.orientation == Orientation::Orthogonal {
-            // A plane right after something is at the same distance.
+            // A plane directly after an object is at the same distance as the object.
             let off = match plane.side {
                 Side::Before => -AT_PLANE,
                 Side::After => AT_PLANE,
@@ -119,7 +122,7 @@ impl Applicability {
                 off_patches: None,
             };
         }
-        // Light that goes other ways than theory's might pass beside what stands in these.
+        // Light on paths that theory does not assume might pass beside these objects.
         let dark = unlit::reason(scene, plane, &theory);
         Self {
             theory,
@@ -143,7 +146,7 @@ impl Applicability {
     }
 
     /// The chain of affine maps that leads to a plane behind specular surfaces, by the paper's
-    /// printed formulas where the scene asks for them.
+    /// printed formulas where the scene asks for those.
     #[must_use]
     pub fn affine_chain(&self, scene: &Scene) -> Option<rays::AffineChain> {
         match &self.theory {
@@ -152,8 +155,8 @@ impl Applicability {
         }
     }
 
-    /// The steps that make the spectrum of the plane, a line for each: the chain, what no theory
-    /// describes, and the window last.
+    /// The steps that make the spectrum of the plane, one line each: the chain, anything that no
+    /// theory describes, and the window last.
     #[must_use]
     pub fn steps(&self, scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
         let Window { x, y, u, v } = &plane.window;
@@ -172,7 +175,8 @@ impl Applicability {
             Theory::Parallel(_) => None,
         };
         if let Some(maps) = maps {
-            // What shines is described alike; how it travels, by the maps, or by none.
+            // The light source is described the same way in either case; its transport is described
+            // by the maps, or not at all.
             steps.truncate(1);
             steps.extend(maps);
         }

@@ -1,4 +1,4 @@
-//! How fast a glossy reflection changes with angle, by the paper's criteria, by quadrature and as
+//! How fast a glossy reflection changes with angle: by the paper's criteria, by quadrature and as
 //! measured.
 
 use crate::applicability::Applicability;
@@ -15,8 +15,8 @@ use etendue_theory::{Model, scattering};
 /// The criterion of a plane across the ray that leaves a surface with a BRDF. The cutoff of the
 /// lobe holds [`BANDWIDTH_FRACTION`] of its energy. `None` for any other plane.
 ///
-/// The edge that blocks the light is that of the last blockers. Without blockers it is the light's
-/// own, unless the light is far away.
+/// The edge that limits the light is that of the last blockers. Without blockers it is the edge of
+/// the light itself, unless the light is far away.
 #[must_use]
 pub fn criterion(
     scene: &Scene,
@@ -48,14 +48,14 @@ pub fn criterion(
     })
 }
 
-/// Of a sum, the largest of its lobes; 0 if all are about the normal.
+/// The largest cutoff of the lobes of a sum; 0 if all lobes are about the normal.
 fn sharpest_cutoff(reflectance: &Reflectance) -> f64 {
     let lobes = reflectance.terms.iter().map(|term| term.brdf.lobe);
     lobes.filter_map(lobe_cutoff).fold(0.0, f64::max)
 }
 
-/// Ω_ρ, the frequency below which a lobe has [`BANDWIDTH_FRACTION`] of its energy, cycles per radian. `None` of a lobe about
-/// the normal.
+/// Ω_ρ, the frequency below which a lobe has [`BANDWIDTH_FRACTION`] of its energy, cycles per
+/// radian. `None` for a lobe about the normal.
 #[must_use]
 pub fn lobe_cutoff(lobe: Lobe) -> Option<f64> {
     let lobe = match lobe {
@@ -67,7 +67,7 @@ pub fn lobe_cutoff(lobe: Lobe) -> Option<f64> {
     Some(lobe.cutoff(BANDWIDTH_FRACTION))
 }
 
-/// The bandwidth along ν of the exact prediction of such a plane, by the estimator that is used for
+/// The bandwidth along ν of the exact prediction of such a plane, by the same estimator as for
 /// photons.
 #[must_use]
 pub fn exact_bandwidth(
@@ -86,7 +86,8 @@ pub fn exact_bandwidth(
     Some(power.bandwidth(bandwidth_nu)?.value.value)
 }
 
-/// The bandwidth along ν as measured at plane `index`, with its error. `None` where no light came.
+/// The bandwidth along ν as measured at plane `index`, with its error. `None` where no light
+/// arrived.
 ///
 /// # Errors
 /// When the measurement has too few batches.

@@ -1,12 +1,12 @@
-//! The chain read off the scene: the steps that light meets between parallel planes.
+//! Reads the chain off the scene: the steps that light takes between parallel planes.
 
 use etendue_field::{Mask, Quantity, Shape, Side, VirtualPlane};
 use etendue_scene::{Object, Scene};
 use etendue_theory::{Chain, Operator, Source};
 
 /// The chain that leads from the light to a virtual plane: travels, visibilities and diffuse
-/// reflections as the central ray meets them. Anything else is left out, and
-/// [`Applicability`](crate::Applicability) says so.
+/// reflections in the order in which the central ray meets them. Anything else is left out and
+/// reported by [`Applicability`](crate::Applicability).
 #[must_use]
 pub fn chain(scene: &Scene, plane: &VirtualPlane) -> Chain {
     let mut walk = ChainWalk {
@@ -51,8 +51,8 @@ pub fn chain(scene: &Scene, plane: &VirtualPlane) -> Chain {
     }
 }
 
-/// Names, distances and masks of what stands across the path. Surfaces beside the central ray are
-/// among them, because they stop light too.
+/// Names, distances and masks of the objects across the path, including surfaces beside the central
+/// ray, which stop light too.
 fn obstacles(scene: &Scene) -> Vec<(&str, f64, Mask)> {
     let blockers = scene.blockers.iter();
     let blockers = blockers.map(|layer| (layer.name.as_str(), layer.distance, layer.mask.clone()));
@@ -69,7 +69,7 @@ fn obstacles(scene: &Scene) -> Vec<(&str, f64, Mask)> {
     obstacles
 }
 
-/// Whether light meets what stands at `distance` on its way to the plane.
+/// Whether light meets an object at `distance` on its way to the plane.
 #[must_use]
 pub fn stands_before(distance: f64, scene: &Scene, plane: &VirtualPlane) -> bool {
     if plane.leg > 0 {
@@ -81,7 +81,7 @@ pub fn stands_before(distance: f64, scene: &Scene, plane: &VirtualPlane) -> bool
     }
 }
 
-/// The chain of the central ray as far as it has come.
+/// The chain of the central ray up to its current point.
 struct ChainWalk {
     at: String,
     distance: f64,

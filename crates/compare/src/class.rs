@@ -3,16 +3,16 @@
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// What kind of prediction a plane has.
+/// The kind of prediction that a plane has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Class {
     /// The prediction equals the expectation of the measurement, in closed form or by quadrature.
     Exact,
-    /// There is an exact prediction by rays, and beside it the paper's first-order chain with its
-    /// computed error.
+    /// There is an exact prediction by rays, with the paper's first-order chain and its computed
+    /// error beside it.
     FirstOrder,
-    /// No theory applies, and the other tracer's measurement takes its place.
+    /// No theory applies. The other tracer's measurement serves as the prediction.
     Reference,
 }
 

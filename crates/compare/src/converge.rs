@@ -8,7 +8,7 @@ use etendue_scene::Scene;
 use etendue_theory::{Model, Observed, Over, Predicted, RayBudget, rays, reflections};
 use serde::Serialize;
 
-/// The error of a plane's first-order chain in smaller and smaller neighbourhoods of the central
+/// The error of a plane's first-order chain in successively smaller neighbourhoods of the central
 /// ray.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Convergence {
@@ -17,24 +17,24 @@ pub struct Convergence {
     /// Shares e of the scene's widths, descending, and ‖first order − exact‖/‖exact‖ for each.
     pub steps: Vec<[f64; 2]>,
     /// The order n in error ∝ eⁿ, by least squares over the last three steps. `None` where the
-    /// error is not clearly above that of the quadrature; where several surfaces scatter, that is not
-    /// looked at.
+    /// error is not clearly above that of the quadrature; this is not checked where several
+    /// surfaces scatter.
     pub order: Option<f64>,
 }
 
-/// Rays of each step, where no rule converges.
+/// The rays of each step where no quadrature rule converges.
 const BUDGET: RayBudget = RayBudget {
     nodes: 4e6,
     error: 1e-4,
 };
 /// The shares e.
 const SHARES: [f64; 5] = [1.0, 0.5, 0.25, 0.125, 0.0625];
-/// Errors below this many times that of the quadrature say nothing of the chain.
+/// Errors below this many times the quadrature error are too small to judge the chain by.
 const CLEAR: f64 = 5.0;
 
-/// Shrinks light and window of a plane behind specular surfaces, and lobes of surfaces that several of
-/// them scatter by, and widens its frequencies alike. `None` for any other plane. No photons are
-/// traced.
+/// Shrinks the light and the window of a plane behind specular surfaces, and the lobes where
+/// several surfaces scatter, and widens the frequencies by the same factor. `None` for any other
+/// plane. No photons are traced.
 #[must_use]
 pub fn converge(
     scene: &Scene,
@@ -73,8 +73,8 @@ pub fn converge(
     })
 }
 
-/// The error of a first-order chain behind specular surfaces that are e times as large, and that of
-/// the sums over rays that it is read from.
+/// The error of a first-order chain behind specular surfaces at the scale e, and the error of the
+/// sums over rays that it is computed from.
 fn by_rays(
     scene: &Scene,
     whole: &Observed<rays::SpecularSystem>,
@@ -93,8 +93,8 @@ fn by_rays(
     Some([error, own(&exact).max(own(&linear))])
 }
 
-/// The error where several surfaces scatter: the difference of the chain, a sum over the same paths
-/// with an error of its own of a few per cent.
+/// The error of the chain where several surfaces scatter. It is a difference of sums over the same
+/// paths, with an error of its own of a few per cent.
 fn by_paths(
     whole: &Observed<reflections::ReflectionSystem>,
     e: f64,

@@ -1,4 +1,5 @@
-//! Covariance tracing beside the spectra it stands for: predicted along the chain, exact, measured.
+//! Compares covariance tracing with the spectra it summarises: traced along the chain, exact and
+//! measured.
 
 use crate::applicability::Applicability;
 use crate::class::Class;
@@ -16,10 +17,11 @@ use etendue_theory::geometry::Matrix;
 use ndarray::{Array2, Axis};
 use serde::Serialize;
 
-/// The covariance of the power spectrum of a plane, ∫ P Ω Ωᵀ/∫ P over (ρx, ρy, νu, νv), by all ways there are.
+/// The covariance of the power spectrum of a plane, ∫ P Ω Ωᵀ/∫ P over (ρx, ρy, νu, νv), by every
+/// available method.
 ///
-/// Entries are in cycles² over the units of their coordinates. Second moments of a field with edges do not exist, so
-/// all but `traced` are over the same band of frequencies.
+/// Entries are in cycles² over the units of their coordinates. Second moments of a field with edges
+/// do not exist, so all but `traced` are taken over the same band of frequencies.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CovarianceReport {
     /// Name of the plane.
@@ -28,17 +30,19 @@ pub struct CovarianceReport {
     pub class: Class,
     /// The largest frequency along each axis, cycles per metre and per unit slope.
     pub band: [f64; 4],
-    /// What covariance tracing says, the window last. `None` where it says nothing or no end of the spectrum.
+    /// The result of covariance tracing, the window included as the last step. `None` where it
+    /// gives no result, or an infinite spectrum.
     pub traced: Option<Matrix<4>>,
-    /// Why it says nothing, in words.
+    /// Why covariance tracing gives no result, in words.
     pub untraced: Option<String>,
-    /// That of the Gaussian it stands for, over the band.
+    /// The covariance, over the band, of the Gaussian that was traced.
     pub traced_in_band: Option<Matrix<4>>,
-    /// That of the exact spectrum, where all four frequencies are known at once: between parallel planes.
+    /// The covariance of the exact spectrum, between parallel planes, where all four frequencies
+    /// are known at once.
     pub exact: Option<Matrix<4>>,
-    /// That of the photons, without the bias of noise.
+    /// The covariance measured by the photons, without the bias of noise.
     pub measured: Option<Matrix<4>>,
-    /// Its standard errors, by the jackknife over groups of batches.
+    /// Standard errors of `measured`, by the jackknife over groups of batches.
     pub error: Option<Matrix<4>>,
     /// How much each measured variance grows from half of the band to all of it.
     pub growth: Option<[f64; 4]>,
@@ -47,7 +51,7 @@ pub struct CovarianceReport {
     pub off: Option<[f64; 2]>,
     /// Moments ρρ, ρν and νν of the slice at azimuth 0, where positions and slopes along y have no frequency.
     pub slice: [SliceMoment; 3],
-    /// What there is to say, in words.
+    /// Remarks on the numbers, in words.
     pub remarks: Vec<String>,
 }
 
@@ -56,25 +60,25 @@ pub struct CovarianceReport {
 pub struct SliceMoment {
     /// By covariance tracing.
     pub traced: Option<f64>,
-    /// By the photons and by the exact prediction.
+    /// By the photons, and by the exact prediction.
     #[serde(flatten)]
     pub found: Pair,
 }
 
-/// The Gaussian that covariance tracing has at a plane.
+/// The Gaussian that covariance tracing assigns to a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TracedPlane {
-    /// C, `None` where it has no end.
+    /// C; `None` where it is infinite.
     pub matrix: Option<Matrix<4>>,
-    /// S, the covariance of the Gaussian light field, `None` where that has no end.
+    /// S, the covariance of the Gaussian light field; `None` where it is infinite.
     field: Option<Matrix<4>>,
 }
 
 impl TracedPlane {
-    /// The covariance traced to a plane, its window last.
+    /// The covariance traced to a plane, the window included as the last step.
     ///
     /// # Errors
-    /// Where covariance tracing has nothing to say, with the reason.
+    /// The reason, where covariance tracing gives no result.
     pub fn new(plane: &VirtualPlane, applicability: &Applicability) -> Result<Self, String> {
         let traced: Result<SpectralCovariance, Untraced> = match &applicability.theory {
             Theory::Parallel(chain) => chain.spectral_covariance(),
@@ -93,7 +97,7 @@ impl TracedPlane {
         })
     }
 
-    /// Its moments over a band.
+    /// The moments of the Gaussian over a band.
     fn in_band(&self, moments: &Moments) -> Option<Matrix<4>> {
         let field = self.field.as_ref()?;
         moments
@@ -101,7 +105,7 @@ impl TracedPlane {
             .covariance()
     }
 
-    /// Its power over the frequencies of a slice.
+    /// The power of the Gaussian at the frequencies of a slice.
     fn on_slice(&self, grid: &SliceGrid) -> Option<Array2<f64>> {
         let field = self.field.as_ref()?;
         let shape = (grid.rho.count(), grid.nu.count());
@@ -112,7 +116,8 @@ impl TracedPlane {
 }
 
 impl CovarianceReport {
-    /// Of plane `index` of a measurement, whose light field was measured on the grid `grid` too.
+    /// The covariances of plane `index` of a measurement, whose light field was also measured on
+    /// the grid `grid`.
     ///
     /// # Errors
     /// When the measurement has too few batches for errors.
@@ -158,7 +163,7 @@ impl CovarianceReport {
         Ok(report)
     }
 
-    /// What the numbers leave open.
+    /// Remarks on what the numbers do not decide.
     fn remarks_of(&self) -> Vec<String> {
         let mut remarks: Vec<String> = self.untraced.iter().cloned().collect();
         if self.untraced.is_none() && self.traced.is_none() {
@@ -199,14 +204,15 @@ impl CovarianceReport {
     }
 }
 
-/// Standard errors that growth is beyond those of noise: one in a thousand is so by chance.
+/// Growth beyond this many standard errors is not noise: noise exceeds it once in a thousand.
 const NOISE: f64 = 3.0;
 
 /// Names of the axes.
 pub const AXES: [&str; 4] = ["ρx", "ρy", "νu", "νv"];
 
-/// A variance that grows by more from half of the band to all of it is that of the band. That of a Gaussian grows by 10 %
-/// where the band ends at five of its standard deviations, and by 3 % at six.
+/// A variance that grows by more than this from half of the band to all of it is limited by the
+/// band. The variance of a Gaussian grows by 10 % where the band ends at five of its standard
+/// deviations, and by 3 % at six.
 const ENDLESS: f64 = 1.15;
 
 /// The largest of the entries over the geometric mean of the variances of a matrix.
@@ -216,7 +222,8 @@ fn largest(of: &Matrix<4>, entry: &dyn Fn(usize, usize) -> f64) -> f64 {
     shares.fold(0.0, f64::max)
 }
 
-/// Of the exact spectrum, where theory has it at any frequency in closed form.
+/// The covariance of the exact spectrum, where theory has the spectrum at any frequency in closed
+/// form.
 fn exact(
     applicability: &Applicability,
     plane: &VirtualPlane,

@@ -1,4 +1,4 @@
-//! The spectrum of a plane on a 4D grid as theory predicts it.
+//! The predicted spectrum of a plane on a 4D grid.
 
 use crate::applicability::Applicability;
 use crate::budget::budget;
@@ -11,7 +11,8 @@ use etendue_theory::{Chain, Harmonics, Model, RayNets};
 use ndarray::{Array2, Array4};
 use rayon::prelude::*;
 
-/// The spectrum of a windowed light field on a 4D grid, on which a measurement is put alike.
+/// The predicted spectrum of a windowed light field on a 4D grid, gridded in the same way as a
+/// measurement.
 #[derive(Clone, Debug)]
 pub enum PredictedField {
     /// The expectation of the measurement, aliasing included.
@@ -21,13 +22,13 @@ pub enum PredictedField {
         /// The power without aliasing, [|Ωxy|, |Ωuv|]; `None` where the rays of a file are put on the grid.
         alias_free: Option<Array2<f64>>,
     },
-    /// Independent estimates of it, by rays that are put on the grid as photons are.
+    /// Independent estimates of the expectation, by rays that are put on the grid as photons are.
     Sampled(Vec<FieldSpectrum>),
 }
 
 impl PredictedField {
-    /// What theory says of a plane: a closed form, or in `groups` of nets of rays. `None` where no theory applies, or
-    /// no ray arrives.
+    /// The prediction of theory for a plane: in closed form, or by nets of rays in `groups` groups.
+    /// `None` where no theory applies, or no ray arrives.
     #[must_use]
     pub fn new(
         scene: &Scene,
@@ -71,7 +72,7 @@ impl PredictedField {
         found
     }
 
-    /// What another measurement says, where no theory applies.
+    /// The spectrum of another measurement, where no theory applies.
     #[must_use]
     pub fn reference(groups: Vec<FieldGroup>) -> Self {
         let scaled = groups.into_iter().map(|FieldGroup { share, spectrum }| {
@@ -81,7 +82,7 @@ impl PredictedField {
         Self::Sampled(scaled.collect())
     }
 
-    /// Its spectra: one of an exact prediction, or one of each group.
+    /// The predicted spectra: one for an exact prediction, or one for each group.
     pub(crate) fn spectra(&self) -> &[FieldSpectrum] {
         match self {
             Self::Exact { spectrum, .. } => std::slice::from_ref(spectrum.as_ref()),
@@ -90,11 +91,12 @@ impl PredictedField {
     }
 }
 
-/// Most products of a closed form, some ten seconds of one core: nets of rays take the place of one with more, such as of a disc, which is
-/// many rectangles.
+/// The largest number of products of a closed form, some ten seconds on one core. Nets of rays
+/// replace a closed form with more, such as that of a disc, which consists of many rectangles.
 const MAX_PRODUCTS: usize = 4_000_000_000;
 
-/// The closed form between parallel planes; `None` behind a receiver, for the rays of a file, and where it takes too long.
+/// The closed form between parallel planes. `None` behind a receiver, for the rays of a file, and
+/// where it would take too long.
 fn closed_form(
     chain: &Chain,
     plane: &VirtualPlane,
@@ -115,7 +117,7 @@ fn closed_form(
     })
 }
 
-/// The spectrum itself, without what a grid adds.
+/// The spectrum itself, without the effects of the grid.
 fn alias_free(
     chain: &Chain,
     plane: &VirtualPlane,
@@ -128,7 +130,7 @@ fn alias_free(
     Some(spectrum(&harmonics, (grid, assignment)))
 }
 
-/// All frequencies of a grid, those along v from zero on.
+/// The spectrum at all frequencies of a grid, those along v from zero on.
 fn spectrum(harmonics: &Harmonics, (grid, assignment): (FieldGrid, Assignment)) -> FieldSpectrum {
     let [nx, ny, nu, nv] = grid.cells;
     let mut values = Array4::zeros((nx, ny, nu, nv / 2 + 1));
@@ -146,7 +148,7 @@ fn spectrum(harmonics: &Harmonics, (grid, assignment): (FieldGrid, Assignment)) 
     }
 }
 
-/// Rays on a grid: each group the mean of neighbouring nets.
+/// Puts rays on a grid; each group is the mean of neighbouring nets.
 fn on_grid(rays: &dyn RayNets, transform: &FieldTransform, groups: usize) -> PredictedField {
     let nets = rays.count();
     let groups = groups.min(nets);
@@ -221,7 +223,7 @@ mod tests {
         };
         let closed = closed_form(&chain, plane, over).unwrap();
         assert!(p(&closed) > 0.01); // one test, of fixed nets
-        // The fault: what is there, instead of what a grid has of it.
+        // The injected fault: the spectrum itself instead of its version on the grid.
         let fault = PredictedField::Exact {
             spectrum: Box::new(alias_free(&chain, plane, over).unwrap()),
             alias_free: None,

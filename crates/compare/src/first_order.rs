@@ -13,15 +13,15 @@ use etendue_theory::{Observed, Over, Predicted};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
-/// What the chain of affine maps predicts.
+/// The prediction of the chain of affine maps.
 #[derive(Clone, Debug)]
 pub struct FirstOrder {
-    /// Its slices, by the paper's printed formulas where a scene asks for them.
+    /// The slices of the chain, by the paper's printed formulas where a scene asks for them.
     pub slices: Slices,
     /// Independent replicates, of which `slices` is the mean. They are empty where the slices have
     /// no statistical error.
     pub replicates: Vec<Slices>,
-    /// Its numbers.
+    /// The numbers of the chain.
     pub chain: FirstOrderChain,
 }
 
@@ -30,12 +30,12 @@ pub struct FirstOrder {
 pub struct FirstOrderChain {
     /// ‖first order − exact‖/‖exact‖ as computed, by the corrected formulas.
     pub error: f64,
-    /// What stays of its error as the neighbourhood of the central ray shrinks: zero but for
-    /// rounding if every map is right (see [`rays::defect`]). Of the printed formulas where
-    /// `slices` are of those.
+    /// The error that remains as the neighbourhood of the central ray shrinks: zero but for
+    /// rounding if every map is right (see [`rays::defect`]). It is that of the printed formulas
+    /// where `slices` are.
     pub defect: f64,
-    /// What of it is in the factor of the chain: the radiance that it gives the central ray, over
-    /// the radiance that the ray has, less 1.
+    /// The part of the defect that is in the factor of the chain: the radiance that the chain gives
+    /// the central ray, over the radiance that the ray has, less 1.
     #[serde(default)]
     pub radiance_defect: f64,
     /// The matrix A that takes rays from the light to the plane, z' = A z, by the corrected
@@ -44,7 +44,8 @@ pub struct FirstOrderChain {
     /// The covariance of the windowed light field by rays, and as propagated by the chain (see
     /// [`Covariance`](crate::Covariance)).
     pub covariance: [Option<Matrix<4>>; 2],
-    /// Distances from the last surface, metres, at which rays meet that left the light in parallel.
+    /// Distances from the last surface, metres, at which rays that leave the light in parallel
+    /// meet.
     pub foci: Vec<f64>,
     /// Whether `slices` are those of the paper's printed formulas.
     pub as_printed: bool,
@@ -53,34 +54,35 @@ pub struct FirstOrderChain {
 /// The photons compared with the first-order chain, as in `summary.json`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FirstOrderReport {
-    /// Its numbers.
+    /// The numbers of the chain.
     #[serde(flatten)]
     pub chain: FirstOrderChain,
-    /// Signed root of ‖S − F₁‖² less noise, over ‖exact‖²: its disagreement beyond noise.
+    /// Signed root of ‖S − F₁‖² less noise, over ‖exact‖²: the disagreement of the chain beyond
+    /// noise.
     pub excess: Option<f64>,
     /// The upper 95 % bound of the excess.
     pub excess_bound: Option<f64>,
-    /// The smallest excess that can be seen in this much noise, at 95 %.
+    /// The smallest excess that can be detected above this noise, at 95 %.
     pub resolvable: Option<f64>,
     /// Probability of such a disagreement if the first-order chain were the truth.
     pub p_value: Option<f64>,
-    /// The verdict on the exact prediction by rays, beside which the chain stands.
+    /// The verdict on the exact prediction by rays that accompanies the chain.
     pub exact: Verdict,
     /// The verdict on the chain.
     pub verdict: Verdict,
 }
 
-/// A chain with a larger defect has a wrong map. Differences leave 10⁻⁹, and a first-order operator
-/// that is left out or wrong by a thousandth is seen.
+/// A chain with a larger defect has a wrong map. Finite differences leave 10⁻⁹; a first-order
+/// operator that is left out or wrong by a thousandth is detected.
 const DEFECT: f64 = 1e-5;
-/// Above this error a first-order chain says nothing of the light field.
+/// Above this error a first-order chain is useless as a prediction of the light field.
 const MAX_ERROR: f64 = 0.5;
 /// The one-sided 95 % quantile of the normal distribution.
 const NINETY_FIVE: f64 = 1.645;
 
 impl FirstOrderChain {
-    /// It fails if a map is wrong, and is undecided where its error is so large that it says
-    /// nothing.
+    /// The verdict on the chain: it fails if a map is wrong, and is undecided where its error is
+    /// too large for a useful prediction.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
         if self.defect > DEFECT {
@@ -132,9 +134,9 @@ impl FirstOrder {
         })
     }
 
-    /// The chain past surfaces that scatter light, with its defect and the matrix of its rays by way
-    /// of the mirror directions. Its noise is that of the exact prediction: the
-    /// difference of the two has little of its own.
+    /// The chain past surfaces that scatter light, with its defect and the matrix of its rays along
+    /// the mirror directions. Its noise is that of the exact prediction, because the difference of
+    /// the two has little noise of its own.
     pub(crate) fn of_reflection(exact: &Predicted, defect: f64, matrix: Matrix<4>) -> Option<Self> {
         let difference = exact.to_first_order.as_ref();
         let difference = difference.filter(|_| !exact.slices.is_dark())?;
@@ -158,8 +160,8 @@ impl FirstOrder {
         })
     }
 
-    /// Compares a measurement with it. `exact` is the exact ray-space prediction and the residuals
-    /// from that.
+    /// Compares a measurement with the chain. `exact` is the exact ray-space prediction with the
+    /// residuals from it.
     pub(crate) fn report(
         &self,
         measurement: &Measurement,
@@ -188,15 +190,16 @@ impl FirstOrder {
     }
 }
 
-/// The covariance after the chain and the window of a Gaussian as wide as the light. Inverses of
-/// covariances add up in a product of Gaussians, and a map takes them to A⁻ᵀ S⁻¹ A⁻¹. `None` for an
+/// The covariance after the chain and the window, for a Gaussian as wide as the light. Inverse
+/// covariances add in a product of Gaussians, and a map A takes S⁻¹ to A⁻ᵀ S⁻¹ A⁻¹. `None` for an
 /// environment, which has no width.
 fn propagated(system: &SpecularSystem, chain: &Matrix<4>, window: &Window) -> Option<Matrix<4>> {
     if matches!(system.light, Light::Environment { .. }) {
         return None;
     }
     let window = [window.x, window.y, window.u, window.v].map(|profile| variance(&profile));
-    // What has no width gets one that is narrow beside the window; what has no end adds no inverse.
+    // A zero width is replaced by one that is narrow beside the window; an infinite one adds no
+    // inverse.
     let narrow = window.map(|v| 1e8 / v);
     let picture = |w: f64| TAU / (w * w);
     let light = &system.light;
@@ -222,8 +225,8 @@ fn propagated(system: &SpecularSystem, chain: &Matrix<4>, window: &Window) -> Op
     Some(AffineMap::linear(inverse).inverse()?.matrix)
 }
 
-/// The variance of the Gaussian with the profile's curvature at its centre. For a box it is the
-/// box's.
+/// The variance of the Gaussian with the profile's curvature at its centre; for a box, the variance
+/// of the box.
 fn variance(profile: &Profile) -> f64 {
     match *profile {
         Profile::Hann(h) => 2.0 * (h / PI).powi(2),

@@ -1,4 +1,4 @@
-//! The full radial spectrum of a plane held against its prediction.
+//! Compares the full radial spectrum of a plane with its prediction.
 
 use crate::field::PredictedField;
 use crate::residuals::{ROUNDS, signs};
@@ -12,7 +12,7 @@ use serde::Serialize;
 /// The full radial spectrum in `summary.json`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FullRadialReport {
-    /// Bins with noise, over which the rest is.
+    /// Number of bins with noise, over which the other numbers are taken.
     pub bins: usize,
     /// The mean of (measured − predicted)²/σ²: 1 if the prediction is true.
     pub chi2_per_bin: Option<f64>,
@@ -20,18 +20,19 @@ pub struct FullRadialReport {
     pub p_value: Option<f64>,
     /// ‖measured − predicted‖/‖predicted‖ of the power.
     pub relative_error: Option<f64>,
-    /// What noise alone would make of it.
+    /// The relative error that noise alone would cause.
     pub noise_limit: Option<f64>,
-    /// The largest |aliasing|/σ of a bin, which the prediction has too; `None` where aliasing is not known by itself.
+    /// The largest |aliasing|/σ of a bin. The prediction contains the same aliasing. `None` where
+    /// aliasing is not known separately.
     pub aliasing: Option<f64>,
 }
 
-/// A full radial spectrum compared: the report, and the arrays behind it, [|Ωxy|, |Ωuv|].
+/// A comparison of a full radial spectrum: the report, and the arrays behind it, [|Ωxy|, |Ωuv|].
 #[derive(Clone, Debug)]
 pub struct FullRadialComparison {
     /// Every number.
     pub report: FullRadialReport,
-    /// The measured one, with its bins.
+    /// The measured full radial spectrum, with its bins.
     pub measured: FullRadial,
     /// The predicted power, aliasing included, without the noise of its rays.
     pub predicted: Array2<f64>,
@@ -39,24 +40,28 @@ pub struct FullRadialComparison {
     pub sigma: Array2<f64>,
 }
 
-/// The difference of measured and predicted power in a bin, as the noise of groups makes it.
+/// The difference of measured and predicted power in a bin, in terms of the groups whose noise
+/// makes it.
 ///
-/// Group r of a measurement holds the share a_r of it, G_r, and of the prediction it has P_r with the same expectation
-/// a_r F. Both powers are by pairs of groups, so their difference is U = Σ_(r≠s) (G_r·G_s − P_r·P_s)/(1 − Σa²). With
-/// D_r = G_r − P_r, and S_r = G_r − α D_r the mean of both that is not correlated with it, that is
+/// Group r of a measurement holds the share a_r of it, G_r, and the same share of the prediction,
+/// P_r, with the same expectation a_r F. Both powers are computed from pairs of groups, so their
+/// difference is U = Σ_(r≠s) (G_r·G_s − P_r·P_s)/(1 − Σa²). With D_r = G_r − P_r, and S_r = G_r − α
+/// D_r the mean of both that is not correlated with D_r, this is
 ///
 /// U (1 − Σa²) = Σ_r D_r·(2 Σ_(s≠r) S_s) + (2α − 1) Σ_(r≠s) D_r·D_s.
 ///
-/// If the prediction is true, each D_r is as likely as its negative, whatever the others and S are (docs/theory.md (45)).
+/// If the prediction is true, each D_r is as likely as its negative, whatever the other D and the S
+/// are (docs/theory.md (45)).
 struct BinDifference {
-    /// 2 Σ_(s≠r) D_r·S_s/(1 − Σa²) of each group.
+    /// 2 Σ_(s≠r) D_r·S_s/(1 − Σa²) for each group.
     linear: Vec<f64>,
     /// 2 (2α − 1) D_r·D_s/(1 − Σa²), row by row for s < r.
     pairs: Vec<f64>,
 }
 
 impl BinDifference {
-    /// From the products of the spectra of a bin: those of groups with the shares `a`, and those of the prediction.
+    /// From the products of the spectra in a bin: those of groups with the shares `a`, and those of
+    /// the prediction.
     fn new(products: ArrayView2<'_, f64>, a: &[f64]) -> Self {
         let n = a.len();
         let is_exact = products.nrows() == n + 1;
@@ -98,7 +103,7 @@ impl BinDifference {
         sum
     }
 
-    /// The variance of U over all signs, which no sign changes.
+    /// The variance of U over all signs; it does not depend on the signs.
     fn variance(&self) -> f64 {
         let terms = self.linear.iter().chain(&self.pairs);
         terms.map(|term| term * term).sum()
@@ -114,7 +119,7 @@ fn spread(product: &dyn Fn(usize, usize) -> f64, a: &[f64]) -> f64 {
     each.sum::<f64>().max(0.0)
 }
 
-/// The mean product of two groups, of those from number `first` on: the power without noise.
+/// The mean product of two groups, from number `first` on: the power without noise.
 fn crossed(products: ArrayView2<'_, f64>, first: usize) -> f64 {
     let all = products.indexed_iter();
     let pairs = all.filter(|((r, s), _)| first <= *r.min(s) && r != s);
@@ -123,10 +128,11 @@ fn crossed(products: ArrayView2<'_, f64>, first: usize) -> f64 {
 }
 
 impl FullRadialComparison {
-    /// Compares a measurement that has its groups with a prediction on the same grid. `seed` keys the signs of p.
+    /// Compares a measurement that has its groups with a prediction on the same grid. `seed` keys
+    /// the random signs of the p-value.
     ///
     /// # Panics
-    /// When the prediction comes in other groups.
+    /// When the prediction comes in groups that differ from those of the measurement.
     #[must_use]
     pub fn new(measured: &FieldMeasurement, predicted: &PredictedField, seed: u64) -> Self {
         let bins = RadialBins::new(&measured.grid);
@@ -176,14 +182,14 @@ pub(crate) fn compared(
     (report, power, sigma)
 }
 
-/// Every number of the differences of all bins.
+/// Computes every number from the differences of all bins.
 fn report(
     differences: &[BinDifference],
     (power, sigma): (&Array2<f64>, &Array2<f64>),
     alias_free: Option<&Array2<f64>>,
     seed: u64,
 ) -> FullRadialReport {
-    // Bins without noise, such as all of a dark field, have nothing to be tested.
+    // Bins without noise, such as all bins of a dark field, have nothing to test.
     let noisy: Vec<(&BinDifference, f64)> = differences
         .iter()
         .map(|bin| (bin, bin.variance()))
@@ -229,13 +235,13 @@ mod tests {
     use super::*;
     use ndarray::Array2;
 
-    /// Numbers that look random, about zero.
+    /// Pseudo-random numbers about zero.
     fn noise(count: usize, seed: f64) -> Vec<f64> {
         let each = (0..count).map(|i| libm::sin(1e4 * (seed + 1.7 * i as f64)));
         each.collect()
     }
 
-    /// Groups of a measurement and of a prediction of two frequencies, one bin.
+    /// The products of groups of a measurement and of a prediction, for two frequencies in one bin.
     fn products(exact: bool) -> (Array2<f64>, Vec<f64>, f64) {
         let shares = vec![0.25, 0.25, 0.3, 0.2];
         let truth = [1.5, -0.4];

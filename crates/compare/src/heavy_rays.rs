@@ -1,13 +1,13 @@
-//! Light that a few heavy rays carry.
+//! Detects light that is carried by few heavy rays.
 
 use etendue_field::Slices;
 
-/// Rays of equal weight in each of some batches whose light would vary as much as it does, where
-/// that is so few that one of the batches would hold none; `None` where they are enough.
+/// The number of rays of equal weight in each batch that would vary as much as this light does,
+/// where it is so small that some batch would be empty; `None` where there are enough.
 ///
-/// Of n equal rays the relative variance is 1/n, and of R batches R e⁻ⁿ are empty. With fewer than
-/// ln R the spread of batches is no error of their mean: what carries most of the light may not
-/// have come yet.
+/// With n equal rays the relative variance is 1/n, and of R batches R e⁻ⁿ are empty. With fewer
+/// than ln R rays the spread of batches does not estimate the error of their mean: the rays that
+/// carry most of the light may not have come yet.
 pub(crate) fn too_few<'a>(batches: impl Iterator<Item = &'a Slices>) -> Option<f64> {
     let light: Vec<f64> = batches.map(Slices::at_zero).collect();
     let count = light.len() as f64;

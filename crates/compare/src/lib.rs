@@ -1,12 +1,12 @@
-//! Measured against predicted, in units of statistical error.
+//! Compares measurement and prediction in units of statistical error.
 //!
 //! [`Applicability`] decides which theory applies to a plane of a scene, or why none does, and
-//! holds what that theory needs to know of the scene. A [`Prediction`] is all that the theory says
-//! about the plane. [`compare`] compares a measurement with it and returns a [`Verdict`].
-//! [`Residuals`] are the differences, with the tests made on them. [`TwoSamples`] holds two
-//! measurements against each other.
+//! holds what that theory needs to know of the scene. A [`Prediction`] holds everything that the
+//! theory predicts for the plane. [`compare`] compares a measurement with it and returns a
+//! [`Verdict`]. [`Residuals`] are the differences, with the tests made on them. [`TwoSamples`]
+//! compares two measurements.
 //!
-//! Nothing here traces photons, and nothing is tuned: the only freedom is the level α of the test,
+//! This crate traces no photons, and nothing is tuned: the only freedom is the level α of the test,
 //! which the scene sets.
 
 mod agreement;

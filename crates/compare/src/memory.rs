@@ -1,4 +1,4 @@
-//! What a run holds in memory, before it begins.
+//! Estimates the memory of a run before it begins.
 
 use crate::applicability::Applicability;
 use crate::budget::budget;
@@ -9,16 +9,16 @@ use etendue_scene::Scene;
 use etendue_spectrum::PROJECTION_BINS;
 use etendue_transform::SliceTransform;
 
-/// The parts of what a run holds, in bytes.
+/// The parts of a run's memory, in bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Memory {
-    /// The spectra of all batches, kept until the errors are known, and those that are references.
+    /// The spectra of all batches, kept until the errors are known, including those of references.
     pub batches: f64,
-    /// The fine grids that photons are spread over, those of each thread.
+    /// The fine grids of each thread that photons are spread over.
     pub threads: f64,
-    /// Predictions with their derivatives, and what finding one takes.
+    /// Predictions with their derivatives, and the working memory of computing one.
     pub predictions: f64,
-    /// The comparison of one plane after the other.
+    /// The comparison, one plane at a time.
     pub comparison: f64,
     /// Triangles and the hierarchies over them.
     pub meshes: f64,
@@ -26,17 +26,17 @@ pub struct Memory {
 
 /// Bytes of a complex number.
 const COMPLEX: f64 = 16.0;
-/// Bytes that the program holds for any scene: its code, buffers of photons, pictures, and memory
+/// Bytes that the program needs for any scene: its code, buffers of photons, pictures, and memory
 /// that one stage leaves to the next.
 const PROGRAM: f64 = 1.5e8;
 
-/// Bytes of a triangle, and of the hierarchy over it while that is built. Measured: 130.
+/// Bytes of a triangle and its part of the hierarchy during construction. Measured: 130.
 const TRIANGLE: f64 = 150.0;
 /// Bytes of the normals at the corners of a triangle.
 const NORMALS: f64 = 72.0;
 
 impl Memory {
-    /// The memory of a run of a scene on so many threads. `theories` are those of its planes.
+    /// The memory of a run of a scene on `threads` threads. `theories` are those of its planes.
     #[must_use]
     pub fn new(scene: &Scene, theories: &[Applicability], threads: usize) -> Self {
         let batches = f64::from(scene.run.batches);
@@ -57,7 +57,7 @@ impl Memory {
         };
         let picture = 8.0 * (PROJECTION_BINS * PROJECTION_BINS) as f64;
         let spectra = |plane: &VirtualPlane| COMPLEX * cells(&plane.grid);
-        // Of a reference its measurement and the copies that a prediction keeps.
+        // A reference keeps its measurement and the copies that its prediction holds.
         let kept = |of: &Applicability| if is_reference(of) { 3.0 } else { 1.0 };
         Self {
             batches: batches * sum(&|plane, of| kept(of) * (spectra(plane) + picture)),
@@ -71,8 +71,7 @@ impl Memory {
                 let work = work::of(scene, plane, of);
                 work.bytes + threads as f64 * work.bytes_each
             }),
-            // Residuals of all batches, means, variances, powers, and the sums that p-values are
-            // made of.
+            // Residuals of all batches, means, variances, powers, and the sums for p-values.
             comparison: largest(&|plane, _| (batches + 8.0) * spectra(plane))
                 + sum(&|plane, _| 4.0 * spectra(plane)),
             meshes: meshes(scene),
@@ -109,7 +108,7 @@ fn cells(grid: &SliceGrid) -> f64 {
     grid.half_shape().iter().map(|n| *n as f64).product()
 }
 
-/// Replicates that a prediction by nets holds, of itself and of the first-order chain.
+/// The replicates that a prediction by nets holds, of itself and of the first-order chain.
 fn replicates(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> f64 {
     let each = etendue_theory::REPLICATES as f64;
     let picture = ProjectionGrid::new(&plane.window, PROJECTION_BINS);

@@ -1,11 +1,11 @@
-//! How many independent numbers the noise of measured slices amounts to.
+//! The number of independent numbers in the noise of measured slices.
 
 use crate::residuals::Residuals;
 use etendue_spectrum::Measurement;
 use etendue_spectrum::estimate::{self, TooFewBatches};
 
-/// The number of independent normal real numbers whose mean square fluctuates as that of the noise
-/// of plane `plane` does, each frequency in units of its own σ.
+/// The number of independent normal real numbers whose mean square fluctuates as much as that of
+/// the noise of plane `plane`, with each frequency in units of its own σ.
 ///
 /// The window correlates neighbouring frequencies. With C the covariance of the noise over its σ,
 /// the mean of |S − E S|²/σ² over m frequencies has the variance 2 tr C²/m², like the mean square of
@@ -27,9 +27,9 @@ pub fn noise_dof(measurement: &Measurement, plane: usize) -> Result<Option<f64>,
     Ok(of_batches(&Residuals::new(measurement, plane, &mean)))
 }
 
-/// The same from each batch's difference to their mean.
+/// The same number, from the difference of each batch to the mean.
 fn of_batches(centred: &Residuals) -> Option<f64> {
-    // tr Ĉ and, the matrix of products having the same eigenvalues, tr Ĉ².
+    // tr Ĉ and tr Ĉ²; the matrix of products has the same eigenvalues as Ĉ.
     let products = centred.products(true);
     let trace = products.diag().sum();
     if trace <= 0.0 {
@@ -38,7 +38,7 @@ fn of_batches(centred: &Residuals) -> Option<f64> {
     let n = centred.count() as f64 - 1.0;
     let squares: f64 = products.iter().map(|h| h * h).sum();
     let square = n * n / ((n - 1.0) * (n + 2.0)) * (squares - trace * trace / n);
-    // Between one number and two, real and imaginary, for each frequency.
+    // Each frequency counts for one to two numbers, its real and imaginary parts.
     let most = 2.0 * trace;
     Some((trace * trace / square.max(trace * trace / most)).clamp(1.0, most.max(1.0)))
 }

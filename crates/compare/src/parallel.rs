@@ -1,11 +1,11 @@
-//! What keeps a plane from the theory of light between parallel planes.
+//! What rules out the theory of light between parallel planes for a plane.
 
 use etendue_field::{Frame, Light, Mask, Orientation, Profile, Quantity, Side, VirtualPlane};
 use etendue_scene::{BlockerLayer, Hit, Object, Scene, Surface};
 use glam::DVec3;
 
-/// What keeps the theory from a plane, in words: oblique incidence, other objects in the way, and
-/// light that it does not describe. Empty where the theory applies.
+/// Describes in words what rules out the theory for a plane: oblique incidence, other objects in
+/// the way, and light that it does not cover. Empty where the theory applies.
 pub(crate) fn obstacles_to_theory(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
     let mut found = Vec::new();
     for legs in scene.path.legs[..=plane.leg].windows(2) {
@@ -47,14 +47,14 @@ pub(crate) fn obstacles_to_theory(scene: &Scene, plane: &VirtualPlane) -> Vec<St
     found
 }
 
-/// Angles below this many degrees are rounding.
+/// Angles below this many degrees count as rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// The objects that light for the plane may meet: meshes, smooth surfaces, and flat ones that do
-/// not lie across the path. On the way back flat ones across the path count too.
+/// The objects that light for the plane may meet: meshes, smooth surfaces, and flat objects that do
+/// not lie across the path. On the way back, flat objects across the path count too.
 fn in_the_way(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
     let mut found = Vec::new();
-    // What light visits only later may stand in its way before.
+    // Objects that light visits later may block it earlier.
     let ends = (0..=plane.leg).filter_map(|leg| scene.path.ends_at(leg));
     let ends: Vec<Object> = ends.map(|hit| hit.object).collect();
     let visited = |object| ends.contains(&object);
@@ -91,9 +91,9 @@ fn in_the_way(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
     found
 }
 
-/// Corners of rectangles that hold all of a layer that light for a plane may meet.
+/// Corners of rectangles that hold every part of a layer that light for a plane may meet.
 fn parts(layer: &BlockerLayer, scene: &Scene, plane: &VirtualPlane) -> Vec<[DVec3; 4]> {
-    // A half-plane or grating reaches a thousand times as far as light does.
+    // A half-plane or grating is cut off at a thousand times the extent of the light.
     let lengths = tube(scene, plane).into_iter().flatten();
     let far = 1e3 * lengths.fold(layer.distance, f64::max).min(1e30);
     let corners = |[[x0, x1], [y0, y1]]: [[f64; 2]; 2]| {
@@ -120,7 +120,8 @@ fn parts(layer: &BlockerLayer, scene: &Scene, plane: &VirtualPlane) -> Vec<[DVec
     }
 }
 
-/// Half-widths of where light for a plane leaves the light, and of where it comes to the surfaces.
+/// Half-widths of the regions where light for a plane leaves the source and where it reaches each
+/// surface.
 fn tube(scene: &Scene, plane: &VirtualPlane) -> [[f64; 2]; 2] {
     let window = [&plane.window.x, &plane.window.y].map(Profile::half_width);
     let slope = [&plane.window.u, &plane.window.v].map(Profile::half_width);
@@ -142,7 +143,7 @@ pub(crate) fn passes(
     let legs = &scene.path.legs;
     let window = [&plane.window.x, &plane.window.y].map(Profile::half_width);
     let [light, seen] = tube(scene, plane);
-    // A plane right after something is at the same distance.
+    // A plane directly after an object is at the same distance as the object.
     let after = plane.side == Side::After;
     let along = scene.path.along(plane) * if after { 1.0 + 1e-12 } else { 1.0 };
     let crosses = |leg: usize| {
@@ -156,7 +157,7 @@ pub(crate) fn passes(
         let frame = &legs[leg].frame;
         overlaps(points, frame, from, to, end) && !is_beside(points, frame, from, to, end)
     };
-    // Reflected in a row there is no tube any more, and no theory either.
+    // After several reflections in a row there is no such tube, and no theory of this kind either.
     let first = usize::from(on_way_back);
     (first..=plane.leg.min(1)).any(crosses)
 }
@@ -179,7 +180,7 @@ fn overlaps(points: &[DVec3], frame: &Frame, from: [f64; 2], to: [f64; 2], end: 
     })
 }
 
-/// Whether four points of a plane lie in one that a tube, as for [`overlaps`], does not cross.
+/// Whether four points of a plane lie in a plane that a tube, as for [`overlaps`], does not cross.
 fn is_beside(points: &[DVec3], frame: &Frame, from: [f64; 2], to: [f64; 2], end: f64) -> bool {
     let [a, b, c, d] = points else { return false };
     let normal = (b - a).cross(c - a);
@@ -194,8 +195,8 @@ fn is_beside(points: &[DVec3], frame: &Frame, from: [f64; 2], to: [f64; 2], end:
     sides.iter().all(|side| *side > 0.0) || sides.iter().all(|side| *side < 0.0)
 }
 
-/// The surface whose edge lies within the view of a plane after a reflection. Theory takes it to be
-/// endless.
+/// The surface whose edge lies within the view of a plane after a reflection. Theory assumes that
+/// the surface is infinite.
 fn beyond_edge<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a str> {
     let surface = reflector(scene, plane)?;
     let (w, travelled) = (&plane.window, scene.path.along(plane));
@@ -209,7 +210,7 @@ fn beyond_edge<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a str> {
     (!covered).then_some(&surface.name)
 }
 
-/// The flat surface that light leaves for the leg of a plane.
+/// The flat surface from which light starts on the leg of a plane.
 fn reflector<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a Surface> {
     match scene.path.legs[plane.leg].leaves?.object {
         Object::Surface(i) => Some(&scene.surfaces[i]),

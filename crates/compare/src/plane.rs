@@ -1,4 +1,4 @@
-//! A plane of a measurement held against its prediction.
+//! Compares a plane of a measurement with its prediction.
 
 use crate::agreement::{Agreement, UNSEEN};
 use crate::class::Class;
@@ -21,19 +21,19 @@ use etendue_spectrum::moments::{high_frequency_share, second_moment, shear_slope
 use etendue_spectrum::{CrossPower, Measurement, RadialPower, Uncertain};
 use ndarray::{Array2, Array3, ArrayView2, Axis};
 
-/// A plane compared: the report, and the arrays behind it.
+/// The comparison of a plane: the report, and the arrays behind it.
 #[derive(Clone, Debug)]
 pub struct PlaneComparison {
     /// Every number, and the verdict.
     pub report: PlaneReport,
     /// The measured slices: the mean over batches.
     pub measured: Slices,
-    /// The predicted slices, without what rounding leaves of a dark field.
+    /// The predicted slices, without the rounding errors of a dark field.
     pub predicted: Slices,
     /// Standard deviation of |S − F|, [azimuth, ρ ≥ 0, ν].
     pub sigma: Array3<f64>,
-    /// Standard deviation of |S| alone, likewise, where the prediction has replicates and so noise of
-    /// its own; elsewhere it is `sigma`.
+    /// Standard deviation of |S| alone, with the same axes. It differs from `sigma` only where the
+    /// prediction has replicates and so noise of its own.
     pub measured_sigma: Option<Array3<f64>>,
     /// The measured radial spectrum.
     pub radial: RadialPower,
@@ -51,14 +51,14 @@ pub struct PlaneComparison {
     pub full_radial: Option<FullRadialComparison>,
 }
 
-/// A field with less than this share of the light without blockers is predicted to be dark. A
-/// closed form is a difference of transforms of that size, and accurate to 10⁻¹⁵ of it.
+/// A field with less than this share of the unblocked light is predicted to be dark. A closed form
+/// is a difference of transforms of that size, accurate to 10⁻¹⁵ of it.
 const DARK: f64 = 1e-12;
 
-/// Noise above which a handful of photons makes the residuals: they are not symmetric then, as p
-/// takes them to be.
+/// Above this noise the residuals come from few photons and are not symmetric, as the p-value
+/// assumes.
 const MAX_HANDFUL_NOISE: f64 = 0.25;
-/// Photons of a batch with which one in 3,000 batches is empty.
+/// Photons per batch with which one in 3,000 batches is empty.
 pub const MIN_PHOTONS_PER_BATCH: f64 = 8.0;
 
 /// Compares plane `index` of a measurement with its prediction.
@@ -120,14 +120,14 @@ pub fn compare(
     })
 }
 
-/// Both sides of a comparison, and what is between them.
+/// Both sides of a comparison, with their difference.
 struct ComparedSides<'a> {
     measurement: &'a Measurement,
     index: usize,
     prediction: &'a Prediction,
     predicted: &'a Slices,
     residuals: &'a Residuals,
-    /// The variance of the mean residual, noise of the prediction included.
+    /// The variance of the mean residual, including the noise of the prediction.
     variance: &'a Array3<f64>,
     power: &'a CrossPower<'a>,
     /// The power of a prediction that has replicates.
@@ -135,7 +135,7 @@ struct ComparedSides<'a> {
     predicted_radial: &'a Array2<f64>,
 }
 
-/// What a comparison comes to.
+/// The outcome of a comparison.
 struct Judgement {
     agreement: Agreement,
     p_value: Option<f64>,
@@ -152,7 +152,7 @@ impl ComparedSides<'_> {
         let agrees = if self.predicted.is_dark() {
             self.is_dark()
         } else {
-            // Residuals that are all zero have no p.
+            // Residuals that are all zero have no p-value.
             p_value.is_none_or(|p| p >= test.level)
                 || self.agrees_within(0.0, test)
                 || agreement.is_explained(self.prediction)
@@ -184,7 +184,7 @@ impl ComparedSides<'_> {
         }
     }
 
-    /// Why nothing is decided, in words; `None` where it is.
+    /// Why the comparison is undecided, in words; `None` where it is decided.
     fn open_question(
         &self,
         agreement: &Agreement,
@@ -199,7 +199,7 @@ impl ComparedSides<'_> {
         let noise = agreement.resolution();
         let error = self.prediction.systematic_error().unwrap_or(0.0);
         if self.predicted.is_dark() {
-            // Theory shows why no light comes. That no ray was found is no proof.
+            // Theory may prove that no light arrives; finding no ray is no proof.
             self.prediction.is_statistical().then(|| {
                 format!(
                     "no ray of the prediction found a way to the window, and {inside} of {emitted} \
@@ -248,15 +248,15 @@ impl ComparedSides<'_> {
         }
     }
 
-    /// Whether what a quadrature may be off by is all that photons disagree with, such as where
-    /// they have next to no noise.
+    /// Whether the possible error of a quadrature explains the whole disagreement, for example
+    /// where the photons have almost no noise.
     fn is_excused(&self, test: &Test) -> bool {
         let error = self.prediction.systematic_error();
         error.is_some_and(|error| self.agrees_within(error, test))
     }
 
-    /// Whether photons agree with a prediction that is off by no more than this share of each
-    /// frequency, and than the transform of photons is.
+    /// Whether photons agree with some prediction within this relative error at each frequency,
+    /// plus the error of the photons' transform.
     fn agrees_within(&self, error: f64, test: &Test) -> bool {
         let p = self
             .residuals
@@ -265,14 +265,15 @@ impl ComparedSides<'_> {
         p.is_none_or(|p| p >= test.level)
     }
 
-    /// Photons that would decide; `None` where that is not known, or more of them do not help.
+    /// The number of photons that would decide; `None` where that is not known, or where more
+    /// photons do not help.
     fn photons_needed(&self, agreement: &Agreement, agrees: bool, test: &Test) -> Option<f64> {
         let (inside, emitted) = (self.inside(), self.measurement.emitted());
         if self.predicted.is_dark() || inside == 0 {
             None
         } else if self.is_sparse() {
             let batches = self.measurement.batches().len() as f64;
-            // Of n replicates that hold m rays in the mean n e⁻ᵐ are empty.
+            // Of n replicates with m rays each on average, n e⁻ᵐ are empty.
             let all = self.prediction.replicates.len() as f64;
             let empty = self.prediction.replicates.iter().filter(|r| r.is_dark());
             let each = libm::log(all / empty.count() as f64);
@@ -289,8 +290,8 @@ impl ComparedSides<'_> {
         }
     }
 
-    /// Where measured and predicted disagree: rays of equal weight that would vary like those of a
-    /// batch, or of a replicate of the prediction, if they are too few.
+    /// Where measurement and prediction disagree: the number of rays of equal weight that would
+    /// vary like those of a batch, or of a replicate of the prediction, if it is too small.
     fn uneven(&self, agrees: bool) -> Option<f64> {
         let batches = self.measurement.at_plane(self.index);
         let measured = too_few(batches.map(|batch| &batch.slices));
@@ -299,8 +300,8 @@ impl ComparedSides<'_> {
         fewest.min_by(f64::total_cmp).filter(|_| !agrees)
     }
 
-    /// Whether photons brought no light, or so little that a prediction could not tell it from its
-    /// rounding.
+    /// Whether photons brought no light, or so little that it cannot be distinguished from the
+    /// rounding of the prediction.
     fn is_dark(&self) -> bool {
         largest(&self.residuals.mean()) <= self.prediction.unblocked * DARK
     }
@@ -309,8 +310,8 @@ impl ComparedSides<'_> {
         self.measurement.tally(self.index).inside
     }
 
-    /// Whether a batch of photons, or a replicate of the prediction, found no light: so few say
-    /// nothing, because their errors are not symmetric.
+    /// Whether a batch of photons, or a replicate of the prediction, found no light: with so few,
+    /// errors are not symmetric and allow no conclusion.
     fn is_sparse(&self) -> bool {
         let mut batches = self.measurement.at_plane(self.index);
         let mut replicates = self.prediction.replicates.iter();
@@ -327,7 +328,7 @@ impl ComparedSides<'_> {
             name: plane.name.clone(),
             class: prediction.class,
             chain: prediction.steps.clone(),
-            // That of a dark field is a ratio of roundings.
+            // The error of a dark field is a ratio of rounding errors.
             quadrature_error: prediction.error().filter(|_| noise.is_some()),
             frame: plane.frame,
             distance: plane.distance,
@@ -381,8 +382,8 @@ impl ComparedSides<'_> {
         self.prediction.systematic_error().unwrap_or(0.0) * size
     }
 
-    /// The shear slope s = Σ P ρν / Σ P ρ². A spectrum that is off by ‖dF‖ = ε ‖F‖ moves it by no more
-    /// than 2ε √(Σ P · Σ g² P), where g = ∂s/∂P = (ρν − s ρ²) / Σ P ρ² (Cauchy–Schwarz).
+    /// The shear slope s = Σ P ρν / Σ P ρ². An error ‖dF‖ = ε ‖F‖ of the spectrum moves it by no
+    /// more than 2ε √(Σ P · Σ g² P), where g = ∂s/∂P = (ρν − s ρ²) / Σ P ρ² (Cauchy–Schwarz).
     fn slope(&self, grid: &SliceGrid) -> Pair {
         let pair = self.pair(|p| shear_slope(p, grid));
         let epsilon = self.prediction.systematic_error();
@@ -453,7 +454,7 @@ impl ComparedSides<'_> {
         }
     }
 
-    /// A number read off both radial powers by the same estimator.
+    /// A number computed from both radial powers by the same estimator.
     fn pair(&self, of: impl Fn(ArrayView2<'_, f64>) -> Option<f64>) -> Pair {
         let measured = self.power.statistic(&of);
         let predicted = self.replicates.and_then(|power| power.statistic(&of));
@@ -466,7 +467,7 @@ impl ComparedSides<'_> {
     }
 }
 
-/// The second moments of the photons, and those predicted.
+/// The second moments of the photons, and their prediction.
 fn covariance(
     measurement: &Measurement,
     index: usize,
@@ -485,7 +486,8 @@ fn covariance(
     }))
 }
 
-/// Rounded up to one digit, with a tenth to spare: the noise of one run says what another needs.
+/// Rounds up to one digit, with a margin of a tenth, because the noise of one run only estimates
+/// what another needs.
 fn rounded(photons: f64) -> f64 {
     let wanted = 1.1 * photons;
     let unit = libm::pow(10f64, libm::log10(wanted.max(1.0)).floor());
@@ -502,7 +504,7 @@ fn without_rounding(prediction: &Prediction) -> Slices {
     }
 }
 
-/// Predicted power on the border of the grid above this share of the peak earns a warning.
+/// The share of the peak above which predicted power on the border of the grid causes a warning.
 const BORDER: f64 = 1e-2;
 
 /// Limits of the measurement, in words.
@@ -541,8 +543,9 @@ fn warnings(predicted: &Array2<f64>, grid: &SliceGrid, blur: Option<(f64, f64)>)
 }
 
 impl PlaneComparison {
-    /// Adds the full radial spectrum. A plane that would pass fails where p is below the level of the test, unless the
-    /// stated error of the prediction, which no replicates show, may be seen in the noise.
+    /// Adds the full radial spectrum. A plane that would pass fails where the p-value is below the
+    /// level of the test, unless the stated error of the prediction that no replicates show may be
+    /// visible above the noise.
     pub fn add_full_radial(
         &mut self,
         full_radial: FullRadialComparison,

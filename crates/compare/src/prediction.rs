@@ -1,4 +1,4 @@
-//! Everything a measurement of a plane is held against.
+//! Everything that a measurement of a plane is compared with.
 
 use crate::applicability::Applicability;
 use crate::budget::budget;
@@ -14,40 +14,40 @@ use etendue_spectrum::{Measurement, PROJECTION_BINS};
 use etendue_theory::{Model, Over, RayBudget, reflections, scattering};
 use ndarray::Array2;
 
-/// Everything a measurement of a plane is held against.
+/// Everything that a measurement of a plane is compared with.
 #[derive(Clone, Debug)]
 pub struct Prediction {
-    /// What kind it is.
+    /// The kind of prediction.
     pub class: Class,
-    /// What makes the spectrum, a line for each step.
+    /// The steps that make the spectrum, one line each.
     pub steps: Vec<String>,
     /// The slices of the windowed spectrum.
     pub slices: Slices,
-    /// ‖error‖/‖slices‖, estimated: the standard error where there are replicates of theory, else
-    /// that of a quadrature. `None` for a closed form, and for a reference.
+    /// The estimated ‖error‖/‖slices‖: the standard error where theory has replicates, otherwise
+    /// the quadrature error. `None` for a closed form, and for a reference.
     pub quadrature_error: Option<f64>,
-    /// ‖error‖/‖slices‖ of smooth meshes: theory follows patches that osculate them, and of a
-    /// reference the two tracers turn rays differently. `None` without such a mesh.
+    /// ‖error‖/‖slices‖ due to smooth meshes: theory follows patches that osculate them, and the
+    /// two tracers of a reference deflect rays differently. `None` without such a mesh.
     pub mesh_error: Option<f64>,
-    /// The first-order chain; `slices` and all else are then those of the exact ray-space
-    /// prediction.
+    /// The first-order chain. Where it exists, `slices` and all other fields are those of the exact
+    /// ray-space prediction.
     pub first_order: Option<FirstOrder>,
     /// Independent replicates, of which `slices` is the mean: batches of a reference, or randomised
-    /// rules of theory. Empty where the slices have no statistical error. A p-value is no smaller
-    /// than 2¹⁻ⁿ with n of them, so there should be 16 or more.
+    /// rules of theory. Empty where the slices have no statistical error. With n replicates a
+    /// p-value is no smaller than 2¹⁻ⁿ, so there should be 16 or more.
     pub replicates: Vec<Slices>,
-    /// ∫ L W if nothing stood in the way, what the slices of theory are small or large against;
+    /// ∫ L W without occluders, the scale against which the slices of theory are small or large;
     /// zero for a reference.
     pub unblocked: f64,
     /// The windowed light field in (x, u).
     pub projection: Projection,
     /// For each parameter of the chain: name, value and derivative of the slices.
     pub parameters: Vec<PredictedParameter>,
-    /// Shortest and longest distance from the plane back to what stands in the way of its light, metres; `None` where
-    /// nothing does, or a reflection comes between.
+    /// The shortest and the longest distance from the plane back to the occluders of its light,
+    /// metres; `None` without occluders, or where a reflection comes between.
     pub depth: Option<[f64; 2]>,
-    /// Where energy begins to count as high, cycles per metre, on a plane that light leaves
-    /// diffusely.
+    /// The cuts above which energy counts as high-frequency, cycles per metre, on a plane that
+    /// light leaves diffusely.
     pub cuts: Vec<f64>,
 }
 
@@ -56,7 +56,7 @@ pub struct Prediction {
 pub struct PredictedParameter {
     /// Name, such as "travel light to blockers".
     pub name: String,
-    /// Unit of the value; none for a pure number.
+    /// Unit of the value; empty for a pure number.
     pub unit: String,
     /// Value in the scene.
     pub value: f64,
@@ -76,17 +76,17 @@ impl Prediction {
         both(quadrature, self.mesh_error)
     }
 
-    /// ‖error‖/‖slices‖ of theory's own replicates, which stays however many photons are measured.
+    /// ‖error‖/‖slices‖ of theory's own replicates. It does not shrink with more photons.
     pub(crate) fn statistical_error(&self) -> Option<f64> {
         self.quadrature_error.filter(|_| self.is_statistical())
     }
 
-    /// ‖error‖/‖slices‖ of all kinds.
+    /// ‖error‖/‖slices‖ of all kinds combined.
     pub(crate) fn error(&self) -> Option<f64> {
         both(self.quadrature_error, self.mesh_error)
     }
 
-    /// What theory predicts for a plane of a scene: nothing where none applies, and
+    /// The prediction of theory for a plane of a scene. `None` where no theory applies and
     /// [`Self::reference`] takes its place.
     #[must_use]
     pub fn new(scene: &Scene, plane: &VirtualPlane, applicability: &Applicability) -> Self {
@@ -125,7 +125,7 @@ impl Prediction {
         }
     }
 
-    /// What a model says, and the first-order chain beside it.
+    /// The prediction of a model, with the first-order chain beside it.
     fn by<M: Model>(
         self,
         model: &M,
@@ -157,7 +157,7 @@ impl Prediction {
         }
     }
 
-    /// No light at all.
+    /// The prediction of no light at all.
     fn darkness(scene: &Scene, plane: &VirtualPlane, applicability: &Applicability) -> Self {
         let grid = ProjectionGrid::new(&plane.window, PROJECTION_BINS);
         let values = Array2::zeros((grid.bins, grid.bins));
@@ -175,14 +175,15 @@ impl Prediction {
             parameters: Vec::new(),
             depth: depth(scene, plane),
             cuts: match class {
-                // What a mirror or a lobe leaves has no such border.
+                // Light that leaves a mirror or a lobe has no such border.
                 Class::FirstOrder => Vec::new(),
                 Class::Exact | Class::Reference => cuts(scene, plane),
             },
         }
     }
 
-    /// What another, independent measurement of plane `index` says, where theory has no word.
+    /// The prediction from another, independent measurement of plane `index`, where no theory
+    /// applies.
     ///
     /// # Errors
     /// When that measurement has too few batches.
@@ -203,10 +204,10 @@ impl Prediction {
         })
     }
 
-    /// A plane of a measurement, to hold another, independent one against.
+    /// A plane of a measurement, to compare another, independent measurement with.
     ///
     /// # Errors
-    /// When it has too few batches.
+    /// When the measurement has too few batches.
     pub fn measured(measurement: &Measurement, plane: usize) -> Result<Self, TooFewBatches> {
         let batches = measurement.at_plane(plane);
         Ok(Self {
@@ -235,7 +236,7 @@ fn both(a: Option<f64>, b: Option<f64>) -> Option<f64> {
 }
 
 /// Two main lobes of the transform of a Hann window, which end at 1/half-width each, and 1.5 times
-/// that, to see whether H hangs on the cut; none where light does not leave a surface.
+/// that, to show whether H depends on the cut. Empty where light does not leave a surface.
 fn cuts(scene: &Scene, plane: &VirtualPlane) -> Vec<f64> {
     if plane.leg == 0 || scene.path.along(plane) > 0.0 {
         return Vec::new();

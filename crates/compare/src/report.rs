@@ -16,9 +16,9 @@ pub struct Pair {
     pub measured: Option<f64>,
     /// The value of the prediction, by the same estimator.
     pub predicted: Option<f64>,
-    /// Standard error of their difference: that of the measured value, and that of the predicted one
-    /// where the prediction has replicates. That of a shear slope holds what the prediction's
-    /// quadrature may be off by.
+    /// Standard error of the difference: that of the measured value, combined with that of the
+    /// predicted one where the prediction has replicates. For a shear slope it includes the
+    /// possible error of the prediction's quadrature.
     pub error: Option<f64>,
 }
 
@@ -31,16 +31,16 @@ pub struct DirectedPair {
     pub predicted: Option<f64>,
     /// Standard error of the measured value.
     pub error: Option<f64>,
-    /// Where they are.
+    /// The azimuths of the two values.
     pub azimuth: Azimuths,
 }
 
 /// Azimuths of a measured and a predicted number, radians from X towards Y.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Azimuths {
-    /// That of the measured one.
+    /// The azimuth of the measured number.
     pub measured: Option<f64>,
-    /// That of the predicted one.
+    /// The azimuth of the predicted number.
     pub predicted: Option<f64>,
 }
 
@@ -55,16 +55,16 @@ pub struct Bandwidth {
 
 /// Second central moments of a windowed light field, [4, 4], in the units of its coordinates.
 ///
-/// They are finite because the window ends. Second moments of the spectrum need not be: where the
-/// field has an edge they grow with the frequency grid. The bandwidth is a percentile for this
-/// reason.
+/// They are finite because the window is bounded. Second moments of the spectrum may be infinite:
+/// where the field has an edge they grow with the frequency grid. For this reason the bandwidth is
+/// a percentile.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Covariance {
     /// The moments of the photons.
     pub measured: Matrix<4>,
-    /// Their standard errors, by the jackknife.
+    /// Standard errors of `measured`, by the jackknife.
     pub error: Matrix<4>,
-    /// The moments of rays followed through the real geometry, where these are the prediction.
+    /// The moments of rays traced through the real geometry, where these rays make the prediction.
     pub predicted: Option<Matrix<4>>,
     /// The moments A S Aᵀ that the first-order chain propagates from a Gaussian as wide as the
     /// light through a Gaussian window. Masks are left out.
@@ -76,7 +76,7 @@ pub struct Covariance {
 pub struct HighFrequencyShare {
     /// The cut, cycles per metre.
     pub cut: f64,
-    /// H, the share of energy above it.
+    /// H, the share of energy above the cut.
     pub share: Pair,
 }
 
@@ -87,21 +87,22 @@ pub struct WedgeShare {
     pub nearest: f64,
     /// Longest distance, metres.
     pub farthest: f64,
-    /// The share of the power of the radial spectrum, the main lobe of the window about zero left out.
+    /// The share of the power of the radial spectrum, excluding the main lobe of the window about
+    /// zero.
     pub share: Pair,
 }
 
-/// Everything one plane comes to, as in `summary.json`.
+/// All results of one plane, as in `summary.json`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PlaneReport {
     /// Name of the plane.
     pub name: String,
     /// Kind of prediction.
     pub class: Class,
-    /// The chain, a line for each step.
+    /// The chain, one line for each step.
     pub chain: Vec<String>,
-    /// Estimated ‖error‖/‖F‖ of a prediction that is no closed form. Where the prediction has
-    /// replicates it is their standard error, which is also in the noise.
+    /// Estimated ‖error‖/‖F‖ of a prediction that is not in closed form. Where the prediction has
+    /// replicates it is their standard error, which is also included in the noise.
     pub quadrature_error: Option<f64>,
     /// The plane's frame, world coordinates.
     pub frame: Frame,
@@ -109,13 +110,13 @@ pub struct PlaneReport {
     pub distance: f64,
     /// Photons that crossed the plane.
     pub crossed: u64,
-    /// Photons that crossed it inside the window.
+    /// Photons that crossed the plane inside the window.
     pub in_window: u64,
-    /// Photons that crossed it outside the window.
+    /// Photons that crossed the plane outside the window.
     pub outside_window: u64,
     /// ‖S − F‖/‖F‖ over the independent frequencies.
     pub relative_error: Option<f64>,
-    /// √Σσ²/‖F‖: the relative error that noise alone would make.
+    /// √Σσ²/‖F‖: the relative error that noise alone would cause.
     pub noise_limit: Option<f64>,
     /// Signed root of relative error² − noise limit²: the disagreement beyond noise.
     pub excess: Option<f64>,
@@ -123,10 +124,10 @@ pub struct PlaneReport {
     pub excess_squared_error: Option<f64>,
     /// 10 log₁₀ of the mean σ² over the largest |F|².
     pub noise_floor_db: Option<f64>,
-    /// Independent real numbers that the noise of the measured slices amounts to, for a test of two
-    /// results ([`crate::noise_dof`]); `None` without noise.
+    /// The effective number of independent real numbers in the noise of the measured slices, for a
+    /// test of two results ([`crate::noise_dof`]); `None` without noise.
     pub noise_dof: Option<f64>,
-    /// Mean of |S − F|²/σ², corrected for σ² being estimated.
+    /// Mean of |S − F|²/σ², corrected for σ² being an estimate.
     pub chi2_per_dof: Option<f64>,
     /// Probability of a disagreement as large as the one seen, if there is none.
     pub p_value: Option<f64>,
@@ -135,17 +136,18 @@ pub struct PlaneReport {
     /// Shear slope of the radial spectrum, metres.
     pub slope: Pair,
     /// Second moments of the radial spectrum over the grid: ρρ, ρν and νν. For a field with edges
-    /// they grow with the grid, and the bandwidth says more.
+    /// they grow with the grid, and the bandwidth is the better measure.
     pub spectral_moments: [Pair; 3],
     /// 95 % bandwidths of the slices where they are largest.
     pub bandwidth_95: Bandwidth,
-    /// Second central moments of the windowed light field over the coordinates of the plane. There
-    /// are none where no light came.
+    /// Second central moments of the windowed light field over the coordinates of the plane. `None`
+    /// where no light arrived.
     pub covariance: Option<Covariance>,
-    /// H at two cuts, on a plane that light leaves diffusely. It is empty for any other plane.
+    /// H at two cuts, on a plane that light leaves diffusely; empty for any other plane.
     pub high_frequency_share: Vec<HighFrequencyShare>,
-    /// Of blockers on the way to a plane of the first leg: the wedge between the nearest and the farthest, and the one
-    /// that reaches back to the light, whose edges have frequencies too. It is empty for any other plane.
+    /// The shares of power in wedges, for blockers on the way to a plane of the first leg: the
+    /// wedge between the nearest and the farthest blocker, and the one that reaches back to the
+    /// light, whose edges have frequencies too. Empty for any other plane.
     pub wedge_share: Vec<WedgeShare>,
     /// The full radial spectrum, where the light field was put on a 4D grid (`--save field`).
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -157,15 +159,15 @@ pub struct PlaneReport {
     pub verdict: Verdict,
     /// Why an undecided plane is undecided, in words.
     pub undecided: Option<String>,
-    /// Photons that would decide an undecided plane. `None` where that is not known, or more of
-    /// them do not help.
+    /// Photons that would decide an undecided plane. `None` where that is not known, or where more
+    /// photons do not help.
     pub photons_needed: Option<f64>,
     /// Limits of the measurement, in words.
     pub warnings: Vec<String>,
 }
 
 impl PlaneReport {
-    /// The verdict on the exact prediction, whatever becomes of a first-order chain beside it.
+    /// The verdict on the exact prediction, whatever the verdict on a first-order chain.
     #[must_use]
     pub fn exact_verdict(&self) -> Verdict {
         let chain = self.first_order.as_ref();

@@ -1,4 +1,4 @@
-//! Measured minus predicted, batch by batch, and the tests made on it.
+//! Measured minus predicted slices, batch by batch, and the tests made on them.
 
 use etendue_field::{Complex, SliceGrid, Slices, modulus};
 use etendue_spectrum::{Measurement, PlaneBatch};
@@ -8,30 +8,30 @@ use ndarray::{Array2, Array3, Axis};
 /// Measured minus predicted slices, in independent parts.
 ///
 /// Against a prediction without statistical error there is a residual for each batch, r_b = S_b −
-/// F. Against one that comes in replicates itself, batches and replicates are taken together in as
-/// many groups of neighbours as there are of the fewer (docs/theory.md, section 6). Under the
-/// hypothesis each residual is an independent draw with mean zero, and their mean is S − F.
+/// F. Against a prediction that has replicates itself, batches and replicates are combined into
+/// groups of neighbours, as many as the smaller of the two numbers (docs/theory.md, section 6).
+/// Under the hypothesis each residual is an independent draw with mean zero, and their mean is S −
+/// F.
 #[derive(Clone, Debug)]
 pub struct Residuals {
     grid: SliceGrid,
-    /// One for each batch or group, [azimuth, ρ ≥ 0, ν].
+    /// A residual for each batch or group, [azimuth, ρ ≥ 0, ν].
     parts: Vec<Array3<Complex>>,
 }
 
-/// Rounds of random signs: the p-value is known to a part in 20,000.
+/// Rounds of random signs; they resolve the p-value to a part in 20,000.
 pub(crate) const ROUNDS: u64 = 19_999;
 /// Error of the fast transform of photons, as a share of the largest value
 /// (`etendue_transform`).
 const TRANSFORM: f64 = 2e-7;
-/// What rounding may leave of shares that add up to one.
+/// Rounding error of shares that add up to one.
 const ROUNDING: f64 = 1e-9;
 
 impl Residuals {
-    /// The residuals of plane `plane` of a measurement from slices that are known without
-    /// statistical error.
+    /// The residuals of plane `plane` of a measurement from slices without statistical error.
     ///
     /// # Panics
-    /// When the plane was measured on other frequencies than the prediction's.
+    /// When the plane was measured at other frequencies than the prediction's.
     #[must_use]
     pub fn new(measurement: &Measurement, plane: usize, prediction: &Slices) -> Self {
         let residual = |batch: &PlaneBatch| {
@@ -44,13 +44,14 @@ impl Residuals {
         }
     }
 
-    /// The residuals from slices that are the mean of replicates, or, without any, known exactly.
+    /// The residuals from slices that are the mean of replicates, or that are exact if there are
+    /// none.
     ///
-    /// Of B batches and R replicates each group g of the n = min(B, R) holds a share, and r_g = n/B
-    /// Σ_b (S_b − F) − n/R Σ_j (F_j − F). With as many of either in all groups F drops out.
+    /// Each group g of n = min(B, R) holds a share of B batches and R replicates, and r_g = n/B Σ_b
+    /// (S_b − F) − n/R Σ_j (F_j − F). Where all groups hold equally many of either, F drops out.
     ///
     /// # Panics
-    /// When the plane was measured on other frequencies than the prediction's.
+    /// When the plane was measured at other frequencies than the prediction's.
     #[must_use]
     pub fn between(
         measurement: &Measurement,
@@ -64,7 +65,7 @@ impl Residuals {
         let batches: Vec<&Slices> = measurement.at_plane(plane).map(|b| &b.slices).collect();
         let groups = batches.len().min(replicates.len());
         let mut parts = vec![Array3::zeros(prediction.grid.half_shape()); groups];
-        // How often F itself is in each group.
+        // How often F itself counts in each group.
         let mut left = vec![0.0; groups];
         let samples: [(f64, Vec<&Slices>); 2] =
             [(1.0, batches), (-1.0, replicates.iter().collect())];
@@ -86,8 +87,8 @@ impl Residuals {
         Self { grid, parts }
     }
 
-    /// The residuals from the prediction nearest to the measurement of those that are off by no
-    /// more than `error`|F| at each frequency, and than the fast transform is of the largest F.
+    /// The residuals from the prediction closest to the measurement, among those within `error`|F|
+    /// of F at each frequency plus the fast transform's error relative to the largest F.
     #[must_use]
     pub fn forgiving(&self, prediction: &Slices, error: f64) -> Self {
         let mut moved = self.mean();
@@ -139,7 +140,7 @@ impl Residuals {
         variance / (self.count() * (self.count() - 1)) as f64
     }
 
-    /// The independent cells of an array on the half-plane, in one order for all arrays.
+    /// The independent cells of an array on the half-plane, in the same order for all arrays.
     fn cells<'a, T>(&self, array: &'a Array3<T>) -> impl Iterator<Item = &'a T> {
         let grid = self.grid;
         array
@@ -170,8 +171,8 @@ impl Residuals {
     /// χ² per degree of freedom: the mean of |S − F|²/σ² over the independent frequencies where σ >
     /// 0.
     ///
-    /// σ² is itself estimated from R batches; for complex normal residuals that lifts the mean by
-    /// (R − 1)/(R − 2), which is divided out. `None` when no photon came.
+    /// σ² is itself estimated from R batches. For complex normal residuals this raises the mean by
+    /// (R − 1)/(R − 2), which is divided out. `None` when no photon arrived.
     #[must_use]
     pub fn chi2_per_dof(&self, variance: &Array3<f64>) -> Option<f64> {
         let resolved = self.cells(variance).filter(|v| **v > 0.0).count();
@@ -265,7 +266,7 @@ impl Residuals {
     }
 
     /// Standard error of [`Self::squared`] if every residual has mean zero: its terms are then
-    /// uncorrelated, each pair coming twice.
+    /// uncorrelated, and each pair occurs twice.
     pub(crate) fn squared_error(&self) -> f64 {
         let products = self.products(false);
         let r = self.count() as f64;
@@ -296,8 +297,8 @@ impl Residuals {
     ///
     /// The statistic is Σ |Σ_b r_b|² / Σ_b |r_b|² over the frequencies. Under the hypothesis a
     /// residual is as likely as its negative, so the statistic under random signs is a draw from
-    /// its own distribution, correlations between neighbouring frequencies included. p is the share
-    /// of rounds, the observed one counted in, that reach the observed value.
+    /// its own distribution, correlations between neighbouring frequencies included. The p-value is
+    /// the share of rounds, the observed one included, that reach the observed value.
     ///
     /// `None` when all residuals are zero: nothing measured and nothing predicted.
     #[must_use]
@@ -315,7 +316,7 @@ impl Residuals {
     }
 }
 
-/// Panics when slices are of other frequencies than the prediction's.
+/// Panics when slices have other frequencies than the prediction.
 fn check(measured: &Slices, predicted: &Slices) {
     let (measured, predicted) = (measured.grid, predicted.grid);
     assert_eq!(measured, predicted, "frequencies measured and predicted");
@@ -351,8 +352,8 @@ pub(crate) fn largest(slices: &Array3<Complex>) -> f64 {
     slices.iter().map(|s| modulus(*s)).fold(0.0, f64::max)
 }
 
-/// Σ a b in eight sums side by side. The matrix products of libraries round as the processor at
-/// hand does best, these on every processor alike.
+/// Σ a b in eight parallel sums. The matrix products of libraries round differently on each
+/// processor; these sums round the same on every one.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     const LANES: usize = 8;
     let (a, a_rest) = a.as_chunks::<LANES>();

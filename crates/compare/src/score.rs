@@ -1,28 +1,28 @@
-//! The parameters of a prediction as the photons measure them.
+//! Estimates the parameters of a prediction from the photons.
 
 use crate::prediction::PredictedParameter;
 use crate::residuals::Residuals;
 use ndarray::Array3;
 use serde::Serialize;
 
-/// One parameter of the chain, as the scene has it and as the photons measure it.
+/// One parameter of the chain: its value in the scene and its value as measured by the photons.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ParameterReport {
-    /// What it is, such as "travel light to blockers".
+    /// Name of the parameter, such as "travel light to blockers".
     pub name: String,
-    /// The unit of its values, empty for a pure number.
+    /// Unit of the values, empty for a pure number.
     pub unit: String,
-    /// Its value in the scene.
+    /// Value in the scene.
     pub scene: f64,
-    /// Its value as measured, with all others held at the scene's.
+    /// Measured value, with all other parameters held at their values in the scene.
     pub measured: f64,
-    /// Standard error of the measured value, the error of the prediction included.
+    /// Standard error of the measured value, including the error of the prediction.
     pub error: f64,
-    /// Smallest change that would be seen at level 1 % nine times in ten: 3.86 errors.
+    /// Smallest change that is detected at level 1 % nine times in ten: 3.86 errors.
     pub detectable: f64,
 }
 
-/// Errors between a change and zero for a two-sided test at level 1 % with power 90 %:
+/// Distance of a change from zero, in errors, for a two-sided test at level 1 % with power 90 %:
 /// the normal quantiles 2.576 + 1.282.
 const DETECTABLE: f64 = 3.858;
 
@@ -31,11 +31,11 @@ const DETECTABLE: f64 = 3.858;
 ///
 /// The step δ = Re Σ conj(D)(S − F)/σ² / Σ|D|²/σ² is the least-squares change of the parameter; its
 /// error is the spread of δ over the residuals, so it includes correlations between frequencies and
-/// the noise of a prediction's replicates. A prediction that is off by `numerical` = ‖error‖ beside
-/// that moves δ by no more than `numerical` ‖D/σ²‖ / Σ|D|²/σ² (Cauchy–Schwarz), which is added in
-/// quadrature. Both are of first order in δ.
+/// the noise of a prediction's replicates. A further error of the prediction, `numerical` =
+/// ‖error‖, moves δ by no more than `numerical` ‖D/σ²‖ / Σ|D|²/σ² (Cauchy–Schwarz), which is added
+/// in quadrature. Both are of first order in δ.
 ///
-/// `None` when the prediction does not depend on the parameter, or no photon came.
+/// `None` when the prediction does not depend on the parameter, or no photon arrived.
 pub(crate) fn score(
     residuals: &Residuals,
     variance: &Array3<f64>,

@@ -1,4 +1,4 @@
-//! Smooth surfaces read off the scene, for rays and for reflection by a BRDF.
+//! Reads smooth surfaces off the scene, for rays and for reflection by a BRDF.
 
 use crate::chain::stands_before;
 use etendue_field::{Light, Mask, Orientation, Patch, Side, Specular, VirtualPlane};
@@ -52,7 +52,7 @@ pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<SpecularSy
     })
 }
 
-/// An event of a surface whose front is turned to the light.
+/// The event of a surface as if its front faced the light; `back` means that its back does.
 fn seen_from(event: Specular, back: bool) -> Specular {
     match event {
         Specular::Refraction {
@@ -73,7 +73,7 @@ pub fn scattered(
     scene: &Scene,
     plane: &VirtualPlane,
 ) -> Option<Observed<scattering::ScatteringSystem>> {
-    // A plane on the next surface has that one's coordinates.
+    // A plane on the next surface has the coordinates of that surface.
     let is_on_next = plane.side == Side::Before && plane.orientation != Orientation::Orthogonal;
     if plane.leg != 1 || is_on_next || matches!(scene.light, Light::Rays { .. }) {
         return None;
@@ -100,8 +100,8 @@ pub fn scattered(
 }
 
 /// The light, all masks and all surfaces of the path, and a plane behind some of them. `None` where
-/// light comes from an environment or a ray file, where it has met a mesh, and where no surface or
-/// too many have scattered it.
+/// light comes from an environment or a ray file, where it has met a mesh, and where it was
+/// scattered by no surface or by too many.
 pub(crate) fn reflected(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -113,7 +113,8 @@ pub(crate) fn reflected(
     let hits: Vec<Hit> = legs.filter_map(|leg| leg.leaves).collect();
     let visited = plane.leg;
     let surfaces = hits.iter().map(|hit| visited_surface(scene, hit));
-    // A mesh that ends the last leg, or stands beside the path, is no surface of it.
+    // A mesh that ends the last leg, or stands beside the path, does not count as a surface of the
+    // path.
     let surfaces: Vec<reflections::PathSurface> = surfaces.map_while(|surface| surface).collect();
     let scatterers = surfaces
         .iter()
@@ -206,7 +207,7 @@ fn in_frame(scene: &Scene, plane: &VirtualPlane) -> Plane {
     }
 }
 
-/// The formulas a scene asks for.
+/// The edition of the formulas that a scene asks for.
 pub(crate) fn print(scene: &Scene) -> Edition {
     if scene.file.as_printed {
         Edition::Equations
@@ -215,7 +216,7 @@ pub(crate) fn print(scene: &Scene) -> Edition {
     }
 }
 
-/// The hit on whose surface a plane is.
+/// The hit on the surface that carries a plane.
 fn surface<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a Hit> {
     match plane.side {
         Side::Before => scene.path.ends_at(plane.leg),
@@ -223,10 +224,11 @@ fn surface<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a Hit> {
     }
 }
 
-/// Triangles of a mesh past which each ray of a prediction is followed: of more it would not end.
+/// The largest number of triangles of a mesh that each ray of a prediction is tested against; with
+/// more the prediction would take too long.
 const MAX_TRIANGLES: usize = 500;
 
-/// The objects that the path does not visit: they stop light.
+/// The objects that the path does not visit. They stop light.
 pub(crate) fn unvisited(scene: &Scene) -> impl Iterator<Item = Object> + '_ {
     let surfaces = (0..scene.surfaces.len()).map(Object::Surface);
     let patches = (0..scene.patches.len()).map(Object::Patch);
@@ -239,7 +241,7 @@ fn is_too_fine(scene: &Scene, object: Object) -> bool {
     matches!(object, Object::Mesh(i) if scene.meshes[i].triangles.len() > MAX_TRIANGLES)
 }
 
-/// What stands beside the path, for rays to be followed past.
+/// The obstacles beside the path that rays are tested against.
 fn beside_the_path(scene: &Scene) -> Vec<Obstacle> {
     let coarse = unvisited(scene).filter(|object| !is_too_fine(scene, *object));
     coarse.map(|object| as_obstacle(scene, object)).collect()
@@ -261,7 +263,7 @@ fn as_obstacle(scene: &Scene, object: Object) -> Obstacle {
     }
 }
 
-/// A layer of blockers that light meets where the central ray does not: from this leg on.
+/// A layer of blockers that light meets, from this leg on, where the central ray does not.
 pub(crate) fn in_the_way(layer: &BlockerLayer, from: usize) -> Obstacle {
     Obstacle {
         name: layer.name.clone(),
@@ -273,7 +275,7 @@ pub(crate) fn in_the_way(layer: &BlockerLayer, from: usize) -> Obstacle {
     }
 }
 
-/// The objects beside the path that no ray is followed past, in words.
+/// Descriptions of the objects beside the path that no ray is tested against.
 pub(crate) fn too_fine(scene: &Scene) -> Vec<String> {
     let fine = unvisited(scene).filter(|object| is_too_fine(scene, *object));
     fine.map(|object| {

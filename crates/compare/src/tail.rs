@@ -1,10 +1,10 @@
-//! Tails of the distributions that tests of two samples need.
+//! Tail probabilities for tests of two samples.
 
 use std::f64::consts::SQRT_2;
 
 /// Terms of a series or a continued fraction; a thousand degrees of freedom take about 200.
 const MAX_TERMS: u32 = 1_000_000;
-/// Where a series or a continued fraction ends: the rounding of f64.
+/// The precision at which a series or a continued fraction ends: the rounding of f64.
 const ROUNDING: f64 = 1e-16;
 
 /// Probability that χ² of `dof` degrees of freedom, any positive number, is above `x`.
@@ -64,7 +64,7 @@ fn upper_fraction(a: f64, x: f64) -> f64 {
 
 /// Probability that Student's t of `dof` degrees of freedom is at least as far from zero as `t`.
 ///
-/// By the normal deviate that has about the same tail (Wallace 1959): within 1 % of the probability
+/// Uses the normal deviate with about the same tail (Wallace 1959): within 1 % of the probability
 /// from 30 degrees of freedom on, down to 10⁻⁶.
 pub(crate) fn student_beyond(t: f64, dof: f64) -> f64 {
     let shrink = (8.0 * dof + 1.0) / (8.0 * dof + 3.0);
@@ -87,7 +87,8 @@ mod tests {
             (77.9295, 100.0, 0.95),
         ] {
             let found = chi_squared_above(x, dof);
-            // The table's x ends after six digits, 5e-4 at most, and the tail falls by 0.2 of itself a unit.
+            // The table gives x to six digits, an error of 5e-4 at most, and the tail falls by 0.2
+            // of itself per unit.
             assert!((found / p - 1.0).abs() < 1e-4, "{x} {dof}: {found}");
         }
         // Two degrees of freedom: an exponential.

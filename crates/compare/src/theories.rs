@@ -1,4 +1,4 @@
-//! The theories of a windowed light field.
+//! The theories that predict a windowed light field.
 
 use crate::chain::chain;
 use crate::system::{scattered, system};
@@ -9,24 +9,25 @@ use etendue_theory::{
     scattering,
 };
 
-/// The theories of a windowed light field.
+/// The theories that predict a windowed light field.
 #[derive(Clone, Debug)]
 pub enum Theory {
     /// Light between parallel planes, in closed form or by quadrature over a flat receiver.
     Parallel(Chain),
-    /// Rays followed through smooth specular surfaces, or through pictures.
+    /// Rays traced through smooth specular surfaces, or through pictures.
     Specular(Box<Observed<rays::SpecularSystem>>),
     /// Light that one smooth surface reflects by a BRDF.
     Scattering(Box<Observed<scattering::ScatteringSystem>>),
-    /// Light that several surfaces send on in turn, or one past its own shadow or its edges.
+    /// Light that several surfaces scatter in turn, or that one surface scatters with its own
+    /// shadow or edges.
     Reflections(Box<Observed<reflections::ReflectionSystem>>),
-    /// None: another measurement takes its place.
+    /// No theory: another measurement takes its place.
     None,
 }
 
 impl Theory {
-    /// The theory that has words for what the central ray meets on its way to a plane, whether or
-    /// not what it takes for granted is so.
+    /// The theory that covers what the central ray meets on its way to a plane, whether or not its
+    /// assumptions hold.
     #[must_use]
     pub fn of(scene: &Scene, plane: &VirtualPlane) -> Self {
         if let Some(view) = followed(scene, plane) {
@@ -38,7 +39,8 @@ impl Theory {
         }
     }
 
-    /// Whether all light meets blockers before it comes to a surface.
+    /// Whether the theory assumes that all light meets the blockers of a layer before it comes to a
+    /// surface.
     pub(crate) fn has_all_light_meet(&self, layer: &BlockerLayer) -> bool {
         let layers = match self {
             Self::Specular(view) => &view.system.layers,
@@ -49,7 +51,7 @@ impl Theory {
         layers.iter().any(|known| is_same(known, layer))
     }
 
-    /// What the theory takes for granted of a scene, each checked where it applies.
+    /// The assumptions of the theory about a scene, each checked where the theory applies.
     #[must_use]
     pub fn assumptions(&self) -> &'static [&'static str] {
         const FOLLOWED: &[&str] = &["light meets each surface once, in the order of the path, \
@@ -64,7 +66,7 @@ impl Theory {
         }
     }
 
-    /// The numbers of its model that a measurement may be asked for.
+    /// The parameters of the theory's model that a measurement can estimate.
     pub(crate) fn parameters(&self) -> Vec<Parameter> {
         match self {
             Self::Parallel(chain) => chain.parameters(),
@@ -75,7 +77,7 @@ impl Theory {
         }
     }
 
-    /// What a prediction of its model takes.
+    /// The work of a prediction by the theory's model.
     pub(crate) fn work(&self, over: Over<'_>, budget: RayBudget) -> PredictionWork {
         match self {
             Self::Parallel(chain) => chain.work(over, budget),
@@ -87,8 +89,8 @@ impl Theory {
     }
 }
 
-/// The system of specular surfaces that leads to a plane behind one or on one, or of light that
-/// goes through pictures.
+/// The system of specular surfaces that leads to a plane behind or on one of them, or of light that
+/// passes through pictures.
 fn followed(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<rays::SpecularSystem>> {
     let across = plane.orientation == Orientation::Orthogonal;
     if !scene.light.is_picture() && plane.leg == 0 && across {

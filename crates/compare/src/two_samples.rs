@@ -1,4 +1,4 @@
-//! Two measurements of one plane held against each other, by what a result keeps of them.
+//! Compares two measurements of one plane by the data that a result keeps of them.
 
 use crate::tail::{chi_squared_above, student_beyond};
 use etendue_field::{Complex, SliceGrid, modulus};
@@ -9,18 +9,20 @@ use ndarray::{Array3, Zip};
 pub struct Sample {
     /// The measured slices S, [azimuth, ρ ≥ 0, ν].
     pub mean: Array3<Complex>,
-    /// The standard deviation of |S|, likewise.
+    /// The standard deviation of |S|, with the same axes.
     pub sigma: Array3<f64>,
-    /// Independent real numbers that the noise amounts to ([`crate::noise_dof`]); `None` without noise.
+    /// The effective number of independent real numbers in the noise ([`crate::noise_dof`]); `None`
+    /// without noise.
     pub noise_dof: Option<f64>,
     /// Number of batches that `sigma` was estimated from.
     pub batches: usize,
 }
 
-/// What a test of two samples finds.
+/// The result of a test of two samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoSamples {
-    /// Mean of |A − B|²/(σ_A² + σ_B²), corrected for σ being estimated: 1 if only noise is between them.
+    /// Mean of |A − B|²/(σ_A² + σ_B²), corrected for σ being estimated: 1 if they differ by noise
+    /// only.
     pub chi2_per_dof: Option<f64>,
     /// Probability of differences at least as large if both measure the same.
     pub p_value: Option<f64>,
@@ -29,21 +31,22 @@ pub struct TwoSamples {
     pub p_shared: Option<f64>,
     /// ‖A − B‖ over the larger of ‖A‖ and ‖B‖, over the independent frequencies; 0 if both are dark.
     pub difference: f64,
-    /// √Σ(σ_A² + σ_B²) over the same: the difference that noise alone makes.
+    /// √Σ(σ_A² + σ_B²) over the same norm: the difference that noise alone makes.
     pub noise: f64,
 }
 
-/// The larger of the rounding of two programs' sums, as a share of the largest value.
+/// The rounding difference of sums in two programs, as a share of the largest value.
 const ROUNDING: f64 = 1e-12;
 
 impl TwoSamples {
-    /// Tests whether two samples are of the same slices.
+    /// Tests whether two samples have the same true slices.
     ///
-    /// χ² over the independent frequencies is taken as that of ν independent numbers, with
-    /// ν^(−1/2) = w_A ν_A^(−1/2) + w_B ν_B^(−1/2), w the mean shares in the variance: exact if the noise
-    /// of both is correlated alike, and on the safe side if not (Cauchy–Schwarz for tr C_A C_B). That σ
-    /// is known from n = 1/Σ w²/(R − 1) degrees of freedom alone makes χ² larger by n/(n − 1) and its
-    /// relative variance by n/(n − 2), as of an F distribution (docs/theory.md, section 6).
+    /// χ² over the independent frequencies is treated as that of ν independent numbers, with
+    /// ν^(−1/2) = w_A ν_A^(−1/2) + w_B ν_B^(−1/2), where w are the mean shares in the variance.
+    /// This is exact if the noise of both has the same correlations, and conservative if not
+    /// (Cauchy–Schwarz for tr C_A C_B). Because σ is known from only n = 1/Σ w²/(R − 1) degrees of
+    /// freedom, χ² is larger by n/(n − 1) and its relative variance by n/(n − 2), as for an F
+    /// distribution (docs/theory.md, section 6).
     ///
     /// # Panics
     /// When the arrays have other shapes than the grid.
@@ -66,7 +69,7 @@ impl TwoSamples {
             noise: relative(sums.noise),
         };
         if sums.count == 0 {
-            // No noise anywhere: any difference is one.
+            // Without noise any difference is significant.
             let apart = sums.without_noise;
             let p_value = apart.then_some(0.0);
             return Self { p_value, ..found };
@@ -108,7 +111,7 @@ struct FrequencySums {
     noise: f64,
     /// Σ|A|² and Σ|B|².
     norms: [f64; 2],
-    /// Whether they differ at a frequency where neither has noise.
+    /// Whether the samples differ at a frequency where neither has noise.
     without_noise: bool,
 }
 
@@ -146,21 +149,21 @@ impl FrequencySums {
     }
 }
 
-/// A number with its standard error from so many batches.
+/// A number with its standard error, estimated from some number of batches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// The number.
     pub value: f64,
-    /// Its standard error.
+    /// The standard error of the number.
     pub error: f64,
     /// The batches that the error was estimated from.
     pub batches: usize,
 }
 
-/// The pull of two estimates of one number, (a − b)/√(e_a² + e_b²), and the probability of one at
-/// least as far from zero if both estimate the same.
+/// The pull of two estimates of one number, (a − b)/√(e_a² + e_b²), and the probability of a pull
+/// at least as far from zero if both estimate the same.
 ///
-/// The error is that of Welch (1947): Student's t with n = (e_a² + e_b²)²/Σ e⁴/(R − 1) degrees of
+/// The test is that of Welch (1947): Student's t with n = (e_a² + e_b²)²/Σ e⁴/(R − 1) degrees of
 /// freedom. `None` where neither has an error.
 #[must_use]
 pub fn pull(a: Estimate, b: Estimate) -> Option<(f64, f64)> {

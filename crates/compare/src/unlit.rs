@@ -1,4 +1,4 @@
-//! Planes that no light reaches, by what stands on the first leg.
+//! Finds planes that no light reaches because of objects on the first leg.
 
 use crate::chain::stands_before;
 use crate::theories::Theory;
@@ -10,18 +10,18 @@ type Extent = [[f64; 2]; 2];
 
 /// No limits.
 const UNLIMITED: Extent = [[f64::NEG_INFINITY, f64::INFINITY]; 2];
-/// Slopes that no light exceeds.
+/// The largest slope of light that is considered.
 const MAX_SLOPE: f64 = 1e3;
-/// Share of the rays of a section that rounding may leave.
+/// The share of the rays of a section that may be left by rounding.
 const ROUNDING: f64 = 1e-12;
-/// Parts of a layer at which it is taken to have holes.
+/// The number of parts from which a layer is assumed to have holes.
 const MOST_PARTS: usize = 4096;
 
 /// Why no light reaches a plane, in words; `None` where some may.
 ///
 /// Half-planes cut the rays of a section, (position at the light, slope), to a convex polygon,
-/// which is empty if they leave nothing. A layer that covers all places where these rays cross it
-/// leaves nothing either.
+/// which is empty if no ray passes. No ray passes either if a layer covers every place where these
+/// rays cross it.
 pub(crate) fn reason(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> Option<String> {
     let layers = scene.blockers.iter();
     let layers = layers.filter(|layer| {
@@ -65,14 +65,14 @@ impl RaySection {
         let window = &plane.window;
         let [position, slope] =
             [[&window.x, &window.u], [&window.y, &window.v]][axis].map(Profile::half_width);
-        // What has no end shines from beyond this by steeper slopes only.
+        // An infinite light shines from beyond this position at steeper slopes only.
         let far = MAX_SLOPE * (plane.distance + position);
         let ends = scene.light.extent(axis);
         let [low, high] = ends.map(|x| if x.is_finite() { x } else { far.copysign(x) });
         let most = scene.light.steepest(axis).min(MAX_SLOPE);
         let corners = [[low, -most], [high, -most], [high, most], [low, most]];
         let mut section = Self(corners.to_vec());
-        // Coordinates on a surface are not those across the leg.
+        // Coordinates on a surface differ from those across the leg.
         if plane.leg == 0 && plane.orientation == Orientation::Orthogonal {
             for side in [-1.0, 1.0] {
                 section.clip([side, side * plane.distance, position]);
@@ -82,7 +82,7 @@ impl RaySection {
         section
     }
 
-    /// Keeps what satisfies a·position + b·slope + c ≥ 0.
+    /// Keeps the part with a·position + b·slope + c ≥ 0.
     fn clip(&mut self, [a, b, c]: [f64; 3]) {
         let value = |[s, u]: [f64; 2]| a * s + b * u + c;
         let corners = std::mem::take(&mut self.0);
@@ -99,7 +99,7 @@ impl RaySection {
         }
     }
 
-    /// Twice the area, or the length of what is no area.
+    /// Twice the area, or the length of a degenerate polygon.
     fn measure(&self) -> f64 {
         let [positions, slopes] = [0, 1].map(|k| {
             let [low, high] = extent(self.0.iter().map(|corner| corner[k]));
@@ -115,7 +115,7 @@ impl RaySection {
             .abs()
     }
 
-    /// Where its rays cross a plane at a distance from the light.
+    /// The interval where the rays cross a plane at a distance from the light.
     fn at(&self, distance: f64) -> [f64; 2] {
         extent(self.0.iter().map(|[s, u]| s + distance * u))
     }
@@ -127,7 +127,7 @@ fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
     })
 }
 
-/// Whether a layer leaves nothing of the rays of both sections on their way to the first surface.
+/// Whether a layer stops all rays of both sections on their way to the first surface.
 fn covers(
     layer: &BlockerLayer,
     sections: &[RaySection; 2],
@@ -137,7 +137,7 @@ fn covers(
     let Mask::Opaque { shapes, .. } = &layer.mask else {
         return false;
     };
-    // A plane before the surface sees what passes beside that, too.
+    // A plane before the surface also sees light that passes beside it.
     let is_beyond = plane.leg > 0 || plane.orientation.is_local();
     let towards = if is_beyond {
         towards_surface(scene, sections, layer.distance)
@@ -158,7 +158,7 @@ fn covers(
     open.is_empty()
 }
 
-/// Where lines from the light to the first surface cross a plane, if it is a smooth one.
+/// The region where lines from the light to the first surface, if it is smooth, cross a plane.
 fn towards_surface(scene: &Scene, sections: &[RaySection; 2], distance: f64) -> Extent {
     let Some(Object::Patch(i)) = scene.path.ends_at(0).map(|hit| hit.object) else {
         return UNLIMITED;
@@ -177,7 +177,7 @@ fn towards_surface(scene: &Scene, sections: &[RaySection; 2], distance: f64) -> 
     })
 }
 
-/// What a shape leaves of a rectangle.
+/// The parts of a rectangle that a shape leaves uncovered.
 fn without(part: &Extent, shape: &Shape) -> Vec<Extent> {
     let [[x0, x1], [y0, y1]] = *part;
     match shape {

@@ -1,10 +1,10 @@
-//! Whether light takes the ways that theory takes it to take.
+//! Checks whether light follows the paths that theory assumes.
 //!
-//! Theory follows rays from surface to surface as if nothing else were there. A few thousand rays
-//! with light in the window, the same in every run, are followed here past all that stands around:
-//! to what they meet first, as photons are, and to where theory looks for the next surface. Where
-//! the two differ, the plane is not predicted. Rays are drawn more densely the nearer they are to
-//! the central one, down to a thousandth of the surface, so that windows of any size hold many.
+//! Theory follows rays from surface to surface as if nothing else were there. This module traces a
+//! few thousand rays with light in the window, the same in every run, through the whole scene: to
+//! what they meet first, as photons do, and to where theory looks for the next surface. Where the
+//! two differ, the plane is not predicted. Rays are drawn more densely near the central ray, down
+//! to a thousandth of the surface, so that windows of any size hold many.
 
 mod clearance;
 mod coordinates;

@@ -1,27 +1,27 @@
-//! What a comparison comes to.
+//! The verdict of a comparison.
 
 use etendue_scene::Scene;
 use serde::{Deserialize, Serialize};
 
-/// What the planes of a run are tested by.
+/// The parameters of the test of each plane of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Test {
-    /// A plane agrees with its prediction when p is not below this.
+    /// A plane agrees with its prediction when the p-value is not below this.
     pub level: f64,
-    /// A plane passes when its noise is not above this share of the spectrum.
+    /// A plane passes when its noise, as a share of the spectrum, does not exceed this.
     pub resolution: f64,
-    /// Keys the random signs of the p-value.
+    /// The seed of the random signs of the p-value.
     pub seed: u64,
 }
 
 impl Test {
-    /// That of a scene: α over all its planes.
+    /// The test of a scene: α over all its planes.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         Self::each(scene, 1)
     }
 
-    /// That of a scene each of whose planes is tested so many times: α over all tests.
+    /// The test of a scene in which each plane is tested `times` times: α over all tests.
     #[must_use]
     pub fn each(scene: &Scene, times: usize) -> Self {
         let run = &scene.run;
@@ -41,12 +41,12 @@ pub enum Verdict {
     Pass,
     /// Measured and predicted differ by more than noise.
     Fail,
-    /// Noise, or the error of the prediction, leaves the question open.
+    /// Noise, or the error of the prediction, is too large for a decision.
     Undecided,
 }
 
 impl Verdict {
-    /// The worse of two: fail before undecided before pass.
+    /// The worse of two verdicts: fail before undecided before pass.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         match (self, other) {
@@ -57,8 +57,8 @@ impl Verdict {
     }
 }
 
-/// The level of one of `planes` tests so that all pass together with probability 1 − `alpha` (Šidák
-/// 1967).
+/// The level of one of `planes` tests at which all pass together with probability 1 − `alpha`
+/// (Šidák 1967).
 #[must_use]
 pub fn sidak(alpha: f64, planes: usize) -> f64 {
     1.0 - libm::pow(1.0 - alpha, 1.0 / planes as f64)

@@ -1,4 +1,4 @@
-//! What the predictions of a scene take, before anything is traced.
+//! Estimates the work of the predictions of a scene before anything is traced.
 
 use crate::applicability::Applicability;
 use crate::budget::budget;
@@ -8,12 +8,12 @@ use etendue_spectrum::PROJECTION_BINS;
 use etendue_theory::PredictionWork;
 use std::fmt;
 
-/// The largest number of steps of the predictions of a scene, about ten minutes of one core.
+/// The largest number of steps of all predictions of a scene, about ten minutes on one core.
 const MOST_STEPS: f64 = 6e11;
 /// The largest number of bytes of a prediction on one core.
 const MOST_BYTES: f64 = 1e9;
 
-/// A scene whose predictions take more than is allowed, and the plane to blame.
+/// A scene whose predictions exceed the allowed work, and the plane responsible.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TooMuchWork {
     plane: String,
@@ -50,7 +50,7 @@ impl fmt::Display for TooMuchWork {
 
 /// The plane that takes most of the work, if the predictions of a scene would take more than about
 /// ten minutes, or the first plane whose prediction would not fit into a gigabyte. `theories` are
-/// those of its planes.
+/// those of the scene's planes.
 #[must_use]
 pub fn too_much_work(scene: &Scene, theories: &[Applicability]) -> Option<TooMuchWork> {
     let mut total = 0.0;
@@ -75,11 +75,12 @@ pub fn too_much_work(scene: &Scene, theories: &[Applicability]) -> Option<TooMuc
     None
 }
 
-/// Seconds of one core for each photon, plane and azimuth: 37e-9 for `fig9b`, 33e-9 for
+/// Seconds on one core for each photon, plane and azimuth: 37e-9 for `fig9b`, 33e-9 for
 /// `ggx_sphere` (docs/performance.md).
 const SECONDS: f64 = 4e-8;
 
-/// Seconds of one core, about: to trace the photons of a scene, and for its predictions at most.
+/// The approximate seconds on one core to trace the photons of a scene, and the upper limit for its
+/// predictions.
 #[must_use]
 pub fn seconds(scene: &Scene, theories: &[Applicability]) -> [f64; 2] {
     let planes = scene.planes.iter();
@@ -88,14 +89,14 @@ pub fn seconds(scene: &Scene, theories: &[Applicability]) -> [f64; 2] {
         .zip(theories)
         .map(|(plane, theory)| of(scene, plane, theory));
     let steps: f64 = works.map(|work| work.steps).sum();
-    // A core does a step in about a nanosecond.
+    // A core takes about a nanosecond for a step.
     [
         scene.run.photons as f64 * azimuths as f64 * SECONDS,
         1e-9 * steps,
     ]
 }
 
-/// What the prediction of a plane takes.
+/// The work of the prediction of a plane.
 pub(crate) fn of(
     scene: &Scene,
     plane: &VirtualPlane,

@@ -1,4 +1,4 @@
-//! Theory speaks of a plane only where light goes as theory has it go.
+//! Theory applies to a plane only where light follows the paths that theory assumes.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -10,7 +10,7 @@ use etendue_theory::ObstacleForm;
 const LIGHT: &str = "Rectangle(center: (0, 0, 0), size: (0.2, 0.2))";
 const PROJECTOR: &str = "Projector(center: (0, 0, 0), image: (width: (0.3, 0.3)))";
 
-/// A scene with one plane, its window as wide as said in metres and slope.
+/// A scene with one plane, whose window has the given width in metres and slope.
 fn scene(light: &str, blockers: &str, surfaces: &str, visits: &str, at: &str, half: f64) -> Scene {
     let text = format!(
         r#"(
@@ -29,13 +29,14 @@ fn of(scene: &Scene) -> Applicability {
     Applicability::new(scene, &scene.planes[0])
 }
 
-/// The window within which theory applies, and one in which it does not, with the reason.
+/// Asserts that theory applies with the narrow window, and fails with the wide one for the given
+/// reason.
 fn applies_only(narrow: f64, wide: f64, reason: &str, scene: impl Fn(f64) -> Scene) {
     let applies = of(&scene(narrow));
     assert_eq!(applies.class(), Class::FirstOrder, "{:?}", applies.reasons);
     assert!(applies.declined.is_empty(), "{:?}", applies.declined);
     let fails = of(&scene(wide));
-    // The theory of several surfaces takes the place of that of one with a BRDF.
+    // The theory of several surfaces replaces the theory of one surface with a BRDF.
     if matches!(fails.theory, Theory::Reflections(_)) {
         assert_eq!(fails.declined, [reason]);
         return;
@@ -47,7 +48,7 @@ fn applies_only(narrow: f64, wide: f64, reason: &str, scene: impl Fn(f64) -> Sce
     assert!(steps.contains(&format!("without theory  {reason}")));
 }
 
-/// What a theory follows rays past.
+/// The obstacles that a theory tests rays against.
 fn obstacles(theory: Theory) -> Vec<String> {
     let obstacles = match theory {
         Theory::Specular(view) => view.system.obstacles,
@@ -67,8 +68,7 @@ fn half_planes(shapes: &str) -> String {
 
 const AT_45: &str = "facing: (0.7071067811865476, 0, -0.7071067811865476)";
 
-/// Light goes off sideways behind a half-plane that it has passed, and some of it comes back
-/// through.
+/// Light leaves sideways behind a half-plane that it has passed, and some of it comes back through.
 #[test]
 fn a_blocker_that_reaches_into_a_later_leg() {
     let edge = half_planes("HalfPlane(axis: X, edge: 0.5, opaque: Above)");
@@ -99,7 +99,7 @@ fn a_bowl_that_meets_its_own_light() {
     }
 }
 
-/// The rim of a tilted bowl keeps light from its inside.
+/// The rim of a tilted bowl shades its inside.
 #[test]
 fn a_bowl_that_shadows_itself() {
     for event in ["Mirror", "Reflects(brdf: (lobe: Lambertian, albedo: 0.5))"] {
@@ -114,7 +114,7 @@ fn a_bowl_that_shadows_itself() {
     }
 }
 
-/// The second of two mirrors stands beside the first leg.
+/// The second of two mirrors is beside the first leg.
 #[test]
 fn a_mirror_that_is_met_out_of_turn() {
     let mirrors = format!(
@@ -136,7 +136,7 @@ fn a_mirror_that_is_met_out_of_turn() {
     });
 }
 
-/// Rays are followed past a surface that the path does not visit.
+/// Rays are tested against a surface that the path does not visit.
 #[test]
 fn a_surface_that_the_path_does_not_visit() {
     let surfaces = format!(
@@ -150,8 +150,8 @@ fn a_surface_that_the_path_does_not_visit() {
     assert_eq!(obstacles(found.theory), ["beside"]);
 }
 
-/// A wall that leans away from the first leg is not in the way, but the box around it is; one that
-/// leans over it is.
+/// A wall that leans away from the first leg is not in the way although the box around it is; a
+/// wall that leans over the leg is.
 #[test]
 fn a_wall_that_leans_away() {
     for (facing, reasons) in [
@@ -169,7 +169,8 @@ fn a_wall_that_leans_away() {
     }
 }
 
-/// What leaves no way open is dark, whatever the light and the surface, and keeps its class.
+/// A plane to which no path is open is dark, whatever the light and the surface, and keeps its
+/// class.
 #[test]
 fn darkness_has_a_reason() {
     let one = half_planes("HalfPlane(axis: X, edge: 0.01, opaque: Below)");
@@ -214,7 +215,7 @@ fn darkness_has_a_reason() {
             for (blockers, reason) in closed {
                 let scene = built(blockers);
                 let found = of(&scene);
-                // A receiver has no edge, so that light may come past any lid.
+                // A receiver has no edge, so light may pass beside any lid.
                 if *class == Class::Exact && blockers == lid {
                     assert_eq!(found.dark, None);
                     continue;
@@ -233,7 +234,7 @@ fn darkness_has_a_reason() {
     }
 }
 
-/// A light of kilometres shines past a half-plane that would cover the middle of it.
+/// A light of kilometres shines past a half-plane that would cover its middle.
 #[test]
 fn a_huge_light_is_not_taken_for_dark() {
     let light = "Rectangle(center: (0, 0, 0), size: (5_000, 5_000))";
@@ -249,7 +250,8 @@ fn a_huge_light_is_not_taken_for_dark() {
     }
 }
 
-/// A tilted mirror reaches before the half-planes, where light does not meet them: it is not dark.
+/// A tilted mirror extends in front of the half-planes, where light does not meet them, so it is
+/// not dark.
 #[test]
 fn light_that_turns_before_the_masks_is_not_taken_for_dark() {
     let one = half_planes("HalfPlane(axis: X, edge: 0, opaque: Below)");
@@ -277,7 +279,7 @@ fn light_that_turns_before_the_masks_is_not_taken_for_dark() {
     assert_eq!(obstacles(wide.theory), ["edge on legs from 0"]);
 }
 
-/// A flat mesh has no curvature that could change from triangle to triangle, only rounding.
+/// On a flat mesh no curvature changes from triangle to triangle; there is only rounding.
 #[test]
 fn a_smooth_mesh_is_flat_or_finely_curved() {
     let of = |curvature: f64, cells: u32| {
@@ -300,7 +302,8 @@ fn a_smooth_mesh_is_flat_or_finely_curved() {
     assert_eq!(of(3.0, 10), Class::Reference);
 }
 
-/// What stands right at a plane is in the way after it alone. What stands in the light of a picture before a flat surface is in the way.
+/// An object directly at a plane is in the way after the object only. An object in the light of a
+/// picture before a flat surface is in the way.
 #[test]
 fn what_stands_at_a_plane_or_before_a_flat_surface() {
     let sheet = r#"Mesh(name: "sheet", center: (0, 0, 0.5), mesh: Paraboloid(curvatures: (0, 0), half: 0.1, cells: 1))"#;

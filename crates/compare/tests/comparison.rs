@@ -1,4 +1,4 @@
-//! The comparison on made-up batches, where the truth is known.
+//! Tests the comparison on synthetic batches, where the truth is known.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -11,7 +11,7 @@ use etendue_spectrum::{Batch, Measurement, PROJECTION_BINS, PlaneBatch};
 
 const BATCHES: u32 = 64;
 
-/// A smooth spectrum and its derivative by its width.
+/// A smooth spectrum and its derivative with respect to its width.
 fn spectrum(width: f64) -> [Slices; 2] {
     let grid = plane().grid;
     let mut value = Slices::zeros(grid);
@@ -36,7 +36,7 @@ fn measurement(truth: &Slices, size: f64, seed: u64) -> Measurement {
     noisy(truth, seed, |_| size)
 }
 
-/// A measurement with noise of this size in each cell.
+/// A measurement with noise of the given size in each cell.
 fn noisy(truth: &Slices, seed: u64, size: impl Fn(usize) -> f64) -> Measurement {
     let plane = plane();
     let mut measurement = Measurement::new(vec![plane.clone()]);
@@ -98,7 +98,7 @@ fn prediction(width: f64) -> Prediction {
     }
 }
 
-/// Rays that found nothing prove no darkness: light that photons see is no fault then.
+/// Rays that find nothing do not prove darkness, so light that photons see is no failure then.
 #[test]
 fn rays_that_found_nothing_decide_nothing() {
     let [truth, _] = spectrum(0.3);
@@ -109,13 +109,13 @@ fn rays_that_found_nothing_decide_nothing() {
         let compared = compare(&measurement, 0, prediction, &TEST).unwrap();
         compared.report.verdict
     };
-    // A closed form that is dark is sure of it.
+    // A closed form that is dark is certain of it.
     assert_eq!(verdict(&nothing), Verdict::Fail);
     nothing.replicates = vec![Slices::zeros(plane().grid); 32];
     assert_eq!(verdict(&nothing), Verdict::Undecided);
 }
 
-/// Another measurement in place of theory: its noise counts, and so does a difference from it.
+/// A reference in place of theory: its noise counts, and a difference from it is found.
 #[test]
 fn a_reference_is_judged_with_its_own_noise() {
     let verdict = |reference_width: f64, seed: u64| {
@@ -136,8 +136,8 @@ fn a_reference_is_judged_with_its_own_noise() {
         seeds += 1.0;
         assert_eq!(verdict(1.05, seed).verdict, Verdict::Fail);
     }
-    // Eight times 170 complex numbers: 1/√1360 = 0.027, four of them. Without the reference's noise
-    // it would be 2.
+    // Eight times 170 complex numbers: 1/√1360 = 0.027, and four of these. Without the reference's
+    // noise the value would be 2.
     assert!((chi2 / seeds - 1.0).abs() < 0.11, "{}", chi2 / seeds);
 }
 
@@ -153,7 +153,7 @@ fn replicates(truth: &Slices, size: f64, count: u32, seed: u64) -> Vec<Slices> {
     (0..count).map(replicate).collect()
 }
 
-/// The prediction of a spectrum of this width that theory knows by its replicates.
+/// The prediction of a spectrum of this width, known to theory through replicates.
 fn sampled(width: f64, size: f64, count: u32, seed: u64) -> Prediction {
     let [truth, _] = spectrum(width);
     let replicates = replicates(&truth, size, count, seed);
@@ -174,9 +174,8 @@ fn sampled(width: f64, size: f64, count: u32, seed: u64) -> Prediction {
     }
 }
 
-/// Both sides come in parts, not as many of one as of the other: fewer replicates than batches,
-/// more, and a number that does not divide. p is uniform if they agree, and a spectrum 5 % too wide
-/// is found.
+/// Both sides come in different numbers of parts: fewer replicates than batches, more, and a number
+/// that does not divide. p is uniform if they agree, and a spectrum 5 % too wide is detected.
 #[test]
 fn two_samples_are_compared_with_the_noise_of_both() {
     let [truth, _] = spectrum(1.0);
@@ -191,7 +190,8 @@ fn two_samples_are_compared_with_the_noise_of_both() {
             let report = compared(1.0, seed);
             below += u32::from(report.p_value.unwrap() < 0.3);
             chi2 += report.chi2_per_dof.unwrap() / 50.0;
-            // The error of a prediction that replicates show is in the noise, and blurs nothing.
+            // An error of the prediction that replicates show is part of the noise and leaves
+            // nothing undecided.
             assert_ne!(report.verdict, Verdict::Undecided);
         }
         // 15 ± 3.2 of 50: four standard deviations.
@@ -199,8 +199,8 @@ fn two_samples_are_compared_with_the_noise_of_both() {
             (3..=27).contains(&below),
             "{count}: {below} of 50 below 0.3"
         );
-        // 50 times 170 complex numbers: 1/√8500 = 0.011, four of them; the groups' own variance
-        // adds as much.
+        // 50 times 170 complex numbers: 1/√8500 = 0.011, and four of these; the groups' own
+        // variance adds as much.
         assert!((chi2 - 1.0).abs() < 0.06, "{count}: {chi2}");
         for seed in 0..5 {
             assert_eq!(compared(1.05, seed).verdict, Verdict::Fail, "{count}");
@@ -208,7 +208,7 @@ fn two_samples_are_compared_with_the_noise_of_both() {
     }
 }
 
-/// Were the noise of the replicates left out, a true prediction would be rejected.
+/// A true prediction would be rejected if the noise of the replicates were left out.
 #[test]
 fn replicates_that_are_taken_for_exact_are_rejected() {
     let [truth, _] = spectrum(1.0);
@@ -264,7 +264,7 @@ fn truth_passes_with_chi2_of_one_and_no_excess() {
         .unwrap()
         .report;
     assert_eq!(report.verdict, Verdict::Pass);
-    // 170 independent complex numbers: a standard deviation of 1/√170 = 0.077, four of them.
+    // 170 independent complex numbers: a standard deviation of 1/√170 = 0.077, and four of these.
     assert!(
         (report.chi2_per_dof.unwrap() - 1.0).abs() < 0.3,
         "{report:?}"
@@ -277,7 +277,7 @@ fn truth_passes_with_chi2_of_one_and_no_excess() {
     ); // four errors
 }
 
-/// A spectrum 2 % too wide is rejected, and the score test says by how much it is off.
+/// A spectrum 2 % too wide is rejected, and the score test finds by how much it is off.
 #[test]
 fn a_wrong_parameter_is_rejected_and_measured() {
     let [truth, _] = spectrum(1.02);
@@ -288,15 +288,15 @@ fn a_wrong_parameter_is_rejected_and_measured() {
     assert_eq!(report.verdict, Verdict::Fail, "{report:?}");
     let width = &report.parameters[0];
     assert!(width.measured > 1.0 + width.detectable, "{width:?}");
-    // Four errors, and the second order of a step of 2 %.
+    // Four errors, plus the second-order effect of a step of 2 %.
     assert!(
         (width.measured - 1.02).abs() < 4.0 * width.error + 0.002,
         "{width:?}"
     );
 }
 
-/// A quadrature whose error is above the resolution decides nothing; one below it passes if the error
-/// is as large as the disagreement, and fails if it is not.
+/// A quadrature whose error is above the resolution leaves the plane undecided. One below it passes
+/// if the error is as large as the disagreement, and fails otherwise.
 #[test]
 fn a_coarse_quadrature_decides_nothing() {
     let judged = |truth: f64, share: f64| {
@@ -328,8 +328,9 @@ fn a_coarse_quadrature_decides_nothing() {
     }
 }
 
-/// What a quadrature may be off by is in the errors of what is measured: next to no noise, and a
-/// prediction that is wrong by just its stated error, along a derivative or by a shear.
+/// The possible error of a quadrature is included in the errors of measured numbers: almost no
+/// noise, and a prediction that is wrong by just its stated error, along a derivative or by a
+/// shear.
 #[test]
 fn errors_of_measured_numbers_hold_that_of_a_quadrature() {
     const STATED: f64 = 1e-3;
@@ -354,16 +355,16 @@ fn errors_of_measured_numbers_hold_that_of_a_quadrature() {
         ]
     };
     for (direction, which) in [(&derivative, 0), (&sheared, 1)] {
-        // Without the stated error the noise of 10⁻⁶ is all there is.
+        // Without the stated error the only error is the noise of 10⁻⁶.
         assert!(pulls(direction, None)[which].abs() > 30.0);
-        // The bound is reached along a derivative whose weights are even, and never exceeded; what
-        // is left of the weights' noise is a few per cent.
+        // The bound is reached along a derivative with equal weights, and never exceeded; the
+        // remaining noise of the weights is a few per cent.
         let held = pulls(direction, Some(STATED))[which].abs();
         assert!((0.3..1.1).contains(&held), "{which}: {held}");
     }
 }
 
-/// The noise of replicates is in the error of the shear slope, which is that of the difference.
+/// The error of the shear slope is that of a difference and includes the noise of replicates.
 #[test]
 fn errors_of_slopes_hold_the_noise_of_replicates() {
     let [truth, _] = spectrum(1.0);
@@ -378,18 +379,18 @@ fn errors_of_slopes_hold_the_noise_of_replicates() {
     };
     let squares: f64 = (0..100).map(|seed| pull(seed).powi(2)).sum();
     // 100 squares of unit variance: four times √(2/100) is 0.57. Without the replicates, whose
-    // noise power is eight times the photons', it is 9.
+    // noise power is eight times the photons', the mean would be 9.
     let mean = squares / 100.0;
     assert!((mean - 1.0).abs() < 0.57, "{mean}");
 }
 
-/// The total of photons that all weigh the same has no noise: a quadrature is never as exact, and its
-/// error there is no disagreement.
+/// The total of photons of equal weight has no noise. A quadrature is never as exact, and its error
+/// there is no disagreement.
 #[test]
 fn a_quadrature_is_excused_where_photons_have_no_noise() {
     let [truth, _] = spectrum(1.0);
     let nu = truth.grid.nu.half;
-    // The first azimuth and frequency have the first cells.
+    // The first cells belong to the first azimuth and frequency.
     let measurement = noisy(&truth, 2, |cell| if cell == nu { 1e-9 } else { 0.02 });
     let compared = |off: f64, quadrature_error| {
         let mut expected = prediction(1.0);
@@ -401,12 +402,12 @@ fn a_quadrature_is_excused_where_photons_have_no_noise() {
     assert!(stated.unwrap() > 2e-4, "{stated:?}");
     assert_eq!(compared(1e-4, None).verdict, Verdict::Fail);
     assert_eq!(compared(1e-4, stated).verdict, Verdict::Pass);
-    // The fast transform of photons is no better than this.
+    // The fast transform of photons is no more accurate than this.
     assert_eq!(compared(1e-7, None).verdict, Verdict::Pass);
     assert_eq!(compared(0.01, stated).verdict, Verdict::Fail);
 }
 
-/// Where noise drowns the spectrum nothing is decided, however p falls.
+/// Where noise exceeds the spectrum the plane is undecided, whatever p is.
 #[test]
 fn noise_decides_nothing() {
     let [truth, _] = spectrum(1.0);
@@ -434,7 +435,7 @@ fn p_is_uniform_where_the_truth_is_predicted() {
 fn darkness_is_judged_by_what_a_prediction_can_tell() {
     let dark = Slices::zeros(plane().grid);
     let mut predicted = prediction(1.0);
-    // Closed blockers leave what rounding leaves.
+    // Closed blockers leave only rounding errors.
     predicted.slices.half.mapv_inplace(|f| f * 1e-16);
     let silent = compare(&measurement(&dark, 0.0, 1), 0, &predicted, &TEST)
         .unwrap()
@@ -448,7 +449,7 @@ fn darkness_is_judged_by_what_a_prediction_can_tell() {
         .unwrap()
         .report;
     assert_eq!(lit.verdict, Verdict::Fail, "light where none is predicted");
-    // The tail of a window shows photons that a closed form cannot tell from its rounding.
+    // The tail of a window holds photons that a closed form cannot distinguish from its rounding.
     let tail = compare(&measurement(&dark, 1e-15, 1), 0, &predicted, &TEST)
         .unwrap()
         .report;
@@ -457,12 +458,12 @@ fn darkness_is_judged_by_what_a_prediction_can_tell() {
     let unlit = compare(&measurement(&dark, 0.0, 1), 0, &prediction(1.0), &TEST)
         .unwrap()
         .report;
-    // So may chance, or a window that light misses.
+    // The cause may also be chance, or a window that light misses.
     assert_eq!(unlit.verdict, Verdict::Undecided);
     assert!(unlit.undecided.unwrap().contains("none of 6400 photons"));
 }
 
-/// A batch without a photon shows that there are too few to tell, however p falls.
+/// A batch without a photon shows that there are too few for a decision, whatever p is.
 #[test]
 fn a_batch_without_photons_decides_nothing() {
     let [truth, _] = spectrum(1.02);
@@ -485,7 +486,7 @@ fn a_batch_without_photons_decides_nothing() {
     assert!(report.photons_needed.is_some() && report.undecided.is_some());
 }
 
-/// One heavy photon carries half of the light, be it of a batch or of a replicate of the prediction:
+/// One heavy photon carries half of the light of a batch, or of a replicate of the prediction:
 /// others like it may not have come yet.
 #[test]
 fn light_of_a_few_heavy_photons_decides_nothing() {
@@ -525,8 +526,8 @@ fn light_of_a_few_heavy_photons_decides_nothing() {
     }
 }
 
-/// Noise is held against the larger of both spectra: a prediction that is ten times too dim fails
-/// where one that is right passes, and agreement in more noise than the resolution is none.
+/// Noise is compared with the larger of both spectra: a prediction that is ten times too dim fails
+/// where a correct one passes, and agreement within noise above the resolution does not count.
 #[test]
 fn noise_is_a_share_of_the_larger_spectrum() {
     let [truth, _] = spectrum(1.0);
@@ -545,7 +546,7 @@ fn noise_is_a_share_of_the_larger_spectrum() {
     let coarse = judged(1.0, 0.03);
     assert_eq!(coarse.verdict, Verdict::Undecided);
     let needed = coarse.photons_needed.unwrap() / 6400.0;
-    // Noise falls with the root of the photons.
+    // Noise falls with the square root of the number of photons.
     assert!(
         (needed / (noise / 0.03).powi(2) - 1.0).abs() < 0.1,
         "{needed}"
@@ -559,7 +560,8 @@ fn sidak_keeps_the_level_of_the_run() {
     assert!((sidak(0.01, 1) - 0.01).abs() < 1e-15); // rounding
 }
 
-/// No theory describes what leaves a mesh. Light that a smooth surface stands in is followed past it.
+/// No theory describes light that leaves a mesh. A smooth surface that stands in the light is
+/// handled by tracing rays past it.
 #[test]
 fn what_has_no_theory_is_a_reference() {
     let class = |surfaces: &str, visits: &str| {

@@ -1,4 +1,4 @@
-//! A plane and the noise of made-up batches.
+//! A plane and noise for tests with synthetic batches.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 

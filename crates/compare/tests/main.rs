@@ -1,4 +1,4 @@
-//! The tests of `etendue-compare`, one program for all.
+//! The tests of `etendue-compare`, as one program.
 
 mod applicability;
 mod comparison;

@@ -1,5 +1,5 @@
-//! A small object beside the central ray that stops light is found: theory has blockers among its
-//! obstacles, and does not speak of a plane whose light meets a surface out of turn.
+//! A small object beside the central ray that stops light is found: theory takes blockers as
+//! obstacles, and does not apply to a plane whose light meets a surface out of turn.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -12,7 +12,7 @@ const HALF: f64 = 0.2;
 const POINT: &str = "Point(center: (0, 0, 0), intensity: 1)";
 const SQUARE: &str = "Rectangle(center: (0, 0, 0), size: (0.1, 0.1))";
 
-/// A surface that turns the central ray aside, a disc in the plane z = 0.7 and a plane at 1.7 m.
+/// A surface that deflects the central ray, a disc in the plane z = 0.7 and a plane at 1.7 m.
 fn scene(light: &str, event: &str, disc: [f64; 2], radius: f64) -> Scene {
     let [x, y] = disc;
     let text = format!(
@@ -36,11 +36,11 @@ fn scene(light: &str, event: &str, disc: [f64; 2], radius: f64) -> Scene {
 fn reasons(scene: &Scene) -> Vec<String> {
     let found = Applicability::new(scene, &scene.planes[0]);
     assert_eq!(found.class() == Class::Reference, !found.reasons.is_empty());
-    // The theory of several surfaces may take the place of that of one.
+    // The theory of several surfaces may replace the theory of one.
     [found.reasons, found.declined].concat()
 }
 
-/// The names of what theory follows rays past.
+/// The names of the obstacles that theory tests rays against.
 fn obstacles(scene: &Scene) -> Vec<String> {
     let obstacles = match Applicability::new(scene, &scene.planes[0]).theory {
         Theory::Specular(view) => view.system.obstacles,
@@ -53,13 +53,13 @@ fn obstacles(scene: &Scene) -> Vec<String> {
         .collect()
 }
 
-/// Where the ray from one point towards another crosses z = 0.7.
+/// The point where the ray from one point towards another crosses z = 0.7.
 fn crossing(from: DVec3, to: DVec3) -> [f64; 2] {
     let at = from.lerp(to, (0.7 - from.z) / (to.z - from.z));
     [at.x, at.y]
 }
 
-/// The point of the plane with coordinates (x, y), shares of the window.
+/// The point of the plane with coordinates (x, y), as shares of the window.
 fn in_plane(x: f64, y: f64) -> DVec3 {
     let far = scene(POINT, "Mirror", [9.0, 9.0], 0.01);
     let frame = far.planes[0].frame;
@@ -67,7 +67,7 @@ fn in_plane(x: f64, y: f64) -> DVec3 {
     frame.to_world(DVec3::new(HALF * x, HALF * y, 0.0))
 }
 
-/// Places of the window in shares of it: middle, edges and corners.
+/// Places in the window, as shares of its size: middle, edges and corners.
 fn places() -> impl Iterator<Item = [f64; 2]> {
     const SHARES: [f64; 4] = [-0.995, -0.4, 0.3, 0.995];
     SHARES.into_iter().flat_map(|x| SHARES.map(|y| [x, y]))
@@ -94,7 +94,7 @@ fn a_small_disc_in_light_that_a_mirror_has_turned() {
     }
 }
 
-/// From a BRDF light leaves in all directions: the corner of the window is one of four axes.
+/// Light leaves a BRDF in all directions, so the corner of the window is a corner in four axes.
 #[test]
 fn a_small_disc_in_light_that_a_brdf_has_scattered() {
     let event = "Reflects(brdf: (lobe: Phong(20), albedo: 0.5))";
@@ -112,13 +112,13 @@ fn a_small_disc_in_light_that_a_brdf_has_scattered() {
     }
 }
 
-/// Reflection of a point in a plane.
+/// The mirror image of a point in a plane.
 fn reflected(point: DVec3, [on, normal]: [DVec3; 2]) -> DVec3 {
     point - 2.0 * (point - on).dot(normal) * normal
 }
 
 /// A second mirror whose edge just reaches into the light on its way to the first. A million random
-/// rays, followed by the images of the light in both planes, say how far it may reach.
+/// rays, traced by the images of the light in both planes, determine how far it may reach.
 #[test]
 fn the_edge_of_a_mirror_that_is_met_out_of_turn() {
     const RAYS: u32 = 1_000_000;
@@ -153,7 +153,7 @@ fn the_edge_of_a_mirror_that_is_met_out_of_turn() {
     let scene = resolve("scene", file, ".".as_ref(), u64::MAX).unwrap();
     let frame = scene.path.frame.decompose(&scene.planes[0].frame);
     let reach = |index: u32| {
-        // Multiples of powers of the root of x⁵ = x + 1 fill four axes evenly.
+        // Multiples of powers of the root of x⁵ = x + 1 fill four axes uniformly.
         let r = [1.0, 2.0, 3.0, 4.0]
             .map(|k| (f64::from(index) * 1.167_303_978_261_418_7_f64.powf(-k)).fract() - 0.5);
         let from = DVec3::new(0.1 * r[0], 0.1 * r[1], 0.0);
@@ -168,7 +168,7 @@ fn the_edge_of_a_mirror_that_is_met_out_of_turn() {
         let crosses = (second[0] - from).dot(second[1]) / (on_first - from).dot(second[1]);
         let beyond = !(0.0..1.0).contains(&crosses);
         let reaches = on_second.distance(second[0]);
-        // It must be large enough to reflect the ray, and so large to stop it.
+        // The second mirror must be large enough to reflect the ray, and this large to stop it.
         let stops = from.lerp(on_first, crosses).distance(second[0]);
         (!beyond && stops > reaches).then_some(stops)
     };

@@ -1,4 +1,5 @@
-//! Two measurements of one plane, on made-up batches, where the truth is known.
+//! Tests the comparison of two measurements of one plane on synthetic batches, where the truth is
+//! known.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -22,8 +23,8 @@ fn truth() -> Array3<Complex> {
     })
 }
 
-/// Slices of one batch: the truth and noise that, as a Hann window makes it, has the shares 1/2, 1,
-/// 1/2 of three neighbours along ν, and falls with ρ.
+/// Slices of one batch: the truth plus noise that, as a Hann window causes, has the shares 1/2, 1,
+/// 1/2 in three neighbours along ν, and falls with ρ.
 fn batch(seed: u64, index: usize, size: f64) -> Slices {
     let grid = plane().grid;
     let [azimuths, rho, nu] = grid.half_shape();
@@ -39,7 +40,7 @@ fn batch(seed: u64, index: usize, size: f64) -> Slices {
     Slices { grid, half }
 }
 
-/// The mean of so many batches and its noise.
+/// The mean of this many batches and its noise.
 fn sample(seed: u64, batches: usize, size: f64) -> Sample {
     let plane = plane();
     let mut measurement = Measurement::new(vec![plane.clone()]);
@@ -75,7 +76,7 @@ fn sample(seed: u64, batches: usize, size: f64) -> Sample {
 
 const SIZE: f64 = 0.2;
 
-/// Pairs of independent samples; the second may be of another noise.
+/// Pairs of independent samples; the noise of the second may differ.
 fn pairs(batches: usize, size: f64) -> Vec<(Sample, Sample)> {
     (0..SEEDS)
         .map(|seed| {
@@ -102,7 +103,7 @@ fn distance(values: &[f64]) -> f64 {
     apart.fold(0.0, f64::max) * n.sqrt()
 }
 
-/// 1 % of the Kolmogorov–Smirnov test.
+/// The 1 % level of the Kolmogorov–Smirnov test.
 const SMIRNOV: f64 = 1.63;
 
 #[test]
@@ -110,11 +111,11 @@ fn p_is_uniform_for_two_measurements_of_one_plane() {
     let alike = pairs(BATCHES, SIZE);
     let found = distance(&p_values(&alike));
     assert!(found < SMIRNOV, "{found}");
-    // Twice the batches and a third of the noise: nearly all noise is that of the first.
+    // Twice the batches and a third of the noise: nearly all noise comes from the first sample.
     let unlike = distance(&p_values(&pairs(2 * BATCHES, SIZE / 3.0)));
     assert!(unlike < SMIRNOV, "{unlike}");
 
-    // Harness faults: σ off by 10 %, and frequencies taken as independent.
+    // Injected faults: σ off by 10 %, and frequencies treated as independent.
     for scale in [0.9, 1.1] {
         let mut planted = alike.clone();
         for (a, b) in &mut planted {
@@ -135,17 +136,18 @@ fn p_is_uniform_for_two_measurements_of_one_plane() {
 
 #[test]
 fn noise_amounts_to_as_many_numbers_as_its_correlation_leaves() {
-    // Neighbours along ν are correlated by 2/3, those after them by 1/6: a line of n cells has
-    // tr C² = n + 2 (n − 1) 4/9 + 2 (n − 2)/36, as a complex number half of that.
+    // Neighbours along ν have the correlation 2/3, the next ones 1/6: a line of n cells has tr C² =
+    // n + 2 (n − 1) 4/9 + 2 (n − 2)/36, and half of that as a complex number.
     let squares = |n: f64| n + (n - 1.0) * 8.0 / 9.0 + (n - 2.0) / 18.0;
     let found: Vec<f64> = (0..50)
         .map(|seed| sample(seed, BATCHES, SIZE).noise_dof.unwrap())
         .collect();
     let mean = found.iter().sum::<f64>() / 50.0;
-    // Two azimuths: six lines with ρ > 0 each, and half of that with ρ = 0.
+    // Two azimuths: six lines with ρ > 0 each, and half of the line with ρ = 0.
     let frequencies = 2.0 * (6.0 * 13.0 + 7.0);
     let expected = 2.0 * frequencies * frequencies / (2.0 * (6.0 * squares(13.0) + squares(7.0)));
-    // Each frequency is in units of its own σ, which is estimated from 32 batches: two parts in 31.
+    // Each frequency is in units of its own σ, which is estimated from 32 batches and adds two
+    // parts in 31.
     assert!((mean / expected - 1.0).abs() < 0.065, "{mean} {expected}");
 }
 
@@ -156,7 +158,8 @@ fn a_difference_of_twice_the_noise_is_found() {
         let [a, mut b] = [2 * seed, 2 * seed + 1].map(|seed| sample(seed, BATCHES, SIZE));
         let sound = TwoSamples::new(&grid, &a, &b);
         assert!(sound.p_value.unwrap() > 1e-4, "{sound:?}"); // of twenty, one in 500 runs
-        // In norm: the truth times 1 + ε, with ε ‖truth‖ twice the noise of the difference.
+        // A difference in norm: the truth times 1 + ε, with ε ‖truth‖ twice the noise of the
+        // difference.
         let noise: f64 = a.sigma.iter().chain(&b.sigma).map(|s| s * s).sum();
         let norm: f64 = truth().iter().map(|s| s.norm_sqr()).sum();
         let epsilon = 2.0 * (noise / norm).sqrt();
@@ -173,7 +176,7 @@ fn shared_photons_are_told_from_agreement() {
     let a = sample(1, BATCHES, SIZE);
     let same = TwoSamples::new(&grid, &a, &a);
     assert!(same.p_shared.unwrap() < 1e-12 && same.difference <= 0.0);
-    // Half of the batches in common: the difference has half the variance.
+    // With half of the batches in common, the difference has half the variance.
     let mut half = sample(2, BATCHES, SIZE);
     half.mean = (&half.mean + &a.mean) * Complex::from(0.5);
     let half = TwoSamples::new(&grid, &a, &half);

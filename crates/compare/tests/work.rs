@@ -1,4 +1,5 @@
-//! Work is known before it begins: scenes that would not end are told from those that do.
+//! The work of a prediction is estimated before it begins, so scenes that would take too long are
+//! refused.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -48,12 +49,12 @@ fn too_much(scene: &Scene) -> Option<TooMuchWork> {
     too_much_work(scene, &Applicability::of_planes(scene))
 }
 
-/// What is said of a scene whose predictions take too much.
+/// The message for a scene whose predictions take too long.
 fn refusal(scene: &Scene) -> String {
     too_much(scene).expect("too much work").to_string()
 }
 
-/// Opaque layers in the place of others.
+/// `count` opaque layers in place of the scene's own.
 fn layers(count: usize, layer: impl Fn(usize) -> String) -> String {
     let layers: Vec<String> = (0..count).map(layer).collect();
     format!("blockers: [{}],\n    surfaces:", layers.join(", "))
@@ -85,7 +86,7 @@ fn scenes_of_the_repository_end() {
     assert!(found > 40, "{found} scenes");
 }
 
-/// Quadratures that would not end, or that nodes do not resolve, are nets with a budget.
+/// Quadratures that would take too long, or that nodes do not resolve, become nets with a budget.
 #[test]
 fn wide_lights_and_fine_gratings_before_a_receiver() {
     for edits in [
@@ -172,7 +173,7 @@ fn a_thousand_lobes() {
     assert_eq!(too_much(&scene), None);
 }
 
-/// Each is within the limit, all are not; the one that takes most is named.
+/// Each plane is within the limit but their sum is not; the plane that takes most is named.
 #[test]
 fn many_planes() {
     let plane = r#"(name: "on_its_way", at: Distance(2.5)),"#;

@@ -1,12 +1,12 @@
-//! The numbers of `docs/explorer.html`: a page on which light, blockers, travel and a receiver are
-//! dragged, and each light field and spectrum along the path is seen to change.
+//! The computations of `docs/explorer.html`: a page with interactive light, blockers, travel and
+//! receiver, which shows each light field and spectrum along the path.
 //!
-//! A [`Setup`] holds what can be set. A [`PathPlace`] is a place on the path: its light field and its
-//! spectrum are those of [`etendue_theory`], between parallel planes the very numbers that
-//! `etendue predict` gives for the scene that [`scene`] writes. On a curved glossy receiver they
-//! are first-order, without the cosine, and rays are followed off the sphere when asked.
+//! A [`Setup`] holds the settings. A [`PathPlace`] is a place on the path: its light field and its
+//! spectrum are those of [`etendue_theory`]; between parallel planes they equal the results of
+//! `etendue predict` for the scene that [`scene`] writes. On a curved glossy receiver they are
+//! first-order, without the cosine, and rays off the sphere are traced on request.
 //!
-//! For WebAssembly the crate is a library of JavaScript (`page`); `.ci/explorer` builds the page.
+//! For WebAssembly the crate is a JavaScript library (`page`); `.ci/explorer` builds the page.
 
 #[cfg(target_family = "wasm")]
 mod page;

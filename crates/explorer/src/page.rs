@@ -1,21 +1,21 @@
-//! What the page calls.
+//! The functions that the page calls.
 
 use crate::{CELLS, PathPlace, SettingKey, Setup, TABLE, grid, lobe, scene};
 use etendue_theory::shading::Criterion;
 use wasm_bindgen::prelude::wasm_bindgen;
 
-/// A scene and what is seen of it.
+/// A scene with its display resolution.
 #[wasm_bindgen]
 #[derive(Debug)]
 pub struct Explorer {
     setup: Setup,
-    /// Of a light field, along each axis.
+    /// Cells of a light field along each axis.
     cells: usize,
 }
 
 #[wasm_bindgen]
 impl Explorer {
-    /// The scene that stands after # in a URL.
+    /// Reads the scene from the fragment of a URL, after #.
     #[must_use]
     #[wasm_bindgen(constructor)]
     pub fn new(fragment: &str) -> Self {
@@ -25,8 +25,8 @@ impl Explorer {
         }
     }
 
-    /// Takes every other frequency, where the window needs no more, and larger cells: what is
-    /// moving need not be as fine, and each number stays as exact as it was.
+    /// Keeps every other frequency, if the window needs no more, and enlarges the cells, for fast
+    /// updates during interaction; each number remains as exact.
     pub fn coarsen(&mut self) {
         for key in [SettingKey::RhoStep, SettingKey::NuStep] {
             self.setup.set(key, 2.0 * self.setup.get(key));
@@ -34,13 +34,13 @@ impl Explorer {
         self.cells = CELLS / 2;
     }
 
-    /// The scene as it stands after # in a URL.
+    /// The scene as the fragment of a URL, after #.
     #[must_use]
     pub fn fragment(&self) -> String {
         self.setup.fragment()
     }
 
-    /// The numbers that can be set, as JSON: name, label, unit, min, max, step.
+    /// The settings as JSON: name, label, unit, min, max, step.
     #[must_use]
     pub fn table() -> String {
         let rows = TABLE.map(|entry| {
@@ -55,20 +55,20 @@ impl Explorer {
         format!("[{}]", rows.join(","))
     }
 
-    /// A number by its name; not a number if there is none of that name.
+    /// The value of a setting by name; NaN if the name is unknown.
     #[must_use]
     pub fn get(&self, name: &str) -> f64 {
         Setup::named(name).map_or(f64::NAN, |key| self.setup.get(key))
     }
 
-    /// Sets a number by its name.
+    /// Changes a setting by name.
     pub fn set(&mut self, name: &str, value: f64) {
         if let Some(key) = Setup::named(name) {
             self.setup.set(key, value);
         }
     }
 
-    /// The names of the planes, one to a line; a * before those that take long.
+    /// The names of the planes, one per line; slow planes are marked with a *.
     #[must_use]
     pub fn planes(&self) -> String {
         let all = PathPlace::all(&self.setup).into_iter();
@@ -76,7 +76,7 @@ impl Explorer {
         all.map(shown).collect::<Vec<_>>().join("\n")
     }
 
-    /// The light field at a plane: cells along x, along u, then the values, u fastest.
+    /// The light field at a plane: number of cells along x, along u, then the values, u fastest.
     #[must_use]
     pub fn field(&self, plane: usize) -> Vec<f64> {
         let values = PathPlace::all(&self.setup)[plane]
@@ -85,7 +85,8 @@ impl Explorer {
         values.iter().copied().collect()
     }
 
-    /// Its spectrum at azimuth 0, for ρ ≥ 0: real and imaginary parts by turns, ν fastest.
+    /// The spectrum at a plane at azimuth 0, for ρ ≥ 0: alternating real and imaginary parts, ν
+    /// fastest.
     #[must_use]
     pub fn spectrum(&self, plane: usize) -> Vec<f64> {
         let slices = PathPlace::all(&self.setup)[plane].spectrum(&self.setup);
@@ -96,7 +97,7 @@ impl Explorer {
             .collect()
     }
 
-    /// The spectrum and then the light field at a plane by rays, in the order of both; nothing
+    /// The spectrum and then the light field at a plane by ray tracing, in the same order; empty
     /// where they are exact already.
     #[must_use]
     pub fn follow(&self, plane: usize) -> Vec<f64> {
@@ -110,8 +111,8 @@ impl Explorer {
         spectrum.chain(field.values.iter().copied()).collect()
     }
 
-    /// Cells of a light field along each axis, half-widths in x and u, then steps to each side and
-    /// spacing along ρ and along ν.
+    /// Cells of a light field along each axis, half-widths in x and u, then the number of steps to
+    /// each side and the spacing along ρ and along ν.
     #[must_use]
     pub fn axes(&self) -> Vec<f64> {
         let grid = grid(&self.setup);
@@ -127,9 +128,10 @@ impl Explorer {
         ]
     }
 
-    /// What the sampling criterion says at an eye one metre from the glossy receiver: the cutoff
-    /// of the lobe (99 %), cycles per radian, then bandwidths under an environment (Eq. 20 of
-    /// Durand et al. 2005) and behind an edge of the blockers (Eq. 21), both corrected.
+    /// The sampling criterion for an eye one metre from the glossy receiver: the cutoff
+    /// of the lobe (99 %), cycles per radian, then bandwidths under an environment (Eq.
+    /// 20 of Durand et al. 2005) and behind an edge of the blockers (Eq. 21), both
+    /// corrected.
     #[must_use]
     pub fn criterion(&self) -> Vec<f64> {
         let get = |key| self.setup.get(key);

@@ -5,12 +5,12 @@ use etendue_field::{FrequencyAxis, Light, Profile, Rectangle, Shape, SliceGrid, 
 use etendue_theory::shading::PlanarLobe;
 use etendue_transform::random::{self, Stream};
 
-/// Length of a slat along Y, metres: more than any window sees.
+/// Length of a slat along Y, metres: larger than any window.
 pub(crate) const SLAT: f64 = 8.0;
-/// Cells of a picture along each axis, as the command has them.
+/// Cells of a picture along each axis, as in the command.
 pub const CELLS: usize = 64;
 
-/// Most frequencies to each side of zero: more take too long to be dragged.
+/// Maximum number of frequencies to each side of zero: more are too slow for interaction.
 const MAX_FREQUENCIES: usize = 160;
 
 /// The light.
@@ -34,12 +34,12 @@ pub fn lobe(setup: &Setup) -> PlanarLobe {
     }
 }
 
-/// Where blockers stand along an axis, in pitches from the middle.
+/// Position of a blocker along an axis, in pitches from the centre.
 pub(crate) fn place(i: u32, count: u32) -> f64 {
     f64::from(i) - 0.5 * (f64::from(count) - 1.0)
 }
 
-/// How many blockers there are along an axis.
+/// The number of blockers along an axis.
 #[must_use]
 #[expect(
     clippy::cast_possible_truncation,
@@ -61,7 +61,7 @@ pub(crate) fn seed(setup: &Setup) -> u64 {
     setup.get(SettingKey::Seed).round() as u64
 }
 
-/// The blockers, from the central ray.
+/// The blockers, relative to the central ray.
 pub(crate) fn shapes(setup: &Setup) -> Vec<Shape> {
     let count = count(setup);
     let [pitch, fill, jitter] =
@@ -96,11 +96,11 @@ pub(crate) fn window(setup: &Setup) -> Window {
     Window { x, y: x, u, v: u }
 }
 
-/// Their frequencies.
+/// The frequencies of all planes.
 #[must_use]
 pub fn grid(setup: &Setup) -> SliceGrid {
     let axis = |most: SettingKey, step: SettingKey, half_width: SettingKey| {
-        // Never wider than the window asks for.
+        // The spacing is never wider than the window requires.
         let spacing = setup.get(step).min(0.5 / setup.get(half_width));
         let half = whole((setup.get(most) / spacing - 1e-9).ceil()).min(MAX_FREQUENCIES);
         FrequencyAxis { half, spacing }

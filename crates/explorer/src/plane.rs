@@ -9,24 +9,24 @@ pub enum PathPlace {
     Light,
     /// Before the blockers.
     Travelled,
-    /// After them.
+    /// After the blockers.
     Blocked,
     /// At the receiver.
     Arrived,
-    /// There, times the factor of the cosine.
+    /// At the receiver, times the cosine.
     Irradiance,
     /// Light that leaves the diffuse receiver.
     Diffuse,
     /// On the glossy receiver, in the frames of its local normals.
     Curved,
-    /// There, after the lobe.
+    /// On the glossy receiver, after the lobe.
     Blurred,
     /// Light that leaves the glossy receiver.
     Glossy,
 }
 
 impl PathPlace {
-    /// Those of a scene, in the order of light.
+    /// The planes of a scene, in the order of light.
     #[must_use]
     pub fn all(setup: &Setup) -> Vec<Self> {
         let mut all = vec![Self::Light, Self::Travelled, Self::Blocked, Self::Arrived];
@@ -38,7 +38,7 @@ impl PathPlace {
         all
     }
 
-    /// Its name in the scene file.
+    /// The name of the plane in the scene file.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -53,7 +53,7 @@ impl PathPlace {
         }
     }
 
-    /// Whether it takes more time than a picture has, so that it is made in the background.
+    /// Whether the computation is too slow for interaction, so that it runs in the background.
     #[must_use]
     pub fn is_slow(self) -> bool {
         matches!(self, Self::Irradiance | Self::Diffuse)

@@ -1,4 +1,4 @@
-//! Spectra and light fields at the planes along the path: each a call of `etendue_theory`.
+//! Spectra and light fields at the planes along the path, computed by `etendue_theory`.
 
 use crate::parts::{grid, lobe, shapes, square, window};
 use crate::plane::PathPlace;
@@ -10,7 +10,7 @@ use etendue_theory::{
 };
 
 impl PathPlace {
-    /// The slice at azimuth 0.
+    /// The spectrum slice at azimuth 0.
     #[must_use]
     pub fn spectrum(self, setup: &Setup) -> Slices {
         let (window, grid) = (window(setup), grid(setup));
@@ -19,7 +19,7 @@ impl PathPlace {
             Self::Blurred | Self::Glossy => {
                 let chain = imaged(setup, if self == Self::Glossy { 2.0 } else { 1.0 });
                 let mut found = blurred_slices(&chain, &lobe(setup), &window, &grid);
-                // Straight back (x, u) is (−x, −u), and the albedo stays behind.
+                // The reflected ray goes straight back: (x, u) becomes (−x, −u), times the albedo.
                 let albedo = setup.get(SettingKey::Albedo);
                 found.half.mapv_inplace(|value| value.conj() * albedo);
                 found
@@ -28,7 +28,8 @@ impl PathPlace {
         }
     }
 
-    /// The light field in (x, u) as so many cells along each axis, its values in rows of constant x.
+    /// The light field in (x, u) with this many cells along each axis, its values in rows of
+    /// constant x.
     #[must_use]
     pub fn field(self, setup: &Setup, cells: usize) -> Projection {
         let window = window(setup);
@@ -51,15 +52,15 @@ impl PathPlace {
         }
     }
 
-    /// Both as `etendue predict` has them on a glossy receiver, by nets of rays; `None` elsewhere,
-    /// where nothing is first-order.
+    /// Spectrum and light field on a glossy receiver by nets of rays, as in `etendue predict`;
+    /// `None` elsewhere, where nothing is first-order.
     #[must_use]
     pub fn followed(self, setup: &Setup) -> Option<(Slices, Projection)> {
         let found = rays::followed(self, setup)?;
         Some((found.slices, found.projection))
     }
 
-    /// What light meets before it arrives here, between parallel planes.
+    /// The chain of operators before this plane, between parallel planes.
     fn chain(self, setup: &Setup) -> Chain {
         let (blockers, receiver) = (
             setup.get(SettingKey::Distance),
@@ -112,7 +113,8 @@ fn travel(from: &str, to: &str, distance: f64) -> Operator {
     }
 }
 
-/// The light that arrives at the receiver, its slopes moved by some times curvature times position.
+/// The light that arrives at the receiver, with `times` curvature times position added to its
+/// slopes.
 fn imaged(setup: &Setup, times: f64) -> Chain {
     let chain = PathPlace::Arrived.chain(setup);
     let power = times * setup.get(SettingKey::Curvature);
@@ -121,7 +123,8 @@ fn imaged(setup: &Setup, times: f64) -> Chain {
         .expect("an even light and opaque blockers")
 }
 
-/// On the surface positions are turned round and directions are not: S(ρ, ν) is S(−ρ, ν) before.
+/// In the frame of the surface positions are reversed and directions are not: S(ρ, ν) is the
+/// previous S(−ρ, ν).
 fn on_the_surface(before: &Slices) -> Slices {
     let mut after = before.clone();
     let last = before.grid.nu.count() - 1;

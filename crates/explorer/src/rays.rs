@@ -1,4 +1,5 @@
-//! The curved glossy receiver as it is: rays followed off a sphere, as `etendue predict` does it.
+//! The curved glossy receiver without approximation: rays are traced off a sphere, as in `etendue
+//! predict`.
 
 use crate::parts::{CELLS, grid, shapes, square, window};
 use crate::plane::PathPlace;
@@ -10,15 +11,15 @@ use etendue_field::{
 use etendue_theory::{Model, Observed, Over, Predicted, RayBudget, rays, scattering};
 use glam::DVec3;
 
-/// What the command gives a scene with as many photons as saved ones have: rays in all, and the
-/// error that is good enough.
+/// The command's budget for a scene with as many photons as saved scenes: total number of rays, and
+/// the target error.
 const BUDGET: RayBudget = RayBudget {
     nodes: 1.1e6,
     error: 3e-3,
 };
 /// Radius of the receiver, metres.
 pub(crate) const APERTURE: f64 = 0.6;
-/// Of a saved scene; rays are added until all of its slices are good enough.
+/// Azimuths of a saved scene; rays are added until all of its slices reach the target error.
 pub(crate) const AZIMUTHS: usize = 2;
 
 /// The light field at a plane on a glossy receiver by nets of rays; `None` for other planes.
@@ -75,7 +76,7 @@ fn layers(setup: &Setup) -> Vec<(f64, Mask)> {
     vec![(setup.get(SettingKey::Distance), mask)]
 }
 
-/// The receiver in the frame at the light, turned to it.
+/// The receiver in the frame at the light, facing it.
 fn patch(setup: &Setup) -> Patch {
     let vertex = DVec3::Z * setup.get(SettingKey::Travel);
     Patch {
@@ -91,7 +92,7 @@ fn reflectance(setup: &Setup) -> Reflectance {
     Brdf::new(lobe, setup.get(SettingKey::Albedo), Fresnel::White).into()
 }
 
-/// A plane where the central ray meets the receiver; straight back X is turned round.
+/// A plane where the central ray meets the receiver; straight back, X is reversed.
 fn seen(patch: &Patch, orientation: Orientation, arriving: bool) -> rays::Plane {
     let frame = Frame::new(patch.frame.origin, DVec3::NEG_Z, DVec3::NEG_X);
     rays::Plane {

@@ -7,7 +7,7 @@ use crate::setup::{SettingKey, Setup};
 use etendue_field::FrequencyAxis;
 use std::fmt::Write;
 
-/// Photons of a run that takes some seconds.
+/// Photons of a run that takes a few seconds.
 const PHOTONS: u64 = 4_194_304;
 
 /// The scene file.
@@ -104,7 +104,7 @@ fn receiver(setup: &Setup, x: f64, end: f64) -> String {
     )
 }
 
-/// A plane; beside blockers that are not there it stands where they would be.
+/// A plane; without blockers, planes beside them keep their position.
 fn plane(plane: PathPlace, setup: &Setup) -> String {
     let distance = setup.get(SettingKey::Distance);
     let are_there = setup.get(SettingKey::Fill) > 0.0;

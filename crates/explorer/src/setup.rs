@@ -1,37 +1,37 @@
-//! What a student sets: the numbers of the scene, their ranges, and how they are written in a URL.
+//! The settings: the numbers of the scene, their ranges, and their form in a URL.
 
 use std::fmt::Write;
 
-/// A number that can be set.
+/// The key of a setting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SettingKey {
     /// Side of the square light, metres.
     Width,
-    /// Where the light stands beside the middle of the blockers, metres.
+    /// Offset of the light from the centre of the blockers, metres.
     Position,
-    /// From the light to the receiver, metres.
+    /// Distance from the light to the receiver, metres.
     Travel,
-    /// From the light to the blockers, metres.
+    /// Distance from the light to the blockers, metres.
     Distance,
-    /// Between the centres of blockers, metres.
+    /// Distance between the centres of blockers, metres.
     Pitch,
-    /// Side of a blocker as a share of the pitch; nothing is there at 0.
+    /// Side of a blocker as a fraction of the pitch; 0 removes all blockers.
     Fill,
-    /// Blockers along X.
+    /// Number of blockers along X.
     Count,
     /// 1 for squares on a jittered grid, 0 for slats along Y.
     Squares,
-    /// By how many pitches squares are moved.
+    /// Maximum displacement of squares in pitches.
     Jitter,
-    /// Which places squares are moved to.
+    /// Seed of the displacements.
     Seed,
     /// 1 for a curved glossy receiver, 0 for a flat diffuse one.
     Glossy,
-    /// Of the glossy receiver, 1/m, convex positive.
+    /// Curvature of the glossy receiver, 1/m, convex positive.
     Curvature,
     /// Exponent of its Phong lobe.
     Exponent,
-    /// Share of the light that the receiver reflects.
+    /// Albedo of the receiver.
     Albedo,
     /// Half-width of the window in position, metres.
     WindowX,
@@ -39,30 +39,30 @@ pub enum SettingKey {
     WindowU,
     /// Highest spatial frequency, cycles per metre.
     RhoMax,
-    /// Its spacing.
+    /// Spacing of spatial frequencies.
     RhoStep,
     /// Highest angular frequency, cycles per unit slope.
     NuMax,
-    /// Its spacing.
+    /// Spacing of angular frequencies.
     NuStep,
 }
 
-/// A key with its name in URLs, its words and its range.
+/// A setting with its name in URLs, its label and its range.
 #[derive(Clone, Copy, Debug)]
 pub struct SettingEntry {
-    /// Which number.
+    /// The key.
     pub key: SettingKey,
-    /// Its name in URLs.
+    /// The name in URLs.
     pub name: &'static str,
-    /// What the page calls it; empty where the page has no slider for it.
+    /// The label on the page; empty if the page has no slider for it.
     pub label: &'static str,
-    /// Its unit; empty if it is a pure number.
+    /// The unit; empty for a pure number.
     pub unit: &'static str,
-    /// Least and most.
+    /// Minimum and maximum.
     pub range: [f64; 2],
-    /// Between neighbours on the slider; 0 where it moves by factors.
+    /// Step of the slider; 0 for a logarithmic slider.
     pub step: f64,
-    /// Where a page begins.
+    /// Initial value of a page.
     pub default: f64,
 }
 
@@ -85,7 +85,7 @@ const fn entry(
     }
 }
 
-/// All of them, in the order of [`SettingKey`].
+/// All settings, in the order of [`SettingKey`].
 pub const TABLE: [SettingEntry; 20] = [
     entry(
         SettingKey::Width,
@@ -242,7 +242,7 @@ pub const TABLE: [SettingEntry; 20] = [
     ),
 ];
 
-/// The numbers of a scene.
+/// The settings of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setup {
     values: [f64; TABLE.len()],
@@ -256,23 +256,23 @@ impl Default for Setup {
     }
 }
 
-/// What is left between blockers and receiver, metres.
+/// Minimum distance between blockers and receiver, metres.
 const CLEARANCE: f64 = 0.02;
 
 impl Setup {
-    /// A number.
+    /// The value of a setting.
     #[must_use]
     pub fn get(&self, key: SettingKey) -> f64 {
         self.values[key as usize]
     }
 
-    /// Whether one of those that are 0 or 1 is set.
+    /// Whether a setting that is 0 or 1 is 1.
     #[must_use]
     pub fn is(&self, key: SettingKey) -> bool {
         self.get(key) > 0.5
     }
 
-    /// Sets a number as near to a value as its range, and the scene, let it.
+    /// Changes a setting to the value nearest to the given one that its range and the scene permit.
     pub fn set(&mut self, key: SettingKey, value: f64) {
         let SettingEntry {
             range: [low, high],
@@ -299,7 +299,8 @@ impl Setup {
             .map(|entry| entry.key)
     }
 
-    /// What stands after # in a URL: all that is not as it was at the start, and never nothing.
+    /// The fragment of a URL, after #: all settings that differ from their defaults; it is never
+    /// empty.
     #[must_use]
     pub fn fragment(&self) -> String {
         let mut text = String::new();
@@ -314,7 +315,7 @@ impl Setup {
         text
     }
 
-    /// Reads what [`fragment`](Self::fragment) writes; what it does not know it leaves out.
+    /// Reads a result of [`fragment`](Self::fragment), ignoring unknown parts.
     #[must_use]
     pub fn of_fragment(text: &str) -> Self {
         let mut setup = Self::default();

@@ -1,8 +1,9 @@
-//! Scenes of Étendue for other renderers, to look at and to check against.
+//! Export of Étendue scenes to other renderers, for viewing and for checks.
 //!
-//! [`mitsuba`] writes a [`Scene`](etendue_scene::Scene) for [Mitsuba 3](https://www.mitsuba-renderer.org): light,
-//! blockers, surfaces with what they do to light, and beside them the virtual planes, so that a script can record the same local light
-//! fields with a tracer that shares nothing with ours (`docs/mitsuba.md`). What Mitsuba cannot say is refused by name.
+//! [`mitsuba`] writes a [`Scene`](etendue_scene::Scene) for [Mitsuba
+//! 3](https://www.mitsuba-renderer.org): light, blockers, surfaces with their BRDFs, and beside
+//! them the virtual planes, so that a script can record the same local light fields with an
+//! independent tracer (`docs/mitsuba.md`). Anything Mitsuba cannot represent is refused by name.
 
 mod mitsuba;
 
@@ -11,6 +12,6 @@ pub use mitsuba::{NotInMitsuba, mitsuba};
 /// The files of a scene for another renderer; the same scene gives the same bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Export {
-    /// Name relative to one folder, and content.
+    /// File names relative to one folder, and contents.
     pub files: Vec<(String, Vec<u8>)>,
 }

@@ -1,7 +1,7 @@
-//! A scene in Mitsuba's words.
+//! Export to Mitsuba's scene format.
 //!
-//! Coordinates are those of [`Scene`]: metres, the light's centre at the origin, and x, y, z along X, Y and D of the
-//! central ray. They are written so that every f64 comes back the same.
+//! Coordinates are those of [`Scene`]: metres, the light's centre at the origin, and x, y, z along
+//! X, Y and D of the central ray. They are written such that every f64 is read back exactly.
 
 mod id;
 mod light;
@@ -21,10 +21,10 @@ use glam::DVec3;
 use id::id;
 use xml::{Xml, diffuse};
 
-/// What a scene says and Mitsuba cannot.
+/// A part of a scene that Mitsuba cannot represent.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NotInMitsuba {
-    /// A spot.
+    /// A spot light.
     #[error(
         "Mitsuba has no light with an area whose radiance falls off as cosⁿθ: \
          a spot with exponent {exponent} cannot be exported, one with exponent 0 can"
@@ -33,7 +33,7 @@ pub enum NotInMitsuba {
         /// Its exponent n.
         exponent: f64,
     },
-    /// The rays of a file.
+    /// A light of rays from a file.
     #[error("Mitsuba has no light of single rays: the rays of a file cannot be exported")]
     Rays,
     /// A mask that is not opaque.
@@ -44,22 +44,22 @@ pub enum NotInMitsuba {
         /// Name of its layer.
         name: String,
     },
-    /// Something behind the plane in which an environment begins.
+    /// An object behind the plane in which an environment begins.
     #[error(
         "light from far away begins in the plane of `center` here, and comes from all around in Mitsuba: \
          {name:?}, which reaches behind that plane, would stand in its way, and cannot be exported"
     )]
     BehindTheSky {
-        /// Its name.
+        /// Name of the object.
         name: String,
     },
     /// A thin lens.
     #[error("Mitsuba has no lens without thickness but in cameras: {name:?} cannot be exported")]
     ThinLens {
-        /// Its name.
+        /// Name of the lens.
         name: String,
     },
-    /// A sum of BRDFs that is no blend.
+    /// A sum of BRDFs that is not a blend.
     #[error(
         "Mitsuba adds two BRDFs by weights w and 1 − w alone: {name:?} cannot be exported; \
          Reflects with `other` and `blend` can"
@@ -68,7 +68,7 @@ pub enum NotInMitsuba {
         /// Name of its surface.
         name: String,
     },
-    /// A factor of the angle to the normal.
+    /// A factor that depends on the angle to the normal.
     #[error(
         "Mitsuba has no factors of the angle at which light comes or leaves: {name:?} cannot be exported"
     )]
@@ -78,13 +78,14 @@ pub enum NotInMitsuba {
     },
 }
 
-/// The scene for Mitsuba 3: `scene.xml`, the meshes and pictures it names, and `planes.json` with the virtual planes, which Mitsuba has
-/// no word for.
+/// The scene for Mitsuba 3: `scene.xml`, its meshes and pictures, and `planes.json` with the
+/// virtual planes, for which Mitsuba has no element.
 ///
-/// A half-plane becomes a rectangle that ends beyond all light that reaches a window or a surface.
+/// A half-plane becomes a rectangle that extends beyond all light that reaches a window or a
+/// surface.
 ///
 /// # Errors
-/// When the scene holds something Mitsuba has no word for.
+/// If the scene holds something that Mitsuba cannot represent.
 pub fn mitsuba(scene: &Scene) -> Result<Export, NotInMitsuba> {
     if let Light::Environment { .. } = scene.light
         && let Some(name) = behind(scene)
@@ -122,12 +123,12 @@ struct Writer {
     xml: Xml,
     /// Files of meshes and pictures.
     files: Vec<(String, Vec<u8>)>,
-    /// What the next of them are for.
+    /// The object that the next files belong to.
     owner: String,
 }
 
 impl Writer {
-    /// Another file, named after what it is for; returns its name.
+    /// Adds a file, named after the object it belongs to; returns its name.
     fn file(&mut self, name: &str, bytes: Vec<u8>) -> String {
         let taken = |name: &String| self.files.iter().any(|(other, _)| other == name);
         let mut names = (0..).map(|number: u32| match number {
@@ -217,7 +218,7 @@ impl Writer {
         }
         rectangles.extend(half_planes.iter().map(|half| cut_off(half, beyond)));
         let id = format!("blockers_{number}");
-        // Thousands of shapes would be slow to load: rectangles are one mesh.
+        // Thousands of shapes would load slowly, so rectangles form one mesh.
         if !rectangles.is_empty() {
             let triangles: Vec<[DVec3; 3]> = rectangles
                 .iter()
@@ -247,7 +248,8 @@ fn halves(rectangle: &Rectangle, distance: f64) -> [[DVec3; 3]; 2] {
     [[a, corner(right, low), c], [a, c, corner(left, high)]]
 }
 
-/// The part of a half-plane that light can meet, and more: `beyond` is farther than light gets.
+/// The part of a half-plane that light can reach, with a margin: `beyond` is farther than light
+/// gets.
 fn cut_off(half_plane: &HalfPlane, beyond: f64) -> Rectangle {
     let edge = half_plane.edge;
     let end = if half_plane.above {
@@ -261,15 +263,15 @@ fn cut_off(half_plane: &HalfPlane, beyond: f64) -> Rectangle {
     Rectangle { center, size }
 }
 
-/// The largest coordinate across the central ray at which light that reaches a window or a surface can be: it runs
-/// straight from the light to there.
+/// The largest coordinate across the central ray of light that reaches a window or a surface: it
+/// runs straight from the light to there.
 fn reach(scene: &Scene) -> f64 {
     let ends = [0, 1].map(|axis| scene.light.extent(axis));
     let light = ends
         .as_flattened()
         .iter()
         .fold(0.0, |most: f64, end| most.max(end.abs()));
-    // The sky has no end; what comes from further away comes at less than a thousandth of a right angle.
+    // The sky is infinite; light from farther away arrives within a thousandth of grazing.
     let light = if light.is_finite() {
         light
     } else {
@@ -282,14 +284,14 @@ fn reach(scene: &Scene) -> f64 {
     windows.chain(corners).fold(light, f64::max)
 }
 
-/// The name of something that reaches behind the plane of the light.
+/// The name of an object that extends behind the plane of the light.
 fn behind(scene: &Scene) -> Option<String> {
     let mut bodies = bodies(scene);
     let found = bodies.find(|(_, corners)| corners.iter().any(|p| p.z < 0.0));
     found.map(|(name, _)| name.to_owned())
 }
 
-/// Surfaces, each with corners that are around it.
+/// Surfaces, each with the corners of a bounding shape.
 fn bodies(scene: &Scene) -> impl Iterator<Item = (&str, Vec<DVec3>)> {
     let surfaces = scene.surfaces.iter();
     let surfaces = surfaces.map(|s| (s.name.as_str(), s.corners().to_vec()));

@@ -1,4 +1,4 @@
-//! BRDFs at one place.
+//! BRDFs at one point of a surface.
 
 use serde::{Serialize, Serializer};
 use std::f64::consts::FRAC_PI_2;
@@ -6,8 +6,9 @@ use std::sync::Arc;
 
 /// A bidirectional reflectance distribution function, sr⁻¹.
 ///
-/// With ωi and ωo the directions of light, both away from the surface, θi and θo their angles to the normal n, r the mirror
-/// direction of ωi, α the angle between r and ωo, and h the unit vector half-way between ωi and ωo:
+/// With ωi and ωo the directions of light, both away from the surface, θi and θo their angles to
+/// the normal n, r the mirror direction of ωi, α the angle between r and ωo, and h the half vector
+/// of ωi and ωo:
 ///
 /// | lobe | BRDF |
 /// |---|---|
@@ -15,25 +16,26 @@ use std::sync::Arc;
 /// | Phong | albedo · (n + 1)/(2π) · max(0, cos α)ⁿ · F(θi): its integral over dωo is the albedo (Phong 1975) |
 /// | Beckmann, GGX | albedo · D(h) G₁(ωi) G₁(ωo) F(h·ωi) / (4 cos θi cos θo) (Walter et al. 2007, Eq. 20) |
 ///
-/// D and Smith's G₁ are those of Walter et al. 2007, Eqs. 25–27 and 33–34, exact for Beckmann. Zero unless both cosines are positive.
-/// Each is multiplied by f(θi) and h(θo) where it has such factors (Durand et al. 2005, section 4.3).
-/// A Fresnel factor of the angle of incidence, or an f that is not h, makes a BRDF not reciprocal; all else is.
+/// D and Smith's G₁ are those of Walter et al. 2007, Eqs. 25–27 and 33–34, exact for Beckmann. The
+/// BRDF is zero unless both cosines are positive. It is multiplied by f(θi) and h(θo) if it has
+/// such factors (Durand et al. 2005, section 4.3). A BRDF is reciprocal unless it has a Fresnel
+/// factor of the angle of incidence, or f and h differ.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Brdf {
-    /// Its lobe.
+    /// The lobe.
     pub lobe: Lobe,
-    /// Factor on it, 0 to 1.
+    /// The factor on the lobe, 0 to 1.
     pub albedo: f64,
-    /// Its Fresnel factor F.
+    /// The Fresnel factor F.
     pub fresnel: Fresnel,
-    /// f, of the angle at which light comes; `None` is 1.
+    /// The factor f of the angle of incidence; `None` is 1.
     pub incoming: Option<AngleTable>,
-    /// h, of the angle at which light leaves; `None` is 1.
+    /// The factor h of the angle at which light leaves; `None` is 1.
     pub outgoing: Option<AngleTable>,
 }
 
 impl Brdf {
-    /// A lobe with an albedo and a Fresnel factor, and no other factors.
+    /// Returns a lobe with an albedo and a Fresnel factor, and no other factors.
     #[must_use]
     pub fn new(lobe: Lobe, albedo: f64, fresnel: Fresnel) -> Self {
         Self {
@@ -46,7 +48,8 @@ impl Brdf {
     }
 }
 
-/// A factor from 0 to 1 of the angle to the normal: values at equal steps from 0 to 90°, linear in between.
+/// A factor from 0 to 1 that depends on the angle to the normal: values at equal steps from 0 to
+/// 90°, linear in between.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AngleTable {
     /// At least two values, the first along the normal and the last along the surface.
@@ -59,7 +62,7 @@ fn listed<S: Serializer>(values: &Arc<[f64]>, serializer: S) -> Result<S::Ok, S:
 }
 
 impl AngleTable {
-    /// The factor at an angle with this cosine, 0 to 1.
+    /// Returns the factor at an angle with this cosine, 0 to 1.
     #[must_use]
     #[expect(
         clippy::cast_possible_truncation,
@@ -78,33 +81,33 @@ impl AngleTable {
 /// The lobe of a BRDF.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub enum Lobe {
-    /// Alike in all directions.
+    /// Constant in all directions.
     Lambertian,
     /// A power of the cosine of the angle to the mirror direction.
     Phong {
-        /// n.
+        /// Exponent n.
         exponent: f64,
     },
     /// Microfacets with Beckmann's distribution of normals.
     Beckmann {
-        /// α: √2 times the root mean square slope along an axis.
+        /// Roughness α: √2 times the root mean square slope along an axis.
         roughness: f64,
     },
     /// Microfacets with the GGX distribution (Trowbridge and Reitz 1975, Walter et al. 2007).
     Ggx {
-        /// α.
+        /// Roughness α.
         roughness: f64,
     },
 }
 
 impl Lobe {
-    /// Whether it is about the mirror direction; else about the normal.
+    /// Checks whether the lobe is about the mirror direction; otherwise it is about the normal.
     #[must_use]
     pub fn is_about_mirror(&self) -> bool {
         !matches!(self, Self::Lambertian)
     }
 
-    /// The number it has, and what that is called.
+    /// Returns the lobe's parameter and the name of the parameter.
     #[must_use]
     pub fn number_mut(&mut self) -> Option<(&'static str, &mut f64)> {
         match self {
@@ -120,14 +123,14 @@ impl Lobe {
 /// A distribution of the normals of microfacets (Walter et al. 2007).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MicrofacetDistribution {
-    /// Gaussian slopes.
+    /// Gaussian distribution of slopes.
     Beckmann,
-    /// With longer tails (Trowbridge and Reitz 1975).
+    /// GGX distribution, with longer tails (Trowbridge and Reitz 1975).
     Ggx,
 }
 
 impl MicrofacetDistribution {
-    /// The lobe of such microfacets with this roughness.
+    /// Returns the lobe of such microfacets with this roughness.
     #[must_use]
     pub fn lobe(self, roughness: f64) -> Lobe {
         match self {
@@ -137,21 +140,21 @@ impl MicrofacetDistribution {
     }
 }
 
-/// The share of light that is reflected, unpolarised, as it depends on the angle of incidence.
+/// The share of unpolarised light that is reflected, as a function of the angle of incidence.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub enum Fresnel {
-    /// All of it.
+    /// All light is reflected.
     White,
-    /// At a dielectric.
+    /// Reflection at a dielectric.
     Dielectric {
-        /// Index of refraction, relative to the medium that light comes from.
+        /// Index of refraction, relative to the medium of the incident light.
         index: f64,
     },
-    /// At a conductor with index n + i k.
+    /// Reflection at a conductor with index n + i k.
     Conductor {
-        /// n.
+        /// Real part n of the index.
         n: f64,
-        /// k.
+        /// Imaginary part k of the index.
         k: f64,
     },
 }
@@ -174,7 +177,7 @@ mod tests {
             (90.0, 0.7),
         ] {
             let value = table.value(libm::cos(degrees.to_radians()));
-            // The cosine of 0.26 rad loses 10⁻¹⁵ of the angle.
+            // For 0.26 rad, the cosine loses 10⁻¹⁵ of the angle.
             assert!((value - expected).abs() < 1e-14, "{degrees}: {value}");
         }
     }

@@ -1,35 +1,36 @@
-//! Photons that cross virtual planes, and the account of their flux.
+//! Photons that cross virtual planes, and the ledger of their flux.
 
 use crate::TwoPlane;
 use serde::Serialize;
 
-/// One photon crossing one virtual plane.
+/// The crossing of one virtual plane by one photon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
-    /// Where and how it crosses, in the frame of the plane.
+    /// The ray of the photon, in the frame of the plane.
     pub ray: TwoPlane,
-    /// What it adds to radiance space: Φ (1 + u² + v²)², Φ being its flux times the number of emitted
-    /// photons. The window is not applied. The mean of `weight` · W over emitted photons estimates ∫ L W.
+    /// The contribution to radiance space: Φ (1 + u² + v²)², where Φ is the photon's flux times the
+    /// number of emitted photons. The window is not applied. The mean of `weight` · W over emitted
+    /// photons estimates ∫ L W.
     pub weight: f64,
 }
 
-/// What became of the emitted flux; sums over photons, in W times the number of emitted photons.
+/// The ledger of the emitted flux; sums over photons, in W times the number of emitted photons.
 ///
-/// emitted = absorbed + escaped + stopped, to rounding.
+/// Flux is conserved: emitted = absorbed + escaped + stopped, to rounding.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Ledger {
     /// Flux that left the light.
     pub emitted: f64,
     /// Flux absorbed by blockers and surfaces.
     pub absorbed: f64,
-    /// Flux that met nothing.
+    /// Flux that left the scene without meeting anything.
     pub escaped: f64,
-    /// Flux reflected where the central ray ends: the scene asks no more of it.
+    /// Flux reflected where the central ray ends; the photon is not traced further.
     pub stopped: f64,
 }
 
 impl Ledger {
-    /// Adds another account.
+    /// Adds another ledger.
     pub fn add(&mut self, other: &Self) {
         self.emitted += other.emitted;
         self.absorbed += other.absorbed;
@@ -37,7 +38,7 @@ impl Ledger {
         self.stopped += other.stopped;
     }
 
-    /// The account times a number.
+    /// Returns the ledger times a number.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         Self {
@@ -48,7 +49,7 @@ impl Ledger {
         }
     }
 
-    /// (emitted − absorbed − escaped − stopped) / emitted; zero when nothing was emitted.
+    /// Returns (emitted − absorbed − escaped − stopped) / emitted; zero if nothing was emitted.
     #[must_use]
     pub fn imbalance(&self) -> f64 {
         if self.emitted == 0.0 {
@@ -61,11 +62,11 @@ impl Ledger {
 /// Photons that crossed a plane: crossed = inside + outside of its window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct PlaneTally {
-    /// Photons that crossed the plane on the path it stands on.
+    /// Photons that crossed the plane on the plane's leg of the path.
     pub crossed: u64,
-    /// Those inside the window.
+    /// Crossings inside the window.
     pub inside: u64,
-    /// Those outside it: counted, never wrapped.
+    /// Crossings outside the window: counted, never wrapped.
     pub outside: u64,
 }
 
@@ -78,15 +79,16 @@ impl PlaneTally {
     }
 }
 
-/// Something that makes photons cross the virtual planes of a scene, batch by batch.
+/// A source of photons that cross the virtual planes of a scene, batch by batch.
 ///
-/// A batch is a function of its number alone, whichever thread asks for it and in whatever order.
+/// A batch depends on its number alone, not on the thread or the order of requests.
 pub trait PhotonSource: Sync {
-    /// Photons emitted in `batch`, those that end with zero weight included.
+    /// Returns the number of photons emitted in `batch`, including those that end with zero weight.
     fn emitted(&self, batch: u32) -> u64;
 
-    /// Emits the photons of `batch`. `record` is handed the index of a plane and crossings of it, a block at
-    /// a time, in an order that is always the same; `progress` is told how many photons a block took.
+    /// Emits the photons of `batch`. `record` is called with the index of a plane and crossings of
+    /// it, a block at a time, in an order that is always the same; `progress` is called with the
+    /// number of photons of each block.
     fn emit(
         &self,
         batch: u32,
@@ -94,13 +96,13 @@ pub trait PhotonSource: Sync {
         progress: &dyn Fn(u64),
     ) -> Ledger;
 
-    /// How many parts of a batch may be emitted one by one, by several threads; at least one, and a
-    /// function of the scene alone.
+    /// Returns the number of parts of a batch that several threads may emit separately; at least
+    /// one, and a function of the scene alone.
     fn parts(&self, _batch: u32) -> u32 {
         1
     }
 
-    /// Emits one part of a batch, as [`Self::emit`] does all of them in order.
+    /// Emits one part of a batch; [`Self::emit`] emits all parts in order.
     fn emit_part(
         &self,
         batch: u32,

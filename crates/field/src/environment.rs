@@ -1,4 +1,4 @@
-//! Light from far away.
+//! Environment lights: light from infinity.
 
 use crate::{Frame, Raster};
 use glam::DVec3;
@@ -6,19 +6,21 @@ use serde::{Serialize, Serializer};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// Light from far away: radiance that depends on its direction alone.
+/// Light from infinity: radiance that depends on direction alone.
 ///
-/// Environments shine forward: a ray of a leg goes along (u, v, 1), so that light is dark, whatever the map says, that does not come from the half
-/// of all directions that the central ray begins in. It begins in the plane across the central ray's beginning: nothing behind stands in its way.
+/// Environments shine forward: a ray of a leg goes along (u, v, 1). So whatever the map contains,
+/// only directions from the hemisphere in which the central ray begins carry light. The light
+/// begins in the plane across the central ray's start, and nothing behind that plane occludes it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Environment {
     /// The axes of the map, in the coordinates of the frame at the light: Y is up, D is to the front, and X = Y × D.
     pub frame: Frame,
-    /// What is where.
+    /// The radiance in each direction.
     pub map: EnvironmentMap,
 }
 
-/// Radiance by the direction that light comes from, in the coordinates of an [`Environment`].
+/// Radiance as a function of the direction that light comes from, in the coordinates of an
+/// [`Environment`].
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub enum EnvironmentMap {
     /// A sum of lobes.
@@ -27,28 +29,32 @@ pub enum EnvironmentMap {
     LatLong(#[serde(serialize_with = "shared")] Arc<LatLong>),
 }
 
-/// A lobe of light: L exp((cos γ − 1)/σ²), γ being the angle to the direction that most of it comes from.
+/// A lobe of light: L exp((cos γ − 1)/σ²), where γ is the angle to the direction of maximum
+/// radiance.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SphericalGaussian {
-    /// The direction most of it comes from, of unit length.
+    /// The direction from which most of the light comes, of unit length.
     pub from: DVec3,
-    /// L, W m⁻² sr⁻¹.
+    /// Peak radiance L, W m⁻² sr⁻¹.
     pub radiance: f64,
-    /// σ, radians.
+    /// Width σ, radians.
     pub width: f64,
 }
 
-/// Radiance on a grid over latitude and longitude, W m⁻² sr⁻¹: bilinear between the centres of pixels, all around in longitude; from the centres of
-/// the first and the last row to the poles it is that at the centre.
+/// Radiance on a grid over latitude and longitude, W m⁻² sr⁻¹: bilinear between the centres of
+/// pixels, periodic in longitude. Between the centres of the first or the last row and the poles it
+/// is constant along the meridian.
 ///
-/// The axes are those of `OpenEXR`'s latitude–longitude maps: the top is up (Y), longitude is 0 in the middle, to the front (Z), and grows to the
-/// left, π/2 being along X; latitude is π/2 at the top. So light is seen as one does who looks around from within. A pixel is an area, as in
-/// other renderers: the centre of column i of w is at longitude π (1 − (2 i + 1)/w), that of row j of h at latitude π (½ − (j + ½)/h). Mitsuba 3
-/// has the centres of the first and the last row at the poles instead, that of row j at latitude π (½ − j/(h − 1)).
+/// The axes are those of `OpenEXR`'s latitude–longitude maps: the top is up (Y), longitude is 0 in
+/// the middle, to the front (Z), and grows to the left, π/2 being along X; latitude is π/2 at the
+/// top. So the map is seen from inside. A pixel is an area, as in other renderers: the centre of
+/// column i of w is at longitude π (1 − (2 i + 1)/w), that of row j of h at latitude π (½ − (j +
+/// ½)/h). Mitsuba 3 has the centres of the first and the last row at the poles instead, and the
+/// centre of row j at latitude π (½ − j/(h − 1)).
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LatLong {
     radiance: Raster,
-    /// Where on the raster the poles are, in pixels from the top.
+    /// Positions of the poles on the raster, in pixels from the top.
     #[serde(skip)]
     poles: [f64; 2],
 }
@@ -58,14 +64,16 @@ fn shared<S: Serializer>(map: &Arc<LatLong>, serializer: S) -> Result<S::Ok, S::
 }
 
 impl Environment {
-    /// Radiance of light that travels along a direction of any length, in the coordinates of the frame at the light.
+    /// Returns the radiance of light that travels along a direction of any length, in the
+    /// coordinates of the frame at the light.
     #[inline]
     #[must_use]
     pub fn radiance(&self, along: DVec3) -> f64 {
         self.map.radiance(self.origin_of(along))
     }
 
-    /// Where light comes from that travels along a direction: of unit length, in the coordinates of the map.
+    /// Returns the direction that light travelling along a direction comes from: of unit length, in
+    /// the coordinates of the map.
     #[inline]
     #[must_use]
     pub fn origin_of(&self, along: DVec3) -> DVec3 {
@@ -74,7 +82,7 @@ impl Environment {
 }
 
 impl EnvironmentMap {
-    /// Radiance of light that comes from a direction of unit length.
+    /// Returns the radiance of light that comes from a direction of unit length.
     #[inline]
     #[must_use]
     pub fn radiance(&self, from: DVec3) -> f64 {
@@ -86,16 +94,16 @@ impl EnvironmentMap {
 }
 
 impl SphericalGaussian {
-    /// Its radiance from a direction of unit length.
+    /// Returns the radiance of the lobe from a direction of unit length.
     #[inline]
     #[must_use]
     pub fn radiance_from(&self, from: DVec3) -> f64 {
-        // 1 − cos γ, without cancelling where it is small.
+        // 1 − cos γ, without cancellation for small γ.
         let fall = 0.5 * (from - self.from).length_squared();
         self.radiance * libm::exp(-fall / (self.width * self.width))
     }
 
-    /// Its integral over all directions, 2π σ² (1 − exp(−2/σ²)) L.
+    /// Returns the integral of the lobe over all directions, 2π σ² (1 − exp(−2/σ²)) L.
     #[must_use]
     pub fn integral(&self) -> f64 {
         let squared = self.width * self.width;
@@ -104,24 +112,25 @@ impl SphericalGaussian {
 }
 
 impl LatLong {
-    /// The map of a picture.
+    /// Returns the map of a picture.
     #[must_use]
     pub fn new(radiance: Raster) -> Self {
         let poles = [0.0, radiance.height() as f64];
         Self { radiance, poles }
     }
 
-    /// The map of a picture that has the centres of its first and its last row at the poles.
+    /// Returns the map of a picture that has the centres of its first and its last row at the
+    /// poles.
     #[must_use]
     pub fn from_pole_to_pole(radiance: Raster) -> Self {
         let height = radiance.height() as f64;
-        // A single row is everywhere.
+        // A single row covers all latitudes.
         let half = if height > 1.0 { 0.5 } else { 0.0 };
         let poles = [half, height - half];
         Self { radiance, poles }
     }
 
-    /// The map with `radiance` at the direction of each pixel's centre; one pixel at least.
+    /// Returns the map with `radiance` at the direction of each pixel's centre; at least one pixel.
     #[must_use]
     pub fn from_fn(width: usize, height: usize, radiance: impl Fn(DVec3) -> f64) -> Self {
         let (width, height) = (width.max(1), height.max(1));
@@ -133,19 +142,19 @@ impl LatLong {
         Self::new(raster.unwrap_or_else(|| unreachable!("one value for each pixel")))
     }
 
-    /// The radiance of the pixels.
+    /// Returns the radiance of the pixels.
     #[must_use]
     pub fn raster(&self) -> &Raster {
         &self.radiance
     }
 
-    /// How far from the top of the raster the upper and the lower pole are, in pixels.
+    /// Returns the distances of the upper and the lower pole from the top of the raster, in pixels.
     #[must_use]
     pub fn poles(&self) -> [f64; 2] {
         self.poles
     }
 
-    /// Where on the raster a direction is, in pixels from the left and from the top.
+    /// Returns the position of a direction on the raster, in pixels from the left and from the top.
     #[inline]
     #[must_use]
     pub fn place(&self, from: DVec3) -> [f64; 2] {
@@ -157,14 +166,14 @@ impl LatLong {
         [width * (0.5 - longitude / TAU), top + down]
     }
 
-    /// The direction of a place on the raster, of unit length.
+    /// Returns the direction of a position on the raster, of unit length.
     #[inline]
     #[must_use]
     pub fn direction(&self, place: [f64; 2]) -> DVec3 {
         toward(self.radiance.width() as f64, self.poles, place)
     }
 
-    /// Radiance of light that comes from a direction.
+    /// Returns the radiance of light that comes from a direction.
     #[inline]
     #[must_use]
     pub fn radiance(&self, from: DVec3) -> f64 {
@@ -173,7 +182,7 @@ impl LatLong {
     }
 }
 
-/// The direction of a place on a raster of this width and with these poles.
+/// Returns the direction of a position on a raster of this width and with these poles.
 fn toward(width: f64, [top, bottom]: [f64; 2], [column, row]: [f64; 2]) -> DVec3 {
     let longitude = TAU * (0.5 - column / width);
     let latitude = PI * (0.5 - (row - top) / (bottom - top));
@@ -186,7 +195,8 @@ fn toward(width: f64, [top, bottom]: [f64; 2], [column, row]: [f64; 2]) -> DVec3
 mod tests {
     use super::*;
 
-    /// The axes of `OpenEXR`: up at the top, +X (longitude π/2) a quarter from the left, +Z in the middle.
+    /// Tests the axes of `OpenEXR`: up at the top, +X (longitude π/2) a quarter from the left, +Z
+    /// in the middle.
     #[test]
     fn the_map_is_seen_from_within() {
         let map = LatLong::from_fn(8, 4, |_| 1.0);
@@ -233,7 +243,7 @@ mod tests {
             environment.radiance(DVec3::new(-(libm::cos(0.1_f64)), libm::sin(0.1_f64), 0.0));
         let expected = 2.0 * libm::exp((libm::cos(0.1_f64) - 1.0) / 0.09);
         assert!((aside - expected).abs() < 1e-14); // rounding of unit vectors
-        // ∫ over the sphere by mid-points in cos γ: an error of (step/σ²)²/24.
+        // ∫ over the sphere by the midpoint rule in cos γ: an error of (step/σ²)²/24.
         let n = 20_000;
         let sum: f64 = (0..n)
             .map(|i| {

@@ -17,8 +17,8 @@ pub struct FieldGrid {
 }
 
 impl FieldGrid {
-    /// The smallest grid over the support of `window` whose Nyquist frequencies are not below the largest
-    /// frequencies of `slices`.
+    /// Returns the smallest grid over the support of `window` whose Nyquist frequencies are at
+    /// least the largest frequencies of `slices`.
     #[must_use]
     pub fn new(window: &Window, slices: &SliceGrid) -> Self {
         let half_widths = [window.x, window.y, window.u, window.v].map(|p| p.half_width());
@@ -30,36 +30,36 @@ impl FieldGrid {
         Self { cells, half_widths }
     }
 
-    /// Bytes of one such grid of f64, or of its transform. At most `u64::MAX`: a grid that no memory holds is not an
-    /// overflow, so a caller can ask before there is one.
+    /// Returns the number of bytes of one such grid of f64, or of its transform. Saturates at
+    /// `u64::MAX`, so a caller can check the size of a grid before allocating it.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         let [nx, ny, nu, nv] = self.cells.map(|n| n as u64);
-        // The transform of a row of n reals is n/2 + 1 complex numbers, and takes its place.
+        // The transform of a row of n reals is n/2 + 1 complex numbers, stored in its place.
         [nx, ny, nu, nv.saturating_add(2)]
             .into_iter()
             .fold(8, u64::saturating_mul)
     }
 
-    /// Width of a cell along `axis`.
+    /// Returns the width of a cell along `axis`.
     #[must_use]
     pub fn cell_width(&self, axis: usize) -> f64 {
         2.0 * self.half_widths[axis] / self.cells[axis] as f64
     }
 
-    /// Volume of a cell, metre² · slope².
+    /// Returns the volume of a cell, metre² · slope².
     #[must_use]
     pub fn cell_volume(&self) -> f64 {
         (0..4).map(|axis| self.cell_width(axis)).product()
     }
 
-    /// The centre of cell `i` along `axis`.
+    /// Returns the centre of cell `i` along `axis`.
     #[must_use]
     pub fn center(&self, axis: usize, i: usize) -> f64 {
         (i as f64 - self.cells[axis] as f64 / 2.0) * self.cell_width(axis)
     }
 
-    /// A ray in units of cells: whole at the centre of a cell, 0 ≤ t < n inside the box.
+    /// Returns a ray in units of cells: whole at the centre of a cell, 0 ≤ t < n inside the box.
     #[inline]
     #[must_use]
     pub fn position(&self, ray: &TwoPlane) -> [f64; 4] {
@@ -69,19 +69,20 @@ impl FieldGrid {
         })
     }
 
-    /// Spacing 1/(2h) of the frequencies along `axis`, cycles per unit.
+    /// Returns the spacing 1/(2h) of the frequencies along `axis`, cycles per unit.
     #[must_use]
     pub fn spacing(&self, axis: usize) -> f64 {
         0.5 / self.half_widths[axis]
     }
 
-    /// The Nyquist frequency n/(4h) along `axis`.
+    /// Returns the Nyquist frequency n/(4h) along `axis`.
     #[must_use]
     pub fn nyquist(&self, axis: usize) -> f64 {
         self.cells[axis] as f64 / 2.0 * self.spacing(axis)
     }
 
-    /// Which multiple of the spacing index `i` of the transform along `axis` is: 0, 1, … n/2 − 1, −n/2, … −1.
+    /// Returns the multiple of the spacing for index `i` of the transform along `axis`: 0, 1, … n/2
+    /// − 1, −n/2, … −1.
     #[inline]
     #[must_use]
     #[expect(
@@ -94,18 +95,18 @@ impl FieldGrid {
         if 2 * i < n { i } else { i - n }
     }
 
-    /// The 4D frequency (Ωx, Ωy, Ωu, Ωv) at `index` of the transform.
+    /// Returns the 4D frequency (Ωx, Ωy, Ωu, Ωv) at `index` of the transform.
     #[must_use]
     pub fn frequency(&self, index: [usize; 4]) -> [f64; 4] {
         std::array::from_fn(|axis| self.harmonic(axis, index[axis]) as f64 * self.spacing(axis))
     }
 }
 
-/// How a weighted ray is shared among the cells of a [`FieldGrid`]: by a B-spline in units of a cell, along each axis
-/// (Hockney and Eastwood 1981, section 5-3; the names are theirs).
+/// The assignment of a weighted ray to the cells of a [`FieldGrid`]: by a B-spline in units of a
+/// cell, along each axis (Hockney and Eastwood 1981, section 5-3; the names are theirs).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Assignment {
-    /// All to the cell it is in: the nearest grid point, order 1.
+    /// Nearest grid point, order 1: all weight in the cell of the ray.
     Nearest,
     /// Cloud in cell, order 2: linear between two cells.
     Cic,
@@ -115,7 +116,8 @@ pub enum Assignment {
 }
 
 impl Assignment {
-    /// The order p of the B-spline: cells along an axis, and the power of the sinc that is its transform.
+    /// Returns the order p of the B-spline: the number of cells along an axis, and the power of the
+    /// sinc that is its transform.
     #[inline]
     #[must_use]
     pub fn order(&self) -> usize {
@@ -127,14 +129,15 @@ impl Assignment {
     }
 }
 
-/// Twice `spacings` rounded up to a whole number, at least 8.
+/// Returns twice `spacings` rounded up to a whole number, at least 8.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
     reason = "not negative; a number beyond usize becomes its largest"
 )]
 fn even_cells(spacings: f64) -> usize {
-    // A product such as 0.7 · 2 · (5/1.4) may be above the whole number it stands for by rounding.
+    // By rounding, a product such as 0.7 · 2 · (5/1.4) may be above the whole number that it
+    // equals.
     let whole = (spacings * (1.0 - 1e-12)).ceil();
     (whole as usize).saturating_mul(2).max(8)
 }

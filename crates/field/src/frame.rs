@@ -11,24 +11,25 @@ pub struct TwoPlane {
     pub x: f64,
     /// Position along Y, in metres.
     pub y: f64,
-    /// Slope along X: the tangent of an angle, no unit.
+    /// Slope along X: the tangent of an angle, dimensionless.
     pub u: f64,
     /// Slope along Y.
     pub v: f64,
 }
 
 impl TwoPlane {
-    /// 1 + u² + v² = 1/cos²θ, θ being the angle to the central ray.
+    /// Returns 1 + u² + v² = 1/cos²θ, θ being the angle to the central ray.
     ///
-    /// Its square turns flux density in (x, y, u, v) into radiance, since
-    /// cos θ dω = du dv / (1 + u² + v²)².
+    /// The square of this factor turns flux density in (x, y, u, v) into radiance, since cos θ dω =
+    /// du dv / (1 + u² + v²)².
     #[inline]
     #[must_use]
     pub fn secant_squared(&self) -> f64 {
         1.0 + self.u * self.u + self.v * self.v
     }
 
-    /// The same ray in a parallel plane a distance `d` further along D: x' = x + d u, y' = y + d v.
+    /// Returns the same ray in a parallel plane a distance `d` further along D: x' = x + d u, y' =
+    /// y + d v.
     #[inline]
     #[must_use]
     pub fn travelled(&self, d: f64) -> Self {
@@ -58,7 +59,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// The frame of the coordinates themselves.
+    /// The identity frame of the coordinate system.
     pub const IDENTITY: Self = Self {
         origin: DVec3::ZERO,
         x: DVec3::X,
@@ -66,9 +67,9 @@ impl Frame {
         d: DVec3::Z,
     };
 
-    /// The frame at `origin` with D along `d` and X as near to `x` as orthogonality allows.
+    /// Returns the frame at `origin` with D along `d` and X as near to `x` as orthogonality allows.
     ///
-    /// `None` when `d` or `x` has no length, or they are parallel to a millionth.
+    /// `None` if `d` or `x` has zero length, or if they are parallel up to a millionth.
     #[must_use]
     pub fn new(origin: DVec3, d: DVec3, x: DVec3) -> Option<Self> {
         let d = d.try_normalize()?;
@@ -77,7 +78,7 @@ impl Frame {
         if across.length() < 1e-6 {
             return None;
         }
-        // What rounding has left along d of a short vector is taken off once more.
+        // For a short vector, the remainder along d due to rounding is subtracted again.
         let across = across.normalize();
         let x = (across - d * d.dot(across)).normalize();
         Some(Self {
@@ -88,7 +89,7 @@ impl Frame {
         })
     }
 
-    /// The parallel frame a distance `distance` further along D.
+    /// Returns the parallel frame a distance `distance` further along D.
     #[must_use]
     pub fn travelled(&self, distance: f64) -> Self {
         Self {
@@ -97,7 +98,7 @@ impl Frame {
         }
     }
 
-    /// A frame given in the coordinates of this one, in those of the world.
+    /// Converts a frame from the coordinates of this frame to world coordinates.
     #[must_use]
     pub fn compose(&self, local: &Self) -> Self {
         Self {
@@ -108,7 +109,7 @@ impl Frame {
         }
     }
 
-    /// A frame of the world, in the coordinates of this one.
+    /// Converts a frame from world coordinates to the coordinates of this frame.
     #[must_use]
     pub fn decompose(&self, world: &Self) -> Self {
         Self {
@@ -119,11 +120,11 @@ impl Frame {
         }
     }
 
-    /// The frame turned, by the smallest angle, until D is along the unit vector `d`.
+    /// Returns the frame turned by the smallest angle that brings D along the unit vector `d`.
     #[must_use]
     pub fn turned_to(&self, d: DVec3) -> Self {
         let turn = DQuat::from_rotation_arc(self.d, d);
-        // Rounding of the turn is taken off the axes.
+        // Removes the rounding errors of the turn from the axes.
         let x = turn * self.x;
         let x = (x - d * d.dot(x)).normalize();
         Self {
@@ -134,34 +135,34 @@ impl Frame {
         }
     }
 
-    /// The longitude of a direction: its angle from D towards X, radians.
+    /// Returns the longitude of a direction: its angle from D towards X, radians.
     #[must_use]
     pub fn longitude(&self, direction: DVec3) -> f64 {
         libm::atan2(direction.dot(self.x), direction.dot(self.d))
     }
 
-    /// A point of the world in the coordinates (X, Y, D) of this frame.
+    /// Converts a world point to the coordinates (X, Y, D) of this frame.
     #[inline]
     #[must_use]
     pub fn to_local(&self, point: DVec3) -> DVec3 {
         self.vector_to_local(point - self.origin)
     }
 
-    /// The point of the world at `local` coordinates (X, Y, D) of this frame.
+    /// Returns the world point at `local` coordinates (X, Y, D) of this frame.
     #[inline]
     #[must_use]
     pub fn to_world(&self, local: DVec3) -> DVec3 {
         self.origin + self.vector_to_world(local)
     }
 
-    /// A vector of the world as components along X, Y and D.
+    /// Converts a world vector to components along X, Y and D.
     #[inline]
     #[must_use]
     pub fn vector_to_local(&self, vector: DVec3) -> DVec3 {
         DVec3::new(vector.dot(self.x), vector.dot(self.y), vector.dot(self.d))
     }
 
-    /// The vector of the world with components `local` along X, Y and D.
+    /// Returns the world vector with components `local` along X, Y and D.
     #[inline]
     #[must_use]
     pub fn vector_to_world(&self, local: DVec3) -> DVec3 {
@@ -169,7 +170,8 @@ impl Frame {
     }
 }
 
-/// The lowest and the highest corner of the box around points; the origin, twice, without any.
+/// Returns the lowest and the highest corner of the bounding box of points; the origin, twice, for
+/// no points.
 #[must_use]
 pub fn enclosing(points: &[DVec3]) -> [DVec3; 2] {
     let low = points.iter().copied().reduce(DVec3::min);
@@ -177,7 +179,7 @@ pub fn enclosing(points: &[DVec3]) -> [DVec3; 2] {
     [low, high].map(Option::unwrap_or_default)
 }
 
-/// The corners of the box between two points.
+/// Returns the corners of the box between two points.
 #[must_use]
 pub fn box_corners(low: DVec3, high: DVec3) -> [DVec3; 8] {
     std::array::from_fn(|i| {

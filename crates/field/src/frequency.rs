@@ -5,32 +5,32 @@ use serde::Serialize;
 /// An odd number of evenly spaced frequencies with zero at the centre.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FrequencyAxis {
-    /// Frequencies on either side of zero; the axis holds 2 `half` + 1.
+    /// Number of frequencies on either side of zero; the axis has 2 `half` + 1.
     pub half: usize,
     /// Spacing, in cycles per unit (cycles per metre, or per unit slope).
     pub spacing: f64,
 }
 
 impl FrequencyAxis {
-    /// Number of frequencies, odd.
+    /// Returns the number of frequencies, which is odd.
     #[must_use]
     pub fn count(&self) -> usize {
         2 * self.half + 1
     }
 
-    /// Largest frequency.
+    /// Returns the largest frequency.
     #[must_use]
     pub fn max(&self) -> f64 {
         self.half as f64 * self.spacing
     }
 
-    /// The frequency at `index`, 0 ≤ index < count; ascending, zero at `half`.
+    /// Returns the frequency at `index`, 0 ≤ index < count; ascending, zero at `half`.
     #[must_use]
     pub fn value(&self, index: usize) -> f64 {
         (index as f64 - self.half as f64) * self.spacing
     }
 
-    /// All frequencies, ascending.
+    /// Returns all frequencies, ascending.
     #[must_use]
     pub fn values(&self) -> Vec<f64> {
         (0..self.count()).map(|i| self.value(i)).collect()
@@ -50,34 +50,35 @@ pub struct SliceGrid {
 }
 
 impl SliceGrid {
-    /// Azimuth φ_k, in radians.
+    /// Returns the azimuth φ_k, in radians.
     #[must_use]
     pub fn azimuth(&self, k: usize) -> f64 {
         std::f64::consts::PI * k as f64 / self.azimuths as f64
     }
 
-    /// The 4D frequency (Ωx, Ωy, Ωu, Ωv) of slice `k` at (ρ, ν).
+    /// Returns the 4D frequency (Ωx, Ωy, Ωu, Ωv) of slice `k` at (ρ, ν).
     #[must_use]
     pub fn frequency(&self, k: usize, rho: f64, nu: f64) -> [f64; 4] {
         let (s, c) = libm::sincos(self.azimuth(k));
         [rho * c, rho * s, nu * c, nu * s]
     }
 
-    /// Shape [K, half of ρ: ρ ≥ 0, ν] in which [`Slices`](crate::Slices) are stored.
+    /// Returns the shape [K, half of ρ: ρ ≥ 0, ν] in which [`Slices`](crate::Slices) are stored.
     #[must_use]
     pub fn half_shape(&self) -> [usize; 3] {
         [self.azimuths, self.rho.half + 1, self.nu.count()]
     }
 
-    /// Shape [K, ρ, ν] of all frequencies.
+    /// Returns the shape [K, ρ, ν] of all frequencies.
     #[must_use]
     pub fn full_shape(&self) -> [usize; 3] {
         [self.azimuths, self.rho.count(), self.nu.count()]
     }
 
-    /// Whether the half-plane cell (m, n), with ρ = m·spacing ≥ 0, is one of the independent ones.
+    /// Checks whether the half-plane cell (m, n), with ρ = m·spacing ≥ 0, is one of the independent
+    /// cells.
     ///
-    /// On the line ρ = 0 the cells at −ν are the conjugates of those at ν.
+    /// On the line ρ = 0 the values at −ν are the conjugates of those at ν.
     #[must_use]
     pub fn is_independent(&self, m: usize, n: usize) -> bool {
         m > 0 || n >= self.nu.half

@@ -6,14 +6,14 @@ use serde::Serialize;
 /// A smooth picture over a plane: exp(−π (a²/w₁² + b²/w₂²)), times a cosine grating if there is one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Image {
-    /// w₁ and w₂, in the unit of the coordinates.
+    /// Widths w₁ and w₂, in the unit of the coordinates.
     pub width: [f64; 2],
-    /// The grating.
+    /// The grating, if there is one.
     pub grating: Option<Grating>,
 }
 
 impl Image {
-    /// The picture at (a, b).
+    /// Returns the picture at (a, b).
     #[inline]
     #[must_use]
     pub fn value(&self, a: f64, b: f64) -> f64 {
@@ -23,7 +23,7 @@ impl Image {
         envelope * grating
     }
 
-    /// The integral of the envelope, w₁ w₂.
+    /// Returns the integral of the envelope, w₁ w₂.
     #[must_use]
     pub fn area(&self) -> f64 {
         self.width[0] * self.width[1]

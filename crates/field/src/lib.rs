@@ -1,14 +1,15 @@
-//! The words every stage of Étendue speaks.
+//! The data types that all stages of Étendue share.
 //!
-//! A local light field is the radiance around a central ray, a function of the four numbers at which a
-//! ray crosses a [virtual plane](VirtualPlane): position (x, y) and slopes (u, v), see [`TwoPlane`].
-//! A plane multiplies it by a [`Window`] and looks at it on a [`SliceGrid`] of frequencies; the outcome,
-//! measured or predicted, is a set of [`Slices`]. A [`FieldGrid`] divides the support of the window into cells.
+//! A local light field is the radiance around a central ray, a function of the four coordinates of
+//! a ray at a [virtual plane](VirtualPlane): position (x, y) and slopes (u, v), see [`TwoPlane`]. A
+//! plane multiplies it by a [`Window`] and samples its spectrum on a [`SliceGrid`] of frequencies;
+//! the result, measured or predicted, is a set of [`Slices`]. A [`FieldGrid`] divides the support
+//! of the window into cells.
 //!
-//! Everything here is a value: nothing traces, transforms, predicts or touches a disk.
+//! This crate contains plain values: it does not trace, transform, predict or access files.
 //!
-//! Fourier transform, everywhere: F(Ω) = ∫ f(z) e^(−2πi Ω·z) dz, frequencies in cycles per unit
-//! (`docs/conventions.md`).
+//! The Fourier transform is always F(Ω) = ∫ f(z) e^(−2πi Ω·z) dz, with frequencies in cycles per
+//! unit (`docs/conventions.md`).
 
 mod brdf;
 mod crossing;

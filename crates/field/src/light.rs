@@ -1,25 +1,26 @@
-//! Lights of a scene, and how far they reach.
+//! Lights of a scene, and their extent in position and slope.
 
 use crate::{Environment, Image, RayLight, Shape};
 use serde::{Serialize, Serializer};
 use std::sync::Arc;
 
-/// Widths at which a Gaussian picture is below 10⁻¹² of its peak, and where photons end.
+/// The number of widths at which a Gaussian picture is below 10⁻¹² of its peak, and where it is cut
+/// off for photons.
 const PICTURE: f64 = 3.0;
 
 /// A light in a plane across the central ray, shining along it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub enum Light {
-    /// A flat shape.
+    /// A flat area light.
     Area {
-        /// The shape.
+        /// The shape of the light.
         shape: Shape,
         /// Radiance L₀ along the central ray, W m⁻² sr⁻¹.
         radiance: f64,
-        /// n in the radiance L₀ cosⁿθ; 0 is Lambertian, more is a spot.
+        /// n in the radiance L₀ cosⁿθ; 0 is Lambertian, larger values are a spot.
         exponent: f64,
     },
-    /// A point on the central ray, the same intensity in all directions.
+    /// A point on the central ray, with the same intensity in all directions.
     Point {
         /// Intensity, W sr⁻¹.
         intensity: f64,
@@ -38,12 +39,12 @@ pub enum Light {
         /// The picture.
         image: Image,
     },
-    /// Light from far away.
+    /// Light from infinity.
     Environment {
-        /// From where how much.
+        /// The environment map and its axes.
         environment: Environment,
     },
-    /// Finitely many rays, those of a ray file.
+    /// A finite list of rays, read from a ray file.
     Rays {
         /// The rays.
         #[serde(serialize_with = "shared")]
@@ -56,7 +57,7 @@ fn shared<S: Serializer>(rays: &Arc<RayLight>, serializer: S) -> Result<S::Ok, S
 }
 
 impl Light {
-    /// The picture it shines through.
+    /// Returns the picture through which the light shines, if any.
     #[must_use]
     pub fn image(&self) -> Option<&Image> {
         match self {
@@ -65,7 +66,7 @@ impl Light {
         }
     }
 
-    /// The flat shape that shines.
+    /// Returns the flat shape of the light, if any.
     #[must_use]
     pub fn shape(&self) -> Option<&Shape> {
         match self {
@@ -74,26 +75,27 @@ impl Light {
         }
     }
 
-    /// Whether it shines through a picture.
+    /// Checks whether the light shines through a picture.
     #[must_use]
     pub fn is_picture(&self) -> bool {
         self.image().is_some()
     }
 
-    /// Whether it comes to a point from more than one direction. Backward rays hit no other.
+    /// Checks whether a point can receive light from more than one direction. Backward rays can hit
+    /// only such lights.
     #[must_use]
     pub fn has_extent(&self) -> bool {
         matches!(self, Self::Area { .. } | Self::Environment { .. })
     }
 
-    /// Whether it shines along the same directions everywhere, as from far away.
+    /// Checks whether the light shines along the same directions everywhere, like an environment.
     #[must_use]
     pub fn is_distant(&self) -> bool {
         matches!(self, Self::Beam { .. } | Self::Environment { .. })
     }
 
-    /// The lowest and highest coordinate along x or y (0 or 1) of the points in its plane from which
-    /// it shines, metres. Infinite for an environment.
+    /// Returns the lowest and highest coordinate along x or y (0 or 1) of the light's points in its
+    /// plane, metres. Infinite for an environment.
     #[must_use]
     pub fn extent(&self, axis: usize) -> [f64; 2] {
         let half = match self {
@@ -106,7 +108,7 @@ impl Light {
         [-half, half]
     }
 
-    /// The largest slope along x or y (0 or 1) with which it shines. Infinite where it has no end.
+    /// Returns the largest slope of the light along x or y (0 or 1). Infinite if unbounded.
     #[must_use]
     pub fn steepest(&self, axis: usize) -> f64 {
         match self {

@@ -1,6 +1,7 @@
-//! Numbers as people read them, and whole parts.
+//! Formatting of numbers for readers, and conversion to whole numbers.
 
-/// The shortest text that is right to twelve significant digits: without the last digits that arithmetic leaves.
+/// Returns the shortest text that is accurate to twelve significant digits, without the last digits
+/// of rounding.
 #[must_use]
 pub fn tidy(x: f64) -> String {
     let rounded: f64 = format!("{x:.11e}").parse().unwrap_or(x);
@@ -8,7 +9,8 @@ pub fn tidy(x: f64) -> String {
     (rounded + 0.0).to_string()
 }
 
-/// A share in per cent, to `places` decimals, or more where there would not be two digits.
+/// Formats a share in per cent, to `places` decimals, or more if that would give fewer than two
+/// digits.
 #[must_use]
 pub fn percent(share: f64, places: usize) -> String {
     let percent = 100.0 * share;
@@ -20,7 +22,7 @@ pub fn percent(share: f64, places: usize) -> String {
     fixed(percent, places) + " %"
 }
 
-/// With so many decimals, and never −0.
+/// Formats with a given number of decimals, and never −0.
 #[must_use]
 pub fn fixed(value: f64, places: usize) -> String {
     let text = format!("{value:.places$}");
@@ -28,13 +30,13 @@ pub fn fixed(value: f64, places: usize) -> String {
     if is_zero { text.replace('-', "") } else { text }
 }
 
-/// Decimals that show two digits of a number above 0.
+/// Returns the number of decimals that shows two digits of a number above 0.
 #[must_use]
 pub fn decimals(x: f64) -> usize {
     whole((1.0 - libm::log10(x).floor()).clamp(0.0, 17.0))
 }
 
-/// Value ± error, to two digits of the error.
+/// Formats value ± error, to two digits of the error.
 #[must_use]
 pub fn uncertain(value: f64, error: f64) -> String {
     if !(error > 0.0 && error.is_finite()) {
@@ -44,7 +46,8 @@ pub fn uncertain(value: f64, error: f64) -> String {
     format!("{} ± {error:.digits$}", fixed(value, digits))
 }
 
-/// The whole part of a number: 0 of negative ones and of NaN, the largest there is beyond.
+/// Returns the whole part of a number: 0 for negative numbers and NaN, saturating at the largest
+/// value.
 #[inline]
 #[must_use]
 #[expect(

@@ -6,22 +6,24 @@ use serde::Serialize;
 
 /// A smooth piece of a quadric around its vertex: plane, sphere, cylinder or paraboloid.
 ///
-/// In coordinates (s, t, h) along X, Y and D of its frame, D being the normal at the vertex, its points satisfy
-/// k₁ s² + k₂ t² + k₃ h² + 2 h = 0. The curvature in a plane through D is positive where the surface is convex seen from D,
-/// as in docs/theory.md: a sphere of radius R has k = (1/R, 1/R, 1/R), a cylinder around an axis along Y (1/R, 0, 1/R),
-/// a paraboloid (k₁, k₂, 0), a plane zeros.
+/// In coordinates (s, t, h) along X, Y and D of its frame, where D is the normal at the vertex, its
+/// points satisfy k₁ s² + k₂ t² + k₃ h² + 2 h = 0. The curvature in a plane through D is positive
+/// if the surface is convex as seen from D, as in docs/theory.md: a sphere of radius R has k =
+/// (1/R, 1/R, 1/R), a cylinder around an axis along Y (1/R, 0, 1/R), a paraboloid (k₁, k₂, 0), a
+/// plane zeros.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Patch {
-    /// O at the vertex, D the normal there, X and Y the principal directions.
+    /// The frame: O at the vertex, D the normal there, X and Y the principal directions.
     pub frame: Frame,
-    /// k₁, k₂ and k₃, per metre.
+    /// Curvatures k₁, k₂ and k₃, per metre.
     pub curvature: [f64; 3],
     /// Radius of the patch, metres: its points satisfy s² + t² ≤ aperture².
     pub aperture: f64,
 }
 
 impl Patch {
-    /// The same patch in the coordinates of a frame that is given in those of this one.
+    /// Converts the patch to the coordinates of a frame that is given in the coordinates of the
+    /// patch.
     #[must_use]
     pub fn seen_from(&self, frame: &Frame) -> Self {
         Self {
@@ -30,7 +32,8 @@ impl Patch {
         }
     }
 
-    /// The point of it over (s, t), in the coordinates its frame is given in; NaN beyond the half that holds the vertex.
+    /// Returns the point of the patch over (s, t), in the coordinates in which its frame is given;
+    /// NaN beyond the half that contains the vertex.
     #[must_use]
     pub fn point(&self, s: f64, t: f64) -> DVec3 {
         let [a, b, c] = self.curvature;
@@ -39,10 +42,12 @@ impl Patch {
         self.frame.to_world(DVec3::new(s, t, h))
     }
 
-    /// Corners of a box around it, in the coordinates its frame is given in.
+    /// Returns the corners of a bounding box, in the coordinates in which the patch's frame is
+    /// given.
     #[must_use]
     pub fn corners(&self) -> [DVec3; 8] {
-        // At distance r across, the half that holds the vertex is at most |k| r² off along the normal.
+        // At distance r across, the half that contains the vertex deviates along the normal by at
+        // most |k| r².
         let most = self
             .curvature
             .iter()
@@ -52,7 +57,8 @@ impl Patch {
         box_corners(-half, half).map(|p| self.frame.to_world(p))
     }
 
-    /// The unit normal at a point near it, both in the coordinates its frame is given in; on the side of D at the vertex.
+    /// Returns the unit normal at a point near the patch, both in the coordinates in which its
+    /// frame is given; on the side of D at the vertex.
     #[inline]
     #[must_use]
     pub fn normal(&self, point: DVec3) -> DVec3 {
@@ -60,7 +66,8 @@ impl Patch {
         self.frame.vector_to_world(gradient).normalize()
     }
 
-    /// k₁ s² + k₂ t² + k₃ h² + 2 h at a point (s, t, h) of its frame: zero on the surface, positive before it.
+    /// Returns k₁ s² + k₂ t² + k₃ h² + 2 h at a point (s, t, h) of its frame: zero on the surface,
+    /// positive in front of it.
     #[inline]
     #[must_use]
     pub fn value(&self, point: DVec3) -> f64 {
@@ -69,8 +76,9 @@ impl Patch {
         a * x * x + b * y * y + c * z * z + 2.0 * z
     }
 
-    /// Half the gradient of [`value`](Self::value), in its frame: along the normal, on the side of D. Its last component is
-    /// positive on the half of the quadric that holds the vertex.
+    /// Returns half the gradient of [`value`](Self::value), in its frame: along the normal, on the
+    /// side of D. The last component is positive on the half of the quadric that contains the
+    /// vertex.
     #[inline]
     #[must_use]
     pub fn gradient(&self, point: DVec3) -> DVec3 {
@@ -78,7 +86,8 @@ impl Patch {
         DVec3::new(a * point.x, b * point.y, c * point.z + 1.0)
     }
 
-    /// The parameters of the points start + t · direction, in its frame, that lie on the patch, ascending; NaN where there is none.
+    /// Returns the parameters of the points start + t · direction, in its frame, that lie on the
+    /// patch, ascending; NaN if there is none.
     #[inline]
     #[must_use]
     pub fn hits(&self, start: DVec3, direction: DVec3) -> [f64; 2] {
@@ -88,7 +97,8 @@ impl Patch {
             curved.dot(start) + direction.z,
             self.value(start),
         );
-        // Nothing cancels: the root that would is the constant over the other.
+        // To avoid cancellation, the other root is computed as the constant term divided by this
+        // one.
         let q = -(b + (b * b - a * c).sqrt().copysign(b));
         let on_patch = |t: f64| {
             let on = t.is_finite() && self.contains(start + t * direction);
@@ -98,7 +108,7 @@ impl Patch {
         [s.min(t), s.max(t)]
     }
 
-    /// Whether a point of the quadric, in its frame, belongs to the patch.
+    /// Checks whether a point of the quadric, in its frame, belongs to the patch.
     #[inline]
     #[must_use]
     pub fn contains(&self, point: DVec3) -> bool {
@@ -108,8 +118,9 @@ impl Patch {
 }
 
 impl Specular {
-    /// The direction in which a ray goes on that meets a surface at `point`, where it has this unit normal on the side it faces; all in one
-    /// frame, the direction in any length. `lens` is the frame of a lens. `None` when the ray is totally reflected where it should go through.
+    /// Returns the direction of a ray after it meets a surface at `point`, given the unit normal
+    /// there on the side the surface faces; all in one frame, the direction in any length. `lens`
+    /// is the frame of a lens. `None` if a ray to be refracted is totally reflected.
     #[must_use]
     pub fn turned(
         &self,
@@ -144,21 +155,21 @@ impl Specular {
     }
 }
 
-/// What a specular surface does to a ray.
+/// The event of a ray at a specular surface.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub enum Specular {
-    /// Turns it back at the angle at which it came.
+    /// Mirror reflection.
     Mirror,
-    /// Lets it through by Snell's law; nothing is reflected.
+    /// Refraction by Snell's law, without reflection.
     Refraction {
         /// Index of refraction on the side of the normal.
         front: f64,
-        /// Index on the other side.
+        /// Index of refraction on the other side.
         back: f64,
     },
-    /// A flat lens without thickness: slopes across it fall by position over focal length.
+    /// A flat lens without thickness: slopes across it decrease by position over focal length.
     ThinLens {
-        /// Metres; negative if it spreads light.
+        /// Focal length, metres; negative for a diverging lens.
         focal_length: f64,
     },
 }

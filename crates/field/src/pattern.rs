@@ -1,31 +1,34 @@
-//! What varies over a surface.
+//! Patterns that vary over a surface.
 
 use crate::{Grating, Raster};
 use serde::{Serialize, Serializer};
 use std::sync::Arc;
 
-/// A number from 0 to 1 at each place of a surface.
+/// A number from 0 to 1 at each point of a surface.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub enum Pattern {
     /// ½ (1 + m cos(2π f t + p)) along an axis.
     Cosine(Grating),
-    /// 1 and 0 by turns on squares with edges along both axes, 1 on the first beyond the vertex along both.
+    /// Alternating 1 and 0 on squares with edges along both axes; 1 on the first square beyond the
+    /// vertex along both.
     Checkerboard {
-        /// Two sides of a square, in metres.
+        /// The length of two sides of a square, in metres.
         period: f64,
     },
     /// A picture around the vertex.
     Picture(Picture),
 }
 
-/// A picture on a surface: bilinear between the centres of pixels, as at the nearest centre from there to the edge, 0 beyond its edge.
+/// A picture on a surface: bilinear between the centres of pixels, constant from the outermost
+/// centres to the edge, 0 beyond the edge.
 ///
-/// Seen from where the surface faces with X to the right and Y up, it is the right way round: the first pixel is at the top left.
+/// It appears upright and unmirrored to a viewer in front of the surface with X to the right and Y
+/// up: the first pixel is at the top left.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Picture {
-    /// Its width along X and its height along Y, in metres.
+    /// Width along X and height along Y, in metres.
     pub size: [f64; 2],
-    /// Numbers from 0 to 1.
+    /// Pixels, numbers from 0 to 1.
     #[serde(serialize_with = "shared")]
     pub pixels: Arc<Raster>,
 }
@@ -35,7 +38,7 @@ fn shared<S: Serializer>(pixels: &Arc<Raster>, serializer: S) -> Result<S::Ok, S
 }
 
 impl Picture {
-    /// Its value at (s, t).
+    /// Returns the value at (s, t).
     #[inline]
     #[must_use]
     pub fn value(&self, s: f64, t: f64) -> f64 {
@@ -49,7 +52,7 @@ impl Picture {
 }
 
 impl Pattern {
-    /// Its value at (s, t).
+    /// Returns the value at (s, t).
     #[inline]
     #[must_use]
     pub fn value(&self, s: f64, t: f64) -> f64 {

@@ -4,17 +4,17 @@ use crate::{Frame, SliceGrid, TwoPlane, Window};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// On which side of what stands at its distance a plane looks at the light.
+/// The side on which a plane observes light, relative to the mask or surface at the same distance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Side {
     /// Before light meets the blockers or the surface at this distance.
     Before,
-    /// After it.
+    /// After light has met them.
     After,
 }
 
-/// What a plane records.
+/// The quantity that a plane records.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Quantity {
     /// Radiance, W m⁻² sr⁻¹.
@@ -25,60 +25,63 @@ pub enum Quantity {
     DifferentialIrradiance,
 }
 
-/// What the coordinates of a plane's rays are counted from.
+/// The reference for the coordinates of a plane's rays.
 ///
-/// On a surface, T is in the plane of incidence and B = N × T (docs/conventions.md); directions point away from the surface, those of
-/// light that arrives being turned around. A direction is cos φ (sin θ T + cos θ N) + sin φ B: the plane-sphere parameterisation.
+/// On a surface, T is in the plane of incidence and B = N × T (docs/conventions.md); directions
+/// point away from the surface, so those of arriving light are reversed. A direction is cos φ (sin
+/// θ T + cos θ N) + sin φ B: the plane-sphere parameterisation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Orientation {
     /// The plane across the central ray, two-plane parameterisation.
     #[default]
     Orthogonal,
-    /// The tangent plane where the central ray hits: positions along T and B, angles to the normal N there.
+    /// The tangent plane at the central hit: positions along T and B, angles to the normal N there.
     Tangent,
-    /// The surface itself: positions along T and B of the point hit, angles to the normal at that point, T and B being turned with
-    /// it by the smallest angle.
+    /// The surface itself: positions along T and B of the point hit, angles to the normal at that
+    /// point, with T and B turned together with the normal by the smallest angle.
     LocalNormals,
-    /// As `LocalNormals`, light that arrives being turned about the normal: in the direction in which a mirror would send it
-    /// (Durand et al. 2005, Fig. 10, step 4).
+    /// As `LocalNormals`, with arriving light rotated about the normal into the direction of mirror
+    /// reflection (Durand et al. 2005, Fig. 10, step 4).
     Mirrored,
 }
 
 impl Orientation {
-    /// Whether angles are counted from the normal at the point hit.
+    /// Checks whether angles are relative to the normal at the point hit.
     #[must_use]
     pub fn is_local(self) -> bool {
         matches!(self, Self::LocalNormals | Self::Mirrored)
     }
 }
 
-/// Where on the central ray the local light field is looked at, and how.
+/// The position on the central ray at which the local light field is observed, and the settings of
+/// the observation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VirtualPlane {
-    /// Name: the folder of its results.
+    /// Name, also that of the folder of its results.
     pub name: String,
-    /// Distance from the light along the central ray, in metres; it goes on growing from leg to leg.
+    /// Distance from the light along the central ray, in metres, accumulated over all legs.
     pub distance: f64,
-    /// The leg of the path it stands on: the number of surfaces the light has left on its way.
+    /// The leg of the path that the plane is on: the number of surfaces the light has left before
+    /// it.
     pub leg: usize,
-    /// Side of whatever stands at that distance.
+    /// The side of the mask or surface at that distance.
     pub side: Side,
-    /// What is recorded.
+    /// The quantity recorded.
     pub quantity: Quantity,
-    /// What its coordinates are counted from.
+    /// The reference for the plane's coordinates.
     pub orientation: Orientation,
     /// θ of the central ray on a surface, radians; 0 on an orthogonal plane. The coordinates of rays are (x, y, θ − longitude, φ).
     pub longitude: f64,
     /// The frame: O on the central ray, D along it; on a surface X = T, Y = B and D = N.
     pub frame: Frame,
-    /// The window its light field is multiplied by.
+    /// The window that multiplies the light field.
     pub window: Window,
-    /// The frequencies of its slices.
+    /// The frequencies of the slices.
     pub grid: SliceGrid,
 }
 
 impl VirtualPlane {
-    /// What its quantity multiplies radiance by at a ray.
+    /// Returns the factor from radiance to the plane's quantity at a ray.
     #[inline]
     #[must_use]
     pub fn factor(&self, ray: &TwoPlane) -> f64 {

@@ -1,18 +1,18 @@
-//! Functions whose bits do not depend on the machine's C library, where `libm` has none or a slow
-//! one.
+//! Functions whose results are bitwise independent of the machine's C library, where `libm` has
+//! none or a slow one.
 
-/// Complex numbers of a spectrum.
+/// A complex number of a spectrum.
 pub type Complex = num_complex::Complex<f64>;
 
-/// e^(iφ), φ in radians.
+/// Returns e^(iφ), φ in radians.
 #[must_use]
 pub fn cis(angle: f64) -> Complex {
     let (sin, cos) = libm::sincos(angle);
     Complex::new(cos, sin)
 }
 
-/// x to the power of y for x ≥ 0, in fewer steps than `libm::pow`. Its relative error is y ln x times that
-/// of a rounding, about 10⁻¹³ where it is worst.
+/// Returns x to the power of y for x ≥ 0, in fewer steps than `libm::pow`. The relative error is y
+/// ln x times that of a rounding, about 10⁻¹³ at worst.
 #[inline]
 #[must_use]
 pub fn power(x: f64, y: f64) -> f64 {
@@ -29,14 +29,14 @@ pub fn modulus(z: Complex) -> f64 {
     libm::hypot(z.re, z.im)
 }
 
-/// The square root with Re √z ≥ 0; on the cut, negative z, its imaginary part has the sign of
-/// Im z.
+/// Returns the square root with Re √z ≥ 0; on the branch cut, negative z, its imaginary part has
+/// the sign of Im z.
 #[must_use]
 pub fn square_root(z: Complex) -> Complex {
     if z == Complex::ZERO {
         return z;
     }
-    // The larger part by a sum without cancellation, the other from 2 Re √z Im √z = Im z.
+    // The larger part is a sum without cancellation, the other follows from 2 Re √z Im √z = Im z.
     let larger = (0.5 * (modulus(z) + z.re.abs())).sqrt();
     let other = 0.5 * z.im / larger;
     if z.re >= 0.0 {

@@ -1,11 +1,11 @@
-//! The light field summed over y and v, as it is drawn.
+//! The light field integrated over y and v, for pictures.
 
 use crate::Window;
 
 /// A grid of `bins` × `bins` cells over the (x, u) support of a window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProjectionGrid {
-    /// Cells along x and along u.
+    /// Number of cells along x and along u.
     pub bins: usize,
     /// Half-width in x, metres.
     pub half_x: f64,
@@ -14,7 +14,7 @@ pub struct ProjectionGrid {
 }
 
 impl ProjectionGrid {
-    /// The grid over the support of `window`.
+    /// Returns the grid over the support of `window`.
     #[must_use]
     pub fn new(window: &Window, bins: usize) -> Self {
         Self {
@@ -24,7 +24,7 @@ impl ProjectionGrid {
         }
     }
 
-    /// The cell [x, u] that holds (x, u); `None` outside the window.
+    /// Returns the cell [x, u] that contains (x, u); `None` outside the window.
     #[inline]
     #[must_use]
     #[expect(
@@ -39,13 +39,13 @@ impl ProjectionGrid {
         ((0.0..n).contains(&i) && (0.0..n).contains(&j)).then_some([i as usize, j as usize])
     }
 
-    /// The centre of cell `i` along an axis of half-width `half`.
+    /// Returns the centre of cell `i` along an axis of half-width `half`.
     #[must_use]
     pub fn center(&self, i: usize, half: f64) -> f64 {
         ((i as f64 + 0.5) / self.bins as f64 * 2.0 - 1.0) * half
     }
 
-    /// Area of a cell, metre · slope.
+    /// Returns the area of a cell, metre · slope.
     #[must_use]
     pub fn cell_area(&self) -> f64 {
         4.0 * self.half_x * self.half_u / (self.bins * self.bins) as f64
@@ -54,11 +54,11 @@ impl ProjectionGrid {
 
 /// The windowed light field integrated over y and v: ∫∫ L W dy dv, as means over cells of (x, u).
 ///
-/// By the Fourier slice theorem it is the primal side of the slice at azimuth 0.
-/// Shape [x, u], both ascending. Unit: W m⁻² sr⁻¹ · m.
+/// By the Fourier slice theorem it is the primal counterpart of the slice at azimuth 0. Shape [x,
+/// u], both ascending. Unit: W m⁻² sr⁻¹ · m.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Projection {
-    /// The cells.
+    /// The grid of cells.
     pub grid: ProjectionGrid,
     /// The mean over each cell, [x, u].
     pub values: ndarray::Array2<f64>,

@@ -12,7 +12,7 @@ pub struct Raster {
 }
 
 impl Raster {
-    /// `None` unless there are as many values as pixels, and at least one.
+    /// Returns `None` unless there are as many values as pixels, and at least one.
     #[must_use]
     pub fn new(width: usize, height: usize, values: Vec<f64>) -> Option<Self> {
         let fits = !values.is_empty() && width.checked_mul(height) == Some(values.len());
@@ -23,28 +23,30 @@ impl Raster {
         })
     }
 
-    /// Pixels in a row.
+    /// Returns the number of pixels in a row.
     #[must_use]
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Rows.
+    /// Returns the number of rows.
     #[must_use]
     pub fn height(&self) -> usize {
         self.height
     }
 
-    /// The values of all pixels.
+    /// Returns the values of all pixels.
     #[must_use]
     pub fn values(&self) -> &[f64] {
         &self.values
     }
 
-    /// The four pixels whose centres are around a place, and their shares in what bilinear interpolation says there.
+    /// Returns the four pixels whose centres surround a position, and their weights in bilinear
+    /// interpolation.
     ///
-    /// A place is counted in pixels from the left and from the top edge: the centre of the first pixel is at (½, ½). Beyond the outermost
-    /// centres the nearest one holds; columns go round if the raster `wraps`.
+    /// Positions are in pixels from the left and from the top edge: the centre of the first pixel
+    /// is at (½, ½). Beyond the outermost centres the nearest pixel is used; columns are periodic
+    /// if the raster `wraps`.
     #[inline]
     #[must_use]
     pub fn around(&self, column: f64, row: f64, wraps: bool) -> [(usize, f64); 4] {
@@ -58,7 +60,7 @@ impl Raster {
         ]
     }
 
-    /// What bilinear interpolation says at a place, see [`Self::around`].
+    /// Returns the bilinear interpolation at a position, see [`Self::around`].
     #[inline]
     #[must_use]
     pub fn value(&self, column: f64, row: f64, wraps: bool) -> f64 {
@@ -69,7 +71,8 @@ impl Raster {
     }
 }
 
-/// The two of `count` pixels in a row whose centres are around a place, and the share of the second.
+/// Returns the two of `count` pixels in a row whose centres surround a position, and the weight of
+/// the second.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

@@ -1,4 +1,4 @@
-//! Light of finitely many rays, as ray files have it.
+//! Lights that are finite lists of rays, as in ray files.
 
 use crate::TwoPlane;
 use serde::{Serialize, Serializer};
@@ -6,31 +6,32 @@ use serde::{Serialize, Serializer};
 /// A ray that carries flux.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FluxRay {
-    /// Where it crosses the plane of the light, and how.
+    /// The ray at the plane of the light.
     pub ray: TwoPlane,
-    /// What it carries, W.
+    /// The flux of the ray, W.
     pub flux: f64,
 }
 
-/// Rays through the plane of the light, all of which go forward. Before that plane and behind it they go straight on: a ray of a file that
-/// begins beyond the plane is one that has come through it.
+/// Rays through the plane of the light, all of which go forward. On both sides of that plane they
+/// are straight lines: a ray of a file that begins beyond the plane is extended back to it.
 ///
-/// Its light field is a sum of deltas. A ray of flux Φ adds Φ (1 + u² + v²)² to radiance space.
+/// The light field is a sum of deltas. A ray of flux Φ adds Φ (1 + u² + v²)² to radiance space.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RayLight {
     rays: Vec<FluxRay>,
-    /// The flux of all rays up to each and with it.
+    /// The cumulative flux, including each ray.
     upto: Vec<f64>,
-    /// Flux of rays that do not go forward, W; they are left out.
+    /// Flux of rays that do not go forward, W; these rays are left out.
     behind: f64,
-    /// Lowest and highest coordinate along x and along y, m.
+    /// The lowest and highest coordinate along x and along y, m.
     extent: [[f64; 2]; 2],
-    /// Largest slope along each.
+    /// The largest slope along each axis.
     steepest: [f64; 2],
 }
 
 impl RayLight {
-    /// Rays, and the flux of others that are left out. `None` where they carry nothing, or a number is not finite or a flux negative.
+    /// Takes rays, and the flux of rays that are left out. Returns `None` if the rays carry no
+    /// flux, or if a number is not finite or a flux is negative.
     #[must_use]
     pub fn new(rays: Vec<FluxRay>, behind: f64) -> Option<Self> {
         let mut flux = 0.0;
@@ -61,30 +62,31 @@ impl RayLight {
         })
     }
 
-    /// All rays, in the order of the file.
+    /// Returns all rays, in the order of the file.
     #[must_use]
     pub fn rays(&self) -> &[FluxRay] {
         &self.rays
     }
 
-    /// The flux of all rays, W.
+    /// Returns the flux of all rays, W.
     #[must_use]
     pub fn flux(&self) -> f64 {
         self.upto.last().copied().unwrap_or(0.0)
     }
 
-    /// Flux of rays that do not go forward, which are left out, W.
+    /// Returns the flux of the omitted rays, which do not go forward, W.
     #[must_use]
     pub fn behind(&self) -> f64 {
         self.behind
     }
 
-    /// The ray at a share of the flux, from 0 to 1: each is found in proportion to its own.
+    /// Returns the ray at a share of the cumulative flux, from 0 to 1: each ray is sampled in
+    /// proportion to its flux.
     #[must_use]
     pub fn at_share(&self, share: f64) -> &FluxRay {
         let flux = share * self.flux();
         let index = self.upto.partition_point(|upto| *upto <= flux);
-        // The last ray that carries any, should rounding lead beyond it.
+        // The last ray with non-zero flux, in case rounding leads beyond it.
         let last = || self.upto.partition_point(|upto| *upto < self.flux());
         self.rays.get(index).unwrap_or_else(|| &self.rays[last()])
     }
@@ -99,7 +101,7 @@ impl RayLight {
 }
 
 impl Serialize for RayLight {
-    /// How many rays there are, and their flux.
+    /// Serialises the number of rays and their flux.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         (self.rays.len(), self.flux()).serialize(serializer)
     }

@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-/// A rectangle in a plane orthogonal to the central ray, edges along X and Y, coordinates relative to the ray.
+/// A rectangle in a plane orthogonal to the central ray, with edges along X and Y and coordinates
+/// relative to the ray.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Rectangle {
     /// Centre (x, y), in metres.
@@ -12,7 +13,7 @@ pub struct Rectangle {
 }
 
 impl Rectangle {
-    /// Lowest and highest coordinate along X (`axis` 0) or Y (`axis` 1).
+    /// Returns the lowest and highest coordinate along X (`axis` 0) or Y (`axis` 1).
     #[inline]
     #[must_use]
     pub fn extent(&self, axis: usize) -> [f64; 2] {
@@ -20,7 +21,7 @@ impl Rectangle {
         [self.center[axis] - half, self.center[axis] + half]
     }
 
-    /// Whether the point (x, y) lies in it, edges included.
+    /// Checks whether the point (x, y) lies in the rectangle, edges included.
     #[inline]
     #[must_use]
     pub fn contains(&self, x: f64, y: f64) -> bool {
@@ -28,7 +29,7 @@ impl Rectangle {
             && 2.0 * (y - self.center[1]).abs() <= self.size[1]
     }
 
-    /// The largest coordinate of a point of it, without its sign.
+    /// Returns the largest absolute coordinate of a point of the rectangle.
     #[must_use]
     pub fn reach(&self) -> f64 {
         let ends = [self.extent(0), self.extent(1)];
@@ -37,7 +38,7 @@ impl Rectangle {
             .fold(0.0, |m: f64, v| m.max(v.abs()))
     }
 
-    /// Area, in square metres.
+    /// Returns the area, in square metres.
     #[must_use]
     pub fn area(&self) -> f64 {
         self.size[0] * self.size[1]

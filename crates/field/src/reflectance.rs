@@ -1,44 +1,46 @@
-//! How surfaces reflect: weighted sums of BRDFs.
+//! The reflectance of surfaces: weighted sums of BRDFs.
 
 use crate::{Brdf, Pattern};
 use serde::Serialize;
 
-/// Most terms of a sum.
+/// The most terms of a sum.
 pub const MOST_TERMS: usize = 8;
 
-/// How a surface reflects light: a weighted sum of BRDFs (Durand et al. 2005, section 4.5), times a texture.
+/// The reflectance of a surface: a weighted sum of BRDFs (Durand et al. 2005, section 4.5), times a
+/// texture.
 ///
-/// Places are given by (s, t), the coordinates along X and Y of the surface's [`Patch`](crate::Patch), in metres.
+/// Positions are given by (s, t), the coordinates along X and Y of the surface's
+/// [`Patch`](crate::Patch), in metres.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Reflectance {
-    /// The BRDFs that add up, at least one and at most [`MOST_TERMS`].
+    /// The BRDFs in the sum, at least one and at most [`MOST_TERMS`].
     pub terms: Vec<Term>,
-    /// What multiplies their sum.
+    /// The texture that multiplies the sum.
     pub texture: Option<Pattern>,
 }
 
 /// A BRDF of a sum.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Term {
-    /// What it is.
+    /// The BRDF.
     pub brdf: Brdf,
-    /// How much of it there is at each place.
+    /// The weight of the BRDF at each position.
     pub weight: Weight,
 }
 
-/// The weight of a BRDF at each place, 0 to 1.
+/// The weight of a BRDF at each position, 0 to 1.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub enum Weight {
     /// 1 everywhere.
     One,
-    /// That of a pattern.
+    /// The value of a pattern.
     Pattern(Pattern),
-    /// What a pattern leaves of 1.
+    /// 1 minus the value of a pattern.
     Rest(Pattern),
 }
 
 impl Weight {
-    /// Its value at (s, t).
+    /// Returns the weight at (s, t).
     #[inline]
     #[must_use]
     pub fn value(&self, s: f64, t: f64) -> f64 {
@@ -49,7 +51,7 @@ impl Weight {
         }
     }
 
-    /// Its pattern, if it has one.
+    /// Returns the pattern of the weight, if any.
     #[must_use]
     pub fn pattern(&self) -> Option<&Pattern> {
         match self {
@@ -59,7 +61,7 @@ impl Weight {
     }
 }
 
-/// The sum of BRDFs at one place.
+/// The sum of BRDFs at one point.
 #[derive(Clone, Copy, Debug)]
 pub struct Mixture<'a> {
     terms: &'a [Term],
@@ -67,14 +69,14 @@ pub struct Mixture<'a> {
 }
 
 impl<'a> Mixture<'a> {
-    /// The BRDFs that are there, with their weights.
+    /// Returns the BRDFs at the point, with their weights.
     #[inline]
     pub fn weighted(&self) -> impl Iterator<Item = (f64, &'a Brdf)> + use<'a> {
         let pairs = self.weights.into_iter().zip(self.terms);
         pairs.filter_map(|(weight, term)| (weight > 0.0).then_some((weight, &term.brdf)))
     }
 
-    /// The sum of albedos.
+    /// Returns the sum of albedos.
     #[inline]
     #[must_use]
     pub fn albedo(&self) -> f64 {
@@ -85,7 +87,7 @@ impl<'a> Mixture<'a> {
 }
 
 impl From<Brdf> for Reflectance {
-    /// The same everywhere.
+    /// Builds a reflectance that is the same everywhere.
     fn from(brdf: Brdf) -> Self {
         Self {
             terms: vec![Term {
@@ -98,7 +100,7 @@ impl From<Brdf> for Reflectance {
 }
 
 impl Reflectance {
-    /// w f₁ + (1 − w) f₂, w being a pattern.
+    /// Returns w f₁ + (1 − w) f₂, where w is a pattern.
     #[must_use]
     pub fn blend(one: Brdf, zero: Brdf, pattern: Pattern) -> Self {
         let terms = vec![
@@ -117,18 +119,19 @@ impl Reflectance {
         }
     }
 
-    /// The first BRDF of the sum, which says whether light leaves about the mirror direction.
+    /// Returns the first BRDF of the sum, which determines whether light leaves about the mirror
+    /// direction.
     #[must_use]
     pub fn first(&self) -> &Brdf {
         &self.terms[0].brdf
     }
 
-    /// The same, to change it.
+    /// Returns the first BRDF of the sum as a mutable reference.
     pub fn first_mut(&mut self) -> &mut Brdf {
         &mut self.terms[0].brdf
     }
 
-    /// The BRDF, where it is not a sum.
+    /// Returns the BRDF if the reflectance is not a sum.
     #[must_use]
     pub fn only(&self) -> Option<&Brdf> {
         match &self.terms[..] {
@@ -137,7 +140,7 @@ impl Reflectance {
         }
     }
 
-    /// The BRDFs at (s, t), with what the texture leaves of their weights.
+    /// Returns the BRDFs at (s, t), with their weights multiplied by the texture.
     #[inline]
     #[must_use]
     pub fn at(&self, s: f64, t: f64) -> Mixture<'_> {
@@ -155,7 +158,7 @@ impl Reflectance {
         }
     }
 
-    /// Whether it is the same everywhere.
+    /// Checks whether the reflectance is the same everywhere.
     #[must_use]
     pub fn is_uniform(&self) -> bool {
         self.texture.is_none() && self.terms.iter().all(|term| term.weight == Weight::One)

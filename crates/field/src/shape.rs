@@ -4,7 +4,7 @@ use crate::{Rectangle, TwoPlane};
 use glam::DVec3;
 use serde::Serialize;
 
-/// A disc in a plane orthogonal to the central ray, coordinates relative to the ray.
+/// A disc in a plane orthogonal to the central ray, with coordinates relative to the ray.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Disc {
     /// Centre (x, y), in metres.
@@ -14,7 +14,7 @@ pub struct Disc {
 }
 
 impl Disc {
-    /// Whether the point (x, y) lies in it, its edge included.
+    /// Checks whether the point (x, y) lies in the disc, its edge included.
     #[inline]
     #[must_use]
     pub fn contains(&self, x: f64, y: f64) -> bool {
@@ -33,7 +33,7 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// Whether the point (x, y) lies in it, edges included.
+    /// Checks whether the point (x, y) lies in the shape, edges included.
     #[inline]
     #[must_use]
     pub fn contains(&self, x: f64, y: f64) -> bool {
@@ -43,7 +43,7 @@ impl Shape {
         }
     }
 
-    /// The smallest rectangle that holds it.
+    /// Returns the smallest rectangle that contains the shape.
     #[must_use]
     pub fn bounds(&self) -> Rectangle {
         match *self {
@@ -55,7 +55,7 @@ impl Shape {
         }
     }
 
-    /// Area, in square metres.
+    /// Returns the area, in square metres.
     #[must_use]
     pub fn area(&self) -> f64 {
         match self {
@@ -65,11 +65,13 @@ impl Shape {
     }
 }
 
-/// The distance along the central ray at which a ray meets a triangle, both given in the frame the ray is counted from.
+/// Returns the distance along the central ray at which a ray meets a triangle, both given in the
+/// frame of the ray's coordinates.
 ///
-/// Seen along the ray it is a flat triangle around the origin or not. Two triangles see a common edge with the same two
-/// products, so nothing passes between them (Woop, Benthin and Wald 2013, *Watertight ray/triangle intersection*, whose
-/// shear this is).
+/// Along the ray the triangle projects to a flat triangle that does or does not contain the origin.
+/// Two triangles compute the same two products for a common edge, so no ray passes between them
+/// (Woop, Benthin and Wald 2013, *Watertight ray/triangle intersection*, which introduces this
+/// shear).
 #[inline]
 #[must_use]
 pub fn triangle_distance(corners: &[DVec3; 3], ray: &TwoPlane) -> Option<f64> {
@@ -80,14 +82,15 @@ pub fn triangle_distance(corners: &[DVec3; 3], ray: &TwoPlane) -> Option<f64> {
     let sum: f64 = weights.iter().sum();
     let depth: f64 = weights.iter().zip(corners).map(|(w, p)| w * p.z).sum();
     (inside && sum != 0.0).then(|| {
-        // Rounding must not put a hit before the triangle begins, where a plane may be.
+        // Rounding must not put a hit before the triangle begins, because a plane may be there.
         let [a, b, c] = corners.map(|p| p.z);
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
         (depth / sum).max(low).min(high)
     })
 }
 
-/// The unit normal at a point of a triangle, interpolated between those at its corners.
+/// Returns the unit normal at a point of a triangle, interpolated between the normals at its
+/// corners.
 #[must_use]
 pub fn interpolated_normal(corners: &[DVec3; 3], normals: &[DVec3; 3], point: DVec3) -> DVec3 {
     let [a, b, c] = corners;
@@ -100,16 +103,16 @@ pub fn interpolated_normal(corners: &[DVec3; 3], normals: &[DVec3; 3], point: DV
 /// The points of a plane on one side of a line along X or Y.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct HalfPlane {
-    /// The axis along which the coordinate is compared: 0 for x, 1 for y.
+    /// The axis of the coordinate that is compared: 0 for x, 1 for y.
     pub axis: usize,
-    /// The coordinate of its edge, in metres.
+    /// The coordinate of the edge, in metres.
     pub edge: f64,
-    /// Whether it holds the coordinates above the edge; else those below.
+    /// Whether the half-plane has the coordinates above the edge; otherwise it has those below.
     pub above: bool,
 }
 
 impl HalfPlane {
-    /// Whether the point (x, y) lies in it, its edge included.
+    /// Checks whether the point (x, y) lies in the half-plane, its edge included.
     #[inline]
     #[must_use]
     pub fn contains(&self, x: f64, y: f64) -> bool {
@@ -122,21 +125,21 @@ impl HalfPlane {
     }
 }
 
-/// A semi-transparent cosine grating, ½ (1 + m cos(2π f t + p)), t being x or y.
+/// A semi-transparent cosine grating, ½ (1 + m cos(2π f t + p)), where t is x or y.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Grating {
-    /// The axis along which it varies: 0 for x, 1 for y.
+    /// The axis along which the grating varies: 0 for x, 1 for y.
     pub axis: usize,
-    /// f, in cycles per metre.
+    /// Frequency f, in cycles per metre.
     pub frequency: f64,
-    /// m, 0 to 1.
+    /// Modulation m, 0 to 1.
     pub modulation: f64,
-    /// p, in radians.
+    /// Phase p, in radians.
     pub phase: f64,
 }
 
 impl Grating {
-    /// The share of radiance that passes at (x, y).
+    /// Returns the share of radiance that passes at (x, y).
     #[inline]
     #[must_use]
     pub fn transmittance(&self, x: f64, y: f64) -> f64 {
@@ -146,14 +149,14 @@ impl Grating {
     }
 }
 
-/// What stands in one plane across the central ray and multiplies radiance.
+/// A mask in one plane across the central ray, which multiplies radiance.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub enum Mask {
     /// Opaque, black shapes; they do not overlap.
     Opaque {
-        /// Those that end.
+        /// Bounded shapes.
         shapes: Vec<Shape>,
-        /// Those that do not.
+        /// Half-planes.
         half_planes: Vec<HalfPlane>,
     },
     /// A grating over the whole plane.
@@ -161,7 +164,7 @@ pub enum Mask {
 }
 
 impl Mask {
-    /// The grating, if it is one.
+    /// Returns the grating, if the mask is one.
     #[must_use]
     pub fn grating(&self) -> Option<&Grating> {
         match self {
@@ -170,7 +173,7 @@ impl Mask {
         }
     }
 
-    /// The share of radiance that passes at (x, y).
+    /// Returns the share of radiance that passes at (x, y).
     #[inline]
     #[must_use]
     pub fn transmittance(&self, x: f64, y: f64) -> f64 {
@@ -192,7 +195,7 @@ impl Mask {
 mod tests {
     use super::*;
 
-    /// A plane lies just before a mesh, and may touch a triangle that is across the path.
+    /// A plane lies just before a mesh, and may touch a triangle that is perpendicular to the path.
     #[test]
     fn rounding_puts_no_hit_beside_its_triangle() {
         let z = 0.728_987_365_116_f64;

@@ -5,10 +5,10 @@ use ndarray::{Array2, Array3, ArrayView2, ArrayView3, Axis};
 
 /// The slices S_φ(ρ, ν) = ℓ̂(ρ cos φ, ρ sin φ, ν cos φ, ν sin φ) of the spectrum of a windowed light field.
 ///
-/// The field is real, so S(−ρ, −ν) is the conjugate of S(ρ, ν) and only ρ ≥ 0 is held:
-/// `half` is [azimuth, ρ ≥ 0, ν], ν ascending from −max to +max.
+/// The field is real, so S(−ρ, −ν) is the conjugate of S(ρ, ν) and only ρ ≥ 0 is stored: `half` is
+/// [azimuth, ρ ≥ 0, ν], ν ascending from −max to +max.
 ///
-/// Unit: that of ∫ L W dx dy du dv, W m⁻² sr⁻¹ · m².
+/// The unit is that of ∫ L W dx dy du dv, W m⁻² sr⁻¹ · m².
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slices {
     /// The frequencies.
@@ -18,7 +18,7 @@ pub struct Slices {
 }
 
 impl Slices {
-    /// All zero.
+    /// Returns slices with all values zero.
     #[must_use]
     pub fn zeros(grid: SliceGrid) -> Self {
         Self {
@@ -27,19 +27,19 @@ impl Slices {
         }
     }
 
-    /// Whether all are zero: no light.
+    /// Checks whether all values are zero: no light.
     #[must_use]
     pub fn is_dark(&self) -> bool {
         self.half.iter().all(|s| s.norm_sqr() <= 0.0)
     }
 
-    /// The value ℓ̂(0) = ∫ L W.
+    /// Returns the value ℓ̂(0) = ∫ L W.
     #[must_use]
     pub fn at_zero(&self) -> f64 {
         self.half[[0, 0, self.grid.nu.half]].re
     }
 
-    /// All frequencies, [azimuth, ρ, ν], ρ and ν ascending.
+    /// Returns all frequencies, [azimuth, ρ, ν], ρ and ν ascending.
     #[must_use]
     pub fn full(&self) -> Array3<Complex> {
         unfold(&self.grid, self.half.view(), |s| s.conj())
@@ -55,14 +55,14 @@ impl Slices {
         power / self.grid.azimuths as f64
     }
 
-    /// ‖self − reference‖/‖reference‖ over the values at ρ ≥ 0; 0 if the two are equal.
+    /// Returns ‖self − reference‖/‖reference‖ over the values at ρ ≥ 0; 0 if the two are equal.
     #[must_use]
     pub fn relative_difference(&self, reference: &Self) -> f64 {
         self.relative_difference_where(reference, |_, _| true)
     }
 
-    /// The same over the independent frequencies: the line ρ = 0, where the values at −ν repeat
-    /// those at ν, counts once.
+    /// Returns the relative difference over the independent frequencies: the line ρ = 0, where the
+    /// values at −ν repeat those at ν, counts once.
     #[must_use]
     pub fn independent_relative_difference(&self, reference: &Self) -> f64 {
         self.relative_difference_where(reference, |m, n| self.grid.is_independent(m, n))
@@ -114,7 +114,7 @@ impl SliceGrid {
         unfold(self, half, |value| value)
     }
 
-    /// The same for what has been averaged over the azimuths: from [ρ ≥ 0, ν] to [ρ, ν].
+    /// Spreads values averaged over the azimuths in the same way: from [ρ ≥ 0, ν] to [ρ, ν].
     #[must_use]
     pub fn unfold_radial(&self, half: ArrayView2<'_, f64>) -> Array2<f64> {
         let one = Self {

@@ -8,13 +8,13 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum Profile {
-    /// cos²(π t / 2h) on |t| < h.
+    /// Hann window: cos²(π t / 2h) on |t| < h.
     Hann(f64),
-    /// 1 on |t| < h.
+    /// Box: 1 on |t| < h.
     Box(f64),
-    /// exp(−π t² / width²), cut at |t| < cut.
+    /// Truncated Gaussian: exp(−π t² / width²) on |t| < cut.
     Gaussian {
-        /// The width: the full integral of the uncut Gaussian.
+        /// The width: the full integral of the Gaussian before truncation.
         #[schemars(title = "a width in the unit of its coordinate", extend("x-ron" = "0.3"))]
         width: f64,
         /// Half-width of the support.
@@ -26,13 +26,14 @@ pub enum Profile {
 /// One term `weight` · cos(2π `frequency` t) of a window's profile inside its support.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CosineTerm {
-    /// Cycles per unit, ≥ 0.
+    /// Frequency in cycles per unit, ≥ 0.
     pub frequency: f64,
     /// Amplitude of the cosine.
     pub weight: f64,
 }
 
-/// Terms of the power series of a cosine, which leave 2·10⁻¹⁷ at a quarter of its period.
+/// Number of terms of the power series of a cosine, whose error is 2·10⁻¹⁷ at a quarter of its
+/// period.
 const TERMS: usize = 11;
 
 /// (−1)ᵏ (π/2)²ᵏ/(2k)!.
@@ -48,8 +49,9 @@ const COSINE: [f64; TERMS] = {
     terms
 };
 
-/// cos²(π s/2) on |s| ≤ 1, of several at a time, to 8·10⁻¹⁶. The window is asked of each photon, and this
-/// takes a small part of the time of a library's cosine, with the same bits on every machine.
+/// Computes cos²(π s/2) on |s| ≤ 1 for several values at a time, to 8·10⁻¹⁶. The window is
+/// evaluated for each photon; this takes a small part of the time of a library's cosine, and is
+/// bitwise identical on every machine.
 #[inline]
 fn hann<const N: usize>(s: [f64; N]) -> [f64; N] {
     let mut cosines = [0.0; N];
@@ -62,7 +64,7 @@ fn hann<const N: usize>(s: [f64; N]) -> [f64; N] {
 }
 
 impl Profile {
-    /// Half-width of the support.
+    /// Returns the half-width of the support.
     #[inline]
     #[must_use]
     pub fn half_width(&self) -> f64 {
@@ -72,7 +74,7 @@ impl Profile {
         }
     }
 
-    /// The profile at `t`.
+    /// Returns the profile at `t`.
     #[inline]
     #[must_use]
     pub fn value(&self, t: f64) -> f64 {
@@ -89,7 +91,7 @@ impl Profile {
         }
     }
 
-    /// The same shape, `factor` times as wide.
+    /// Returns the same shape, `factor` times as wide.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         match *self {
@@ -102,11 +104,11 @@ impl Profile {
         }
     }
 
-    /// The profile inside its support as a sum of cosines (docs/theory.md (3)).
+    /// Returns the profile inside its support as a sum of cosines (docs/theory.md (3)).
     ///
-    /// Exact for Hann and Box. A Gaussian is written as the sum of its copies a period 2L apart, a
-    /// Fourier series; L is chosen so that the copies add less than 10⁻¹⁶ inside the cut, and terms
-    /// below 10⁻¹⁷ are left out.
+    /// Exact for Hann and Box. A Gaussian is approximated by the sum of its copies a period 2L
+    /// apart, a Fourier series. L is chosen such that the copies add less than 10⁻¹⁶ inside the
+    /// cut, and terms below 10⁻¹⁷ are left out.
     #[must_use]
     pub fn cosine_terms(&self) -> Vec<CosineTerm> {
         match *self {
@@ -162,7 +164,7 @@ pub struct Window {
 }
 
 impl Window {
-    /// The window at a ray; zero outside.
+    /// Returns the window at a ray; zero outside the support.
     #[inline]
     #[must_use]
     pub fn value(&self, z: &TwoPlane) -> f64 {
@@ -181,7 +183,7 @@ impl Window {
         x * y * u * v
     }
 
-    /// Whether a ray is inside the support.
+    /// Checks whether a ray is inside the support.
     #[inline]
     #[must_use]
     pub fn contains(&self, z: &TwoPlane) -> bool {
@@ -201,7 +203,7 @@ mod tests {
         for i in -1000..=1000 {
             let s = f64::from(i) / 1000.0;
             let exact = libm::cos(std::f64::consts::FRAC_PI_2 * s).powi(2);
-            // Twice two roundings of numbers up to 1.3, of steps of 2.2·10⁻¹⁶.
+            // Twice two roundings of numbers up to 1.3, in steps of 2.2·10⁻¹⁶.
             assert!((hann([0.5, s])[1] - exact).abs() < 8e-16, "at {s}");
         }
     }

@@ -22,7 +22,7 @@ impl AxisQuantity {
         }
     }
 
-    /// "name (unit)", in units of 10 to the `exponent`; markup.
+    /// The label "name (unit)", in units of 10 to the `exponent`; markup.
     pub(crate) fn label(&self, exponent: i32) -> String {
         let power = match exponent {
             0 => String::new(),
@@ -40,7 +40,7 @@ impl AxisQuantity {
         }
     }
 
-    /// "name [unit]" without markup, for the head of a table.
+    /// The table heading "name [unit]", without markup.
     pub(crate) fn heading(&self) -> String {
         let name = crate::text::plain(&self.name);
         match crate::text::plain(&self.unit).as_str() {
@@ -50,20 +50,20 @@ impl AxisQuantity {
     }
 }
 
-/// One axis of a picture: what it shows and where its outer edges are.
+/// One axis of a picture: its quantity and its outer edges.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// What is along it.
+    /// The quantity along the axis.
     pub quantity: AxisQuantity,
     /// Outer edge of the first cell, in the quantity's unit.
     pub min: f64,
     /// Outer edge of the last cell.
     pub max: f64,
-    /// Whether equal factors, not equal differences, are equally far apart; both edges are above 0 then.
+    /// Whether the axis is logarithmic; both edges are above 0 then.
     pub is_log: bool,
 }
 
-/// A tick: where, in the axis' unit, and its text.
+/// A tick: its position in the axis' unit, and its text.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Tick {
     pub(crate) value: f64,
@@ -91,12 +91,12 @@ impl Axis {
 
     /// The centre of cell `index` of `count`.
     pub(crate) fn center(&self, index: usize, count: usize) -> f64 {
-        // Symmetric in the two edges, so that the middle of a symmetric axis is 0 to the bit.
+        // Symmetric in the two edges, so that the middle of a symmetric axis is exactly 0.
         let above = index as f64 + 0.5;
         ((count as f64 - above) * self.min + above * self.max) / count as f64
     }
 
-    /// The edges, moved apart when they are not an interval.
+    /// The edges, moved apart if they coincide or are reversed.
     pub(crate) fn range(&self) -> [f64; 2] {
         if self.max > self.min && (self.max - self.min).is_finite() {
             [self.min, self.max]
@@ -107,7 +107,7 @@ impl Axis {
         }
     }
 
-    /// Where `value` falls, 0 at the low edge and 1 at the high one.
+    /// The position of `value`: 0 at the low edge and 1 at the high one.
     pub(crate) fn fraction(&self, value: f64) -> f64 {
         let [min, max] = self.range();
         if self.is_log {
@@ -117,14 +117,14 @@ impl Axis {
         }
     }
 
-    /// The power of ten taken out of the tick texts.
+    /// The power of ten factored out of the tick texts.
     pub(crate) fn exponent(&self) -> i32 {
         let [min, max] = self.range();
         if self.is_log {
             return 0;
         }
         let decade = order(min.abs().max(max.abs()));
-        // Up to 9999 and down to 0.01 the plain numbers are the shorter.
+        // Plain numbers are shorter up to 9999 and down to 0.01.
         if (-2..=3).contains(&decade) {
             0
         } else {
@@ -174,7 +174,7 @@ impl Axis {
         let is_whole = (digits - digits.round()).abs() < 1e-6;
         let last = order(step) - i32::from(!is_whole);
         let places = usize::try_from(exponent - last).unwrap_or(0);
-        // A tick on the edge belongs to the axis whatever the rounding.
+        // A tick on the edge belongs to the axis despite rounding.
         let slack = 1e-9 * (max - min);
         let mut multiple = ((min - slack) / step).ceil();
         let mut ticks = Vec::new();
@@ -193,11 +193,11 @@ impl Axis {
 
 /// First digits of the steps between ticks.
 const USUAL: [f64; 3] = [1.0, 2.0, 5.0];
-/// The same where the usual ones leave fewer than three ticks.
+/// First digits used if the usual ones leave fewer than three ticks.
 const MORE: [f64; 7] = [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 8.0];
 
-/// The most ticks whose texts, side by side along `length`, stay apart, and the size of these. Where there would be fewer than
-/// three the texts are smaller, or the steps less usual.
+/// The most ticks whose texts do not overlap along `length`, and their font size. If there would be
+/// fewer than three, the texts are smaller, or the steps less usual.
 pub(crate) fn spaced_ticks(axis: &Axis, length: f64) -> (Vec<Tick>, f64) {
     const SIZES: [f64; 3] = [TICK_TEXT, 9.5, LEAST_TEXT];
     let [min, max] = axis.range();
@@ -224,7 +224,7 @@ pub(crate) fn spaced_ticks(axis: &Axis, length: f64) -> (Vec<Tick>, f64) {
     enough.chain(others).next().unwrap_or(first)
 }
 
-/// Whether the texts of ticks at a font `size` stay apart.
+/// Whether tick texts at a font `size` do not overlap.
 fn fit(axis: &Axis, ticks: &[Tick], length: f64, size: f64) -> bool {
     ticks.windows(2).all(|pair| {
         let step = axis.fraction(pair[1].value) - axis.fraction(pair[0].value);
@@ -233,7 +233,8 @@ fn fit(axis: &Axis, ticks: &[Tick], length: f64, size: f64) -> bool {
     })
 }
 
-/// Ticks along an upright axis: one for each 36 units of its height, or closer together where there would not be three.
+/// Ticks along a vertical axis: one per 36 units of its height, or denser if there would be fewer
+/// than three.
 pub(crate) fn upright_ticks(axis: &Axis, height: f64) -> Vec<Tick> {
     let most = (height / 36.0).max(2.0);
     let closer = (0..7).map(|more| axis.ticks(most + f64::from(more)));
@@ -244,7 +245,7 @@ pub(crate) fn upright_ticks(axis: &Axis, height: f64) -> Vec<Tick> {
 /// The smallest of `digits` × 10ⁿ that is not below `least` > 0.
 fn step(least: f64, digits: &[f64]) -> f64 {
     let decade = 10_f64.powi(order(least));
-    // The slack keeps 0.2 from becoming 0.5 when it is computed as 0.20000000000000004.
+    // The slack keeps 0.2, computed as 0.20000000000000004, from becoming 0.5.
     let mut steps = digits.iter().map(|digit| digit * decade);
     steps
         .find(|candidate| *candidate >= least * (1.0 - 1e-9))

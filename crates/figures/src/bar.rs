@@ -9,11 +9,11 @@ use crate::text::width;
 
 /// Width of the bar itself.
 pub(crate) const WIDTH: f64 = 12.0;
-/// Height of the point that marks an end beyond which values keep the last color.
+/// Height of the pointed end that marks values beyond the colors.
 const POINT: f64 = 9.0;
 
-/// Draws the bar of `shading` to the right of a panel: its left edge at `x`, as high as `panel`. Its label may be longer by
-/// `overhang`.
+/// Draws the bar of `shading` to the right of a panel, with its left edge at `x` and as high as
+/// `panel`. Its label may be longer by `overhang`.
 pub(crate) fn draw(
     svg: &mut Svg,
     shading: &Shading,
@@ -38,7 +38,7 @@ pub(crate) fn draw(
     Ok(())
 }
 
-/// The frame, with a point at each end that values pass.
+/// The frame, with a pointed end where values exceed the range.
 fn outline(svg: &mut Svg, shading: &Shading, area: Area) {
     let [middle, _] = area.middle();
     let [low, high] = shading.beyond;

@@ -1,4 +1,4 @@
-//! From values to colors.
+//! Mapping of values to colors.
 
 use crate::axis::Axis;
 use crate::grey::level;
@@ -6,12 +6,13 @@ use etendue_field::whole;
 use ndarray::ArrayView2;
 use serde::{Deserialize, Serialize};
 
-/// How values are laid on the colors.
+/// The mapping of values to colors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Scale {
     /// From 0 to the largest value shown; negative values are drawn as 0.
     Linear,
-    /// 10 log₁₀ of a power relative to the largest reference value, from `floor` to 0 dB; powers ≤ 0 are below it.
+    /// 10 log₁₀ of a power relative to the largest reference value, from `floor` to 0 dB; powers ≤
+    /// 0 are below the floor.
     Decibel {
         /// Lower end of the colors, in decibels, below 0.
         floor: f64,
@@ -23,10 +24,11 @@ pub enum Scale {
 /// Red, green, blue.
 pub(crate) type Rgb = [u8; 3];
 
-/// Cells without a value (NaN): a grey neither map contains.
+/// Grey for cells without a value (NaN), which neither map contains.
 pub(crate) const NO_VALUE: Rgb = [158, 158, 158];
 
-/// Colors of magnitudes, dark to pale; lightness grows evenly, so that they survive grey printing.
+/// Colors of magnitudes, dark to pale; lightness increases evenly, so they remain distinct when
+/// printed in grey.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Palette {
     /// Black, purple, orange, pale yellow.
@@ -35,24 +37,24 @@ pub enum Palette {
     Magma,
     /// Purple, blue, green, yellow.
     Viridis,
-    /// Blue, grey, yellow: nearly the same to all eyes.
+    /// Blue, grey, yellow: nearly the same for all types of colour vision.
     Cividis,
-    /// Black to white, by the transfer curve of sRGB: photographs.
+    /// Black to white, by the transfer curve of sRGB, for photographs.
     Grey,
 }
 
-/// A family of colors over 0 ≤ t ≤ 1.
+/// A color map over 0 ≤ t ≤ 1.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Colors {
     /// From dark to pale.
     Sequential(Palette),
     /// Blue, white, red.
     Diverging,
-    /// The same at both ends: pale, blue, dark, red, pale.
+    /// Cyclic: pale, blue, dark, red, pale.
     Cyclic,
 }
 
-/// Eight colors of the circle, between which others lie evenly.
+/// Eight colors of the circle, between which the others are interpolated.
 const CIRCLE: [[f64; 3]; 8] = [
     [226.0, 217.0, 226.0],
     [150.0, 182.0, 203.0],
@@ -65,7 +67,7 @@ const CIRCLE: [[f64; 3]; 8] = [
 ];
 
 impl Colors {
-    /// Those of magnitudes where nobody has chosen others.
+    /// The default colors of magnitudes.
     pub(crate) const MAGNITUDES: Self = Self::Sequential(Palette::Inferno);
 
     pub(crate) fn at(self, t: f64) -> Rgb {
@@ -110,7 +112,7 @@ fn on_circle(t: f64) -> Rgb {
 #[derive(Clone, Debug)]
 pub(crate) struct Shading {
     pub(crate) colors: Colors,
-    /// What the color bar shows, from its lower to its upper end.
+    /// The axis of the color bar, from its lower to its upper end.
     pub(crate) axis: Axis,
     /// The power at 0 dB; `None` on linear scales.
     reference: Option<f64>,
@@ -119,7 +121,7 @@ pub(crate) struct Shading {
 }
 
 impl Shading {
-    /// Colors on an axis, one to one.
+    /// Linear colors on an axis.
     pub(crate) fn linear(colors: Colors, axis: Axis) -> Self {
         Self {
             colors,
@@ -148,7 +150,7 @@ impl Shading {
         }
     }
 
-    /// The same, knowing whether any of `values` saturate.
+    /// The same shading, with marks if any of `values` saturate.
     pub(crate) fn showing(mut self, values: ArrayView2<'_, f64>) -> Self {
         let [low, high] = self.axis.range();
         for value in values {
@@ -170,13 +172,13 @@ impl Shading {
     fn level(&self, value: f64) -> f64 {
         match self.reference {
             None => value,
-            // A power after noise removal may be negative: it is below any floor.
+            // A power may be negative after noise removal: it is below any floor.
             Some(reference) => 10.0 * libm::log10((value / reference).max(0.0)),
         }
     }
 }
 
-/// The largest finite value; 0 without one above it.
+/// The largest finite value; 0 if none is above it.
 pub(crate) fn largest(values: ArrayView2<'_, f64>) -> f64 {
     let finite = values.iter().copied().filter(|v| v.is_finite());
     finite.fold(0.0, f64::max)

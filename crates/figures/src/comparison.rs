@@ -12,19 +12,19 @@ use ndarray::ArrayView2;
 /// One quantity measured and predicted on the same cells, [x, y], both axes ascending. NaN: no value.
 #[derive(Clone, Debug)]
 pub struct Comparison<'a> {
-    /// What is shown, and where; markup.
+    /// The quantity and plane shown; markup.
     pub title: &'a str,
     /// A line below the title, such as the verdict, markup; may be empty.
     pub note: &'a str,
     /// The first axis of the arrays.
     pub x: Axis,
-    /// The second.
+    /// The second axis of the arrays.
     pub y: Axis,
-    /// What the cells hold.
+    /// The quantity in the cells.
     pub quantity: AxisQuantity,
-    /// The colors of measured and predicted.
+    /// The color scale of measured and predicted.
     pub scale: Scale,
-    /// Measured values; may be negative once the shot noise has been taken off.
+    /// Measured values; may be negative after subtraction of the shot noise.
     pub measured: ArrayView2<'a, f64>,
     /// Predicted values.
     pub predicted: ArrayView2<'a, f64>,
@@ -32,26 +32,26 @@ pub struct Comparison<'a> {
     pub z: ArrayView2<'a, f64>,
 }
 
-/// Differences beyond this many σ keep the last color.
+/// Differences beyond this many σ saturate.
 const Z_LIMIT: f64 = 4.0;
 /// Side of a panel.
 const PANEL: f64 = 240.0;
 /// Left edges of the three panels and of the two color bars; the shared bar belongs to the first two panels.
 const PANELS_X: [f64; 3] = [66.0, 66.0 + PANEL + 18.0, 66.0 + 2.0 * PANEL + 118.0];
 const BARS_X: [f64; 2] = [PANELS_X[1] + PANEL + 10.0, PANELS_X[2] + PANEL + 10.0];
-/// How much longer than its bar a label may be.
+/// The length by which a label may exceed its bar.
 const OVERHANG: f64 = 12.0;
 const WIDTH: f64 = BARS_X[1] + bar::WIDTH + 52.0;
 
 /// Draws a comparison: measured and predicted on one color scale, the difference on ±4 σ.
 ///
-/// In decibels the reference is the largest predicted value. The CSV has a row for each cell.
+/// In decibels, the reference is the largest predicted value. The CSV has a row for each cell.
 ///
 /// # Errors
-/// When a heat map or the numbers cannot be written.
+/// If a heat map or the numbers cannot be written.
 ///
 /// # Panics
-/// When the three arrays differ in shape.
+/// If the three arrays differ in shape.
 pub fn comparison(comparison: &Comparison<'_>) -> Result<Figure, Error> {
     let shape = comparison.measured.dim();
     assert_eq!(comparison.predicted.dim(), shape, "shape of predicted");
@@ -109,7 +109,7 @@ fn area(index: usize, top: f64) -> Area {
     }
 }
 
-/// The colors measured and predicted share.
+/// The colors shared by measured and predicted.
 fn value_shading(comparison: &Comparison<'_>) -> Shading {
     let (measured, predicted) = (comparison.measured, comparison.predicted);
     let shading = match comparison.scale {

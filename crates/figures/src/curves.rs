@@ -1,4 +1,4 @@
-//! Curves and measured points over one axis, panel beside panel.
+//! Curves and measured points over one axis, in adjacent panels.
 
 use crate::axis::{Axis, AxisQuantity, upright_ticks};
 use crate::figure::{Error, Figure, csv_text, decimal};
@@ -10,30 +10,31 @@ use crate::svg::{Anchor, Area, Stroke, Svg, TextStyle};
 use crate::text::{plain, width};
 use etendue_field::whole;
 
-/// What a curve is, which says how it is drawn.
+/// The kind of a curve, which determines its style.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CurveKind {
-    /// A full line.
+    /// A solid line.
     Theory,
-    /// A broken line.
+    /// A dashed line.
     Rival,
-    /// Points with their errors.
+    /// Points with error bars.
     Measured,
 }
 
 /// A curve, or points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// How it is drawn.
+    /// The kind, which determines the style.
     pub kind: CurveKind,
-    /// Its name in the key; curves of one name have one entry.
+    /// The name in the key; curves of one name share an entry.
     pub name: String,
-    /// (x, y, standard error of y), in the order in which they are joined; of a line the error is 0.
+    /// (x, y, standard error of y), in the order in which they are joined; the error of a line is
+    /// 0.
     pub points: Vec<[f64; 3]>,
 }
 
 impl Curve {
-    /// A curve of this kind and name through points.
+    /// Creates a curve of this kind and name through points.
     #[must_use]
     pub fn new(kind: CurveKind, name: &str, points: Vec<[f64; 3]>) -> Self {
         Self {
@@ -47,40 +48,41 @@ impl Curve {
 /// Curves in one frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurvePanel {
-    /// Over the frame, markup.
+    /// Title above the frame, markup.
     pub title: String,
-    /// What is along x.
+    /// The quantity along x.
     pub x: AxisQuantity,
-    /// What is in the frame.
+    /// The curves in the frame.
     pub curves: Vec<Curve>,
-    /// Whether x and y are drawn by equal factors; those not above 0 are left out then.
+    /// Whether x and y are logarithmic; points not above 0 are left out then.
     pub is_log: [bool; 2],
 }
 
-/// Panels of curves that show one quantity; each has scales of its own, and y = 0 is in it unless y is by equal factors.
+/// Panels of curves that show one quantity; each has its own scales, which include y = 0 unless y
+/// is logarithmic.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curves {
-    /// Markup.
+    /// Title, markup.
     pub title: String,
     /// A line below the title, markup.
     pub note: String,
-    /// What is along y.
+    /// The quantity along y.
     pub y: AxisQuantity,
-    /// From left to right, and then below.
+    /// The panels, from left to right and then downwards.
     pub panels: Vec<CurvePanel>,
 }
 
 const ACROSS: usize = 3;
 const RIGHT: f64 = 20.0;
-/// Least width of what is over the panels.
+/// Minimum width of the text above the panels.
 const TITLE: f64 = 440.0;
-/// Height of a panel, and its greatest width.
+/// Height of a panel, and its maximum width.
 const HEIGHT: f64 = 136.0;
 const WIDEST: f64 = 262.0;
-/// Least width of a panel that has others beside it.
+/// Minimum width of a panel beside others.
 const NARROWEST: f64 = 100.0;
 const BETWEEN: [f64; 2] = [58.0, 74.0];
-/// Width of numbers beside an axis for which there is room.
+/// Width reserved for numbers beside an axis.
 const USUAL: f64 = 28.0;
 const RADIUS: f64 = 3.0;
 /// Half of the stroke at the end of an error bar.
@@ -95,12 +97,12 @@ const POINT: &str = INK;
 /// Length of a line in the key.
 const SAMPLE: f64 = 30.0;
 
-/// Draws them. The CSV has a row for each point.
+/// Draws the panels. The CSV has a row for each point.
 ///
 /// # Errors
-/// When the numbers cannot be written.
+/// If the numbers cannot be written.
 pub fn curves(curves: &Curves, style: &Style) -> Result<Figure, Error> {
-    // Long numbers beside an axis move its name.
+    // Long numbers beside an axis shift its name.
     let ticks = curves.panels.iter().flat_map(|panel| {
         let [_, y] = axes(panel, &curves.y);
         upright_ticks(&y, HEIGHT)
@@ -138,7 +140,7 @@ pub fn curves(curves: &Curves, style: &Style) -> Result<Figure, Error> {
     })
 }
 
-/// Each name once, with what it looks like, in as many lines as it takes; returns the last baseline.
+/// Draws each name once with its style, on as many lines as needed; returns the last baseline.
 fn key(svg: &mut Svg, curves: &Curves, [left, mut y]: [f64; 2], room: f64) -> f64 {
     let mut x = left;
     let mut known: Vec<&str> = Vec::new();
@@ -176,7 +178,7 @@ fn is_drawn(panel: &CurvePanel, point: &[f64; 3]) -> bool {
     [0, 1].iter().all(|i| !panel.is_log[*i] || point[*i] > 0.0)
 }
 
-/// The axes around all points of a panel, and around y = 0.
+/// The axes that cover all points of a panel, and y = 0.
 fn axes(panel: &CurvePanel, y: &AxisQuantity) -> [Axis; 2] {
     let points = || {
         let all = panel.curves.iter().flat_map(|c| &c.points);
@@ -209,7 +211,7 @@ fn axes(panel: &CurvePanel, y: &AxisQuantity) -> [Axis; 2] {
         let [least, most] = around(|p| p[1] - p[2], |p| p[1] + p[2]);
         let [least, most] = [least.min(0.0), most.max(0.0)];
         let margin = 0.06 * (most - least);
-        // Zero is an edge where nothing is below it.
+        // Zero is an edge if no values are below it.
         [
             if least < 0.0 { least - margin } else { 0.0 },
             most + margin,
@@ -240,7 +242,7 @@ fn draw(svg: &mut Svg, panel: &CurvePanel, y: &AxisQuantity, area: Area) {
                 CurveKind::Rival => svg.polyline(&at, RIVAL),
                 CurveKind::Measured => {
                     for (p, at) in points.iter().zip(at) {
-                        // Below the frame where an error is as large as its value.
+                        // The bar ends below the frame if an error is as large as its value.
                         let ends = [(p[1] - p[2]).max(y.min), p[1] + p[2]];
                         let ends = ends.map(|y| frame.point(p[0], y)[1]);
                         bar(svg, at, ends);

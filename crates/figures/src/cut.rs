@@ -1,4 +1,4 @@
-//! Drawing of a [`Section`]: into any area, so that strips can use it too.
+//! Drawing of a [`Section`] into any area, also for strips.
 
 mod place;
 
@@ -13,7 +13,7 @@ use place::{SegmentName, names, number_places};
 
 const BODY: &str = "#b9b9b9";
 
-/// Space left and right of the central ray's ends.
+/// Space left and right of the ends of the central ray.
 const MARGIN: f64 = 36.0;
 /// Height of the lines from planes to their numbers.
 const FEET: f64 = 10.0;
@@ -25,12 +25,12 @@ const NAME_ROW: f64 = 17.0;
 pub(crate) struct SectionLayout<'a> {
     section: &'a Section,
     area: Area,
-    /// The part of the area x is drawn in: below the names, above the numbers of the planes.
+    /// The area of the x range: below the names, above the plane numbers.
     plot: Area,
     z: Axis,
     x: Axis,
     names: Vec<SegmentName>,
-    /// Horizontal place of each plane's number.
+    /// Horizontal position of the number of each plane.
     planes: Vec<f64>,
 }
 
@@ -72,7 +72,7 @@ impl<'a> SectionLayout<'a> {
         }
     }
 
-    /// The whole cut, with its axes and the numbers of its planes.
+    /// Draws the whole cut, with axes and plane numbers.
     pub(crate) fn draw(&self, svg: &mut Svg) {
         svg.clipped(self.plot, |svg| {
             for body in &self.section.bodies {
@@ -121,7 +121,7 @@ impl<'a> SectionLayout<'a> {
         badge(svg, [x, y + BADGE], plane);
         let style = TextStyle::new([x, y + 32.0], HEAD_TEXT, Anchor::Middle).bold();
         svg.fitted(style, &mark.name, room);
-        // Four significant digits, as short as they can be written.
+        // Four significant digits, in the shortest form.
         let rounded = format!("{:.3e}", mark.distance).parse::<f64>();
         let distance = rounded.unwrap_or(mark.distance);
         let style = TextStyle::new([x, y + 47.0], TICK_TEXT, Anchor::Middle).fill(SOFT);
@@ -130,12 +130,12 @@ impl<'a> SectionLayout<'a> {
         svg.fitted(style, &text, room);
     }
 
-    /// Whether a plane is before or after what stands at its place.
+    /// Whether a plane is before or after an element at the same place.
     fn beside(&self, mark: &PlaneMark) -> &'static str {
         let near = 1e-9 * self.section.length;
         let stands = |s: &Segment| {
             let ([z, x], [other_z, other_x]) = (s.start, s.end);
-            // Where what is oblique meets the central ray.
+            // Where the oblique element meets the central ray.
             let rise = other_z - z;
             let met = z + if rise.abs() < near {
                 0.0
@@ -152,7 +152,7 @@ impl<'a> SectionLayout<'a> {
         }
     }
 
-    /// The place of a point (z, x); what is endless ends at the border.
+    /// The position of a point (z, x); infinite elements end at the border.
     fn point(&self, [z, x]: [f64; 2]) -> [f64; 2] {
         let [low, high] = self.x.range();
         let x = if x.is_infinite() {
@@ -171,7 +171,7 @@ impl<'a> SectionLayout<'a> {
         let mut hatching = Hatching::default();
         for segment in self.section.segments.iter().filter(|s| s.kind == kind) {
             let (start, end) = (self.point(segment.start), self.point(segment.end));
-            // A body is filled: it has no other side.
+            // A body is filled, so it has no second side.
             let bits = |point: &[f64; 2]| point.map(f64::to_bits);
             let mut edges = self.section.bodies.iter().flatten();
             let is_flat = edges.all(|edge| bits(edge) != bits(&segment.start));
@@ -189,7 +189,7 @@ impl<'a> SectionLayout<'a> {
         }
     }
 
-    /// An arrow at the border, to which something endless is drawn.
+    /// An arrow at the border, for an element that extends to infinity.
     fn goes_on(&self, svg: &mut Svg, at: f64, up: f64, color: &str) {
         let border = if up > 0.0 {
             self.plot.y
@@ -200,7 +200,8 @@ impl<'a> SectionLayout<'a> {
         svg.polygon(&[[at, border], wings[0], wings[1]], color);
     }
 
-    /// The part of a line between heights just above and below the plot; all of a level one.
+    /// The part of a line between heights just above and below the plot; a level line is kept
+    /// whole.
     fn visible(&self, start: [f64; 2], end: [f64; 2]) -> [[f64; 2]; 2] {
         let rise = end[1] - start[1];
         let heights = [self.plot.y - HATCH, self.plot.bottom() + HATCH];
@@ -212,7 +213,7 @@ impl<'a> SectionLayout<'a> {
         part.map(|t| [0, 1].map(|i| start[i] + t * (end[i] - start[i])))
     }
 
-    /// The line of a plane, where it is, and its number, where there is room.
+    /// Draws the line of a plane at its position, and its number where there is room.
     fn plane(&self, svg: &mut Svg, plane: usize) {
         let [at, _] = self.point([self.section.planes[plane].distance, 0.0]);
         let stroke = Stroke {
@@ -231,7 +232,7 @@ impl<'a> SectionLayout<'a> {
         badge(svg, number, plane);
     }
 
-    /// Light from far away: an arc around the beginning of the path.
+    /// Draws distant light: an arc around the start of the path.
     fn sky(&self, svg: &mut Svg) {
         let skies = self
             .section
@@ -259,7 +260,7 @@ impl<'a> SectionLayout<'a> {
         svg.line(start, [tip[0] - 6.0, tip[1]], stroke);
         let wings = [-3.5, 3.5].map(|wing| [tip[0] - 9.0, tip[1] + wing]);
         svg.polygon(&[tip, wings[0], wings[1]], INK);
-        // The name goes into the widest gap between planes and segments, if it fits.
+        // The name is placed in the widest gap between planes and segments, if it fits.
         let text = "central ray";
         let marks = self.section.planes.iter();
         let mut stops: Vec<f64> = marks
@@ -277,7 +278,7 @@ impl<'a> SectionLayout<'a> {
         }
     }
 
-    /// The z axis, on top: the lower side belongs to the planes.
+    /// The z axis, at the top because the planes use the lower side.
     fn z_axis(&self, svg: &mut Svg) {
         let (left, right) = (
             self.point([0.0, 0.0])[0],

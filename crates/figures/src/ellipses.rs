@@ -1,4 +1,4 @@
-//! A spectrum, and the ellipses of covariances over it.
+//! A spectrum with ellipses of covariances over it.
 
 use crate::axis::AxisQuantity;
 use crate::bar;
@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 /// A covariance over the axes of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ellipse {
-    /// What it is, for the key.
+    /// The name in the key.
     pub name: String,
     /// Its entries xx, xy and yy.
     pub covariance: [f64; 3],
@@ -22,30 +22,30 @@ pub struct Ellipse {
 /// A spectrum with covariances, at most three.
 #[derive(Clone, Debug)]
 pub struct Ellipses<'a> {
-    /// What is shown; markup.
+    /// The title; markup.
     pub title: &'a str,
     /// A line below the title, markup; may be empty.
     pub note: &'a str,
     /// The power, shown in decibels below its largest value.
     pub picture: Picture<'a>,
-    /// What the picture holds.
+    /// The quantity of the picture.
     pub quantity: AxisQuantity,
     /// Lower end of the decibels, below 0.
     pub floor: f64,
-    /// Each drawn where it is two standard deviations, in the order of the key. One that is not there leaves its color
-    /// and dashes out.
+    /// Ellipses at two standard deviations, in the order of the key. A missing one leaves its color
+    /// and dashes unused.
     pub ellipses: [Option<Ellipse>; 3],
 }
 
 impl Ellipses<'_> {
-    /// Those that are there, with color and dashes.
+    /// The ellipses present, with color and dashes.
     fn drawn(&self) -> impl Iterator<Item = (&Ellipse, &'static str, &'static str)> {
         let all = self.ellipses.iter().zip(STROKES);
         all.filter_map(|(ellipse, (color, dash))| Some((ellipse.as_ref()?, color, dash)))
     }
 
-    /// What is drawn over the picture, in order: all halos, then unbroken lines, then dashes, so that ellipses which
-    /// coincide are all seen.
+    /// The strokes over the picture, in order: all halos, then solid lines, then dashes, so that
+    /// coinciding ellipses are all visible.
     fn strokes(&self) -> impl Iterator<Item = (&Ellipse, Stroke)> {
         let halo = Stroke::solid(HALO, 3.4);
         let halos = self.drawn().map(move |(ellipse, ..)| (ellipse, halo));
@@ -64,21 +64,21 @@ impl Ellipses<'_> {
 
 const SIDE: f64 = 320.0;
 const LEFT: f64 = 66.0;
-/// Baselines of the key.
+/// Line spacing of the key.
 const LINE: f64 = 17.0;
-/// How many standard deviations from the centre an ellipse is drawn.
+/// Number of standard deviations at which an ellipse is drawn.
 const DEVIATIONS: f64 = 2.0;
-/// The line below each ellipse, for pale colors.
+/// The halo below each ellipse, for pale backgrounds.
 const HALO: &str = "#10304a";
-/// Color and dashes of the ellipses: they differ in both.
+/// Color and dashes of the ellipses: all differ in both.
 const STROKES: [(&str, &str); 3] = [("#7fe0ff", "7 4"), ("#ffffff", ""), ("#8dff9c", "2 3")];
 
 /// Draws a spectrum with ellipses.
 ///
-/// The CSV has a row for each covariance and, below, one for each cell.
+/// The CSV has a row for each covariance, followed by a row for each cell.
 ///
 /// # Errors
-/// When the heat map or the numbers cannot be written.
+/// If the heat map or the numbers cannot be written.
 pub fn ellipses(of: &Ellipses<'_>) -> Result<Figure, Error> {
     let mut svg = Svg::default();
     let width = LEFT + SIDE + 10.0 + bar::WIDTH + 60.0;
@@ -140,7 +140,7 @@ pub fn ellipses(of: &Ellipses<'_>) -> Result<Figure, Error> {
     })
 }
 
-/// Around the ellipse: a root of the covariance times points of a circle.
+/// Points around the ellipse: a root of the covariance times points of a circle.
 fn points([xx, xy, yy]: [f64; 3]) -> impl Iterator<Item = [f64; 2]> {
     const CORNERS: u32 = 180;
     let a = xx.max(0.0).sqrt();
@@ -194,9 +194,9 @@ mod tests {
             assert!((square - 4.0).abs() < 1e-12); // rounding
             highest = highest.max(y);
         }
-        // Two deviations of y, but for the corners.
+        // Two standard deviations of y, up to the polygon's corners.
         assert!((highest - 6.0).abs() < 6.0 * 2e-4, "{highest}");
-        // A line, of a spectrum without width.
+        // A spectrum without width gives a line.
         assert!(points([1.0, -2.0, 4.0]).all(|[x, y]| (y + 2.0 * x).abs() < 1e-12)); // rounding
     }
 }

@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// Pixels of the PNG per unit of the SVG.
 const PNG_SCALE: f32 = 2.0;
 
-/// A picture and the numbers behind it.
+/// A drawing with its numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Figure {
     /// The drawing. Texts stay texts, heat maps are embedded PNGs with one pixel per cell.
@@ -20,7 +20,7 @@ pub struct Figure {
     pub csv: String,
 }
 
-/// Why a figure could not be made; each is a fault of the drawing, not of the values drawn.
+/// The reason why a figure could not be made: a fault of the drawing, not of the values.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -48,7 +48,7 @@ impl Figure {
     /// The drawing as a PNG, two pixels to an SVG unit, text in DejaVu Sans.
     ///
     /// # Errors
-    /// When the SVG cannot be read back or the raster cannot be written.
+    /// If the SVG cannot be read back or the raster cannot be written.
     pub fn png(&self) -> Result<Vec<u8>, Error> {
         let tree = usvg::Tree::from_str(&self.svg, &options())?;
         let size = tree
@@ -66,17 +66,17 @@ impl Figure {
     }
 }
 
-/// Points of the text width of two columns, 7 inches: no page is wider.
+/// Maximum page width in points: the text width of two columns, 7 inches.
 const PAGE: f32 = 504.0;
-/// Points of a unit of the SVG.
+/// Points per SVG unit.
 const POINT: f32 = 0.75;
 
 impl Figure {
     /// The drawing as a PDF page at natural size, at most as wide as two columns of a journal. Text
-    /// stays text.
+    /// is kept as text.
     ///
     /// # Errors
-    /// When the SVG cannot be read back or the page cannot be written.
+    /// If the SVG cannot be read back or the page cannot be written.
     pub fn pdf(&self) -> Result<Vec<u8>, Error> {
         let tree = usvg::Tree::from_str(&self.svg, &options())?;
         let [width, height] = [tree.size().width(), tree.size().height()];
@@ -96,7 +96,7 @@ impl Figure {
     }
 }
 
-/// Figures one under the other on one page; their tables follow each other.
+/// Stacks figures on one page, and joins their tables.
 #[must_use]
 pub fn stacked(figures: &[Figure]) -> Figure {
     let number = |figure: &Figure, name: &str| {
@@ -120,7 +120,7 @@ pub fn stacked(figures: &[Figure]) -> Figure {
     }
 }
 
-/// Reading options whose only fonts are the ones built in.
+/// SVG reading options that use only the built-in fonts.
 pub(crate) fn options() -> usvg::Options<'static> {
     let mut fonts = usvg::fontdb::Database::new();
     for face in [
@@ -138,7 +138,7 @@ pub(crate) fn options() -> usvg::Options<'static> {
     }
 }
 
-/// The CSV text of a header and rows of the same length.
+/// The CSV text of a header and rows of equal length.
 pub(crate) fn csv_text(
     header: &[String],
     rows: impl IntoIterator<Item = Vec<String>>,
@@ -155,7 +155,7 @@ pub(crate) fn csv_text(
     String::from_utf8(bytes).map_err(|error| Error::Csv(error.to_string()))
 }
 
-/// A number with as many digits as it takes to read it back exactly.
+/// A number with as many digits as are needed to read it back exactly.
 pub(crate) fn decimal(value: &f64) -> String {
     format!("{value:?}")
 }

@@ -1,6 +1,6 @@
-//! The grey of a linear intensity.
+//! Conversion of linear intensity to grey.
 
-/// The level of a share of white, 0 to 255.
+/// The grey level, 0 to 255, for a fraction of white.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

@@ -1,4 +1,4 @@
-//! Rows of pictures under each other, in as many blocks of columns as the width of a page asks for.
+//! A grid of pictures, with its columns split into blocks that fit the page width.
 
 use crate::axis::Axis;
 use crate::bar;
@@ -15,14 +15,14 @@ use ndarray::ArrayView2;
 pub struct Picture<'a> {
     /// The first axis of the array.
     pub x: Axis,
-    /// The second.
+    /// The second axis of the array.
     pub y: Axis,
     /// The values.
     pub values: ArrayView2<'a, f64>,
 }
 
 impl Picture<'_> {
-    /// Height over width: 1, unless both axes count pixels, which are squares.
+    /// The ratio of height to width: 1, unless both axes count pixels, which are square.
     fn shape(&self) -> f64 {
         let counts_pixels = |axis: &Axis| axis.quantity.unit == "pixels";
         if counts_pixels(&self.x) && counts_pixels(&self.y) {
@@ -33,7 +33,7 @@ impl Picture<'_> {
     }
 }
 
-/// A line over a spectrum, ν = ν₀ + slope · (ρ − ρ₀): where the theory puts its content.
+/// A line over a spectrum, ν = ν₀ + slope · (ρ − ρ₀), along which theory predicts its content.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Guide {
     /// The point (ρ₀, ν₀): the origin, or the centre of a replica.
@@ -45,19 +45,20 @@ pub struct Guide {
 /// A row of pictures that share colors.
 #[derive(Debug)]
 pub(crate) struct PictureRow<'b, 'a> {
-    /// Its name.
+    /// Name of the row.
     pub(crate) name: &'b str,
-    /// Name and unit beside the color bar, markup.
+    /// Name and unit for the color bar, markup.
     pub(crate) bar: [String; 2],
     pub(crate) scale: Scale,
-    /// Whether one range of colors is for all of the row. Otherwise each picture is relative to its own largest value.
+    /// Whether all pictures of the row share a color range. Otherwise each picture is relative to
+    /// its own largest value.
     pub(crate) shared: bool,
-    /// A picture for each column, and the lines over it.
+    /// A picture for each column, with the lines over it.
     pub(crate) cells: Vec<(&'b Picture<'a>, &'b [Guide])>,
 }
 
 impl PictureRow<'_, '_> {
-    /// Whether the color bar of this row is that of another.
+    /// Whether the row shares the color bar of another.
     fn has_bar_of(&self, other: &Self) -> bool {
         self.bar == other.bar && self.scale == other.scale && self.shared == other.shared
     }
@@ -82,14 +83,15 @@ impl PictureRow<'_, '_> {
 pub(crate) const LEFT: f64 = 75.0;
 /// Width to the right of the last picture, for the color bars.
 pub(crate) const RIGHT: f64 = 81.0;
-/// Between pictures side by side of which the right one has no numbers beside its axis, or has.
+/// Gap between adjacent pictures, if the right one has no numbers beside its axis, and if it has.
 pub(crate) const GAPS: [f64; 2] = [26.0, 56.0];
-/// Between the lower edge of a picture and the upper edge of the one below, if that has its x axis, or has not.
+/// Gap between a picture and the one below, if they share the x axis, and if not.
 const ROW_GAPS: [f64; 2] = [14.0, LABEL_BASELINE + 18.0];
-/// From the left edge of the first picture to the row name.
+/// Distance from the left edge of the first picture to the row name.
 const ROW_NAME: f64 = 63.0;
 
-/// The lines over spectra: on dark colors by themselves, on pale ones by what is under them.
+/// Strokes of the lines over spectra: visible by themselves on dark colors, and by the stroke below
+/// on pale ones.
 pub(crate) const GUIDE: [Stroke; 2] = [
     Stroke {
         color: "#10304a",
@@ -104,14 +106,14 @@ pub(crate) const GUIDE: [Stroke; 2] = [
 ];
 const GUIDE_DASH: &str = "4 5";
 
-/// A column in its place.
+/// A column with its position.
 #[derive(Clone, Copy, Debug)]
 struct PlacedColumn {
     column: usize,
     left: f64,
 }
 
-/// Width of all that is between the left edge and the color bars.
+/// Width between the left edge and the color bars.
 pub(crate) fn inner(style: &Style) -> f64 {
     style.page() - LEFT - RIGHT
 }
@@ -129,17 +131,18 @@ pub(crate) struct PageGrid<'b, 'a> {
 }
 
 impl<'b, 'a> PageGrid<'b, 'a> {
-    /// Lays out rows of `columns` pictures that are at least `least` wide, if one fits. All have the shape of the first.
+    /// Lays out rows of `columns` pictures at least `least` wide, if one fits. All have the shape
+    /// of the first.
     ///
     /// # Panics
-    /// When a row has not a picture for each column.
+    /// If a row does not have a picture for each column.
     pub(crate) fn new(
         rows: Vec<PictureRow<'b, 'a>>,
         columns: usize,
         least: f64,
         style: &Style,
     ) -> Self {
-        // Of one block, and of several, which would make a long page.
+        // Maximum picture width for one block, and for several, which would make a long page.
         const MAX_SIDES: [f64; 2] = [190.0, 112.0];
         for row in &rows {
             assert_eq!(row.cells.len(), columns, "pictures of {}", row.name);
@@ -191,7 +194,7 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         self.shape * self.side
     }
 
-    /// Whether a picture has another y axis than its neighbour on the left.
+    /// Whether the y axis of a picture differs from that of its left neighbour.
     fn differs(row: &PictureRow<'_, '_>, column: usize) -> bool {
         row.cells[column].0.y != row.cells[column - 1].0.y
     }
@@ -202,12 +205,12 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         GAPS[usize::from(differs)]
     }
 
-    /// How many blocks there are, one under the other.
+    /// The number of stacked blocks.
     pub(crate) fn blocks(&self) -> usize {
         self.blocks.len()
     }
 
-    /// The columns of a block, each with its middle and the room a text under it has.
+    /// The columns of a block, each with its centre and the width for a text below it.
     pub(crate) fn columns(&self, block: usize) -> impl Iterator<Item = (usize, f64, f64)> {
         let places = &self.blocks[block];
         let steps = places.windows(2).map(|pair| pair[1].left - pair[0].left);
@@ -225,7 +228,7 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         right - LEFT
     }
 
-    /// Whether the pictures of a row have the x axes of those below.
+    /// Whether the pictures of a row share the x axes of those below.
     fn shares_x(&self, row: usize) -> bool {
         self.rows.get(row + 1).is_some_and(|below| {
             let mut both = self.rows[row].cells.iter().zip(&below.cells);
@@ -233,10 +236,10 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         })
     }
 
-    /// Draws a block, its pictures from `top` on; returns the baseline of its lowest texts.
+    /// Draws a block with its pictures starting at `top`; returns the lowest baseline.
     pub(crate) fn draw(&self, svg: &mut Svg, block: usize, top: f64) -> Result<f64, Error> {
         let mut y = top;
-        // Rows that share a color bar, and from where to where it is.
+        // Rows that share a color bar, and the extent of the bar.
         let mut bars: Vec<(Shading, Area)> = Vec::new();
         let mut closest = ROW_GAPS[1];
         let places = &self.blocks[block];
@@ -271,7 +274,7 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         Ok(y - ROW_GAPS[1] + LABEL_BASELINE)
     }
 
-    /// The largest value of rows that share a color bar with this one.
+    /// The largest value of the rows that share a color bar with this one.
     fn peak(&self, index: usize) -> f64 {
         let rows = self.rows.iter().filter(|r| r.has_bar_of(&self.rows[index]));
         let cells = rows.flat_map(|row| &row.cells);
@@ -280,7 +283,7 @@ impl<'b, 'a> PageGrid<'b, 'a> {
             .fold(0.0, f64::max)
     }
 
-    /// The pictures of a row and its name; returns the colors of its bar.
+    /// Draws the pictures of a row and its name; returns the colors of its bar.
     fn row(
         &self,
         svg: &mut Svg,

@@ -1,4 +1,4 @@
-//! Heat maps as embedded PNGs, one pixel to a cell.
+//! Heat maps as embedded PNGs, one pixel per cell.
 
 use crate::color::{Rgb, Shading};
 use crate::figure::Error;
@@ -69,7 +69,7 @@ fn encoded(
 /// is white.
 ///
 /// # Errors
-/// When there are no pixels, more than a PNG holds, or not as many as numbers.
+/// If there are no pixels, more than a PNG holds, or a different number of values.
 pub fn photograph([width, height]: [usize; 2], radiance: &[f64]) -> Result<Vec<u8>, Error> {
     let (Ok(w), Ok(h)) = (u32::try_from(width), u32::try_from(height)) else {
         return Err(Error::Size(u32::MAX, u32::MAX));

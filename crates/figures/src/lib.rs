@@ -1,8 +1,8 @@
 //! Pictures of light fields, spectra and the path between them.
 //!
-//! In: plain values (arrays, axes, positions in metres). Out: a [`Figure`], which is an SVG, a PNG of the same
-//! drawing and a CSV of the numbers behind it. The crate computes no physics and touches neither disk nor system
-//! fonts: the same values give the same bytes.
+//! Input: plain values (arrays, axes, positions in metres). Output: a [`Figure`], which is an SVG,
+//! a PNG of the same drawing and a CSV of its numbers. The crate computes no physics and uses
+//! neither disk nor system fonts: the same values give the same bytes.
 //!
 //! * [`comparison()`]: one quantity, measured | predicted | difference in σ;
 //! * [`strip()`]: the scene cut along the central ray and, under each virtual plane, its light field and spectrum;
@@ -17,8 +17,8 @@
 //!
 //! # Markup
 //!
-//! Where a field says *markup*, `*x*` is italic, `_{in}` a subscript and `^{2}` a superscript. Every other text is
-//! shown as it is.
+//! In fields described as *markup*, `*x*` is italic, `_{in}` a subscript and `^{2}` a superscript.
+//! All other texts are shown verbatim.
 //!
 //! ```
 //! use etendue_figures::{Axis, AxisQuantity, Comparison, Scale, comparison};

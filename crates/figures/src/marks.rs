@@ -1,4 +1,4 @@
-//! Marks that the cut and the scene to scale share: numbers of planes, lines of segments, hatching.
+//! Marks shared by the cut and the drawing to scale: plane numbers, segment lines, hatching.
 
 use crate::section::SegmentKind;
 use crate::sizes::{FAINT, INK};
@@ -35,12 +35,12 @@ pub(crate) fn line_of(kind: SegmentKind) -> (&'static str, f64) {
 /// Short slanted strokes behind a surface, evenly along all its pieces.
 #[derive(Debug, Default)]
 pub(crate) struct Hatching {
-    /// Where the last piece ended, and how far behind its last stroke.
+    /// End of the last piece, and its distance from the last stroke.
     last: Option<([f64; 2], f64)>,
 }
 
 impl Hatching {
-    /// Hatches a piece on the side to which light goes.
+    /// Hatches a piece on the side that light goes to.
     pub(crate) fn draw(&mut self, svg: &mut Svg, [start, end]: [[f64; 2]; 2], light: [f64; 2]) {
         const STEP: f64 = 6.0;
         let along = [end[0] - start[0], end[1] - start[1]];
@@ -56,7 +56,7 @@ impl Hatching {
         let near = |a: [f64; 2]| libm::hypot(a[0] - start[0], a[1] - start[1]) < 0.1;
         let behind = self.last.filter(|(point, _)| near(*point));
         let mut at = behind.map_or(HATCH, |(_, behind)| STEP - behind);
-        // The cap bounds the work on absurd lengths.
+        // The limit bounds the work for extreme lengths.
         while at < length.min(20_000.0) {
             let [x, y] = [0, 1].map(|i| start[i] + along[i] * at / length);
             let back = [0, 1].map(|i| [x, y][i] + HATCH * normal[i] - HATCH * along[i] / length);

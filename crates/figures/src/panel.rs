@@ -9,10 +9,10 @@ use crate::svg::{Anchor, Area, Stroke, Svg, TextStyle};
 use crate::text::width;
 use ndarray::ArrayView2;
 
-/// How much longer than its panel an axis label may be, along x and y.
+/// The length by which an axis label may exceed its panel, along x and y.
 const OVERHANG: [f64; 2] = [24.0, 12.0];
 
-/// Where a heat map goes and what is written around it.
+/// The position of a heat map and the texts around it.
 #[derive(Debug)]
 pub(crate) struct Panel<'a> {
     pub(crate) area: Area,
@@ -44,7 +44,7 @@ impl Panel<'_> {
         self.y_axis(svg);
     }
 
-    /// Where the point (x, y) of the axes falls.
+    /// The position of the point (x, y) of the axes.
     pub(crate) fn point(&self, x: f64, y: f64) -> [f64; 2] {
         [
             self.area.x + self.x.fraction(x) * self.area.width,
@@ -52,7 +52,7 @@ impl Panel<'_> {
         ]
     }
 
-    /// Frame and y axis, where x has no numbers.
+    /// Draws the frame and y axis, for a panel without x numbers.
     pub(crate) fn frame(&self, svg: &mut Svg) {
         svg.frame(self.area);
         self.y_axis(svg);

@@ -1,4 +1,4 @@
-//! Pictures in rows and columns, such as several scenes side by side.
+//! A plate of pictures in rows and columns, such as several scenes side by side.
 
 use crate::axis::{Axis, AxisQuantity, minus};
 use crate::bar;
@@ -12,70 +12,71 @@ use crate::svg::{Anchor, Area, Stroke, Svg, TextStyle};
 use crate::text::{lines, plain};
 use etendue_field::uncertain;
 
-/// A row of pictures that share colors.
+/// A row of pictures that share a color scale.
 #[derive(Clone, Debug)]
 pub struct PlateRow<'a> {
-    /// Its name.
+    /// Name of the row.
     pub name: &'a str,
-    /// What the pictures hold.
+    /// The quantity of the pictures.
     pub quantity: AxisQuantity,
-    /// How values are laid on the colors.
+    /// The mapping of values to colors.
     pub scale: Scale,
-    /// Whether one range of colors is for all of the row. Otherwise each picture is relative to its own largest value.
+    /// Whether all pictures of the row share a color range. Otherwise each picture is relative to
+    /// its own largest value.
     pub shared: bool,
-    /// One for each column.
+    /// A picture for each column.
     pub pictures: Vec<Picture<'a>>,
 }
 
-/// Pictures in rows and columns.
+/// A plate of pictures in rows and columns.
 #[derive(Clone, Debug)]
 pub struct Plate<'a> {
-    /// What is shown; markup.
+    /// Title; markup.
     pub title: &'a str,
     /// A line below the title, markup; may be empty.
     pub note: &'a str,
-    /// Over each column.
+    /// Headings of the columns.
     pub heads: Vec<String>,
-    /// From top to bottom.
+    /// The rows, from top to bottom.
     pub rows: Vec<PlateRow<'a>>,
     /// Lines below each column, markup.
     pub feet: Vec<Vec<String>>,
-    /// A number for each column, below all else.
+    /// Bars with a number for each column, at the bottom.
     pub bars: Option<Bars>,
 }
 
-/// A measured number for each column, with its standard error and what is predicted.
+/// A measured number for each column, with its standard error and its prediction.
 #[derive(Clone, Debug)]
 pub struct Bars {
-    /// What it is.
+    /// The quantity of the bars.
     pub quantity: AxisQuantity,
-    /// The same in words, markup.
+    /// A description of the quantity, markup.
     pub about: String,
     /// Heights of the bars.
     pub measured: Vec<Option<f64>>,
     /// Their standard errors.
     pub errors: Vec<Option<f64>>,
-    /// Drawn as lines across the bars.
+    /// Predicted values, drawn as lines across the bars.
     pub predicted: Vec<Option<f64>>,
 }
 
-/// Height of the panel of bars, and width of each.
+/// Height of the bar panel, and width of each bar.
 const BARS: f64 = 110.0;
 const BAR: f64 = 60.0;
-/// The least width of a picture: those that do not fit go below.
+/// Minimum width of a picture: columns that do not fit go below.
 const MIN_WIDTH: f64 = 58.0;
-/// Least width of what is under a title, if the page has it.
+/// Minimum width below a title, if the page is wide enough.
 const TITLE: f64 = 440.0;
 
-/// Draws a plate, as wide as the page at most.
+/// Draws a plate, at most as wide as the page.
 ///
 /// The CSV has the numbers of the bars; it is empty without bars.
 ///
 /// # Errors
-/// When a heat map or the numbers cannot be written.
+/// If a heat map or the numbers cannot be written.
 ///
 /// # Panics
-/// When a row has not a picture for each head.
+/// If a row does not have a picture for each head.
 pub fn plate(plate: &Plate<'_>, style: &Style) -> Result<Figure, Error> {
     let rows = plate.rows.iter().map(row);
     let grid = PageGrid::new(rows.collect(), plate.heads.len(), MIN_WIDTH, style);
@@ -137,7 +138,7 @@ fn row<'b, 'a>(row: &'b PlateRow<'a>) -> PictureRow<'b, 'a> {
     }
 }
 
-/// Lines under each column of a block; returns the lower edge of the last.
+/// Draws the lines below each column of a block; returns the lower edge of the last.
 pub(crate) fn feet(
     svg: &mut Svg,
     feet: &[Vec<String>],
@@ -159,7 +160,7 @@ pub(crate) fn feet(
     baseline + 6.0 + 16.0 * most as f64
 }
 
-/// Bars from 0, a key below them; returns the lower edge of that.
+/// Draws bars from 0 with a key below them; returns the lower edge of the key.
 fn draw_bars(svg: &mut Svg, bars: &Bars, area: Area, middles: &[f64]) -> f64 {
     let measured = bars.measured.iter().zip(&bars.errors);
     let ends = measured.map(|(m, e)| m.unwrap_or(0.0) + e.unwrap_or(0.0));
@@ -181,7 +182,7 @@ fn draw_bars(svg: &mut Svg, bars: &Bars, area: Area, middles: &[f64]) -> f64 {
     for (column, value) in bars.measured.iter().enumerate() {
         let x = middles[column];
         if let Some(value) = value {
-            // A share whose noise has been taken off may be below 0.
+            // A fraction may be below 0 after noise removal.
             let y = at(value.max(0.0));
             let filled = Area {
                 x: x - 0.5 * BAR,
@@ -222,7 +223,7 @@ fn draw_bars(svg: &mut Svg, bars: &Bars, area: Area, middles: &[f64]) -> f64 {
     y + 5.0
 }
 
-/// The table: what the bars show.
+/// The table of the numbers in the bars.
 fn numbers(plate: &Plate<'_>) -> Result<String, Error> {
     let Some(bars) = &plate.bars else {
         return Ok(String::new());

@@ -1,32 +1,33 @@
-//! The scene cut along the central ray, and to scale: what is drawn.
+//! The content of drawings of a scene: the cut along the central ray, and the scene to scale.
 
 use etendue_field::Side;
 
-/// What a line of the cut is.
+/// The kind of a segment in the cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SegmentKind {
-    /// Emits.
+    /// A light.
     Light,
-    /// Stops light and scatters none.
+    /// A blocker, which stops light and scatters none.
     Blocker,
-    /// Receives, and reflects; it has a dark side.
+    /// A surface that receives and reflects; it has a dark side.
     Surface,
-    /// Lets light through.
+    /// A surface that transmits light.
     Glass,
-    /// Shines from far away, wherever it is drawn.
+    /// A distant light, wherever it is drawn.
     Sky,
 }
 
-/// A straight piece of something the cut passes through; points are (z, x), metres. An infinite x goes on beyond the picture.
+/// A straight segment of an object in the cut; points are (z, x), metres. An infinite x continues
+/// beyond the picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Segment {
-    /// What it is.
+    /// The kind of object.
     pub kind: SegmentKind,
     /// One end (z, x).
     pub start: [f64; 2],
     /// The other end.
     pub end: [f64; 2],
-    /// Its name; one piece of several is enough to carry it.
+    /// The name; only one segment of an object needs it.
     pub label: Option<String>,
 }
 
@@ -37,20 +38,20 @@ pub struct PlaneMark {
     pub name: String,
     /// Distance from the light along the central ray, metres.
     pub distance: f64,
-    /// On which side of what stands there; drawn a little to that side.
+    /// The side of the object at the same place; the plane is drawn slightly towards it.
     pub side: Side,
 }
 
-/// The plane of z, the distance along the central ray, and x, or y, all in metres.
+/// A cut in z, the distance along the central ray, and x or y, all in metres.
 ///
-/// Not to scale: z fills the width. What sticks out is cut off.
+/// The cut is not to scale: z fills the width. Parts outside are cut off.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Section {
     /// The coordinate across, markup.
     pub across: String,
     /// Length of the central ray, metres.
     pub length: f64,
-    /// Whether the central ray has turned on the way.
+    /// Whether the central ray has bends, so that the cut is unfolded.
     pub unfolded: bool,
     /// Largest x shown, metres.
     pub half_width: f64,
@@ -58,24 +59,24 @@ pub struct Section {
     pub segments: Vec<Segment>,
     /// The virtual planes, in the order of their numbers.
     pub planes: Vec<PlaneMark>,
-    /// Outlines (z, x) of bodies, filled; segments draw their edges.
+    /// Outlines (z, x) of filled bodies; segments draw their edges.
     pub bodies: Vec<Vec<[f64; 2]>>,
-    /// The cut through y, where it shows something else; drawn above.
+    /// The cut through y, if it differs; drawn above.
     pub other: Option<Box<Self>>,
-    /// The scene to scale; drawn above all.
+    /// The scene to scale; drawn at the top.
     pub world: Option<DrawnWorld>,
 }
 
-/// Something in the scene.
+/// An object in the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DrawnObject {
-    /// What it is; points are (z, x).
+    /// Its segment; points are (z, x).
     pub segment: Segment,
-    /// Where light goes that arrives at it, (z, x).
+    /// The direction of the light that arrives at it, (z, x).
     pub light: [f64; 2],
 }
 
-/// The plane of D and X at the light; points are (z, x), metres.
+/// The scene in the plane of D and X at the light; points are (z, x), metres.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DrawnWorld {
     /// Corners and ends of the central ray.

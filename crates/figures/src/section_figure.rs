@@ -7,7 +7,7 @@ use crate::svg::{Area, Svg};
 use crate::text::plain;
 
 impl Section {
-    /// Draws the scene to scale and the other cut; returns where the cut itself is to go.
+    /// Draws the scene to scale and the other cut; returns the position for the cut itself.
     pub(crate) fn draw_above(&self, svg: &mut Svg, [x, y]: [f64; 2], size: [f64; 2]) -> Area {
         let [width, height] = size;
         let mut top = y;
@@ -42,7 +42,7 @@ const OTHER: f64 = 150.0;
 /// The CSV has a row for each segment, plane and corner of a body.
 ///
 /// # Errors
-/// When the numbers cannot be written.
+/// If the numbers cannot be written.
 pub fn section(section: &Section, title: &str, note: &str) -> Result<Figure, Error> {
     // Wide enough for the names of the planes side by side.
     let inner = (120.0 * section.planes.len() as f64).max(640.0);

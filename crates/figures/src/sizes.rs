@@ -1,6 +1,6 @@
 //! Sizes and colors that all figures share, in SVG units (1/96 inch at natural size).
 
-/// No text is smaller: 6 points.
+/// Minimum text size: 6 points.
 pub(crate) const LEAST_TEXT: f64 = 8.0;
 /// Text and frames.
 pub(crate) const INK: &str = "#222222";
@@ -24,7 +24,7 @@ pub(crate) const HEAD_TEXT: f64 = 12.5;
 /// Font size of the title.
 pub(crate) const TITLE_TEXT: f64 = 15.0;
 
-/// From the lower edge of a panel to the baseline of its tick texts.
+/// Distance from the lower edge of a panel to the baseline of its tick texts.
 pub(crate) const TICK_BASELINE: f64 = TICK + 13.0;
-/// From the lower edge of a panel to the baseline of its axis label.
+/// Distance from the lower edge of a panel to the baseline of its axis label.
 pub(crate) const LABEL_BASELINE: f64 = TICK_BASELINE + 17.0;

@@ -1,4 +1,5 @@
-//! The path: the cut along the central ray and, under each virtual plane, its light field and spectrum.
+//! The strip: the cut along the central ray and, under each virtual plane, its light field and
+//! spectrum.
 
 use crate::axis::AxisQuantity;
 use crate::bar;
@@ -12,23 +13,24 @@ use crate::sizes::{SOFT, TICK_TEXT};
 use crate::style::Style;
 use crate::svg::{Anchor, Area, Svg, TextStyle};
 
-/// What is shown under a virtual plane.
+/// The content below a virtual plane.
 #[derive(Clone, Debug)]
 pub struct StripColumn<'a> {
     /// The light field in (x, u).
     pub light_field: Picture<'a>,
-    /// That in (y, v). There is a row of them if each column has one.
+    /// The light field in (y, v). This row is drawn if each column has one.
     pub across: Option<Picture<'a>>,
     /// The power spectrum in (ρ, ν).
     pub spectrum: Picture<'a>,
-    /// The predicted one. There is a row of them if each column has one.
+    /// The predicted spectrum. This row is drawn if each column has one.
     pub predicted: Option<Picture<'a>>,
-    /// The full radial spectrum over (|Ωxy|, |Ωuv|), measured and predicted. There are rows of them if each column has them.
+    /// The full radial spectrum over (|Ωxy|, |Ωuv|), measured and predicted. These rows are drawn
+    /// if each column has them.
     pub full_radial: Option<[Picture<'a>; 2]>,
-    /// How far the measured spectrum is from a first-order chain, in percent of its largest modulus.
-    /// There is a row of them if each column has one.
+    /// The difference between the measured spectrum and a first-order chain, in percent of its
+    /// largest modulus. This row is drawn if each column has one.
     pub off_chain: Option<Picture<'a>>,
-    /// Lines below, such as "*p* = 0.43, pass", markup; may be empty.
+    /// Lines below the pictures, such as "*p* = 0.43, pass", markup; may be empty.
     pub verdict: Vec<String>,
     /// Dashed lines over the spectrum.
     pub guides: Vec<Guide>,
@@ -37,25 +39,25 @@ pub struct StripColumn<'a> {
 /// The path of the light, plane by plane, as in Fig. 1 of Durand et al. 2005.
 #[derive(Clone, Debug)]
 pub struct Strip<'a> {
-    /// What is shown; markup.
+    /// Title; markup.
     pub title: &'a str,
     /// A line below the title, markup; may be empty.
     pub note: &'a str,
     /// The scene; `columns[i]` belongs to its plane i.
     pub section: &'a Section,
-    /// One for each plane.
+    /// A column for each plane.
     pub columns: Vec<StripColumn<'a>>,
-    /// What the light fields hold; shown linearly, each relative to its own largest value.
+    /// The quantity of the light fields, shown linearly and relative to the largest value of each.
     pub light_field: AxisQuantity,
-    /// What the spectra hold; shown in decibels below each one's own largest value.
+    /// The quantity of the spectra, shown in decibels below the largest value of each.
     pub spectrum: AxisQuantity,
-    /// What the full radial spectra hold, shown likewise.
+    /// The quantity of the full radial spectra, shown likewise.
     pub full_radial: AxisQuantity,
     /// Lower end of the decibels, below 0.
     pub floor: f64,
 }
 
-/// A row of pictures.
+/// A kind of picture row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum StripRow {
     LightField,
@@ -68,7 +70,7 @@ enum StripRow {
 }
 
 impl StripRow {
-    /// Those of a strip.
+    /// The rows of a strip.
     fn of(strip: &Strip<'_>) -> Vec<Self> {
         let predicted = strip
             .columns
@@ -107,7 +109,7 @@ impl StripRow {
         }
     }
 
-    /// Its picture in a column.
+    /// The picture of this row in a column.
     fn picture<'a, 'b>(self, column: &'b StripColumn<'a>) -> &'b Picture<'a> {
         let full_radial = column.full_radial.as_ref();
         let other = match self {
@@ -124,7 +126,7 @@ impl StripRow {
         })
     }
 
-    /// What its pictures hold.
+    /// The quantity of this row's pictures.
     fn quantity(self, strip: &Strip<'_>) -> AxisQuantity {
         match self {
             Self::LightField | Self::Across => strip.light_field.clone(),
@@ -139,15 +141,16 @@ impl StripRow {
 const CUT: f64 = 190.0;
 /// Height of the lines from the cut to the columns.
 const LEADERS: f64 = 34.0;
-/// The least width of a picture: columns that do not fit go below the others.
+/// Minimum width of a picture: columns that do not fit go below the others.
 const MIN_WIDTH: f64 = 78.0;
 
 /// Draws a strip, as wide as the page.
 ///
-/// The CSV has a row for each cell of each picture; the numbers of the cut are those of [`section`](crate::section()).
+/// The CSV has a row for each cell of each picture; the numbers of the cut are in that of
+/// [`section`](crate::section()).
 ///
 /// # Errors
-/// When a heat map or the numbers cannot be written.
+/// If a heat map or the numbers cannot be written.
 pub fn strip(strip: &Strip<'_>, style: &Style) -> Result<Figure, Error> {
     let mut svg = Svg::default();
     let inner = inner(style);
@@ -164,7 +167,7 @@ pub fn strip(strip: &Strip<'_>, style: &Style) -> Result<Figure, Error> {
     let verdicts = verdicts.map(|column| column.verdict.clone());
     let verdicts: Vec<Vec<String>> = verdicts.collect();
     for block in 0..grid.blocks() {
-        // Lines to columns further down would cross those above: there numbers alone lead to them.
+        // Leaders to lower columns would cross those above: these columns have only numbers.
         let heads = bottom
             + if grid.blocks() == 1 && style.scene {
                 LEADERS
@@ -187,7 +190,7 @@ pub fn strip(strip: &Strip<'_>, style: &Style) -> Result<Figure, Error> {
     })
 }
 
-/// The pictures under the cut.
+/// The layout of the pictures under the cut.
 fn grid<'b, 'a>(strip: &'b Strip<'a>, style: &Style) -> PageGrid<'b, 'a> {
     let row = |row: StripRow| {
         let cell = |column: &'b StripColumn<'a>| {
@@ -213,12 +216,12 @@ fn grid<'b, 'a>(strip: &'b Strip<'a>, style: &Style) -> PageGrid<'b, 'a> {
         }
     };
     let rows = StripRow::of(strip).into_iter().map(row).collect();
-    // Two stand side by side on the narrowest page.
+    // Two keys fit side by side on the narrowest page.
     let half = 0.5 * (inner(style) - GAPS[1]);
     PageGrid::new(rows, strip.columns.len(), MIN_WIDTH.min(half), style)
 }
 
-/// The keys to dashed lines and to cells without a value; returns the lowest baseline.
+/// Draws the keys of dashed lines and of cells without a value; returns the lowest baseline.
 fn keys(
     svg: &mut Svg,
     strip: &Strip<'_>,

@@ -1,29 +1,30 @@
-//! What a user may choose of a figure.
+//! User settings of a figure's style.
 
 use crate::color::Palette;
 use crate::svg::Svg;
 use serde::{Deserialize, Serialize};
 
-/// How figures look, where a user may want it otherwise.
+/// User settings of a figure's style.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Style {
-    /// Whether titles, and the notes below them, are drawn. A paper has captions instead.
+    /// Whether titles and the notes below them are drawn. Papers use captions instead.
     pub titles: bool,
     /// Whether the scene is drawn above its planes.
     pub scene: bool,
-    /// Whether verdicts stand below their planes.
+    /// Whether verdicts are written below their planes.
     pub verdicts: bool,
-    /// Largest width of the page, inches, [`Style::WIDTHS`]; as many pictures stand side by side as fit.
+    /// Maximum page width, inches, [`Style::WIDTHS`]; it determines the number of pictures side by
+    /// side.
     pub width: f64,
-    /// Lower end of the colors of spectra, in decibels, below 0; `None`: that of the figure.
+    /// Lower end of the colors of spectra, in decibels, below 0; `None` uses the figure's default.
     pub floor: Option<f64>,
     /// Colors of light fields and spectra.
     pub palette: Palette,
 }
 
 impl Default for Style {
-    /// Two columns of a journal.
+    /// Two journal columns.
     fn default() -> Self {
         Self {
             titles: true,
@@ -37,7 +38,7 @@ impl Default for Style {
 }
 
 impl Style {
-    /// The least and the largest width of a page, inches: one column of a journal, and two.
+    /// Minimum and maximum page width, inches: one journal column, and two.
     pub const WIDTHS: [f64; 2] = [3.3, 7.0];
 
     /// Width of the page.
@@ -45,7 +46,7 @@ impl Style {
         INCH * self.width
     }
 
-    /// Draws title and note, if they are wanted; returns the lower edge.
+    /// Draws title and note, if enabled; returns the lower edge.
     pub(crate) fn title(&self, svg: &mut Svg, x: f64, room: f64, title: &str, note: &str) -> f64 {
         if self.titles {
             svg.title(x, room, title, note)
@@ -56,5 +57,5 @@ impl Style {
 }
 
 const INCH: f64 = 96.0;
-/// From the upper edge of a page without a title to what is below it.
+/// Top margin of a page without a title.
 const UNTITLED: f64 = 10.0;

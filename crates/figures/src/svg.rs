@@ -4,7 +4,7 @@ use crate::sizes::{INK, SOFT, STROKE, TICK_TEXT, TITLE_TEXT};
 use crate::text::{escape, fit, lines, plain, spans};
 use std::fmt::Write;
 
-/// An upright rectangle, in SVG units, y downwards.
+/// An axis-aligned rectangle, in SVG units, y downwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Area {
     pub(crate) x: f64,
@@ -27,7 +27,7 @@ impl Area {
     }
 }
 
-/// Which point of a text its position is.
+/// The anchor of a text.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Anchor {
     Start,
@@ -66,7 +66,7 @@ impl TextStyle {
         Self { fill, ..self }
     }
 
-    /// Turned to run upwards.
+    /// The style rotated to run upwards.
     pub(crate) fn upwards(self) -> Self {
         Self {
             upwards: true,
@@ -75,7 +75,7 @@ impl TextStyle {
     }
 }
 
-/// How a line is drawn.
+/// The style of a line.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stroke {
     pub(crate) color: &'static str,
@@ -88,7 +88,7 @@ impl Stroke {
     /// The line of frames and axes.
     pub(crate) const FRAME: Self = Self::solid(INK, STROKE);
 
-    /// An unbroken line.
+    /// A solid line.
     pub(crate) const fn solid(color: &'static str, width: f64) -> Self {
         Self {
             color,
@@ -106,14 +106,14 @@ impl Stroke {
     }
 }
 
-/// A drawing in the making.
+/// A drawing in progress.
 #[derive(Debug, Default)]
 pub(crate) struct Svg {
     body: String,
 }
 
 impl Svg {
-    /// Adds an element as it is written.
+    /// Adds an element verbatim.
     pub(crate) fn raw(&mut self, element: &str) {
         self.body.push_str(element);
         self.body.push('\n');
@@ -167,7 +167,7 @@ impl Svg {
         ));
     }
 
-    /// An image stretched over `area`, its pixels kept as sharp rectangles.
+    /// An image stretched over `area`, without smoothing of pixels.
     pub(crate) fn image(&mut self, area: Area, href: &str) {
         self.raw(&format!(
             "<image{} preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" href=\"{href}\"/>",
@@ -175,7 +175,7 @@ impl Svg {
         ));
     }
 
-    /// Text shown as it is.
+    /// Text shown verbatim.
     pub(crate) fn text(&mut self, style: TextStyle, text: &str) {
         self.write(style, &escape(text));
     }
@@ -185,7 +185,8 @@ impl Svg {
         self.write(style, &spans(markup, style.size));
     }
 
-    /// Text with markup in at most `room`: smaller if need be, and as a last resort cut short, without its styles.
+    /// Text with markup in a width of at most `room`: it is shrunk if necessary, and as a last
+    /// resort cut short, without its styles.
     pub(crate) fn fitted(&mut self, style: TextStyle, markup: &str, room: f64) {
         let plain = plain(markup);
         // Bold letters are about 12 % wider than the estimate for regular ones.
@@ -223,7 +224,7 @@ impl Svg {
         self.raw(&format!("<text{attributes}>{content}</text>"));
     }
 
-    /// Draws with `draw`, showing only what falls into `area`.
+    /// Draws with `draw`, clipped to `area`.
     ///
     /// An inner `<svg>` clips without an id, so several figures can share a page.
     pub(crate) fn clipped(&mut self, area: Area, draw: impl FnOnce(&mut Self)) {
@@ -233,7 +234,8 @@ impl Svg {
         self.raw("</svg>");
     }
 
-    /// Title and softer lines below it, both markup, from the left edge `x`; returns the y below them.
+    /// Draws a title and softer lines below it, both markup, from the left edge `x`; returns the y
+    /// below them.
     pub(crate) fn title(&mut self, x: f64, room: f64, title: &str, note: &str) -> f64 {
         let mut y = 8.0;
         if !title.is_empty() {
@@ -266,20 +268,19 @@ impl Svg {
     }
 }
 
-/// Farther from the corner of a drawing than this nothing is written: programs that draw it may not bear
-/// such numbers.
+/// Maximum coordinate in a drawing: SVG renderers may fail on larger numbers.
 const MAX_COORDINATE: f64 = 1e4;
 
 fn is_near(point: [f64; 2]) -> bool {
     point.iter().all(|at| at.abs() <= MAX_COORDINATE)
 }
 
-/// The part of a line that is near (Liang and Barsky 1984, ACM Trans. Graph. 3(1)).
+/// The part of a line within the coordinate limit (Liang and Barsky 1984, ACM Trans. Graph. 3(1)).
 fn near(from: [f64; 2], to: [f64; 2]) -> Option<[[f64; 2]; 2]> {
     let [mut first, mut last] = [0.0_f64, 1.0_f64];
     for axis in 0..2 {
         let along = to[axis] - from[axis];
-        // Shares of the way at both borders, which are not numbers on a line beside them.
+        // Line parameters at both borders, which are NaN for a line along a border.
         let borders = [-MAX_COORDINATE, MAX_COORDINATE].map(|border| (border - from[axis]) / along);
         if along != 0.0 {
             first = first.max(borders[0].min(borders[1]));
@@ -324,7 +325,7 @@ mod tests {
     use super::*;
 
     /// A mirror of some micrometres beside a light of a metre had coordinates of 10⁹, on which the
-    /// program that draws gave up.
+    /// SVG renderer failed.
     #[test]
     fn lines_far_away_are_cut_and_keep_their_way() {
         assert_eq!(

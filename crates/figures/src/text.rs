@@ -2,7 +2,7 @@
 
 use crate::sizes::LEAST_TEXT;
 
-/// A stretch of text in one style.
+/// A run of text in one style.
 #[derive(Clone, Debug, PartialEq)]
 struct TextRun {
     text: String,
@@ -10,7 +10,7 @@ struct TextRun {
     level: TextLevel,
 }
 
-/// Where a run stands.
+/// Vertical position of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum TextLevel {
     Below,
@@ -19,7 +19,7 @@ enum TextLevel {
 }
 
 impl TextLevel {
-    /// How far below the line, relative to the size of the text.
+    /// Offset below the baseline, relative to the text size.
     fn depth(self) -> f64 {
         match self {
             Self::Below => 0.2,
@@ -34,7 +34,7 @@ const SCRIPT_SIZE: f64 = 0.72;
 
 /// SVG content of markup at a font `size`, in SVG units.
 ///
-/// Scripts are shifted by `dy` rather than `baseline-shift`, which some browsers do not know.
+/// Scripts are shifted by `dy` rather than `baseline-shift`, which some browsers do not support.
 pub(crate) fn spans(markup: &str, size: f64) -> String {
     let mut content = String::new();
     let mut level = TextLevel::Line;
@@ -62,7 +62,7 @@ pub(crate) fn spans(markup: &str, size: f64) -> String {
     content
 }
 
-/// The text of markup without its styles.
+/// The plain text of markup.
 pub(crate) fn plain(markup: &str) -> String {
     runs(markup).into_iter().map(|run| run.text).collect()
 }
@@ -73,7 +73,7 @@ pub(crate) fn width(text: &str, size: f64) -> f64 {
     ems * size
 }
 
-/// `text` and a font size at which it is at most `room` wide: first smaller, then shortened.
+/// `text` and a font size at which its width is at most `room`: it is shrunk first, then shortened.
 pub(crate) fn fit(text: &str, size: f64, room: f64) -> (String, f64) {
     let smallest = size.min(LEAST_TEXT);
     let fitting = (size * room / width(text, size).max(1e-9)).clamp(smallest, size);
@@ -88,7 +88,7 @@ pub(crate) fn fit(text: &str, size: f64, room: f64) -> (String, f64) {
     (format!("{}…", kept.trim_end()), smallest)
 }
 
-/// Markup broken at spaces into lines of at most `room`, unless a word alone is longer.
+/// Markup broken at spaces into lines no wider than `room`, unless a single word is wider.
 pub(crate) fn lines(markup: &str, size: f64, room: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in markup.split(' ').filter(|word| !word.is_empty()) {
@@ -105,7 +105,7 @@ pub(crate) fn lines(markup: &str, size: f64, room: f64) -> Vec<String> {
     lines
 }
 
-/// Whether markup ends within italics or a script.
+/// Whether markup ends inside italics or a script.
 fn is_open(markup: &str) -> bool {
     let count = |c| markup.matches(c).count();
     count('*') % 2 == 1 || count('{') != count('}')
@@ -219,7 +219,7 @@ mod tests {
         assert_eq!(fit("name", 12.0, 0.0).0, "…");
     }
 
-    /// The estimate against the width the font gives, for the sort of text the figures hold.
+    /// The estimated width compared with that of the font, for typical texts.
     #[test]
     fn estimated_widths_are_near_the_true_ones() {
         for text in [

@@ -1,4 +1,5 @@
-//! The scene to scale, seen along Y of its light: where the central ray turns, and where things stand.
+//! The scene to scale, seen along Y of its light, with the bends of the central ray and the
+//! positions of objects.
 
 use crate::marks::{BADGE, Hatching, PLANE, badge, line_of};
 use crate::section::{DrawnObject, DrawnWorld, SegmentKind};
@@ -6,15 +7,15 @@ use crate::sizes::{INK, LABEL_TEXT, SOFT, STROKE, TICK_TEXT};
 use crate::svg::{Anchor, Area, Stroke, Svg, TextStyle};
 use etendue_field::tidy;
 
-/// Height of the drawing, and of what is written above it.
+/// Height of the drawing, and of the text above it.
 const DRAWING: f64 = 170.0;
 const HEAD: f64 = 30.0;
 
 impl DrawnWorld {
-    /// Height of all.
+    /// Total height.
     pub(crate) const HEIGHT: f64 = HEAD + DRAWING + 16.0;
 
-    /// Draws it at its upper left corner.
+    /// Draws the scene at the given upper left corner.
     pub(crate) fn draw(&self, svg: &mut Svg, [x, y]: [f64; 2], width: f64) {
         let area = Area {
             x,
@@ -44,7 +45,8 @@ impl DrawnWorld {
         bar(svg, area, scale);
     }
 
-    /// Units of the drawing to a metre, and what is in its middle: path, planes and lights are all seen.
+    /// Units per metre, and the centre of the drawing, such that path, planes and lights are
+    /// visible.
     fn scale(&self, area: Area) -> (f64, [f64; 2]) {
         let lights = self
             .objects
@@ -66,7 +68,7 @@ impl DrawnWorld {
                 along.fold(f64::NEG_INFINITY, f64::max),
             ]
         });
-        // Room for numbers around what is drawn.
+        // Margin for plane numbers.
         let room = [area.width - 60.0, area.height - 5.0 * BADGE];
         let scales = [0, 1].map(|i| room[i] / (ends[i][1] - ends[i][0]).max(1e-9));
         (
@@ -90,7 +92,7 @@ impl DrawnWorld {
     }
 }
 
-/// Where the number of a plane goes: beyond its end, and beyond numbers that are there.
+/// A position for the number of a plane: beyond its end, and clear of other numbers.
 fn free([from, to]: [[f64; 2]; 2], taken: &[[f64; 2]]) -> [f64; 2] {
     let along = [to[0] - from[0], to[1] - from[1]];
     let length = libm::hypot(along[0], along[1]).max(1e-9);
@@ -103,7 +105,7 @@ fn free([from, to]: [[f64; 2]; 2], taken: &[[f64; 2]]) -> [f64; 2] {
     number
 }
 
-/// The tip of the central ray.
+/// The arrowhead of the central ray.
 fn arrow(svg: &mut Svg, from: [f64; 2], to: [f64; 2]) {
     let along = [to[0] - from[0], to[1] - from[1]];
     let length = libm::hypot(along[0], along[1]).max(1e-9);
@@ -112,7 +114,7 @@ fn arrow(svg: &mut Svg, from: [f64; 2], to: [f64; 2]) {
     svg.polygon(&[to, wings[0], wings[1]], INK);
 }
 
-/// A length to measure by.
+/// A scale bar.
 fn bar(svg: &mut Svg, area: Area, scale: f64) {
     let most = 110.0 / scale;
     let decade = libm::pow(10.0, libm::floor(libm::log10(most)));

@@ -1,4 +1,4 @@
-//! Nothing in a figure collides or is cut off.
+//! Texts in figures do not overlap and are not cut off.
 
 #![expect(clippy::unwrap_used, reason = "a fault here fails the test")]
 
@@ -10,7 +10,8 @@ use etendue_figures::{
 };
 use resvg::usvg;
 
-/// Figures of every kind: few planes and many, short names and long, plain numbers, tiny ones and gaps.
+/// Figures of every kind: few and many planes, short and long names, ordinary and tiny numbers, and
+/// gaps.
 fn gallery() -> Vec<Figure> {
     let values = corner();
     let mut tiny = 3e-7 * &values;
@@ -107,7 +108,7 @@ fn no_texts_overlap() {
     }
 }
 
-/// A page is 7 inches of 96 units wide, and its texts have 6 points at least, scripts too.
+/// A page is 7 inches of 96 units wide, and all texts, including scripts, have at least 6 points.
 #[test]
 fn no_text_is_below_six_points() {
     for figure in gallery() {
@@ -139,12 +140,12 @@ fn options() -> usvg::Options<'static> {
     options
 }
 
-/// The font list shortened to the one loaded, so that no substitute is looked for.
+/// Reduces the font list to the loaded font, so that no substitute is used.
 fn with_font(svg: &str) -> String {
     svg.replace("DejaVu Sans, Verdana, sans-serif", "DejaVu Sans")
 }
 
-/// All texts of a tree and the boxes of their ink.
+/// All texts of a tree with their ink boxes.
 fn texts(group: &usvg::Group) -> Vec<(String, usvg::Rect)> {
     let mut found = Vec::new();
     for node in group.children() {
@@ -182,7 +183,7 @@ fn planes_at_one_place_are_drawn_apart_in_their_order() {
     assert!(places.windows(2).all(|p| p[1] - p[0] >= 16.0), "{places:?}");
 }
 
-/// A plane is drawn aside only where its line would cover something.
+/// A plane is drawn shifted only if its line would cover something.
 #[test]
 fn planes_in_free_space_stand_where_they_are() {
     let places = |side| {

@@ -1,4 +1,4 @@
-//! What is seen in the finished figures, where and in which color, and the numbers beside it.
+//! The content of finished figures: positions, colors, and the numbers beside them.
 
 use crate::common::{DECIBEL, Pixels, compare, corner, images, path, scene};
 use etendue_figures::{Scale, Section, section};
@@ -17,7 +17,7 @@ fn high_x_and_high_y_are_upper_right() {
     }
 }
 
-/// The same in the raster: the cell fills its part of the panel with one color, without smoothing.
+/// In the raster too, the cell fills its part of the panel with one color, without smoothing.
 #[test]
 fn the_raster_shows_cells_as_sharp_rectangles() {
     let values = corner();
@@ -31,9 +31,10 @@ fn the_raster_shows_cells_as_sharp_rectangles() {
     let [x, y, w, h] = ["x", "y", "width", "height"].map(|name| 2 * number(name));
     let bright = raster.at(x + w - w / 10, y + h / 6);
     assert!(bright[0] > 240 && bright[1] > 240, "{bright:?}");
-    // Three pixels inside the cell's own edges, beyond the frame: still its color.
+    // Three pixels inside the edges of the cell, beyond the frame, the color is still that of the
+    // cell.
     assert_eq!(raster.at(x + w - w / 5 + 3, y + h / 3 - 3), bright);
-    // Three pixels beyond them: that of 0.
+    // Three pixels outside, the color is that of 0.
     let dark = raster.at(x + 10, y + h - 10);
     assert!(dark.iter().all(|c| *c < 10), "{dark:?}");
     assert_eq!(raster.at(x + w - w / 5 - 3, y + h / 3 - 3), dark);
@@ -98,7 +99,7 @@ fn the_png_has_twice_the_size_of_the_svg_and_the_same_bytes_every_time() {
     }
 }
 
-/// The title is the only thing in its corner: ink there means the fonts are built in.
+/// Only the title is in its corner: ink there shows that the built-in fonts work.
 #[test]
 fn text_is_drawn() {
     let values = corner();

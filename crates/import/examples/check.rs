@@ -1,4 +1,4 @@
-//! Imports scenes and prints what their worlds hold, all notes and all causes.
+//! Imports scenes and prints the content of their worlds, all notes and all causes.
 //!
 //!     cargo run --example check -p etendue-import -- [--root FOLDER] [--set NAME=VALUE] SCENE...
 

@@ -1,10 +1,10 @@
 //! Tables of the CIE from 360 to 830 nm, in steps of 5 nm.
 
-/// Wavelength of the first number, nm.
+/// First wavelength of the tables, nm.
 pub(crate) const FIRST_WAVELENGTH: f64 = 360.0;
-/// Wavelength of the last number, nm.
+/// Last wavelength of the tables, nm.
 pub(crate) const LAST_WAVELENGTH: f64 = 830.0;
-/// Numbers in a table.
+/// Number of entries in a table.
 pub(crate) const COUNT: usize = 95;
 
 /// Colour matching functions x̄, ȳ and z̄ of the standard observer for 2° (CIE 1931).

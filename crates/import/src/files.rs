@@ -1,14 +1,14 @@
-//! The files that a scene may name.
+//! Access to the files that a scene may refer to.
 
 use etendue_scene::read_file;
 use std::cell::Cell;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Most bytes that one import reads or unpacks, all files together.
+/// Maximum number of bytes that one import reads or unpacks, over all files.
 const MOST_BYTES: u64 = 4 << 30;
 
-/// The files that a scene may name: all below one folder, links followed.
+/// The files that a scene may refer to: all within one folder, after following links.
 #[derive(Debug)]
 pub(crate) struct Files {
     root: PathBuf,
@@ -16,7 +16,7 @@ pub(crate) struct Files {
 }
 
 impl Files {
-    /// Files below `root`.
+    /// Allows files below `root`.
     pub(crate) fn below(root: &Path) -> io::Result<Self> {
         let root = match root.as_os_str() {
             empty if empty.is_empty() => Path::new("."),
@@ -28,9 +28,9 @@ impl Files {
         })
     }
 
-    /// The path of the file or folder `name`, looked for from one folder after the other.
+    /// Returns the path of the file or folder `name`, searching the folders in order.
     ///
-    /// It may be written with `..`: what counts is where it leads.
+    /// The name may contain `..`: only the resolved path must lie below the root.
     pub(crate) fn find(&self, folders: &[PathBuf], name: &str) -> Result<PathBuf, String> {
         let mut is_outside = false;
         for folder in folders {
@@ -50,24 +50,24 @@ impl Files {
         })
     }
 
-    /// The bytes of a file that [`Self::find`] gave.
+    /// The bytes of a file found by [`Self::find`].
     pub(crate) fn read(&self, path: &Path) -> Result<Vec<u8>, String> {
         let bytes = read_file(path, self.left.get()).map_err(|error| error.to_string())?;
         self.spend(bytes.len() as u64)?;
         Ok(bytes)
     }
 
-    /// The text of a file that [`Self::find`] gave.
+    /// The text of a file found by [`Self::find`].
     pub(crate) fn read_text(&self, path: &Path) -> Result<String, String> {
         text(self.read(path)?)
     }
 
-    /// How many bytes may still be read or unpacked.
+    /// The number of bytes that may still be read or unpacked.
     pub(crate) fn left(&self) -> u64 {
         self.left.get()
     }
 
-    /// Counts bytes that are unpacked.
+    /// Counts unpacked bytes.
     pub(crate) fn spend(&self, bytes: u64) -> Result<(), String> {
         let left = self.left.get().checked_sub(bytes);
         self.left.set(left.unwrap_or_default());
@@ -77,7 +77,7 @@ impl Files {
     }
 }
 
-/// The text that bytes of a file are.
+/// Decodes the bytes of a file as text.
 pub(crate) fn text(bytes: Vec<u8>) -> Result<String, String> {
     String::from_utf8(bytes).map_err(|_| "is no UTF-8".to_owned())
 }

@@ -9,7 +9,7 @@
 //!   all angles, what lies between a mixture of both. Without specular reflection (`specularFactor` 0, or index 1) it is Lambertian.
 //! - Pictures of colours are sRGB, of other quantities linear. Their first row is at v = 0, as in a world.
 //!
-//! Limits: 2²⁰ shapes and lights, as many bytes as one import reads.
+//! Limits: 2²⁰ shapes and lights, and the byte limit of an import.
 
 mod accessor;
 mod alpha;

@@ -1,7 +1,8 @@
-//! Scenes of other programs, read as a [`World`](etendue_world::World).
+//! Reads scenes of other programs into a [`World`](etendue_world::World).
 //!
-//! Mitsuba 3's XML; pbrt-v4's files; glTF 2.0, as JSON or binary; OBJ with MTL; PLY. What a world cannot hold is a cause, and the scene is refused with all of them at once; what makes little difference,
-//! or is approximated, is a note. Nothing is dropped in silence.
+//! Supported are Mitsuba 3's XML; pbrt-v4's files; glTF 2.0, as JSON or binary; OBJ with MTL; PLY.
+//! Content that a world cannot represent is a cause, and the scene is refused with all causes at
+//! once; minor omissions and approximations are notes. Nothing is dropped silently.
 
 mod cie;
 mod files;
@@ -24,7 +25,7 @@ pub use options::{Color, Options};
 
 use std::path::Path;
 
-/// Reads a scene file, its format told by its extension in any case:
+/// Reads a scene file; its extension, in any case, determines the format:
 ///
 /// - `xml`: Mitsuba 3.
 /// - `pbrt`: pbrt-v4.
@@ -34,7 +35,7 @@ use std::path::Path;
 /// - `ply`: one diffuse surface, 0.5 on both sides. No camera.
 ///
 /// # Errors
-/// All causes why the file makes no world.
+/// All causes why the file cannot be imported.
 pub fn import(file: &Path, options: &Options) -> Result<Imported, Refused> {
     let extension = file.extension().unwrap_or_default().to_string_lossy();
     match extension.to_ascii_lowercase().as_str() {
@@ -56,18 +57,18 @@ pub fn import(file: &Path, options: &Options) -> Result<Imported, Refused> {
     }
 }
 
-/// Reads the text of a Mitsuba 3 scene; files that it names are looked for from `folder`.
+/// Reads the text of a Mitsuba 3 scene; files are searched for from `folder`.
 ///
 /// # Errors
-/// All causes why the text makes no world.
+/// All causes why the text cannot be imported.
 pub fn import_mitsuba(text: &str, folder: &Path, options: &Options) -> Result<Imported, Refused> {
     mitsuba::import_text(text, folder, options)
 }
 
-/// Reads the text of a pbrt-v4 scene; files that it names are looked for from `folder`.
+/// Reads the text of a pbrt-v4 scene; files are searched for from `folder`.
 ///
 /// # Errors
-/// All causes why the text makes no world.
+/// All causes why the text cannot be imported.
 pub fn import_pbrt(text: &str, folder: &Path, options: &Options) -> Result<Imported, Refused> {
     pbrt::import_text(text, folder, options)
 }

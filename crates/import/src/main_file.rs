@@ -1,4 +1,4 @@
-//! The main file of a scene, with the files that it may name.
+//! The main file of a scene, with the files it may refer to.
 
 use crate::files::Files;
 use crate::report::SourcePlace;
@@ -9,25 +9,25 @@ use std::path::{Path, PathBuf};
 /// The main file of a scene.
 #[derive(Debug)]
 pub(crate) struct MainFile<'a> {
-    /// The files that it may name.
+    /// The files that the scene may refer to.
     pub(crate) files: Files,
-    /// Its path, links followed.
+    /// The path, with links resolved.
     pub(crate) path: PathBuf,
-    /// Its name in messages.
+    /// The name used in messages.
     pub(crate) name: String,
     /// The path that the user gave.
     given: &'a Path,
 }
 
 impl<'a> MainFile<'a> {
-    /// The file at a path. The user names it, so it need not be below the root.
+    /// Opens the file at a path. The user chose it, so it need not be below the root.
     pub(crate) fn open(path: &'a Path, options: &Options) -> Result<Self, Refused> {
         let folder = path.parent().unwrap_or(Path::new(""));
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         Self::new(path, folder, &name, options)
     }
 
-    /// A text that stands for the file of this name in `folder`.
+    /// A text in place of the file of this name in `folder`.
     pub(crate) fn of_text(
         folder: &'a Path,
         name: &str,
@@ -49,18 +49,18 @@ impl<'a> MainFile<'a> {
         })
     }
 
-    /// Its bytes.
+    /// Reads the bytes of the file.
     pub(crate) fn read(&self) -> Result<Vec<u8>, Refused> {
         let bytes = self.files.read(&self.path);
         bytes.map_err(|error| self.refused(error))
     }
 
-    /// The folder in which it lies.
+    /// The folder that contains the file.
     pub(crate) fn folder(&self) -> PathBuf {
         self.path.parent().unwrap_or(Path::new("")).to_owned()
     }
 
-    /// The file as a whole.
+    /// The place of the file as a whole, for messages.
     pub(crate) fn place(&self) -> SourcePlace {
         SourcePlace::whole(&self.name)
     }

@@ -1,10 +1,10 @@
-//! Meshes of any scene, as a world has them.
+//! Meshes of any scene format, for worlds.
 
 use etendue_scene::DetailedMesh;
 use etendue_world::Triangles;
 use glam::{DMat3, DVec2, DVec3};
 
-/// A mesh on its way to [`Triangles`].
+/// A mesh that is to become [`Triangles`].
 #[derive(Debug)]
 pub(crate) struct MeshParts {
     pub(crate) vertices: Vec<DVec3>,
@@ -25,23 +25,24 @@ impl From<DetailedMesh> for MeshParts {
 }
 
 impl MeshParts {
-    /// About how much memory it takes.
+    /// The approximate memory size.
     pub(crate) fn bytes(&self) -> u64 {
         let vertex = size_of::<[DVec3; 2]>() + size_of::<DVec2>();
         let all = self.vertices.len() * vertex + size_of_val(self.corners.as_slice());
         all as u64
     }
 
-    /// Drops triangles without an area, which no ray meets.
+    /// Drops triangles of zero area, which no ray hits.
     pub(crate) fn drop_empty(&mut self) {
         let vertices = &self.vertices;
         self.corners
             .retain(|corners| across(vertices, *corners) != DVec3::ZERO);
     }
 
-    /// Normals at the vertices: those of the triangles around, weighed with their angles there (Thürmer and Wüthrich 1998).
+    /// Computes vertex normals as the normals of adjacent triangles, weighted by their angles at
+    /// the vertex (Thürmer and Wüthrich 1998).
     ///
-    /// Angles are those after `linear`, under which the mesh is placed.
+    /// Angles are measured after applying `linear`, the placement of the mesh.
     pub(crate) fn smooth(&mut self, linear: DMat3) {
         let placed: Vec<DVec3> = self.vertices.iter().map(|v| linear * *v).collect();
         let mut sums = vec![DVec3::ZERO; placed.len()];
@@ -52,7 +53,8 @@ impl MeshParts {
                 sums[corners[k] as usize] += normal * angle(b - a, c - a);
             }
         }
-        // What the inverse transpose makes the sums of. A mirror turns the normals of triangles over, and is undone.
+        // The inverse transpose transforms the sums. The sign undoes the flip of triangle normals
+        // by a mirror.
         let sign = 1.0_f64.copysign(linear.determinant());
         let back = linear.transpose() * sign;
         let normals = sums
@@ -61,7 +63,7 @@ impl MeshParts {
         self.normals = Some(normals.collect());
     }
 
-    /// Turns triangles over that face away from their normals: the normals say where the front is.
+    /// Flips triangles that face away from their normals: the normals define the front.
     pub(crate) fn face_normals(&mut self) {
         let Some(normals) = &self.normals else {
             return;
@@ -74,7 +76,7 @@ impl MeshParts {
         }
     }
 
-    /// Puts the normal of a triangle where a vertex of it has none; whether that was so anywhere.
+    /// Uses the triangle normal where a vertex has none; returns whether that happened.
     pub(crate) fn mend_normals(&mut self) -> bool {
         let Some(normals) = &mut self.normals else {
             return false;
@@ -89,14 +91,15 @@ impl MeshParts {
                 }
             }
         }
-        // Those of no triangle.
+        // Normals of vertices without triangles.
         for normal in normals {
             *normal = normal.normalize_or(DVec3::X);
         }
         mended
     }
 
-    /// Turns normals over that point away from the front of the triangles around them; how many.
+    /// Flips normals that point away from the front of the triangles around them; returns their
+    /// number.
     pub(crate) fn turn_normals(&mut self) -> usize {
         let Some(normals) = &mut self.normals else {
             return 0;
@@ -117,7 +120,7 @@ impl MeshParts {
         turned
     }
 
-    /// The triangles; `None` if there are none, or something does not fit.
+    /// Returns the triangles; `None` if there are none, or the arrays do not fit together.
     pub(crate) fn finish(self) -> Option<Triangles> {
         if self.corners.is_empty() {
             return None;
@@ -126,7 +129,7 @@ impl MeshParts {
     }
 }
 
-/// The normal of a triangle, twice its area long.
+/// The normal of a triangle, with twice its area as length.
 fn across(vertices: &[DVec3], corners: [u32; 3]) -> DVec3 {
     let [a, b, c] = corners.map(|i| vertices[i as usize]);
     (b - a).cross(c - a)

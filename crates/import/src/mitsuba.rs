@@ -1,7 +1,8 @@
 //! Scenes of Mitsuba 3, in XML.
 //!
-//! `xml` makes objects of the files; `reader` and what follows make a world of the objects. Each property that is asked for is marked, and what is
-//! left without a mark becomes a note. Conventions were held against Mitsuba 3.9.1.
+//! `xml` turns the files into objects; `reader` and the modules below it turn the objects into a
+//! world. Each property that is read is marked, and each unmarked one becomes a note. Conventions
+//! were checked against Mitsuba 3.9.1.
 
 mod ask;
 mod cube;

@@ -1,19 +1,19 @@
-//! What was read, and notes on what was left out.
+//! The result of an import, and notes on omissions.
 
 use etendue_world::World;
 use std::fmt;
 use std::path::Path;
 
-/// A word on a place of a file.
+/// A message about a place in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Note {
     /// The file, as the scene names it.
     pub file: String,
-    /// Its line, from 1; 0 for the file as a whole.
+    /// Line number, from 1; 0 for the file as a whole.
     pub line: usize,
     /// Column in characters, from 1.
     pub column: usize,
-    /// What is there.
+    /// The message.
     pub message: String,
 }
 
@@ -32,19 +32,20 @@ impl fmt::Display for Note {
     }
 }
 
-/// A scene that has been read.
+/// An imported scene.
 #[derive(Clone, Debug)]
 pub struct Imported {
     /// The world.
     pub world: World,
-    /// What was dropped or approximated, in the order of reading; where there is too much, the last note says how much more.
+    /// Omissions and approximations, in the order of reading; if there are too many, the last note
+    /// gives the number of the rest.
     pub notes: Vec<Note>,
 }
 
-/// Why a scene is not read: all causes at once.
+/// The reasons why a scene is refused: all causes at once.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refused {
-    /// At least one, in the order of reading.
+    /// The causes, at least one, in the order of reading.
     pub causes: Vec<Note>,
 }
 

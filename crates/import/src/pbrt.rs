@@ -1,29 +1,35 @@
 //! Scenes of pbrt-v4.
 //!
-//! `token`, `parameter` and `directive` make a [`scene::Scene`] of the files; `reader` and what follows make a world of it. Each parameter that is
-//! asked for is marked, and what is left without a mark becomes a note. Conventions are those of pbrt-v4's source.
+//! `token`, `parameter` and `directive` turn the files into a [`scene::Scene`]; `reader` and the
+//! modules below it turn it into a world. Each parameter that is read is marked, and each unmarked
+//! one becomes a note. Conventions are those of pbrt-v4's source.
 //!
 //! # Light
 //!
-//! A light's number is what a pixel of pbrt's own picture shows of it with the default sensor and an imaging ratio of 1. pbrt divides each light by what
-//! its spectrum adds up to with the eye's sensitivity ȳ, and for an `rgb` by that of the white of its colour space; its sensor does not divide again. So
+//! A light has the value that a pixel of pbrt's own picture shows of it with the default sensor and
+//! an imaging ratio of 1. pbrt divides each light by the integral of its spectrum with the eye's
+//! sensitivity ȳ, and for an `rgb` by that of the white of its colour space; its sensor does not
+//! divide again. So
 //!
 //! * `rgb L [r g b]` is the colour (r, g, b) in linear sRGB, times `scale`: (1, 1, 1) shows 1 in each channel, and has luminance 1;
 //! * `blackbody` and `spectrum` have luminance 1, whatever their values, times `scale`: only their colour is that of the spectrum;
 //! * nothing is white: (1, 1, 1);
 //! * `power` and `illuminance` above 0 are those of white light: a number of luminance 1 is multiplied with them over what the light sends out for 1.
 //!
-//! Reflectances and indices are colours in linear sRGB too; spectra of them become such, weighed with D65, as [`Color`](crate::Color) says.
+//! Reflectances and indices are colours in linear sRGB too; their spectra are converted, weighted
+//! with D65, as described at [`Color`](crate::Color).
 //!
 //! # Space
 //!
-//! pbrt's coordinates are left-handed. They stay as they are, and the camera's map mirrors instead: its X goes to the left of the picture. A mirror leaves
-//! all that light does as it is. The front of a surface is where pbrt's normal points.
+//! pbrt's coordinates are left-handed. They are kept, and the camera's map mirrors instead: its X
+//! points to the left of the picture. A mirror does not change light transport. The front of a
+//! surface is where pbrt's normal points.
 //!
 //! # Limits
 //!
-//! Files are at most 64 in one another and 16384 in all, blocks 4096, textures 16 and materials 8 in one another; parameters of `Attribute` at most
-//! 256 at once; shapes at most 2²⁰ with all instances. What is read and unpacked is at most 4 GiB in all.
+//! Limits: files nest at most 64 deep and 16384 in all, blocks 4096 deep, textures 16 and materials
+//! 8; at most 256 parameters of `Attribute` at once; at most 2²⁰ shapes with all instances. At most
+//! 4 GiB are read and unpacked in all.
 
 mod area;
 mod block;

@@ -1,4 +1,4 @@
-//! Pictures of any scene: one number for each pixel.
+//! Pictures of any scene format: one number for each pixel.
 
 mod hdr;
 mod jpeg;
@@ -12,25 +12,25 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Pictures that have been read, each once.
+/// Cache of pictures, each read once.
 #[derive(Debug, Default)]
 pub(crate) struct Pictures {
     known: HashMap<(PathBuf, u64), Result<Arc<Raster>, String>>,
 }
 
-/// How levels of a picture go with light.
+/// The relation between the levels of a picture and light.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum TransferCurve {
-    /// As sRGB has them.
+    /// The sRGB curve.
     Srgb,
-    /// They are in proportion to light.
+    /// Levels are proportional to light.
     Linear,
-    /// Light is this power of them.
+    /// Light is this power of the level.
     Gamma(f64),
 }
 
 impl Pictures {
-    /// The picture at a path. Levels are sRGB and become linear, unless they are `raw`.
+    /// Reads the picture at a path. Levels are sRGB and are linearised, unless they are `raw`.
     pub(crate) fn read(
         &mut self,
         files: &Files,
@@ -46,7 +46,7 @@ impl Pictures {
         self.read_by(files, path, color, curve)
     }
 
-    /// The picture at a path, with the curve of its levels.
+    /// Reads the picture at a path, with the given curve of levels.
     pub(crate) fn read_by(
         &mut self,
         files: &Files,
@@ -65,7 +65,7 @@ impl Pictures {
 }
 
 impl TransferCurve {
-    /// Tells curves apart; 0 for that of sRGB.
+    /// A key that distinguishes curves; 0 for sRGB.
     fn exponent(self) -> f64 {
         match self {
             Self::Srgb => 0.0,
@@ -89,7 +89,7 @@ fn read(files: &Files, path: &Path, color: Color, curve: TransferCurve) -> Resul
         _ => v,
     };
     let grey = channels.count == 1;
-    // Three equal numbers have a luminance that rounding moves off them.
+    // Rounding would make the luminance of three equal numbers differ from them.
     let number = |rgb: [f64; 3]| match grey {
         true => linear(rgb[0]),
         false => color.of(rgb.map(linear)),
@@ -97,7 +97,7 @@ fn read(files: &Files, path: &Path, color: Color, curve: TransferCurve) -> Resul
     channels.raster(number).map_err(|fault| fault.to_string())
 }
 
-/// The channels of a picture, its format told by the extension of `path`.
+/// Decodes the channels of a picture; the extension of `path` determines the format.
 pub(crate) fn decode(path: &Path, bytes: &[u8]) -> Result<Channels, String> {
     let extension = path.extension().unwrap_or_default().to_string_lossy();
     match extension.to_ascii_lowercase().as_str() {
@@ -110,7 +110,7 @@ pub(crate) fn decode(path: &Path, bytes: &[u8]) -> Result<Channels, String> {
     }
 }
 
-/// A level of sRGB in proportion to light (IEC 61966-2-1).
+/// Converts an sRGB level to linear light (IEC 61966-2-1).
 pub(crate) fn linear(level: f64) -> f64 {
     if level <= 0.04045 {
         level / 12.92

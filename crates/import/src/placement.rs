@@ -1,13 +1,14 @@
-//! Where shapes of any scene may be placed.
+//! Checks of the placement of shapes, for any scene format.
 
 use crate::range::{MAX_NUMBER, holds};
 use etendue_world::Geometry;
 use glam::{DAffine3, DVec3};
 
-/// By how much of its length an axis of a sphere may differ from the others: transforms are products of rounded numbers.
+/// Maximum relative difference between the axes of a sphere: transforms are products of rounded
+/// numbers.
 const ALIKE: f64 = 1e-4;
 
-/// Why a geometry cannot be placed like this, if so.
+/// The reason why a geometry cannot be placed like this, if there is one.
 pub(crate) fn fault(geometry: &Geometry, to_world: DAffine3) -> Option<&'static str> {
     let [x, y, z] = [0, 1, 2].map(|i| to_world.matrix3.col(i));
     let alike = |a: DVec3, b: DVec3| (a.length() - b.length()).abs() <= ALIKE * a.length();

@@ -1,14 +1,15 @@
-//! The numbers that a scene may hold, whatever its format.
+//! The range of numbers that a scene may hold, for any format.
 
 use glam::DAffine3;
 
-/// The largest number of a scene, as in Étendue's own: sums of products of several stay far inside what f64 holds.
+/// The largest number in a scene, as in Étendue's own scenes: sums of products of several stay far
+/// within the range of f64.
 pub(crate) const MAX_NUMBER: f64 = 1e9;
 
-/// The largest share of light that a surface may scatter: weights of colour channels add up to 1 but for rounding.
+/// The largest albedo of a surface: weights of colour channels add up to 1 up to rounding.
 pub(crate) const MAX_SHARE: f64 = 1.0 + 1e-9;
 
-/// A number in range; `Err` is what is wrong with it.
+/// Checks that a number is in range; `Err` is the fault.
 pub(crate) fn in_range(value: f64) -> Result<f64, String> {
     match value.abs() <= MAX_NUMBER {
         true => Ok(value),

@@ -5,10 +5,11 @@ use etendue_world::World;
 use std::cell::RefCell;
 use std::rc::Rc;
 
-/// Causes that are kept, and notes; there may be as many as elements in a file.
+/// Maximum number of causes that are kept, and of notes; there may be as many as elements in a
+/// file.
 const MAX_MESSAGES: usize = 100;
 
-/// Bytes of a value in a message.
+/// Maximum number of bytes of a value in a message.
 const LONGEST: usize = 60;
 
 /// A place in a file.
@@ -16,14 +17,14 @@ const LONGEST: usize = 60;
 pub(crate) struct SourcePlace {
     /// The file, as the scene names it.
     pub(crate) file: Rc<str>,
-    /// From 1; 0 for the file as a whole.
+    /// Line number, from 1; 0 for the file as a whole.
     pub(crate) line: usize,
-    /// In characters, from 1.
+    /// Column in characters, from 1.
     pub(crate) column: usize,
 }
 
 impl SourcePlace {
-    /// A file as a whole.
+    /// The place of a file as a whole.
     pub(crate) fn whole(file: &str) -> Self {
         let (line, column) = (0, 0);
         Self {
@@ -43,14 +44,14 @@ impl SourcePlace {
     }
 }
 
-/// What is found while a scene is read: causes to refuse it, and notes.
+/// Collects causes for refusal and notes while a scene is read.
 #[derive(Debug, Default)]
 pub(crate) struct Report {
     causes: RefCell<Messages>,
     notes: RefCell<Messages>,
 }
 
-/// The first messages, and how many followed.
+/// The first messages, and the number of further ones.
 #[derive(Debug, Default)]
 struct Messages {
     kept: Vec<Note>,
@@ -65,7 +66,7 @@ impl Messages {
         }
     }
 
-    /// All that are kept; the last one says how many more there are of this kind.
+    /// Returns the kept messages; the last one gives the number of further messages of this kind.
     fn finish(mut self, kind: &str) -> Vec<Note> {
         if let (Some(last), more @ 1..) = (self.kept.last(), self.more) {
             let more = SourcePlace::whole(&last.file).note(format!("and {more} more {kind}"));
@@ -76,22 +77,22 @@ impl Messages {
 }
 
 impl Report {
-    /// The scene cannot be read, because of this too.
+    /// Adds a cause for refusal.
     pub(crate) fn cause(&self, place: &SourcePlace, message: impl Into<String>) {
         self.causes.borrow_mut().add(place, message.into());
     }
 
-    /// This is dropped or approximated.
+    /// Adds a note on an omission or approximation.
     pub(crate) fn note(&self, place: &SourcePlace, message: impl Into<String>) {
         self.notes.borrow_mut().add(place, message.into());
     }
 
-    /// Whether the scene cannot be read.
+    /// Whether the scene is refused.
     pub(crate) fn has_causes(&self) -> bool {
         !self.causes.borrow().kept.is_empty()
     }
 
-    /// The world, or all causes.
+    /// Returns the world, or all causes.
     pub(crate) fn finish(self, world: World) -> Result<Imported, Refused> {
         let causes = self.causes.into_inner().finish("causes");
         if causes.is_empty() {
@@ -103,7 +104,7 @@ impl Report {
     }
 }
 
-/// A value of the file for a message.
+/// Quotes a value of the file for a message.
 pub(crate) fn quoted(value: &str) -> String {
     let mut end = value.len().min(LONGEST);
     while !value.is_char_boundary(end) {

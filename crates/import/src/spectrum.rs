@@ -1,26 +1,27 @@
-//! Spectra as one number.
+//! Conversion of spectra to colours.
 
 use crate::cie::{COUNT, D65, FIRST_WAVELENGTH, LAST_WAVELENGTH, OBSERVER};
 
-/// Wavelengths at which a spectrum is summed.
+/// Number of wavelengths at which a spectrum is summed.
 const STEPS: u32 = 1000;
-/// With it a spectrum of 1 has luminance 1.
+/// Normalises a spectrum of 1 to luminance 1.
 const PER_OBSERVER: f64 = 1.0 / 106.750_259_399_414_06;
-/// With it the power of D65 has luminance 1.
+/// Normalises the power of D65 to luminance 1.
 const PER_D65: f64 = 1.0 / 98.997_417_518_762_55;
 
-/// What a spectrum stands for.
+/// The quantity that a spectrum represents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Role {
-    /// A share of light, 0 to 1.
+    /// A reflectance or transmittance, 0 to 1.
     Reflectance,
     /// Any number, such as an index of refraction.
     Number,
-    /// Light.
+    /// Emitted light.
     Emission,
 }
 
-/// Linear sRGB of a spectrum: pairs of a wavelength, nm, in rising order, and a value. See [`Color`](crate::Color).
+/// The linear sRGB colour of a spectrum: pairs of a wavelength, nm, in rising order, and a value.
+/// See [`Color`](crate::Color).
 pub(crate) fn rgb(samples: &[[f64; 2]], role: Role) -> [f64; 3] {
     let mut xyz = [0.0; 3];
     let mut next = 0;
@@ -50,7 +51,7 @@ pub(crate) fn rgb(samples: &[[f64; 2]], role: Role) -> [f64; 3] {
     from_xyz(xyz.map(|sum| sum * scale)).map(|v| v.clamp(0.0, most))
 }
 
-/// Linear sRGB of CIE XYZ, with Mitsuba's digits.
+/// Converts CIE XYZ to linear sRGB, with Mitsuba's coefficients.
 pub(crate) fn from_xyz([x, y, z]: [f64; 3]) -> [f64; 3] {
     [
         3.240_479 * x - 1.537_150 * y - 0.498_535 * z,
@@ -64,7 +65,7 @@ fn between(samples: &[[f64; 2]], next: usize, wavelength: f64) -> Option<f64> {
     let [w0, v0] = *samples.get(next.checked_sub(1)?)?;
     match samples.get(next) {
         Some([w1, v1]) => Some(v0 + (wavelength - w0) / (w1 - w0) * (v1 - v0)),
-        // The last wavelength is still inside; no number equals it but itself.
+        // The last wavelength is still inside the range.
         None => (wavelength <= w0).then_some(v0),
     }
 }

@@ -1,4 +1,4 @@
-//! Cameras, against rays that Mitsuba 3.9.1 sends through a film of 40 × 20 pixels.
+//! Cameras, compared with rays that Mitsuba 3.9.1 sends through a film of 40 × 20 pixels.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -12,7 +12,7 @@ fn camera(plugin: &str, inside: &str) -> Camera {
     world(&all).cameras.remove(0)
 }
 
-/// The ray through (0.1, 0.3) of the film's width and height.
+/// The ray at (0.1, 0.3) of the film's width and height.
 fn along(camera: &Camera) -> [f64; 3] {
     camera.look([4.0, 6.0], [0.0; 2]).along.to_array()
 }
@@ -67,7 +67,7 @@ fn cameras_look_along_z_with_y_up() {
         &[0.666_67, 0.666_67, 0.333_33],
         1e-5,
     );
-    // Clip planes: Mitsuba's ray begins at 0.015 and is 14999.986 long.
+    // Clip planes: Mitsuba's ray begins at 0.015 and has length 14999.986.
     assert_close(&corner.seen, &[0.015, 15_000.0], 2e-2);
 }
 
@@ -88,7 +88,7 @@ fn orthographic_cameras_are_scaled() {
     let scale = "<transform name=\"to_world\"><scale x=\"2\" y=\"2\" z=\"3\"/></transform>";
     let look = camera("orthographic", scale).look([4.0, 6.0], [0.0; 2]);
     assert_close(&look.from.to_array(), &[1.6, 0.4, 0.0], 1e-12);
-    // Mitsuba's ray begins at z = 0.03 and is 9999.99 long.
+    // Mitsuba's ray begins at z = 0.03 and has length 9999.99.
     assert_close(&look.seen, &[0.03, 0.03 + 9_999.99], 1e-9);
 }
 

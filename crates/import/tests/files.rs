@@ -1,4 +1,4 @@
-//! Files of a scene: where they are looked for, and what they may hold.
+//! Files of a scene: search folders and permitted content.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -24,7 +24,7 @@ fn includes_bring_their_objects_and_see_defaults() {
         .unwrap()
         .world;
     let radii = world.shapes.iter().map(|s| s.to_world.matrix3.x_axis.x);
-    // The first default counts, in all files; those of an included file go on behind it.
+    // The first default counts, in all files; defaults of an included file stay in effect after it.
     common::assert_close(&radii.collect::<Vec<f64>>(), &[2.0, 1.0, 7.0], 0.0);
 }
 
@@ -64,7 +64,7 @@ fn no_file_leads_out_of_the_root() {
     };
     let at = |name: &str| files.path().join("in/deep").join(name);
     assert_eq!(import(&at("s.xml"), &root).unwrap().world.shapes.len(), 1);
-    // Without a root nothing above the scene's folder is read.
+    // Without a root, nothing above the scene's folder is read.
     let refused = import(&at("s.xml"), &Options::default()).unwrap_err();
     assert!(
         refused.to_string().contains("leads out of the folder"),

@@ -1,4 +1,4 @@
-//! Scenes of glTF: each convention, with what would be wrong.
+//! Scenes of glTF: each convention, with values that detect a violation.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -7,7 +7,7 @@ use crate::gltf_scene::{BASE, causes, mesh, notes, with, world};
 use etendue_world::{Light, Material, MicrofacetDistribution, Projection, Texture};
 use glam::{DVec2, DVec3};
 
-/// The value of a texture that is the same everywhere.
+/// The value of a constant texture.
 fn constant(texture: &Texture) -> f64 {
     match texture {
         Texture::Constant(value) => *value,
@@ -27,7 +27,7 @@ fn cameras_look_along_minus_z_with_y_up() {
     let middle = camera.look([256.0, 128.0], [0.5; 2]);
     assert_close(&middle.from.to_array(), &[1.0, 2.0, 3.0], 1e-12);
     assert_close(&middle.along.to_array(), &[0.0, 0.0, -1.0], 1e-12);
-    // To the right of the picture is X, up is Y; yfov is from the top to the bottom.
+    // X points to the right of the picture and Y up; yfov is the vertical angle.
     let top = camera.look([256.0, 0.0], [0.5; 2]).along;
     assert_close(&[top.y / -top.z, top.x], &[libm::tan(0.4), 0.0], 1e-7);
     let right = camera.look([512.0, 128.0], [0.5; 2]).along;
@@ -101,7 +101,7 @@ fn the_front_is_where_corners_run_counterclockwise() {
     // X to the right and Y up: the front is towards Z.
     let [a, b, c] = first.corners()[0].map(|i| first.vertices()[i as usize]);
     assert!((b - a).cross(c - a).z > 0.0);
-    // A mirror leaves the front where the mirrored surface has it, by the normals' inverse transpose.
+    // A mirror keeps the front of the mirrored surface, by the inverse transpose of its normals.
     let mirrored = &world.shapes[1];
     assert!(!mirrored.is_flipped && mirrored.to_world.matrix3.determinant() < 0.0);
     let etendue_world::Geometry::Mesh(second) = &mirrored.geometry else {
@@ -127,7 +127,7 @@ fn base_colours_are_linear_and_their_pictures_srgb() {
     let Material::Diffuse { reflectance } = &sides[0] else {
         panic!("{:?}", sides[0]);
     };
-    // v = 0 is the row above, which is white; level 188 below is 0.502886 of the light.
+    // v = 0 is the upper row, which is white; level 188 below is 0.502886 in linear light.
     let at = |u, v| reflectance.value(DVec2::new(u, v));
     assert_close(
         &[at(0.5, 0.25), at(0.5, 0.75)],
@@ -197,7 +197,7 @@ fn double_sided_lamps_are_two_surfaces() {
         ((b - a).cross(c - a).normalize().z, a.z)
     });
     let fronts: Vec<(f64, f64)> = fronts.collect();
-    // The back faces away, and is behind.
+    // The back faces away, and lies behind the front.
     assert_close(&[fronts[0].0, fronts[1].0], &[-1.0, 1.0], 1e-9);
     assert!(fronts[0].1 < fronts[1].1, "{fronts:?}");
 }

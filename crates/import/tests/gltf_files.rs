@@ -1,4 +1,4 @@
-//! Files of glTF that are binary, or do not hold what they say.
+//! Binary glTF files, and files with inconsistent content.
 
 use crate::gltf_scene;
 use crate::gltf_scene::{causes, mesh, read};

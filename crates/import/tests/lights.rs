@@ -1,4 +1,4 @@
-//! Lights that are no surfaces.
+//! Lights that are not surfaces.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 

@@ -1,4 +1,4 @@
-//! Damaged scenes: every one is read or refused, none panics.
+//! Damaged scenes: each is read or refused, none causes a panic.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -38,7 +38,7 @@ LightSource "infinite" "string filename" "b.hdr" LightSource "spot" "spectrum I"
 const SQUARE: &str = "#?RADIANCE\n\n-Y 2 +X 2\nabcdabcdabcdabcd";
 const PBRT_PART: &str = "Scale 2 2 2\nMaterial \"dielectric\" \"float eta\" 1.4\nShape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0]\n";
 
-/// The same numbers each time (Marsaglia 2003).
+/// A reproducible random sequence (Marsaglia 2003).
 fn next(state: &mut u64) -> usize {
     *state ^= *state << 13;
     *state ^= *state >> 7;
@@ -72,7 +72,7 @@ fn no_byte_of_a_pbrt_scene_makes_it_panic() {
     );
 }
 
-/// Damages one file after the other, the first one most, and imports the scene each time.
+/// Damages the files in turn, the first one most often, and imports the scene each time.
 fn damage(files: &[(&str, &[u8])], rounds: usize) {
     let folder = folder(files);
     let main = folder.path().join(files[0].0);
@@ -81,7 +81,7 @@ fn damage(files: &[(&str, &[u8])], rounds: usize) {
     let mut state = 88_172_645_463_325_252;
     let (mut read, mut refused) = (0, 0);
     for round in 0..rounds {
-        // Every second time the scene, else one of its files.
+        // Every second round damages the scene file, the others one of its files.
         let which = match files.len() {
             others @ 2.. if round % 2 == 1 => 1 + next(&mut state) % (others - 1),
             _ => 0,
@@ -107,7 +107,7 @@ fn damage(files: &[(&str, &[u8])], rounds: usize) {
         }
         fs::write(folder.path().join(name), sound).unwrap();
     }
-    // Both happen, so both are tested.
+    // Both outcomes occur, so both are tested.
     let few = rounds / 15;
     assert!(
         read > few && refused > few,
@@ -136,7 +136,7 @@ fn no_byte_of_obj_makes_it_panic() {
     damage(&files, 6000);
 }
 
-/// A glTF scene with something of everything.
+/// A glTF scene that uses every feature.
 fn everything() -> String {
     let nodes = r#"{"mesh":0,"children":[1,2]},{"mesh":0,"rotation":[0,0.6,0,0.8],"scale":[-1,2,1],"camera":0},
 {"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,3,4,5,1],"extensions":{"KHR_lights_punctual":{"light":0}}}"#;
@@ -154,7 +154,7 @@ fn everything() -> String {
 
 #[test]
 fn deep_and_wide_gltf_scenes_end() {
-    // A chain of nodes, each below the one before.
+    // A chain of nodes, each the child of the previous one.
     let node = |i: usize| format!(r#"{{"mesh":0,"children":[{}]}}"#, i + 1);
     let mut nodes: Vec<String> = (0..20_000).map(node).collect();
     nodes.push("{\"mesh\":0}".to_owned());
@@ -177,7 +177,7 @@ fn deep_and_wide_scenes_end() {
     let deep = "<bsdf type=\"twosided\">".repeat(100_000) + &"</bsdf>".repeat(100_000);
     let causes = refused(&format!("<scene version=\"3.0.0\">{deep}</scene>"));
     assert!(causes[0].message.contains("elements"), "{:?}", causes[0]);
-    // References that double what is below them, again and again.
+    // References that double their content at each level.
     let mut doubled = String::from("<scene version=\"3.0.0\"><bsdf type=\"diffuse\" id=\"b0\"/>");
     for i in 1..64 {
         let j = i - 1;
@@ -187,7 +187,7 @@ fn deep_and_wide_scenes_end() {
     }
     doubled += "<shape type=\"sphere\"><ref id=\"b63\"/></shape></scene>";
     assert!(refused(&doubled)[0].message.contains("in one another"));
-    // Groups and instances multiply.
+    // Groups and instances multiply the number of shapes.
     let group = "<shape type=\"sphere\"/>".repeat(2000);
     let instances = "<shape type=\"instance\"><ref id=\"g\"/></shape>".repeat(2000);
     let many = format!(
@@ -224,7 +224,7 @@ fn deep_and_wide_pbrt_scenes_end() {
         let read = import_pbrt(&text, folder.path(), &Options::default());
         read.map(|read| read.notes.len()).unwrap_err().causes
     };
-    // Files that double what is below them, again and again.
+    // Files that double their content at each level.
     assert!(
         refused("Include \"0.pbrt\"")[0]
             .message
@@ -248,7 +248,7 @@ fn deep_and_wide_pbrt_scenes_end() {
     let causes = refused(&many);
     assert_eq!(causes.len(), 1, "{causes:?}");
     assert!(causes[0].message.contains("shapes, with all instances"));
-    // Textures that name one another in a long row.
+    // Textures that refer to one another in a long chain.
     let mut row = String::from("Texture \"t0\" \"spectrum\" \"constant\"\n");
     for i in 1..5000 {
         let before = i - 1;
@@ -260,7 +260,7 @@ fn deep_and_wide_pbrt_scenes_end() {
             .message
             .contains("too many are in one another")
     );
-    // Materials that double those below them.
+    // Materials that double their content at each level.
     let mut doubled = String::from("MakeNamedMaterial \"m0\" \"string type\" \"diffuse\"\n");
     for i in 1..64 {
         let before = i - 1;

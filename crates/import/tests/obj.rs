@@ -1,4 +1,4 @@
-//! Scenes of OBJ and MTL, and PLY: each convention, with what would be wrong.
+//! Scenes of OBJ and MTL, and PLY: each convention, with values that detect a violation.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -33,7 +33,7 @@ fn read(obj: &str, mtl: &str) -> Imported {
     read_all(&text, mtl).unwrap_or_else(|causes| panic!("{causes:#?}"))
 }
 
-/// The material of one square.
+/// The material of a single square.
 fn material(mtl: &str) -> Material {
     let read = read(
         "usemtl m\nf 1/1 2/2 3/3 4/4\n",
@@ -42,7 +42,7 @@ fn material(mtl: &str) -> Material {
     read.world.materials.into_iter().next().unwrap()
 }
 
-/// What both sides are made of.
+/// The material of both sides.
 fn side(mtl: &str) -> Material {
     match material(mtl) {
         Material::TwoSided(sides) => sides[0].clone(),
@@ -120,7 +120,7 @@ fn pictures_begin_below() {
             .position(|v| (v.y - y).abs() < 1e-9);
         reflectance.value(DVec2::new(0.5, uvs[found.unwrap()].y))
     };
-    // vt 0 is at the lower row, of level 188: 0.502886 of the light.
+    // v = 0 is the lower row, of level 188: 0.502886 in linear light.
     assert_close(&[at(0.0), at(1.0)], &[0.5 * 0.502_886, 0.5], 1e-6);
 }
 
@@ -136,7 +136,7 @@ fn options_of_pictures_place_them_upwards() {
     else {
         panic!("{:?}", sides[0]);
     };
-    // v of the file 0.5 goes to 0.375, which is 0.625 from above.
+    // v = 0.5 in the file maps to 0.375, which is 0.625 from the top.
     let found = bitmap.to_uv.transform_point2(DVec2::new(0.5, 0.5));
     assert_close(&found.to_array(), &[1.25, 0.625], 1e-12);
 }

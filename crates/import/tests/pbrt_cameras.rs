@@ -1,4 +1,4 @@
-//! Cameras of pbrt-v4: X to the right, the angle of view that of the shorter side.
+//! Cameras of pbrt-v4: X to the right, and the angle of view along the shorter side.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -20,7 +20,7 @@ fn along(look: Look) -> [f64; 3] {
 #[test]
 fn x_is_to_the_right() {
     let top_right = camera(&format!("{WIDE} Camera \"perspective\"")).look([40.0, 0.0], [0.0; 2]);
-    // Half of 90 degrees up, twice as much to the right.
+    // Half of 90 degrees vertically, twice as much horizontally.
     assert_close(
         &along(top_right),
         &[2.0 / 6_f64.sqrt(), 1.0 / 6_f64.sqrt(), 1.0 / 6_f64.sqrt()],
@@ -35,7 +35,7 @@ fn x_is_to_the_right() {
         &[-2.0 / 5_f64.sqrt(), 0.0, -1.0 / 5_f64.sqrt()],
         1e-12,
     );
-    // A mirror before it, as exporters write it.
+    // A mirror before the camera, as exporters write it.
     let mirrored = format!("Scale -1 1 1 {placed}");
     let look = camera(&mirrored).look([40.0, 10.0], [0.0; 2]);
     assert_close(
@@ -79,7 +79,7 @@ fn lenses_focus_on_a_plane() {
     let lens = "Scale 0.5 0.5 0.5 Camera \"perspective\" \"float lensradius\" 0.1 \"float focaldistance\" 3";
     let camera = camera(lens);
     let [middle, edge] = [[0.0, 0.0], [0.6, -0.8]].map(|lens| camera.look([4.0, 6.0], lens));
-    // The camera is twice as large as its file says.
+    // The camera is scaled by two.
     let at = |look: Look| look.from + look.along * (6.0 / look.along.z);
     assert_close(&(at(middle) - at(edge)).to_array(), &[0.0; 3], 1e-12);
     assert_close(&[edge.from.length()], &[0.2], 1e-12);

@@ -1,4 +1,4 @@
-//! Files of pbrt-v4: how they are written, what they include, and what is said of them.
+//! Files of pbrt-v4: syntax, includes and messages.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -145,7 +145,7 @@ fn files_are_read_in_place_and_cycles_are_found() {
             .map(|s| s.to_world.translation.x)
             .collect()
     };
-    // Names are looked for from the folder of the scene.
+    // Names are relative to the folder of the scene.
     assert_eq!(places("Include \"a/up.pbrt\" Shape \"disk\""), [1.0, 1.0]);
     assert_eq!(places("Import \"part.pbrt\" Shape \"disk\""), [1.0, 0.0]);
     let cycle = read("Include \"one.pbrt\"").unwrap_err();

@@ -1,4 +1,5 @@
-//! Lights of pbrt-v4: a colour is what its own picture shows, a spectrum has luminance 1.
+//! Lights of pbrt-v4: a colour has the value that its own picture shows, a spectrum has luminance
+//! 1.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -25,7 +26,7 @@ fn numbers_are_those_of_pbrts_pictures() {
         1e-5,
     );
     assert_close(&[intensity("\"rgb I\" [0 1 0]")], &[0.715_160], 1e-12);
-    // pbrt divides spectra by what they add up to.
+    // pbrt divides spectra by their integral.
     assert_close(
         &[intensity("\"blackbody I\" 3000 \"float scale\" 2")],
         &[2.0],
@@ -130,7 +131,7 @@ fn areas_shine_by_their_power() {
         &[1.0],
         1e-5,
     );
-    // pbrt takes the sphere before it is scaled.
+    // pbrt uses the area of the sphere before it is scaled.
     let sphere = "\"float power\" 8 Scale 2 2 2 Shape \"sphere\" \"float radius\" 0.5";
     assert_close(&[radiance(sphere)], &[8.0 / (PI * PI)], 1e-12);
     let triangle =
@@ -167,7 +168,7 @@ fn lights_without_an_equal_are_refused() {
     );
 }
 
-/// A Radiance picture of squares of the same numbers, one brighter.
+/// A square Radiance picture of equal pixels, with one brighter pixel.
 fn square(side: usize, bright: usize) -> Vec<u8> {
     let mut bytes = format!("#?RADIANCE\n\n-Y {side} +X {side}\n").into_bytes();
     for i in 0..side * side {
@@ -179,7 +180,7 @@ fn square(side: usize, bright: usize) -> Vec<u8> {
 
 #[test]
 fn skies_are_squares_of_equal_area() {
-    // The pixel right of the middle: above X, 45° and a bit from Z.
+    // The pixel right of the centre: above X, slightly more than 45° from Z.
     let (side, bright) = (16, 8 * 16 + 12);
     let files = [
         ("a.hdr", &*square(side, bright)),
@@ -197,7 +198,7 @@ fn skies_are_squares_of_equal_area() {
     let Light::Sky(map) = &read_sky.world.lights[0] else {
         panic!("{:?}", read_sky.world.lights);
     };
-    // All light of the map, and the mean of its directions.
+    // The total light of the map, and its mean direction.
     let raster = map.radiance.raster();
     let (w, h) = (raster.width(), raster.height());
     let (mut sum, mut toward) = (0.0, DVec3::ZERO);
@@ -208,14 +209,14 @@ fn skies_are_squares_of_equal_area() {
         sum += light;
         toward += light * DVec3::new(sin * x, cos, -sin * z);
     }
-    // Means over pixels keep light to a few hundredths of so small a spot.
+    // Means over pixels conserve light within a few hundredths of so small a spot.
     let pixel = 4.0 * PI / (side * side) as f64;
     assert!((sum / (4.0 * pixel) - 1.0).abs() < 0.1, "{sum}");
-    // Its middle: u = 9/16, v = 1/16 of ±1, so that r = 10/16.
+    // The centre of the pixel: u = 9/16, v = 1/16 of ±1, so that r = 10/16.
     let r = 10.0_f64 / 16.0;
     let turn = (1.0 / 16.0 / r) * PI / 2.0;
     let across = r * (2.0 - r * r).sqrt();
-    // Turned from X to Y.
+    // Rotated from X to Y.
     let expected = DVec3::new(-across * turn.sin(), across * turn.cos(), 1.0 - r * r);
     let found = map.to_world * toward.normalize();
     assert!(found.angle_between(expected) < 0.02, "{found} {expected}");

@@ -38,7 +38,7 @@ fn roughness_is_remapped_by_its_root() {
     assert_close(&alpha(both).unwrap(), &[0.2, 0.5], 1e-12);
     let raw = "\"float roughness\" 0.09 \"bool remaproughness\" false";
     assert_close(&alpha(raw).unwrap(), &[0.09; 2], 1e-12);
-    // Below α = 0.001 pbrt has a mirror.
+    // pbrt treats α below 0.001 as a mirror.
     assert_eq!(alpha("\"float roughness\" 0.0000005"), None);
 }
 
@@ -55,7 +55,7 @@ fn what_reflects_does_so_on_both_sides() {
         let of = &world.materials[world.shapes[0].material];
         assert_eq!(matches!(of, Material::TwoSided(_)), is_both, "{plugin}");
     }
-    // So does pbrt's own material, with half the light.
+    // pbrt's default material is also diffuse, with reflectance one half.
     match material("") {
         Material::Diffuse { reflectance } => assert_close(&[constant(&reflectance)], &[0.5], 0.0),
         other => panic!("{other:?}"),
@@ -82,7 +82,7 @@ fn metals_have_an_index() {
         &[2.0, 3.0],
         1e-5,
     );
-    // Straight on, n = 1 and k reflect k² / (4 + k²).
+    // At normal incidence, n = 1 and k reflect k² / (4 + k²).
     let [n, k] = index("\"rgb reflectance\" [0.6 0.6 0.6]");
     assert_close(&[n, k * k / (4.0 + k * k)], &[1.0, 0.6], 1e-5);
 }
@@ -95,7 +95,7 @@ fn glass_has_an_index() {
         other => panic!("{other:?}"),
     };
     assert_close(&[index(""), index("\"float eta\" 1.33")], &[1.5, 1.33], 0.0);
-    // BK7 at 587.6 nm has 1.5168.
+    // BK7 has n = 1.5168 at 587.6 nm.
     assert_close(&[index("\"spectrum eta\" \"glass-BK7\"")], &[1.5168], 1e-3);
     let eta = "Material \"dielectric\" \"spectrum eta\" \"glass-BK7\"\nShape \"sphere\"";
     assert_eq!(
@@ -147,7 +147,7 @@ fn interfaces_are_no_surfaces() {
     assert!(world(inside).shapes.is_empty());
 }
 
-/// The value at a place of a rectangle with pbrt's (u, v).
+/// The value at a point of a shape with pbrt's (u, v).
 fn value(inside: &str, shape: &str, uv: [f64; 2]) -> f64 {
     let declared = format!("{inside} Material \"diffuse\" \"texture reflectance\" \"t\" {shape}");
     let world = world(&declared);
@@ -173,7 +173,7 @@ fn squares_of_a_checkerboard_are_one_unit() {
     ] {
         assert_close(&[value(board, mesh, uv)], &[expected], 1e-5);
     }
-    // v of a sphere goes up from its lower pole, u of a disk around it.
+    // v of a sphere increases from its lower pole; u of a disk is its azimuth.
     let rings = "Texture \"t\" \"spectrum\" \"checkerboard\" \"float vscale\" 4 \"rgb tex1\" [.8 .8 .8] \"rgb tex2\" [.2 .2 .2]";
     assert_close(
         &[value(rings, "Shape \"sphere\"", [0.5, 0.99])],
@@ -185,7 +185,7 @@ fn squares_of_a_checkerboard_are_one_unit() {
         &[0.2],
         1e-5,
     );
-    // The edge of a disk, whose radius is u of a world, has v = 0.
+    // The edge of a disk has v = 0; in a world, u is the radius.
     assert_close(&[value(rings, "Shape \"disk\"", [0.99, 0.3])], &[0.8], 1e-5);
     assert_close(&[value(rings, "Shape \"disk\"", [0.01, 0.3])], &[0.2], 1e-5);
 }

@@ -1,4 +1,4 @@
-//! Shapes of pbrt-v4, where they are and which side is their front.
+//! Shapes of pbrt-v4: their placement and front.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -15,7 +15,7 @@ fn mesh(shape: &Shape) -> &Triangles {
     }
 }
 
-/// The normal on the front of a shape, near a direction of its own coordinates.
+/// The normal on the front of a shape, near a direction in its own coordinates.
 fn front(shape: &Shape, own: DVec3) -> DVec3 {
     let side = if shape.is_flipped { -1.0 } else { 1.0 };
     let normal = match &shape.geometry {
@@ -39,7 +39,7 @@ fn transforms_stand_before_those_they_are_applied_after() {
         &[0.0, 2.0, 0.0],
         1e-15,
     );
-    // Columns: X goes to Y.
+    // The matrix is given by columns: X goes to Y.
     let matrix = "[0 1 0 0  -1 0 0 0  0 0 1 0  4 5 6 1]";
     assert_close(&at(&format!("Transform {matrix}")), &[4.0, 6.0, 6.0], 0.0);
     assert_close(
@@ -58,7 +58,7 @@ fn transforms_stand_before_those_they_are_applied_after() {
     let block =
         "AttributeBegin Translate 5 5 5 AttributeEnd TransformBegin Scale 3 3 3 TransformEnd";
     assert_close(&at(block), &[1.0, 0.0, 0.0], 0.0);
-    // LookAt maps to the camera's coordinates, whose X is to the right.
+    // LookAt maps to camera coordinates, in which X is to the right.
     let look = place("LookAt 0 0 5  0 0 0  0 1 0");
     let expected = DMat4::from_cols_array(&[
         -1., 0., 0., 0., 0., 1., 0., 0., 0., 0., -1., 0., 0., 0., 5., 1.,
@@ -90,19 +90,20 @@ fn fronts_are_where_normals_point() {
             outward,
             "{plugin}"
         );
-        // pbrt turns normals over below a mirror; those of meshes, whose corners it mirrors too, are turned twice.
+        // pbrt flips normals after a mirror; those of meshes, whose corners it mirrors too, are
+        // flipped twice.
         let is_mesh = plugin.contains("mesh");
         let mirrored = if is_mesh { outward } else { -outward };
         assert_eq!(of("Scale 1 -1 1"), mirrored, "{plugin}");
         assert_eq!(of("Scale 1 -1 1 ReverseOrientation"), -mirrored, "{plugin}");
     }
-    // Normals of vertices say where the front is.
+    // Vertex normals determine the front.
     let down =
         "\"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"normal N\" [0 0 -1 0 0 -1 0 0 -1]";
     assert_eq!(front(&shape(&format!("Shape {down}")), own), DVec3::NEG_Z);
     let turned = format!("ReverseOrientation Shape {down}");
     assert_eq!(front(&shape(&turned), own), DVec3::Z);
-    // A sphere that shines below a mirror sends light from its outside.
+    // A mirrored sphere emits light outwards.
     let shining = "Scale -1 1 1 AreaLightSource \"diffuse\" Shape \"sphere\"";
     assert_eq!(front(&shape(shining), own), DVec3::NEG_X);
     assert!(notes(shining)[0].contains("below a mirror"));

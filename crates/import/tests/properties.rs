@@ -1,4 +1,4 @@
-//! Properties: what is read, what is left out, and what is refused.
+//! Properties: read, left out and refused.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 

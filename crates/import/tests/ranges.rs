@@ -1,4 +1,4 @@
-//! Numbers that a scene may hold, and what is refused because a picture of it would be wrong.
+//! Allowed ranges of numbers, and refusals of scenes whose picture would be wrong.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -6,7 +6,7 @@ use crate::common::{causes, folder, world};
 use etendue_import::{Options, import, import_pbrt};
 use std::fs;
 
-/// The only cause, which names its line and what is allowed.
+/// Checks that there is one cause, which names its line and the allowed values.
 fn assert_refused(causes: &[String], line: &str, words: &str) {
     assert_eq!(causes.len(), 1, "{causes:?}");
     assert!(
@@ -21,7 +21,7 @@ fn pbrt_causes(text: &str) -> Vec<String> {
     refused.causes.iter().map(ToString::to_string).collect()
 }
 
-/// Causes to refuse a file of these.
+/// The causes to refuse a scene of these files.
 fn file_causes(files: &[(&str, &[u8])]) -> Vec<String> {
     let folder = folder(files);
     let refused = import(&folder.path().join(files[0].0), &Options::default()).unwrap_err();
@@ -80,7 +80,7 @@ fn numbers_out_of_range_are_refused_at_their_line() {
 
 #[test]
 fn an_illuminance_that_no_factor_reaches_is_refused() {
-    // A black picture has no illuminance that a factor could bring to 1.
+    // A black picture has no illuminance that could be scaled to 1.
     let light = r#"LightSource "infinite" "string filename" "a.png" "float illuminance" 1"#;
     let folder = tempfile::tempdir().unwrap();
     let black = png(&[0; 4]);
@@ -129,7 +129,7 @@ fn surfaces_reflect_no_more_light_than_there_is() {
     ] {
         assert_refused(&causes(&bsdf(inside)), "text:2:", words);
     }
-    // White pictures and colours are 1, but for rounding.
+    // White pictures and colours are 1 up to rounding.
     world(&bsdf(
         r#"<bsdf type="diffuse"><rgb name="reflectance" value="1"/></bsdf>"#,
     ));

@@ -1,4 +1,4 @@
-//! Shapes: placement, fronts, normals and texture coordinates, against Mitsuba 3.9.1.
+//! Shapes: placement, fronts, normals and texture coordinates, compared with Mitsuba 3.9.1.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -46,7 +46,7 @@ fn mesh(shape: &Shape) -> &Arc<Triangles> {
     }
 }
 
-/// The normal that a vertex is shaded with, in the world.
+/// The shading normal of a vertex in the world.
 fn shading_normal(shape: &Shape, vertex: usize) -> [f64; 3] {
     let normal = mesh(shape).normals().unwrap()[vertex];
     turned(shape, normal)
@@ -72,7 +72,7 @@ fn fronts_of_simple_shapes() {
         ),
         ("disk", MIRROR, DVec3::Z, DVec3::Z),
         ("sphere", "", DVec3::Z, DVec3::Z),
-        // Spheres alone are turned inside out.
+        // Only spheres are turned inside out.
         ("sphere", MIRROR, DVec3::Z, DVec3::NEG_Z),
         ("cylinder", MIRROR, DVec3::Y, DVec3::Y),
         ("cube", MIRROR, DVec3::Z, DVec3::Z),
@@ -131,7 +131,7 @@ fn meshes_without_normals_get_smooth_ones() {
     };
     let half = 0.5_f64.sqrt();
     assert_close(&at(""), &[half, 0.0, half], 1e-12);
-    // Normals are made of the placed triangles: the mirror turns them over, as it does in Mitsuba.
+    // Normals are computed from the placed triangles: the mirror flips them, as in Mitsuba.
     assert_close(&at(MIRROR), &[half, 0.0, -half], 1e-12);
     let stretched = "<transform name=\"to_world\"><scale z=\"3\"/></transform>";
     assert_close(&at(stretched), &[half, 0.0, half], 1e-12);
@@ -225,7 +225,7 @@ fn shapes_without_a_material_are_grey_or_black() {
     assert!(world.shapes[0].emission.is_none());
 }
 
-/// A mesh file of version 4 with two triangles in two meshes; the second is 1 higher.
+/// A mesh file of version 4 with two meshes of one triangle each; the second is 1 higher.
 fn serialized() -> Vec<u8> {
     let mut file = Vec::new();
     let mut offsets = Vec::new();

@@ -1,10 +1,10 @@
-//! Transforms, against matrices that Mitsuba 3.9.1 prints.
+//! Transforms, compared with matrices printed by Mitsuba 3.9.1.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 use crate::common::{assert_close, causes, world};
 
-/// Rows of the matrix of a rectangle's `to_world`.
+/// The rows of the matrix of a rectangle's `to_world`.
 fn rows(steps: &str) -> Vec<f64> {
     let shape = format!(
         "<shape type=\"rectangle\"><transform name=\"to_world\">{steps}</transform></shape>"

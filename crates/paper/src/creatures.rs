@@ -1,4 +1,4 @@
-//! Figs. 16 and 17: a picture of few shading samples, and the criteria that put them where they are.
+//! Figs. 16 and 17: a picture from few shading samples, and the criteria that place them.
 
 use crate::quality::Quality;
 use crate::subject::FigureData;
@@ -14,7 +14,7 @@ use etendue_world::Camera;
 use ndarray::{Array2, Axis as Along};
 use std::fs;
 
-/// The scene and its files.
+/// The scene file and the files it needs.
 const FILES: [(&str, &[u8]); 4] = [
     (
         "creatures.xml",
@@ -50,7 +50,7 @@ struct CreatureScene {
 }
 
 impl CreatureScene {
-    /// The creatures, as large as the quality asks.
+    /// The creatures scene, at the size for this quality.
     fn new(quality: Quality) -> Result<Self, Failure> {
         let folder = tempfile::tempdir().map_err(Failure::cannot_run)?;
         for (name, bytes) in FILES {
@@ -92,7 +92,7 @@ impl CreatureScene {
         render(&self.paths, &self.camera, &plan, &|_, _| {}, &|_| {})
     }
 
-    /// Numbers of pixels as figures have them: columns first, and rows from below.
+    /// The values of pixels in the layout of figures: columns first, and rows from below.
     fn picture(&self, values: Vec<f64>) -> Result<Array2<f64>, Failure> {
         let [w, h] = self.camera.size;
         let mut rows = Array2::from_shape_vec((h, w), values).map_err(Failure::cannot_run)?;
@@ -230,14 +230,14 @@ fn error(radiance: &[f64], reference: &[f64]) -> f64 {
     radiance.iter().zip(reference).map(of).sum::<f64>() / count
 }
 
-/// The radiance above which a hundredth of the pixels lie.
+/// The radiance exceeded by a hundredth of the pixels.
 fn bright(radiance: &[f64]) -> f64 {
     let mut sorted = radiance.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
     sorted[sorted.len() * 99 / 100].max(f64::MIN_POSITIVE)
 }
 
-/// The style with grey for photographs.
+/// The style with a grey scale for photographs.
 fn photographs(style: &Style) -> Style {
     Style {
         palette: Palette::Grey,

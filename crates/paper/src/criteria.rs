@@ -1,4 +1,5 @@
-//! The sampling criteria of Durand et al. 2005, section 6.2, as printed and corrected, beside photons.
+//! Compares the sampling criteria of Durand et al. 2005, section 6.2, as printed and corrected,
+//! with photons.
 
 use crate::quality::Quality;
 use crate::scene_run::resolved;
@@ -10,19 +11,19 @@ use etendue_store::Failure;
 use etendue_store::Method;
 use etendue_theory::shading::Criterion;
 
-/// A field of a scene, and the values it takes.
+/// A field of a scene, and its values.
 struct CriterionSweep {
     title: &'static str,
     quantity: AxisQuantity,
     field: &'static str,
-    /// Ends of the lines, and where photons are counted.
+    /// The ends of the lines, where photons are also measured.
     ends: [f64; 2],
     values: &'static [f64],
-    /// What a value of the field is on the axis.
+    /// Converts a value of the field to the axis.
     shown: fn(f64) -> f64,
 }
 
-/// Points of a line.
+/// Number of points of a line.
 const POINTS: u32 = 40;
 
 /// Curves over curvature and distance without a blocker, and over curvature behind an edge.
@@ -100,7 +101,7 @@ fn panel(
     })
 }
 
-/// The bandwidth, corrected and as printed: behind an edge, if there is one.
+/// The bandwidth by the criterion, corrected and as printed; behind an edge if there is one.
 fn said(criterion: &Criterion) -> [f64; 2] {
     if criterion.blocker_distance.is_some() {
         [criterion.blocker(), criterion.printed_blocker()]
@@ -116,7 +117,7 @@ fn at((name, text): &Text, sweep: &CriterionSweep, value: f64) -> Result<Criteri
     found.ok_or_else(|| Failure::cannot_run(format!("{name} has no criterion")))
 }
 
-/// What photons say: the value on the axis, the bandwidth and its standard error.
+/// The measurement by photons: the value on the axis, the bandwidth and its standard error.
 fn counted(
     taken: &FigureData<'_>,
     (name, text): &Text,

@@ -1,4 +1,4 @@
-//! The scene of Fig. 6 in flatland, read off the scene in 3D.
+//! Converts the scene of Fig. 6 from 3D to flatland.
 
 use etendue_field::{Light, Shape, VirtualPlane};
 use etendue_scene::{BlockersFile, Scene};

@@ -1,4 +1,4 @@
-//! Curves of kernels that the paper draws: cosines and Fresnel factors, and their transforms.
+//! Curves of kernels in the paper: cosines and Fresnel factors, and their transforms.
 
 use crate::subject::FigureData;
 use etendue_figures::{
@@ -11,9 +11,9 @@ use etendue_transform::gauss_legendre;
 use ndarray::Array2;
 use std::f64::consts::FRAC_PI_2;
 
-/// Points of a curve.
+/// Number of points of a curve.
 const POINTS: u32 = 400;
-/// Cells of a picture along each axis.
+/// Number of cells of a picture along each axis.
 const CELLS: usize = 121;
 
 /// A function on an interval.
@@ -111,9 +111,9 @@ fn solid_slopes(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     })
 }
 
-/// Shares of energy that the table of Fig. 12 has.
+/// The shares of energy in the table of Fig. 12.
 const SHARES: [f64; 3] = [0.8, 0.95, 0.99];
-/// The frequency up to which they are looked for, cycles per radian.
+/// The largest frequency of the search, cycles per radian.
 const MAX_FREQUENCY: f64 = 6.0;
 
 /// The cosine, or the cosine times a Fresnel factor.
@@ -133,7 +133,7 @@ impl KernelFactor {
             .map_or_else(|| cosine_hat(omega), |f| f.cosine_hat(omega))
     }
 
-    /// Frequencies below which it has [`SHARES`] of its energy, cycles per radian.
+    /// The frequencies below which the factor has [`SHARES`] of its energy, cycles per radian.
     fn energy_below(&self) -> [Option<f64>; 3] {
         let nodes = gauss_legendre(200).into_iter();
         let squares = nodes.map(|(t, w)| w * self.value(FRAC_PI_2 * t).powi(2));
@@ -142,7 +142,8 @@ impl KernelFactor {
     }
 }
 
-/// cos₊ and cos₊ times the Fresnel factors of two dielectrics and a conductor (Fig. 12), with the frequencies below which their energy lies.
+/// cos₊ and cos₊ times the Fresnel factors of two dielectrics and a conductor (Fig. 12), with the
+/// frequencies below which the shares of their energy lie.
 pub(crate) fn fresnel(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let material = |name, fresnel| KernelFactor { name, fresnel };
     let dielectric = |index| Some(FresnelFactor::Dielectric { index });

@@ -1,7 +1,8 @@
-//! The figures of Durand et al. 2005, measured and predicted, and figures of a user's scenes.
+//! Makes the figures of Durand et al. 2005, measured and predicted, and figures of a user's scenes.
 //!
-//! [`subjects`] says what a [`FigureRequest`] comes to; [`make_all`] runs their scenes, draws them and writes each with its data
-//! and recipe. What each figure of the paper is made of stands in `recipe.rs`.
+//! [`subjects`] resolves a [`FigureRequest`] to figures; [`make_all`] runs their scenes, draws them
+//! and writes each with its data and recipe. The content of each figure of the paper is listed in
+//! `recipe.rs`.
 
 #![allow(
     clippy::missing_errors_doc,

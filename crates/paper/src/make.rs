@@ -1,4 +1,4 @@
-//! Making a figure: its scenes run, drawn, and written with data and recipe.
+//! Makes a figure: runs its scenes, draws it, and writes it with data and recipe.
 
 use crate::quality::Quality;
 use crate::recipe::{RECIPES, Recipe, named};
@@ -19,7 +19,7 @@ use etendue_store::{ArgumentStyle, FIGURE, Failure, Plan, Results};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// The figures that are asked for: those of the paper, or one of scene files.
+/// The requested figures: those of the paper, or one of scene files.
 pub fn subjects(request: &FigureRequest) -> Result<Vec<Subject>, Failure> {
     let is_scene = |wanted: &Wanted| matches!(wanted, Wanted::Scene(_));
     if request.wanted.iter().any(is_scene) {
@@ -29,7 +29,7 @@ pub fn subjects(request: &FigureRequest) -> Result<Vec<Subject>, Failure> {
     }
 }
 
-/// The figures of the paper that are asked for.
+/// The requested figures of the paper.
 fn of_paper(request: &FigureRequest) -> Result<Vec<Subject>, Failure> {
     let of_scenes = [
         ("set", !request.set.is_empty()),
@@ -58,24 +58,24 @@ fn of_paper(request: &FigureRequest) -> Result<Vec<Subject>, Failure> {
     subjects.map(|recipe| recipe.subject()).collect()
 }
 
-/// `figure.json`, all but the hashes of the files.
+/// The content of `figure.json`, except for the hashes of the files.
 #[derive(Debug, Serialize)]
 struct FigureIndex<'a> {
     figure: &'a str,
     about: &'a str,
-    /// What makes it again.
+    /// The command that makes the figure again.
     command: String,
     version: &'a str,
     quality: Quality,
-    /// What was chosen of its looks, where that was something.
+    /// The chosen style, if any.
     #[serde(skip_serializing_if = "Option::is_none")]
     style: Option<Style>,
-    /// Frequencies along each axis for one of the scene.
+    /// The factor by which frequencies along each axis are finer than the scene's.
     finer: usize,
     /// The hash of each scene with the photons of this quality, at its own frequencies.
     scenes: BTreeMap<&'a str, String>,
     photons: BTreeMap<&'a str, u64>,
-    /// The user's scenes, as they were run but for the frequencies.
+    /// The user's scenes as they were run, except for the frequencies.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     scene_files: &'a BTreeMap<String, SceneFile>,
     planes: Vec<SceneVerdict<'a>>,
@@ -95,7 +95,7 @@ struct SceneVerdict<'a> {
     full_radial: Option<FullRadialReport>,
 }
 
-/// Makes figures; returns the verdict on all planes of their scenes. `reporter` is told of each.
+/// Makes figures and reports each to `reporter`; returns the verdict on all planes of their scenes.
 pub fn make_all(
     request: &FigureRequest,
     subjects: &[Subject],
@@ -125,7 +125,8 @@ pub fn make_all(
     Ok(worst)
 }
 
-/// Makes a figure; returns the verdict on all planes of its scenes. What was replaced and what is undecided is noted.
+/// Makes a figure; returns the verdict on all planes of its scenes. Reports replaced files and
+/// undecided planes.
 #[expect(
     clippy::too_many_lines,
     reason = "one figure from subject to result, in the order in which it goes"
@@ -167,7 +168,7 @@ pub(crate) fn make(
     };
     write(&mut results, subject, &taken)?;
     let all = shots.iter().enumerate().flat_map(|(i, shot)| {
-        // Of a user's scenes those planes count that are shown.
+        // For a user's scenes only the planes shown count.
         let shown = subject.planes.get(i);
         let reports = shot.planes.iter().map(|plane| &plane.report);
         let reports = reports.filter(move |report| shown.is_none_or(|name| *name == report.name));
@@ -227,7 +228,7 @@ pub(crate) fn make(
     Ok(verdicts.fold(Verdict::Pass, Verdict::and))
 }
 
-/// The picture of a figure, what is behind it, and its scenes.
+/// Writes the picture of a figure, the numbers behind it, and its scenes.
 fn write(results: &mut Results, subject: &Subject, taken: &FigureData<'_>) -> Result<(), Failure> {
     let figure = (subject.draw)(taken)?;
     let pdf = figure.pdf().map_err(Failure::cannot_run)?;
@@ -236,7 +237,7 @@ fn write(results: &mut Results, subject: &Subject, taken: &FigureData<'_>) -> Re
     results.write("figure.pdf", &pdf)?;
     results.write("figure.png", &png)?;
     results.write("figure.svg", figure.svg.as_bytes())?;
-    // Strips have a row for each cell there, which the arrays hold in less.
+    // The table of a strip would have a row for each cell, which the arrays store more compactly.
     if subject.has_table {
         results.write("figure.csv", figure.csv.as_bytes())?;
     }

@@ -1,4 +1,4 @@
-//! Figures of several scenes, or several kinds of spectra, side by side.
+//! Figures with several scenes, or several kinds of spectra, side by side.
 
 use crate::flat::Flat;
 use crate::rows::{DECIBEL, Seen, compared, feet, phase, power, row};
@@ -12,7 +12,7 @@ use etendue_store::Failure;
 use etendue_theory::Operator;
 use ndarray::Array2;
 
-/// Fig. 4: light of a point and of a spot, where it begins and after travel.
+/// Fig. 4: light of a point and of a spot, at its source and after travel.
 pub(crate) fn lights(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let seen = [
         Seen::at(&taken.shots[0], "light")?,
@@ -31,7 +31,7 @@ pub(crate) fn lights(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     })
 }
 
-/// Fig. 6: a scene by its steps.
+/// Fig. 6: a scene step by step.
 pub(crate) fn steps(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let names = [
         "light",
@@ -72,7 +72,7 @@ pub(crate) fn steps(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     })
 }
 
-/// Fig. 7: occluders that together leave nothing.
+/// Fig. 7: occluders that together block all light.
 pub(crate) fn occluders(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let seen = taken
         .shots
@@ -118,8 +118,8 @@ pub(crate) fn occluders(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     })
 }
 
-/// Fig. 8: slopes and angles at the receiver. The chain takes one for the other, and its error is what the paper calls
-/// not significant.
+/// Fig. 8: slopes and angles at the receiver. The chain identifies the two, an error that the paper
+/// calls not significant.
 pub(crate) fn parameterisations(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let seen = [
         Seen::at(&taken.shots[0], "slopes")?,
@@ -158,7 +158,7 @@ pub(crate) fn parameterisations(taken: &FigureData<'_>) -> Result<Figure, Failur
     })
 }
 
-/// ∫ L W of a plane if no blockers were there; `None` where light does not go from plane to plane.
+/// ∫ L W of a plane without blockers; `None` where light does not travel between parallel planes.
 fn unblocked(shot: &Shot, plane: &VirtualPlane) -> Option<f64> {
     let index = shot
         .scene

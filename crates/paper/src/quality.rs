@@ -1,23 +1,24 @@
-//! How much work goes into a figure.
+//! The amount of work for a figure.
 
 use serde::Serialize;
 
-/// How much work goes into a figure.
+/// The amount of work for a figure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Quality {
-    /// An eighth of the photons of the scenes, twice as many frequencies as they ask for along each axis
+    /// An eighth of the scenes' photons, and twice as many frequencies as in the scenes along each
+    /// axis
     Draft,
-    /// The photons of the scenes, four times as many frequencies
+    /// The scenes' photons, and four times as many frequencies
     #[default]
     Print,
-    /// What it takes to have all texts in their places
+    /// The least work with which all texts are in place
     #[cfg(test)]
     Sketch,
 }
 
 impl Quality {
-    /// As commands have it.
+    /// The name in commands.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -28,7 +29,7 @@ impl Quality {
         }
     }
 
-    /// Photons of a scene that has so many.
+    /// The number of photons for a scene with this number.
     pub(crate) fn photons(self, photons: u64) -> u64 {
         match self {
             Self::Draft => photons / 8,
@@ -38,8 +39,9 @@ impl Quality {
         }
     }
 
-    /// Frequencies for one of the scene, along each axis. The window ends, so these are determined too: in between
-    /// the picture shows what is there, and no cells.
+    /// The number of frequencies for each one of the scene, along each axis. Because the window is
+    /// bounded the intermediate frequencies are determined too: the picture shows actual values
+    /// between the scene's, not larger cells.
     pub(crate) fn finer(self) -> usize {
         match self {
             Self::Draft => 2,

@@ -1,4 +1,4 @@
-//! What each figure of the paper is made of.
+//! The content of each figure of the paper.
 
 use crate::plates::{blockers, lights, occluders, parameterisations, steps};
 use crate::scene_run::resolved;
@@ -15,17 +15,17 @@ use std::path::Path;
 /// A figure: the scenes it is measured in, and how it is drawn.
 #[derive(Debug)]
 pub(crate) struct Recipe {
-    /// Its number in the paper, or that of its table.
+    /// The number of the figure or table in the paper.
     pub(crate) name: &'static str,
-    /// What it shows.
+    /// A description of the figure.
     pub(crate) about: &'static str,
-    /// The scenes that are run.
+    /// The scenes to run.
     pub(crate) scenes: &'static [Text],
-    /// Others, from which curves are computed or measured.
+    /// Further scenes, from which curves are computed or measured.
     pub(crate) also: &'static [Text],
-    /// Whether it shows curves or bars, which are kept as a table.
+    /// Whether the figure shows curves or bars, whose numbers are also written as a table.
     pub(crate) has_table: bool,
-    /// Whether it shows full radial spectra.
+    /// Whether the figure shows full radial spectra.
     pub(crate) full_radial: bool,
     pub(crate) draw: fn(&FigureData<'_>) -> Result<Figure, Failure>,
 }
@@ -53,7 +53,7 @@ impl Recipe {
     }
 }
 
-/// In the order of the paper.
+/// All recipes, in the order of the paper.
 pub(crate) const RECIPES: &[Recipe] = &[
     Recipe {
         name: "1",
@@ -261,8 +261,8 @@ mod tests {
     use etendue_figures::Style;
     use etendue_pipeline::Silent;
 
-    /// Pages are seven inches wide at most, of 96 units of the drawing each, and texts, indices among them, have 6 points at
-    /// least.
+    /// Pages are at most seven inches wide, at 96 units of the drawing each, and texts, including
+    /// indices, have at least 6 points.
     #[test]
     #[ignore = "minutes: every figure is measured; .ci/pages runs it"]
     fn every_figure_fits_its_page_and_can_be_read() {

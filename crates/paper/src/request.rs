@@ -1,21 +1,21 @@
-//! What figures are asked for.
+//! A request for figures.
 
 use crate::quality::Quality;
 use etendue_pipeline::load::SceneSource;
 use etendue_store::ArgumentStyle;
 use std::path::{Path, PathBuf};
 
-/// A figure of the paper, or a scene of a figure of the user's own.
+/// A figure of the paper, or a scene of the user's own figure.
 #[derive(Clone, Debug)]
 pub enum Wanted {
     /// A figure of the paper (1, 3 to 17, or table1), or all of them.
     PaperFigure(String),
-    /// A scene. All scenes make one figure.
+    /// A scene; all scenes make one figure.
     Scene(SceneSource),
 }
 
 impl Wanted {
-    /// What a word means: the name of a scene file ends in `.ron` or `.json`.
+    /// Interprets a word: the name of a scene file ends in `.ron` or `.json`.
     #[must_use]
     pub fn named(word: &str, set: &[(String, String)], arguments: ArgumentStyle) -> Self {
         let path = Path::new(word);
@@ -33,23 +33,25 @@ impl Wanted {
     }
 }
 
-/// What is asked for.
+/// A request for figures.
 #[derive(Clone, Debug)]
 pub struct FigureRequest {
     /// Figures of the paper, or scenes, which make one figure.
     pub wanted: Vec<Wanted>,
-    /// Fields of the scenes set to values, for the command in `figure.json`: the scenes have them already.
+    /// Fields of the scenes set to values, for the command in `figure.json`; the scenes already
+    /// include them.
     pub set: Vec<(String, String)>,
-    /// The plane at which scenes are shown: otherwise the last of each of several scenes, and all of a single one.
+    /// The plane at which scenes are shown; by default the last plane of each of several scenes,
+    /// and all planes of a single one.
     pub plane: Option<String>,
-    /// A file that says how figures look.
+    /// A file with the style of figures.
     pub style: Option<PathBuf>,
-    /// How much work goes into them.
+    /// The amount of work for the figures.
     pub quality: Quality,
     /// The folder of all figures.
     pub out: PathBuf,
-    /// Whether files that Étendue did not write are replaced.
+    /// Whether files that Étendue did not write may be replaced.
     pub force: bool,
-    /// How messages name arguments.
+    /// The style in which messages name arguments.
     pub arguments: ArgumentStyle,
 }

@@ -1,4 +1,4 @@
-//! What figures show of the planes of their scenes, row by row.
+//! Pictures of the planes of a figure's scenes, row by row.
 
 use crate::scene_run::Shot;
 use etendue_compare::PlaneComparison;
@@ -13,10 +13,10 @@ use ndarray::{Array2, ArrayView2, Axis as Along};
 
 /// Lowest level of a spectrum's colors, in decibels below its peak.
 pub(crate) const DECIBEL: Scale = Scale::Decibel { floor: -50.0 };
-/// Powers below this share of the largest have no phase worth showing.
+/// The share of the largest power below which the phase is not shown.
 pub(crate) const MIN_POWER: f64 = 1e-5;
 
-/// A plane of a scene with what was found there.
+/// A plane of a scene with its results.
 #[derive(Clone, Copy)]
 pub(crate) struct Seen<'a> {
     pub(crate) plane: &'a VirtualPlane,
@@ -49,7 +49,7 @@ impl<'a> Seen<'a> {
     }
 }
 
-/// The plane at azimuth 0 of a spectrum, [ρ, ν]: by its power, or its phase.
+/// The slice of a spectrum at azimuth 0, [ρ, ν]: by its power, or its phase.
 pub(crate) fn slice(slices: &Slices, of: &dyn Fn(Complex, f64) -> f64) -> Array2<f64> {
     let full = slices.full();
     let slice = full.index_axis(Along(0), 0);
@@ -61,7 +61,7 @@ pub(crate) fn power(slices: &Slices) -> Array2<f64> {
     slice(slices, &|s, _| s.norm_sqr())
 }
 
-/// In degrees.
+/// The phase in degrees.
 pub(crate) fn phase(slices: &Slices) -> Array2<f64> {
     slice(slices, &|s, most| {
         if s.norm_sqr() > MIN_POWER * most {
@@ -88,7 +88,8 @@ pub(crate) fn row<'a>(
     }
 }
 
-/// Light fields, measured and predicted spectra of some planes, and their full radial spectra where there are.
+/// Light fields, measured and predicted spectra of some planes, and their full radial spectra if
+/// there are any.
 pub(crate) fn compared<'a>(seen: &[Seen<'a>], shared: bool) -> Vec<PlateRow<'a>> {
     let pictures = |of: &dyn Fn(&Seen<'a>) -> Picture<'a>| seen.iter().map(of).collect();
     let measured = pictures(&|seen| seen.spectrum(seen.found.radial.power.view()));

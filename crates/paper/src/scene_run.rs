@@ -1,4 +1,4 @@
-//! A scene that is run for a figure.
+//! Runs a scene for a figure.
 
 use crate::quality::Quality;
 use etendue_compare::{Applicability, PlaneComparison, Test};
@@ -14,7 +14,7 @@ use etendue_store::npz::Npz;
 use ndarray::{Axis, arr1};
 use std::path::Path;
 
-/// A scene that was measured, predicted and compared, at finer frequencies than it asks for.
+/// A scene that was measured, predicted and compared, at finer frequencies than it specifies.
 #[derive(Debug)]
 pub(crate) struct Shot {
     pub(crate) scene: Scene,
@@ -25,7 +25,7 @@ pub(crate) struct Shot {
 }
 
 impl Shot {
-    /// Runs a scene, with full radial spectra or without.
+    /// Runs a scene, with or without full radial spectra.
     pub(crate) fn take(
         mut scene: Scene,
         quality: Quality,
@@ -59,7 +59,8 @@ impl Shot {
     }
 }
 
-/// A scene of the repository with some fields set, and a number of photons made from its own.
+/// A scene of the repository with some fields set, and with a number of photons derived from its
+/// own.
 pub(crate) fn resolved(
     name: &str,
     text: &str,
@@ -72,8 +73,8 @@ pub(crate) fn resolved(
     machine::resolved(name, file, Path::new(""), name)
 }
 
-/// What was found, as NPZ: for each plane its light field, its radial spectra and the slices at
-/// azimuth 0, with their axes. Names are SCENE.PLANE.ARRAY.
+/// The results as NPZ: for each plane its light field, its radial spectra and the slices at azimuth
+/// 0, with their axes. Names are SCENE.PLANE.ARRAY.
 pub(crate) fn arrays(shots: &[Shot]) -> Result<Vec<u8>, Failure> {
     let mut npz = Npz::new();
     for shot in shots {

@@ -2,7 +2,7 @@
 
 use crate::subject::Text;
 
-/// The text of one of them.
+/// The text of a scene file.
 macro_rules! scene {
     ($path:literal) => {
         include_str!(concat!("../../../scenes/", $path, ".ron"))

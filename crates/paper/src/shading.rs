@@ -28,7 +28,7 @@ pub(crate) fn environment(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     Ok(stacked(&[steps, product(taken, &seen[3])?]))
 }
 
-/// What is left at ν = 0, beside the product of the spectra of environment and cosine.
+/// The spectrum at ν = 0, and the product of the spectra of environment and cosine.
 fn product(taken: &FigureData<'_>, shaded: &Seen<'_>) -> Result<Figure, Failure> {
     let scene = &taken.shots[0].scene;
     let k = scene
@@ -94,7 +94,7 @@ fn glows(light: &Light) -> Vec<Glow> {
 /// |spectrum ⊗ Ŵ| at some frequencies: back to positions, times the window, and forth again.
 fn windowed(spectrum: &dyn Fn(f64) -> Complex, window: &Profile, rho: &[f64]) -> Vec<f64> {
     const STEPS: i32 = 400;
-    // Frequencies to four times the last: lobes of a tenth of a radian have none beyond.
+    // Frequencies up to four times the last; lobes of a tenth of a radian have none beyond.
     let last = 4.0 * rho.last().copied().unwrap_or(1.0);
     let along = |half: f64| (-STEPS..=STEPS).map(move |i| half * f64::from(i) / f64::from(STEPS));
     let values: Vec<(f64, Complex)> = along(last).map(|q| (q, spectrum(q))).collect();
@@ -122,7 +122,7 @@ fn at_zero_nu(slices: &Slices) -> Vec<[f64; 3]> {
         .collect()
 }
 
-/// Fig. 15: the steps of section 6.2, and its criteria beside photons.
+/// Fig. 15: the steps of section 6.2, and its criteria compared with photons.
 pub(crate) fn adaptive(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let seen: Vec<Seen<'_>> = Seen::all(&taken.shots[0]).collect();
     let heads = [

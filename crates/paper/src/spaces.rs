@@ -1,4 +1,4 @@
-//! Figs. 3 and 13: coordinates of rays, and what it costs to take them for each other.
+//! Figs. 3 and 13: coordinates of rays, and the error of taking one kind for another.
 
 use crate::rows::{Seen, compared, feet, row};
 use crate::scene_run::resolved;
@@ -102,7 +102,7 @@ pub(crate) fn directions(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     Ok(stacked(&[plate, error]))
 }
 
-/// How the first-order errors of some planes of a scene fall with its neighbourhood.
+/// The decrease of first-order errors of some planes of a scene with the size of the neighbourhood.
 fn shrunk((name, text): &Text, planes: &[&str]) -> Result<Vec<Convergence>, Failure> {
     let scene = resolved(name, text, &[], |photons| photons)?;
     let wanted = scene
@@ -114,7 +114,7 @@ fn shrunk((name, text): &Text, planes: &[&str]) -> Result<Vec<Convergence>, Fail
     Ok(found.collect())
 }
 
-/// First-order errors, and lines of an order.
+/// First-order errors, and reference lines of an order.
 fn orders(
     taken: &FigureData<'_>,
     title: &str,

@@ -1,4 +1,4 @@
-//! The looks of figures, from a file.
+//! The style of figures, read from a file.
 
 use etendue_figures::Style;
 use etendue_scene::{limits, read_file};
@@ -33,10 +33,11 @@ pub(crate) fn read(path: &Path) -> Result<Style, Failure> {
     Ok(style)
 }
 
-/// Every field of a style.
+/// A style with every field.
 const EXAMPLE: &str =
     "(titles: false, scene: false, verdicts: false, width: 3.33, floor: -40, palette: Viridis)";
 
-/// Lower ends of the colors of spectra, dB: below the noise of any number of photons, and where something is seen.
+/// Bounds on the lower end of the colors of spectra, dB: below the noise of any number of photons,
+/// and where something is still visible.
 const LOWEST: f64 = -200.0;
 const HIGHEST: f64 = -1.0;

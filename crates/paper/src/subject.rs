@@ -1,4 +1,4 @@
-//! A figure to be made, and what it is drawn from.
+//! A figure to be made, and the data it is drawn from.
 
 use crate::quality::Quality;
 use crate::scene_run::Shot;
@@ -12,56 +12,56 @@ use std::path::PathBuf;
 /// Name and text of a scene file.
 pub(crate) type Text = (&'static str, &'static str);
 
-/// What a figure is made of.
+/// The definition of a figure.
 #[derive(Debug)]
 pub struct Subject {
-    /// Its folder below that of all figures.
+    /// Name of the figure's folder below that of all figures.
     pub(crate) name: String,
     pub(crate) about: String,
-    /// What stands behind `etendue figure` to make it again.
+    /// Arguments of `etendue figure` that make the figure again.
     pub(crate) arguments: String,
-    /// The scenes that are run, at their own frequencies.
+    /// The scenes to run, at their own frequencies.
     pub(crate) scenes: Vec<Scene>,
-    /// Whether these are the user's: then the index holds them.
+    /// Whether these are the user's scenes, which are stored in the index.
     pub(crate) is_own: bool,
-    /// Name and text of scene files of the repository, which are kept with it.
+    /// Name and text of scene files of the repository, which are stored with the figure.
     pub(crate) texts: Vec<Text>,
     /// Files that must not be replaced.
     pub(crate) inputs: Vec<PathBuf>,
-    /// What the user should know of the scenes.
+    /// Warnings about the scenes.
     pub(crate) warnings: Vec<String>,
-    /// Whether it shows curves or bars, which are kept as a table.
+    /// Whether the figure shows curves or bars, whose numbers are also written as a table.
     pub(crate) has_table: bool,
-    /// Whether it shows full radial spectra.
+    /// Whether the figure shows full radial spectra.
     pub(crate) full_radial: bool,
     /// Other scene files, from which curves are computed or measured.
     pub(crate) also: &'static [Text],
-    /// The plane of each scene that is shown, where not all are.
+    /// The shown plane of each scene; empty where all are shown.
     pub(crate) planes: Vec<String>,
     pub(crate) draw: fn(&FigureData<'_>) -> Result<Figure, Failure>,
 }
 
 impl Subject {
-    /// Its folder below that of all figures.
+    /// Name of the figure's folder below that of all figures.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// What the user should know of the scenes.
+    /// Warnings about the scenes.
     #[must_use]
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }
 }
 
-/// What a figure is drawn from.
+/// The data that a figure is drawn from.
 pub(crate) struct FigureData<'a> {
-    /// Its scenes, run.
+    /// The results of the scenes that were run.
     pub(crate) shots: &'a [Shot],
     /// The other scene files.
     pub(crate) also: &'static [Text],
-    /// The plane of each scene that is shown, where not all are.
+    /// The shown plane of each scene; empty where all are shown.
     pub(crate) planes: &'a [String],
     pub(crate) quality: Quality,
     pub(crate) style: Style,

@@ -1,4 +1,4 @@
-//! Table 1: each operator by the light before and after it.
+//! Table 1: each operator, shown by the light before and after it.
 
 use crate::rows::{DECIBEL, Seen, feet, row};
 use crate::subject::FigureData;
@@ -6,10 +6,10 @@ use etendue_figures::{Figure, Picture, Plate, PlateRow, Scale, stacked};
 use etendue_report::pictures::{light_field_quantity, spectrum_quantity};
 use etendue_store::Failure;
 
-/// An operator: its name, and scene and plane before and after it.
+/// An operator: its name, and the scene and plane before and after it.
 type Step = (&'static str, [[&'static str; 2]; 2]);
 
-/// As in the paper's table, in two parts.
+/// The two parts of the paper's table.
 const PARTS: [(&str, [Step; 5]); 2] = [
     (
         "Maps and masks",

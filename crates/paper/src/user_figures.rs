@@ -1,4 +1,4 @@
-//! Figures of the user's scenes: one along its path, or several side by side at a plane.
+//! Figures of the user's scenes: a single one along its path, or several side by side at a plane.
 
 use crate::request::{FigureRequest, Wanted};
 use crate::rows::{Seen, compared, feet};
@@ -13,7 +13,7 @@ use etendue_scene::Scene;
 use etendue_store::Failure;
 use std::path::PathBuf;
 
-/// The figure of the scenes that are asked for.
+/// The figure of the requested scenes.
 pub(crate) fn subject(request: &FigureRequest) -> Result<Subject, Failure> {
     let sources = sources(request)?;
     let mut scenes: Vec<Scene> = Vec::new();
@@ -65,7 +65,7 @@ pub(crate) fn subject(request: &FigureRequest) -> Result<Subject, Failure> {
     })
 }
 
-/// The scenes that are asked for, where nothing else is.
+/// The requested scenes, if nothing else is requested.
 fn sources(request: &FigureRequest) -> Result<Vec<&SceneSource>, Failure> {
     let sources = request.wanted.iter().map(|wanted| match wanted {
         Wanted::Scene(source) => Ok(source),
@@ -76,7 +76,7 @@ fn sources(request: &FigureRequest) -> Result<Vec<&SceneSource>, Failure> {
     sources.collect()
 }
 
-/// The plane of each scene that is shown; none where all of one scene are.
+/// The shown plane of each scene; empty where all planes of one scene are shown.
 fn planes(scenes: &[Scene], asked: Option<&str>) -> Result<Vec<String>, Failure> {
     if scenes.len() == 1 && asked.is_none() {
         return Ok(Vec::new());
@@ -101,7 +101,7 @@ fn planes(scenes: &[Scene], asked: Option<&str>) -> Result<Vec<String>, Failure>
     scenes.iter().map(plane).collect()
 }
 
-/// What stands behind `etendue figure` to make it again.
+/// Arguments of `etendue figure` that make the figure again.
 fn arguments(request: &FigureRequest, sources: &[&SceneSource]) -> String {
     let names = sources.iter().map(|source| match source.text {
         Some(_) => source
@@ -121,7 +121,7 @@ fn arguments(request: &FigureRequest, sources: &[&SceneSource]) -> String {
     words.join(" ")
 }
 
-/// A plane of each scene, in one range of colors.
+/// A plane of each scene, with one range of colors.
 fn side_by_side(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let seen = taken.shots.iter().zip(taken.planes);
     let seen: Vec<Seen<'_>> = seen
@@ -148,7 +148,7 @@ fn side_by_side(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     })
 }
 
-/// Different words in their order, as people write them.
+/// Distinct words in their order, joined as in a sentence.
 fn joined(words: &[String]) -> String {
     let mut words: Vec<String> = words.iter().map(|word| spaced(word)).collect();
     words.dedup();

@@ -3,9 +3,10 @@
 //!     cargo build --release -p etendue-paths --example rays_per_second
 //!     rays_per_second MESH.ply < QUESTIONS
 //!
-//! A question is a line: `build`, answered by processor seconds and bytes of memory that it takes; `first RAYS`, what rays meet first;
-//! `free RAYS`, whether they meet anything before their end; both answered by processor seconds of this thread, with the distances (infinite
-//! where nothing is met, zero for `free` where something is) in `RAYS.met` as f64. Rays are seven f32 each: origin, direction, end.
+//! Each input line is a command: `build` prints the processor seconds and bytes of memory it takes;
+//! `first RAYS` finds the first hits; `free RAYS` tests whether rays hit anything before their end;
+//! both print the processor seconds of this thread, and write distances (infinite for no hit, zero
+//! for `free` with a hit) to `RAYS.met` as f64. Rays are seven f32 each: origin, direction, end.
 
 #![allow(clippy::print_stdout, reason = "a program for people")]
 
@@ -61,7 +62,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Rays and their ends.
+/// Reads rays and their ends.
 fn read(file: &str) -> Result<Vec<(Ray, f64)>, Box<dyn Error>> {
     let bytes = std::fs::read(file)?;
     let (numbers, _) = bytes.as_chunks::<4>();
@@ -83,7 +84,7 @@ fn read(file: &str) -> Result<Vec<(Ray, f64)>, Box<dyn Error>> {
     Ok(rays.iter().map(ray).collect())
 }
 
-/// Seconds that all threads have had of the processor.
+/// Processor seconds of all threads.
 fn seconds() -> Result<f64, Box<dyn Error>> {
     let mut nanoseconds = 0.0;
     for task in std::fs::read_dir("/proc/self/task")? {

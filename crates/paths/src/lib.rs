@@ -1,6 +1,7 @@
-//! Paths of light through a [`World`](etendue_world::World), followed back from a camera: what surfaces a ray meets (`space`), what they do to light
-//! (`scatter`), where light is (`lights`), and the radiance that a path finds. `surface_hit` has the
-//! places that a camera sees, for renderers that choose where to spend paths; `probe` asks for the light field behind a pixel.
+//! Paths of light through a [`World`](etendue_world::World), traced back from a camera: ray
+//! intersections (`space`), scattering at surfaces (`scatter`), lights (`lights`), and the radiance
+//! of a path. `surface_hit` provides the points that a camera sees, for renderers with adaptive
+//! sampling; `probe` measures the light field behind a pixel.
 
 mod lights;
 mod numbers;

@@ -3,7 +3,7 @@
 use etendue_transform::Net;
 use etendue_transform::random::{Stream, unit, words};
 
-/// The random numbers of one path, in (0, 1), drawn one after another.
+/// The sequence of random numbers of one path, in (0, 1).
 #[derive(Debug)]
 pub(crate) struct PathNumbers<'a> {
     seed: u64,
@@ -11,11 +11,11 @@ pub(crate) struct PathNumbers<'a> {
     block: u32,
     left: [u32; 4],
     used: usize,
-    /// Where the first numbers are a point of a net: the net, and the point's number.
+    /// The net and the index of its point that gives the first numbers, if any.
     net: Option<(&'a Net, u32)>,
 }
 
-/// Blocks of four numbers that a net has.
+/// Number of blocks of four numbers in a net.
 pub(crate) const JOINT: u32 = 2;
 
 impl<'a> PathNumbers<'a> {
@@ -30,7 +30,7 @@ impl<'a> PathNumbers<'a> {
         }
     }
 
-    /// The first numbers are a point of a net with [`JOINT`] blocks.
+    /// Takes the first numbers from a point of a net with [`JOINT`] blocks.
     pub(crate) fn of_net(self, net: &'a Net, point: u32) -> Self {
         Self {
             net: Some((net, point)),

@@ -7,10 +7,11 @@ use crate::space::{Hit, Ray, SceneGeometry};
 use etendue_world::World;
 use glam::DVec3;
 
-/// Paths of light through a world, followed back from where they are seen.
+/// Paths of light through a world, traced back from where they are seen.
 ///
-/// At each surface light is looked for in two ways, at the lights and where the material sends the path on, and both are weighted by what the other
-/// would have found (Veach and Guibas 1995, *Optimally combining sampling techniques*, the balance heuristic).
+/// At each surface, direct light is sampled in two ways, from the lights and from the BSDF,
+/// weighted by multiple importance sampling (Veach and Guibas 1995, *Optimally combining sampling
+/// techniques*, the balance heuristic).
 #[derive(Debug)]
 pub struct Paths {
     pub(crate) geometry: SceneGeometry,
@@ -21,14 +22,15 @@ pub struct Paths {
     pub(crate) hides_sources: bool,
 }
 
-/// From this surface on a path goes on only as often as it carries light.
+/// From this surface on, a path continues with a probability given by its throughput.
 pub(crate) const ROULETTE: u32 = 6;
 
-/// A path between hall of mirrors without an end is given up here; what it still carries is below rounding of a picture.
+/// Maximum path length, for endless paths between mirrors; the remaining throughput is below the
+/// rounding of a picture.
 const LONGEST: u32 = 10_000;
 
 impl Paths {
-    /// The paths of a world whose shapes name materials that exist.
+    /// Creates the paths of a world whose shapes refer to existing materials.
     #[must_use]
     pub fn new(world: &World) -> Self {
         let geometry = SceneGeometry::new(world);
@@ -42,8 +44,9 @@ impl Paths {
         }
     }
 
-    /// The radiance that comes to the beginning of a ray, at distances that are seen: one path, whose mean over all numbers it is. `before` surfaces are
-    /// between there and the camera.
+    /// The radiance arriving at the origin of a ray, from distances within the visible range: an
+    /// unbiased estimate by one path. `before` is the number of surfaces between there and the
+    /// camera.
     pub(crate) fn radiance(
         &self,
         ray: Ray,
@@ -59,7 +62,7 @@ impl Paths {
         sum
     }
 
-    /// What sources themselves send along a ray, as a camera behind `before` surfaces sees it.
+    /// The radiance emitted by sources along a ray, as seen by a camera behind `before` surfaces.
     pub(crate) fn shown(&self, ray: &Ray, hit: Option<&Hit>, before: u32) -> f64 {
         if before > 0 || !self.hides_sources {
             self.emitted(ray, hit, None)
@@ -68,8 +71,9 @@ impl Paths {
         }
     }
 
-    /// The radiance that what a ray hits scatters back along it, in parts that one path finds, each told with the direction that it arrives there from, in
-    /// the frame of the hit. `before` surfaces are between there and the camera.
+    /// The radiance that a hit surface scatters back along the ray, as the parts found by one path,
+    /// each with its incident direction in the frame of the hit. `before` is the number of surfaces
+    /// between there and the camera.
     pub(crate) fn scattered(
         &self,
         mut ray: Ray,
@@ -113,17 +117,17 @@ impl Paths {
         }
     }
 
-    /// The material of what is hit.
+    /// The material at the hit.
     pub(crate) fn scatter(&self, hit: &Hit) -> &Scatter {
         &self.materials[self.of_shape[hit.shape]]
     }
 
-    /// Whether light comes from far away on all sides.
+    /// Whether distant light arrives from all directions.
     pub(crate) fn has_sky(&self) -> bool {
         self.lights.of_sky(DVec3::Z).next().is_some()
     }
 
-    /// What lights send along a ray that meets them, weighted against looking for them.
+    /// Light emitted along a ray that hits a light, weighted against light sampling.
     fn emitted(&self, ray: &Ray, hit: Option<&Hit>, last: Option<f64>) -> f64 {
         let balanced = |(radiance, looked): (f64, f64)| match last {
             Some(last) => radiance * last / (last + looked),
@@ -135,7 +139,7 @@ impl Paths {
         }
     }
 
-    /// Light that is looked for at the lights, and the direction in the frame of the hit that it comes from.
+    /// Light found by light sampling, and its incident direction in the frame of the hit.
     fn looked_for(
         &self,
         hit: &Hit,

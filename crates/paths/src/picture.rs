@@ -7,10 +7,10 @@ use etendue_sampling::disc;
 use etendue_world::Camera;
 use rayon::prelude::*;
 
-/// What a camera sees, W m⁻² sr⁻¹: rows from the top, each from the left.
+/// The picture of a camera, W m⁻² sr⁻¹: rows from the top, each from the left.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
-    /// Pixels in a row, and rows.
+    /// Width and height in pixels.
     pub size: [usize; 2],
     /// The mean radiance over each pixel.
     pub mean: Vec<f64>,
@@ -19,7 +19,8 @@ pub struct Picture {
 }
 
 impl Paths {
-    /// What a camera sees, with `samples` paths for each pixel; `progress` is told how many pixels are done. Pixels are a function of seed and number.
+    /// Renders the picture of a camera with `samples` paths per pixel; `progress` receives the
+    /// number of finished pixels. Pixels depend only on seed and index.
     #[must_use]
     pub fn picture(
         &self,
@@ -30,7 +31,7 @@ impl Paths {
     ) -> Picture {
         let [w, h] = camera.size;
         let row = |row: usize| {
-            // Where the caller unwinds from `progress`, rows that wait end before they begin.
+            // If `progress` unwinds, waiting rows end before they begin.
             progress(0);
             let pixels = (0..w).map(|column| self.pixel(camera, [column, row], samples, seed));
             let pixels: Vec<[f64; 2]> = pixels.collect();
@@ -59,7 +60,7 @@ impl Paths {
             let mut numbers =
                 PathNumbers::new(seed, number * u64::from(samples) + u64::from(sample));
             let radiance = self.seen(camera, [column as f64, row as f64], &mut numbers);
-            // Welford 1962: no digits are lost.
+            // Welford 1962: numerically stable.
             let off = radiance - mean;
             mean += off / f64::from(sample + 1);
             squares += off * (radiance - mean);
@@ -68,7 +69,7 @@ impl Paths {
         [mean, squares / (count * (count - 1.0).max(1.0))]
     }
 
-    /// One path to somewhere in a pixel.
+    /// One path through a random point in a pixel.
     fn seen(&self, camera: &Camera, pixel: [f64; 2], numbers: &mut PathNumbers<'_>) -> f64 {
         let [x, y, a, b] = numbers.draw();
         let lens = disc(1.0, [a, b]).to_array();

@@ -1,4 +1,5 @@
-//! Places that a camera sees: their light, and how near what they reflect is. Renderers that choose where to spend paths ask these.
+//! Surface points that a camera sees: their light, and the distances of what they reflect. Used by
+//! renderers with adaptive sampling.
 
 use crate::numbers::{JOINT, PathNumbers};
 use crate::paths::Paths;
@@ -9,16 +10,16 @@ use etendue_transform::random::Stream;
 use etendue_world::Look;
 use glam::DVec3;
 
-/// What a look meets.
+/// The hit of a camera ray.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
-    /// What sources themselves send along it, W m⁻² sr⁻¹.
+    /// Radiance emitted by sources along the ray, W m⁻² sr⁻¹.
     pub emitted: f64,
-    /// The surface there; `None` where the look leaves the world.
+    /// The surface hit; `None` if the ray leaves the world.
     pub surface: Option<SurfaceHit>,
 }
 
-/// A place of a surface that is seen.
+/// A visible surface point.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceHit {
     hit: Hit,
@@ -27,25 +28,25 @@ pub struct SurfaceHit {
 }
 
 impl SurfaceHit {
-    /// The number of its shape.
+    /// The index of its shape.
     #[must_use]
     pub fn shape(&self) -> usize {
         self.hit.shape
     }
 
-    /// In the world.
+    /// The position in the world.
     #[must_use]
     pub fn position(&self) -> DVec3 {
         self.hit.position
     }
 
-    /// How far it is.
+    /// The distance along the ray.
     #[must_use]
     pub fn distance(&self) -> f64 {
         self.hit.distance
     }
 
-    /// The normal that materials scatter by, on the side that is seen.
+    /// The shading normal, on the visible side.
     #[must_use]
     pub fn normal(&self) -> DVec3 {
         let normal = self.hit.frame.z_axis;
@@ -56,31 +57,33 @@ impl SurfaceHit {
         }
     }
 
-    /// Where a mirror there would show light from, of unit length.
+    /// The mirror direction of the ray, of unit length.
     #[must_use]
     pub fn mirrored(&self) -> DVec3 {
         let normal = self.normal();
         self.ray.along - 2.0 * self.ray.along.dot(normal) * normal
     }
 
-    /// The way that light goes to the eye, in the frame of the surface.
+    /// The direction to the eye, in the frame of the surface.
     fn wo(&self) -> DVec3 {
         self.hit.frame.transpose() * -self.ray.along
     }
 }
 
-/// How near a place is to what stands before the light that it reflects.
+/// The nearness of a point to its blockers and reflected surroundings.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Nearness {
-    /// The mean of 1/distance over what its material reflects, per metre; light from far away counts as 0. Its inverse is the harmonic mean of Durand et
-    /// al. 2005, section 6.2.
+    /// The mean of 1/distance over what the material reflects, per metre; distant light
+    /// counts as 0. Its inverse is the harmonic mean of Durand et al. 2005, section
+    /// 6.2.
     pub reflected: f64,
-    /// The highest frequency of half shadows there, cycles per metre across the light: one over the width of a half shadow, where light is blocked in part.
+    /// The highest frequency of penumbrae, cycles per metre across the light: the inverse of the
+    /// penumbra width, where light is partly blocked.
     pub shadow: f64,
 }
 
 impl Paths {
-    /// What a look meets.
+    /// Traces a camera ray to its first hit.
     #[must_use]
     pub fn view(&self, look: &Look) -> View {
         let ray = Ray {
@@ -94,22 +97,24 @@ impl Paths {
         }
     }
 
-    /// What the surface does to light, in a word.
+    /// The kind of reflection of the surface.
     #[must_use]
     pub fn reflects(&self, seen: &SurfaceHit) -> Reflects {
         self.scatter(&seen.hit).kind(seen.hit.uv, seen.wo())
     }
 
-    /// The factors of base and lobe there, as textures have them. What has one part only has that as its base.
+    /// The texture factors of base and lobe. A material with one part has only a base.
     #[must_use]
     pub fn factors(&self, seen: &SurfaceHit) -> [f64; 2] {
         self.scatter(&seen.hit).factors(seen.hit.uv, seen.wo())
     }
 
-    /// The radiance that the surface scatters to the eye, by its base and by its lobe, W m⁻² sr⁻¹: means of `paths` paths; and the variance of their sum
-    /// over the number of paths. It is a function of the place, the seed and `number`.
+    /// The radiance that base and lobe scatter to the eye, W m⁻² sr⁻¹, as means of `paths` paths;
+    /// and the variance of their sum divided by the number of paths. It depends only on the point,
+    /// the seed and `number`.
     ///
-    /// Paths of one place begin with the points of a scrambled net, which makes the mean better than that variance says.
+    /// Paths of one point use a scrambled net for their first numbers, so the error of the mean is
+    /// smaller than this variance suggests.
     #[must_use]
     pub fn shade(&self, seen: &SurfaceHit, paths: u32, seed: u64, number: u64) -> ([f64; 2], f64) {
         let net = Net::new(seed, Stream::Net, number, JOINT);
@@ -135,7 +140,8 @@ impl Paths {
         ([base, mean - base], variance)
     }
 
-    /// How near a place is to what it reflects and to what shadows it, by `rays` rays of each kind. What is nearer than `nearest` counts as there.
+    /// The nearness of a point to what it reflects and to its blockers, from `rays` rays of each
+    /// kind. Distances below `nearest` are set to it.
     #[must_use]
     pub fn nearness(
         &self,
@@ -153,7 +159,7 @@ impl Paths {
             if let Some(shadow) = self.shadow(seen, numbers.draw()) {
                 if shadow.nearness > 0.0 {
                     blocked += shadow.light;
-                    // Their geometric mean: few that are very near do not make the shadow of all.
+                    // The geometric mean: a few very near blockers do not dominate the shadow.
                     sharp += shadow.light * libm::log(shadow.nearness.min(nearest.recip()));
                 } else {
                     lit += shadow.light;
@@ -169,7 +175,7 @@ impl Paths {
                 })
                 .map_or(0.0, |hit| hit.distance.max(nearest).recip());
         }
-        // No half shadow has all light, or none.
+        // No penumbra is fully lit, or fully blocked.
         let contrast = 4.0 * lit * blocked / (lit + blocked).powi(2);
         Nearness {
             reflected: reflected / f64::from(rays.max(1)),
@@ -181,7 +187,7 @@ impl Paths {
         }
     }
 
-    /// Light that is looked for at the lights, and what stands before it.
+    /// A light sample, and its blocker.
     fn shadow(&self, seen: &SurfaceHit, random: [f64; 4]) -> Option<Shadow> {
         let Hit {
             position: from,
@@ -206,7 +212,7 @@ impl Paths {
             });
         }
         let blocker = self.geometry.first(&ray, [0.0, light.distance])?.distance;
-        // What is looked for this densely covers some 1/density of all directions.
+        // The solid angle represented by a sample of this density is about 1/density.
         let angle = light
             .density
             .map_or(POINT, |density| density.recip().sqrt());
@@ -218,12 +224,12 @@ impl Paths {
     }
 }
 
-/// Radians across what has no size: its shadows are sharp enough for any picture.
+/// Angle in radians assigned to point lights: their shadows are then sharp enough for any picture.
 const POINT: f64 = 1e-3;
 
 struct Shadow {
-    /// What would be reflected of it.
+    /// The light that would be reflected without a blocker.
     light: f64,
-    /// One over the width of the half shadow, per metre; 0 where the way is free.
+    /// The inverse of the penumbra width, per metre; 0 if nothing blocks.
     nearness: f64,
 }

@@ -1,7 +1,8 @@
 //! Furnace tests: under a sky of radiance 1 a lossless surface is invisible, and no surface is brighter than the sky.
 //!
-//! Sheets and opaque surfaces are seen on a disc from its front and its back, and on an open cylinder, which shows both of its sides at once. Every
-//! material is seen on a cube and a sphere from outside and, where light passes, on a sphere from inside.
+//! Sheets and opaque surfaces are tested on a disc from its front and its back, and on an open
+//! cylinder, of which both sides are visible. Every material is tested on a cube and a sphere from
+//! outside and, if it transmits light, on a sphere from inside.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -15,7 +16,7 @@ use std::sync::Arc;
 
 /// Pixels along a side of a picture.
 const SIDE: usize = 24;
-/// Paths of a pixel.
+/// Paths per pixel.
 const SAMPLES: u32 = 100;
 
 fn constant(value: f64) -> Texture {
@@ -81,18 +82,18 @@ fn mask(of: Material) -> Material {
     }
 }
 
-/// What is behind a surface.
+/// The medium behind a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Behind {
     /// The same medium as in front.
     Same,
-    /// A medium of this index: radiance there is larger by its square.
+    /// A medium of this index, in which radiance is larger by its square.
     Medium(f64),
-    /// No light passes.
+    /// No light is transmitted.
     Nothing,
 }
 
-/// A material with what is known of it.
+/// A material with its known properties.
 struct Case {
     name: &'static str,
     material: Material,
@@ -182,7 +183,7 @@ enum View {
 }
 
 impl View {
-    /// The views that the law holds in.
+    /// The views in which the law holds.
     fn of(behind: Behind) -> &'static [Self] {
         let all = &[
             Self::SphereInside,
@@ -195,7 +196,8 @@ impl View {
         match behind {
             Behind::Same => all,
             Behind::Nothing => &all[1..],
-            // What has another medium behind it bounds a body. Total reflection keeps some light of a denser one inside for ever.
+            // A material with another medium behind it encloses a body. Total reflection traps some
+            // light inside a denser body for ever.
             Behind::Medium(index) if index > 1.0 => &all[1..3],
             Behind::Medium(_) => &all[..3],
         }
@@ -207,7 +209,7 @@ impl View {
             Self::DiscBack => (Geometry::Disc, DVec3::new(2.0, 0.5, -1.0), 0.5),
             Self::Cylinder => (Geometry::Cylinder, DVec3::new(1.0, 1.5, 3.0), 0.5),
             Self::Cube => (cube(), DVec3::new(2.0, 3.0, 1.5), 0.5),
-            // As wide as the sphere, whose rim the outer pixels show.
+            // The view is as wide as the sphere, so the outer pixels show its rim.
             Self::SphereOutside => (Geometry::Sphere, DVec3::new(0.3, 2.0, 0.5), 0.58),
             Self::SphereInside => (Geometry::Sphere, DVec3::new(0.3, 0.5, 0.2), 1.0),
         };
@@ -243,7 +245,7 @@ impl View {
     }
 }
 
-/// x, y and z from −1 to 1, with flat faces.
+/// A cube from −1 to 1 with flat faces.
 fn cube() -> Geometry {
     let sign = |i: usize, axis: usize| if i >> axis & 1 == 0 { -1.0 } else { 1.0 };
     let vertices = (0..8).map(|i| DVec3::new(sign(i, 0), sign(i, 1), sign(i, 2)));

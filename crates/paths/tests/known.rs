@@ -1,4 +1,4 @@
-//! Pictures of one pixel whose radiance is known.
+//! Pictures of one pixel with known radiance.
 
 use etendue_field::{LatLong, Raster};
 use etendue_paths::Paths;
@@ -10,7 +10,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// A narrow camera at a place that looks at another.
+/// A narrow camera at a point that looks at another.
 fn camera(from: DVec3, at: DVec3) -> Camera {
     let along = (at - from).normalize();
     let left = along.any_orthonormal_vector();
@@ -53,7 +53,7 @@ fn scaled(scale: f64, z: f64) -> DAffine3 {
     )
 }
 
-/// A floor in z = 0 that reflects half, and what else there is.
+/// A floor in z = 0 with reflectance one half, and more shapes and lights.
 fn floor(more: Vec<Shape>, lights: Vec<Light>) -> World {
     let mut shapes = vec![shape(Geometry::Rectangle, scaled(10.0, 0.0), 0, None)];
     shapes.extend(more);
@@ -71,7 +71,8 @@ fn seen(world: &World, from: DVec3, at: DVec3, samples: u32) -> (f64, f64) {
     (picture.mean[0], picture.variance[0].sqrt())
 }
 
-/// Within five standard errors, or rounding where all paths find the same; and the error is small.
+/// Checks agreement within five standard errors, or within rounding if all paths find the same
+/// value; the error must be small.
 fn assert_seen(world: &World, from: DVec3, at: DVec3, expected: f64) {
     let (mean, error) = seen(world, from, at, 20_000);
     assert!(
@@ -93,7 +94,7 @@ fn a_closed_sphere_gathers_light() {
         ..World::default()
     };
     let at = DVec3::new(0.1, 0.2, -1.9);
-    // 1 + ½ + ¼ + …, to the depth that is asked for.
+    // 1 + ½ + ¼ + …, up to the given depth.
     for (depth, expected) in [
         (None, 2.0),
         (Some(0), 1.0),
@@ -137,7 +138,7 @@ fn lights_shine_by_their_units() {
         DVec3::ZERO,
         0.35,
     );
-    // Between full intensity and none.
+    // A point in the falloff of the spot.
     let down = DAffine3::from_mat3_translation(
         DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0)),
         DVec3::new(0.0, 0.0, 1.0),
@@ -189,7 +190,7 @@ fn surfaces_shine_by_their_area() {
         DVec3::ZERO,
         0.5 * 6.0 * 0.25 / 4.0,
     );
-    // A square as a rectangle and as two triangles; it shines on its front alone.
+    // A square as a rectangle and as two triangles; it emits only on its front.
     let square = Triangles::new(
         vec![
             DVec3::new(-1.0, -1.0, 0.0),
@@ -202,7 +203,8 @@ fn surfaces_shine_by_their_area() {
         None,
     );
     let mesh = Geometry::Mesh(Arc::new(square.unwrap()));
-    // The form factor of a square of side 1 at height 2 over its middle: four corners of ½ by ½ (Howell, factor B-3).
+    // The form factor of a square of side 1 at height 2 above a point below its centre: four
+    // corners of ½ by ½ (Howell, factor B-3).
     let x = 0.25_f64;
     let factor =
         4.0 / (2.0 * PI) * 2.0 * x / (1.0 + x * x).sqrt() * (x / (1.0 + x * x).sqrt()).atan();
@@ -248,7 +250,7 @@ fn glass_keeps_the_light_around_it() {
 #[test]
 fn a_sky_is_where_its_pixels_are() {
     let mut values = vec![0.0; 64 * 32];
-    // Column 16 of 64 is a quarter turn from −Z to X, row 8 of 0 to 31 at 46° from Y.
+    // Column 16 of 64 is a quarter turn from −Z to X; row 8 of 0 to 31 is at 46° from Y.
     values[8 * 64 + 16] = 100.0;
     let raster = Raster::new(64, 32, values).unwrap();
     let map = Arc::new(LatLong::from_pole_to_pole(raster));
@@ -264,7 +266,7 @@ fn a_sky_is_where_its_pixels_are() {
         down.cos(),
         -down.sin() * turn.cos(),
     );
-    // Interpolation makes a tent of it, as large as one pixel.
+    // Interpolation turns the pixel into a tent with the integral of one pixel.
     let solid = 2.0 * PI / 64.0 * PI / 31.0 * down.sin();
     for turned in [
         DMat3::from_rotation_x(1.0),
@@ -274,7 +276,7 @@ fn a_sky_is_where_its_pixels_are() {
         let expected = 0.5 / PI * 100.0 * solid * (turned * toward).z;
         assert!(expected > 0.0, "it is above the floor");
         let (mean, error) = seen(&world, ASIDE, DVec3::ZERO, 20_000);
-        // The tent is not quite even over latitude.
+        // The tent is slightly asymmetric in latitude.
         assert!(
             (mean / expected - 1.0).abs() < 0.003 + 5.0 * error / expected,
             "{mean} ± {error}, not {expected}"

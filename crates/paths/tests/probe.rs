@@ -1,4 +1,4 @@
-//! Light fields behind a pixel that are known.
+//! Known light fields behind a pixel.
 
 use etendue_field::{Crossing, PhotonSource};
 use etendue_paths::{BackwardProbe, Budget, Paths, PhotonProbe, Probe, Question, Reflects};
@@ -71,7 +71,7 @@ fn floor(material: usize) -> Shape {
     )
 }
 
-/// The mean of what crosses each plane in its window, with its standard error: over 32 batches.
+/// The mean flux through the window of each plane, with its standard error over 32 batches.
 fn sums(probe: &Probe<'_>, source: &dyn PhotonSource) -> Vec<[f64; 2]> {
     const BATCHES: u32 = 32;
     let mut each = vec![Vec::new(); probe.planes.len()];
@@ -96,7 +96,8 @@ fn sums(probe: &Probe<'_>, source: &dyn PhotonSource) -> Vec<[f64; 2]> {
     each.iter().map(of).collect()
 }
 
-/// Rays and photons both find `radiance` in the windows of these planes: ∫ L W is radiance times half-widths.
+/// Checks that rays and photons both find `radiance` in the windows of these planes: ∫ L W is
+/// radiance times half-widths.
 fn assert_even(world: &World, question: &Question, planes: &[&str], radiance: f64) {
     let paths = Paths::new(world);
     let probe = Probe::new(&paths, &camera(), question).expect("the ray meets something");
@@ -128,7 +129,7 @@ fn assert_even(world: &World, question: &Question, planes: &[&str], radiance: f6
                 "{what} at {}: {mean} ± {error}, not {expected}",
                 plane.name
             );
-            // Small enough to see a cosine or a half-width that is missing.
+            // Small enough to detect a missing cosine or half-width.
             assert!(
                 error < 0.06 * expected,
                 "{what} at {}: ± {error} of {expected}",
@@ -156,7 +157,7 @@ fn light_that_leaves_a_floor() {
 
 #[test]
 fn light_that_arrives_at_a_floor_and_leaves_a_wall() {
-    // The ray goes on to a wall that shines, as a mirror would send it.
+    // The mirrored ray continues to an emitting wall.
     let mut wall = shape(
         Geometry::Rectangle,
         DAffine3::from_translation(DVec3::new(0.0, 4.0, 0.0)),
@@ -182,17 +183,18 @@ fn surfaces_curve_as_they_do() {
     };
     let scaled = |radius: f64| DAffine3::from_scale(DVec3::splat(radius));
     for k in of(Geometry::Sphere, scaled(0.5)) {
-        // Differences over a few hundredths of the radius.
+        // Finite differences over a few hundredths of the radius.
         assert!((k - 2.0).abs() < 0.03, "{k}");
     }
-    // Its axis is along X: the plane of incidence is across it.
+    // The axis is along X, perpendicular to the plane of incidence.
     let turned = DMat3::from_cols(DVec3::Z * 0.5, DVec3::Y * 0.5, -4.0 * DVec3::X);
     let to_world = DAffine3::from_mat3_translation(turned, DVec3::X * 2.0);
     let [along, across] = of(Geometry::Cylinder, to_world);
-    // The ray comes nearly along the normal, so the plane of incidence is some degrees off; the sum does not depend on it.
+    // The ray is nearly along the normal, so the plane of incidence is off by some degrees; the sum
+    // does not depend on it.
     assert!((along + across - 2.0).abs() < 0.03, "{along}, {across}");
     assert!(along > 1.9 && across < 0.1, "{along}, {across}");
-    // From within a large sphere.
+    // Seen from inside a large sphere.
     let [along, across] = of(Geometry::Sphere, scaled(5.0));
     assert!(
         (along + 0.2).abs() < 0.003 && (across + 0.2).abs() < 0.003,

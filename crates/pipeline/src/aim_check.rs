@@ -1,4 +1,4 @@
-//! Whether photons that are aimed at the window of a plane reach it.
+//! Checks that photons aimed at the window of a plane reach it.
 
 use crate::case::MeasuredScene;
 use etendue_compare::{Class, MIN_PHOTONS_PER_BATCH, PlaneComparison, Verdict};
@@ -8,11 +8,11 @@ use etendue_store::Method;
 use etendue_trace::Tracer;
 use rayon::prelude::*;
 
-/// Leaves open what fails by photons that were aimed at other windows.
+/// Makes a failed plane undecided if its photons were aimed at other windows.
 ///
-/// Photons are aimed at all windows in equal parts. Where those aimed at a window hardly reach it,
-/// such as behind a curved mirror, what is seen there may be the part of the light that others happen
-/// to see, with an error that is far too small.
+/// Photons are aimed at all windows in equal shares. Where those aimed at a window rarely reach it,
+/// for example behind a curved mirror, the measurement may hold only the part of the light that
+/// other photons happen to bring, with an error that is far too small.
 pub(crate) fn leave_open(case: &MeasuredScene, planes: &mut [PlaneComparison]) {
     let count = case.scene.planes.len() as u64;
     if count < 2 {
@@ -42,7 +42,8 @@ pub(crate) fn leave_open(case: &MeasuredScene, planes: &mut [PlaneComparison]) {
     }
 }
 
-/// How many of so many photons reach the window of a plane, when they are aimed at it alone.
+/// The number of photons, out of `photons`, that reach the window of a plane when all are aimed at
+/// it.
 fn reached(scene: &Scene, plane: usize, photons: u64) -> u64 {
     let mut alone = scene.seen_at(&[plane]);
     alone.run.photons = photons;

@@ -1,4 +1,4 @@
-//! What is known of a scene when all is measured and predicted.
+//! A scene with its measurement and predictions.
 
 use crate::measure::measured;
 use crate::predict::predicted;
@@ -9,18 +9,18 @@ use etendue_spectrum::Measurement;
 use etendue_store::Failure;
 use etendue_store::Method;
 
-/// A scene, and all that was measured and predicted of it.
+/// A scene with its measurement and predictions.
 #[derive(Debug)]
 pub struct MeasuredScene {
     /// The scene.
     pub scene: Scene,
-    /// What theory says of each plane.
+    /// The theory that applies to each plane.
     pub theories: Vec<Applicability>,
-    /// How it was measured.
+    /// The method of measurement.
     pub method: Method,
-    /// All planes, measured.
+    /// The measurement of all planes.
     pub measurement: Measurement,
-    /// One for each plane, in their order.
+    /// A prediction for each plane, in their order.
     pub predictions: Vec<Prediction>,
 }
 

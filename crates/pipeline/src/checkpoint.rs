@@ -1,4 +1,5 @@
-//! A measurement that outlives its process: its batches are kept as they are done, and those on the way every few seconds.
+//! Makes a measurement outlive its process: finished batches are stored, and unfinished ones every
+//! few seconds.
 
 use crate::method::source;
 use crate::reporter::{Progress, Reporter, Work};
@@ -16,24 +17,25 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Batches done before this are not kept: they are soon made again.
+/// Batches finished before this age are not stored, because they are quickly repeated.
 const MIN_AGE: Duration = Duration::from_secs(5);
-/// How often a batch on the way is kept.
+/// The interval at which an unfinished batch is stored.
 const PARTIAL_INTERVAL: Duration = Duration::from_secs(2);
 
-/// How long a measurement may take, and whether others have a part in it.
+/// The time limit of a measurement, and the other processes that take part.
 #[derive(Clone, Copy, Debug)]
 pub struct Checkpointing<'a> {
-    /// Goes on from what is kept, and shares the work with others that do.
+    /// Continues from stored batches, and shares the work with other processes that do.
     pub resume: bool,
-    /// When no more parts of batches are begun.
+    /// The time after which no more parts of batches are begun.
     pub until: Option<Instant>,
-    /// Other processes that measure as well.
+    /// Other processes that also measure.
     pub workers: Option<&'a Leader<'a>>,
 }
 
-/// Measures all batches of a scene; `None` where another process that shares the work has ended it, which `is_done` tells. Where time is up
-/// first, those that are done are kept, and that is said.
+/// Measures all batches of a scene. `None` where another process that shares the work has finished
+/// it, which `is_done` reports. If the time limit comes first, finished batches are stored and a
+/// message is given.
 pub fn measured(
     scene: &Scene,
     method: Method,
@@ -61,7 +63,7 @@ pub fn measured(
         kept.remove();
     }
     loop {
-        // Where another process has ended the run, the batches are gone.
+        // Where another process has finished the run, the batches have been deleted.
         if checkpointing.resume && is_done() {
             drop(bar);
             return Ok(None);
@@ -92,13 +94,13 @@ pub fn measured(
     Ok(Some(all))
 }
 
-/// How many photons of a batch are traced, about.
+/// The approximate number of photons of a batch that are traced.
 fn photons_of(source: &dyn PhotonSource, batch: &PartialBatch) -> u64 {
     let parts = u64::from(source.parts(batch.index));
     source.emitted(batch.index) / parts * u64::from(batch.parts)
 }
 
-/// The error of a run whose time was up, which says what is kept.
+/// The error of a run that exceeded its time limit, stating what is stored.
 fn time_is_up(kept: &CheckpointStore, batches: usize) -> Failure {
     let [done, begun] = kept.count();
     let begun = match begun {
@@ -111,7 +113,7 @@ fn time_is_up(kept: &CheckpointStore, batches: usize) -> Failure {
     ))
 }
 
-/// Keeps batches as they are done, and on the way.
+/// Stores batches when they are finished, and unfinished ones at intervals.
 struct Keeper<'a> {
     kept: &'a CheckpointStore,
     is_done: &'a (dyn Fn() -> bool + Sync),
@@ -119,15 +121,16 @@ struct Keeper<'a> {
     bar: &'a dyn Progress,
     reporter: &'a dyn Reporter,
     begun: Instant,
-    /// When each batch on the way was kept last.
+    /// The time at which each unfinished batch was last stored.
     partial: Mutex<BTreeMap<u32, Instant>>,
     is_late: AtomicBool,
-    /// Whether no more can be kept.
+    /// Whether storing has failed, after which nothing more is stored.
     is_full: AtomicBool,
 }
 
 impl Keeper<'_> {
-    /// Reads what is kept, if the run goes on from it; returns the batches that are left to do, each from where it was left.
+    /// Reads stored batches, if the run continues from them; returns the remaining ones, each from
+    /// where it stopped.
     fn missing(
         &self,
         all: &mut Measurement,
@@ -157,7 +160,7 @@ impl Keeper<'_> {
         Ok(missing)
     }
 
-    /// Whether anything is to be kept by now.
+    /// Whether enough time has passed for storing anything.
     fn keeps(&self) -> bool {
         let Checkpointing {
             resume,
@@ -168,7 +171,7 @@ impl Keeper<'_> {
         is_eager || self.begun.elapsed() > MIN_AGE
     }
 
-    /// Keeps something by `write`. Where that fails the run goes on without it.
+    /// Stores something by `write`. If that fails, the run continues without storing.
     fn keep(&self, write: impl FnOnce() -> Result<(), Failure>) {
         if self.is_full.load(Ordering::Relaxed) {
             return;
@@ -186,7 +189,7 @@ impl Keeper<'_> {
         );
     }
 
-    /// Whether a batch on the way was not kept for a while; from now on it was.
+    /// Whether an unfinished batch has not been stored for a while; marks it as stored now.
     fn is_due(&self, batch: u32) -> bool {
         let mut partial = self.partial.lock().unwrap_or_else(PoisonError::into_inner);
         let last = partial.entry(batch).or_insert(self.begun);
@@ -212,7 +215,7 @@ impl Watch for Keeper<'_> {
         if !self.checkpointing.resume {
             return true;
         }
-        // A batch where another process is ahead is left to it.
+        // A batch at which another process is ahead is left to that process.
         !(self.is_done)()
             && match self.kept.progress(batch) {
                 None => true,

@@ -1,4 +1,4 @@
-//! Two results of one scene held against each other: what differs, and the words for it.
+//! Compares two results of one scene, and describes their differences.
 
 mod difference;
 mod planes;

@@ -16,21 +16,22 @@ use etendue_store::sealed::json;
 use ndarray::{Array1, Array4};
 use serde::Serialize;
 
-/// The files of a plane.
+/// The file names of a plane.
 pub const NAMES: [&str; 3] = ["field.npy", "field.json", "full_radial.npz"];
 
-/// `field.json`.
+/// The content of `field.json`.
 #[derive(Serialize)]
 struct FieldIndex {
     axes: [&'static str; 4],
     units: [&'static str; 5],
     cells: [usize; 4],
-    /// Centres of the first cells and widths of all: cell i is at `first` + i · `width`.
+    /// Centres of the first cells and widths of all cells: cell i is at `first` + i · `width`.
     first: [f64; 4],
     width: [f64; 4],
     window: etendue_field::Window,
     assignment: etendue_field::Assignment,
-    /// ‖4D − slices‖/‖slices‖ of the same photons on shared frequencies up to half of Nyquist, and what it is held against.
+    /// ‖4D − slices‖/‖slices‖ of the same photons at shared frequencies up to half of Nyquist, with
+    /// the values it is compared with.
     aliasing: Option<AliasingNumbers>,
 }
 
@@ -38,9 +39,9 @@ struct FieldIndex {
 struct AliasingNumbers {
     frequencies: usize,
     difference: f64,
-    /// What aliasing makes of it if the spectrum beyond Nyquist is as strong as just inside.
+    /// The expected value, if the spectrum beyond Nyquist is as strong as just inside.
     expected: f64,
-    /// What it cannot be more than, whatever the photons.
+    /// The upper bound, whatever the photons.
     bound: f64,
 }
 
@@ -64,16 +65,17 @@ pub fn check_memory(scene: &Scene) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The light field of a plane, and its full radial spectrum held against its prediction.
+/// The light field of a plane, and the comparison of its full radial spectrum with the prediction.
 #[derive(Debug)]
 struct Field {
     measured: FieldMeasurement,
-    /// `None` where nothing is predicted, or there is no memory to hold all groups against it.
+    /// `None` where nothing is predicted, or where memory is too small to hold all groups for the
+    /// comparison.
     compared: Option<FullRadialComparison>,
 }
 
 impl Field {
-    /// Puts the photons of plane `index` on a grid: traces them again.
+    /// Traces the photons of plane `index` again and puts them on a grid.
     fn new(case: &MeasuredScene, index: usize, reporter: &dyn Reporter) -> Result<Self, Failure> {
         let plane = &case.scene.planes[index];
         let grid = FieldGrid::new(&plane.window, &plane.grid);
@@ -82,7 +84,7 @@ impl Field {
             spectra: true,
             ..FieldOptions::default()
         };
-        // The prediction has as many groups.
+        // The prediction has the same number of groups.
         let groups = options.groups.min(case.measurement.batches().len());
         let needed = grid.bytes().saturating_mul(groups as u64);
         let needed = needed.saturating_add(options.bytes(&grid, rayon::current_num_threads()));
@@ -113,7 +115,8 @@ impl Field {
     }
 }
 
-/// Traces a plane by a method, once if the groups are kept: else once for the sum and once for them.
+/// Traces a plane by a method: once if the groups are kept, otherwise once for the sum and once for
+/// the groups.
 fn on_grid(
     (case, method): (&MeasuredScene, Method),
     index: usize,
@@ -121,7 +124,7 @@ fn on_grid(
     reporter: &dyn Reporter,
 ) -> Result<FieldMeasurement, Failure> {
     let scene = case.scene.seen_at(&[index]);
-    // Photons are aimed at all planes of a scene, and those that are judged must be the same ones.
+    // Photons are aimed at all planes of a scene, and those compared must be the same ones.
     let (source, at) = if method == case.method {
         (source(&case.scene, method)?, index)
     } else {
@@ -138,7 +141,8 @@ fn on_grid(
     measured.map_err(Failure::cannot_run)
 }
 
-/// Measures and judges the light field of each plane, and writes it if there is a result to write it to.
+/// Measures the light field of each plane, compares it with the prediction, and writes it if there
+/// is a result to write to.
 pub fn compare(
     mut results: Option<&mut Results>,
     case: &MeasuredScene,
@@ -159,10 +163,11 @@ pub fn compare(
     Ok(())
 }
 
-/// Tests of each plane whose light field is saved: of its slices, and of its full radial spectrum.
+/// The number of tests of each plane whose light field is saved: of its slices, and of its full
+/// radial spectrum.
 pub const TESTS: usize = 2;
 
-/// The share of Nyquist up to which the grid is held against the slices.
+/// The share of Nyquist up to which the grid is compared with the slices.
 const COMPARED: f64 = 0.5;
 
 fn write(

@@ -1,4 +1,4 @@
-//! A process that does what the one that leads asks for.
+//! A follower process, which does the work that the leading process requests.
 
 use crate::job::Job;
 use crate::workers::{Order, Packed, Piece, Task, WorkerMessage, Workers, key, packed, unpack};
@@ -9,7 +9,8 @@ use etendue_store::Failure;
 use etendue_store::framing::{joined, split};
 use std::time::{Duration, Instant};
 
-/// Measures batches and predicts planes of a scene as the process that leads asks for them, until it is dismissed.
+/// Measures batches and predicts planes of a scene at the request of the leading process, until it
+/// is dismissed.
 pub fn follow_job(workers: &dyn Workers, job: &Job) -> Result<(), Failure> {
     let mut source: Option<Box<dyn PhotonSource>> = None;
     let mut done = |order: &Order, bytes: &[u8]| match order.task {
@@ -30,7 +31,8 @@ pub fn follow_job(workers: &dyn Workers, job: &Job) -> Result<(), Failure> {
     obey(workers, &key([job.scene()]), &mut done)
 }
 
-/// Does points of a sweep, whose scenes these are, as the process that leads asks for them: `run` has the bytes of a point.
+/// Computes points of a sweep over these scenes at the request of the leading process; `run`
+/// returns the bytes of a point.
 pub fn follow_points(
     workers: &dyn Workers,
     scenes: &[Scene],
@@ -43,14 +45,15 @@ pub fn follow_points(
     obey(workers, &key(scenes), &mut done)
 }
 
-/// Tells the process that leads why this one cannot go on: it says so and ends the run.
+/// Tells the leading process why this one cannot continue; the leading process reports it and ends
+/// the run.
 pub fn report_failure(workers: &dyn Workers, Failure { message, .. }: Failure) {
-    // It may be gone itself.
+    // The leading process may have ended itself.
     let _ = workers.send(0, &joined(&WorkerMessage::Failed { message }, &[]));
     let _ = workers.receive();
 }
 
-/// A piece that is done.
+/// A finished piece of work.
 fn whole(number: u32, bytes: Vec<u8>) -> Packed {
     let piece = Piece {
         number,
@@ -81,7 +84,7 @@ fn measured(
     done.chain(begun).collect()
 }
 
-/// Goes on until this moment.
+/// Continues until this time.
 struct Until(Instant);
 
 impl Watch for Until {
@@ -92,10 +95,10 @@ impl Watch for Until {
     }
 }
 
-/// What comes of an order, with the bytes it came with.
+/// The result of an order, with its bytes.
 type Done = Result<Vec<Packed>, Failure>;
 
-/// Follows orders by `done`, until one is empty.
+/// Carries out orders by `done`, until an empty one arrives.
 fn obey(
     workers: &dyn Workers,
     key: &str,

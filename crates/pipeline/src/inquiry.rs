@@ -1,4 +1,4 @@
-//! What another tracer says of planes that fail.
+//! Investigates planes that fail, with another tracer.
 
 use crate::case::MeasuredScene;
 use crate::judge::Judge;
@@ -10,7 +10,8 @@ use etendue_spectrum::estimate::TooFewBatches;
 use etendue_store::Failure;
 use etendue_store::Method;
 
-/// Measures planes that disagree with theory by the other method, and compares all three.
+/// Measures planes that disagree with theory by the other method, and compares photons, the other
+/// method and theory.
 pub(crate) fn inquire(
     case: &MeasuredScene,
     planes: &[PlaneComparison],
@@ -29,16 +30,18 @@ pub(crate) fn inquire(
     failed.into_iter().filter_map(judged).collect()
 }
 
-/// Whether a plane fails against a prediction, and not for its chain of affine maps alone.
+/// Whether a plane fails against its prediction, and not only against its chain of affine maps.
 fn disagrees_with_theory(report: &PlaneReport) -> bool {
     report.class != Class::Reference && report.exact_verdict() == Verdict::Fail
 }
 
-/// How many standard errors a disagreement must have, so that a test at 1 % finds it nine times in ten: 2.33 + 1.28.
+/// The number of standard errors that a disagreement must have for a test at 1 % to detect it nine
+/// times in ten: 2.33 + 1.28.
 const DETECTABLE: f64 = 3.6;
 
 impl Inquiry {
-    /// Compares a judge of plane `i`, which has it at number `at`, with photons and with theory.
+    /// Compares the judge of plane `i`, where the plane has the number `at`, with photons and with
+    /// theory.
     fn of(
         case: &MeasuredScene,
         (i, failed): (usize, &PlaneReport),
@@ -54,8 +57,8 @@ impl Inquiry {
         Ok(Self::new(methods, failed, (&tracers, &theory), rays))
     }
 
-    /// `failed` compares a measurement with its prediction. Another tracer with so many `rays` is compared with the measurement, and with
-    /// the prediction.
+    /// `failed` is the comparison of a measurement with its prediction. Another tracer with `rays`
+    /// rays is compared with the measurement, and with the prediction.
     fn new(
         methods: [Method; 2],
         failed: &PlaneReport,
@@ -87,7 +90,8 @@ impl Inquiry {
     }
 }
 
-/// What it means that so many rays of another tracer agree with a measurement and with its prediction, which do not agree.
+/// The conclusion where another tracer with `rays` rays agrees with both a measurement and its
+/// prediction, which disagree with each other.
 fn both_pass(
     [this, other]: [&str; 2],
     failed: &PlaneReport,
@@ -103,7 +107,7 @@ fn both_pass(
     let cannot = format!("{other} cannot tell who is wrong: their noise is {noise}");
     let positive = squares.into_iter().filter(|square| *square > 0.0);
     let least = positive.fold(f64::INFINITY, f64::min);
-    // The standard error of a square falls as the number of rays, or faster.
+    // The standard error of a square falls at least as fast as the number of rays grows.
     let needed = rays * DETECTABLE * error / least;
     if needed > rays && needed.is_finite() {
         let apart = percent(Some(least.sqrt()));
@@ -115,8 +119,10 @@ fn both_pass(
     }
 }
 
-/// Squares of how far a plane that fails is from its prediction, beyond noise: with all frequencies alike, and as the test has it, where
-/// frequencies of less noise count more. Another tracer has its noise elsewhere, so it must be able to see the smaller one.
+/// Squared distances of a failed plane from its prediction, beyond noise: with all frequencies
+/// weighted equally, and weighted as in the test, where frequencies of less noise count more. The
+/// noise of another tracer is distributed differently, so it must be able to detect the smaller
+/// one.
 fn disagreement(failed: &PlaneReport) -> [f64; 2] {
     let alike = failed.excess.map(|excess| excess * excess.abs());
     let tested = failed.chi2_per_dof.zip(failed.noise_limit);
@@ -145,7 +151,7 @@ mod tests {
         resolve("test", file, ".".as_ref(), u64::MAX).unwrap()
     }
 
-    /// A plane whose photons, backward rays and prediction are of lights with these radiances.
+    /// A plane whose photons, backward rays and prediction come from lights with these radiances.
     fn compared(photons: f64, rays: f64, predicted: f64) -> (MeasuredScene, PlaneComparison) {
         let of = |radiance| scene(radiance);
         let prediction = |scene: &Scene| {
@@ -166,7 +172,7 @@ mod tests {
         (case, compared)
     }
 
-    /// What is found there.
+    /// The findings for such a plane.
     fn found(photons: f64, rays: f64, predicted: f64) -> Vec<String> {
         let (case, compared) = compared(photons, rays, predicted);
         let inquiries = inquire(&case, &[compared], &Silent).unwrap();
@@ -187,7 +193,8 @@ mod tests {
         assert!(all.starts_with("no two of"), "{all}");
     }
 
-    /// Photons are 0.55 % off their prediction. Rays that pass both may have had the power to see that, or not.
+    /// Photons are 0.55 % off their prediction. Rays that agree with both may or may not have had
+    /// the power to detect this.
     #[test]
     fn rays_too_few_to_tell_are_no_sign_of_chance() {
         let (_, PlaneComparison { report, .. }) = compared(1.0, 1.0, 1.0);
@@ -199,7 +206,7 @@ mod tests {
             excess_squared_error: Some(squared_error),
             ..report.clone()
         };
-        // 0.55 % is half of their noise of 1.1 %.
+        // 0.55 % is half of the noise of 1.1 % of these rays.
         let found = |chi2, squared_error| {
             let failed = with(Verdict::Fail, chi2, 0.011, 1e-6);
             let passed = with(Verdict::Pass, 1.0, 0.015, squared_error);

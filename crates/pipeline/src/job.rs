@@ -1,4 +1,4 @@
-//! Étendue inside another program: a scene measured, predicted and compared in memory, as `etendue run` does it.
+//! Étendue as a library: measures, predicts and compares a scene in memory, as `etendue run` does.
 
 use crate::case::MeasuredScene;
 use crate::judged::Judged;
@@ -18,18 +18,18 @@ use etendue_store::predictions;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// How a scene is measured, where it is not as the scene says.
+/// Settings of a measurement that override those of the scene.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
-    /// Photons, instead of the scene's.
+    /// Number of photons, in place of the scene's.
     pub photons: Option<u64>,
-    /// Seed of the photons, instead of the scene's.
+    /// Seed of the photons, in place of the scene's.
     pub seed: Option<u64>,
-    /// How light is measured.
+    /// The method of measurement.
     pub method: Method,
 }
 
-/// A scene, and how it is measured.
+/// A scene with the settings of its measurement.
 #[derive(Clone, Debug)]
 pub struct Job {
     scene: Scene,
@@ -39,10 +39,10 @@ pub struct Job {
 }
 
 impl Job {
-    /// The scene of a file, or of a text in place of one.
+    /// The scene of a file, or of a text in its place.
     ///
     /// # Errors
-    /// When it cannot be read, or is no sound scene: all its faults, with their lines.
+    /// When the scene cannot be read or is not valid; the error lists all faults with their lines.
     pub fn read(source: &SceneSource, options: &Options) -> Result<Self, Failure> {
         let scene = load::scene(source, |run| {
             run.photons = options.photons.unwrap_or(run.photons);
@@ -75,7 +75,7 @@ impl Job {
         &self.theories
     }
 
-    /// What emits its photons.
+    /// The source of the scene's photons.
     ///
     /// # Errors
     /// When the method finds no light.
@@ -83,7 +83,7 @@ impl Job {
         source(&self.scene, self.method)
     }
 
-    /// How its batches become bytes, for another process.
+    /// The format in which batches are sent to another process.
     pub(crate) fn packing(&self) -> Packing<'_> {
         Packing {
             scene: &self.scene,
@@ -94,15 +94,16 @@ impl Job {
     /// A batch as bytes, for another process.
     ///
     /// # Errors
-    /// When there is no memory for them.
+    /// When there is not enough memory for the bytes.
     pub fn packed(&self, batch: &Batch) -> Result<Vec<u8>, Failure> {
         self.packing().packed(batch)
     }
 
-    /// The batch of that number in bytes of [`Self::packed`], as `source` would have emitted it.
+    /// The batch with that number from the bytes of [`Self::packed`], identical to one emitted by
+    /// `source`.
     ///
     /// # Errors
-    /// When they are not of this scene, seed and number of photons.
+    /// When the bytes belong to another scene, seed or number of photons.
     pub fn unpacked(
         &self,
         source: &dyn PhotonSource,
@@ -121,10 +122,10 @@ impl Job {
         predictions::packed(plane, &prediction)
     }
 
-    /// Fails where a run would not end, or not fit into this machine.
+    /// Fails where a run would take too long, or not fit into this machine.
     ///
     /// # Errors
-    /// In these two cases.
+    /// When a run would take too long, or would not fit into this machine.
     pub fn check_limits(&self) -> Result<(), Failure> {
         limits::check(&self.scene, &self.theories, rayon::current_num_threads())
     }
@@ -142,12 +143,12 @@ impl Job {
     /// Predicts all planes, on the threads of the current pool.
     ///
     /// # Errors
-    /// Where another method stands in for theory, and finds no light.
+    /// When another method takes the place of theory, and finds no light.
     pub fn predict(&self) -> Result<Vec<Prediction>, Failure> {
         predicted(&self.scene, &self.theories, self.method, None, &Silent)
     }
 
-    /// Compares what was measured with what was predicted.
+    /// Compares the measurement with the predictions.
     ///
     /// # Errors
     /// When the measurement has too few batches for errors.
@@ -172,7 +173,7 @@ impl Job {
     }
 }
 
-/// A scene whose planes are measured, predicted and compared.
+/// A scene whose planes have been measured, predicted and compared.
 #[derive(Debug)]
 pub struct Outcome {
     case: MeasuredScene,
@@ -187,19 +188,19 @@ impl Outcome {
         &self.judged.planes
     }
 
-    /// The verdict on all of them.
+    /// The verdict on all planes.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
         self.judged.summary.verdict
     }
 
-    /// What was held against the planes.
+    /// The predictions that the planes were compared with.
     #[must_use]
     pub fn predictions(&self) -> &[Prediction] {
         &self.case.predictions
     }
 
-    /// `summary.json`, without hashes of files.
+    /// The content of `summary.json`, without hashes of files.
     #[must_use]
     pub fn summary(&self) -> Vec<u8> {
         self.judged.summary.json(&BTreeMap::new())
@@ -211,13 +212,13 @@ impl Outcome {
         crate::table::text(&self.judged.summary)
     }
 
-    /// The scene, what was measured and what was predicted.
+    /// The scene with its measurement and predictions.
     #[must_use]
     pub fn case(&self) -> &MeasuredScene {
         &self.case
     }
 
-    /// What they came to.
+    /// The comparisons and their summary.
     #[must_use]
     pub fn judged(&self) -> &Judged {
         &self.judged

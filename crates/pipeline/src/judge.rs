@@ -1,4 +1,4 @@
-//! Measurements that judge another one, plane by plane.
+//! Independent measurements that judge another one, plane by plane.
 
 use crate::measure::measured;
 use crate::method::judge_of;
@@ -13,13 +13,13 @@ use etendue_store::Method;
 pub(crate) struct Judge {
     pub(crate) method: Method,
     pub(crate) measurement: Measurement,
-    /// The numbers of its planes in the scene, ascending.
+    /// The indices of the measured planes in the scene, ascending.
     planes: Vec<usize>,
 }
 
 impl Judge {
-    /// Measures some planes of a scene by the methods that judge `method` there, a measurement for
-    /// each method.
+    /// Measures some planes of a scene by the methods that judge `method` there, one measurement
+    /// for each method.
     pub(crate) fn all(
         scene: &Scene,
         planes: &[usize],

@@ -1,4 +1,4 @@
-//! What a scene comes to that is measured and predicted.
+//! The results of a scene that has been measured and predicted.
 
 use crate::case::MeasuredScene;
 use crate::inquiry::inquire;
@@ -8,18 +8,18 @@ use crate::{aim_check, field};
 use etendue_compare::{PlaneComparison, Test, compare};
 use etendue_store::{Failure, Results};
 
-/// What a case comes to.
+/// The results of a case.
 #[derive(Debug)]
 pub struct Judged {
-    /// Each plane compared, in the order of the scene.
+    /// The comparison of each plane, in the order of the scene.
     pub planes: Vec<PlaneComparison>,
-    /// The verdict, and what it rests on.
+    /// The verdict, with the numbers behind it.
     pub summary: Summary,
 }
 
 impl Judged {
-    /// Compares all planes, and looks into those that fail. The light fields of the planes are compared too where they
-    /// are saved to a result.
+    /// Compares all planes, and investigates those that fail. Light fields of the planes are
+    /// compared too where they are saved to a result.
     pub fn of(
         case: &MeasuredScene,
         fields: Option<&mut Results>,
@@ -37,7 +37,7 @@ impl Judged {
     }
 }
 
-/// Each plane compared, with its verdict.
+/// The comparison of each plane, with its verdict.
 pub fn judged(case: &MeasuredScene, test: &Test) -> Result<Vec<PlaneComparison>, Failure> {
     let each = case.predictions.iter().enumerate();
     let compared = each.map(|(i, prediction)| {

@@ -1,7 +1,9 @@
-//! A run from scene to verdict, as a library: measuring, predicting, judging by another tracer, inquiring into
-//! failures, photons until noise is low enough, batches that outlive their process, and several processes.
+//! A run from scene to verdict, as a library: measuring, predicting, judging by another tracer,
+//! investigating failures, adding photons until noise is low enough, storing batches, and using
+//! several processes.
 //!
-//! It knows no arguments and no terminal. What goes on is told to a [`Reporter`]. [`Job`] is the way in.
+//! It does not depend on arguments or a terminal. Progress is reported to a [`Reporter`]. The entry
+//! point is [`Job`].
 
 #![allow(
     clippy::missing_errors_doc,

@@ -1,4 +1,4 @@
-//! What a command takes, held against what there is, before it begins.
+//! Compares the work and memory of a command with what is available, before it begins.
 
 use etendue_compare::{Applicability, Memory, too_much_work};
 use etendue_field::Light;
@@ -6,14 +6,14 @@ use etendue_scene::Scene;
 use etendue_store::Failure;
 use etendue_store::machine;
 
-/// Fails where a run of the scene on so many threads would not end, or not fit into this machine.
-/// `theories` are those of its planes.
+/// Fails where a run of the scene on `threads` threads would take too long, or not fit into this
+/// machine. `theories` are those of the scene's planes.
 pub fn check(scene: &Scene, theories: &[Applicability], threads: usize) -> Result<(), Failure> {
     check_work(scene, theories)?;
     check_memory(scene, theories, threads)
 }
 
-/// Fails where a prediction of the scene would not end.
+/// Fails where a prediction of the scene would take too long.
 pub fn check_work(scene: &Scene, theories: &[Applicability]) -> Result<(), Failure> {
     check_rays(scene, theories)?;
     match too_much_work(scene, theories) {
@@ -22,7 +22,8 @@ pub fn check_work(scene: &Scene, theories: &[Applicability]) -> Result<(), Failu
     }
 }
 
-/// Fails where a plane would have nothing to be held against: rays traced back do not find those of a file.
+/// Fails where there would be nothing to compare a plane with, because backward rays do not find
+/// the rays of a file.
 fn check_rays(scene: &Scene, theories: &[Applicability]) -> Result<(), Failure> {
     if !matches!(scene.light, Light::Rays { .. }) {
         return Ok(());
@@ -39,7 +40,7 @@ fn check_rays(scene: &Scene, theories: &[Applicability]) -> Result<(), Failure> 
     }
 }
 
-/// Fails where a run of the scene on so many threads would not fit into this machine.
+/// Fails where a run of the scene on `threads` threads would not fit into this machine.
 pub fn check_memory(
     scene: &Scene,
     theories: &[Applicability],

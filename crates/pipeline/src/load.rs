@@ -1,4 +1,4 @@
-//! A scene file, read and resolved; and folders for what a stage makes of it.
+//! Reads and resolves scene files, and creates folders for the results of a stage.
 
 use etendue_scene::{
     RunFile, Scene, SceneError, SceneFile, limits, read_below, read_file, resolve,
@@ -9,16 +9,16 @@ use etendue_store::{ArgumentStyle, Failure, Plan, Results};
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
-/// A scene file, and what is set in it.
+/// A scene file, and the fields set in it.
 #[derive(Clone, Debug)]
 pub struct SceneSource {
     /// The file, in RON or JSON. Its meshes and pictures are in the same folder.
     pub path: PathBuf,
-    /// The content of the file, where none is read: then the path only names the scene and its folder.
+    /// The content in place of a file; `path` then only names the scene and its folder.
     pub text: Option<String>,
-    /// Fields set to values, each as by [`SceneFile::with`].
+    /// Fields with the values they are set to, each as by [`SceneFile::with`].
     pub set: Vec<(String, String)>,
-    /// How messages name arguments.
+    /// The style in which messages name arguments.
     pub arguments: ArgumentStyle,
 }
 
@@ -34,17 +34,18 @@ impl SceneSource {
         }
     }
 
-    /// The folder in which its meshes and pictures are.
+    /// The folder of the scene's meshes and pictures.
     fn folder(&self) -> &Path {
         self.path.parent().unwrap_or(Path::new(""))
     }
 
-    /// The name of the scene: that of the file without its ending.
+    /// The name of the scene, the file name without its extension.
     fn name(&self) -> Cow<'_, str> {
         self.path.file_stem().unwrap_or_default().to_string_lossy()
     }
 
-    /// What messages call it: the path of its file, or its name where there is no file.
+    /// The name of the scene in messages: the path of its file, or its own name where there is no
+    /// file.
     fn shown(&self) -> String {
         match self.text {
             Some(_) => self.name().into_owned(),
@@ -66,7 +67,8 @@ impl SceneSource {
     }
 }
 
-/// Reads, overrides and resolves a scene; `options` are overrides that have arguments of their own.
+/// Reads, overrides and resolves a scene; `options` applies overrides that have arguments of their
+/// own.
 pub fn scene(source: &SceneSource, options: impl FnOnce(&mut RunFile)) -> Result<Scene, Failure> {
     let arguments = source.arguments;
     let shown = source.shown();
@@ -86,19 +88,19 @@ pub fn scene(source: &SceneSource, options: impl FnOnce(&mut RunFile)) -> Result
     }
     let memory = machine::available_memory();
     let scene = resolve(&source.name(), file, source.folder(), memory);
-    // A text that nobody has in a file has no lines to be named.
+    // A text that is in no file has no lines to report.
     let text = source.text.is_none().then_some(&*text);
     scene.map_err(|error| refused(&error, &shown, text.unwrap_or_default(), &set))
 }
 
-/// What is wrong with a scene, a line for each fault: where it is in the text, or what has set it.
+/// The faults of a scene, one line each: the place in the text, or the argument that set the value.
 fn refused(error: &SceneError, shown: &str, text: &str, set: &[(String, String)]) -> Failure {
     let lines = error.in_text(text, set);
     let lines = lines.lines().map(|line| format!("{shown}: {line}"));
     Failure::of_scene(error, lines.collect::<Vec<_>>().join("\n"))
 }
 
-/// The scene file, if there is one, and all that it names.
+/// The scene file, if there is one, and all files that it names.
 pub fn inputs(source: &SceneSource, scene: &Scene) -> Vec<PathBuf> {
     let file = source.text.is_none().then(|| source.path.clone());
     let named = scene.inputs.keys();
@@ -106,8 +108,8 @@ pub fn inputs(source: &SceneSource, scene: &Scene) -> Vec<PathBuf> {
     named.chain(file).collect()
 }
 
-/// Claims a folder for a stage with these files, and copies the meshes and pictures of the scene there: the next
-/// stage looks for them beside the index.
+/// Claims a folder for a stage with these files, and copies the meshes and pictures of the scene
+/// there, because the next stage looks for them beside the index.
 pub fn stage(
     out: &Path,
     index: &'static str,

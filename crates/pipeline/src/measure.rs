@@ -1,4 +1,4 @@
-//! Measuring all planes of a scene.
+//! Measures all planes of a scene.
 
 use crate::method::source;
 use crate::reporter::{Reporter, Work};

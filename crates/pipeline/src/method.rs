@@ -1,11 +1,11 @@
-//! What emits the photons of a measurement.
+//! The sources of photons for each method of measurement.
 
 use etendue_field::{PhotonSource, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_store::{Failure, Method};
 use etendue_trace::{Backward, Tracer, finds};
 
-/// The photons that `method` sends through a scene.
+/// The source of photons that `method` sends through a scene.
 pub fn source(scene: &Scene, method: Method) -> Result<Box<dyn PhotonSource>, Failure> {
     Ok(match method {
         Method::Photons => Box::new(Tracer::new(scene)),
@@ -22,7 +22,7 @@ pub fn check(scene: &Scene, method: Method) -> Result<(), Failure> {
     }
 }
 
-/// The method that judges another one at a plane, as independent of it as the scene allows.
+/// The method that judges another one at a plane, chosen to be as independent as the scene allows.
 pub fn judge_of(method: Method, scene: &Scene, plane: &VirtualPlane) -> Method {
     match method {
         Method::Photons if finds(scene, plane) => Method::Backward,
@@ -31,11 +31,11 @@ pub fn judge_of(method: Method, scene: &Scene, plane: &VirtualPlane) -> Method {
     }
 }
 
-/// The step of a prediction that measurements by a method take the place of.
+/// The prediction step for measurements by a method in place of theory.
 pub fn step(method: Method) -> String {
     let shared = match method {
         Method::Photons | Method::Backward => "",
-        // No ray finds the light otherwise.
+        // Otherwise no ray finds the light.
         Method::Even => ", which go on as photons do: what is wrong on their way is not seen",
     };
     format!("instead of theory  {}{shared}", method.words())

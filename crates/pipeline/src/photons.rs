@@ -13,12 +13,12 @@ use file::{Content, Rays};
 use serde::Serialize;
 use std::io;
 
-/// What is kept of a run beside its result.
+/// What is saved of a run beside its result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Save {
     /// Every photon that crossed a plane, in coordinates of the plane.
     Photons,
-    /// The same photons as rays of the world, in MCPL.
+    /// The same photons as rays in world coordinates, in MCPL.
     Mcpl,
     /// The same in IES TM-25.
     Tm25,
@@ -27,7 +27,7 @@ pub enum Save {
 }
 
 impl Save {
-    /// As commands have it.
+    /// The name in commands.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -42,7 +42,7 @@ impl Save {
 /// The index of a plane's NPY file.
 const INDEX: &str = "photons.json";
 
-/// The files of a plane.
+/// The file names of a plane.
 pub fn names(save: Save) -> Vec<&'static str> {
     let index = (save == Save::Photons).then_some(INDEX);
     file_of(save)
@@ -52,7 +52,8 @@ pub fn names(save: Save) -> Vec<&'static str> {
         .collect()
 }
 
-/// The file of the photons of a plane, what stands in front of it on the command line, and the bytes of a photon in it.
+/// The file of the photons of a plane, its prefix on the command line, and the bytes of a photon in
+/// it.
 fn file_of(save: Save) -> Option<(&'static str, &'static str, u64)> {
     match save {
         Save::Photons => Some(("photons.npy", "photons", 40)),
@@ -62,7 +63,7 @@ fn file_of(save: Save) -> Option<(&'static str, &'static str, u64)> {
     }
 }
 
-/// `photons.json`.
+/// The content of `photons.json`.
 #[derive(Serialize)]
 struct PhotonsIndex {
     columns: [&'static str; 5],
@@ -72,7 +73,7 @@ struct PhotonsIndex {
     emitted: Vec<u64>,
 }
 
-/// How large the files will be at most: if every photon crosses every plane.
+/// The largest possible size of the files, reached if every photon crosses every plane.
 pub fn announcement(scene: &Scene, save: Save) -> Option<String> {
     let (_, option, row) = file_of(save)?;
     let planes = scene.planes.len();
@@ -92,8 +93,9 @@ fn size(bytes: u64) -> String {
     }
 }
 
-/// Traces the photons again, one plane after the other, and streams them to disk: they are the same ones,
-/// and memory holds a block of them. A TM-25 file begins with their flux, for which they are traced once more.
+/// Traces the same photons again, one plane after the other, and streams them to disk, so that
+/// memory holds only one block. A TM-25 file begins with the flux of the photons, for which they
+/// are traced once more.
 pub fn save(results: &mut Results, case: &MeasuredScene, save: Save) -> Result<(), Failure> {
     let Some((name, ..)) = file_of(save) else {
         return Ok(());
@@ -148,7 +150,8 @@ struct OfPlane<'a> {
 }
 
 impl OfPlane<'_> {
-    /// Hands them over, block by block in batch order. Returns the number of those before each batch, and of all.
+    /// Passes on the photons, block by block in batch order. Returns the number before each batch,
+    /// and the total.
     fn trace(&self, take: &mut dyn FnMut(&[Crossing]) -> io::Result<()>) -> io::Result<Vec<u64>> {
         let mut offsets = vec![0];
         let mut done = 0;

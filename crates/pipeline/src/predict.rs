@@ -1,4 +1,4 @@
-//! Predicting all planes of a scene.
+//! Predicts all planes of a scene.
 
 use crate::judge::Judge;
 use crate::method;
@@ -9,7 +9,7 @@ use etendue_scene::Scene;
 use etendue_store::{Failure, Method, predictions};
 use std::collections::BTreeMap;
 
-/// Predicts all planes of a scene for a measurement by `method`; where theory has no word, another
+/// Predicts all planes of a scene for a measurement by `method`. Where no theory applies, another
 /// method's measurement takes its place.
 pub fn predicted(
     scene: &Scene,

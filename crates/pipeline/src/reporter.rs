@@ -1,51 +1,52 @@
-//! What a run tells while it goes on.
+//! Progress reports of a run.
 
-/// Takes what a run tells while it goes on: a command prints it, a library may drop it. It is called from any thread.
+/// Receives the progress reports of a run: a command prints them, a library may ignore them. The
+/// methods are called from any thread.
 pub trait Reporter: Sync {
-    /// Says what happens next, or what was found.
+    /// Reports what happens next, or what was found.
     fn note(&self, text: &str);
 
-    /// Says what the user should know before trusting the result.
+    /// Reports what the user should know before trusting the result.
     fn warn(&self, text: &str);
 
-    /// Work begins.
+    /// Reports that work begins.
     fn begin(&self, work: Work) -> Box<dyn Progress + '_>;
 }
 
 /// Work that takes a while.
 #[derive(Clone, Copy, Debug)]
 pub enum Work {
-    /// So many photons to trace.
+    /// This number of photons to trace.
     Photons(u64),
-    /// So many things, one after the other.
+    /// A number of items to process in turn.
     Steps {
-        /// What is done to them, such as "predicting".
+        /// The activity, such as "predicting".
         verb: &'static str,
-        /// How many there are.
+        /// Number of items.
         total: usize,
-        /// What they are, in the plural.
+        /// Name of the items, in the plural.
         things: &'static str,
     },
-    /// Something whose length is not known beforehand.
+    /// Work whose length is not known in advance.
     Stage(&'static str),
 }
 
-/// Work that goes on. It ends when this is dropped.
+/// Work in progress. It ends when this is dropped.
 ///
-/// A program that is to stop may unwind from `advance` and from [`Reporter::begin`]: both are called often, and no result is half written
-/// then.
+/// A program that wants to stop may unwind from `advance` and from [`Reporter::begin`]: both are
+/// called often, and never while a result is half written.
 pub trait Progress: Send + Sync {
-    /// So many photons or things more are done; zero says only that work goes on.
+    /// Reports that this many further photons or items are done; zero only shows that work goes on.
     fn advance(&self, steps: u64);
 
-    /// So many are done in all.
+    /// Reports the total number done.
     fn set(&self, steps: u64);
 
-    /// The thing at hand has this name.
+    /// Reports the name of the current item.
     fn name(&self, step: &str);
 }
 
-/// Drops everything.
+/// Ignores all reports.
 #[derive(Clone, Copy, Debug)]
 pub struct Silent;
 

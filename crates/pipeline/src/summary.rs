@@ -1,4 +1,4 @@
-//! `summary.json`, and seconds of each stage.
+//! `summary.json`, and the seconds of each stage.
 
 use crate::case::MeasuredScene;
 use etendue_compare::{PlaneComparison, PlaneReport, Verdict};
@@ -12,56 +12,57 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-/// `summary.json`, all but the hashes of the files.
+/// The content of `summary.json`, except for the hashes of the files.
 #[derive(Debug, Serialize)]
 pub struct Summary {
     /// Name of the scene.
     pub scene: String,
-    /// BLAKE3 of the scene: of its file, defaults and overrides included, and of what it names.
+    /// BLAKE3 hash of the scene: of its file, defaults and overrides included, and of the files it
+    /// names.
     pub scene_hash: String,
     /// The scene as it was run, defaults and overrides included.
     pub scene_file: SceneFile,
-    /// Of this program.
+    /// Version of this program.
     pub version: &'static str,
-    /// Of the photons.
+    /// Seed of the photons.
     pub seed: u64,
-    /// How the scene was measured.
+    /// Method of measurement.
     pub method: Method,
     /// How photons were aimed.
     pub emission: Emission,
     /// Photons emitted.
     pub photons: u64,
-    /// Batches they were emitted in.
+    /// Number of batches.
     pub batches: usize,
-    /// Flux, W; nothing when the method does not keep it.
+    /// Ledger of flux, W; `None` when the method has no ledger.
     pub ledger: Option<Ledger>,
     /// (emitted − absorbed − escaped − stopped) / emitted.
     pub ledger_imbalance: Option<f64>,
-    /// On all planes together.
+    /// Verdict on all planes together.
     pub verdict: Verdict,
-    /// Probability of failing where nothing is wrong.
+    /// Probability of a failure where nothing is wrong.
     pub alpha: f64,
-    /// One for each plane, in the order of the scene.
+    /// A report for each plane, in the order of the scene.
     pub planes: Vec<PlaneReport>,
-    /// What the other tracer says of planes that fail.
+    /// Findings of the other tracer on planes that fail.
     pub inquiries: Vec<Inquiry>,
 }
 
-/// Who of three agrees on a plane that fails: photons, another tracer and the prediction.
+/// Which of three agree on a plane that fails: photons, another tracer and the prediction.
 #[derive(Debug, Serialize)]
 pub struct Inquiry {
     /// Name of the plane.
     pub plane: String,
-    /// Verdict and p of photons against backward rays.
+    /// Verdict and p-value of photons against backward rays.
     pub tracers: (Verdict, Option<f64>),
-    /// Verdict and p of the other tracer against the prediction.
+    /// Verdict and p-value of the other tracer against the prediction.
     pub other: (Verdict, Option<f64>),
-    /// What that comes to, in words.
+    /// The conclusion, in words.
     pub finding: String,
 }
 
 impl Summary {
-    /// What its arrays are made from.
+    /// The settings that the arrays of the result are made from.
     pub fn made_from(&self) -> serde_json::Value {
         serde_json::json!({
             "scene": self.scene,
@@ -72,7 +73,7 @@ impl Summary {
         })
     }
 
-    /// The summary of what was compared.
+    /// The summary of the compared planes.
     pub fn new(case: &MeasuredScene, planes: &[PlaneComparison], inquiries: Vec<Inquiry>) -> Self {
         let MeasuredScene {
             scene,
@@ -121,7 +122,7 @@ impl Summary {
     }
 }
 
-/// Seconds of each stage.
+/// The seconds of each stage.
 #[derive(Debug)]
 pub struct Stopwatch {
     last: Instant,
@@ -129,7 +130,7 @@ pub struct Stopwatch {
 }
 
 impl Stopwatch {
-    /// Starts now.
+    /// Starts the clock.
     pub fn start() -> Self {
         Self {
             last: Instant::now(),
@@ -144,17 +145,17 @@ impl Stopwatch {
         self.last = Instant::now();
     }
 
-    /// How long a stage took.
+    /// The seconds that a stage took.
     pub fn seconds(&self, stage: &str) -> Option<f64> {
         let mut stages = self.seconds.iter();
         stages.find(|(name, _)| *name == stage).map(|(_, s)| *s)
     }
 
-    /// `timing.json`.
+    /// The content of `timing.json`.
     pub fn json(&self, photons: u64) -> Vec<u8> {
         #[derive(Serialize)]
         struct Timing {
-            /// What was typed.
+            /// The command line.
             command: Vec<String>,
             seconds: BTreeMap<&'static str, f64>,
             threads: usize,

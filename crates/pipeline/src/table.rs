@@ -1,4 +1,4 @@
-//! What the run came to, at a glance.
+//! The tables of a run's results.
 
 use crate::summary::Summary;
 use etendue_compare::{
@@ -6,7 +6,7 @@ use etendue_compare::{
 };
 use etendue_field::{decimals, fixed, tidy, uncertain};
 
-/// The table of planes, that of parameters, and the verdict, as `etendue run` prints them.
+/// The table of planes, the table of parameters, and the verdict, as printed by `etendue run`.
 pub fn text(summary: &Summary) -> String {
     let ledger = summary
         .ledger_imbalance
@@ -51,7 +51,7 @@ pub fn text(summary: &Summary) -> String {
     lines.join("\n")
 }
 
-/// What is to be said of a first-order chain that does not pass.
+/// The message about a first-order chain that does not pass.
 pub fn on_chain(plane: &PlaneReport) -> Option<String> {
     let FirstOrderReport { chain, verdict, .. } = plane.first_order.as_ref()?;
     let name = &plane.name;
@@ -77,7 +77,7 @@ pub fn on_chain(plane: &PlaneReport) -> Option<String> {
     }
 }
 
-/// How far measured and predicted are apart, plane by plane.
+/// The difference of measurement and prediction, plane by plane.
 pub fn planes(summary: &Summary) -> Vec<Vec<String>> {
     let mut header = vec![
         "plane",
@@ -117,7 +117,7 @@ pub fn planes(summary: &Summary) -> Vec<Vec<String>> {
         .collect()
 }
 
-/// How far the photons are from the first-order chain, beyond noise, and how far they should be.
+/// The difference of the photons from the first-order chain, beyond noise, and its expected value.
 pub fn chain(plane: &PlaneReport) -> String {
     let Some(first_order) = &plane.first_order else {
         return "–".to_owned();
@@ -151,7 +151,7 @@ pub fn parameters(summary: &Summary) -> Vec<Vec<String>> {
     rows
 }
 
-/// How far measured and predicted full radial spectra are apart, plane by plane.
+/// The difference of measured and predicted full radial spectra, plane by plane.
 fn full_radials(summary: &Summary) -> Vec<Vec<String>> {
     let header = [
         "plane",
@@ -188,8 +188,9 @@ pub fn with_unit(name: &str, unit: &str) -> String {
     }
 }
 
-/// Measured value and smallest detectable change, this as a share of the parameter if it has a size. Where all of the
-/// parameter would go unnoticed, or its error is larger than what was measured, nothing was measured.
+/// The measured value and the smallest detectable change, the latter as a share of the parameter if
+/// it has a size. Both are – where even a change by the whole parameter would be undetectable, and
+/// the value is – where its error is larger than itself.
 fn measured(parameter: &ParameterReport) -> [String; 2] {
     let value = uncertain(parameter.measured, parameter.error);
     if parameter.scene.abs() < 1e-12 {
@@ -290,7 +291,7 @@ fn predicted(plane: &PlaneReport) -> String {
     }
 }
 
-/// A verdict in a word.
+/// A verdict as a word.
 pub fn word(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Pass => "pass",
@@ -299,7 +300,7 @@ pub fn word(verdict: Verdict) -> &'static str {
     }
 }
 
-/// A number with so many digits after the point; – where there is none.
+/// A number with `digits` digits after the point; – where there is none.
 pub fn number(value: Option<f64>, digits: usize) -> String {
     value.map_or("–".to_owned(), |v| fixed(v, digits))
 }
@@ -321,7 +322,7 @@ pub fn grouped(n: u64) -> String {
     groups.join(" ")
 }
 
-/// A name as read: underscores are spaces.
+/// A name for display, with spaces in place of underscores.
 pub fn spaced(name: &str) -> String {
     name.replace('_', " ")
 }

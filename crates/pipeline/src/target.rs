@@ -1,4 +1,4 @@
-//! Photons until there is little enough noise, and how long less noise would take.
+//! Adds photons until noise is low enough, and estimates how long lower noise would take.
 
 use crate::measure::measured;
 use crate::reporter::Reporter;
@@ -12,23 +12,24 @@ use etendue_store::Method;
 use indicatif::HumanDuration;
 use std::time::{Duration, Instant};
 
-/// Photons of the first stage.
+/// Number of photons of the first stage.
 const FIRST_PHOTONS: u64 = 1 << 20;
-/// The most photons of a stage, unless a user says so.
+/// The largest number of photons of a stage, unless the user sets one.
 const MAX_PHOTONS: u64 = 1 << 40;
-/// How many times as many photons the root of their number may ask for, that nets may do without.
+/// The factor by which the photons needed by the square-root law may exceed the limit, since nets
+/// may need fewer.
 const MAX_FACTOR: f64 = 8.0;
 
-/// Measures all batches of a scene with 2ᵐ photons: the first of these numbers, from 2²⁰ on, with
+/// Measures all batches of a scene with 2ᵐ photons, where 2ᵐ is the first power, from 2²⁰ on, with
 /// which noise is at most a share `target` of the spectrum at each plane. The scene is given that
-/// number. The last stage has `most` photons, a power of two or not.
+/// number of photons. The last possible stage has `most` photons, a power of two or not.
 ///
-/// A stage begins anew, so that its result is that of a run with as many photons. Which stages there
-/// may be is fixed beforehand, and noise alone says which one is the last, so that p is as it would
-/// be.
+/// Each stage starts again, so that its result is that of a run with as many photons. The possible
+/// stages are fixed beforehand, and only noise decides which one is the last, so p-values are
+/// unaffected.
 ///
 /// # Errors
-/// When no photon comes to any plane, or more photons would be needed than `most`.
+/// When no photon reaches any plane, or more than `most` photons would be needed.
 pub fn reached(
     scene: &mut Scene,
     method: Method,
@@ -52,7 +53,8 @@ pub fn reached(
         }
         let noise_now = percent(Some(noise));
         let now = format!("noise is {noise_now} at {plane} with {emitted} photons");
-        // Nets may need fewer than the root of their number says: the largest power below that.
+        // Nets may need fewer photons than the square-root law predicts, so the largest power below
+        // that is used.
         let needed = photons as f64 * (noise / target).powi(2);
         let mut next = photons.saturating_mul(2);
         while next < most && 2.0 * next as f64 <= needed {
@@ -77,7 +79,7 @@ pub fn reached(
     }
 }
 
-/// What noise the run has, and what a hundred times its time would bring, in words; `None` where
+/// The noise of the run, and the noise of a run a hundred times as long, in words; `None` where
 /// there is no light.
 pub fn outlook(planes: &[PlaneReport], seconds: f64) -> Option<String> {
     let noise = |plane: &PlaneReport| plane.noise_limit;
@@ -93,7 +95,7 @@ pub fn outlook(planes: &[PlaneReport], seconds: f64) -> Option<String> {
     ))
 }
 
-/// The plane of lit ones with the most noise, and how much of its spectrum that is.
+/// The lit plane with the most noise, and its noise as a share of the spectrum.
 fn noisiest(measurement: &Measurement) -> Option<(&str, f64)> {
     let planes = measurement.planes().iter().enumerate();
     let lit = planes.filter_map(|(i, plane)| {

@@ -1,7 +1,10 @@
-//! Work that several processes share, each of which has its own memory: one leads and hands out pieces as others ask for them.
+//! Work that is shared by several processes, each with its own memory: one leads and hands out
+//! pieces as others request them.
 //!
-//! A piece is a batch of a run, a plane to predict, or a point of a sweep. What goes between processes is bytes, and pieces are told by
-//! their numbers: so the result has the same bits however many processes there are, and whoever is faster, on processors of one kind. A process that leads works as well.
+//! A piece is a batch of a run, a plane to predict, or a point of a sweep. Processes exchange
+//! bytes, and pieces are identified by their numbers. So the result has the same bits however many
+//! processes there are and whichever is faster, on processors of one kind. The leading process
+//! works as well.
 
 mod leader;
 mod link;

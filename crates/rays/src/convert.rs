@@ -1,4 +1,4 @@
-//! A file in another format, with notes for all that is left behind.
+//! Converts a file to another format, with notes on everything that is lost.
 
 use crate::mcpl::{self, McplFile, Particle, WATTS};
 use crate::tm25::{self, Flags, SpectrumType, Tm25File};
@@ -6,19 +6,20 @@ use crate::{
     Fault, Format, PHOTON_ENERGY_LENGTH, PowerUnit, RayFile, RaySet, Wavelengths, gz, npy,
 };
 
-/// A file that was written.
+/// A converted file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Converted {
-    /// Its bytes.
+    /// Bytes of the file.
     pub bytes: Vec<u8>,
-    /// What was dropped or changed on the way, one sentence each.
+    /// One sentence for each thing that was dropped or changed.
     pub notes: Vec<String>,
 }
 
-/// Writes a file in a format. In its own format all of it is kept.
+/// Writes a file in a format. A file in its own format is preserved completely.
 ///
 /// # Errors
-/// Rays that the format cannot hold, such as negative weights in TM-25 and NPY: what is written can be read.
+/// When the format cannot represent some rays, such as negative weights in TM-25 and NPY; every
+/// written file can be read.
 pub fn convert(file: &RayFile, to: Format) -> Result<Converted, Fault> {
     let packed = |bytes: Vec<u8>| match to {
         Format::McplGz => gz::pack(&bytes),
@@ -49,7 +50,7 @@ pub fn convert(file: &RayFile, to: Format) -> Result<Converted, Fault> {
     Ok(Converted { bytes, notes })
 }
 
-/// What a file holds and a set of rays does not.
+/// The parts of a file that a set of rays does not hold.
 fn dropped(file: &RayFile) -> Vec<String> {
     let mut notes = Vec::new();
     let mut note = |there: bool, what: &str| {

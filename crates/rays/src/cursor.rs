@@ -1,8 +1,8 @@
-//! Numbers of a file, one after the other, in either order of bytes; never past its end.
+//! Reads the numbers of a file in sequence, in either byte order, and never past its end.
 
 use crate::Fault;
 
-/// Where reading is.
+/// The current position in a file.
 pub(crate) struct ByteCursor<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -14,17 +14,17 @@ impl<'a> ByteCursor<'a> {
         Self { bytes, at, little }
     }
 
-    /// The offset of what comes next.
+    /// The offset of the next byte.
     pub(crate) fn at(&self) -> usize {
         self.at
     }
 
-    /// Bytes that have not been read.
+    /// The number of bytes that have not been read.
     pub(crate) fn left(&self) -> usize {
         self.bytes.len().saturating_sub(self.at)
     }
 
-    /// The next bytes; `what` names them in a fault.
+    /// The next bytes; `what` names them in an error message.
     pub(crate) fn take(&mut self, length: usize, what: &str) -> Result<&'a [u8], Fault> {
         let found = self.at.checked_add(length);
         let found = found.and_then(|end| self.bytes.get(self.at..end));

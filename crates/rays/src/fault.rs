@@ -1,24 +1,24 @@
-//! Why a ray file is refused, and where in it.
+//! Why a ray file is refused, and at what position.
 
 use std::fmt;
 
-/// Where in a file.
+/// A position in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FilePosition {
     /// The file as a whole.
     File,
-    /// An offset from the beginning of the file, unpacked; the first byte is 0.
+    /// An offset from the beginning of the unpacked file; the first byte is 0.
     Byte(u64),
-    /// A ray; the first is 0.
+    /// A ray, by its number; the first is 0.
     Ray(u64),
 }
 
 /// Why a file is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub struct Fault {
-    /// Where.
+    /// Position of the fault.
     pub place: FilePosition,
-    /// What stands there, and what may.
+    /// The value found there, and what is allowed.
     pub message: String,
 }
 

@@ -1,19 +1,22 @@
-//! A file of any of the formats, which its first bytes tell.
+//! A file in any of the formats, recognised by its first bytes.
 
 use crate::mcpl::McplFile;
 use crate::tm25::Tm25File;
 use crate::{Fault, RaySet, gz, npy};
 use std::fmt;
 
-/// Reading a file and making its [`RaySet`] takes at most so many times the bytes of the file, unpacked, and [`MEMORY_FREE`] bytes.
+/// Reading a file and making its [`RaySet`] takes at most this many times the bytes of the file,
+/// unpacked, plus [`MEMORY_FREE`] bytes.
 ///
-/// The shortest record, 28 bytes, is kept once and becomes 64 bytes of a set. What gzip unpacks to may take twice its length.
+/// The shortest record, 28 bytes, is kept once and becomes 64 bytes of a set. The output of gzip
+/// may take twice its length.
 pub const MEMORY: usize = 6;
 
-/// Bytes that reading may take whatever the length of the file: its texts and tables, of which there are at most 65,536 each.
+/// Bytes that reading may take regardless of the length of the file, for its texts and tables, at
+/// most 65,536 of either.
 pub const MEMORY_FREE: usize = 16 << 20;
 
-/// How a file is written.
+/// The format of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// IES TM-25.
@@ -22,12 +25,12 @@ pub enum Format {
     Mcpl,
     /// MCPL in gzip.
     McplGz,
-    /// An array of NumPy.
+    /// A NumPy array.
     Npy,
 }
 
 impl Format {
-    /// The format of a file with this name, by its ending in any case.
+    /// The format of a file with this name, by its extension in any case.
     #[must_use]
     pub fn of_name(name: &str) -> Option<Self> {
         let name = name.to_ascii_lowercase();
@@ -54,22 +57,22 @@ impl fmt::Display for Format {
     }
 }
 
-/// A file that has been read, with all it holds.
+/// A file that has been read, with all its content.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RayFile {
     /// IES TM-25.
     Tm25(Box<Tm25File>),
     /// MCPL.
     Mcpl(McplFile),
-    /// An array of NumPy.
+    /// A NumPy array.
     Npy(RaySet),
 }
 
 impl RayFile {
-    /// Reads a file, gzipped or not. Its format is told by its first bytes, whatever its name.
+    /// Reads a file, gzipped or not. The first bytes determine its format, regardless of its name.
     ///
     /// # Errors
-    /// A [`Fault`] that says where and why.
+    /// A [`Fault`] with its position and reason.
     pub fn read(bytes: &[u8]) -> Result<Self, Fault> {
         let bytes = &*gz::unpack(bytes)?;
         if bytes.starts_with(b"TM25") {
@@ -84,7 +87,7 @@ impl RayFile {
         }
     }
 
-    /// Its rays.
+    /// The rays of the file.
     #[must_use]
     pub fn rays(&self) -> RaySet {
         match self {

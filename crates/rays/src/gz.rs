@@ -1,4 +1,4 @@
-//! Gzip around a file.
+//! Gzip compression of a file.
 
 use crate::Fault;
 use flate2::Compression;
@@ -7,22 +7,24 @@ use flate2::write::GzEncoder;
 use std::borrow::Cow;
 use std::io::{Read, Write};
 
-/// Unpacked, a file may be so many times as long as packed, and [`FREE`] bytes longer. Rays pack to a half or less; those of test files, which repeat, to a tenth.
+/// The largest ratio of unpacked to packed length, apart from [`FREE`] bytes. Rays pack to a half
+/// or less; those of test files, which repeat, to a tenth.
 pub const MOST_RATIO: usize = 64;
 
-/// Bytes that a packed file may unpack to whatever its length.
+/// Bytes that a packed file may unpack to regardless of its length.
 pub const FREE: usize = 1 << 20;
 
-/// Whether a file begins as gzip does.
+/// Whether a file begins like a gzip file.
 #[must_use]
 pub fn is_packed(bytes: &[u8]) -> bool {
     bytes.starts_with(&[0x1f, 0x8b])
 }
 
-/// The bytes in it; those of a file that is not packed are itself.
+/// The unpacked bytes; those of a file that is not packed are unchanged.
 ///
 /// # Errors
-/// Bytes that gzip cannot read, or more of them than [`MOST_RATIO`] and [`FREE`] allow.
+/// When gzip cannot read the bytes, or there are more of them than [`MOST_RATIO`] and [`FREE`]
+/// allow.
 pub fn unpack(bytes: &[u8]) -> Result<Cow<'_, [u8]>, Fault> {
     if !is_packed(bytes) {
         return Ok(Cow::Borrowed(bytes));
@@ -42,11 +44,11 @@ pub fn unpack(bytes: &[u8]) -> Result<Cow<'_, [u8]>, Fault> {
     Ok(Cow::Owned(unpacked))
 }
 
-/// Packs bytes; no name and no time goes with them, so the same bytes give the same file.
+/// Packs bytes without name and time, so the same bytes give the same file.
 #[must_use]
 pub fn pack(bytes: &[u8]) -> Vec<u8> {
     let mut encoder = GzEncoder::new(Vec::new(), Compression::default());
-    // Writing to memory does not fail.
+    // Writing to memory cannot fail.
     let packed = encoder.write_all(bytes).and_then(|()| encoder.finish());
     packed.unwrap_or_default()
 }

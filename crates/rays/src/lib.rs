@@ -1,14 +1,16 @@
-//! Ray files, read and written: IES TM-25, MCPL (versions 2 and 3, plain or gzipped) and NPY.
+//! Reads and writes ray files: IES TM-25, MCPL (versions 2 and 3, plain or gzipped) and NPY.
 //!
-//! A file is read from bytes into a [`RayFile`], which keeps all the file holds: written again, it has the same bytes (TM-25: the same values, see
-//! [`tm25`]). What formats have in common is a [`RaySet`]: positions in metres, unit directions, power and wavelengths. It goes from one format to
-//! the other with a [`Converted`], whose notes name all that is dropped.
+//! A file is read from bytes into a [`RayFile`], which keeps its whole content: written again, it
+//! has the same bytes (TM-25: the same values, see [`tm25`]). The common content of all formats is
+//! a [`RaySet`]: positions in metres, unit directions, power and wavelengths. A conversion between
+//! formats returns a [`Converted`], whose notes name everything that is dropped.
 //!
-//! Files may be hostile. Each count is held against the length of the file before memory is taken. Reading takes at most [`MEMORY`] times the bytes of the file,
-//! unpacked, and [`MEMORY_FREE`]; gzip may unpack to at most [`gz::MOST_RATIO`] times its length. NaN, infinite numbers and zero directions are refused, and each
-//! [`Fault`] says at which byte or ray.
+//! Files may be hostile. Each count is checked against the length of the file before memory is
+//! allocated. Reading takes at most [`MEMORY`] times the bytes of the file, unpacked, plus
+//! [`MEMORY_FREE`]; gzip may unpack to at most [`gz::MOST_RATIO`] times its length. NaN, infinite
+//! numbers and zero directions are refused, and each [`Fault`] gives the byte or ray.
 //!
-//! This crate touches no disk and knows nothing of light fields.
+//! This crate does no disk access and does not depend on light fields.
 //!
 //! ```
 //! use etendue_rays::{Format, PowerUnit, RayFile, RaySet, Wavelengths, convert};

@@ -1,15 +1,17 @@
-//! Rays as an array of NumPy: f64 [rays, 8] in C order, the columns x, y, z (m), kx, ky, kz, power and wavelength (m, NaN where it is not known).
-//! Read are such files, and those of 7 columns without wavelength; the unit of power is not stated in them.
+//! Rays as a NumPy array: f64 [rays, 8] in C order, with the columns x, y, z (m), kx, ky, kz, power
+//! and wavelength (m, NaN where it is not known). The reader also accepts files of 7 columns,
+//! without wavelength. The files do not state the unit of power.
 
 use crate::cursor::ByteCursor;
 use crate::set::{length, unit};
 use crate::{Fault, NpyHeader, PowerUnit, RaySet, Wavelengths};
 
-/// By how much the length of a direction may differ from 1: f32 that became f64, with room.
+/// The tolerance for the length of a direction, which should be 1: the error of f32 converted to
+/// f64, with a margin.
 const LENGTH_SLACK: f64 = 1e-5;
 
 /// # Errors
-/// A ray that [`read`] refuses.
+/// When [`read`] would refuse a ray.
 pub(crate) fn write(set: &RaySet) -> Result<Vec<u8>, Fault> {
     let mut bytes = NpyHeader::new("<f8", &[set.len() as u64, 8]).bytes();
     for (ray, ([x, y, z], [kx, ky, kz])) in set.positions.iter().zip(&set.directions).enumerate() {
@@ -21,7 +23,7 @@ pub(crate) fn write(set: &RaySet) -> Result<Vec<u8>, Fault> {
     Ok(bytes)
 }
 
-/// Why a row is no ray.
+/// Why a row is not a valid ray.
 fn check(row: &[f64; 8]) -> Result<(), String> {
     let [.., kx, ky, kz, power, wavelength] = *row;
     if let Some(value) = row[..7].iter().find(|v| !v.is_finite()) {
@@ -80,7 +82,7 @@ pub(crate) fn read(bytes: &[u8]) -> Result<RaySet, Fault> {
     Ok(set)
 }
 
-/// Where numbers begin, and how many rows and columns there are.
+/// The offset of the data, and the numbers of rows and columns.
 fn shape(bytes: &[u8]) -> Result<(usize, usize, usize), Fault> {
     let refused = || {
         let message = "an NPY file of an array of f64 ('<f8') in C order, [rays, 7] or [rays, 8], is expected";

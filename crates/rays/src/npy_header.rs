@@ -1,10 +1,10 @@
-//! Headers of NPY files, read and written.
-//! Format: NumPy Enhancement Proposal 1 (Kern 2007) and `numpy.lib.format`, versions 1.0 to 3.0.
+//! Reads and writes headers of NPY files. Format: NumPy Enhancement Proposal 1 (Kern 2007) and
+//! `numpy.lib.format`, versions 1.0 to 3.0.
 
-/// What the header of an NPY file says of its array.
+/// The description of the array in the header of an NPY file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NpyHeader {
-    /// The type of an element as NumPy writes it: `<f8` for f64 with the lowest byte first.
+    /// The type of an element in NumPy's notation: `<f8` for f64 with the lowest byte first.
     pub descr: String,
     /// Whether the first index runs fastest, as in Fortran.
     pub fortran_order: bool,
@@ -15,11 +15,11 @@ pub struct NpyHeader {
 const MAGIC: &[u8] = b"\x93NUMPY";
 /// Bytes before the dictionary in version 1.0.
 const PREAMBLE: usize = 10;
-/// Headers of arrays of numbers have 118 bytes; longer ones than this are not read.
+/// The largest length of a header that is read; headers of numeric arrays have 118 bytes.
 const MAX_DICTIONARY: usize = 1024;
 
 impl NpyHeader {
-    /// An array in C order.
+    /// The header of an array in C order.
     #[must_use]
     pub fn new(descr: &str, shape: &[u64]) -> Self {
         Self {
@@ -29,7 +29,7 @@ impl NpyHeader {
         }
     }
 
-    /// The header in version 1.0, padded so that numbers begin at a multiple of 64 bytes.
+    /// The header in version 1.0, padded so that the data begin at a multiple of 64 bytes.
     #[must_use]
     pub fn bytes(&self) -> Vec<u8> {
         let Self {
@@ -51,14 +51,15 @@ impl NpyHeader {
             format!("{{'descr': '{descr}', 'fortran_order': {order}, 'shape': ({shape}), }}");
         let length = (PREAMBLE + dictionary.len() + 1).next_multiple_of(64) - PREAMBLE;
         let mut header = [MAGIC, &[1, 0]].concat();
-        // NumPy allows 64 axes: the length fits 16 bits.
+        // NumPy allows at most 64 axes, so the length fits in 16 bits.
         header.extend(u16::try_from(length).unwrap_or(u16::MAX).to_le_bytes());
         header.extend(format!("{dictionary:<width$}\n", width = length - 1).bytes());
         header
     }
 
-    /// The header at the beginning of a file, and where its numbers begin. `None` where the file has no header
-    /// of an array of numbers: NumPy allows any Python literal there, and this reads flat dictionaries alone.
+    /// The header at the beginning of a file, and the offset of its data. `None` where the file has
+    /// no header of a numeric array: NumPy allows any Python literal there, but only flat
+    /// dictionaries are read here.
     #[must_use]
     pub fn read(file: &[u8]) -> Option<(Self, usize)> {
         let rest = file.strip_prefix(MAGIC)?;
@@ -151,7 +152,7 @@ mod tests {
             ..NpyHeader::new("<f8", &[2, 3])
         };
         assert_eq!(read(numpy), Some(header));
-        // As other programs write it.
+        // The notation of other programs.
         let other = r#"{"shape": (5,), "fortran_order": False, "descr": "<f8"}"#;
         assert_eq!(read(other), Some(NpyHeader::new("<f8", &[5])));
     }

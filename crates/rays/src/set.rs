@@ -1,9 +1,9 @@
-//! What all ray files have in common.
+//! The content that all ray files have in common.
 
 /// Planck's constant times the speed of light, MeV m: a photon of energy E has the wavelength h c / E. Exact in the SI of 2019, rounded to f64.
 pub const PHOTON_ENERGY_LENGTH: f64 = 1.239_841_984_332_002_6e-12;
 
-/// What the power of rays is counted in.
+/// The unit of the power of rays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PowerUnit {
     /// Radiant flux, W.
@@ -15,7 +15,7 @@ pub enum PowerUnit {
 }
 
 impl PowerUnit {
-    /// Its symbol.
+    /// The symbol of the unit.
     #[must_use]
     pub fn symbol(self) -> &'static str {
         match self {
@@ -29,41 +29,42 @@ impl PowerUnit {
 /// The wavelengths of rays in vacuum, metres.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Wavelengths {
-    /// The file does not say.
+    /// Not stated in the file.
     Unknown,
-    /// All rays have this one.
+    /// The same wavelength for all rays.
     One(f64),
-    /// One for each ray, NaN where it is unknown.
+    /// A wavelength for each ray, NaN where it is unknown.
     Each(Vec<f64>),
-    /// All rays have one spectrum: wavelengths and their weights.
+    /// The same spectrum for all rays: wavelengths and their weights.
     Spectrum(Vec<[f64; 2]>),
 }
 
 /// Rays with their power.
 ///
-/// The power of a set is the sum of its rays'. A ray carries its power through whatever plane it crosses: no cosine is in it.
+/// The power of a set is the sum of the powers of its rays. A ray carries the same power through
+/// any plane it crosses: no cosine is included.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RaySet {
-    /// A point on each ray, metres; light goes on from there.
+    /// A point on each ray, metres, from which light continues.
     pub positions: Vec<[f64; 3]>,
-    /// Where it goes: unit vectors.
+    /// Unit direction of each ray.
     pub directions: Vec<[f64; 3]>,
-    /// What it carries.
+    /// Power of each ray.
     pub powers: Vec<f64>,
-    /// In which unit.
+    /// Unit of the powers.
     pub unit: PowerUnit,
-    /// Of which wavelength.
+    /// Wavelengths of the rays.
     pub wavelengths: Wavelengths,
 }
 
 impl RaySet {
-    /// How many rays.
+    /// The number of rays.
     #[must_use]
     pub fn len(&self) -> usize {
         self.positions.len()
     }
 
-    /// Whether there is none.
+    /// Whether the set is empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
@@ -75,7 +76,7 @@ impl RaySet {
         self.powers.iter().sum()
     }
 
-    /// The smallest box around the positions, lower and upper corner, metres; none without rays.
+    /// The bounding box of the positions, lower and upper corner, metres; `None` without rays.
     #[must_use]
     pub fn bounds(&self) -> Option<[[f64; 3]; 2]> {
         let first = *self.positions.first()?;
@@ -89,7 +90,7 @@ impl RaySet {
         Some(self.positions.iter().fold([first, first], grow))
     }
 
-    /// The wavelength of a ray, metres, where it has one.
+    /// The wavelength of a ray, metres; `None` where it is unknown.
     #[must_use]
     pub fn wavelength(&self, ray: usize) -> Option<f64> {
         let known = match &self.wavelengths {
@@ -106,7 +107,7 @@ pub(crate) fn length(v: [f64; 3]) -> f64 {
     v.iter().map(|c| c * c).sum::<f64>().sqrt()
 }
 
-/// A vector of length 1 along another, which is neither zero nor infinite.
+/// The unit vector along a vector that is neither zero nor infinite.
 pub(crate) fn unit(v: [f64; 3]) -> [f64; 3] {
     let length = length(v);
     v.map(|c| c / length)

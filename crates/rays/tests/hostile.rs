@@ -1,13 +1,14 @@
-//! Thousands of mutated files: none makes the reader panic, and memory stays within the bound that the crate states.
+//! Tests thousands of mutated files: none makes the reader panic, and memory stays within the bound
+//! of the crate.
 //!
-//! Alone in its program, so that the most memory of the process is that of reading.
+//! This test is a program of its own, so that the peak memory of the process is that of reading.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
 use etendue_rays::{Format, MEMORY, MEMORY_FREE, PowerUnit, RayFile, RaySet, Wavelengths, convert};
 use std::fs;
 
-/// Numbers of a linear congruence, seeded (Knuth, MMIX).
+/// Random numbers from a seeded linear congruential generator (Knuth, MMIX).
 struct Dice(u64);
 
 impl Dice {
@@ -36,7 +37,7 @@ fn seeds() -> Vec<Vec<u8>> {
         .to_vec()
 }
 
-/// A file with a few bytes, numbers or its length changed; headers more often than rays.
+/// A file with a few bytes, numbers or its length changed, more often in the header than in rays.
 fn mutate(seed: &[u8], dice: &mut Dice) -> Vec<u8> {
     let mut bytes = seed.to_vec();
     for _ in 0..=dice.below(4) {
@@ -77,7 +78,7 @@ fn mutate(seed: &[u8], dice: &mut Dice) -> Vec<u8> {
     bytes
 }
 
-/// The most address space the process has taken, bytes; Linux alone says so.
+/// The peak address space of the process, bytes; only Linux reports it.
 fn peak() -> Option<usize> {
     let status = fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|l| l.starts_with("VmPeak:"))?;
@@ -118,7 +119,7 @@ fn mutated_files_do_no_harm() {
         accepted > 100,
         "{accepted} of 20000 were read: mutations are too wild"
     );
-    // A file whose memory is not all in the free part: the bound by its length is tested too.
+    // A file large enough to exceed the free part, so that the bound by its length is tested too.
     let large = large();
     assert!(read(&large));
     longest = longest.max(large.len());
@@ -132,7 +133,7 @@ fn mutated_files_do_no_harm() {
     }
 }
 
-/// The shortest records there are, 28 bytes each; 28 MB of them.
+/// 28 MB of the shortest possible records, 28 bytes each.
 fn large() -> Vec<u8> {
     let mut bytes = b"MCPL003L".to_vec();
     let rays = 1_000_000_u64;

@@ -1,4 +1,4 @@
-//! The tests of `etendue-rays`, one program for all.
+//! The tests of `etendue-rays`, as one program.
 
 mod hostile;
 mod public;

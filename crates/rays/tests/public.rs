@@ -1,7 +1,9 @@
-//! Public files, which are not part of this repository: those of mctools/mcpl (`*.mcpl`, `*.mcpl.gz`) and JuliusMuschaweck/TM25RaySetTools (`*.tm25ray`).
-//! The variable `ETENDUE_RAY_FILES` names a folder of them; docs/rays.md says how to get them.
+//! Tests with public files, which are not part of this repository: those of mctools/mcpl (`*.mcpl`,
+//! `*.mcpl.gz`) and JuliusMuschaweck/TM25RaySetTools (`*.tm25ray`). The variable
+//! `ETENDUE_RAY_FILES` names a folder of them; docs/rays.md explains how to get them.
 //!
-//! Every file that is read is written with the same bytes (unpacked, where it is packed). Those that its makers call bad are refused.
+//! Every file that is read is written with the same bytes (unpacked, where it is packed). Files
+//! that their makers mark as bad are refused.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 

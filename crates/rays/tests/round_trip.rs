@@ -1,4 +1,5 @@
-//! Files of every kind, read and written again, and what their rays are; the first two are written byte by byte from the formats' descriptions.
+//! Tests that files of every kind are read and written again, and have the right rays. The first
+//! two are written byte by byte from the formats' descriptions.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -20,7 +21,7 @@ fn mcpl_2() -> Vec<u8> {
         bytes.extend(u32::try_from(text.len()).unwrap().to_be_bytes());
         bytes.extend(text.as_bytes());
     }
-    // Octahedral (0.75, 0.5): z = −0.25, so x = 0.5, y = 0.25, over the length √(0.375).
+    // Octahedral (0.75, 0.5): z = −0.25, so x = 0.5 and y = 0.25, divided by the length √(0.375).
     for number in [100.0, 200.0, -50.0, 0.75, 0.5, 1.98e-6, 3.0_f32] {
         bytes.extend(number.to_be_bytes());
     }
@@ -93,7 +94,7 @@ fn unusual_texts_and_fluxes_have_notes() {
     assert_eq!(file.notes().len(), 3, "{:?}", file.notes());
 }
 
-/// Every combination of the options of MCPL: read and written, the same bytes; and packed.
+/// Every combination of the options of MCPL is read and written with the same bytes, also packed.
 #[test]
 fn mcpl_keeps_every_option() {
     for options in 0..64_u32 {
@@ -206,7 +207,7 @@ fn some_rays(wavelengths: Wavelengths, unit: PowerUnit) -> RaySet {
     }
 }
 
-/// From each format to each and back: the rays are those that were written, to the format's precision.
+/// Conversions from each format to each and back preserve the rays to the format's precision.
 #[test]
 fn rays_are_the_same_in_all_formats() {
     for wavelengths in [
@@ -218,7 +219,7 @@ fn rays_are_the_same_in_all_formats() {
         for format in [Format::Npy, Format::Mcpl, Format::McplGz, Format::Tm25] {
             let written = convert(&RayFile::Npy(set.clone()), format).unwrap();
             let found = RayFile::read(&written.bytes).unwrap().rays();
-            // f32 rounds by 6e-8, f64 by 1e-16; lengths in other units once more.
+            // f32 rounds by 6e-8, f64 by 1e-16; lengths in other units are rounded once more.
             let slack = if format == Format::Tm25 { 1e-7 } else { 4e-16 };
             for ray in 0..set.len() {
                 let numbers = |s: &RaySet| {
@@ -368,7 +369,7 @@ fn negative_weights_go_into_no_tm25() -> Result<(), Fault> {
     convert(&RayFile::Npy(set), Format::Mcpl).map(|_| ())
 }
 
-/// A photon of so little energy that its wavelength is beyond the largest number.
+/// A photon with so little energy that its wavelength exceeds the largest number.
 #[test]
 fn what_is_written_can_be_read() {
     let set = some_rays(

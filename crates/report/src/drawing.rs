@@ -1,4 +1,5 @@
-//! The scene cut along the central ray, by the plane of X, where y = 0, and by that of Y, where x = 0.
+//! Draws the scene in cross-section along the central ray, by the plane of X, where y = 0, and by
+//! that of Y, where x = 0.
 
 mod cut;
 mod world;
@@ -8,8 +9,8 @@ use etendue_field::VirtualPlane;
 use etendue_figures::{Section, Segment, SegmentKind};
 use etendue_scene::Scene;
 
-/// The cut through X with the planes given, that through Y where it shows something else, and the scene to scale where its
-/// path turns. The path is unfolded: each surface is cut as light arrives at it.
+/// The cut through X with the given planes, the cut through Y where it differs, and the scene to
+/// scale where its path turns. The path is unfolded: each surface is cut as light arrives at it.
 pub(crate) fn cross_section<'a>(
     scene: &Scene,
     planes: impl Iterator<Item = &'a VirtualPlane>,
@@ -24,7 +25,7 @@ pub(crate) fn cross_section<'a>(
     }
 }
 
-/// Whether two cuts show the same, but for jitter.
+/// Whether two cuts are the same, but for jitter.
 fn alike(a: &Section, b: &Section) -> bool {
     const JITTER: f64 = 0.05;
     let width = a.half_width.max(b.half_width);
@@ -37,7 +38,7 @@ fn alike(a: &Section, b: &Section) -> bool {
             .all(|(a, b)| a.0 == b.0 && close(a.1[0], b.1[0]) && close(a.1[1], b.1[1]))
 }
 
-/// Pieces by what they are and where they begin, whichever way they are drawn.
+/// Segments sorted by kind and start, regardless of their direction.
 fn sorted(segments: &[Segment]) -> Vec<(SegmentKind, [[f64; 2]; 2])> {
     let before = |a: &[f64; 2], b: &[f64; 2]| a[1].total_cmp(&b[1]).then(a[0].total_cmp(&b[0]));
     let upwards = segments.iter().map(|s| {

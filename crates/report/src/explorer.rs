@@ -1,4 +1,4 @@
-//! The explorer beside the results of a run whose scene it knows, and the link to it.
+//! Links the results of a run to the explorer, for scenes that the explorer supports.
 
 use etendue_explorer::{SettingKey, Setup, scene};
 use etendue_field::Profile;
@@ -6,15 +6,16 @@ use etendue_scene::{
     BlockersFile, EventFile, FormFile, LightFile, LobeFile, SceneFile, ShapeFile, SurfaceFile,
 };
 
-/// The page, among the results of a run.
+/// The file name of the page, among the results of a run.
 pub(crate) const NAME: &str = "explorer.html";
-/// What `.ci/explorer` has made.
+/// The page built by `.ci/explorer`.
 pub(crate) const PAGE: &[u8] = include_bytes!("../../../docs/explorer.html");
 
-/// What stands after # in its address to show a scene; `None` if it does not know such scenes.
+/// The part after # in the address of the page that shows a scene; `None` if the explorer does not
+/// support it.
 ///
-/// It knows a scene that is the one it would save for these numbers: planes, names and how far
-/// surfaces reach may differ.
+/// A scene is supported if it is the one the explorer would save for these numbers; planes, names
+/// and the extent of surfaces may differ.
 pub(crate) fn fragment(file: &SceneFile) -> Option<String> {
     let setup = setup(file)?;
     let saved = SceneFile::parse(&scene(&setup)).ok()?;
@@ -27,10 +28,10 @@ pub(crate) fn fragment(file: &SceneFile) -> Option<String> {
     (file == saved).then(|| setup.fragment())
 }
 
-/// Digits after the point of what follows from places and sides of slats, metres.
+/// The precision, in inverse metres, of values derived from positions and sides of slats.
 const DIGITS: f64 = 1e12;
 
-/// Whether two are slats that only rounding tells apart.
+/// Whether two layers are slats that differ only by rounding.
 fn are_near(a: &BlockersFile, b: &BlockersFile) -> bool {
     let of = |blockers: &BlockersFile| {
         let BlockersFile::Shapes { center, shapes, .. } = blockers else {
@@ -51,7 +52,7 @@ fn are_near(a: &BlockersFile, b: &BlockersFile) -> bool {
     a.len() == b.len() && a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1.0 / DIGITS)
 }
 
-/// A scene without what may differ.
+/// A scene without the fields that may differ.
 fn plain(mut file: SceneFile) -> SceneFile {
     for blockers in &mut file.blockers {
         if let BlockersFile::JitteredSquares { name, .. } | BlockersFile::Shapes { name, .. } =
@@ -105,7 +106,7 @@ fn plain(mut file: SceneFile) -> SceneFile {
     }
 }
 
-/// The numbers of a scene, were it one that the explorer knows.
+/// The numbers of a scene, assuming that the explorer supports it.
 fn setup(file: &SceneFile) -> Option<Setup> {
     let mut setup = Setup::default();
     let LightFile::Rectangle { center, size, .. } = &file.light else {
@@ -262,7 +263,7 @@ mod tests {
         }
     }
 
-    /// The page was made with the colors of pictures.
+    /// The page was built with the colors of pictures.
     #[test]
     fn the_explorer_has_the_colors_of_pictures() {
         use base64::Engine;

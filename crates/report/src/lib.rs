@@ -1,4 +1,4 @@
-//! What a run leaves for people: pictures of its planes and path, and a page that shows all of it.
+//! The readable output of a run: pictures of its planes and path, and a page that shows everything.
 
 #![allow(
     clippy::missing_errors_doc,

@@ -1,5 +1,5 @@
-//! A result as one page that any browser shows, without network: `report.html` of each run, and
-//! `etendue report`, which puts several of them side by side.
+//! A result as one page that any browser shows, without network: `report.html` of each run, and the
+//! output of `etendue report`, which shows several runs side by side.
 
 mod data;
 
@@ -12,17 +12,17 @@ use etendue_store::SUMMARY;
 use serde::de::IgnoredAny;
 use std::path::Path;
 
-/// The page of a run, among its results.
+/// The file name of a run's page, among its results.
 pub const NAME: &str = "report.html";
 
-/// Most bytes of a page that is read.
+/// The largest number of bytes of a page that is read.
 const MAX_PAGE_BYTES: u64 = 1 << 28;
 
-/// What is around the data of a run in a page; before it, where the explorer is.
+/// The text around the data of a run in a page; before the data, the marker where the explorer is.
 const BEFORE: &str = "class=\"run-data\">";
 const AFTER: &str = "</script>";
 
-/// The data of the run in a folder, as they were written.
+/// The data of the run in a folder, as written.
 pub fn stored_data(folder: &Path) -> Result<String, Failure> {
     let shown = folder.join(NAME);
     let fault = |what: &str| Failure::bad_input(format!("{}: {what}", shown.display()));
@@ -43,23 +43,23 @@ pub fn stored_data(folder: &Path) -> Result<String, Failure> {
         .split_once(BEFORE)
         .and_then(|(_, rest)| rest.split_once(AFTER));
     let (data, _) = inside.ok_or_else(|| fault("it holds no data of a run"))?;
-    // An index can be made anew around any page: what is taken from it is data.
+    // A new index can be written for any page, so what is read from it is checked to be data.
     serde_json::from_str::<IgnoredAny>(data).map_err(|e| fault(&e.to_string()))?;
     Ok(data.to_owned())
 }
 
-/// A page of the data of some runs in JSON, each with the folder it is in, as seen from the page.
+/// A page of the data of several runs in JSON, each with its folder relative to the page.
 pub fn page(title: &str, blocks: &[(String, String)]) -> String {
     let block = |(folder, data): &(String, String)| {
         let folder = escaped(folder).replace('"', "&quot;");
-        // In JSON it is in strings alone: no name in a scene ends the data.
+        // In JSON this character occurs in strings only, so no name in a scene can end the data.
         let data = data.replace('<', "\\u003c");
         format!("<script type=\"application/json\" data-folder=\"{folder}\" {BEFORE}{data}{AFTER}")
     };
     let data: Vec<String> = blocks.iter().map(block).collect();
     let [sequential, diverging] = etendue_figures::palettes().map(|colors| STANDARD.encode(colors));
     let colors = format!("{{\"sequential\": \"{sequential}\", \"diverging\": \"{diverging}\"}}");
-    // The data last: whatever stands in them is not looked at again.
+    // The data are inserted last, so that their content is not replaced again.
     include_str!("page/page.html")
         .replace("<!--TITLE-->", &escaped(title))
         .replace("<!--STYLE-->", include_str!("page/page.css"))

@@ -35,7 +35,7 @@ use words::CoordinateNames;
 /// Lowest level of a spectrum's colors, in decibels below its peak.
 const FLOOR: f64 = -50.0;
 
-/// The pictures of a plane, and what is behind them.
+/// The picture files of a plane, and the numbers behind them.
 pub const NAMES: [&str; 6] = [
     "primal.png",
     "primal.svg",
@@ -44,10 +44,10 @@ pub const NAMES: [&str; 6] = [
     "spectrum.svg",
     "spectrum.csv",
 ];
-/// The picture of the path, and what is behind it.
+/// The picture files of the path, and the numbers behind them.
 pub const PATH_NAMES: [&str; 3] = ["path.png", "path.svg", "path.csv"];
 
-/// `primal` and `spectrum` of a plane; `made_from` says what from.
+/// The pictures `primal` and `spectrum` of a plane; `made_from` describes their source.
 pub fn plane(
     results: &mut Results,
     made_from: &str,
@@ -128,7 +128,9 @@ pub fn path(
     Ok(figure.svg)
 }
 
-/// The planes in the order in which light meets them; in the style of a figure with their predicted spectra below. `photons` are those emitted: parts of a measurement are less than the scene asks for.
+/// The planes in the order in which light meets them; in the style of a figure, with their
+/// predicted spectra below. `photons` is the number emitted: a partial measurement has fewer than
+/// the scene requests.
 #[expect(
     clippy::too_many_lines,
     reason = "one drawing, from planes to its rows"
@@ -176,7 +178,7 @@ pub fn strip_of(
     }
     let mut section = drawing::cross_section(scene, along.iter().map(|(plane, _)| *plane));
     if predicted {
-        // A figure has no room for a second cut, nor for the light field in it.
+        // A figure has no room for a second cut, or for the light field in it.
         section.other = None;
     }
     let others = along.iter().map(|(plane, (compared, _))| {
@@ -214,7 +216,7 @@ pub fn strip_of(
     strip(&drawn, &style.copied().unwrap_or_default()).map_err(Failure::cannot_run)
 }
 
-/// What is drawn of the spectra of planes, in words.
+/// A description of which spectra of planes are drawn.
 pub fn spectra_are<'a>(planes: impl Iterator<Item = &'a VirtualPlane>) -> &'static str {
     let counts: Vec<usize> = planes.map(|plane| plane.grid.azimuths).collect();
     match counts.iter().filter(|count| **count == 1).count() {
@@ -224,7 +226,7 @@ pub fn spectra_are<'a>(planes: impl Iterator<Item = &'a VirtualPlane>) -> &'stat
     }
 }
 
-/// What the dashed lines of a strip are, in words.
+/// A description of the dashed lines of a strip.
 fn dashed(columns: &[StripColumn<'_>], planes: &[PlaneComparison]) -> &'static str {
     let most = columns.iter().map(|column| column.guides.len()).max();
     let is_exact = planes.iter().all(|p| p.report.class == Class::Exact);
@@ -238,7 +240,8 @@ fn dashed(columns: &[StripColumn<'_>], planes: &[PlaneComparison]) -> &'static s
     }
 }
 
-/// How far photons are from the first-order chain, in percent of the largest measured |S|, [ρ, ν].
+/// The difference of the photons from the first-order chain, in percent of the largest measured
+/// |S|, [ρ, ν].
 fn off_chain(compared: &PlaneComparison) -> Array2<f64> {
     let power = &compared.radial.power;
     let peak = power.iter().copied().fold(0.0, f64::max);
@@ -261,7 +264,7 @@ pub fn full_radial<'a>(
     })
 }
 
-/// What is shown under a plane.
+/// The column of pictures under a plane.
 fn column<'a>(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -293,14 +296,14 @@ fn column<'a>(
         verdict: verdict_lines(compared),
         guides: match (&applicability.theory, &compared.report.first_order) {
             (Theory::Parallel(_), _) if compared.report.in_window > 0 => guides(scene, plane),
-            // A lobe leaves no line of light where a mirror would.
+            // A lobe leaves no line of light, unlike a mirror.
             (Theory::Specular(_), Some(first_order)) => ridges(scene, &first_order.chain.matrix),
             _ => Vec::new(),
         },
     }
 }
 
-/// What a picture was made from, in a line.
+/// The source of a picture, in a line.
 pub fn made_from(summary: &Summary) -> String {
     format!(
         "{}, {} photons, seed {}",
@@ -310,8 +313,9 @@ pub fn made_from(summary: &Summary) -> String {
     )
 }
 
-/// Where theory puts the light: along ν = −d ρ after travel d, and, at a distance h behind blockers of
-/// frequency f that the window and the frequencies can tell from a single one, the same line through (± f, ∓ h f). A diffuse surface leaves what lies at ν = 0, and travel begins anew.
+/// Lines where theory puts the light: along ν = −d ρ after travel d, and, at a distance h behind
+/// blockers of frequency f that the window and the frequencies can resolve, the same line through
+/// (± f, ∓ h f). A diffuse surface keeps only ν = 0, and travel begins again.
 fn guides(scene: &Scene, plane: &VirtualPlane) -> Vec<Guide> {
     let reflected = plane.leg > 0;
     let through = |through| Guide {
@@ -335,8 +339,9 @@ fn guides(scene: &Scene, plane: &VirtualPlane) -> Vec<Guide> {
         .collect()
 }
 
-/// Where the chain puts the light of a picture, in the plane of incidence and across it: a projector's lies along ρ where it begins, a
-/// beam's along ν, and content at Ω goes to A⁻ᵀ Ω.
+/// Lines where the chain puts the light of a picture, in the plane of incidence and across it:
+/// light of a projector lies along ρ where it begins, light of a beam along ν, and content at Ω
+/// goes to A⁻ᵀ Ω.
 fn ridges(scene: &Scene, matrix: &[[f64; 4]; 4]) -> Vec<Guide> {
     let slope = |i: usize| {
         let [position, slope] = [matrix[i], matrix[i + 2]];
@@ -349,7 +354,7 @@ fn ridges(scene: &Scene, matrix: &[[f64; 4]; 4]) -> Vec<Guide> {
     guides.map(|slope| Guide { through, slope }).collect()
 }
 
-/// Metres beyond which a line is upright in any picture.
+/// The distance in metres beyond which a line is vertical in any picture.
 const STEEPEST: f64 = 1e6;
 
 /// Draws the scene with its central ray and planes, as a PNG or SVG file to be written at `path`.
@@ -381,7 +386,7 @@ pub fn write(results: &mut Results, name: &str, figure: &Figure) -> Result<(), F
     results.write(&format!("{name}.csv"), figure.csv.as_bytes())
 }
 
-/// The verdict on a plane and what it rests on, in a line.
+/// The verdict on a plane and its reasons, in a line.
 pub fn verdict_line(plane: &PlaneComparison) -> String {
     verdict_lines(plane).join(", ")
 }
@@ -406,7 +411,7 @@ pub fn verdict_lines(plane: &PlaneComparison) -> Vec<String> {
     lines.extend(chi2.map(|t| format!("*χ*^{{2}}/dof = {t:.3}")));
     let full_radial = report.full_radial.and_then(|full| full.p_value);
     lines.extend(full_radial.map(|p| format!("full radial *p* = {p:.3}")));
-    // What photons disagree with is that error: it is why the plane passes.
+    // The disagreement is within that error, which is why the plane passes.
     let is_excused = report.exact_verdict() == Verdict::Pass && report.p_value < Some(0.001);
     let error = report.quadrature_error.filter(|_| is_excused);
     lines.extend(error.map(|error| format!("quadrature ± {}", percent(error, 3))));

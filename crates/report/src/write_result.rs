@@ -1,4 +1,4 @@
-//! Writing the result of a run: arrays, pictures, the page, and the summary last.
+//! Writes the result of a run: arrays, pictures, the page, and the summary last.
 
 use crate::{explorer, page, pictures};
 use etendue_field::VirtualPlane;
@@ -9,19 +9,20 @@ use etendue_store::stored::check_earlier;
 use etendue_store::{ArgumentStyle, Failure, Finished, Plan, Results, SUMMARY, TIMING, arrays};
 use std::path::{Path, PathBuf};
 
-/// What a user wants of a result folder.
+/// The user's options for a result folder.
 #[derive(Debug)]
 pub struct OutputOptions<'a> {
-    /// What is kept beside the result.
+    /// What is saved beside the result.
     pub save: &'a [Save],
-    /// Without the files that pictures and arrays already say.
+    /// Whether to omit files whose content is also in pictures and arrays.
     pub compact: bool,
 }
 
-/// Ends of names of files that a compact result does without: `report.html` has what is drawn, arrays have the numbers.
+/// Suffixes of files that a compact result omits: `report.html` shows the drawings, and arrays hold
+/// the numbers.
 const NOT_COMPACT: &[&str] = &[".csv", ".svg"];
 
-/// What a comparison of a scene writes.
+/// The files that a comparison of a scene writes.
 pub fn plan(
     scene: &Scene,
     save: &[Save],
@@ -57,7 +58,7 @@ pub fn plan(
     }
 }
 
-/// Writes everything; the summary last.
+/// Writes all files, with the summary last.
 pub fn write_result(
     case: &MeasuredScene,
     options: &OutputOptions<'_>,
@@ -97,10 +98,12 @@ pub fn write_result(
     results.finish(|files| summary.json(files))
 }
 
-/// Writes what `etendue run` writes; returns the folder. `arguments` says how messages name `force`.
+/// Writes the files of `etendue run`; returns the folder. `arguments` is the style in which
+/// messages name `force`.
 ///
 /// # Errors
-/// When the folder holds another scene's result and `force` is not set, or cannot be written.
+/// When the folder holds another scene's result and `force` is not set, or when it cannot be
+/// written.
 pub fn save(
     outcome: &Outcome,
     folder: &Path,

@@ -1,28 +1,31 @@
-//! For tests: samples counted in cells and held against the integrals of their density, by Pearson's χ².
+//! Pearson's χ² test of samples, counted in cells, against the integrals of their density; for
+//! tests.
 
 use etendue_field::Frame;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// Points of the midpoint rule along a side of a cell.
+/// Number of points of the midpoint rule along a side of a cell.
 const FINE: u32 = 32;
-/// Cells of a sphere: rings with equal shares of samples but for the last ones, and sectors of each.
+/// Number of rings of cells on a sphere, with equal shares of samples except for the last ones;
+/// each is divided into sectors.
 const RINGS: usize = 16;
 const SECTORS: usize = 12;
-/// Cells with fewer samples than this are put together.
+/// Cells with fewer expected samples than this are merged.
 const MIN_EXPECTED: f64 = 20.0;
 
-/// Samples against a density.
+/// A comparison of samples with a density.
 #[derive(Clone, Copy, Debug)]
 pub struct ChiSquare {
     chi2: f64,
     cells: f64,
-    /// The integral of the density, less the share of numbers that draw a sample.
+    /// The integral of the density minus the share of random numbers that yield a sample.
     excess: f64,
 }
 
 impl ChiSquare {
-    /// A comparison of what was counted in some cells, of `all` numbers, with the integrals of the density over these cells.
+    /// Compares the counts in some cells, from `all` random numbers, with the integrals of the
+    /// density over these cells.
     fn new(counts: &[f64], shares: &[f64], all: f64) -> Self {
         let excess = shares.iter().sum::<f64>() - counts.iter().sum::<f64>() / all;
         let [mut chi2, mut cells] = [0.0; 2];
@@ -50,10 +53,11 @@ impl ChiSquare {
         }
     }
 
-    /// Four and a half standard deviations of χ²: passed in one comparison of 300,000.
+    /// Checks against four and a half standard deviations of χ², exceeded in one comparison of
+    /// 300,000.
     ///
-    /// The integral is that of the midpoint rule over cells of 32 × 32, some of which are cut by edges of the density, and the share is that of some
-    /// 100,000 samples.
+    /// The integral is that of the midpoint rule over cells of 32 × 32 points, some of which are
+    /// cut by edges of the density, and the share is that of some 100,000 samples.
     #[must_use]
     pub fn agrees(&self) -> bool {
         self.chi2 < self.cells + 4.5 * (2.0 * self.cells).sqrt() && self.excess.abs() < 5e-3
@@ -67,7 +71,7 @@ pub struct RectangleCells {
 }
 
 impl RectangleCells {
-    /// Equal cells between the lowest and the highest coordinate along each axis.
+    /// Returns equal cells between the lowest and the highest coordinate along each axis.
     #[must_use]
     pub fn new(bounds: [[f64; 2]; 2], counts: [usize; 2]) -> Self {
         let edges = [0, 1].map(|axis| {
@@ -78,7 +82,7 @@ impl RectangleCells {
         Self { edges }
     }
 
-    /// ∫ f over each cell.
+    /// Returns ∫ f over each cell.
     fn integrals(&self, f: impl Fn([f64; 2]) -> f64) -> Vec<f64> {
         let [first, second] = &self.edges;
         let cells = first
@@ -96,7 +100,7 @@ impl RectangleCells {
         cells.map(integral).collect()
     }
 
-    /// The cell of a point; the nearest one beyond the outermost edges.
+    /// Returns the cell of a point; the nearest one beyond the outermost edges.
     fn cell(&self, point: [f64; 2]) -> usize {
         let [i, j] = [0, 1].map(|axis| {
             let edges = &self.edges[axis];
@@ -105,7 +109,8 @@ impl RectangleCells {
         i * (self.edges[1].len() - 1) + j
     }
 
-    /// Samples against a density, which is 0 beyond the rectangle. Some numbers draw no sample.
+    /// Compares samples with a density that is 0 beyond the rectangle. Some random numbers yield no
+    /// sample.
     pub fn compare(
         &self,
         samples: impl IntoIterator<Item = Option<[f64; 2]>>,
@@ -124,7 +129,7 @@ impl RectangleCells {
     }
 }
 
-/// Cells of the sphere, by the angle to a pole and around it.
+/// Cells of the sphere, by the angle to a pole and the azimuth around it.
 #[derive(Clone, Debug)]
 pub struct SphereCells {
     pole: Frame,
@@ -132,7 +137,7 @@ pub struct SphereCells {
 }
 
 impl SphereCells {
-    /// Cells about a pole, whose rings hold equal shares of some directions.
+    /// Returns cells about a pole, whose rings contain equal shares of the given directions.
     #[must_use]
     pub fn new(pole: DVec3, directions: impl IntoIterator<Item = DVec3>) -> Self {
         let pole = Frame::IDENTITY.turned_to(pole);
@@ -141,7 +146,7 @@ impl SphereCells {
         angles.sort_by(f64::total_cmp);
         let mut rings = vec![0.0];
         rings.extend((1..RINGS).map(|i| angles[i * angles.len() / RINGS]));
-        // The tail, and the end of a lobe, where the density may jump.
+        // The tail, and the edge of a lobe, where the density may jump.
         rings.extend([255, 4095].map(|i| angles[i * angles.len() / (i + 1)]));
         rings.extend([0.5 * PI, PI]);
         rings.sort_by(f64::total_cmp);
@@ -153,12 +158,12 @@ impl SphereCells {
         }
     }
 
-    /// ∫ f dω over each cell.
+    /// Returns ∫ f dω over each cell.
     pub fn integrals(&self, f: impl Fn(DVec3) -> f64) -> Vec<f64> {
         self.cells.integrals(self.unrolled(f))
     }
 
-    /// Samples against a density per steradian. Some numbers draw no sample.
+    /// Compares samples with a density per steradian. Some random numbers yield no sample.
     pub fn compare(
         &self,
         samples: impl IntoIterator<Item = Option<DVec3>>,
@@ -169,14 +174,14 @@ impl SphereCells {
         self.cells.compare(places, self.unrolled(density))
     }
 
-    /// The angle of a direction to the pole, and its azimuth over 2π.
+    /// Returns the angle of a direction to the pole, and its azimuth divided by 2π.
     fn place(&self, direction: DVec3) -> [f64; 2] {
         let local = self.pole.vector_to_local(direction);
         let turn = libm::atan2(local.y, local.x) / TAU;
         [local.angle_between(DVec3::Z), turn.rem_euclid(1.0)]
     }
 
-    /// A function over the sphere as one of these coordinates.
+    /// Converts a function over the sphere to a function of these coordinates.
     fn unrolled(&self, f: impl Fn(DVec3) -> f64) -> impl Fn([f64; 2]) -> f64 {
         move |[angle, turn]| {
             let (sin, cos) = libm::sincos(angle);

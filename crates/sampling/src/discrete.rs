@@ -1,13 +1,13 @@
-//! Things drawn in proportion to their weights.
+//! Sampling of items in proportion to their weights.
 
-/// Weights of things, summed up to each and with it.
+/// Weights of items, as a cumulative sum that includes each item.
 #[derive(Clone, Debug)]
 pub struct DiscreteDistribution {
     sums: Vec<f64>,
 }
 
 impl DiscreteDistribution {
-    /// A distribution with these weights, none of which is negative.
+    /// Returns a distribution with these weights, which must not be negative.
     #[must_use]
     pub fn new(weights: impl IntoIterator<Item = f64>) -> Self {
         let mut sum = 0.0;
@@ -20,14 +20,14 @@ impl DiscreteDistribution {
         }
     }
 
-    /// The sum of all weights.
+    /// Returns the sum of all weights.
     #[inline]
     #[must_use]
     pub fn total(&self) -> f64 {
         self.sums.last().copied().unwrap_or(0.0)
     }
 
-    /// The number of a thing with a weight above 0; 0 if there is none.
+    /// Samples the index of an item with a weight above 0; 0 if there is none.
     #[inline]
     #[must_use]
     pub fn sample(&self, r: f64) -> usize {

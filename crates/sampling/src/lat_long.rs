@@ -1,4 +1,4 @@
-//! Directions in proportion to the radiance of a picture of all directions.
+//! Sampling of directions in proportion to the radiance of a latitude–longitude picture.
 
 use crate::DiscreteDistribution;
 use crate::warp::tent;
@@ -7,28 +7,29 @@ use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// A picture of all directions, of which directions are drawn by its light.
+/// A picture of all directions, with a sampler of directions by radiance.
 ///
-/// Radiance is a sum of tents around the centres of pixels. A pixel is drawn by its light, then a place within its tent: so the density is
-/// interpolated as the radiance is, with each pixel weighted by the circumference of its row.
+/// Radiance is a sum of tent functions around the centres of pixels. The sampler selects a pixel by
+/// its light, then a position within its tent. So the density is interpolated like the radiance,
+/// with each pixel weighted by the circumference of its row.
 #[derive(Clone, Debug)]
 pub struct LatLongSampler {
     map: Arc<LatLong>,
     /// The sine of the polar angle of each row.
     sines: Vec<f64>,
     rows: DiscreteDistribution,
-    /// The pixels of each row.
+    /// The distribution of the pixels in each row.
     columns: Vec<DiscreteDistribution>,
 }
 
 impl LatLongSampler {
-    /// The sampler of a picture.
+    /// Returns the sampler of a picture.
     #[must_use]
     pub fn new(map: &Arc<LatLong>) -> Self {
         let raster = map.raster();
         let [top, bottom] = map.poles();
         let height = bottom - top;
-        // A row at a pole has half a tent, with its centroid a third of a row away.
+        // A row at a pole has half a tent, whose centroid is a third of a row away.
         let steepest = 0.5 - 1.0 / (3.0 * height);
         let sines: Vec<f64> = (0..raster.height())
             .map(|row| {
@@ -41,7 +42,8 @@ impl LatLongSampler {
             .map(|(values, sine)| DiscreteDistribution::new(values.iter().map(|v| sine * v)))
             .collect();
         let rows = columns.iter().enumerate().map(|(row, columns)| {
-            // Half a row on either side of its centre, or what there is to the pole.
+            // Half a row on either side of the centre, or the distance to the pole if it is
+            // shorter.
             let center = row as f64 + 0.5;
             let share = (center - top).min(0.5) + (bottom - center).min(0.5);
             share * columns.total()
@@ -54,25 +56,25 @@ impl LatLongSampler {
         }
     }
 
-    /// A direction that light comes from.
+    /// Samples a direction that light comes from.
     #[must_use]
     pub fn sample(&self, r: [f64; 4]) -> DVec3 {
         let row = self.rows.sample(r[0]);
         let column = self.columns[row].sample(r[1]);
-        // Folded back at the poles.
+        // Reflected back at the poles.
         let [top, bottom] = self.map.poles();
         let down = top + (row as f64 + 0.5 + tent(r[3]) - top).abs();
         let down = bottom - (bottom - down).abs();
         self.map.direction([column as f64 + 0.5 + tent(r[2]), down])
     }
 
-    /// The density of [`Self::sample`].
+    /// Returns the density of [`Self::sample`].
     #[must_use]
     pub fn density(&self, from: DVec3) -> f64 {
         self.radiance_and_density(from).1
     }
 
-    /// The radiance from a direction, and the density of [`Self::sample`].
+    /// Returns the radiance from a direction, and the density of [`Self::sample`].
     #[must_use]
     pub fn radiance_and_density(&self, from: DVec3) -> (f64, f64) {
         let raster = self.map.raster();
@@ -87,7 +89,7 @@ impl LatLongSampler {
             return (radiance, 0.0);
         }
         let [top, bottom] = self.map.poles();
-        // A square of latitude and longitude, and its solid angle.
+        // A square of latitude and longitude, and the solid angle of that square.
         let pixel = (TAU / raster.width() as f64)
             * (PI / (bottom - top))
             * DVec2::new(from.x, from.z).length().max(f64::MIN_POSITIVE);

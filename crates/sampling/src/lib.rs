@@ -1,4 +1,5 @@
-//! Points and directions drawn from random numbers, for the tracers of bench scenes and of worlds.
+//! Sampling of points and directions from random numbers, for the tracers of bench scenes and of
+//! worlds.
 //!
 //! Random numbers are in (0, 1). Directions have unit length, and densities of directions are per steradian.
 

@@ -1,4 +1,4 @@
-//! All samplers against their densities, and faults that these tests see.
+//! Tests of all samplers against their densities, and of planted faults.
 
 use crate::chi_square::{ChiSquare, RectangleCells, SphereCells};
 use crate::{
@@ -17,17 +17,17 @@ fn numbers() -> impl Iterator<Item = [f64; 4]> {
     (0..SAMPLES).map(|index| random::words(5, Stream::Photon, index, 0).map(random::unit))
 }
 
-/// Points of the square from −1 to 1 against a density.
+/// Compares points of the square from −1 to 1 with a density.
 fn in_square(sample: impl Fn([f64; 2]) -> DVec2, density: impl Fn(DVec2) -> f64) -> ChiSquare {
     let cells = RectangleCells::new([[-1.0, 1.0]; 2], [24, 24]);
     let samples = numbers().map(|[a, b, ..]| Some(sample([a, b]).to_array()));
     cells.compare(samples, |point| density(DVec2::from(point)))
 }
 
-/// A pole of cells that no sampler has.
+/// A pole of cells that differs from the axes of all samplers.
 const ASIDE: DVec3 = DVec3::new(0.6, -0.48, 0.64);
 
-/// Directions against a density, in cells about a pole.
+/// Compares directions with a density, in cells about a pole.
 fn on_sphere(
     pole: DVec3,
     sample: impl Fn([f64; 4]) -> DVec3,
@@ -41,7 +41,7 @@ fn on_sphere(
     cells.compare(directions.into_iter().map(Some), density)
 }
 
-/// 1/area within a shape.
+/// Returns the density 1/area within a shape.
 fn evenly(area: f64, is_inside: impl Fn(DVec2) -> bool) -> impl Fn(DVec2) -> f64 {
     move |point| if is_inside(point) { 1.0 / area } else { 0.0 }
 }
@@ -54,7 +54,7 @@ fn in_triangle(point: DVec2) -> bool {
     point.min_element() > 0.0 && point.element_sum() < 1.0
 }
 
-/// Cones, each with a pole of cells that resolve it.
+/// Returns cones, each with a pole of cells that resolve it.
 fn cones() -> [(DVec3, Cone); 4] {
     let way = DVec3::new(1.0, 2.0, -1.5);
     [
@@ -65,7 +65,8 @@ fn cones() -> [(DVec3, Cone); 4] {
     ]
 }
 
-/// Pictures that are bright at an edge, so that light goes round, and at a pole; few rows, and one.
+/// Pictures that are bright at an edge, where longitude wraps, and at a pole; with few rows, and
+/// with one.
 fn pictures() -> Vec<Arc<LatLong>> {
     let raster = |width, height| {
         let value = |i: usize| match (i % width, i / width) {
@@ -135,7 +136,7 @@ fn pictures_are_drawn_by_their_light() {
     }
 }
 
-/// Weights do not vary much where pixels are small: the density is interpolated as the radiance is.
+/// Weights do not vary much where pixels are small: the density is interpolated like the radiance.
 #[test]
 fn weights_of_pictures_are_bounded() {
     let values = (0..64 * 33).map(|i| if i % 97 == 0 { 100.0 } else { 1.0 });
@@ -153,7 +154,7 @@ fn weights_of_pictures_are_bounded() {
         let mean = weights.iter().sum::<f64>() / weights.len() as f64;
         let squares = weights.iter().map(|w| (w / mean - 1.0).powi(2));
         let deviation = (squares.sum::<f64>() / weights.len() as f64).sqrt();
-        // By a step of the polar angle, over its sine, in each row.
+        // In each row, the deviation is the step of the polar angle over its sine.
         assert!(deviation < 0.1, "{deviation}");
     }
 }
@@ -175,7 +176,7 @@ fn things_are_drawn_by_their_weights() {
     assert_eq!(ends, [1, 4]);
 }
 
-/// The comparison of samples with densities sees each of these.
+/// The comparison of samples with densities detects each of these faults.
 #[test]
 fn planted_faults_are_seen() {
     let linear = |[a, b]: [f64; 2]| 0.9 * a * DVec2::from_angle(2.0 * PI * b);

@@ -4,7 +4,7 @@ use etendue_field::Frame;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_1_PI, TAU};
 
-/// A point drawn evenly from a disc about the origin.
+/// Samples a point uniformly from a disc about the origin.
 #[inline]
 #[must_use]
 pub fn disc(radius: f64, [a, b]: [f64; 2]) -> DVec2 {
@@ -12,7 +12,8 @@ pub fn disc(radius: f64, [a, b]: [f64; 2]) -> DVec2 {
     radius * a.sqrt() * DVec2::new(cos, sin)
 }
 
-/// A point drawn evenly from a triangle: its barycentric coordinates at the second and at the third corner.
+/// Samples a point uniformly from a triangle: returns its barycentric coordinates at the second and
+/// at the third corner.
 #[inline]
 #[must_use]
 pub fn triangle([a, b]: [f64; 2]) -> DVec2 {
@@ -20,28 +21,30 @@ pub fn triangle([a, b]: [f64; 2]) -> DVec2 {
     DVec2::new(root * (1.0 - b), root * b)
 }
 
-/// A direction drawn evenly from the sphere.
+/// Samples a direction uniformly from the sphere.
 #[inline]
 #[must_use]
 pub fn sphere([a, b]: [f64; 2]) -> DVec3 {
     polar(2.0 * a, b)
 }
 
-/// A direction with z > 0, drawn by its cosine to Z (Malley's method: a point of the disc below the hemisphere).
+/// Samples a direction with z > 0 by its cosine to Z (Malley's method: a point of the disc below
+/// the hemisphere).
 #[inline]
 #[must_use]
 pub fn cosine_hemisphere([a, b]: [f64; 2]) -> DVec3 {
     disc(1.0, [a, b]).extend((1.0 - a).sqrt())
 }
 
-/// The density of [`cosine_hemisphere`], over the whole sphere.
+/// Returns the density of [`cosine_hemisphere`], over the whole sphere.
 #[inline]
 #[must_use]
 pub fn cosine_hemisphere_density(direction: DVec3) -> f64 {
     direction.z.max(0.0) * FRAC_1_PI
 }
 
-/// The direction at an angle θ to Z and an azimuth φ, given 1 − cos θ, which keeps its digits where θ is small, and φ/2π.
+/// Returns the direction at an angle θ to Z and an azimuth φ, given 1 − cos θ, which keeps its
+/// digits for small θ, and φ/2π.
 #[inline]
 #[must_use]
 pub fn polar(fall: f64, turn: f64) -> DVec3 {
@@ -50,14 +53,15 @@ pub fn polar(fall: f64, turn: f64) -> DVec3 {
     DVec3::new(sine * cos, sine * sin, 1.0 - fall)
 }
 
-/// A direction given in a frame with Z along `axis`, in the coordinates of that axis. The frame is turned there by the smallest angle.
+/// Converts a direction from a frame with Z along `axis` to the coordinates of `axis`. The frame is
+/// turned by the smallest angle.
 #[inline]
 #[must_use]
 pub fn about(axis: DVec3, local: DVec3) -> DVec3 {
     Frame::IDENTITY.turned_to(axis).vector_to_world(local)
 }
 
-/// A number in (−1, 1) with density 1 − |t|.
+/// Samples a number in (−1, 1) with density 1 − |t|.
 #[inline]
 pub(crate) fn tent(r: f64) -> f64 {
     if r < 0.5 {

@@ -1,25 +1,26 @@
-//! What every BSDF answers, and the directions that paths go on to.
+//! The interface of BSDFs, and the sampled directions of paths.
 
 use glam::DVec3;
 
-/// A BSDF at one place. wo is before the surface.
+/// A BSDF at one point. wo is in front of the surface.
 pub trait Bsdf {
-    /// The BSDF, sr⁻¹, without what goes only one way.
+    /// Returns the BSDF, sr⁻¹, without delta components.
     fn value(&self, wi: DVec3, wo: DVec3) -> f64;
 
-    /// The density of [`Self::direction`] per solid angle of wi.
+    /// Returns the density of [`Self::direction`] per solid angle of wi.
     fn density(&self, wi: DVec3, wo: DVec3) -> f64;
 
-    /// A direction wi; `None` where light is absorbed or goes only one way.
+    /// Samples a direction wi; `None` if light is absorbed, or if a delta component was chosen.
     fn direction(&self, wo: DVec3, random: [f64; 3]) -> Option<DVec3>;
 
-    /// The only direction possible for the last of three numbers; `None` where there are others.
+    /// Returns the delta direction for the last of three random numbers; `None` if that number
+    /// selects a non-delta component.
     #[inline]
     fn mirrored(&self, _wo: DVec3, _random: f64) -> Option<BsdfSample> {
         None
     }
 
-    /// A direction with its weight; `None` where light is absorbed.
+    /// Samples a direction with its weight; `None` if light is absorbed.
     #[inline]
     fn sample(&self, wo: DVec3, random: [f64; 3]) -> Option<BsdfSample> {
         if let Some(only) = self.mirrored(wo, random[2]) {
@@ -35,19 +36,19 @@ pub trait Bsdf {
     }
 }
 
-/// A direction that a path goes on to.
+/// A sampled direction in which a path continues.
 #[derive(Clone, Copy, Debug)]
 pub struct BsdfSample {
-    /// Where light comes from.
+    /// The direction that light comes from.
     pub wi: DVec3,
-    /// BSDF times |cos| of wi over its density.
+    /// BSDF times |cos| of wi, divided by the density.
     pub weight: f64,
-    /// Density per solid angle; `None` where only this direction was possible.
+    /// Density per solid angle; `None` for a delta direction.
     pub density: Option<f64>,
 }
 
 impl BsdfSample {
-    /// The only direction possible, with its weight.
+    /// Returns a delta direction with its weight.
     #[inline]
     #[must_use]
     pub fn only(wi: DVec3, weight: f64) -> Self {
@@ -59,13 +60,13 @@ impl BsdfSample {
     }
 }
 
-/// A direction where it is before the surface.
+/// Returns a direction if it is in front of the surface.
 #[inline]
 pub(crate) fn before(direction: DVec3) -> Option<DVec3> {
     (direction.z > 0.0).then_some(direction)
 }
 
-/// A direction mirrored at a normal.
+/// Returns a direction mirrored at a normal.
 #[inline]
 pub(crate) fn mirrored(direction: DVec3, normal: DVec3) -> DVec3 {
     2.0 * direction.dot(normal) * normal - direction

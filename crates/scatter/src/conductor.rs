@@ -1,11 +1,11 @@
-//! Metals: a mirror, or microfacets that are mirrors.
+//! Conductors: a smooth mirror, or mirror microfacets.
 
 use crate::bsdf::before;
 use crate::{Bsdf, BsdfSample, Microfacets, fresnel};
 use etendue_field::Fresnel;
 use glam::DVec3;
 
-/// What a smooth mirror sends along wo, before it.
+/// Returns the light that a smooth mirror reflects along wo, which is in front of it.
 #[inline]
 #[must_use]
 pub fn mirror(fresnel: &Fresnel, wo: DVec3) -> BsdfSample {
@@ -13,12 +13,12 @@ pub fn mirror(fresnel: &Fresnel, wo: DVec3) -> BsdfSample {
     BsdfSample::only(DVec3::new(-wo.x, -wo.y, wo.z), weight)
 }
 
-/// A rough mirror, whose facets are drawn as wo sees them.
+/// A rough mirror, whose facets are sampled by their visibility from wo.
 #[derive(Clone, Copy, Debug)]
 pub struct Conductor {
-    /// Its facets.
+    /// The microfacets.
     pub facets: Microfacets,
-    /// What each of them reflects.
+    /// The Fresnel reflectance of each microfacet.
     pub fresnel: Fresnel,
 }
 

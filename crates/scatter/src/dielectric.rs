@@ -1,6 +1,7 @@
-//! Interfaces of two media that let light through, smooth or rough. wo is before them; `index` is that of the far side over that of the side of wo.
+//! Transmitting interfaces of two media, smooth or rough. wo is in front of the interface; `index`
+//! is that of the far side over that of the side of wo.
 //!
-//! Values carry radiance: that of the far side is larger by the squared index.
+//! Values refer to radiance, which is larger on the far side by the squared index.
 
 use crate::bsdf::mirrored;
 use crate::fresnel::Interface;
@@ -12,12 +13,13 @@ use glam::DVec3;
 pub struct SmoothDielectric {
     /// Relative index of refraction.
     pub index: f64,
-    /// Whether it is a sheet: light goes straight through, and all reflections within are summed.
+    /// Whether this is a thin sheet: light goes straight through, and all internal reflections are
+    /// summed.
     pub is_thin: bool,
 }
 
 impl SmoothDielectric {
-    /// Reflects or refracts, each as often as light does.
+    /// Reflects or refracts, with the probabilities of the light.
     #[inline]
     #[must_use]
     pub fn sample(&self, wo: DVec3, random: f64) -> BsdfSample {
@@ -43,31 +45,32 @@ impl SmoothDielectric {
 /// A rough interface (Walter et al. 2007, section 4).
 #[derive(Clone, Copy, Debug)]
 pub struct RoughDielectric {
-    /// Its facets.
+    /// The microfacets.
     pub facets: Microfacets,
     /// Relative index of refraction.
     pub index: f64,
 }
 
-/// A facet that reflects or refracts between two directions.
+/// A microfacet that reflects or refracts between two directions.
 #[derive(Clone, Copy, Debug)]
 struct Facet {
     normal: DVec3,
     /// Cosines of wi and wo to the normal.
     cosines: [f64; 2],
-    /// The share of light that it reflects.
+    /// The share of light that the facet reflects.
     reflected: f64,
 }
 
 impl RoughDielectric {
-    /// The facet at which wo is mirrored or refracted to wi; `None` if there is none that faces the front (Walter et al., Eqs. 13 and 16).
+    /// Returns the facet at which wo is mirrored or refracted to wi; `None` if no such facet faces
+    /// the front (Walter et al., Eqs. 13 and 16).
     #[inline]
     fn facet(&self, wi: DVec3, wo: DVec3) -> Option<Facet> {
         let eta = if wi.z > 0.0 { 1.0 } else { self.index };
         let normal = (wo + eta * wi).try_normalize()?;
         let normal = if normal.z < 0.0 { -normal } else { normal };
         let [i, o] = [wi.dot(normal), wo.dot(normal)];
-        // Both must see it from their own side.
+        // Both directions must see the facet from their own side.
         (o > 0.0 && i * wi.z > 0.0).then(|| Facet {
             normal,
             cosines: [i, o],
@@ -90,7 +93,8 @@ impl Bsdf for RoughDielectric {
             return 0.25 * facet.reflected * common;
         }
         let sum = o + self.index * i;
-        // Radiance is that of the far side over the squared index, and solid angles there are smaller by as much.
+        // Radiance is that of the far side over the squared index, and solid angles there are
+        // smaller by the same factor.
         (1.0 - facet.reflected) * common * (o * i).abs() / (sum * sum)
     }
 
@@ -109,7 +113,8 @@ impl Bsdf for RoughDielectric {
         (1.0 - facet.reflected) * of_normal * self.index * self.index * i.abs() / (sum * sum)
     }
 
-    /// Mirrored or refracted at a facet, each as often as light does; `None` where light would meet another facet.
+    /// Mirrors or refracts at a facet, with the probabilities of the light; `None` if light would
+    /// meet another facet.
     #[inline]
     fn direction(&self, wo: DVec3, [a, b, c]: [f64; 3]) -> Option<DVec3> {
         let normal = self.facets.sample_normal(wo, [a, b]);

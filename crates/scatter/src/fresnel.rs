@@ -1,9 +1,10 @@
-//! What interfaces reflect of unpolarised light, the mean of both polarisations, and where they refract it to.
+//! Reflectance of interfaces for unpolarised light, the mean of both polarisations, and directions
+//! of refraction.
 
 use etendue_field::Fresnel;
 use glam::DVec3;
 
-/// The share that is reflected at an angle of incidence with this cosine, 0 to 1.
+/// Returns the share that is reflected at an angle of incidence with this cosine, 0 to 1.
 #[inline]
 #[must_use]
 pub fn reflectance(fresnel: &Fresnel, cosine: f64) -> f64 {
@@ -14,7 +15,7 @@ pub fn reflectance(fresnel: &Fresnel, cosine: f64) -> f64 {
     }
 }
 
-/// At a dielectric: all of it beyond the critical angle of an index below 1.
+/// At a dielectric: all light beyond the critical angle of an index below 1.
 #[inline]
 fn dielectric(index: f64, cosine: f64) -> f64 {
     let squared = index * index;
@@ -45,16 +46,17 @@ fn conductor(n: f64, k: f64, cosine: f64) -> f64 {
 /// An interface of two dielectrics at an angle of incidence.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Interface {
-    /// The share that is reflected.
+    /// The share of light that is reflected.
     pub(crate) reflected: f64,
-    /// Index of the far side over that of the near one.
+    /// Index of the far side over that of the near side.
     index: f64,
     /// Cosines on the near and the far side.
     cosines: [f64; 2],
 }
 
 impl Interface {
-    /// The far side has `index` times the index of the near one, where the angle has this cosine, above 0.
+    /// Builds an interface whose far side has `index` times the index of the near side, where the
+    /// angle has this cosine, above 0.
     #[inline]
     pub(crate) fn new(index: f64, cosine: f64) -> Self {
         let cosine = cosine.min(1.0);
@@ -66,7 +68,8 @@ impl Interface {
         }
     }
 
-    /// The direction behind the interface from which light goes on to `wo` before it; `normal` is on the side of wo.
+    /// Returns the direction behind the interface from which light continues to `wo` in front of
+    /// it; `normal` is on the side of wo.
     #[inline]
     pub(crate) fn refracted(&self, wo: DVec3, normal: DVec3) -> DVec3 {
         let [near, far] = self.cosines;
@@ -75,9 +78,10 @@ impl Interface {
     }
 }
 
-/// What a smooth interface reflects of light that arrives evenly from all directions: 2 ∫ F(μ) μ dμ over (0, 1).
+/// Returns the reflectance of a smooth interface for uniform light from all directions: 2 ∫ F(μ) μ
+/// dμ over (0, 1).
 ///
-/// By the midpoint rule in μ²; 10⁴ points leave less than 10⁻⁶ where F has a kink.
+/// Uses the midpoint rule in μ²; with 10⁴ points the error is less than 10⁻⁶ where F has a kink.
 pub(crate) fn diffuse_reflectance(index: f64) -> f64 {
     const POINTS: u32 = 10_000;
     let at = |i: u32| dielectric(index, ((f64::from(i) + 0.5) / f64::from(POINTS)).sqrt());
@@ -114,7 +118,7 @@ mod tests {
         ] {
             for (angle, expected) in ANGLES.iter().zip(expected) {
                 let share = reflectance(&of, libm::cos(*angle));
-                // They are given to 14 digits.
+                // The values have 14 digits.
                 assert!(
                     (share - expected).abs() < 1e-13,
                     "{of:?} at {angle}: {share}, {expected}"
@@ -127,7 +131,7 @@ mod tests {
     fn limits() {
         let glass = Fresnel::Dielectric { index: 1.5 };
         let air = Fresnel::Dielectric { index: 1.0 / 1.5 };
-        // sin θ of total reflection is 1/1.5: its cosine is 0.7454.
+        // sin θ of total reflection is 1/1.5, so its cosine is 0.7454.
         let close = |a: f64, b: f64| (a - b).abs() < 1e-12; // rounding
         assert!(close(reflectance(&air, 0.74), 1.0));
         assert!(reflectance(&air, 0.75) < 0.8);

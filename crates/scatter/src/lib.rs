@@ -1,11 +1,13 @@
-//! What surfaces do to light, for the tracers of bench scenes and of worlds: the value of each BSDF, and beside it how a direction is drawn and the
-//! density of such directions.
+//! BSDFs for the tracers of bench scenes and of worlds: the value of each BSDF, with the sampling
+//! of directions and their density.
 //!
-//! Directions are unit vectors away from the surface, in a frame with its normal along Z: light comes from `wi` and leaves along `wo`. `wo` is given and
-//! `wi` is drawn, as for a ray from a camera. A tracer of photons exchanges the two, which reciprocal BSDFs allow.
+//! Directions are unit vectors away from the surface, in a frame with its normal along Z: light
+//! comes from `wi` and leaves along `wo`. `wo` is given and `wi` is sampled, as for a ray from a
+//! camera. A tracer of photons exchanges the two, which reciprocal BSDFs allow.
 //!
-//! Values are per steradian and without the cosine of `wi`; densities are per solid angle of `wi`. Random numbers are in (0, 1).
-//! Patterns, textures and mixtures belong to the tracers: all numbers here are those of one place.
+//! Values are per steradian and without the cosine of `wi`; densities are per solid angle of `wi`.
+//! Random numbers are in (0, 1). Patterns, textures and mixtures belong to the tracers: all numbers
+//! here refer to one point.
 
 mod bsdf;
 mod conductor;

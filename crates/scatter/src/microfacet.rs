@@ -6,20 +6,20 @@ use etendue_field::MicrofacetDistribution;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// Small mirrors whose normals are distributed about Z, with Smith's masking.
+/// Microfacets that are mirrors with normals distributed about Z, with Smith's masking.
 #[derive(Clone, Copy, Debug)]
 pub struct Microfacets {
-    /// The distribution of their normals.
+    /// The distribution of the normals.
     pub distribution: MicrofacetDistribution,
-    /// α along X and Y, above 0; equal where the surface is isotropic.
+    /// α along X and Y, above 0; equal for an isotropic surface.
     pub alpha: [f64; 2],
 }
 
-/// The least z of a visible normal before it is stretched: normals at the horizon are kept above it.
+/// The smallest z of a visible normal before stretching: normals at the horizon are kept above it.
 const MIN_HEIGHT: f64 = 1e-12;
 
 impl Microfacets {
-    /// The same roughness along both axes.
+    /// Returns microfacets with the same roughness along both axes.
     #[inline]
     #[must_use]
     pub fn isotropic(distribution: MicrofacetDistribution, roughness: f64) -> Self {
@@ -29,8 +29,8 @@ impl Microfacets {
         }
     }
 
-    /// The BRDF of perfect mirrors, both directions being before the surface (Walter et al., Eq. 20), and the cosine of the angle of incidence on
-    /// them, for a Fresnel factor.
+    /// Returns the BRDF of perfect mirrors, with both directions in front of the surface (Walter et
+    /// al., Eq. 20), and the cosine of the angle of incidence on them, for a Fresnel factor.
     #[inline]
     #[must_use]
     pub fn value(&self, wi: DVec3, wo: DVec3) -> (f64, f64) {
@@ -40,14 +40,16 @@ impl Microfacets {
         (value, normal.dot(wo).min(1.0))
     }
 
-    /// The mirror direction of wo at a normal that it sees. Near grazing some of them lie below the surface.
+    /// Samples the mirror direction of wo at a normal that is visible from wo. Near grazing some of
+    /// these directions lie below the surface.
     #[inline]
     #[must_use]
     pub fn sample(&self, wo: DVec3, random: [f64; 2]) -> DVec3 {
         mirrored(wo, self.sample_normal(wo, random))
     }
 
-    /// The density of [`Self::sample`], over the whole sphere: that of the normal over 4 h · ωo (Walter et al., Eq. 14).
+    /// Returns the density of [`Self::sample`], over the whole sphere: that of the normal over 4 h
+    /// · ωo (Walter et al., Eq. 14).
     #[inline]
     #[must_use]
     pub fn density(&self, wi: DVec3, wo: DVec3) -> f64 {
@@ -59,10 +61,11 @@ impl Microfacets {
         }
     }
 
-    /// The mirror direction of wo at any normal, whether wo sees it or not, by D cos θ (Walter et al., Eqs. 28 f. and 35 f.).
+    /// Samples the mirror direction of wo at any normal, visible from wo or not, by D cos θ (Walter
+    /// et al., Eqs. 28 f. and 35 f.).
     ///
-    /// Weights of Beckmann's facets are closer to 1 than by [`Self::sample`] where light comes from near the normal, but grow without bound towards
-    /// grazing.
+    /// For Beckmann, weights are closer to 1 than with [`Self::sample`] if light comes from near
+    /// the normal, but grow without bound towards grazing.
     #[inline]
     #[must_use]
     pub fn sample_unmasked(&self, wo: DVec3, [a, b]: [f64; 2]) -> DVec3 {
@@ -75,7 +78,8 @@ impl Microfacets {
         mirrored(wo, DVec3::new(x * cos, y * sin, 1.0).normalize())
     }
 
-    /// The density of [`Self::sample_unmasked`], over the whole sphere. A normal that is seen from behind mirrors as its opposite does.
+    /// Returns the density of [`Self::sample_unmasked`], over the whole sphere. A normal that is
+    /// seen from behind mirrors like its opposite.
     #[inline]
     #[must_use]
     pub fn unmasked_density(&self, wi: DVec3, wo: DVec3) -> f64 {
@@ -85,7 +89,8 @@ impl Microfacets {
         })
     }
 
-    /// D of a normal of unit length or of its opposite, per steradian (Walter et al., Eqs. 25 and 33, with slopes divided by α along each axis).
+    /// Returns D of a normal of unit length or of its opposite, per steradian (Walter et al., Eqs.
+    /// 25 and 33, with slopes divided by α along each axis).
     #[inline]
     pub(crate) fn d(&self, normal: DVec3) -> f64 {
         match self.distribution {
@@ -98,14 +103,15 @@ impl Microfacets {
         }
     }
 
-    /// Smith's G₁: the share of the normals facing a direction that it sees (Walter et al., Eqs. 26 f. and 34).
+    /// Returns Smith's G₁: the share of the normals facing a direction that are visible from it
+    /// (Walter et al., Eqs. 26 f. and 34).
     #[inline]
     pub(crate) fn g1(&self, direction: DVec3) -> f64 {
         let slope = self.slope(direction);
         match self.distribution {
             MicrofacetDistribution::Beckmann => {
                 let a = 1.0 / slope;
-                // Nothing is left to subtract beyond: erfc(6) is below rounding.
+                // Beyond this, erfc(6) is below rounding.
                 if a > 6.0 {
                     return 1.0;
                 }
@@ -115,18 +121,21 @@ impl Microfacets {
         }
     }
 
-    /// A normal with z > 0 that wo sees, of GGX (Heitz 2018, *Sampling the GGX distribution of visible normals*, Listing 1).
+    /// Samples a normal with z > 0 that is visible from wo, for GGX (Heitz 2018, *Sampling the GGX
+    /// distribution of visible normals*, Listing 1).
     ///
-    /// Beckmann's normals are drawn by it too: D is at most 4/e times that of GGX, and G₁ at most √π times.
+    /// Beckmann's normals are sampled in the same way: D is at most 4/e times that of GGX, and G₁
+    /// at most √π times.
     #[inline]
     pub(crate) fn sample_normal(&self, wo: DVec3, [a, b]: [f64; 2]) -> DVec3 {
-        // To the hemisphere that the ellipsoid of normals is stretched from.
+        // Transforms to the hemisphere from which the ellipsoid of normals is stretched.
         let stretch = DVec3::new(self.alpha[0], self.alpha[1], 1.0);
         let view = (stretch * wo).normalize();
         let across = DVec3::new(-view.y, view.x, 0.0).try_normalize();
         let across = across.unwrap_or(DVec3::X);
         let up = view.cross(across);
-        // A point of the projected hemisphere: half of a disc, and what is seen of the other half.
+        // A point of the projected hemisphere: half of a disc, and the visible part of the other
+        // half.
         let (sin, cos) = libm::sincos(TAU * b);
         let radius = a.sqrt();
         let t1 = radius * cos;
@@ -137,7 +146,8 @@ impl Microfacets {
         (stretch * normal.with_z(normal.z.max(MIN_HEIGHT))).normalize()
     }
 
-    /// The density of [`Self::sample_normal`] per solid angle of normals: D G₁ ωo · n / cos θo of GGX (Heitz 2018).
+    /// Returns the density of [`Self::sample_normal`] per solid angle of normals: D G₁ ωo · n / cos
+    /// θo of GGX (Heitz 2018).
     #[inline]
     pub(crate) fn normal_density(&self, wo: DVec3, normal: DVec3) -> f64 {
         let facing = wo.dot(normal);
@@ -147,21 +157,21 @@ impl Microfacets {
         ggx_g1(self.slope(wo)) * facing * self.ggx_d(normal) / wo.z
     }
 
-    /// D of GGX with these roughnesses.
+    /// Returns D of GGX with these roughnesses.
     #[inline]
     fn ggx_d(&self, normal: DVec3) -> f64 {
         let sum = self.spread(normal) + normal.z * normal.z;
         1.0 / (PI * self.alpha[0] * self.alpha[1] * sum * sum)
     }
 
-    /// (x/αx)² + (y/αy)². Unlike 1 − z² it keeps its digits where normals are close to Z.
+    /// Returns (x/αx)² + (y/αy)². Unlike 1 − z² it keeps its digits for normals close to Z.
     #[inline]
     fn spread(&self, normal: DVec3) -> f64 {
         let [x, y] = [normal.x / self.alpha[0], normal.y / self.alpha[1]];
         x * x + y * y
     }
 
-    /// α tan θ along the azimuth of a direction (Heitz 2014).
+    /// Returns α tan θ along the azimuth of a direction (Heitz 2014).
     #[inline]
     fn slope(&self, direction: DVec3) -> f64 {
         let [x, y] = [self.alpha[0] * direction.x, self.alpha[1] * direction.y];
@@ -169,7 +179,7 @@ impl Microfacets {
     }
 }
 
-/// G₁ of GGX for a direction with this α tan θ.
+/// Returns G₁ of GGX for a direction with this α tan θ.
 #[inline]
 fn ggx_g1(slope: f64) -> f64 {
     2.0 / (1.0 + (1.0 + slope * slope).sqrt())

@@ -10,12 +10,13 @@ use std::f64::consts::TAU;
 /// Phong's lobe (Phong 1975) with integral 1 over all directions of wi.
 #[derive(Clone, Copy, Debug)]
 pub struct Phong {
-    /// n, at least 0.
+    /// Exponent n, at least 0.
     pub exponent: f64,
 }
 
 impl Phong {
-    /// (n + 1)/(2π) cosⁿ α of the angle α between wi and the mirror direction of wo; 0 from 90° on, for n = 0 too.
+    /// Returns (n + 1)/(2π) cosⁿ α of the angle α between wi and the mirror direction of wo; 0 from
+    /// 90° on, for n = 0 too.
     #[inline]
     #[must_use]
     pub fn value(&self, wi: DVec3, wo: DVec3) -> f64 {
@@ -26,7 +27,8 @@ impl Phong {
         (self.exponent + 1.0) / TAU * power(cosine, self.exponent)
     }
 
-    /// A direction by the lobe. Near grazing some of them lie below the surface.
+    /// Samples a direction by the lobe. Near grazing some of these directions lie below the
+    /// surface.
     #[inline]
     #[must_use]
     pub fn sample(&self, wo: DVec3, [a, b]: [f64; 2]) -> DVec3 {
@@ -47,16 +49,17 @@ fn mirror_direction(wo: DVec3) -> DVec3 {
 /// based rendering*).
 #[derive(Clone, Copy, Debug)]
 pub struct ModifiedPhong {
-    /// kd.
+    /// Diffuse factor kd.
     pub diffuse: f64,
-    /// ks.
+    /// Specular factor ks.
     pub specular: f64,
-    /// The lobe, with n.
+    /// The lobe, with its exponent n.
     pub lobe: Phong,
 }
 
 impl ModifiedPhong {
-    /// The share of directions that the lobe draws: that of ks. The others are drawn by the cosine.
+    /// Returns the share of directions that are sampled by the lobe, given by ks. The others are
+    /// sampled by the cosine.
     #[inline]
     fn specular_share(&self) -> f64 {
         let sum = self.diffuse + self.specular;

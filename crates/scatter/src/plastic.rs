@@ -6,22 +6,22 @@ use crate::{Bsdf, BsdfSample, Microfacets, lambertian};
 use etendue_field::MicrofacetDistribution;
 use glam::DVec3;
 
-/// Steps of the cosine in the table of a rough coat.
+/// Number of steps of the cosine in the table of a rough coat.
 const STEPS: usize = 64;
 
-/// A coat, with what goes through it.
+/// A coat, with its transmittance.
 #[derive(Clone, Debug)]
 pub struct Coat {
     index: f64,
     facets: Option<Microfacets>,
-    /// What it reflects of the base's light.
+    /// The internal reflectance of the coat for light from the base.
     within: f64,
-    /// What goes through a rough coat, at cosines 0 to 1 in equal steps.
+    /// The transmittance of a rough coat, at cosines 0 to 1 in equal steps.
     through: Vec<f64>,
 }
 
 impl Coat {
-    /// A coat with this index over that outside; a smooth one has no facets.
+    /// Returns a coat with this index over that outside; a smooth coat has no facets.
     #[must_use]
     pub fn new(index: f64, facets: Option<Microfacets>) -> Self {
         let through = facets.map(|facets| {
@@ -40,13 +40,13 @@ impl Coat {
         }
     }
 
-    /// Its facets; `None` where it is a mirror.
+    /// Returns the coat's microfacets; `None` if it is smooth.
     #[must_use]
     pub fn facets(&self) -> Option<&Microfacets> {
         self.facets.as_ref()
     }
 
-    /// What goes through at an angle of this cosine.
+    /// Returns the transmittance at an angle of this cosine.
     fn through(&self, cosine: f64) -> f64 {
         if self.facets.is_none() {
             return 1.0 - Interface::new(self.index, cosine).reflected;
@@ -59,28 +59,30 @@ impl Coat {
     }
 }
 
-/// A base and a coat at one place. All directions are before the surface.
+/// A base and a coat at one point. All directions are in front of the surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Plastic<'a> {
     /// The coat.
     pub coat: &'a Coat,
     /// Albedo of the base.
     pub diffuse: f64,
-    /// A factor on what the coat reflects.
+    /// A factor on the reflection by the coat.
     pub specular: f64,
-    /// Whether each reflection within takes the albedo of the base once more.
+    /// Whether each internal reflection is multiplied by the albedo of the base again.
     pub is_nonlinear: bool,
 }
 
 impl Plastic<'_> {
-    /// The part of the base in the BRDF, both directions being before the surface.
+    /// Returns the contribution of the base to the BRDF, with both directions in front of the
+    /// surface.
     #[must_use]
     pub fn base_value(&self, wi: DVec3, wo: DVec3) -> f64 {
         let through = self.coat.through(wi.z) * self.coat.through(wo.z);
         self.base_albedo() * through / (self.coat.index * self.coat.index) * lambertian::VALUE
     }
 
-    /// What the base reflects of light that has come to it, and back from the coat again and again.
+    /// Returns the share of light reaching the base that the base reflects, including repeated
+    /// reflections by the coat.
     #[must_use]
     pub fn base_albedo(&self) -> f64 {
         let within = self.coat.within;
@@ -92,7 +94,8 @@ impl Plastic<'_> {
         self.diffuse / (1.0 - again)
     }
 
-    /// The share of directions that the coat draws: about its share of the light.
+    /// Returns the share of directions that are sampled by the coat: approximately its share of the
+    /// light.
     fn coat_share(&self, wo: DVec3) -> f64 {
         let through = self.coat.through(wo.z);
         let coat = (1.0 - through) * self.specular;
@@ -138,7 +141,7 @@ impl Bsdf for Plastic<'_> {
     }
 
     fn mirrored(&self, wo: DVec3, c: f64) -> Option<BsdfSample> {
-        // A smooth coat takes its share of samples; the rest of the density is the base's.
+        // A smooth coat takes its share of samples; the base has the rest of the density.
         let share = self.coat_share(wo);
         (self.coat.facets.is_none() && c < share).then(|| {
             let reflected = Interface::new(self.coat.index, wo.z).reflected;
@@ -147,7 +150,7 @@ impl Bsdf for Plastic<'_> {
     }
 }
 
-/// What goes through a rough interface to the other side, seen at an angle of this cosine.
+/// Returns the transmittance of a rough interface at an angle of this cosine.
 fn transmitted(facets: &Microfacets, index: f64, cosine: f64) -> f64 {
     mean_over_normals(facets, cosine, |wo, normal| {
         let at = Interface::new(index, wo.dot(normal));
@@ -157,7 +160,7 @@ fn transmitted(facets: &Microfacets, index: f64, cosine: f64) -> f64 {
     })
 }
 
-/// What a rough interface reflects of light that arrives evenly from all directions.
+/// Returns the reflectance of a rough interface for uniform light from all directions.
 fn rough_reflectance(facets: &Microfacets, index: f64) -> f64 {
     let at = |i: usize| {
         let cosine = ((i as f64 + 0.5) / STEPS as f64).sqrt();
@@ -170,9 +173,9 @@ fn rough_reflectance(facets: &Microfacets, index: f64) -> f64 {
     (0..STEPS).map(at).sum::<f64>() / STEPS as f64
 }
 
-/// The mean of something over the normals that a direction sees.
+/// Returns the mean of a function over the normals visible from a direction.
 fn mean_over_normals(facets: &Microfacets, cosine: f64, of: impl Fn(DVec3, DVec3) -> f64) -> f64 {
-    /// Normals along a side of the square of random numbers.
+    /// Number of normals along a side of the square of random numbers.
     const SIDE: usize = 64;
     let wo = DVec3::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine);
     let ggx = Microfacets {
@@ -182,7 +185,7 @@ fn mean_over_normals(facets: &Microfacets, cosine: f64, of: impl Fn(DVec3, DVec3
     let middle = |i: usize| (i as f64 + 0.5) / SIDE as f64;
     let one = |i: usize| {
         let normal = facets.sample_normal(wo, [middle(i / SIDE), middle(i % SIDE)]);
-        // Normals are drawn by GGX.
+        // Normals are sampled by GGX.
         let visible = facets.g1(wo) * facets.d(normal);
         of(wo, normal) * visible / (ggx.g1(wo) * ggx.d(normal))
     };
@@ -193,13 +196,13 @@ fn mean_over_normals(facets: &Microfacets, cosine: f64, of: impl Fn(DVec3, DVec3
 mod tests {
     use super::*;
 
-    /// The means of a smooth interface and of a rough one agree where roughness goes to zero.
+    /// The means of a smooth and of a rough interface agree as roughness goes to zero.
     #[test]
     fn a_nearly_smooth_coat_is_a_smooth_one() {
         let facets = Microfacets::isotropic(MicrofacetDistribution::Ggx, 0.002);
         for cosine in [0.3, 0.6, 1.0] {
             let smooth = 1.0 - Interface::new(1.5, cosine).reflected;
-            // Roughness moves angles by some 0.002.
+            // Roughness changes angles by about 0.002.
             assert!(
                 (transmitted(&facets, 1.5, cosine) - smooth).abs() < 0.004,
                 "{cosine}"

@@ -1,15 +1,16 @@
-//! Curvatures of a mesh.
+//! Estimates the curvatures of a mesh.
 
 use crate::scene::{Hit, MeshObject};
 use etendue_field::{Frame, Patch};
 use glam::DVec3;
 
-/// Longest edges of the triangle hit within which vertices count.
+/// The radius, in longest edges of the triangle hit, within which vertices are used.
 const EDGES: f64 = 6.0;
 
 impl MeshObject {
-    /// The paraboloid that lies closest, by least squares, to the vertices around a hit: its frame has the principal directions there, its
-    /// curvatures are the principal ones, and it is on the side the light comes from. `None` where there are too few vertices.
+    /// The least-squares paraboloid through the vertices around a hit. Its frame has the principal
+    /// directions there, its curvatures are the principal ones, and it faces the side from which
+    /// the light comes. `None` where there are too few vertices.
     #[must_use]
     pub fn osculating(&self, hit: &Hit) -> Option<Patch> {
         let [a, b, c] = self.triangles[self.nearest(hit)?];
@@ -20,13 +21,15 @@ impl MeshObject {
             .filter(|p| p.distance(hit.point) < EDGES * edge);
         let near: Vec<DVec3> = near.copied().collect();
         let mut frame = Frame::new(hit.point, hit.normal, hit.normal.any_orthonormal_vector())?;
-        // The plane of the interpolated normal leans against the tangent plane a little: once more in that one.
+        // The plane of the interpolated normal is slightly tilted against the tangent plane, so the
+        // fit is repeated in the tangent plane.
         for _ in 0..2 {
             let [_, s, t, ..] = quadric(&frame, &near, edge)?;
             frame = frame.turned_to((frame.d - s * frame.x - t * frame.y).normalize());
         }
         let [h, _, _, ss, st, tt] = quadric(&frame, &near, edge)?;
-        // h = … + ½ (ss s² + 2 st s t + tt t²): the principal axes of that form, turned over, since convex is positive.
+        // h = … + ½ (ss s² + 2 st s t + tt t²): the principal axes of that form, with the sign
+        // reversed because convex is positive.
         let angle = 0.5 * libm::atan2(2.0 * st, ss - tt);
         let (sin, cos) = libm::sincos(angle);
         let along = cos * frame.x + sin * frame.y;
@@ -59,7 +62,8 @@ impl MeshObject {
     }
 }
 
-/// h, ∂h/∂s, ∂h/∂t, ∂²h/∂s², ∂²h/∂s∂t and ∂²h/∂t² at the origin of a frame, of the quadratic in (s, t) closest to points (s, t, h).
+/// h, ∂h/∂s, ∂h/∂t, ∂²h/∂s², ∂²h/∂s∂t and ∂²h/∂t² at the origin of a frame, for the least-squares
+/// quadratic in (s, t) through points (s, t, h).
 fn quadric(frame: &Frame, points: &[DVec3], unit: f64) -> Option<[f64; 6]> {
     let rows = points.iter().map(|point| {
         let DVec3 { x, y, z } = frame.to_local(*point) / unit;
@@ -69,11 +73,12 @@ fn quadric(frame: &Frame, points: &[DVec3], unit: f64) -> Option<[f64; 6]> {
     Some([h * unit, s, t, ss / unit, st / unit, tt / unit])
 }
 
-/// The numbers x with which rows [a, b] come closest to a · x = b. `None` where rows do not tell them.
+/// The least-squares solution x of a · x = b over rows [a, b]. `None` where the rows do not
+/// determine x.
 fn least_squares<const N: usize, const M: usize>(
     rows: impl Iterator<Item = [f64; M]>,
 ) -> Option<[f64; N]> {
-    // Normal equations, bordered by their right side.
+    // The normal equations, augmented by their right-hand side.
     let mut m = [[0.0; M]; N];
     for row in rows {
         for (i, line) in m.iter_mut().enumerate() {
@@ -82,7 +87,8 @@ fn least_squares<const N: usize, const M: usize>(
             }
         }
     }
-    // Elimination; the matrix is symmetric and positive, so no pivot is looked for.
+    // Gaussian elimination; the matrix is symmetric and positive definite, so no pivoting is
+    // needed.
     for i in 0..N {
         let pivot = m[i][i];
         if pivot <= 1e-9 {

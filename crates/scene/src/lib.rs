@@ -1,7 +1,8 @@
-//! What the experiment is: a scene file, and the [`Scene`] it resolves to.
+//! Defines the experiment: a scene file, and the [`Scene`] it resolves to.
 //!
-//! A [`SceneFile`] holds exactly what is written in the file; [`resolve`] checks it, listing every fault at
-//! once, and gives a [`Scene`] that is valid by construction. No later stage asks "is this valid?" again.
+//! A [`SceneFile`] holds exactly what is written in the file; [`resolve`] checks it, reporting
+//! every fault at once, and returns a [`Scene`] that is valid by construction. Later stages do not
+//! check validity again.
 //!
 //! ```
 //! let text = r#"(

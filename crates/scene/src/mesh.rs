@@ -1,4 +1,4 @@
-//! Triangle meshes: read from OBJ and PLY files, made, and written.
+//! Triangle meshes: reading OBJ and PLY files, generating and writing.
 //!
 //! The readers are our own. tobj 4.0.5 reads an `l` line of three points as a triangle, doubles the vertices that
 //! two groups share (a closed surface comes back open), refuses continued lines, Latin-1 comments and colors on

@@ -1,4 +1,4 @@
-//! Likely mistakes of a sound scene: of units, of grids, and arrays that are too small.
+//! Warns of likely mistakes in a valid scene: of units, of grids, and arrays that are too small.
 
 use crate::scene::{BlockerLayer, Scene};
 use etendue_field::{Light, Mask, VirtualPlane, Window, tidy};
@@ -6,14 +6,14 @@ use etendue_scenefile::{FrequenciesFile, PlaneFile, WindowFile};
 use serde_json::Value;
 use std::collections::BTreeSet;
 
-/// Metres that are many among others of a metre.
+/// A length, in metres, that is suspiciously long among others of about a metre.
 const MANY_METRES: f64 = 100.0;
-/// What a length of a metre is less than.
+/// The length, in metres, below which a length counts as about a metre.
 const NEAR: f64 = 10.0;
 /// Larger slopes, beyond 79° from the central ray, are rarely meant.
 const STEEP: f64 = 5.0;
 
-/// Each likely mistake in words.
+/// A description of each likely mistake.
 pub(crate) fn mistakes(scene: &Scene) -> Vec<String> {
     let planes = scene.file.planes.iter().zip(&scene.planes).enumerate();
     let mut told = BTreeSet::new();
@@ -32,7 +32,7 @@ fn long(scene: &Scene) -> Option<String> {
     collect(&file, "", false, &mut lengths);
     let origin = scene.path.frame.origin.to_array();
     for (path, length) in &mut lengths {
-        // Places count from the light.
+        // Positions are relative to the light.
         let of_world = path
             .strip_suffix(']')
             .filter(|path| !path.contains(".shapes["));
@@ -134,7 +134,7 @@ fn coarse(
     told.collect()
 }
 
-/// Arrays beyond whose edges a plane sees light.
+/// Arrays beyond whose edges a plane receives light.
 fn past_edges(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
     let arrays = scene.blockers.iter().filter(|layer| layer.pitch.is_some());
     let told = arrays.filter_map(|layer| {
@@ -158,7 +158,7 @@ fn pair([x, y]: [f64; 2]) -> String {
     format!("({}, {})", tidy(x), tidy(y))
 }
 
-/// How far an array reaches from the central ray, along X and along Y: to half a pitch beyond the
+/// The extent of an array from the central ray, along X and along Y: to half a pitch beyond the
 /// centres of its last squares.
 fn edges(layer: &BlockerLayer) -> Option<[f64; 2]> {
     let Mask::Opaque { shapes, .. } = &layer.mask else {
@@ -174,11 +174,12 @@ fn edges(layer: &BlockerLayer) -> Option<[f64; 2]> {
     }))
 }
 
-/// How far from the central ray light passes a place on the first leg before a plane sees it.
+/// The distance from the central ray at which light seen by a plane passes a place on the first
+/// leg.
 fn reach(scene: &Scene, plane: &VirtualPlane, at: f64) -> Option<[f64; 2]> {
     let w = &plane.window;
     let windows = [(&w.x, &w.u), (&w.y, &w.v)].map(|(x, u)| [x.half_width(), u.half_width()]);
-    // Where the light that the plane sees goes from the first leg, or the plane itself.
+    // The point where the light that the plane sees leaves the first leg, or the plane itself.
     let end = match plane.leg {
         0 => plane.distance,
         1 if scene.path.legs[1].frame.d.z < -0.999 => scene.path.first_hit(),
@@ -195,7 +196,7 @@ fn reach(scene: &Scene, plane: &VirtualPlane, at: f64) -> Option<[f64; 2]> {
         let from_plane = x + (end - at) * u;
         match (plane.leg, &scene.light) {
             (_, Light::Beam { .. }) => hit,
-            // Of light from far away nothing is known, which leaves the other.
+            // For light from an environment nothing is known, which leaves the other bound.
             (0, _) => from_plane.min(from_light),
             _ => from_light,
         }

@@ -1,4 +1,4 @@
-//! Pictures: read from OpenEXR and PNG files, as one number for each pixel.
+//! Reads pictures from OpenEXR and PNG files, as one number for each pixel.
 
 use etendue_field::Raster;
 use etendue_scenefile::{Fault, fault};
@@ -10,34 +10,35 @@ use std::path::Path;
 /// Weights of red, green and blue in luminance (Rec. ITU-R BT.709).
 const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
-/// Most numbers in a file: 8192 × 4096 pixels of red, green, blue and alpha.
+/// The largest number of values in a file: 8192 × 4096 pixels of red, green, blue and alpha.
 const MAX_NUMBERS: usize = 1 << 27;
 
-/// Most numbers in a byte of a file: DEFLATE makes at most 1032 bytes of one (RFC 1951; zlib's technical
-/// notes), which are as many numbers of a PNG file and half as many of an OpenEXR file. So memory is
-/// taken for what a file can hold, not for what its header claims.
+/// The largest number of values per byte of a file: DEFLATE makes at most 1032 bytes of one (RFC
+/// 1951; zlib's technical notes), which are as many values of a PNG file and half as many of an
+/// OpenEXR file. So memory is allocated for what a file can hold, not for what its header claims.
 const MOST_PER_BYTE: usize = 1032;
 
 /// A picture: grey, or red, green and blue.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channels {
-    /// Pixels in a row.
+    /// Number of pixels in a row.
     pub width: usize,
-    /// Rows.
+    /// Number of rows.
     pub height: usize,
-    /// One number for each pixel, or three one after the other.
+    /// Values of the pixels, one or three for each.
     pub values: Vec<f64>,
-    /// 1 or 3.
+    /// Values per pixel, 1 or 3.
     pub count: usize,
-    /// Levels of a file with full at 1, which have a transfer curve; else they are in proportion to light.
+    /// Whether the values are levels of a file, from 0 to 1, with a transfer curve; otherwise they
+    /// are proportional to light.
     pub are_levels: bool,
 }
 
 impl Channels {
-    /// One number for each pixel.
+    /// The picture as one number for each pixel.
     ///
     /// # Errors
-    /// A picture without pixels.
+    /// When the picture has no pixels.
     pub fn raster(&self, number: impl Fn([f64; 3]) -> f64) -> Result<Raster, Fault> {
         let values = match self.count {
             1 => self.values.iter().map(|v| number([*v; 3])).collect(),
@@ -57,10 +58,11 @@ impl Channels {
     }
 }
 
-/// Reads the bytes of a picture, its format told by the extension of `file` in any case.
+/// Reads the bytes of a picture. The extension of `file`, in any case, determines the format.
 ///
-/// OpenEXR: the first layer with channels R, G and B, whose luminance it is, or Y; all its data window. PNG: grey or colour of 8 or 16 bits, its
-/// levels as they are with full at 1: no transfer curve is undone; alpha is passed over.
+/// OpenEXR: the luminance of the first layer with channels R, G and B, or its channel Y; the whole
+/// data window. PNG: grey or colour of 8 or 16 bits, with its levels scaled to 1 and no transfer
+/// curve undone; alpha is ignored.
 pub(crate) fn parse(file: &Path, bytes: &[u8], extensions: &[&str]) -> Result<Raster, Fault> {
     let extension = extension(file);
     if !extensions.contains(&extension.as_str()) {
@@ -70,12 +72,14 @@ pub(crate) fn parse(file: &Path, bytes: &[u8], extensions: &[&str]) -> Result<Ra
     read_channels(file, bytes)?.luminance()
 }
 
-/// Reads the bytes of an OpenEXR or a PNG file, told apart by the extension of `file` in any case.
+/// Reads the bytes of an OpenEXR or a PNG file. The extension of `file`, in any case, determines
+/// the format.
 ///
-/// OpenEXR: the first layer with channels R, G and B, or Y; all its data window. PNG: grey or colour of 8 or 16 bits. Alpha is passed over.
+/// OpenEXR: the first layer with channels R, G and B, or Y; the whole data window. PNG: grey or
+/// colour of 8 or 16 bits. Alpha is ignored.
 ///
 /// # Errors
-/// A damaged file, or one that is larger than it should be.
+/// When the file is damaged, or larger than it should be.
 pub fn read_channels(file: &Path, bytes: &[u8]) -> Result<Channels, Fault> {
     match extension(file).as_str() {
         "png" => png(bytes),
@@ -157,7 +161,7 @@ fn exr(bytes: &[u8]) -> Result<Channels, Fault> {
     ))
 }
 
-/// How many numbers a pixel of a layer has, and all of them; `None` without the channels for it.
+/// The number of values per pixel of a layer, and the values; `None` if the channels are missing.
 fn colours(channels: &AnyChannels<FlatSamples>) -> Option<(usize, Vec<f64>)> {
     let channel = |name: &str| {
         let mut list = channels.list.iter();

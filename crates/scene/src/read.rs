@@ -1,4 +1,5 @@
-//! Files as bytes: regular ones only, of a bounded length, and below a folder where a scene names them.
+//! Reads files as bytes: only regular ones of a bounded length, and only below a folder where a
+//! scene names them.
 
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -7,21 +8,21 @@ use std::path::{Component, Path};
 /// Why a file is not read.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
-    /// The system does not give its content.
+    /// The system cannot read the file.
     #[error("{0}")]
     Io(#[from] io::Error),
-    /// A folder, a pipe or a device: the last two might never end.
+    /// A folder, a pipe or a device; the last two might never end.
     #[error("not a regular file")]
     NotRegular,
-    /// Its path, links followed, leads out of the folder.
+    /// The path, with links followed, leads out of the folder.
     #[error("outside of the folder it must be in, links followed")]
     Outside,
-    /// Longer than what is read of such a file.
+    /// The file is longer than allowed.
     #[error("{length} bytes long; at most {most} are read")]
     TooLong {
-        /// Its length, bytes.
+        /// Length of the file, bytes.
         length: u64,
-        /// The most allowed, bytes.
+        /// The largest allowed length, bytes.
         most: u64,
     },
 }
@@ -29,9 +30,9 @@ pub enum ReadError {
 /// The bytes of a regular file, at most `most` of them.
 ///
 /// # Errors
-/// [`ReadError`]; a path outside of every folder is no error here.
+/// [`ReadError`]; a path outside of every folder is not an error here.
 pub fn read_file(path: &Path, most: u64) -> Result<Vec<u8>, ReadError> {
-    // Asked before it is opened: opening a pipe waits for the other end.
+    // Checked before opening: opening a pipe would wait for the other end.
     if !fs::metadata(path)?.is_file() {
         return Err(ReadError::NotRegular);
     }
@@ -41,7 +42,7 @@ pub fn read_file(path: &Path, most: u64) -> Result<Vec<u8>, ReadError> {
         return Err(ReadError::TooLong { length, most });
     }
     let mut bytes = Vec::new();
-    // What grows while it is read is cut one byte beyond the limit.
+    // A file that grows while it is read is cut one byte beyond the limit.
     file.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
     match bytes.len() as u64 {
         length if length > most => Err(ReadError::TooLong { length, most }),
@@ -49,7 +50,7 @@ pub fn read_file(path: &Path, most: u64) -> Result<Vec<u8>, ReadError> {
     }
 }
 
-/// The bytes of the regular file `name`, which must be below `folder` when all links are followed.
+/// The bytes of the regular file `name`, which must be below `folder` after all links are followed.
 ///
 /// # Errors
 /// [`ReadError`].
@@ -57,7 +58,7 @@ pub fn read_below(folder: &Path, name: &str, most: u64) -> Result<Vec<u8>, ReadE
     if !leads_down(name) {
         return Err(ReadError::Outside);
     }
-    // The folder of a path without one is the current one.
+    // A path without a folder is relative to the current one.
     let folder = match folder.as_os_str() {
         empty if empty.is_empty() => Path::new(".").canonicalize()?,
         _ => folder.canonicalize()?,
@@ -69,7 +70,7 @@ pub fn read_below(folder: &Path, name: &str, most: u64) -> Result<Vec<u8>, ReadE
     read_file(&path, most)
 }
 
-/// Whether a path, as written, leads nowhere but down.
+/// Whether a path, as written, never leads upwards.
 pub(crate) fn leads_down(path: &str) -> bool {
     let mut components = Path::new(path).components();
     components.all(|c| matches!(c, Component::Normal(_)))

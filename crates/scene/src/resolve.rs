@@ -1,4 +1,4 @@
-//! From a scene file to a checked scene.
+//! Resolves a scene file to a checked scene.
 
 mod blockers;
 mod faults;
@@ -33,12 +33,12 @@ use obstacles::Things;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Checks a scene file and resolves it to a scene; paths of meshes and pictures are relative to `folder`, `memory` is what
-/// this machine can hold, in bytes.
+/// Checks a scene file and resolves it to a scene. Paths of meshes and pictures are relative to
+/// `folder`; `memory` is the memory of this machine, in bytes.
 ///
 /// # Errors
-/// [`SceneError::Values`] with every fault found; when there are more things than [`crate::limits`]
-/// allow, with these alone.
+/// [`SceneError::Values`] with every fault found; when the scene exceeds the counts of
+/// [`crate::limits`], with these faults alone.
 pub fn resolve(
     name: &str,
     file: SceneFile,
@@ -58,15 +58,15 @@ pub fn resolve(
     }
 }
 
-/// Ten times the smallest p-value there is.
+/// Ten times the smallest possible p-value.
 const LEAST_LEVEL: f64 = 5e-4;
-/// Relative distance below which two planes across the path are one.
+/// Relative distance below which two planes across the path count as the same.
 const SAME_PLANE: f64 = 1e-9;
 
 struct Resolver<'a> {
     faults: &'a mut Faults,
     folder: &'a Path,
-    /// The BLAKE3 hashes of the files read from it, by the names the scene has for them.
+    /// The BLAKE3 hashes of the files read, by the names they have in the scene.
     inputs: BTreeMap<String, String>,
 }
 
@@ -83,8 +83,8 @@ impl Resolver<'_> {
         self.run(&file.run);
         self.level(file.run.alpha, file.planes.len());
         self.layers(&file);
-        // Without a frame no distance is known: check on with one that leaves the values as they are.
-        // In one that is not finite all triangles of a mesh would overlap.
+        // Without a frame no distance is known, so the checks continue with a frame that leaves the
+        // values unchanged. In a frame that is not finite all triangles of a mesh would overlap.
         let checked = frame.filter(|frame| frame.origin.is_finite());
         let checked = checked.unwrap_or(Frame::IDENTITY);
         let light = self.light(&file.light, &checked);
@@ -131,7 +131,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// The bytes of a file that the scene names.
+    /// The bytes of a file named in the scene.
     fn named_file(&mut self, of: &str, name: &str) -> Option<Vec<u8>> {
         match read_below(self.folder, name, INPUT_BYTES) {
             Ok(bytes) => {
@@ -164,7 +164,8 @@ impl Resolver<'_> {
         frame
     }
 
-    /// Two flat things in one plane: which one light meets first would be left to rounding.
+    /// Refuses two flat objects in one plane, because rounding would decide which one light meets
+    /// first.
     fn distinct(&mut self, file: &SceneFile, stops: &[PathStop<'_>]) {
         let mut flat: Vec<&PathStop<'_>> = stops.iter().filter(|s| s.is_flat()).collect();
         flat.sort_by(|a, b| a.extent[0].total_cmp(&b.extent[0]));
@@ -183,7 +184,7 @@ impl Resolver<'_> {
     }
 
     fn run(&mut self, run: &RunFile) {
-        // A batch of one photon has a spread, one of none has not.
+        // A batch of one photon has a spread, an empty batch has none.
         let least = u64::from(run.batches);
         if !(least..=1_000_000_000_000).contains(&run.photons) {
             let allowed = format!("{least} (one for each batch) to 10^12");
@@ -191,7 +192,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// The level of each plane must be one that a p-value can fall below.
+    /// Checks that a p-value can fall below the level of each plane.
     fn level(&mut self, alpha: f64, planes: usize) {
         let level = 1.0 - libm::pow(1.0 - alpha, 1.0 / planes.max(1) as f64);
         if level < LEAST_LEVEL {
@@ -203,14 +204,14 @@ impl Resolver<'_> {
     }
 }
 
-/// Something that planes can be before and after.
+/// An object that planes can be before or after.
 struct PathStop<'a> {
     name: &'a str,
-    /// Nearest and farthest distance on the first leg; one and the same for what is flat.
+    /// The nearest and the farthest distance on the first leg, equal for a flat object.
     extent: [f64; 2],
-    /// Whether light leaves it.
+    /// Whether light leaves the object.
     surface: bool,
-    /// The leg that ends on it, if the path visits it.
+    /// The leg that ends on the object, if the path visits it.
     ends: Option<usize>,
 }
 
@@ -220,7 +221,7 @@ impl PathStop<'_> {
     }
 }
 
-/// Everything there is, by distance.
+/// All objects of a scene, sorted by distance.
 fn stops<'a>(path: &CentralRay, things: Things<'a>) -> Vec<PathStop<'a>> {
     let ends = |object: Object| {
         let mut legs = 0..path.legs.len();

@@ -10,9 +10,9 @@ use std::sync::Arc;
 /// all coordinates are those of the frame at the light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// Name: the file's, without its ending.
+    /// Name of the scene: the file's, without its extension.
     pub name: String,
-    /// The file it was resolved from, defaults and overrides included.
+    /// The file that the scene was resolved from, defaults and overrides included.
     pub file: SceneFile,
     /// The central ray.
     pub path: CentralRay,
@@ -26,48 +26,49 @@ pub struct Scene {
     pub patches: Vec<PatchObject>,
     /// The meshes: blockers, then surfaces, in the order of the file.
     pub meshes: Vec<MeshObject>,
-    /// Where light is looked at, in the order of the file.
+    /// The virtual planes, in the order of the file.
     pub planes: Vec<VirtualPlane>,
-    /// BLAKE3 of each mesh and picture read, by the name the file has for it.
+    /// BLAKE3 hash of each mesh and picture, by its name in the file.
     pub inputs: BTreeMap<String, String>,
-    /// How it is measured.
+    /// The settings of the measurement.
     pub run: Run,
 }
 
-/// The ray everything is measured from: straight legs from surface to surface.
+/// The ray that everything is measured from: straight legs from surface to surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CentralRay {
     /// Frame at the light, in the world of the scene file.
     pub frame: Frame,
-    /// The legs, in the order of light: one more than surfaces visited.
+    /// The legs, in the order of light, one more than the surfaces visited.
     pub legs: Vec<Leg>,
 }
 
 /// A straight piece of the central ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Leg {
-    /// Frame at its beginning, in the frame at the light.
+    /// Frame at the beginning of the leg, in the frame at the light.
     pub frame: Frame,
-    /// Distance along the path at which it begins.
+    /// Distance along the path at which the leg begins.
     pub start: f64,
-    /// Distance to the surface that ends it; for the last leg, to the first thing that stands in its way.
+    /// Distance to the surface that ends the leg; for the last leg, to the first obstacle.
     pub length: f64,
-    /// Where it leaves a surface; `None` for the first.
+    /// The hit at which the leg leaves a surface; `None` for the first leg.
     pub leaves: Option<Hit>,
 }
 
 /// Where the central ray meets a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// What it meets.
+    /// The object that the ray meets.
     pub object: Object,
-    /// Where, in the frame at the light.
+    /// The point of the hit, in the frame at the light.
     pub point: DVec3,
-    /// The surface's unit normal there, on the side the light comes from, in the frame at the light.
+    /// The surface's unit normal at the point, on the side from which the light comes, in the frame
+    /// at the light.
     pub normal: DVec3,
 }
 
-/// Something that light can meet and leave.
+/// An object that light can meet and leave.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Object {
     /// The flat surface with this index.
@@ -79,8 +80,9 @@ pub enum Object {
 }
 
 impl Hit {
-    /// The frame (T, B, N) at the hit, for light that arrives in a frame, and the longitude θ₀ of where it comes from: T lies in the plane
-    /// of incidence, X turns to −T at normal incidence (docs/conventions.md).
+    /// The frame (T, B, N) at the hit, for light that arrives in a frame, and the longitude θ₀ of
+    /// the direction it comes from: T lies in the plane of incidence, and X is rotated to −T at
+    /// normal incidence (docs/conventions.md).
     #[must_use]
     pub fn surface_frame(&self, arriving: &Frame) -> (Frame, f64) {
         let (n, from) = (self.normal, -arriving.d);
@@ -108,7 +110,7 @@ impl CentralRay {
         self.legs[0].length
     }
 
-    /// Where the leg ends; `None` for the last.
+    /// The hit at which the leg ends; `None` for the last leg.
     #[must_use]
     pub fn ends_at(&self, leg: usize) -> Option<&Hit> {
         self.legs.get(leg + 1)?.leaves.as_ref()
@@ -121,7 +123,7 @@ impl CentralRay {
         hits.any(|hit| hit.object == object)
     }
 
-    /// How far a plane is along its leg.
+    /// Distance of a plane along its leg.
     #[must_use]
     pub fn along(&self, plane: &VirtualPlane) -> f64 {
         plane.distance - self.legs[plane.leg].start
@@ -135,16 +137,16 @@ impl CentralRay {
     }
 }
 
-/// What stands in one plane and multiplies radiance.
+/// A layer of blockers in one plane, which multiplies radiance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BlockerLayer {
     /// Name.
     pub name: String,
-    /// Distance of their plane.
+    /// Distance of the layer's plane.
     pub distance: f64,
-    /// Distance between repetitions, if there are any: they replicate spectra at multiples of 1/pitch.
+    /// Distance between repetitions, if any: they replicate spectra at multiples of 1/pitch.
     pub pitch: Option<f64>,
-    /// What they do to radiance.
+    /// The mask that multiplies radiance.
     pub mask: Mask,
 }
 
@@ -153,29 +155,29 @@ pub struct BlockerLayer {
 pub struct MeshObject {
     /// Name.
     pub name: String,
-    /// Where its own origin is, in the frame at the light.
+    /// The mesh's own origin, in the frame at the light.
     pub center: DVec3,
     /// Corners of the triangles, in the frame at the light.
     pub triangles: Triangles,
-    /// Nearest and farthest distance of its corners.
+    /// The nearest and the farthest distance of the corners.
     pub extent: [f64; 2],
-    /// Reflected over incident flux, if it is Lambertian.
+    /// Reflected over incident flux; `None` if the mesh is not Lambertian.
     pub albedo: Option<f64>,
-    /// If it is a smooth surface, what it is then.
+    /// The smooth surface, if the mesh is one.
     pub smooth: Option<SmoothMesh>,
 }
 
 /// A mesh as a smooth surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SmoothMesh {
-    /// What it does to light.
+    /// The interaction with light.
     pub event: Specular,
     /// Unit normals at the corners of the triangles, outward as they are wound, in the frame at the light.
     pub normals: Arc<[[DVec3; 3]]>,
 }
 
 impl MeshObject {
-    /// Whether it is neither Lambertian nor smooth.
+    /// Whether the mesh is neither Lambertian nor smooth.
     #[must_use]
     pub fn is_black(&self) -> bool {
         self.albedo.is_none() && self.smooth.is_none()
@@ -187,23 +189,24 @@ impl MeshObject {
 pub struct PatchObject {
     /// Name.
     pub name: String,
-    /// Its form, in the frame at the light.
+    /// The shape, in the frame at the light.
     pub patch: Patch,
-    /// What it does.
+    /// The interaction with light.
     pub event: Event,
 }
 
-/// What a smooth surface does to light.
+/// The interaction of a smooth surface with light.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Event {
-    /// Sends each ray on in one direction.
+    /// Sends each ray in one direction.
     Specular(Specular),
-    /// Reflects it by a sum of BRDFs, on the side it faces; on the other it is black.
+    /// Reflects by a sum of BRDFs on the side that the surface faces; the other side is black.
     Reflects(Reflectance),
 }
 
 impl Event {
-    /// Whether light leaves it in the direction of a mirror, or more or less so; Lambertian light does not. Of a sum the first BRDF says so.
+    /// Whether light leaves the surface in or near the mirror direction, unlike Lambertian light.
+    /// For a sum of BRDFs the first one decides.
     #[must_use]
     pub fn mirrors(&self) -> bool {
         match self {
@@ -218,16 +221,18 @@ impl Event {
 pub struct Surface {
     /// Name.
     pub name: String,
-    /// O at its centre, X and Y along its edges, D its normal on the side that light arrives at; in the frame at the light.
+    /// Frame of the rectangle, in the frame at the light: O at the centre, X and Y along the edges,
+    /// D the normal on the side at which light arrives.
     pub frame: Frame,
-    /// Side lengths along X and Y of its frame.
+    /// Side lengths along X and Y of the frame.
     pub size: [f64; 2],
     /// Reflected over incident flux.
     pub albedo: f64,
 }
 
 impl Surface {
-    /// Distance and rectangle, if it lies across the first leg with its edges along X and Y.
+    /// Distance and rectangle, if the surface lies across the first leg with its edges along X and
+    /// Y.
     #[must_use]
     #[expect(
         clippy::float_cmp,
@@ -244,7 +249,7 @@ impl Surface {
         ))
     }
 
-    /// The four corners, in the frame at the light.
+    /// The four corners of the surface, in the frame at the light.
     #[must_use]
     pub fn corners(&self) -> [DVec3; 4] {
         let [x, y] = self.size.map(|side| 0.5 * side);
@@ -254,7 +259,7 @@ impl Surface {
 }
 
 impl Scene {
-    /// The same scene with some of its planes alone, by their numbers.
+    /// The same scene with only some of its planes, given by index.
     #[must_use]
     pub fn seen_at(&self, planes: &[usize]) -> Self {
         Self {
@@ -263,8 +268,8 @@ impl Scene {
         }
     }
 
-    /// BLAKE3 of all that makes the scene: of its file, defaults and overrides included, as JSON, and after it
-    /// the name and hash of each mesh and picture it names.
+    /// BLAKE3 hash of everything that defines the scene: its file, defaults and overrides included,
+    /// as JSON, followed by the name and hash of each mesh and picture it names.
     #[must_use]
     pub fn hash(&self) -> String {
         scene_hash(&self.file, &self.inputs)
@@ -281,7 +286,7 @@ impl Scene {
     }
 }
 
-/// How the scene is measured.
+/// The settings of the measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Run {
     /// Photons emitted.
@@ -290,7 +295,7 @@ pub struct Run {
     pub seed: u64,
     /// Independent batches.
     pub batches: u32,
-    /// Share of true scenes the verdict may reject, over all planes.
+    /// The share of correct scenes that the verdict may reject, over all planes.
     pub alpha: f64,
     /// Noise, as a share of the spectrum, above which a plane does not pass.
     pub resolution: f64,
@@ -300,14 +305,14 @@ pub struct Run {
     pub sampling: Sampling,
 }
 
-/// [`Scene::hash`] of a file and of the hashes of what it names.
+/// [`Scene::hash`] of a file and of the hashes of the files it names.
 #[must_use]
 pub fn scene_hash(file: &SceneFile, inputs: &BTreeMap<String, String>) -> String {
     let mut hasher = blake3::Hasher::new();
-    // Cannot fail: a scene file is plain data with finite numbers.
+    // This cannot fail: a scene file is plain data with finite numbers.
     hasher.update(&serde_json::to_vec(file).unwrap_or_default());
     for (name, hash) in inputs {
-        // Names hold no NUL, so no two lists of files give the same bytes.
+        // Names hold no NUL, so different lists of files give different bytes.
         hasher.update(format!("\0{name}\0{hash}").as_bytes());
     }
     hasher.finalize().to_hex().to_string()

@@ -7,8 +7,8 @@ use std::fmt;
 use std::ops::Deref;
 use std::sync::Arc;
 
-/// Triangles, in the frame at the light, and the one hierarchy over them that all rays ask. Clones
-/// share both.
+/// Triangles, in the frame at the light, and the one hierarchy over them that all rays traverse.
+/// Clones share both.
 #[derive(Clone)]
 pub struct Triangles(Arc<SharedTriangles>);
 
@@ -19,7 +19,8 @@ struct SharedTriangles {
 }
 
 impl Triangles {
-    /// Of these corners. `origins` is the largest coordinate a ray starts from.
+    /// Builds the hierarchy over triangles with these corners. `origins` is the largest coordinate
+    /// that a ray starts from.
     #[must_use]
     pub fn new(corners: Vec<[DVec3; 3]>, origins: f64) -> Self {
         let bounds = |i: usize| enclosing(&corners[i]);
@@ -30,13 +31,13 @@ impl Triangles {
         }))
     }
 
-    /// Lowest and highest corner of the box around them.
+    /// The lowest and the highest corner of the bounding box.
     #[must_use]
     pub fn bounds(&self) -> [DVec3; 2] {
         self.0.bounds
     }
 
-    /// Names the triangles that a ray may meet: [`BinaryHierarchy::along`].
+    /// Passes on the triangles that a ray may meet: [`BinaryHierarchy::along`].
     #[inline]
     pub fn along(
         &self,

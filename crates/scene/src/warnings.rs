@@ -1,5 +1,4 @@
-//! What a sound scene should still be told of: likely mistakes, and smooth meshes too coarse for their
-//! normals.
+//! Warnings for a valid scene: likely mistakes, and smooth meshes too coarse for their normals.
 
 use crate::mistakes::mistakes;
 use crate::scene::{Leg, MeshObject, Object, Scene, SmoothMesh};
@@ -7,28 +6,30 @@ use etendue_field::{Frame, Light, TwoPlane, VirtualPlane, interpolated_normal, t
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// Difference of a spectrum between photons and backward rays from which a mesh is warned of.
+/// The difference of a spectrum between photons and backward rays above which a mesh causes a
+/// warning.
 const LEVEL: f64 = 0.01;
-/// Triangles looked at; of finer meshes every second, every third, ….
+/// The largest number of triangles examined; of finer meshes every second, every third, ….
 const MAX_TRIANGLES: usize = 20_000;
-/// Pieces of a window across which triangles are cut.
+/// The number of pieces of a window across which triangles are subdivided.
 const PIECES: f64 = 8.0;
-/// Azimuths of waves, and waves along each: multiples of the spacing of a plane's frequencies, up
-/// to the largest.
+/// The number of azimuths of waves, and of waves along each: multiples of the spacing of a plane's
+/// frequencies, up to the largest.
 const AZIMUTHS: u32 = 4;
 const WAVES: usize = 8;
-/// Slopes at which each point is looked at, over the half-width of the window.
+/// The slopes at which each point is evaluated, over the half-width of the window.
 const SLOPES: [f64; 3] = [-0.5, 0.0, 0.5];
 
 impl Scene {
-    /// Warnings in words: of likely mistakes, and one for each smooth mesh on the path that is too coarse.
+    /// Warnings in words: one for each likely mistake, and one for each smooth mesh on the path
+    /// that is too coarse.
     ///
-    /// A mesh turns light by its interpolated normal n and catches it by the normal t of the
+    /// A mesh deflects light by its interpolated normal n and receives it by the normal t of the
     /// triangle. Photons that come along d and leave along e then have (d·t / d·n) / (e·t / e·n)
     /// times the radiance that backward rays find: interpolated normals do not conserve étendue.
-    /// What a plane has of this is the spectrum of the window times that factor less 1, over the
-    /// spectrum of the window, both where the mesh is hit, at the frequencies along x and y that
-    /// are measured: finer facets than those average out.
+    /// The effect on a plane is the spectrum of the window times that factor less 1, over the
+    /// spectrum of the window, both where the mesh is hit, at the measured frequencies along x and
+    /// y: facets finer than those average out.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = mistakes(self);
@@ -55,7 +56,7 @@ impl Scene {
         warnings
     }
 
-    /// What is left out of a ray file.
+    /// A warning about the rays of a ray file that are omitted.
     fn rays_behind(&self) -> Option<String> {
         let Light::Rays { rays } = &self.light else {
             return None;
@@ -70,9 +71,9 @@ impl Scene {
         })
     }
 
-    /// How far photons and backward rays may differ at a plane because a smooth mesh before it is
-    /// too coarse, as a share of the spectrum (see [`warnings`](Self::warnings)). `None` without
-    /// such a mesh.
+    /// The possible difference between photons and backward rays at a plane because a smooth mesh
+    /// before it is too coarse, as a share of the spectrum (see [`warnings`](Self::warnings)).
+    /// `None` without such a mesh.
     #[must_use]
     pub fn mesh_mismatch(&self, plane: &VirtualPlane) -> Option<f64> {
         let legs = 1..=plane.leg;
@@ -80,7 +81,7 @@ impl Scene {
         all.max_by(f64::total_cmp)
     }
 
-    /// The smooth mesh at the beginning of a leg, and what it makes at a plane.
+    /// The smooth mesh at the beginning of a leg, and the difference it causes at a plane.
     fn mismatch(&self, leg: usize, plane: &VirtualPlane) -> Option<(&MeshObject, f64)> {
         let legs = [&self.path.legs[leg - 1], &self.path.legs[leg]];
         let Object::Mesh(mesh) = legs[1].leaves?.object else {
@@ -92,22 +93,22 @@ impl Scene {
     }
 }
 
-/// What a window sees of a smooth mesh, as if surfaces after it were flat.
+/// The part of a smooth mesh that a window sees, with later surfaces treated as flat.
 struct WindowView<'a> {
     mesh: &'a MeshObject,
     smooth: &'a SmoothMesh,
-    /// At the hit, along the light that leaves it.
+    /// The frame at the hit, along the light that leaves it.
     frame: Frame,
     /// 1 where light arrives along the normals of the mesh, −1 where it arrives against them.
     side: f64,
     plane: &'a VirtualPlane,
-    /// From the hit to the plane.
+    /// The distance from the hit to the plane.
     along: f64,
-    /// Half the size of what is seen, along X and Y.
+    /// Half the size of the visible part, along X and Y.
     half: [f64; 2],
 }
 
-/// The window, and what photons and rays differ by in it: sums over points at once, or their
+/// The window, and the difference of photons and rays in it: sums over points at one time, or their
 /// spectra.
 #[derive(Clone, Copy, Debug, Default)]
 struct WindowSums {
@@ -115,10 +116,10 @@ struct WindowSums {
     whole: f64,
 }
 
-/// A wave, Ω, and the spectra at its frequency.
+/// A wave with frequency Ω, and the spectra at that frequency.
 struct Wave {
     frequency: [f64; 2],
-    /// 2 where its conjugate is another one.
+    /// 2 where the complex conjugate is a different wave.
     times: f64,
     difference: [f64; 2],
     whole: [f64; 2],
@@ -200,7 +201,7 @@ impl<'a> WindowView<'a> {
         }
     }
 
-    /// Adds a piece of a triangle, cut in four until it is small in the window.
+    /// Adds a piece of a triangle, divided into four until the pieces are small in the window.
     fn add(
         &self,
         whole: &[DVec3; 3],
@@ -269,7 +270,7 @@ impl<'a> WindowView<'a> {
             return;
         }
         let kept = |d: DVec3| d.dot(flat) / d.dot(normal);
-        // Light on the wrong side of a triangle is all lost, or gained.
+        // Light on the wrong side of a triangle is completely lost, or gained.
         let factor = (kept(back) / kept(leaves)).clamp(0.0, 2.0);
         if factor.is_finite() {
             sums.difference += weight * (factor - 1.0);

@@ -1,4 +1,4 @@
-//! The words of a scene that the book shows are words that can be read.
+//! Tests that the scenes shown in the book can be read.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -18,7 +18,7 @@ const FIELDS: [(&str, &str); 5] = [
     ("frequencies", "frequencies: (rho: (max: 8), nu: (max: 8))"),
 ];
 
-/// The fields that stand in a page's fragments of scenes; each begins a line.
+/// The fields in a page's fragments of scenes; each begins a line.
 fn fragments(page: &str) -> Vec<String> {
     let blocks = page.split("```ron fragment\n").skip(1);
     let mut fields: Vec<String> = Vec::new();

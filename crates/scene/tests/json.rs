@@ -1,4 +1,4 @@
-//! Scene files in JSON, as results hold them and as editors check them by the schema.
+//! Tests scene files in JSON, as stored in results and as checked by editors with the schema.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 

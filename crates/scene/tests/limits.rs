@@ -1,4 +1,4 @@
-//! How much a scene file may hold, what its names are made of, and how little of it is shown.
+//! Tests the limits on the size of a scene file, on its names, and on what messages show of it.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -35,7 +35,7 @@ fn resolved(text: &str) -> Result<Scene, SceneError> {
     resolve("test", SceneFile::parse(text)?, ".".as_ref(), u64::MAX)
 }
 
-/// What is wrong with the scene in which `to` stands for `from`.
+/// The error of the scene in which `from` is replaced by `to`.
 fn error(from: &str, to: &str) -> SceneError {
     assert!(text().contains(from), "{from} is not in the scene");
     resolved(&text().replacen(from, to, 1)).unwrap_err()
@@ -54,7 +54,7 @@ fn layer(count: u32, shape: impl Fn(u32) -> String) -> String {
     format!(r#"Shapes(name: "some", center: (0, 0, 1), shapes: [{shapes}])"#)
 }
 
-/// Work that is done in far less time than it takes to compare each with each.
+/// Requires that work takes far less time than comparing every pair would.
 fn quickly<T>(what: &str, work: impl FnOnce() -> T) -> T {
     let start = Instant::now();
     let done = work();
@@ -86,7 +86,7 @@ fn the_last_pair_that_overlaps_is_found() {
             i => format!("Disc(center: ({}, {}), radius: 0.5)", i % 122, i / 122),
         })
     };
-    // In the corner between four discs, and a little larger.
+    // A disc in the gap between four discs, and a slightly larger one.
     for (radius, told) in [(0.207, None), (0.208, Some("shapes[17] and shapes[14999]"))] {
         let shapes = apart(&format!("Disc(center: (17.5, 0.5), radius: {radius})"));
         let text = text().replacen(BLOCKERS, &shapes, 1);
@@ -98,7 +98,7 @@ fn the_last_pair_that_overlaps_is_found() {
     }
 }
 
-/// What a layer of two squares and some half-planes is refused for, if it is.
+/// The fault of a layer of two squares and some half-planes, if any.
 fn overlap_of(half_planes: &str) -> Option<String> {
     let squares =
         "Rectangle(center: (0, 0), size: (1, 1)), Rectangle(center: (2, 0), size: (1, 1)),";
@@ -151,7 +151,7 @@ fn a_fault_that_planes_share_is_told_once() {
     assert_eq!(told.lines().count(), 1, "{told}");
 }
 
-/// A list of `count` things, each written with its number.
+/// A list of `count` items, each written with its number.
 fn list(count: u32, thing: impl Fn(u32) -> String) -> String {
     (0..count).fold(String::new(), |mut all, i| {
         write!(all, "{},", thing(i)).unwrap();
@@ -271,7 +271,7 @@ fn the_scene_itself_has_a_name_that_can_be_a_folder() {
     }
 }
 
-/// A message is short, in what a terminal takes.
+/// Whether a message is short and safe for a terminal.
 fn is_plain(message: &str) -> bool {
     let printable = |c: char| !c.is_control() && !matches!(c, '\u{202a}'..='\u{202e}' | '\u{fffe}');
     message.chars().count() < 3_000 && message.lines().all(|line| line.chars().all(printable))
@@ -332,7 +332,7 @@ fn a_value_that_is_set_is_nested_no_deeper_than_a_scene() {
         open("(") + &close,
         open("a(") + &close,
         open("(a:") + &close,
-        // Closed one by one, and by all the brackets at the end.
+        // Brackets closed one by one, and all at the end.
         open("(a)") + &close,
     ] {
         let told = quickly("a nested value", || {
@@ -348,7 +348,7 @@ fn a_value_that_is_set_is_nested_no_deeper_than_a_scene() {
     assert!(is_plain(&told), "{told:.500}");
 }
 
-/// Twice the work at each bracket would be a billion times the work at thirty.
+/// If each bracket doubled the work, this would take a billion times as long as thirty brackets.
 #[test]
 fn each_part_of_a_value_that_is_set_is_read_once() {
     let value = format!("{}1{}", "(a:".repeat(30), ",b)".repeat(30));
@@ -368,7 +368,7 @@ fn sets(fields: &[(&str, &str)]) -> Vec<(String, String)> {
 fn fields_set_together_are_as_set_one_after_the_other() {
     let fields = sets(&[
         ("run.photons", "1e6"),
-        // Its phase is not written, and set by the next.
+        // The phase is not written, and set by the next edit.
         (
             "blockers.0",
             "Grating(name: bars, center: (0, 0, 1), axis: X, frequency: 3)",

@@ -1,4 +1,4 @@
-//! The tests of `etendue-scene`, one program for all.
+//! The tests of `etendue-scene`, as one program.
 
 mod book;
 mod detailed;

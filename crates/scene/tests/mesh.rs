@@ -1,4 +1,4 @@
-//! Meshes: what is read, what is refused and how the refusal reads, and the made surface.
+//! Tests meshes: what is read, what is refused and with which message, and generated surfaces.
 
 use etendue_scene::{Fault, Mesh};
 use glam::{DAffine3, DVec3};
@@ -14,14 +14,15 @@ fn read(name: &str, bytes: impl AsRef<[u8]>) -> Result<Mesh, Fault> {
     Mesh::parse(Path::new(name), bytes.as_ref())
 }
 
-/// Volume inside, by the divergence theorem; positive when triangles face outward.
+/// The enclosed volume, by the divergence theorem; positive when triangles face outward.
 fn volume(mesh: &Mesh) -> f64 {
     mesh.corners()
         .map(|[a, b, c]| a.dot(b.cross(c)) / 6.0)
         .sum()
 }
 
-/// Every edge is walked once in either direction: two triangles share it, and they agree on outside.
+/// Whether every edge is traversed once in each direction, so that two triangles share it and agree
+/// on the outside.
 fn closed(mesh: &Mesh) -> bool {
     let mut edges: HashMap<[u32; 2], [u32; 2]> = HashMap::new();
     for [a, b, c] in mesh.triangles() {
@@ -33,7 +34,8 @@ fn closed(mesh: &Mesh) -> bool {
     edges.values().all(|walks| *walks == [1, 1])
 }
 
-/// Vertices less edges plus faces, of a closed mesh: 2 for a sphere's topology.
+/// The Euler characteristic of a closed mesh, vertices less edges plus faces: 2 for a sphere's
+/// topology.
 fn euler(mesh: &Mesh) -> usize {
     mesh.vertices().len() + mesh.triangles().len() - mesh.triangles().len() * 3 / 2
 }
@@ -49,7 +51,7 @@ fn cubes_of_both_formats_are_the_unit_cube() {
     }
 }
 
-/// A quadrilateral is the fan about its first corner, wherever the file ends its lines.
+/// A quadrilateral becomes a fan about its first corner, for every kind of line end.
 #[test]
 fn line_ends_of_all_kinds_and_a_fan() {
     let obj = "\u{feff}v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 2 3 4 1\n";
@@ -121,7 +123,7 @@ fn binary_ply_of_all_types_and_both_orders() {
     }
 }
 
-/// What we write, we read back to the bit, and so does a reader that is not ours.
+/// Files that we write are read back exactly, also by an independent reader.
 #[test]
 fn written_ply_reads_back_here_and_elsewhere() {
     let mesh = Mesh::star(0.7, 0.3, 5, 20).unwrap();
@@ -141,8 +143,9 @@ fn written_ply_reads_back_here_and_elsewhere() {
     assert_eq!(counts, [mesh.vertices().len(), mesh.triangles().len()]);
 }
 
-/// The triangles of an OBJ file as points, against tobj's. Without the `l` line, which tobj takes for a triangle,
-/// the color, which it wants on all vertices or none, and the continued line, which it refuses.
+/// The triangles of an OBJ file as points agree with tobj's. The `l` line, which tobj takes for a
+/// triangle, the color, which it requires on all vertices or none, and the continued line, which it
+/// refuses, are left out.
 #[test]
 fn obj_agrees_with_an_independent_reader() {
     let text = std::str::from_utf8(CUBE_OBJ).unwrap();
@@ -315,7 +318,8 @@ fn faults_of_binary_ply_files_are_told() {
     }
 }
 
-/// A header of another system's line ends before binary data, which begins right behind the last of them.
+/// A header with the line ends of another system precedes binary data, which begin directly after
+/// the last one.
 #[test]
 fn binary_ply_behind_all_line_ends() {
     let mesh = Mesh::star(1.0, 0.0, 0, 2).unwrap();
@@ -332,7 +336,8 @@ fn binary_ply_behind_all_line_ends() {
     }
 }
 
-/// A list that says it is four thousand million long is read as far as the file goes, with no memory made ready.
+/// A list with a stated length of four thousand million is read as far as the file goes, without
+/// allocating memory in advance.
 #[test]
 fn a_list_longer_than_the_file_is_told() {
     let ascii = edited("uchar int", "uint int").replace("ascii", "binary_little_endian");
@@ -347,8 +352,8 @@ fn a_list_longer_than_the_file_is_told() {
     );
 }
 
-/// Files that no one wrote: sound ones with bytes changed, removed, doubled or cut. Whatever they hold, the answer
-/// is a sound mesh or a fault in one line.
+/// Fuzzed files: valid ones with bytes changed, removed, doubled or cut. Whatever they hold, the
+/// result is a valid mesh or a fault in one line.
 #[test]
 fn no_bytes_make_a_reader_panic() {
     let star = Mesh::star(1.0, 0.2, 2, 4).unwrap().ply();
@@ -402,7 +407,8 @@ fn no_bytes_make_a_reader_panic() {
             }
         }
     }
-    // Both answers must occur often, or the files were changed too much or too little to ask anything.
+    // Both outcomes must occur often; otherwise the files were changed too much or too little for
+    // the test.
     let often = |counts: [u32; 4]| counts.iter().all(|n| *n > 100);
     assert!(
         often(sound) && often(refused),
@@ -447,8 +453,9 @@ fn a_star_is_closed_outward_and_of_its_volume() {
     assert!(Mesh::star(1.0, 0.3, 5, 113).unwrap().triangles().len() >= 50_000);
 }
 
-/// The volume tends to the smooth surface's as rings⁻²: a fourfold error at half the rings, and the closed form
-/// when that order is taken out. (∫ over the sphere of (1 + ε sinˡθ cos lφ)³ / 3; odd powers of the cosine vanish.)
+/// The volume converges to that of the smooth surface as rings⁻²: the error is fourfold at half the
+/// rings, and extrapolation gives the closed form. (∫ over the sphere of (1 + ε sinˡθ cos lφ)³ / 3;
+/// odd powers of the cosine vanish.)
 #[test]
 fn the_volume_of_a_star_is_the_closed_form() {
     for (relief, lobes) in [(0.0, 3), (0.4, 3), (0.4, 4)] {
@@ -493,7 +500,7 @@ fn a_moved_or_mirrored_mesh_keeps_its_outside() {
     assert!(far.unwrap_err().field.starts_with("vertex 0, x"));
 }
 
-/// What every caller may rely on, whoever makes the mesh.
+/// The guarantees to every caller, however the mesh is made.
 #[test]
 fn meshes_of_parts_are_checked() {
     let square = vec![DVec3::ZERO, DVec3::X, DVec3::X + DVec3::Y, DVec3::Y];

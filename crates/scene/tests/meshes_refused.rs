@@ -1,5 +1,5 @@
-//! Meshes that a scene cannot use: which vertex or triangle is named, and what is dropped or warned
-//! of instead.
+//! Tests meshes that a scene cannot use: which vertex or triangle is reported, and what is dropped
+//! or causes a warning instead.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -11,7 +11,7 @@ use std::path::Path;
 const SQUARE: &str = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv 0 0 0.1\n";
 const ROOF: &str = "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
 
-/// A mesh below a light, with what else is said of it.
+/// A scene with a mesh below a light, and further text.
 fn text(mesh: &str, rest: &str) -> String {
     format!(
         r#"(
@@ -30,7 +30,7 @@ fn resolved(text: &str, folder: &Path) -> Result<Scene, SceneError> {
     resolve("test", SceneFile::parse(text)?, folder, u64::MAX)
 }
 
-/// What is said of a file with this text.
+/// The result for a file with this content.
 fn file(name: &str, content: &str, rest: &str) -> Result<Scene, SceneError> {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join(name), content).unwrap();
@@ -112,7 +112,7 @@ fn vertices_beyond_all_coordinates_are_named() {
     );
 }
 
-/// Long thin triangles of real files go; a mesh that is nothing else does not pass.
+/// Long thin triangles of real files are dropped; a mesh that consists only of them is refused.
 #[test]
 fn triangles_too_thin_are_dropped_or_named() {
     let sliver = format!("{SQUARE}v 0 -1.00000000000001 0\n{ROOF}f 1 6 2\n");
@@ -135,7 +135,7 @@ fn triangles_too_thin_are_dropped_or_named() {
 /// Another part of a mesh may stand in front of the part that is hit, and face the other way.
 #[test]
 fn the_side_of_a_hit_is_that_of_its_own_triangle() {
-    // A roof that faces down, and beside the path a plate above the hit that faces up.
+    // A roof that faces down and, beside the path, a plate above the hit that faces up.
     let roof = "v -1 -1 -0.5\nv 1 -1 -0.5\nv 1 1 -0.5\nv -1 1 -0.5\nv 0 0 -0.4\n";
     let above = "v -0.1 0.1 0.3\nv 0.1 0.1 0.3\nv 0.1 0.4 0.3\nv -0.1 0.4 0.3\n";
     let faces = "f 2 1 5\nf 3 2 5\nf 4 3 5\nf 1 4 5\n";
@@ -158,7 +158,7 @@ fn a_header_of_any_length_is_read_in_proportion() {
         assert!(fault.to_string().len() < 500, "{fault}");
         start.elapsed().as_secs_f64()
     };
-    // 60,000 took 6 s when each was compared with all before.
+    // 60,000 took 6 s when each was compared with all previous ones.
     let properties = header(200_000, &|i| format!("property int p{i}\n"));
     let elements = header(200_000, &|i| format!("element e{i} 1\nproperty int p\n"));
     assert!(seconds(&properties) < 2.0);
@@ -170,8 +170,8 @@ fn a_header_of_any_length_is_read_in_proportion() {
     assert!(told.ends_with("a name of at most 100 bytes"), "{told}");
 }
 
-/// The levels are those of photons against backward rays: 3 % with two cells, below what 4e7
-/// photons tell with eight.
+/// The levels are the differences of photons and backward rays: 3 % with two cells, and below what
+/// 4e7 photons detect with eight.
 #[test]
 fn coarse_smooth_meshes_are_warned_of() {
     let warned = |cells: u32| {

@@ -1,4 +1,4 @@
-//! Environments, and pictures read from files.
+//! Tests environments, and pictures read from files.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -69,7 +69,7 @@ fn write_png(file: &Path, color: png::ColorType, depth: png::BitDepth, bytes: &[
     writer.write_image_data(bytes).unwrap();
 }
 
-/// A folder with the files of a sound scene.
+/// A folder with the files of a valid scene.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let levels = [0, 51, 102, 153, 204, 255];
@@ -104,11 +104,11 @@ fn lobes_are_where_the_axes_put_them() {
     let folder = folder();
     let scene = resolved(&text(LOBES), folder.path()).unwrap();
     let found = environment(&scene);
-    // Up is exact, the front gives way.
+    // `up` is exact, and `front` is adjusted.
     let up = DVec3::new(0.0, 1.0, 0.2).normalize();
     assert!((found.frame.y - up).length() < 1e-15 && found.frame.d.z < -0.9); // rounding
     assert!((found.frame.x.cross(found.frame.y) - found.frame.d).length() < 1e-15); // likewise
-    // From straight above, three times a lobe of 1, and what is left of the other.
+    // From straight above, three times a lobe of 1, and the tail of the other.
     let other = ((0.1 / 1.05_f64.sqrt() - 1.0) / 0.09).exp();
     let expected = 3.0 + 6.0 * other;
     assert!((found.radiance(-up) - expected).abs() < 1e-13); // rounding
@@ -120,7 +120,7 @@ fn maps_come_back_as_they_were_written() {
     let folder = folder();
     let file = folder.path().join("sky.exr");
     let map = LatLong::from_fn(16, 8, |d| {
-        // Numbers that f16 holds.
+        // Numbers that f16 represents exactly.
         ((2.0 + d.x + 0.5 * d.y) * 64.0).round() / 64.0
     });
     let values = map.raster().values();
@@ -204,7 +204,7 @@ fn png_levels_are_read_as_they_are() {
     }
 }
 
-/// What is replaced, by what, and what the message begins with.
+/// Each case: the replaced text, its replacement, and the beginning of the message.
 const BAD: &[(&str, &str, &str)] = &[
     (
         "up: (0, 1, 0.2)",

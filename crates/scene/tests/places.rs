@@ -1,10 +1,10 @@
-//! Where fields of a scene file are found in its text.
+//! Tests that fields of a scene file are located in its text.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
 use etendue_scene::{Fault, SceneError, SceneFile};
 
-/// The line and column that a message has for a field.
+/// The line and column that a message gives for a field.
 fn place(text: &str, field: &str) -> Option<[usize; 2]> {
     let fault = Fault {
         field: field.to_owned(),
@@ -39,7 +39,7 @@ fn fields_are_found_whatever_stands_around_them() {
         ("planes[2].window.y.cut", [5, 69]),
         ("planes[2].window.y.cut: some", [5, 69]),
         ("map[1].from", [7, 39]),
-        // What is not written: what is around it.
+        // A field that is not written is located at the enclosing one.
         ("planes[0].window.x", [4, 13]),
         ("planes[7].at", [3, 81]),
     ] {

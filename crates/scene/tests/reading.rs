@@ -1,4 +1,5 @@
-//! What a scene names is read from below its folder, links followed, and from regular files only.
+//! Tests that files named by a scene are read only from below its folder, with links followed, and
+//! only if they are regular.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -50,7 +51,7 @@ fn links_do_not_lead_out_of_the_scene_s_folder() {
         assert!(told.contains("outside of the folder"), "{mesh}: {told}");
         assert!(!told.contains("secret") && !told.contains('='), "{told}");
     }
-    // Links that stay below, and a folder that is a link itself, are as good as what they lead to.
+    // Links that stay below the folder, and a folder that is itself a link, are accepted.
     symlink("meshes/tri.obj", scene.join("inside.obj")).unwrap();
     symlink("scene", top.path().join("other")).unwrap();
     for (mesh, folder) in [("inside.obj", "scene"), ("meshes/tri.obj", "other")] {

@@ -1,4 +1,4 @@
-//! Scene files: what is read, what is refused, and how the refusal reads.
+//! Tests scene files: what is read, what is refused, and with which message.
 
 #![allow(
     clippy::float_cmp,
@@ -62,7 +62,7 @@ fn jitter_keeps_squares_apart_and_follows_its_seed() {
     }
 }
 
-/// The same scene moved and turned in the world is the same experiment.
+/// The same scene moved and rotated in the world is the same experiment.
 #[test]
 fn rotation_of_the_world_changes_nothing() {
     let turned = FIG9B

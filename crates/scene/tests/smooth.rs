@@ -1,4 +1,5 @@
-//! Smooth surfaces, pictures and planes on surfaces: what they resolve to, and what is refused.
+//! Tests smooth surfaces, pictures and planes on surfaces: what they resolve to, and what is
+//! refused.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -41,19 +42,20 @@ fn a_path_through_smooth_surfaces_resolves_to_what_it_says() {
     let [_, reflected, refracted] = scene.path.legs.as_slice() else {
         panic!("three legs: {:?}", scene.path.legs);
     };
-    // Turned by twice the angle of incidence: 2 · 0.6 · 0.8 = 0.96.
+    // Deflected by twice the angle of incidence: 2 · 0.6 · 0.8 = 0.96.
     assert!(
         (reflected.frame.d.x - 0.96).abs() < 1e-12 && (reflected.frame.d.z + 0.28).abs() < 1e-12
     ); // rounding
     assert!((reflected.length - 1.5).abs() < 1e-12); // rounding
-    // Met head on, light goes straight through.
+    // At normal incidence light goes straight through.
     assert!((refracted.frame.d - reflected.frame.d).length() < 1e-12); // rounding
     assert!((refracted.frame.x - reflected.frame.x).length() < 1e-12); // rounding
     assert_eq!(refracted.leaves.unwrap().object, Object::Patch(1));
     let [a, b, c, _] = scene.planes.as_slice() else {
         panic!("four planes");
     };
-    // The central ray comes from the side of −X, and T turns to −X: longitude θ₀ before, −θ₀ after.
+    // The central ray comes from the side of −X, and T is rotated to −X: longitude θ₀ before, −θ₀
+    // after.
     let angle = 0.6_f64.asin();
     assert!((a.longitude.abs() - angle).abs() < 1e-12, "{}", a.longitude); // rounding
     assert!((a.longitude + b.longitude).abs() < 1e-12); // rounding
@@ -65,7 +67,7 @@ fn a_path_through_smooth_surfaces_resolves_to_what_it_says() {
         (b.orientation, c.orientation),
         (Orientation::LocalNormals, Orientation::Orthogonal)
     );
-    // T turns to −X at normal incidence, so it is never along X.
+    // T is rotated to −X at normal incidence, so it is never along X.
     assert!(a.frame.x.dot(scene.path.frame.x) < 0.0);
 }
 
@@ -79,12 +81,13 @@ fn curvatures_of_a_mesh_are_those_of_what_it_samples() {
     let scene = resolved(&text).unwrap();
     let hit = scene.path.legs[2].leaves.unwrap();
     let patch = scene.meshes[0].osculating(&hit).unwrap();
-    // A sphere of 0.2 m by triangles of 1 cm: the fit reaches 6 of them, where (r/R)² is a tenth and a paraboloid leaves the sphere.
+    // A sphere of 0.2 m with triangles of 1 cm: the fit extends over 6 of them, where (r/R)² is a
+    // tenth and a paraboloid departs from the sphere.
     for k in &patch.curvature[..2] {
         assert!((k / 5.0 - 1.0).abs() < 0.1, "{k}");
     }
     let outward = (hit.point - scene.meshes[0].center).normalize();
-    // Interpolated, to the square of a triangle over the radius.
+    // Interpolation is accurate to the square of a triangle over the radius.
     assert!(
         hit.normal.dot(outward) > 1.0 - 1e-5,
         "{}",
@@ -111,7 +114,7 @@ fn curvatures_of_a_mesh_are_those_of_what_it_samples() {
     );
 }
 
-/// Each case: what is replaced, by what, and the field that is named.
+/// Each case: the replaced text, its replacement, and the reported field.
 const BAD: &[(&str, &str, &str)] = &[
     (
         "facing: (0.6, 0, -0.8)",
@@ -327,7 +330,7 @@ fn each_bad_value_is_named() {
     }
 }
 
-/// Light that would be totally reflected has nowhere to go.
+/// A path along which light would be totally reflected is refused.
 #[test]
 fn total_reflection_is_named() {
     let grazing = r#"Smooth(name: "glass", center: (1.44, 0, 0.58), facing: (0.1, 0, 1), form: Plane, aperture: 0.3, event: Refraction(front: 1.5, back: 1))"#;

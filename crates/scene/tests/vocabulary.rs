@@ -1,4 +1,5 @@
-//! Lights, blockers, surfaces and planes of every kind: what they resolve to, and what is refused.
+//! Tests lights, blockers, surfaces and planes of every kind: what they resolve to, and what is
+//! refused.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -60,7 +61,7 @@ fn everything_resolves_to_what_it_says() {
     let Mask::Grating(grating) = grating.mask else {
         panic!("a grating: {grating:?}");
     };
-    // ½ (1 + m cos(2πf (x − 0.25) + p)) at its own origin.
+    // ½ (1 + m cos(2πf (x − 0.25) + p)) about the grating's own origin.
     assert!((grating.transmittance(0.25, 7.0) - 0.5 * (1.0 + 0.5 * 0.1_f64.cos())).abs() < 1e-14); // rounding
     let star = &scene.meshes[0];
     assert_eq!(star.triangles.len(), 4 * 10 * 9);
@@ -82,7 +83,7 @@ fn everything_resolves_to_what_it_says() {
     assert!((back.x.cross(back.y) - back.d).length() < 1e-15); // rounding
 }
 
-/// Each case: what is replaced, by what, and the field that is named.
+/// Each case: the replaced text, its replacement, and the reported field.
 const BAD: &[(&str, &str, &str)] = &[
     ("bulb: Disc(0.1)", "bulb: Disc(0)", "light.bulb"),
     ("bulb: Disc(0.1)", "bulb: Square(-1)", "light.bulb"),
@@ -167,7 +168,7 @@ const BAD: &[(&str, &str, &str)] = &[
     ("albedo: 0.5", "albedo: 1.1", "surfaces[0].albedo"),
 ];
 
-/// The same of a path over an oblique wall to a floor.
+/// The same for a path over an oblique wall to a floor.
 const BAD_PATHS: &[(&str, &str, &str)] = &[
     (FACING, "facing: (0, 0, 0)", "surfaces[0].facing"),
     (FACING, "facing: (1, NaN, -1)", "surfaces[0].facing[1]"),
@@ -175,7 +176,7 @@ const BAD_PATHS: &[(&str, &str, &str)] = &[
     (VISITS, "visits: []", "path.visits"),
     (VISITS, "visits: [\"floor\"]", "path.visits[0]"),
     (VISITS, "visits: [\"wall\", \"roof\"]", "path.visits[1]"),
-    // Behind the floor, along it, nowhere.
+    // Behind the floor, along it, and the zero vector.
     (VISITS, LEAVES[0], "path.leaves"),
     (VISITS, LEAVES[1], "path.leaves"),
     (VISITS, LEAVES[2], "path.leaves"),
@@ -253,7 +254,7 @@ fn a_mesh_that_cannot_be_read_is_a_fault_of_its_field() {
         let error = resolved(&text().replacen(from, to, 1))
             .unwrap_err()
             .to_string();
-        // Planes and visits that name it are not at fault too.
+        // Planes and visits that refer to it are not reported too.
         assert!(
             error.starts_with(told) && error.lines().count() == 1,
             "{error}"
@@ -317,7 +318,7 @@ fn unknown_words_are_named_with_the_known_ones() {
     }
 }
 
-/// On its way back light may pass the plane of blockers and of a light that are beside it, but a
+/// On its way back light may pass the planes of blockers and of a light beside it, but a virtual
 /// plane must not lie in theirs.
 #[test]
 fn a_plane_beyond_blockers_that_the_central_ray_misses() {
@@ -328,7 +329,7 @@ fn a_plane_beyond_blockers_that_the_central_ray_misses() {
         let star = text.find("    Mesh(name: \"star\"").unwrap();
         let planes = text.find("    (name: \"star\", at").unwrap();
         let irradiance = text.find("    (name: \"irradiance\"").unwrap();
-        // Without the grating and the mesh the ray meets nothing but the light.
+        // Without the grating and the mesh the ray meets only the light.
         let text = [
             &text[..grating],
             &text[text[star..].find("],").unwrap() + star..planes],

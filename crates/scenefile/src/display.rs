@@ -1,12 +1,12 @@
-//! Text from outside, as a message shows it.
+//! Displays text from outside in messages.
 
 use std::fmt::{self, Display, Write};
 
-/// What `value` reads as, in at most `most` characters that a terminal takes as they are.
+/// `value` as formatted text, in at most `most` characters that are safe for a terminal.
 ///
-/// Control and format characters (among them those that turn the direction of text), separators of
-/// lines, private-use characters and non-characters are escaped as `\u{..}`. A text that is cut off
-/// ends in `…`; what is beyond is not even formatted.
+/// Control and format characters (including those that change the direction of text), line
+/// separators, private-use characters and non-characters are escaped as `\u{..}`. A text that is
+/// cut off ends in `…`; the rest is not even formatted.
 #[must_use]
 pub fn shown(value: impl Display, most: usize) -> String {
     let mut cut = ShortenedText {
@@ -19,7 +19,7 @@ pub fn shown(value: impl Display, most: usize) -> String {
     cut.text
 }
 
-/// A number as people write it.
+/// A number in its usual notation.
 #[must_use]
 pub fn number(x: f64) -> String {
     let is_plain = x == 0.0 || !x.is_finite() || (1e-4..1e6).contains(&x.abs());
@@ -30,7 +30,7 @@ pub fn number(x: f64) -> String {
     }
 }
 
-/// Text that takes so many more characters.
+/// A text that accepts a limited number of further characters.
 struct ShortenedText {
     text: String,
     left: usize,
@@ -55,14 +55,14 @@ impl Write for ShortenedText {
     }
 }
 
-/// Whether a character can be seen, or is the plain space, or is a mark on the character before it.
+/// Whether a character is visible, is the plain space, or is a mark on the previous character.
 #[must_use]
 pub fn is_printable(c: char) -> bool {
     if c.is_ascii() {
         return !c.is_ascii_control();
     }
-    // What Rust escapes in the text it shows goes by Unicode's categories. A mark is spared if it
-    // is not the first character.
+    // Rust's debug escapes follow Unicode's categories. A mark is not escaped unless it is the
+    // first character.
     let mut after = [b'a'; 5];
     let end = 1 + c.encode_utf8(&mut after[1..]).len();
     let text = std::str::from_utf8(&after[..end]);

@@ -1,10 +1,10 @@
-//! What is wrong with a scene file.
+//! The faults of a scene file.
 
 use crate::limits;
 use crate::place::{find, steps};
 use std::fmt;
 
-/// A value that cannot be used: which, what it is, and what is allowed there.
+/// A value that cannot be used: its field, the value, and what is allowed there.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Fault {
     /// Path of the field, such as `blockers[0].fill`.
@@ -13,11 +13,11 @@ pub struct Fault {
     pub value: String,
     /// What is allowed.
     pub allowed: String,
-    /// The scene is sound, but larger than this machine.
+    /// Whether the scene is valid but too large for this machine.
     pub memory: bool,
 }
 
-/// A fault of a file: the place in it, what is there, and what is allowed.
+/// A fault of a file: the place in it, the text found, and what is allowed.
 #[must_use]
 pub fn fault(place: impl Into<String>, value: impl ToString, allowed: impl Into<String>) -> Fault {
     Fault {
@@ -43,10 +43,10 @@ impl fmt::Display for Fault {
     }
 }
 
-/// Why a scene file does not make a scene.
+/// Why a scene file cannot become a scene.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
-    /// The text is no scene file; says line, column and what is allowed there.
+    /// The text is not a scene file; the message gives line, column and what is allowed there.
     #[error("line {line}, column {column}: {message}")]
     Syntax {
         /// Line, from 1.
@@ -56,7 +56,7 @@ pub enum SceneError {
         /// What is wrong and what is allowed.
         message: String,
     },
-    /// An override names no field, or gives it a value of the wrong kind.
+    /// An override names no field, or has a value of the wrong kind.
     #[error("{path}: {message}")]
     Override {
         /// The path as given.
@@ -64,14 +64,15 @@ pub enum SceneError {
         /// What is wrong.
         message: String,
     },
-    /// Values outside their range, all of them; the first ten are shown, and how many there are.
+    /// All values outside their range; the first ten are shown, with the total number.
     #[error("{}", list(.0))]
     Values(Vec<Fault>),
 }
 
 impl SceneError {
-    /// The error in words, a line for each fault with its place: in the text of the scene file, or
-    /// what has set the field instead, such as `--set run.photons=3`, by the path it was set at.
+    /// The error in words, one line for each fault with its place: in the text of the scene file
+    /// or, for a field that was set elsewhere, such as by `--set run.photons=3`, the path it was
+    /// set at.
     #[must_use]
     pub fn in_text(&self, text: &str, set: &[(String, String)]) -> String {
         match self {
@@ -97,7 +98,7 @@ fn list(faults: &[Fault]) -> String {
     lines(faults, Fault::to_string).join("\n")
 }
 
-/// The first faults in words, and how many more there are.
+/// The first faults in words, and the number of further ones.
 fn lines(faults: &[Fault], told: impl Fn(&Fault) -> String) -> Vec<String> {
     let first = faults.iter().take(limits::FAULTS);
     let mut lines: Vec<String> = first.map(told).collect();

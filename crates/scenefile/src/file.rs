@@ -29,34 +29,35 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Scene", deny_unknown_fields)]
 pub struct SceneFile {
-    /// What the scene shows, for the reader.
+    /// A description of the scene for the reader.
     #[serde(default)]
     #[schemars(transform = told("a text in quotes", r#""my first scene""#))]
     pub description: String,
-    /// Where light comes from.
+    /// The light source.
     pub light: LightFile,
-    /// What stands in its way.
+    /// The blockers.
     #[serde(default)]
     #[schemars(transform = told("a list of blockers", r#"[Grating(name: "bars", center: (0, 0, 1), axis: X, frequency: 5)]"#))]
     pub blockers: Vec<BlockersFile>,
-    /// What it falls on.
+    /// The surfaces.
     #[serde(default)]
     #[schemars(transform = told("a list of surfaces", r#"[Rectangle(name: "floor", center: (0, 0, 2), size: (6, 6))]"#))]
     pub surfaces: Vec<SurfaceFile>,
     /// The central ray.
     pub path: PathFile,
-    /// Where light is looked at.
+    /// The virtual planes.
     #[schemars(transform = told("a list of planes", r#"[(name: "arrival", at: Before("floor"))]"#))]
     pub planes: Vec<PlaneFile>,
-    /// The window of every plane that does not state its own.
+    /// The window of every plane without one of its own.
     pub window: WindowFile,
-    /// The frequencies of every plane that does not state its own.
+    /// The frequencies of every plane without its own.
     pub frequencies: FrequenciesFile,
-    /// Whether geometric steps are predicted by the paper's equations as they are printed (9, 10, 11 and 19).
+    /// Whether geometric steps are predicted by the paper's equations as printed (9, 10, 11 and
+    /// 19).
     #[serde(default)]
     #[schemars(transform = told("true or false", "true"))]
     pub as_printed: bool,
-    /// How it is measured.
+    /// The settings of the measurement.
     #[serde(default)]
     pub run: RunFile,
 }
@@ -74,7 +75,7 @@ pub enum BlockersFile {
         /// Centre of the grid, world coordinates.
         #[schemars(transform = place)]
         center: [f64; 3],
-        /// Squares along X and along Y.
+        /// Number of squares along X and along Y.
         #[serde(deserialize_with = "counts")]
         #[schemars(transform = told("whole numbers along X and Y", "(20, 20)"), transform = depends("1 to 100000 squares in all"))]
         count: [u32; 2],
@@ -84,7 +85,8 @@ pub enum BlockersFile {
         /// Side of a square as a share of the pitch.
         #[schemars(transform = told("a share of the pitch", "0.6"), transform = depends("above 0, at most 1"))]
         fill: f64,
-        /// Each square is moved by U(−jitter/2, jitter/2) pitches along X and along Y.
+        /// Amount of jitter: each square is moved by U(−jitter/2, jitter/2) pitches along X and
+        /// along Y.
         #[serde(default)]
         #[schemars(transform = told("a share of the pitch", "0.3"), transform = depends("0 to 1 − fill"))]
         jitter: f64,
@@ -93,12 +95,12 @@ pub enum BlockersFile {
         #[schemars(transform = seed)]
         seed: u64,
     },
-    /// Opaque shapes one by one; they must not overlap.
+    /// Individual opaque shapes, which must not overlap.
     Shapes {
         /// Name.
         #[schemars(transform = name_of_blockers)]
         name: String,
-        /// Point from which their coordinates along X and Y are counted, world coordinates.
+        /// Origin of the shapes' coordinates along X and Y, world coordinates.
         #[schemars(transform = place)]
         center: [f64; 3],
         /// The shapes.
@@ -110,19 +112,19 @@ pub enum BlockersFile {
         /// Name.
         #[schemars(transform = name_of_blockers)]
         name: String,
-        /// Point from which t is counted, world coordinates.
+        /// Origin of t, world coordinates.
         #[schemars(transform = place)]
         center: [f64; 3],
-        /// The axis along which it varies.
+        /// The axis along which the grating varies.
         axis: AxisName,
-        /// f, cycles per metre.
+        /// Frequency f, cycles per metre.
         #[schemars(transform = cycles)]
         frequency: f64,
-        /// m.
+        /// Modulation m.
         #[serde(default = "one")]
         #[schemars(transform = modulation)]
         modulation: f64,
-        /// p, radians.
+        /// Phase p, radians.
         #[serde(default)]
         #[schemars(transform = phase, transform = within(-1e3, 1e3))]
         phase: f64,
@@ -132,12 +134,12 @@ pub enum BlockersFile {
         /// Name.
         #[schemars(transform = name_of_blockers)]
         name: String,
-        /// Where the mesh's origin is put, world coordinates.
+        /// Position of the mesh's origin, world coordinates.
         #[schemars(transform = place)]
         center: [f64; 3],
         /// The triangles.
         mesh: MeshSource,
-        /// Factor on the mesh's coordinates.
+        /// Scale factor of the mesh's coordinates.
         #[serde(default = "one")]
         #[schemars(transform = factor)]
         scale: f64,
@@ -145,7 +147,7 @@ pub enum BlockersFile {
 }
 
 impl BlockersFile {
-    /// Their name.
+    /// Name of the blockers.
     #[must_use]
     pub fn name(&self) -> &str {
         match self {
@@ -223,22 +225,22 @@ pub enum HalfName {
     Above,
 }
 
-/// The central ray: it leaves the light's centre and goes from surface to surface, each sending it towards the centre of the
-/// next.
+/// The central ray: it leaves the light's centre and travels from surface to surface, each of which
+/// sends it towards the centre of the next.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Path", deny_unknown_fields)]
 #[schemars(transform = told("the central ray", r#"(direction: (0, 0, 1), x_axis: (1, 0, 0), visits: ["floor"])"#))]
 pub struct PathFile {
-    /// Direction in which it leaves the light; any length.
+    /// Direction in which the ray leaves the light; any length.
     #[schemars(transform = direction("(0, 0, 1)"))]
     pub direction: [f64; 3],
-    /// The X axis: its part orthogonal to the direction is used.
+    /// The X axis; only the part orthogonal to the direction is used.
     #[schemars(transform = direction("(1, 0, 0)"))]
     pub x_axis: [f64; 3],
-    /// Names of the surfaces it visits, in the order of light.
+    /// Names of the surfaces that the ray visits, in the order of light.
     #[schemars(transform = told("a list of names of surfaces", r#"["floor"]"#))]
     pub visits: Vec<String>,
-    /// Direction in which it leaves the last of them, any length: straight back unless stated.
+    /// Direction in which the ray leaves the last surface, any length; straight back by default.
     #[serde(default)]
     #[schemars(transform = direction("(0, 0, -1)"))]
     pub leaves: Option<[f64; 3]>,
@@ -249,23 +251,23 @@ pub struct PathFile {
 #[serde(rename = "Plane", deny_unknown_fields)]
 #[schemars(transform = told("a plane", r#"(name: "arrival", at: Before("floor"))"#))]
 pub struct PlaneFile {
-    /// Name: the folder of its results.
+    /// Name of the plane, and of the folder of its results.
     #[schemars(transform = told("a name in quotes, 1 to 64 letters, digits, - and _", r#""arrival""#))]
     pub name: String,
-    /// Where on the path.
+    /// Place on the path.
     pub at: Place,
-    /// What it records.
+    /// What the plane records.
     #[serde(default)]
     #[schemars(transform = told("Radiance or DifferentialIrradiance", "Radiance"))]
     pub quantity: Quantity,
-    /// What its coordinates are counted from.
+    /// Reference frame of the plane's coordinates.
     #[serde(default)]
     #[schemars(transform = told("Orthogonal, Tangent, LocalNormals or Mirrored", "Orthogonal"))]
     pub orientation: Orientation,
-    /// Its own window.
+    /// The plane's own window.
     #[serde(default)]
     pub window: Option<WindowFile>,
-    /// Its own frequencies.
+    /// The plane's own frequencies.
     #[serde(default)]
     pub frequencies: Option<FrequenciesFile>,
 }
@@ -274,7 +276,7 @@ pub struct PlaneFile {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(transform = told("Emission, Distance(…), or a place before or after something", r#"Before("floor")"#))]
 pub enum Place {
-    /// At the light, as it leaves.
+    /// At the light, for light as it leaves.
     Emission,
     /// In the plane of these blockers or this surface, before light meets them.
     Before(String),
@@ -284,22 +286,22 @@ pub enum Place {
     Distance(#[schemars(transform = depends("0 to the end of the path"))] f64),
 }
 
-/// The window: a profile for each coordinate; y and v are as x and u unless stated.
+/// The window: a profile for each coordinate; by default y and v are the same as x and u.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Window", deny_unknown_fields)]
 #[schemars(transform = told("a window", "(x: Hann(0.5), u: Hann(0.5))"))]
 pub struct WindowFile {
-    /// Along x, metres.
+    /// Profile along x, metres.
     #[schemars(transform = profile_of_place)]
     pub x: Profile,
-    /// Along y.
+    /// Profile along y.
     #[serde(default)]
     #[schemars(transform = profile_of_place)]
     pub y: Option<Profile>,
-    /// Along u, slope.
+    /// Profile along u, slope.
     #[schemars(transform = profile_of_slope)]
     pub u: Profile,
-    /// Along v.
+    /// Profile along v.
     #[serde(default)]
     #[schemars(transform = profile_of_slope)]
     pub v: Option<Profile>,
@@ -329,29 +331,30 @@ pub struct AxisFile {
     /// Highest frequency, rounded up to a multiple of the spacing.
     #[schemars(transform = told("a frequency in the unit of its axis", "16"))]
     pub max: f64,
-    /// Spacing; 1/(2 · half-width of the window) unless stated, and never wider.
+    /// Spacing of the frequencies. The default, 1/(2 · half-width of the window), is also the
+    /// largest.
     #[serde(default)]
     #[schemars(transform = told("a frequency in the unit of its axis", "0.5"))]
     pub spacing: Option<f64>,
 }
 
-/// How the scene is measured.
+/// The settings of the measurement.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Run", deny_unknown_fields, default)]
 #[schemars(transform = told("how the scene is measured", "(photons: 1e7)"))]
 pub struct RunFile {
-    /// Photons emitted; 1e7 is a number too.
+    /// Number of photons emitted; 1e7 is allowed too.
     #[serde(deserialize_with = "count")]
     #[schemars(transform = told("a whole number", "1e7"), transform = depends("one for each batch to 10^12"))]
     pub photons: u64,
     /// Seed of the photons.
     #[schemars(transform = seed)]
     pub seed: u64,
-    /// Independent batches the errors come from.
+    /// Number of independent batches, from which errors are estimated.
     #[serde(deserialize_with = "count")]
     #[schemars(transform = told("a whole number", "64"), transform = within(32.0, 1024.0), transform = since("errors come from the spread of batches"))]
     pub batches: u32,
-    /// Share of true scenes the verdict may reject, over all planes.
+    /// Share of correct scenes that the verdict may reject, over all planes.
     #[schemars(transform = told("a share of sound scenes", "0.01"), transform = within(1e-6, 0.5))]
     pub alpha: f64,
     /// Noise, as a share of the spectrum, above which a plane does not pass.
@@ -377,7 +380,7 @@ impl Default for RunFile {
     }
 }
 
-/// A whole number, in whatever way it is written.
+/// A whole number in any notation.
 struct Whole<T>(T);
 
 fn count<'de, T: TryFrom<u64>, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
@@ -418,9 +421,9 @@ impl Visitor<'_> for Count {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[schemars(transform = told("Aimed or Plain", "Aimed"))]
 pub enum Emission {
-    /// At the windows of the planes: a mixture of one proposal for each.
+    /// Aimed at the windows of the planes: a mixture of one proposal for each.
     Aimed,
-    /// As light does: uniformly over the area, by the cosine over direction.
+    /// In proportion to the light's emission: uniform over the area, by the cosine over direction.
     Plain,
 }
 
@@ -428,7 +431,8 @@ pub enum Emission {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[schemars(transform = told("Net or Random", "Net"))]
 pub enum Sampling {
-    /// Scrambled Sobol' nets, one for each batch: less noise, most with batches of 2ᵐ photons.
+    /// Scrambled Sobol' nets, one for each batch: less noise, with the largest gain for batches of
+    /// 2ᵐ photons.
     Net,
     /// Independent random numbers.
     Random,

@@ -1,10 +1,10 @@
-//! What each field of a scene file is and one way to write it, as the schema has it.
+//! Looks up, in the schema, what each field of a scene file is and an example of it.
 
 use crate::place::steps;
 use crate::schema::{element, referred, schema};
 use serde_json::Value;
 
-/// What the field at a path is, and one way to write it.
+/// The description of the field at a path, and an example.
 fn field(path: &str) -> [&'static str; 2] {
     let node = below(schema(), &steps(path)).unwrap_or(&Value::Null);
     let words = |node: &'static Value| Some([node["title"].as_str()?, node["x-ron"].as_str()?]);
@@ -20,7 +20,7 @@ fn field(path: &str) -> [&'static str; 2] {
     }
 }
 
-/// What these steps lead to from a node, whatever the variants on the way.
+/// The node that these steps lead to, through any variants on the way.
 fn below(node: &'static Value, steps: &[&str]) -> Option<&'static Value> {
     let [step, rest @ ..] = steps else {
         return Some(node);
@@ -40,13 +40,13 @@ fn below(node: &'static Value, steps: &[&str]) -> Option<&'static Value> {
     })
 }
 
-/// How the field at a path may be written, in words.
+/// The description of how the field at a path may be written.
 pub(crate) fn wanted(path: &str) -> String {
     let [what, example] = field(path);
     format!("{what}, such as {example}")
 }
 
-/// One way to write the field at a path.
+/// An example of the field at a path.
 pub(crate) fn example(path: &str) -> &'static str {
     field(path)[1]
 }
@@ -66,7 +66,7 @@ mod tests {
     use std::fs;
     use std::path::Path;
 
-    /// The texts of the scenes of this repository.
+    /// The texts of the scenes in this repository.
     fn scenes() -> Vec<String> {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
         let folders = [folder.clone(), folder.join("table1"), folder.join("wild")];
@@ -82,7 +82,7 @@ mod tests {
             .collect()
     }
 
-    /// The paths of all fields, written or not.
+    /// The paths of all fields, whether written or not.
     fn fields(node: &Value, path: &str, found: &mut Vec<String>) {
         if !path.is_empty() {
             found.push(path.to_owned());
@@ -106,8 +106,8 @@ mod tests {
         }
     }
 
-    /// Each field that is written in a scene takes the example instead, and is named when it holds
-    /// what nothing can be.
+    /// Each field that is written in a scene accepts the example instead, and is named in the error
+    /// when it holds an impossible value.
     #[test]
     fn examples_can_be_read_where_they_are_told() {
         let mut tried = BTreeSet::new();
@@ -117,7 +117,7 @@ mod tests {
             fields(&file, "", &mut paths);
             for path in paths {
                 let (around, _) = path.rsplit_once(['.', '[']).unwrap_or_default();
-                // What is not written is found as what is around it, if at all.
+                // A field that is not written is located at the enclosing one, if at all.
                 let written = find(&text, &path);
                 let Some(place) = written.filter(|_| written != find(&text, around)) else {
                     continue;

@@ -1,8 +1,10 @@
-//! Scene files as they are written: read from RON or JSON, described by a schema, and checked field by field.
+//! Scene files as written: read from RON or JSON, described by a schema, and checked field by
+//! field.
 //!
-//! What a field is, how it is written and which numbers it may hold stand on the types of [`SceneFile`], once. The
-//! schema, the hints of messages and the check of all numbers come from there. Whether things fit together is for
-//! `etendue-scene`, which resolves a file to a scene.
+//! The description, notation and range of each field are stated once, on the types of
+//! [`SceneFile`]. The schema, the hints of messages and the check of all numbers are derived from
+//! them. Whether values are consistent is checked by `etendue-scene`, which resolves a file to a
+//! scene.
 
 mod display;
 mod fault;

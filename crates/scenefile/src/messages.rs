@@ -1,10 +1,10 @@
-//! Why a value does not fit a field, in words.
+//! Explains in words why a value does not fit a field.
 
 use crate::hints::wanted;
 use crate::suggestion::did_you_mean;
 use serde_path_to_error::{Path, Segment};
 
-/// A path as messages have it, without names of variants.
+/// A path as messages show it, without names of variants.
 pub(crate) fn path_of(path: &Path) -> String {
     let mut written = String::new();
     for segment in path.iter() {
@@ -18,13 +18,13 @@ pub(crate) fn path_of(path: &Path) -> String {
     written
 }
 
-/// Why a value does not fit the field at which it is, or below.
+/// Why a value does not fit its field, or a field below.
 pub(crate) fn unfit(error: &serde_path_to_error::Error<serde_json::Error>) -> String {
     let field = path_of(error.path());
     let told = error.inner().to_string();
-    // The place is told beside it.
+    // The place is reported separately.
     let told = told.split(" at line ").next().unwrap_or_default();
-    // Of an unknown name: itself, and those that are known.
+    // For an unknown name: the name, and the known ones.
     let mut names = told.split('`').skip(1).step_by(2);
     let meant = match names.next() {
         Some(found) if told.starts_with("unknown ") => did_you_mean(found, names),

@@ -1,4 +1,4 @@
-//! Fields set on the command line.
+//! Sets fields given on the command line.
 
 use crate::display::shown;
 use crate::messages::unfit;
@@ -24,10 +24,10 @@ impl SceneFile {
         serde_path_to_error::deserialize(tree).map_err(|error| fault(unfit(&error)))
     }
 
-    /// The scene file with several fields set, one after the other, each as by [`Self::with`].
+    /// The scene file with several fields set in turn, each as by [`Self::with`].
     ///
     /// # Errors
-    /// [`SceneError::Override`] of the first that cannot be set, or of more than
+    /// [`SceneError::Override`] for the first field that cannot be set, or for more than
     /// [`limits::OVERRIDES`] fields.
     pub fn with_all(self, fields: &[(String, String)]) -> Result<Self, SceneError> {
         if fields.len() > limits::OVERRIDES {
@@ -39,7 +39,8 @@ impl SceneFile {
         if let Some(file) = self.with_all_at_once(fields) {
             return Ok(file);
         }
-        // One after the other tells which is at fault, and reaches fields of what one before has set.
+        // Setting fields in turn shows which one is at fault, and reaches fields that an earlier
+        // setting has created.
         let mut fields = fields.iter();
         fields.try_fold(self, |file, (path, value)| file.with(path, value))
     }
@@ -53,7 +54,7 @@ impl SceneFile {
     }
 }
 
-/// Sets what is at `path` below a node.
+/// Sets the value at `path` below a node.
 fn set(tree: &mut Value, path: &str, value: &str) -> Result<(), String> {
     let mut place = tree;
     for name in path.split('.') {
@@ -65,7 +66,7 @@ fn set(tree: &mut Value, path: &str, value: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// The child `name` of a node, looking through a variant's name.
+/// The child `name` of a node, skipping the name of a variant.
 fn step<'a>(node: &'a mut Value, name: &str) -> Option<&'a mut Value> {
     match node {
         Value::Array(items) => items.get_mut(name.parse::<usize>().ok()?),
@@ -87,7 +88,7 @@ fn is_name_of_variant(name: &str) -> bool {
     name.starts_with(char::is_uppercase)
 }
 
-/// Why `name` cannot stand below a node.
+/// Why there is no field `name` below a node.
 fn refusal(node: &Value, name: &str) -> String {
     let allowed = match node {
         Value::Array(items) => match items.len() {
@@ -115,8 +116,8 @@ fn refusal(node: &Value, name: &str) -> String {
     format!("no field `{name}` here{meant}; allowed: {allowed}{another}")
 }
 
-/// A value as it is written in a scene file or in JSON; whole numbers such as 1e6 are integers, and
-/// what is nothing else is text. `None` when its brackets are nested more than `deepest` deep.
+/// A value in the notation of a scene file or of JSON; whole numbers such as 1e6 are integers, and
+/// anything else is text. `None` when its brackets are nested deeper than `deepest`.
 fn parsed(text: &str, deepest: usize) -> Option<Value> {
     let text = text.trim();
     if let Ok(value) = serde_json::from_str(text) {
@@ -138,7 +139,7 @@ fn parsed(text: &str, deepest: usize) -> Option<Value> {
     })
 }
 
-/// What stands between parentheses: named fields, several values, or one.
+/// The content of parentheses: named fields, several values, or one.
 fn fields(text: &str, deepest: usize) -> Option<Value> {
     let parts = separated(text);
     let named: Option<Vec<_>> = parts.iter().map(|part| part.split_once(':')).collect();
@@ -157,7 +158,7 @@ fn fields(text: &str, deepest: usize) -> Option<Value> {
     }
 }
 
-/// The parts of a list, at the commas outside of parentheses.
+/// The parts of a list, separated at the commas outside of parentheses.
 fn separated(text: &str) -> Vec<&str> {
     let mut depth = 0_i32;
     text.split(|c: char| {

@@ -1,4 +1,4 @@
-//! Reads scene files, and says of one that cannot be read which field is at fault.
+//! Reads scene files, and reports which field is at fault in one that cannot be read.
 
 use crate::display::shown;
 use crate::hints::{example, has_fields, wanted};
@@ -32,7 +32,7 @@ impl SceneFile {
         let options = ron::Options::default()
             .with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
         options.from_str(text).map_err(|error| {
-            // Read again, to learn where: only a file at fault is read twice.
+            // Reads the file again to locate the fault; only a faulty file is read twice.
             let mut track = Track::new();
             if let Ok(mut ron) = ron::Deserializer::from_str_with_options(text, &options) {
                 let tracked = serde_path_to_error::Deserializer::new(&mut ron, &mut track);
@@ -62,13 +62,13 @@ fn json(text: &str) -> Result<SceneFile, SceneError> {
     })
 }
 
-/// A field of what is at a path.
+/// The path of a field below a path.
 fn below(path: &str, field: &str) -> String {
     let dot = if path.is_empty() { "" } else { "." };
     format!("{path}{dot}{}", shown(field, limits::NAME))
 }
 
-/// The error of a file in which something is wrong at a path, in words.
+/// The error, in words, of a file with a fault at a path.
 fn syntax(text: &str, path: &str, error: &SpannedError) -> SceneError {
     let [start, end] = [error.span.start, error.span.end].map(|at| [at.line, at.col]);
     let value = find(text, path);
@@ -94,7 +94,7 @@ fn syntax(text: &str, path: &str, error: &SpannedError) -> SceneError {
     }
 }
 
-/// What is wrong with the names of variants and fields, and whether it is with all of the value.
+/// The error in the names of variants and fields, and whether it concerns the whole value.
 fn of_names(code: &Error, name: &str, path: &str) -> Option<(bool, String)> {
     Some(match code {
         Error::NoSuchEnumVariant {
@@ -117,7 +117,7 @@ fn of_names(code: &Error, name: &str, path: &str) -> Option<(bool, String)> {
         } => {
             let meant = did_you_mean(found, expected.iter().copied());
             let known = expected.join(", ");
-            // The path leads to the field already.
+            // The path already leads to the field.
             let of = path.strip_suffix(found.as_str()).unwrap_or(path);
             let field = below(of.trim_end_matches('.'), found);
             (
@@ -140,7 +140,7 @@ fn of_names(code: &Error, name: &str, path: &str) -> Option<(bool, String)> {
     })
 }
 
-/// Whether an error inside of a value is about all of it: a number, a name or a vector.
+/// Whether an error inside a value concerns the whole value: a number, a name or a vector.
 fn is_shape(code: &Error, path: &str) -> bool {
     let is_cut = matches!(
         code,
@@ -152,7 +152,7 @@ fn is_shape(code: &Error, path: &str) -> bool {
     !is_cut && !has_fields(path)
 }
 
-/// What stands at a place between fields, and what could.
+/// The text found at a place between fields, and what is allowed there.
 fn unexpected(code: &Error, text: &str, [line, column]: [usize; 2]) -> String {
     let rest = text.lines().nth(line - 1).unwrap_or_default();
     let at = rest.char_indices().nth(column - 1);
@@ -182,13 +182,13 @@ fn unexpected(code: &Error, text: &str, [line, column]: [usize; 2]) -> String {
     format!("`{found}` stands here; allowed: {allowed}")
 }
 
-/// The beginning of a value, in one line.
+/// The beginning of a value, on one line.
 fn excerpt(value: &str) -> String {
-    // A word may be as long as the file.
+    // A word may be as long as the whole file.
     let start: String = value.chars().take(4 * EXCERPT).collect();
     let words: Vec<&str> = start.split_whitespace().collect();
     shown(words.join(" "), EXCERPT)
 }
 
-/// Characters of a value that is shown as it is written.
+/// The largest number of characters shown of a value.
 const EXCERPT: usize = 60;

@@ -1,7 +1,7 @@
-//! Where a field stands in the text of a scene file.
+//! Locates a field in the text of a scene file.
 //!
-//! The text is walked once, token by token, and need not be sound: what makes no sense is a word
-//! like any other.
+//! The text is scanned once, token by token, and may be malformed: anything unrecognised counts as
+//! a word.
 
 /// A value in the text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -10,12 +10,12 @@ pub(crate) struct ScenePlace<'a> {
     pub(crate) line: usize,
     /// Column in characters, from 1.
     pub(crate) column: usize,
-    /// As it is written.
+    /// The value as written.
     pub(crate) value: &'a str,
 }
 
-/// The names and numbers of a path such as `blockers[0].fill` or `blockers.0.fill`, as far as it is
-/// one, without names of variants.
+/// The names and indices of a path such as `blockers[0].fill` or `blockers.0.fill`, as far as it is
+/// valid, without names of variants.
 pub(crate) fn steps(path: &str) -> Vec<&str> {
     let in_path = |c: char| c.is_alphanumeric() || "_.[]".contains(c);
     let end = path.find(|c| !in_path(c)).unwrap_or(path.len());
@@ -24,7 +24,7 @@ pub(crate) fn steps(path: &str) -> Vec<&str> {
     steps.filter(is_step).collect()
 }
 
-/// The value at a path, or the innermost around it that is written.
+/// The value at a path, or the innermost enclosing value that is written.
 pub(crate) fn find<'a>(text: &'a str, path: &str) -> Option<ScenePlace<'a>> {
     let steps = steps(path);
     let mut found: Option<InnermostValue> = None;
@@ -41,7 +41,7 @@ pub(crate) fn find<'a>(text: &'a str, path: &str) -> Option<ScenePlace<'a>> {
                 }
             }
             ValueKind::Close => {
-                // A bracket too many closes nothing.
+                // A surplus closing bracket closes nothing.
                 levels.truncate((depth - 1).max(1));
             }
             ValueKind::Colon => {}
@@ -50,7 +50,7 @@ pub(crate) fn find<'a>(text: &'a str, path: &str) -> Option<ScenePlace<'a>> {
                     .next_if(|next| next.kind == ValueKind::Colon)
                     .is_some() =>
             {
-                // In JSON names stand in quotes.
+                // In JSON names are quoted.
                 level.key = Some(text[token.start..token.end].trim_matches('"'));
                 continue;
             }
@@ -81,7 +81,8 @@ pub(crate) fn find<'a>(text: &'a str, path: &str) -> Option<ScenePlace<'a>> {
             found.end = token.end;
         }
     }
-    // All of the file is around what is not written at all: that is no place.
+    // A field that is not written at all is enclosed only by the whole file, which is no useful
+    // place.
     let found = found.filter(|found| found.steps > 0 || steps.is_empty())?;
     let before = &text[..found.start];
     Some(ScenePlace {
@@ -93,22 +94,23 @@ pub(crate) fn find<'a>(text: &'a str, path: &str) -> Option<ScenePlace<'a>> {
 
 /// The innermost value found so far.
 struct InnermostValue {
-    /// Steps of the path that lead to it.
+    /// The number of steps of the path that lead to it.
     steps: usize,
     start: usize,
     end: usize,
     depth: usize,
 }
 
-/// What stands between two brackets.
+/// The text between two brackets.
 struct OpenBracket<'a> {
-    /// Steps of the path that lead to it; `None` where they lead elsewhere.
+    /// The number of steps of the path that lead to it; `None` where they lead elsewhere.
     at: Option<usize>,
-    /// After a name: a value without a key is then not an element, as in `Hann(0.5)`.
+    /// Whether a name precedes the bracket, as in `Hann(0.5)`: a value without a key is then not an
+    /// element.
     named: bool,
     index: usize,
     key: Option<&'a str>,
-    /// The value begun after the last comma: steps that lead to it.
+    /// The value that began after the last comma: the number of steps that lead to it.
     value: Option<Option<usize>>,
 }
 
@@ -123,12 +125,12 @@ impl OpenBracket<'_> {
         }
     }
 
-    /// Steps that lead to the next value.
+    /// The number of steps that lead to the next value.
     fn child(&self, steps: &[&str]) -> Option<usize> {
         let at = self.at?;
         let step = steps.get(at);
         match self.key {
-            // In JSON a variant is a field.
+            // In JSON a variant is written as a field.
             Some(key) if key.starts_with(char::is_uppercase) => Some(at),
             Some(key) => (step == Some(&key)).then_some(at + 1),
             None if self.named => (self.index == 0).then_some(at),
@@ -183,7 +185,7 @@ impl Iterator for RonTokens<'_> {
     }
 }
 
-/// Bytes of white space and comments.
+/// Length in bytes of white space and comments.
 fn blank(text: &str) -> usize {
     let mut rest = text.trim_start();
     loop {
@@ -198,7 +200,7 @@ fn blank(text: &str) -> usize {
     }
 }
 
-/// Bytes of a comment that may hold others, or of all the text where it has no end.
+/// Length in bytes of a comment that may be nested, or of all the text where it is not closed.
 fn block(text: &str) -> usize {
     let mut depth = 0;
     let bytes = text.as_bytes();
@@ -220,7 +222,7 @@ fn block(text: &str) -> usize {
     text.len()
 }
 
-/// Bytes of a string, plain or raw.
+/// Length in bytes of a string, plain or raw.
 fn string(text: &str) -> Option<usize> {
     let plain = text.strip_prefix('"');
     if let Some(inside) = plain {
@@ -240,8 +242,8 @@ fn string(text: &str) -> Option<usize> {
     Some(end.map_or(text.len(), |end| open + end + 1 + fence.len()))
 }
 
-/// Bytes up to the next bracket, comma, colon, quote, blank or comment; one character at least if
-/// there is one.
+/// The number of bytes before the next bracket, comma, colon, quote, blank or comment; at least one
+/// character if there is one.
 pub(crate) fn word(text: &str) -> usize {
     let ends = |c: char| c.is_whitespace() || "()[]{},:\"/".contains(c);
     let first = text.chars().next().map_or(0, char::len_utf8);

@@ -1,12 +1,13 @@
-//! The JSON schema of scene files: what their types say, and what follows from it.
+//! The JSON schema of scene files, derived from their types.
 
 use crate::SceneFile;
 use crate::file::positive;
 use serde_json::{Map, Value};
 use std::sync::LazyLock;
 
-/// The JSON schema of a scene as JSON, in which a variant is an object of one field. `title` is what
-/// a field is, `x-ron` one way to write it in a scene file, `x-range` the numbers it may hold.
+/// The JSON schema of a scene as JSON, in which a variant is an object of one field. `title`
+/// describes a field, `x-ron` is an example in the notation of a scene file, and `x-range` gives
+/// the numbers it may hold.
 #[must_use]
 pub fn schema() -> &'static Value {
     static SCHEMA: LazyLock<Value> = LazyLock::new(|| {
@@ -18,7 +19,7 @@ pub fn schema() -> &'static Value {
     &SCHEMA
 }
 
-/// A field without words has those of its type, and a number without a range is positive.
+/// A field without a description has that of its type, and a number without a range is positive.
 fn complete(node: &mut Value, types: &Value) {
     if is_number(node) && node.get("x-range").is_none() {
         positive(node);
@@ -39,26 +40,26 @@ fn complete(node: &mut Value, types: &Value) {
     }
 }
 
-/// The name of the type that a node stands for, which may be left out.
+/// The name of the type of a node, which may be optional.
 fn name_of_type(node: &Value) -> Option<&str> {
     let types = [node, node.get("anyOf").map_or(node, |any| &any[0])];
     let mut references = types.iter().filter_map(|node| node.get("$ref")?.as_str());
     references.next()?.rsplit('/').next()
 }
 
-/// Whether a node stands for a number, which may be left out.
+/// Whether a node is a number, which may be optional.
 fn is_number(node: &Value) -> bool {
     let is = |name: &Value| name == "number" || name == "integer";
     let names = node.get("type");
     names.is_some_and(|name| is(name) || name.as_array().is_some_and(|names| names.iter().any(is)))
 }
 
-/// A node of the schema, as what it refers to.
+/// A node of the schema, with its reference resolved.
 pub(crate) fn referred(node: &'static Value) -> &'static Value {
     name_of_type(node).map_or(node, |name| &schema()["$defs"][name])
 }
 
-/// What holds the content of a variant, in the node of its type.
+/// The node of a variant's content, within the node of its type.
 pub(crate) fn variant(node: &'static Value, name: &str) -> &'static Value {
     let variants = referred(node)["oneOf"].as_array();
     let mut contents = variants
@@ -70,7 +71,7 @@ pub(crate) fn variant(node: &'static Value, name: &str) -> &'static Value {
         .unwrap_or(&Value::Null)
 }
 
-/// The element at a place of a list, in the node of the list.
+/// The node of the element at a place of a list, within the node of the list.
 pub(crate) fn element(node: &'static Value, place: usize) -> &'static Value {
     let node = referred(node);
     match node.get("prefixItems") {
@@ -84,7 +85,7 @@ mod tests {
     use super::schema;
     use serde_json::{Map, Value};
 
-    /// The fields below a node that do not say what they are.
+    /// The fields below a node that have no description.
     fn untold(node: &Value, found: &mut Vec<String>) {
         for (name, field) in node["properties"].as_object().into_iter().flatten() {
             let is_told = field["title"].is_string() && field["x-ron"].is_string();

@@ -1,22 +1,23 @@
-//! What was meant by a name that is not known.
+//! Suggests the name that was probably meant by an unknown one.
 
 use crate::limits;
 use strsim::osa_distance;
 
-/// ` (did you mean …?)` with the known name that is most like this one, or nothing where none is.
+/// ` (did you mean …?)` with the known name most similar to this one, or empty where none is
+/// similar.
 #[must_use]
 pub fn did_you_mean<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     let lower = |name: &str| -> String {
-        // Longer names are refused anyway.
+        // Longer names are refused in any case.
         let start = name.chars().take(limits::NAME);
         start.flat_map(char::to_lowercase).collect()
     };
     let name = lower(name);
-    // A letter in three may be wrong, or one.
+    // One letter in three may be wrong, and at least one.
     let most = (name.chars().count() / 3).max(1);
     let known = known.into_iter();
     let known = known.map(|other| (osa_distance(&name, &lower(other)), other));
-    // Two characters may be anything.
+    // A name of two characters could mean anything.
     let near = known.filter(|(distance, other)| {
         *distance <= most && *distance < other.chars().take(limits::NAME).count()
     });

@@ -1,4 +1,4 @@
-//! Whether each number of a scene file is one that its field may hold.
+//! Checks that each number of a scene file is within the range of its field.
 
 use crate::display::number;
 use crate::fault::{Fault, fault};
@@ -12,7 +12,7 @@ use serde_json::Value;
 use std::fmt;
 
 impl SceneFile {
-    /// Each number beyond the ends that the schema has for it.
+    /// Each number outside the range that the schema gives for it.
     #[must_use]
     #[expect(
         clippy::missing_panics_doc,
@@ -32,13 +32,13 @@ impl SceneFile {
     }
 }
 
-/// Goes through a scene file as if to write it, beside its schema.
+/// Traverses a scene file as if serialising it, together with its schema.
 struct ValueWalk<'a> {
     faults: &'a mut Vec<Fault>,
     path: &'a mut String,
-    /// What the schema has for the value at the path.
+    /// The schema node of the value at the path.
     node: &'static Value,
-    /// Of the next element of a list.
+    /// The index of the next element of a list.
     place: usize,
 }
 
@@ -87,14 +87,14 @@ impl ValueWalk<'_> {
 type Name = &'static str;
 type Walked = Result<(), fmt::Error>;
 
-/// What holds no number.
+/// Types that hold no number.
 macro_rules! pass {
     ($($name:ident($($of:ty),*);)*) => {
         $(fn $name(self, $(_: $of),*) -> Walked { Ok(()) })*
     };
 }
 
-/// What holds others.
+/// Types that hold other values.
 macro_rules! enter {
     ($($name:ident($($of:ty),*);)*) => {
         $(fn $name(self, $(_: $of),*) -> Result<Self, fmt::Error> { Ok(self) })*

@@ -1,6 +1,6 @@
-//! Whole numbers among doubles.
+//! Recognises whole numbers among doubles.
 
-/// A number as a whole one, where it is one.
+/// A number as a whole number, if it is one.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

@@ -1,36 +1,38 @@
-//! Bandwidths of slices: the frequency that holds most of the power, in the azimuth where it is largest.
+//! Bandwidths of slices: the frequency below which most of the power lies, at the azimuth where it
+//! is largest.
 
 use etendue_field::{FrequencyAxis, SliceGrid};
 use ndarray::{ArrayView1, ArrayView2, ArrayView3, Axis};
 
-/// The fraction of the power that a bandwidth holds, unless another is asked for.
+/// The default fraction of the power that lies within a bandwidth.
 pub const BANDWIDTH_FRACTION: f64 = 0.95;
 
 /// The bandwidth of one slice along one of its axes: [`bandwidth_rho`] or [`bandwidth_nu`].
 pub type SliceBandwidth = fn(ArrayView2<'_, f64>, &SliceGrid, f64) -> Option<f64>;
 
-/// A bandwidth, and the azimuth where it is largest.
+/// The largest bandwidth over azimuths, with its azimuth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Widest<T> {
     /// The azimuth, radians.
     pub azimuth: f64,
-    /// The bandwidth there.
+    /// The bandwidth at that azimuth.
     pub value: T,
 }
 
-/// The bandwidth of a slice along ρ: see [`bandwidth`].
+/// Returns the bandwidth of a slice along ρ: see [`bandwidth`].
 #[must_use]
 pub fn bandwidth_rho(power: ArrayView2<'_, f64>, grid: &SliceGrid, fraction: f64) -> Option<f64> {
     bandwidth(power.sum_axis(Axis(1)).view(), &grid.rho, fraction)
 }
 
-/// The bandwidth of a slice along ν: see [`bandwidth`].
+/// Returns the bandwidth of a slice along ν: see [`bandwidth`].
 #[must_use]
 pub fn bandwidth_nu(power: ArrayView2<'_, f64>, grid: &SliceGrid, fraction: f64) -> Option<f64> {
     bandwidth(power.sum_axis(Axis(0)).view(), &grid.nu, fraction)
 }
 
-/// The largest bandwidth over the azimuths of a power [azimuth, ρ ≥ 0, ν]; the first of those alike.
+/// Returns the largest bandwidth over the azimuths of a power [azimuth, ρ ≥ 0, ν]; the first of
+/// equal ones.
 #[must_use]
 pub fn widest(
     power: ArrayView3<'_, f64>,
@@ -42,7 +44,7 @@ pub fn widest(
     Some(Widest { azimuth, value })
 }
 
-/// The number of the slice with the largest bandwidth, and that bandwidth.
+/// Returns the index of the slice with the largest bandwidth, and that bandwidth.
 pub(crate) fn widest_slice(
     power: ArrayView3<'_, f64>,
     grid: &SliceGrid,
@@ -55,11 +57,13 @@ pub(crate) fn widest_slice(
     each.reduce(|widest, next| if next.1 > widest.1 { next } else { widest })
 }
 
-/// The smallest B for which the power at |frequency| ≤ B is at least `fraction` of the total.
+/// Returns the smallest B for which the power at |frequency| ≤ B is at least `fraction` of the
+/// total.
 ///
-/// `marginal` is the power along `axis`, summed over the other one. The power of a frequency of the axis lies evenly in
-/// its cell, half a step to either side, so the power inside grows linearly with B within a cell. Unit: that of the axis.
-/// `None` when the total is not positive.
+/// `marginal` is the power along `axis`, summed over the other axis. The power of a frequency of
+/// the axis is spread uniformly over its cell, half a step to either side, so the power inside
+/// grows linearly with B within a cell. Unit: that of the axis. `None` if the total is not
+/// positive.
 #[must_use]
 pub fn bandwidth(
     marginal: ArrayView1<'_, f64>,
@@ -73,7 +77,7 @@ pub fn bandwidth(
     let wanted = fraction * total;
     let mut inside = 0.0;
     for step in 0..=axis.half {
-        // Both cells at this distance from zero; the cell of zero lies on both sides.
+        // Both cells at this distance from zero; the cell of zero extends to both sides.
         let (power, inner, width) = match step {
             0 => (marginal[axis.half], 0.0, 0.5),
             _ => (
@@ -87,7 +91,7 @@ pub fn bandwidth(
         }
         inside += power;
     }
-    // Only rounding can keep the whole from reaching a fraction of it.
+    // Reached only by rounding, because the whole power exceeds any fraction of it.
     Some(axis.max() + 0.5 * axis.spacing)
 }
 
@@ -103,12 +107,12 @@ mod tests {
 
     #[test]
     fn bandwidths_of_known_powers() {
-        // 81 cells of 0.25, of which 0.95 are inside.
+        // 81 cells of 0.25, 0.95 of which are inside.
         let flat = bandwidth(Array1::ones(81).view(), &axis(40, 0.25), 0.95).unwrap();
         assert!((flat - 0.95 * 81.0 * 0.25 / 2.0).abs() < 1e-12); // rounding
         let of =
             |powers: [f64; 3], fraction| bandwidth(arr1(&powers).view(), &axis(1, 2.0), fraction);
-        // Half of the cell of zero, which ends at 1.
+        // Half of the cell at zero, which ends at 1.
         assert_eq!(of([0.0, 3.0, 0.0], 0.5), Some(0.5));
         assert_eq!(of([1.0, 0.0, 1.0], 0.5), Some(2.0));
         assert_eq!(of([1.0, 0.0, 1.0], 1.0), Some(3.0));
@@ -133,7 +137,7 @@ mod tests {
         assert!((nu - 1.386).abs() < 0.02, "{nu}"); // the same for 0.25
     }
 
-    /// ∫ cos²(π t/2) e^(−2πi f t) dt over |t| < 1: a Hann window of half-width 1.
+    /// Returns ∫ cos²(π t/2) e^(−2πi f t) dt over |t| < 1: a Hann window of half-width 1.
     fn hann(f: f64) -> f64 {
         let sinc = |x: f64| match x.abs() < 1e-9 {
             true => 1.0,
@@ -142,7 +146,8 @@ mod tests {
         sinc(2.0 * f) + 0.5 * (sinc(2.0 * f - 1.0) + sinc(2.0 * f + 1.0))
     }
 
-    /// The power of a Hann window alone, or of a sine of contrast 1 behind it, along one axis.
+    /// Returns the power of a Hann window alone, or of a sine of contrast 1 under it, along one
+    /// axis.
     fn seen(frequency: Option<f64>, axis: &FrequencyAxis) -> Array1<f64> {
         let values = axis.values().into_iter();
         let sides = |f: f64| frequency.map_or(0.0, |at| 0.5 * (hann(f - at) + hann(f + at)));
@@ -151,18 +156,20 @@ mod tests {
 
     #[test]
     fn a_window_alone_has_its_own_bandwidth() {
-        // 0.55722 by the midpoint rule with 4·10⁴ points up to 20; 6.12 where the half-width is 0.09105.
+        // 0.55722 by the midpoint rule with 4·10⁴ points up to 20; 6.12 if the half-width is
+        // 0.09105.
         for (spacing, error) in [(0.02, 1e-3), (0.125, 4e-3)] {
             let axis = axis(100, spacing);
             let found = bandwidth(seen(None, &axis).view(), &axis, 0.95).unwrap();
-            // The curvature of the power within a cell.
+            // Error from the curvature of the power within a cell.
             assert!((found - 0.557_22).abs() < error, "{spacing}: {found}");
         }
     }
 
     #[test]
     fn a_bandwidth_is_not_below_the_signal() {
-        // A third of the power is about the frequency of the sine, of which no more than a twentieth of all is left out.
+        // A third of the power is around the frequency of the sine, and no more than a twentieth of
+        // the total is left out.
         for frequency in [1.5, 3.04, 4.7] {
             let axis = axis(24, 0.25);
             let found = bandwidth(seen(Some(frequency), &axis).view(), &axis, 0.95).unwrap();

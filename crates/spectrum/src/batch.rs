@@ -1,25 +1,26 @@
-//! What one batch of photons measured, whole or in part.
+//! The measurement of one batch of photons, whole or in part.
 
 use crate::ray_moments::RayMoments;
 use etendue_field::{Ledger, PlaneTally, Projection, Slices};
 
-/// What one batch of photons measured at one plane.
+/// The measurement of one batch of photons at one plane.
 ///
-/// Slices and projection are means per emitted photon of the batch: each is by itself an unbiased estimate.
+/// Slices and projection are means per emitted photon of the batch: each is an unbiased estimate by
+/// itself.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlaneBatch {
-    /// Photons that crossed the plane, in and out of its window.
+    /// Number of photons that crossed the plane, inside and outside its window.
     pub tally: PlaneTally,
     /// The slices of the windowed field.
     pub slices: Slices,
-    /// The windowed field over (x, u).
+    /// The windowed field projected onto (x, u).
     pub projection: Projection,
-    /// Its second moments, likewise.
+    /// Second moments of the windowed field, also per emitted photon.
     pub moments: RayMoments,
 }
 
 impl PlaneBatch {
-    /// Adds what another part of the batch measured.
+    /// Adds the measurement of another part of the batch.
     fn add(&mut self, other: &Self) {
         self.tally.add(&other.tally);
         self.slices.half += &other.slices.half;
@@ -30,7 +31,7 @@ impl PlaneBatch {
 }
 
 impl Batch {
-    /// Adds what another part of the batch measured.
+    /// Adds the measurement of another part of the batch.
     pub(crate) fn add(&mut self, other: &Self) {
         self.ledger.add(&other.ledger);
         let planes = self.planes.iter_mut().zip(&other.planes);
@@ -38,32 +39,33 @@ impl Batch {
     }
 }
 
-/// What one batch of photons measured: a replicate, independent of all others.
+/// The measurement of one batch of photons: a replicate, independent of all others.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Batch {
-    /// Its number.
+    /// Number of the batch.
     pub index: u32,
-    /// Photons emitted, those that end with zero weight included.
+    /// Number of photons emitted, including those that end with zero weight.
     pub emitted: u64,
-    /// What became of their flux.
+    /// The ledger of their flux.
     pub ledger: Ledger,
     /// One entry for each virtual plane, in the order of the measurement's planes.
     pub planes: Vec<PlaneBatch>,
 }
 
-/// The first parts of a batch, summed in order: its measurement goes on from them, and ends with the same bits as if it had not stopped.
+/// The sum, in order, of the first parts of a batch. A measurement continued from it ends with a
+/// result bitwise identical to that of an uninterrupted one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PartialBatch {
     /// The number of the batch.
     pub index: u32,
-    /// How many parts are summed.
+    /// Number of parts in the sum.
     pub parts: u32,
-    /// Their sum; `None` of no parts. Like all sums it is per photon of the whole batch.
+    /// The sum; `None` for no parts. Like all sums it is per photon of the whole batch.
     pub sum: Option<Batch>,
 }
 
 impl PartialBatch {
-    /// A batch that is not begun.
+    /// Returns a batch without any parts.
     #[must_use]
     pub fn new(index: u32) -> Self {
         Self {

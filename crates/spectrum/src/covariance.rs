@@ -15,7 +15,7 @@ pub struct CovarianceEstimate {
     pub error: Array2<f64>,
 }
 
-/// The covariance of the windowed light field at plane `plane`; `None` where no light came.
+/// Returns the covariance of the windowed light field at plane `plane`; `None` if no light arrived.
 ///
 /// # Errors
 ///

@@ -6,16 +6,17 @@ use ndarray::{Array2, Array3};
 
 /// The measured slices of a plane.
 ///
-/// The mean over batches is plain: each batch is unbiased, and so is their mean, whatever the batches hold.
-/// Batches differ by one emitted photon at most, so weighting them would gain nothing.
+/// The mean over batches is unweighted: each batch is unbiased, and so is their mean, whatever the
+/// sizes of the batches. Batches differ by one emitted photon at most, so weights would gain
+/// nothing.
 #[derive(Clone, Debug)]
 pub struct SliceEstimate {
     /// Number R of batches.
     pub batches: usize,
     /// The mean S̄ of the batches S_r.
     pub mean: Slices,
-    /// σ², the variance of the mean (docs/theory.md (12)): E|S̄ − E S̄|², estimated without bias by Σ|S_r − S̄|²/(R(R−1)), also
-    /// when the batches differ in size. [azimuth, ρ ≥ 0, ν].
+    /// The variance σ² of the mean (docs/theory.md (12)): E|S̄ − E S̄|², whose unbiased estimate is
+    /// Σ|S_r − S̄|²/(R(R−1)), also if the batches differ in size. [azimuth, ρ ≥ 0, ν].
     pub variance: Array3<f64>,
 }
 
@@ -28,18 +29,18 @@ pub struct ProjectionEstimate {
     pub standard_error: Array2<f64>,
 }
 
-/// There are not enough batches to tell an error.
+/// There are too few batches to estimate an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{have} batches are too few for an error: at least {need} are needed")]
 pub struct TooFewBatches {
-    /// Batches there are.
+    /// Number of batches available.
     pub have: usize,
-    /// Batches that would do.
+    /// Number of batches needed.
     pub need: usize,
 }
 
 impl TooFewBatches {
-    /// Fails when a measurement holds fewer than `need` batches.
+    /// Fails if a measurement has fewer than `need` batches.
     pub(crate) fn check(measurement: &Measurement, need: usize) -> Result<(), Self> {
         let have = measurement.batches().len();
         if have < need {
@@ -49,7 +50,7 @@ impl TooFewBatches {
     }
 }
 
-/// The mean slices at plane `plane` with their variance.
+/// Returns the mean slices at plane `plane` with their variance.
 ///
 /// # Errors
 ///
@@ -81,8 +82,8 @@ pub fn slices(measurement: &Measurement, plane: usize) -> Result<SliceEstimate, 
     })
 }
 
-/// The noise of the slices at plane `plane`, as a share of them: √(Σσ²/(Σ|S̄|² − Σσ²)), over
-/// independent frequencies. `None` where no photon came, or where there is more noise than light.
+/// Returns the relative noise of the slices at plane `plane`: √(Σσ²/(Σ|S̄|² − Σσ²)), over
+/// independent frequencies. `None` if no photon arrived, or if there is more noise than light.
 ///
 /// # Errors
 ///
@@ -100,7 +101,7 @@ pub fn noise(measurement: &Measurement, plane: usize) -> Result<Option<f64>, Too
     Ok((light > 0.0).then(|| (noise / light).sqrt()))
 }
 
-/// The mean projection at plane `plane` with its standard error.
+/// Returns the mean projection at plane `plane` with its standard error.
 ///
 /// # Errors
 ///

@@ -1,8 +1,10 @@
-//! The windowed light field itself on a 4D grid, its transform, and the full radial spectrum.
+//! The windowed light field on a 4D grid, its transform, and the full radial spectrum.
 //!
-//! The slices need no grid and do not alias. A grid is for what needs all four dimensions at once: the field as a file, and the power
-//! over (|Ωxy|, |Ωuv|), both azimuths averaged. [`measure_field`] traces the photons of one plane onto a
-//! [`FieldGrid`](etendue_field::FieldGrid); [`FieldSpectrum::aliasing`] says what the grid costs.
+//! The slices need no grid and have no aliasing. A grid is for results that need all four
+//! dimensions at once: the field as a file, and the power over (|Ωxy|, |Ωuv|), averaged over both
+//! azimuths. [`measure_field`] traces the photons of one plane onto a
+//! [`FieldGrid`](etendue_field::FieldGrid); [`FieldSpectrum::aliasing`] estimates the error due to
+//! the grid.
 
 mod aliasing;
 mod bins;

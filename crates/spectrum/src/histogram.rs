@@ -3,7 +3,8 @@
 use etendue_field::{Projection, ProjectionGrid, TwoPlane};
 use ndarray::Array2;
 
-/// A sum of weighted rays on its way to the primal side of the slice at azimuth 0: see [`Projection`].
+/// A partial sum of weighted rays, to become a [`Projection`], the primal counterpart of the slice
+/// at azimuth 0.
 #[derive(Clone, Debug)]
 pub struct ProjectionHistogram {
     grid: ProjectionGrid,
@@ -12,7 +13,7 @@ pub struct ProjectionHistogram {
 }
 
 impl ProjectionHistogram {
-    /// An empty histogram over `grid`.
+    /// Returns an empty histogram over `grid`.
     #[must_use]
     pub fn new(grid: ProjectionGrid) -> Self {
         Self {
@@ -21,7 +22,7 @@ impl ProjectionHistogram {
         }
     }
 
-    /// Adds a ray; one outside the grid adds nothing.
+    /// Adds a ray; rays outside the grid are ignored.
     #[inline]
     pub fn deposit(&mut self, ray: &TwoPlane, weight: f64) {
         if let Some(cell) = self.grid.cell(ray.x, ray.u) {
@@ -29,9 +30,9 @@ impl ProjectionHistogram {
         }
     }
 
-    /// Σ w · `scale` / (area of a cell) for each cell; empties the histogram.
+    /// Returns Σ w · `scale` / (area of a cell) for each cell, and empties the histogram.
     ///
-    /// With `scale` = 1/emitted it estimates the mean of ∫∫ L W dy dv over each cell.
+    /// With `scale` = 1/emitted the result estimates the mean of ∫∫ L W dy dv over each cell.
     #[must_use]
     pub fn finish(&mut self, scale: f64) -> Projection {
         let values = &self.sums * (scale / self.grid.cell_area());

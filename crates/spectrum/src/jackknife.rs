@@ -1,4 +1,4 @@
-//! Standard errors by leaving out one batch at a time.
+//! Standard errors by the delete-one jackknife over batches.
 
 use ndarray::{Array, Dimension};
 
@@ -14,7 +14,7 @@ pub struct Uncertain {
 /// The delete-one jackknife: the variance of an estimate from its values θ_r with batch r left out,
 /// (R−1)/R Σ (θ_r − θ̄)² (Efron and Stein 1981).
 ///
-/// It takes the values one after another and keeps running sums (Welford 1962).
+/// It receives the values one after another and keeps running sums (Welford 1962).
 pub(crate) struct Jackknife<D: Dimension> {
     count: usize,
     mean: Array<f64, D>,
@@ -22,7 +22,7 @@ pub(crate) struct Jackknife<D: Dimension> {
 }
 
 impl<D: Dimension> Jackknife<D> {
-    /// For values of the given shape.
+    /// Builds a jackknife for values of the given shape.
     pub(crate) fn new(shape: D) -> Self {
         Self {
             count: 0,
@@ -31,7 +31,7 @@ impl<D: Dimension> Jackknife<D> {
         }
     }
 
-    /// Takes the estimate with one more batch left out.
+    /// Adds the estimate with one more batch left out.
     pub(crate) fn add(&mut self, value: &Array<f64, D>) {
         self.count += 1;
         let count = self.count as f64;
@@ -45,7 +45,7 @@ impl<D: Dimension> Jackknife<D> {
             });
     }
 
-    /// The variance of the estimate.
+    /// Returns the variance of the estimate.
     pub(crate) fn variance(self) -> Array<f64, D> {
         let count = self.count as f64;
         self.squares * ((count - 1.0) / count)

@@ -1,14 +1,16 @@
 //! From photons that cross virtual planes to spectra with statistical errors.
 //!
-//! In: a [`PhotonSource`](etendue_field::PhotonSource) and the virtual planes. [`measure`] runs batches of
-//! photons and keeps, for each batch and plane, the [`Slices`](etendue_field::Slices) of the windowed light
-//! field, its projection on (x, u) and the tally of the window. Out: a [`Measurement`], partial or whole,
-//! and the estimates made from its independent batches: mean slices with their variance
-//! ([`estimate::slices`]), radial power without the photons' noise ([`CrossPower`]), slopes ([`moments`]) and
-//! bandwidths ([`bandwidth`](mod@bandwidth)) with jackknife errors. The field itself on a 4D grid, with its full radial spectrum, is [`field`]'s.
+//! The input is a [`PhotonSource`](etendue_field::PhotonSource) and the virtual planes. [`measure`]
+//! runs batches of photons and keeps, for each batch and plane, the
+//! [`Slices`](etendue_field::Slices) of the windowed light field, its projection on (x, u) and the
+//! tally of the window. The output is a [`Measurement`], partial or whole, and the estimates made
+//! from its independent batches: mean slices with their variance ([`estimate::slices`]), radial
+//! power without the photons' noise ([`CrossPower`]), slopes ([`moments`]) and bandwidths
+//! ([`bandwidth`](mod@bandwidth)) with jackknife errors. [`field`] has the field itself on a 4D
+//! grid, with its full radial spectrum.
 //!
-//! The transform is [`SliceTransform`](etendue_transform::SliceTransform). Nothing here traces or
-//! predicts, and nothing judges: comparing with a prediction is another crate's.
+//! The transform is [`SliceTransform`](etendue_transform::SliceTransform). This crate does not
+//! trace, predict or decide on agreement: another crate compares results with a prediction.
 
 pub mod bandwidth;
 mod batch;

@@ -11,16 +11,17 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Cells of a projection along x and along u.
+/// Number of cells of a projection along x and along u.
 pub const PROJECTION_BINS: usize = 64;
 
 /// Measures `batches` of photons from `source` at `planes`, on the threads of the current rayon pool.
 ///
-/// A part of a batch is the sequential work of one thread, and parts are added in order, so the result
-/// is the same to the bit on any number of threads. `progress` is told the photons as they are traced.
+/// A part of a batch is the sequential work of one thread, and parts are added in order, so the
+/// result is bitwise identical on any number of threads. `progress` is called with the number of
+/// photons as they are traced.
 ///
-/// A batch that emits nothing measures nothing and is left out: with fewer photons than batches the result
-/// holds as many batches as photons.
+/// A batch without photons is left out: with fewer photons than batches the result has as many
+/// batches as photons.
 #[must_use]
 pub fn measure(
     source: &dyn PhotonSource,
@@ -32,24 +33,25 @@ pub fn measure(
     measure_watched(source, planes, &mut batches, &Told(progress)).0
 }
 
-/// Callbacks of a measurement, from any thread.
+/// Callbacks during a measurement; they may come from any thread.
 pub trait Watch: Sync {
-    /// So many photons more are traced.
+    /// Called after a further number of photons is traced.
     fn traced(&self, photons: u64);
 
-    /// Whether to measure a part of a batch, asked when its turn comes. The rest of the batch is left out otherwise.
+    /// Returns whether to measure a part of a batch; called just before the part. Otherwise the
+    /// rest of the batch is left out.
     fn goes_on(&self, _batch: u32, _part: u32) -> bool {
         true
     }
 
-    /// More parts of a batch are done, but not all of them.
+    /// Called when more parts of a batch are done, but not all.
     fn begun(&self, _batch: &PartialBatch) {}
 
-    /// A batch is done.
+    /// Called when a batch is done.
     fn done(&self, _batch: &Batch) {}
 }
 
-/// One that counts photons alone.
+/// A [`Watch`] that only counts photons.
 struct Told<'a>(&'a (dyn Fn(u64) + Sync));
 
 impl Watch for Told<'_> {
@@ -58,10 +60,11 @@ impl Watch for Told<'_> {
     }
 }
 
-/// [`measure`] of distinct batches in any order, each from where it was left. Returns the batches that are done, and those that `watch`
-/// has stopped on the way.
+/// Runs [`measure`] on distinct batches in any order, each from the point where it was left.
+/// Returns the batches that are done, and those that `watch` has stopped.
 ///
-/// Threads take parts in order, so that few batches are on the way at a time. A part waits until all before it are summed.
+/// Threads take parts in order, which keeps the number of unfinished batches small. A part is
+/// summed only after all parts before it.
 #[must_use]
 pub fn measure_watched(
     source: &dyn PhotonSource,
@@ -110,14 +113,14 @@ pub fn measure_watched(
     (Measurement::of(planes, whole.into_iter()), begun)
 }
 
-/// The parts of batches, one after the other.
+/// Iterates over the parts of batches, one after the other.
 struct BatchParts<'a> {
     source: &'a dyn PhotonSource,
     batches: &'a mut (dyn Iterator<Item = PartialBatch> + Send),
     watch: &'a dyn Watch,
-    /// The batches so far.
+    /// The batches started so far.
     all: &'a mut Vec<Arc<BatchSum>>,
-    /// The next part of the last of them.
+    /// The next part of the last batch.
     next: u32,
 }
 
@@ -145,14 +148,14 @@ impl Iterator for BatchParts<'_> {
 /// The sum of the parts of a batch, in their order.
 struct BatchSum {
     index: u32,
-    /// How many parts the batch has.
+    /// Number of parts of the batch.
     parts: u32,
     state: Mutex<SumState>,
 }
 
 struct SumState {
     partial: PartialBatch,
-    /// Parts that are done before one that precedes them.
+    /// Finished parts that must wait for an earlier part.
     waiting: BTreeMap<u32, Batch>,
 }
 
@@ -188,7 +191,7 @@ impl BatchSum {
     }
 }
 
-/// What a part of a batch adds to the means over the whole batch.
+/// Returns the contribution of a part of a batch to the means over the whole batch.
 fn measure_part(
     source: &dyn PhotonSource,
     [index, part]: [u32; 2],
@@ -207,7 +210,8 @@ fn measure_part(
     }
 }
 
-/// Takes the crossings of one plane, applies its quantity and its window and keeps the sums.
+/// Receives the crossings of one plane, applies the plane's quantity and window, and accumulates
+/// the sums.
 struct Recorder<'plan> {
     plane: &'plan VirtualPlane,
     tally: PlaneTally,
@@ -243,7 +247,7 @@ impl<'plan> Recorder<'plan> {
         }
     }
 
-    /// What was recorded, per emitted photon; ready for the next batch.
+    /// Returns the recorded sums per emitted photon and resets them for the next batch.
     fn finish(&mut self, scale: f64) -> PlaneBatch {
         PlaneBatch {
             tally: std::mem::take(&mut self.tally),

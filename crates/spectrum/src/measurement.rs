@@ -6,24 +6,25 @@ use std::collections::BTreeMap;
 
 /// A measurement, whole or partial: some batches of photons at some virtual planes.
 ///
-/// It knows which batches it holds, so partial results of one experiment can be computed anywhere and
-/// merged in any order; every number is then summed in the order of the batches, to the same bits.
+/// A measurement records which batches it contains, so partial results of one experiment can be
+/// computed anywhere and merged in any order; all sums are over batches in order, so results are
+/// bitwise identical.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurement {
     planes: Vec<VirtualPlane>,
     batches: BTreeMap<u32, Batch>,
 }
 
-/// Why a batch or a partial result cannot be added to a measurement.
+/// The reason why a batch or a partial result cannot be added to a measurement.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MergeError {
-    /// The same batch twice: its photons would count twice.
+    /// A batch is in both results: its photons would count twice.
     #[error("batch {0} is in both results")]
     BatchTwice(u32),
     /// The two results were measured at different planes.
     #[error("the results are of different planes: [{}] and [{}]", .0.join(", "), .1.join(", "))]
     Planes(Vec<String>, Vec<String>),
-    /// A batch whose slices are not those the planes ask for.
+    /// The slices of a batch do not match the planes.
     #[error("batch {batch} does not hold the slices of planes [{}]", .planes.join(", "))]
     Shape {
         /// The batch.
@@ -34,7 +35,7 @@ pub enum MergeError {
 }
 
 impl Measurement {
-    /// A measurement at `planes` that holds no batch yet.
+    /// Returns a measurement at `planes` without batches.
     #[must_use]
     pub fn new(planes: Vec<VirtualPlane>) -> Self {
         Self {
@@ -43,7 +44,8 @@ impl Measurement {
         }
     }
 
-    /// The measurement made of `batches`, whose numbers are distinct and whose slices are those of `planes`.
+    /// Returns the measurement with `batches`, which have distinct numbers and slices that match
+    /// `planes`.
     pub(crate) fn of(planes: &[VirtualPlane], batches: impl Iterator<Item = Batch>) -> Self {
         Self {
             planes: planes.to_vec(),
@@ -51,39 +53,39 @@ impl Measurement {
         }
     }
 
-    /// The virtual planes.
+    /// Returns the virtual planes.
     #[must_use]
     pub fn planes(&self) -> &[VirtualPlane] {
         &self.planes
     }
 
-    /// The batches, by ascending number.
+    /// Returns the batches, by ascending number.
     pub fn batches(&self) -> impl ExactSizeIterator<Item = &Batch> {
         self.batches.values()
     }
 
-    /// Whether it holds batch `index`.
+    /// Checks whether the measurement contains batch `index`.
     #[must_use]
     pub fn contains(&self, index: u32) -> bool {
         self.batches.contains_key(&index)
     }
 
-    /// What each batch measured at plane `plane`, by ascending number of the batch.
+    /// Returns the measurement of each batch at plane `plane`, by ascending number of the batch.
     ///
     /// # Panics
     ///
-    /// When there is no such plane and the iterator is used.
+    /// If there is no such plane and the iterator is used.
     pub fn at_plane(&self, plane: usize) -> impl ExactSizeIterator<Item = &PlaneBatch> {
         self.batches.values().map(move |batch| &batch.planes[plane])
     }
 
-    /// Photons emitted in all batches.
+    /// Returns the number of photons emitted in all batches.
     #[must_use]
     pub fn emitted(&self) -> u64 {
         self.batches.values().map(|batch| batch.emitted).sum()
     }
 
-    /// What became of their flux, summed over batches.
+    /// Returns the ledger of their flux, summed over batches.
     #[must_use]
     pub fn ledger(&self) -> Ledger {
         let mut sum = Ledger::default();
@@ -93,7 +95,7 @@ impl Measurement {
         sum
     }
 
-    /// The photons of all batches that crossed plane `plane`.
+    /// Returns the tally of plane `plane` over all batches.
     #[must_use]
     pub fn tally(&self, plane: usize) -> PlaneTally {
         let mut sum = PlaneTally::default();
@@ -107,7 +109,7 @@ impl Measurement {
     ///
     /// # Errors
     ///
-    /// When the batch is already here, or its slices are not those of the planes.
+    /// If the measurement contains the batch already, or if its slices do not match the planes.
     pub fn insert(&mut self, batch: Batch) -> Result<(), MergeError> {
         if self.contains(batch.index) {
             return Err(MergeError::BatchTwice(batch.index));
@@ -123,11 +125,11 @@ impl Measurement {
         Ok(())
     }
 
-    /// This and another partial result of the same experiment in one.
+    /// Merges this with another partial result of the same experiment.
     ///
     /// # Errors
     ///
-    /// When the planes differ or a batch is in both.
+    /// If the planes differ or a batch is in both.
     pub fn merge(mut self, other: Self) -> Result<Self, MergeError> {
         if self.planes != other.planes {
             return Err(MergeError::Planes(self.names(), other.names()));

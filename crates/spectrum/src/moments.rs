@@ -1,12 +1,13 @@
-//! Numbers read off a power spectrum [ρ, ν], measured or predicted alike.
+//! Statistics of a power spectrum [ρ, ν], measured or predicted.
 
 use etendue_field::{Profile, SliceGrid, Window};
 use ndarray::{ArrayView2, Axis};
 
-/// A second moment of the power, Σ P ρᵐ νⁿ / Σ P with m + n = 2, `powers` being [m, n].
+/// Returns a second moment of the power, Σ P ρᵐ νⁿ / Σ P with m + n = 2, `powers` being [m, n].
 ///
-/// Over the frequencies of the grid: where the field has an edge the sum grows without end with them, and a [`bandwidth`](crate::bandwidth::bandwidth) says more.
-/// Unit: cycles per metre to the m times cycles per unit slope to the n. `None` when Σ P is not positive.
+/// The sum is over the frequencies of the grid: if the field has an edge it grows without bound
+/// with the grid, and a [`bandwidth`](crate::bandwidth::bandwidth) is more meaningful. Unit: cycles
+/// per metre to the m times cycles per unit slope to the n. `None` if Σ P is not positive.
 #[must_use]
 pub fn second_moment(
     power: ArrayView2<'_, f64>,
@@ -21,9 +22,10 @@ pub fn second_moment(
     (all > 0.0).then(|| sum / all)
 }
 
-/// The slope dν/dρ along which the power lies, by least squares: Σ P ρ ν / Σ P ρ².
+/// Returns the slope dν/dρ along which the power lies, by least squares: Σ P ρ ν / Σ P ρ².
 ///
-/// Travel by d moves power from (ρ, 0) to (ρ, −d ρ), so the slope is near −d. Unit: metres. `None` when Σ P ρ² is not positive.
+/// Travel by d moves power from (ρ, 0) to (ρ, −d ρ), so the slope is near −d. Unit: metres. `None`
+/// if Σ P ρ² is not positive.
 #[must_use]
 pub fn shear_slope(power: ArrayView2<'_, f64>, grid: &SliceGrid) -> Option<f64> {
     let (mut along, mut square) = (0.0, 0.0);
@@ -35,10 +37,12 @@ pub fn shear_slope(power: ArrayView2<'_, f64>, grid: &SliceGrid) -> Option<f64> 
     (square > 0.0).then(|| along / square)
 }
 
-/// H, the share of energy above a cut in the spectrum at ν = 0: Σ_{|ρ| > cut} P(ρ, 0) / Σ P(ρ, 0).
+/// Returns H, the share of energy above a cut in the spectrum at ν = 0: Σ_{|ρ| > cut} P(ρ, 0) / Σ
+/// P(ρ, 0).
 ///
-/// On a plane that light leaves diffusely, the field is constant in slope and this is the spectrum of the windowed
-/// irradiance: H tells a sharp shadow from a smooth one (Durand et al. 2005, Fig. 9). `None` when the sum is not positive.
+/// On a plane that light leaves diffusely, the field is constant in slope and this is the spectrum
+/// of the windowed irradiance: H distinguishes a sharp shadow from a smooth one (Durand et al.
+/// 2005, Fig. 9). `None` if the sum is not positive.
 #[must_use]
 pub fn high_frequency_share(power: ArrayView2<'_, f64>, grid: &SliceGrid, cut: f64) -> Option<f64> {
     let (mut high, mut all) = (0.0, 0.0);
@@ -51,12 +55,14 @@ pub fn high_frequency_share(power: ArrayView2<'_, f64>, grid: &SliceGrid, cut: f
     (all > 0.0).then(|| high / all)
 }
 
-/// The share of power in the wedge of blockers that stand between two distances from the plane, `[nearest, farthest]` in metres.
+/// Returns the share of power in the wedge of blockers between two distances from the plane,
+/// `[nearest, farthest]` in metres.
 ///
-/// A blocker at distance d puts its frequencies on the line ν = −d ρ (Durand et al. 2005, section 3.2; Egan et al. 2009).
-/// The window blurs them: a frequency is inside when it is within the main lobe of a Hann window of the wedge, 1/half-width
-/// along each axis. Frequencies within the main lobe of zero, where light has its mean, are left out. `None` when the sum
-/// of all others is not positive.
+/// A blocker at distance d has its frequencies on the line ν = −d ρ (Durand et al. 2005, section
+/// 3.2; Egan et al. 2009). The window blurs them: a frequency counts as inside if its distance from
+/// the wedge is within the main lobe of a Hann window, 1/half-width along each axis. Frequencies
+/// within the main lobe around zero, where the mean of the light is, are left out. `None` if the
+/// sum of all others is not positive.
 #[must_use]
 pub fn wedge_share(
     power: ArrayView2<'_, f64>,
@@ -112,7 +118,8 @@ mod tests {
         let grid = grid();
         let ridge = ridge(0.5);
         let moment = |powers| second_moment(ridge.view(), &grid, powers).unwrap();
-        // ρ² has the mean 0.8²/2, ν given ρ the mean ρ/2 and the variance ½; the tails off the grid are below e^-14.
+        // ρ² has the mean 0.8²/2, ν given ρ has the mean ρ/2 and the variance ½; the tails off the
+        // grid are below e^-14.
         let square = 0.5 * 0.8 * 0.8;
         assert!((moment([2, 0]) - square).abs() < 1e-4);
         assert!((moment([1, 1]) - 0.5 * square).abs() < 1e-4);
@@ -123,14 +130,15 @@ mod tests {
     fn the_slope_of_a_ridge_is_found() {
         for slope in [-2.0, -0.5, 0.0, 1.3] {
             let found = shear_slope(ridge(slope).view(), &grid()).unwrap();
-            // The ridge is e^-14 high at the ends of the ρ axis, where its ν would leave the grid.
+            // The ridge is e^-14 high at the ends of the ρ axis, where its ν leaves the grid.
             assert!((found - slope).abs() < 1e-5, "{found}");
         }
         assert!(shear_slope((-ridge(1.0)).view(), &grid()).is_none());
         assert!(shear_slope(Array2::zeros((21, 81)).view(), &grid()).is_none());
     }
 
-    /// Power along two lines of blockers 0.5 and 1 m away, and as much on a third 5 m away.
+    /// Equal power along the lines of blockers 0.5 and 1 m away, and as much as both on a third
+    /// line, 5 m away.
     #[test]
     fn lines_of_a_wedge_are_inside() {
         let grid = grid();
@@ -152,7 +160,8 @@ mod tests {
             outside.map(|(_, p)| p).sum::<f64>()
         };
         let all = beyond(-0.5) + beyond(-1.0) + 2.0 * beyond(-5.0);
-        // Of each line e^(−1) lies beyond the lobe of 0.5 /m at most; near zero the far line is within reach too.
+        // At most e^(−1) of each line is beyond the lobe of 0.5 /m; near zero the far line is
+        // within the lobe too.
         let alone = (beyond(-0.5) + beyond(-1.0)) / all;
         assert!(share([0.5, 1.0]) > 0.9 * alone && share([0.5, 1.0]) < 0.8);
         assert!(share([0.5, 5.0]) > 0.97);

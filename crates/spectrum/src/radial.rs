@@ -1,4 +1,4 @@
-//! Power spectra over azimuths.
+//! Power spectra averaged over azimuths.
 
 use crate::bandwidth::{BANDWIDTH_FRACTION, SliceBandwidth, Widest, widest_slice};
 use crate::estimate::TooFewBatches;
@@ -11,29 +11,30 @@ use std::ops::Range;
 /// The measured radial power of a plane: |S_φ|² averaged over the azimuths, [ρ, ν] ascending.
 #[derive(Clone, Debug)]
 pub struct RadialPower {
-    /// The power without the noise of the photons: unbiased, and negative where noise has it so.
+    /// The power without the noise of the photons: unbiased, and possibly negative due to noise.
     pub power: Array2<f64>,
-    /// What the photons' noise added to the power of the mean spectrum, and was left out.
+    /// The contribution of the photons' noise to the power of the mean spectrum, which `power`
+    /// leaves out.
     pub shot_noise: Array2<f64>,
-    /// The standard error of `power`, by the delete-one jackknife over R batches. On the safe side where
-    /// there is nothing but noise: there it is √(2(R−1)/(R−2)) times too large.
+    /// The standard error of `power`, by the delete-one jackknife over R batches. It is
+    /// conservative where there is only noise: there it is √(2(R−1)/(R−2)) times too large.
     pub sigma: Array2<f64>,
 }
 
-/// The power spectrum of a plane by crossing independent batches (docs/theory.md (13)):
+/// The power spectrum of a plane from products of independent batches (docs/theory.md (13)):
 ///
 /// U = (|Σ S_r|² − Σ |S_r|²)/(R(R−1)),
 ///
-/// the mean of Re(S_r conj S_s) over all pairs r ≠ s. The noises of two batches are independent, so U is an
-/// unbiased estimate of |F|² whatever the photons of one batch have in common.
+/// the mean of Re(S_r conj S_s) over all pairs r ≠ s. The noise of two batches is independent, so U
+/// is an unbiased estimate of |F|², whatever the correlations among the photons of one batch.
 ///
-/// Without batch r it is (T − 2 row_r)/((R−1)(R−2)), T being R(R−1) U and row_r = Σ_(s≠r) Re(S_r conj S_s):
-/// no copies for the jackknife.
+/// Without batch r it is (T − 2 row_r)/((R−1)(R−2)), where T is R(R−1) U and row_r = Σ_(s≠r) Re(S_r
+/// conj S_s): the jackknife needs no copies.
 #[derive(Clone, Debug)]
 pub struct CrossPower<'m> {
     grid: SliceGrid,
     batches: Vec<&'m Slices>,
-    /// The azimuths that are averaged.
+    /// The azimuths to average over.
     azimuths: Range<usize>,
     /// Σ S_r at these azimuths, [azimuth, ρ ≥ 0, ν].
     sum: Array3<Complex>,
@@ -41,21 +42,21 @@ pub struct CrossPower<'m> {
     pairs: Array3<f64>,
 }
 
-/// Fewest batches of a jackknife.
+/// The fewest batches for a jackknife.
 const NEED: usize = 3;
 
 impl<'m> CrossPower<'m> {
-    /// The cross power of plane `plane`.
+    /// Computes the cross power of plane `plane`.
     ///
     /// # Errors
     ///
-    /// With fewer than three batches, the least a jackknife can do with.
+    /// With fewer than three batches, the minimum for a jackknife.
     pub fn new(measurement: &'m Measurement, plane: usize) -> Result<Self, TooFewBatches> {
         let azimuths = 0..measurement.planes()[plane].grid.azimuths;
         Self::over(measurement, plane, azimuths)
     }
 
-    /// That of one slice, number `azimuth`.
+    /// Computes the cross power of the slice with index `azimuth`.
     ///
     /// # Errors
     ///
@@ -63,7 +64,7 @@ impl<'m> CrossPower<'m> {
     ///
     /// # Panics
     ///
-    /// When there are not so many slices.
+    /// If there are not that many slices.
     pub fn of_slice(
         measurement: &'m Measurement,
         plane: usize,
@@ -82,15 +83,16 @@ impl<'m> CrossPower<'m> {
         Self::between(grid, batches, azimuths)
     }
 
-    /// That of independent replicates of a prediction, over some of their azimuths.
+    /// Computes the cross power of independent replicates of a prediction, over some of their
+    /// azimuths.
     ///
     /// # Errors
     ///
-    /// With fewer than three.
+    /// With fewer than three replicates.
     ///
     /// # Panics
     ///
-    /// When there are not so many slices.
+    /// If there are not that many slices.
     pub fn of_replicates(
         replicates: &'m [Slices],
         azimuths: Range<usize>,
@@ -130,7 +132,7 @@ impl<'m> CrossPower<'m> {
         })
     }
 
-    /// That of slice number `slice` of those here.
+    /// Returns the cross power of slice number `slice` of those in this object.
     fn slice(&self, slice: usize) -> Self {
         let one = slice..slice + 1;
         let first = self.azimuths.start;
@@ -143,7 +145,7 @@ impl<'m> CrossPower<'m> {
         }
     }
 
-    /// The power U, [ρ, ν].
+    /// Returns the power U, [ρ, ν].
     #[must_use]
     pub fn power(&self) -> Array2<f64> {
         let r = self.batches.len() as f64;
@@ -151,11 +153,11 @@ impl<'m> CrossPower<'m> {
             .unfold_radial((mean(&self.pairs) / (r * (r - 1.0))).view())
     }
 
-    /// The power without batch number `left_out` of those there are, [ρ, ν].
+    /// Returns the power without the batch at index `left_out`, [ρ, ν].
     ///
     /// # Panics
     ///
-    /// When there are not so many batches.
+    /// If there are not that many batches.
     #[must_use]
     pub fn without(&self, left_out: usize) -> Array2<f64> {
         let r = self.batches.len() as f64;
@@ -168,7 +170,7 @@ impl<'m> CrossPower<'m> {
         self.grid.unfold_radial(power.view())
     }
 
-    /// Power, shot noise and standard error.
+    /// Returns power, shot noise and standard error.
     #[must_use]
     pub fn radial(&self) -> RadialPower {
         let power = self.power();
@@ -185,8 +187,9 @@ impl<'m> CrossPower<'m> {
         }
     }
 
-    /// The largest bandwidth over the azimuths, with its standard error in that azimuth. Where several are alike noise chooses among them,
-    /// and the largest is above each of them by about its error.
+    /// Returns the largest bandwidth over the azimuths, with its standard error at that azimuth. If
+    /// several are nearly equal, noise selects among them, and the largest exceeds each of them by
+    /// about its error.
     pub fn bandwidth(&self, of: SliceBandwidth) -> Option<Widest<Uncertain>> {
         let (slice, _) = widest_slice(self.pairs.view(), &self.grid, of)?;
         let one = self.slice(slice);
@@ -195,9 +198,9 @@ impl<'m> CrossPower<'m> {
         Some(Widest { azimuth, value })
     }
 
-    /// A number read off the power, such as a slope, with its standard error by the jackknife.
+    /// Returns a statistic of the power, such as a slope, with its standard error by the jackknife.
     ///
-    /// `None` when the number does not exist, with all batches or with one left out.
+    /// `None` if the statistic does not exist, with all batches or with one left out.
     pub fn statistic(&self, of: impl Fn(ArrayView2<'_, f64>) -> Option<f64>) -> Option<Uncertain> {
         let value = of(self.power().view())?;
         let mut jackknife = Jackknife::new(ndarray::Ix0());
@@ -211,12 +214,12 @@ impl<'m> CrossPower<'m> {
     }
 }
 
-/// The slices at some azimuths.
+/// Returns the slices at some azimuths.
 fn at<'a, T>(slices: &'a Array3<T>, azimuths: &Range<usize>) -> ArrayView3<'a, T> {
     slices.slice_axis(Axis(0), Slice::from(azimuths.clone()))
 }
 
-/// The mean over azimuths.
+/// Returns the mean over azimuths.
 fn mean(slices: &Array3<f64>) -> Array2<f64> {
     slices.sum_axis(Axis(0)) / slices.len_of(Axis(0)) as f64
 }

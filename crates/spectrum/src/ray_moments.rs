@@ -27,13 +27,13 @@ impl RayMoments {
         }
     }
 
-    /// The sums so far times `scale`; ready for the next batch.
+    /// Returns the sums so far times `scale` and resets them for the next batch.
     pub(crate) fn finish(&mut self, scale: f64) -> Self {
         let sums = std::mem::take(self);
         Self(sums.0.map(|s| s * scale))
     }
 
-    /// The central second moments, [4, 4]; `None` if no light came.
+    /// Returns the central second moments, [4, 4]; `None` if no light arrived.
     pub(crate) fn covariance(&self) -> Option<Array2<f64>> {
         let [total, sums @ ..] = self.0;
         if total <= 0.0 {

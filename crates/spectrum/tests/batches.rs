@@ -1,4 +1,4 @@
-//! Batches, partial results, threads.
+//! Tests of batches, partial results and threads.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -32,7 +32,7 @@ fn run(source: &Shower, batches: std::ops::Range<u32>) -> Measurement {
     measure(source, &source.planes, batches, &|_| ())
 }
 
-/// Each plane's photons of a shower are a part of their own.
+/// A shower whose photons at each plane are a separate part.
 struct Parted(Shower);
 
 impl PhotonSource for Parted {
@@ -84,7 +84,7 @@ fn parts_make_a_batch() {
     }
 }
 
-/// Two batches, each of five batches of a shower.
+/// A source of two batches, each of five batches of a shower.
 struct Large(Shower);
 
 impl PhotonSource for Large {
@@ -111,10 +111,10 @@ impl PhotonSource for Large {
     }
 }
 
-/// Stops the first batch after so many parts.
+/// Stops the first batch after a given number of parts.
 struct Stop {
     parts: u32,
-    /// How many parts of it were summed, in the order told.
+    /// Number of parts of the batch in each partial sum, in order of the callbacks.
     begun: Mutex<Vec<u32>>,
 }
 
@@ -132,7 +132,8 @@ impl Watch for Stop {
     }
 }
 
-/// A batch that stops after any of its parts goes on from there to the same bits, on any number of threads.
+/// A batch that stops after any of its parts continues from there to a bitwise identical result, on
+/// any number of threads.
 #[test]
 fn a_batch_goes_on_where_it_was_left() {
     let source = Large(shower());
@@ -153,7 +154,7 @@ fn a_batch_goes_on_where_it_was_left() {
             };
             let first = watch(parts);
             let (found, left) = measured([0, 1].map(PartialBatch::new).to_vec(), &first);
-            // All parts that were begun are in it, told as they were summed.
+            // All parts that were begun are in it, reported in the order of summation.
             assert_eq!(
                 left.iter().map(|b| (b.index, b.parts)).collect::<Vec<_>>(),
                 [(0, parts)]

@@ -1,4 +1,4 @@
-//! What a 4D grid costs against the plain sum over the same rays.
+//! Tests of the aliasing of a 4D grid against the plain sum over the same rays.
 
 use crate::common::{Random, boxed, grid, hann};
 use etendue_field::{Assignment, Complex, Crossing, FieldGrid, TwoPlane, Window};
@@ -24,7 +24,8 @@ fn small(window: &Window) -> FieldGrid {
     }
 }
 
-/// The largest of |grid − plain sum| / bound over all frequencies below Nyquist and one half, and the largest of it.
+/// Returns the largest |grid − plain sum| / bound over all frequencies below Nyquist, in one half
+/// of the spectrum.
 fn over_bound(spectrum: &FieldSpectrum, crossings: &[Crossing]) -> f64 {
     let grid = spectrum.grid;
     let mut largest = 0.0_f64;
@@ -52,7 +53,8 @@ fn over_bound(spectrum: &FieldSpectrum, crossings: &[Crossing]) -> f64 {
     largest
 }
 
-/// Random rays; one ray; one ray at the worst place, half-way between centres on one axis and on a centre on the others.
+/// Random rays; one ray; one ray at the worst position, half-way between centres on one axis and on
+/// a centre on the others.
 fn sets(window: &Window) -> Vec<Vec<Crossing>> {
     let grid = small(window);
     let mut random = Random(11);
@@ -92,13 +94,14 @@ fn no_frequency_is_beyond_its_bound() {
                 assert!(found <= 1.0, "{assignment:?}: {found}");
                 nearest = nearest.max(found);
             }
-            // The bound is no idle one: a single ray comes near it.
+            // The bound is tight: a single ray comes near it.
             assert!(nearest > 0.7, "{assignment:?}: {nearest}");
         }
     }
 }
 
-/// Faults planted in the spectrum: the power of the sinc, half a cell along x, the sign of the transform.
+/// Planted faults in the spectrum: the power of the sinc, half a cell along x, the sign of the
+/// transform.
 #[test]
 fn wrong_compensations_are_beyond_it() {
     let window = hann();
@@ -107,7 +110,8 @@ fn wrong_compensations_are_beyond_it() {
         if f == 0.0 { 1.0 } else { t.sin() / t }
     };
     for assignment in ALL {
-        // The largest over the sets of rays, each spectrum times `factor` of the cycles per cell.
+        // The largest ratio over the sets of rays, with each spectrum multiplied by `factor` of the
+        // cycles per cell.
         let with = |factor: &dyn Fn([f64; 4]) -> Complex| {
             let sets = sets(&window).into_iter();
             sets.map(|crossings| {
@@ -130,8 +134,8 @@ fn wrong_compensations_are_beyond_it() {
         };
         assert!(power(0) <= 1.0);
         assert!(power(-1) > 1.2, "{assignment:?}: {}", power(-1));
-        // Too little: one power for TSC, two for CIC, whose bound is as wide as one; for the nearest cell it is so
-        // wide that it holds without any compensation.
+        // Too little compensation: one power for TSC, two for CIC, whose bound is as wide as one;
+        // for the nearest cell the bound is so wide that it holds without any compensation.
         match assignment {
             Assignment::Nearest => assert!(power(1) <= 1.0),
             Assignment::Cic => assert!(power(2) > 1.2, "{}", power(2)),
@@ -168,7 +172,8 @@ fn nothing_is_lost_on_the_grid() {
     }
 }
 
-/// White noise, the case the expected difference is exact for; a smooth field, where it is too large.
+/// White noise, for which the expected difference is exact; a smooth field, for which it is too
+/// large.
 #[test]
 fn the_slices_tell_the_aliasing() {
     let window = boxed();
@@ -183,7 +188,7 @@ fn the_slices_tell_the_aliasing() {
                 *weight = hann().value(ray) * 1e3;
             }
         } else {
-            // Weights of both signs have no mean: noise alone.
+            // Weights of both signs have zero mean, which leaves only noise.
             crossings.iter_mut().for_each(|c| c.weight -= 1.0);
         }
         let slices = {
@@ -196,14 +201,15 @@ fn the_slices_tell_the_aliasing() {
         for assignment in ALL {
             let spectrum = gridded(&crossings, field_grid, assignment);
             let aliasing = spectrum.aliasing(&slices, 1.0).unwrap();
-            // Two lines of one half of 15 × 19 frequencies, the zero in both.
+            // Two lines of one half of 15 × 19 frequencies, zero being in both.
             assert_eq!(aliasing.compared, 15 * 19 + 1);
             let ratio = aliasing.difference / aliasing.expected;
             if smooth {
                 assert!(aliasing.difference < aliasing.bound);
                 assert!(ratio < 1.5, "{ratio}");
             } else {
-                // 286 frequencies, a few of them with most of it; the power beyond is guessed from 150.
+                // 286 frequencies, few of which have most of it; the power beyond is estimated from
+                // 150.
                 assert!((0.6..1.5).contains(&ratio), "{assignment:?}: {ratio}");
             }
             assert!(aliasing.difference < last, "{assignment:?}"); // a smoother spline aliases less
@@ -222,7 +228,7 @@ fn what_is_not_shared_is_not_compared() {
         let field_grid = FieldGrid::new(&window, &slice_grid);
         gridded(&crossings, field_grid, Assignment::Tsc)
     };
-    // Twice as fine: every other frequency. An odd number of azimuths: one line.
+    // Twice as fine shares every other frequency. An odd number of azimuths shares one line.
     for (azimuths, fineness, compared) in [
         (3, 1.0, 7 * 7 / 2 + 1),
         (3, 2.0, 7 * 7 / 2 + 1),

@@ -1,4 +1,4 @@
-//! The covariance of spectra, measured on Gaussian light fields whose covariance is known.
+//! Tests of the covariance of spectra, measured on Gaussian light fields whose covariance is known.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -25,12 +25,12 @@ fn at() -> VirtualPlane {
     plane("at", window, grid(&window, 1, [7, 7], 1.0))
 }
 
-/// How far light has travelled, metres.
+/// Distance that light has travelled, metres.
 const TRAVEL: f64 = 0.8;
-/// Variances where it began, of x, y, u and v.
+/// Variances of x, y, u and v at the light.
 const LIGHT: [f64; 4] = [0.02, 0.03, 0.03, 0.02];
 
-/// Photons drawn from a Gaussian light field that has travelled.
+/// Photons sampled from a Gaussian light field after travel.
 struct Gaussian {
     seed: u64,
     each: u64,
@@ -69,7 +69,8 @@ impl PhotonSource for Gaussian {
                 u,
                 v,
             };
-            // Drawn from radiance over (x, y, u, v): the factor that makes radiance of flux is taken off.
+            // Sampled from radiance over (x, y, u, v), so the factor from flux to radiance is
+            // divided out.
             let weight = 1.0 / plane.factor(&ray);
             record(0, &[Crossing { ray, weight }]);
         }
@@ -77,7 +78,8 @@ impl PhotonSource for Gaussian {
     }
 }
 
-/// 1/8π² S⁻¹ of the windowed field, over (x, u) or (y, v): entries of positions, both, slopes.
+/// Returns 1/8π² S⁻¹ of the windowed field, over (x, u) or (y, v): entries of positions, both,
+/// slopes.
 fn expected(axis: usize) -> [f64; 3] {
     let window = window();
     let width = |profile: Profile| match profile {
@@ -104,7 +106,7 @@ fn measured(seed: u64, each: u64) -> FieldMeasurement {
     measure_field(&source, 0, &at(), 0..16, &options, &|_| ()).unwrap()
 }
 
-/// What of [[ρx²], ρx νu, νu²] and of the same along y is known; all else is zero.
+/// Returns the known covariance: [[ρx²], ρx νu, νu²] and the same along y; all else is zero.
 fn known() -> [[f64; 4]; 4] {
     let mut matrix = [[0.0; 4]; 4];
     for axis in 0..2 {
@@ -129,15 +131,16 @@ fn photons_have_the_covariance_of_their_field() {
         }
         signal = signal.min(row[i] / found.error[i][i]);
     }
-    // The largest of ten by errors from 16 groups, Student's t of 15: beyond 4.1 once in a hundred times.
+    // The largest of ten entries, in units of errors from 16 groups, Student's t of 15: beyond 4.1
+    // once in a hundred times.
     assert!(most < 4.1, "{most}");
-    // A shear of the wrong sign, A for A⁻ᵀ and a factor 2 are all off by far more than errors.
+    // A shear of the wrong sign, A for A⁻ᵀ and a factor 2 each differ by far more than the errors.
     assert!(signal > 20.0, "{signal}");
     let wrong = (found.value[0][2] + expected(0)[1]) / found.error[0][2];
     assert!(wrong.abs() > 20.0, "{wrong}");
 }
 
-/// With 20 photons in a group the floor of noise is more than the moments, and is not in them.
+/// With 20 photons in a group the noise floor exceeds the moments, and does not bias them.
 #[test]
 fn few_photons_have_no_bias() {
     let (mut all, mut naive) = (Vec::new(), Vec::new());
@@ -173,26 +176,26 @@ fn few_photons_have_no_bias() {
     };
     for (k, exact) in exact.into_iter().enumerate() {
         let (value, error) = mean(&all, k);
-        // One in a thousand by chance, of four.
+        // Exceeded by chance once in a thousand, for four entries.
         assert!(
             (value - exact).abs() < 3.7 * error,
             "{k}: {value} {error} {exact}"
         );
         if k < 3 {
             let (value, error) = mean(&naive, k);
-            // Left in, noise is seen at once.
+            // Noise that is left in is detected at once.
             assert!(value - exact > 20.0 * error, "{k}: {value} {error} {exact}");
         }
     }
 }
 
-/// The same moments of |ℓ̂|², noise and all.
+/// Returns the same moments of |ℓ̂|², including noise.
 fn with_noise(spectrum: &FieldSpectrum) -> etendue_spectrum::field::PowerMoments {
     let moments = Moments::new(spectrum.grid, &at().grid);
     moments.of(|index| spectrum.values[index].norm_sqr())
 }
 
-/// Those of the spectrum of the windowed field, exp(−2π² Ωᵀ S Ω) times its integral.
+/// Returns the moments of the spectrum of the windowed field, exp(−2π² Ωᵀ S Ω) times its integral.
 fn exact_moments() -> etendue_spectrum::field::PowerMoments {
     let grid = FieldOptions {
         covariance: true,
@@ -203,7 +206,7 @@ fn exact_moments() -> etendue_spectrum::field::PowerMoments {
         let [a, b, c] = expected(axis).map(|entry| 8.0 * PI * PI * entry);
         let determinant = a * c - b * b;
         let [sx, su] = [LIGHT[axis], LIGHT[axis + 2]];
-        // ∫ of the windowed Gaussian, over that of the density photons are drawn from.
+        // ∫ of the windowed Gaussian, divided by that of the density photons are sampled from.
         let integral = 1.0 / (determinant * sx * su).sqrt();
         (
             [c / determinant, -b / determinant, a / determinant],
@@ -221,7 +224,7 @@ fn exact_moments() -> etendue_spectrum::field::PowerMoments {
     })
 }
 
-/// The band holds the spectrum: sums over its frequencies are the integrals.
+/// The band contains the spectrum: sums over its frequencies equal the integrals.
 #[test]
 fn moments_of_a_gaussian_are_its_covariance() {
     let found = exact_moments().covariance().unwrap();
@@ -229,7 +232,7 @@ fn moments_of_a_gaussian_are_its_covariance() {
         for (j, expected) in row.iter().enumerate() {
             let scale = (known()[i][i] * known()[j][j]).sqrt();
             let off = (found[i][j] - expected).abs() / scale;
-            // What lies beyond seven half-cycles of the narrowest axis.
+            // The remainder beyond seven half-cycles of the narrowest axis.
             assert!(off < 2e-3, "{i} {j} {off}");
         }
     }

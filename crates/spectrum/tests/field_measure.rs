@@ -1,4 +1,4 @@
-//! The light field of a plane on its grid, and its full radial spectrum.
+//! Tests of the light field of a plane on its grid, and of its full radial spectrum.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -55,7 +55,7 @@ fn threads_and_memory_do_not_change_a_bit() {
     assert!(one.full_radial.sigma.iter().all(|sigma| *sigma > 0.0));
 }
 
-/// The same photons, tallies and means over batches as the slices have.
+/// Checks that photons, tallies and means over batches equal those of the slices.
 #[test]
 fn the_grid_sees_what_the_slices_see() {
     let source = shower();
@@ -74,7 +74,7 @@ fn the_grid_sees_what_the_slices_see() {
     }
 }
 
-/// The photons of one batch over and over.
+/// A source that repeats the photons of one batch.
 struct Same(Shower);
 
 impl PhotonSource for Same {
@@ -101,7 +101,7 @@ fn batches_that_agree_have_no_noise() {
     let source = Same(shower());
     let plane = &source.0.planes[0];
     for groups in [20, 7, 3] {
-        // 20 batches in 7 or 3 groups: not all the same size.
+        // 20 batches in 7 or 3 groups of unequal size.
         let field = run(&source, plane, groups);
         #[expect(clippy::cast_possible_truncation, reason = "a few")]
         let value = |frequency: [f64; 4]| {
@@ -142,7 +142,7 @@ impl PhotonSource for Without<'_> {
     }
 }
 
-/// The errors against the jackknife done by hand, each group left out by not emitting it.
+/// Checks the errors against a jackknife that leaves out each group by not emitting it.
 #[test]
 fn the_jackknife_leaves_groups_out() {
     let source = shower();
@@ -163,7 +163,7 @@ fn the_jackknife_leaves_groups_out() {
     }
     let sigma = variance.mapv(f64::sqrt);
     assert!(largest(&(&whole.sigma - &sigma)) < 1e-10 * largest(&sigma)); // rounding of differences
-    // Left-out groups of unequal size: 20 batches in 3 groups are 7, 7 and 6.
+    // Groups of unequal size: 20 batches in 3 groups are 7, 7 and 6.
     let three = run(&source, plane, 3).full_radial;
     let groups = [0, 1, 2].map(|g| (g..20).step_by(3).collect::<Vec<u32>>());
     let bins = RadialBins::new(&run(&source, plane, 3).grid);
@@ -185,7 +185,7 @@ fn the_jackknife_leaves_groups_out() {
     assert!(largest(&(&three.power - &expected)) < 1e-12 * largest(&expected)); // rounding
 }
 
-/// Photons all over a box, with weights of no mean: nothing but noise.
+/// Photons all over a box, with weights of zero mean: only noise.
 struct White(u64);
 
 impl PhotonSource for White {
@@ -216,7 +216,8 @@ fn shot_noise_is_removed() {
     let plane = plane("white", boxed(), grid(&boxed(), 2, [4, 5], 1.0));
     let (mut removed, mut left_in, mut variance, mut frequencies) = (0.0, 0.0, 0.0, 0.0);
     let trials = 40;
-    // E w²/N of the mean, times what aliasing adds to white noise over the bins, is the same for every trial.
+    // E w²/N of the mean, times the aliasing of white noise averaged over the bins, is the same for
+    // every trial.
     for seed in 0..trials {
         let radial = run(&White(seed), &plane, 20).full_radial;
         let counts = radial.counts.mapv(|count| count as f64);
@@ -225,7 +226,8 @@ fn shot_noise_is_removed() {
         variance += (&radial.sigma * &counts).mapv(|s| s * s).sum();
         frequencies += counts.sum();
     }
-    // Every trial's Σ over bins: variance noise² · R/(R−1) for each of half as many complex numbers, in effect.
+    // The sum over bins of each trial: variance noise² · R/(R−1) for each of effectively half as
+    // many complex numbers.
     let noise = left_in / frequencies;
     assert!(noise > 1.0 / 3.0 / 2000.0); // E w² = 1/3 over 2000 photons; aliases come on top
     let sd = noise * (2.0 / frequencies * 20.0 / 19.0).sqrt();
@@ -233,12 +235,12 @@ fn shot_noise_is_removed() {
     // Four standard deviations; noise is not white on the grid (its aliases grow towards Nyquist), hence 1.5.
     assert!(mean.abs() < 4.0 * 1.5 * sd, "{mean} {sd}");
     assert!(noise > 50.0 * sd); // left in it would be seen
-    // In noise the jackknife's variance is 2(R−1)/(R−2) times the true one.
+    // With pure noise the jackknife's variance is 2(R−1)/(R−2) times the true one.
     let ratio = variance / frequencies.powi(2) / (sd * sd) / (2.0 * 19.0 / 18.0);
     assert!((0.8..1.5).contains(&ratio), "{ratio}");
 }
 
-/// One photon in each batch: nearly a known field.
+/// One photon in each batch: an almost deterministic field.
 struct Lone(TwoPlane);
 
 impl PhotonSource for Lone {
@@ -278,7 +280,7 @@ fn the_quantity_is_a_factor() {
     let field = measure_field(&Lone(ray), 0, &plane, 0..5, &options(5), &count).unwrap();
     assert!((field.spectrum.at_zero() / expected - 1.0).abs() < 1e-14); // rounding
     assert_eq!(traced.into_inner(), 2 * 5 * 4);
-    // The largest cell is the one it is in.
+    // The largest cell is the one that contains the photon.
     let cell = field
         .field
         .indexed_iter()
@@ -309,7 +311,7 @@ fn too_few_batches_are_refused() {
         refused.unwrap_err().to_string(),
         "2 batches are too few for an error: at least 3 are needed"
     );
-    // One group is no group: the least is taken.
+    // One group is not allowed: the minimum is used.
     assert_eq!(
         run(&source, &source.planes[0], 1),
         run(&source, &source.planes[0], 3)

@@ -1,11 +1,11 @@
-//! What photons' noise does to spectra, and what is done about it.
+//! Tests of the effect of photon noise on spectra, and of its removal.
 
 use crate::common::{Shower, boxed, grid, plane};
 use etendue_field::{Ledger, PhotonSource, SliceGrid, VirtualPlane};
 use etendue_spectrum::{CrossPower, Measurement, estimate, measure, moments};
 use ndarray::{Axis, Slice};
 
-/// Photons uniform in a box a whole period wide, seen at azimuth 0: no structure but noise.
+/// Photons uniform in a box one period wide, at azimuth 0: no structure, only noise.
 fn white(seed: u64, photons: u64, batches: u32, fineness: f64) -> Measurement {
     let window = boxed();
     let plane = plane("white", window, grid(&window, 1, [12, 16], fineness));
@@ -71,7 +71,8 @@ fn white_noise_is_flat() {
         chi2 += z * z;
     }
     let bins = grid.rho.half as f64;
-    // Four standard deviations of χ² of 12 degrees; a tilt of the kernel's correction by 10 % gives 100s.
+    // Four standard deviations of χ² of 12 degrees of freedom; a 10 % tilt of the kernel's
+    // correction gives 100s.
     assert!(chi2 < bins + 4.0 * (2.0 * bins).sqrt(), "{chi2}");
     assert!(chi2 > 2.0, "{chi2}"); // below 2 with probability 1e-4: the noise would be too smooth
 }
@@ -82,7 +83,7 @@ fn removing_shot_noise_leaves_nothing_of_white_noise() {
     let measurement = white(2, photons, batches, 1.0);
     let radial = CrossPower::new(&measurement, 0).unwrap().radial();
     let noise = SQUARE / photons as f64;
-    // One half of the plane, the line ρ = 0 left out: independent frequencies.
+    // One half of the plane without the line ρ = 0: independent frequencies.
     let zero = measurement.planes()[0].grid.rho.half;
     let power = radial.power.slice_axis(Axis(0), Slice::from(zero + 1..));
     let count = power.len() as f64;
@@ -90,14 +91,14 @@ fn removing_shot_noise_leaves_nothing_of_white_noise() {
     // Var U = s⁴/(R(R−1)) for each frequency, s² = R · noise; four standard deviations of the mean of all.
     let sd = noise / count.sqrt() * (64.0_f64 / 63.0).sqrt();
     assert!(mean.abs() < 4.0 * sd, "{mean} {sd}");
-    // Left in, it would be 20 standard deviations.
+    // Noise that is left in would be 20 standard deviations.
     let shot_noise = radial
         .shot_noise
         .slice_axis(Axis(0), Slice::from(zero + 1..));
     let left_in = shot_noise.sum() / count;
     assert!((left_in / noise - 1.0).abs() < 0.02, "{left_in}"); // Σw² of 32000 weights: 0.5 %, four of them
     assert!(left_in > 15.0 * sd);
-    // Where there is nothing but noise the jackknife's variance is 2(R−1)/(R−2) times the true one.
+    // Where there is only noise, the jackknife's variance is 2(R−1)/(R−2) times the true one.
     let sigma = radial.sigma.slice_axis(Axis(0), Slice::from(zero + 1..));
     let variance = sigma.mapv(|s| s * s).sum() / count;
     let ratio = variance / (sd * sd * count) / (2.0 * 63.0 / 62.0);
@@ -112,20 +113,20 @@ fn the_variance_of_the_slices_is_the_photons_noise() {
     let variance = estimate.variance.slice_axis(Axis(1), Slice::from(1..));
     let mean = variance.sum() / variance.len() as f64;
     let expected = SQUARE / photons as f64;
-    // 396 frequencies of 63 degrees of freedom each: 0.6 %, four of them.
+    // 396 frequencies of 63 degrees of freedom each: four times 0.6 %.
     assert!((mean / expected - 1.0).abs() < 0.025, "{}", mean / expected);
     assert_eq!(estimate.batches, 64);
     let projection = estimate::projection(&measurement, 0).unwrap();
     let cells = projection.mean.values.len() as f64;
     let mean = projection.mean.values.sum() / cells;
-    // Mean weight 1 over the area 1.6 · 0.8; Σw of 32000 photons: 0.3 %, four of them.
+    // Mean weight 1 over the area 1.6 · 0.8; Σw of 32000 photons: four times 0.3 %.
     assert!((mean * 1.28 - 1.0).abs() < 0.013, "{mean}");
     let variance = projection.standard_error.mapv(|e| e * e).sum() / cells;
     let one = SQUARE * cells / (photons as f64 * 1.28 * 1.28);
     assert!((variance / one - 1.0).abs() < 0.05, "{}", variance / one); // 2 photons a cell, 16384 cells: 1 %
 }
 
-/// The field of the box on a grid three times finer than its period: known power, not zero.
+/// The field of the box on a grid three times finer than its period: a known, non-zero power.
 #[test]
 fn jackknife_intervals_cover_the_truth() {
     let (trials, batches) = (300, 16);
@@ -150,7 +151,7 @@ fn jackknife_intervals_cover_the_truth() {
         statistics += u32::from(slope.value.abs() < 2.131 * slope.error);
     }
     let share = |count: u32| f64::from(count) / trials as f64;
-    // 95 % of 300 trials: ± 1.3 %, three of them, and the jackknife's own 1 %.
+    // 95 % of 300 trials: three times 1.3 %, and the jackknife's own 1 %.
     assert!((0.90..0.99).contains(&share(covered)));
     assert!((0.90..0.995).contains(&share(statistics)));
     assert!(share(halved) < 0.80); // an error half as large is seen: it covers 70 %

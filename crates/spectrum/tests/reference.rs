@@ -1,4 +1,4 @@
-//! Twelve photons in four replicates, against values computed with mpmath at 25 digits.
+//! Tests with twelve photons in four replicates, against values computed with mpmath at 25 digits.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -63,17 +63,17 @@ fn crossing(photon: &Photon) -> Crossing {
     Crossing { ray, weight }
 }
 
-/// The Gaussian without cut that the reference uses.
+/// The untruncated Gaussian of the reference.
 fn gaussian(Widths { a, b }: &Widths, z: &TwoPlane) -> f64 {
     let exponent = (z.x * z.x + z.y * z.y) / (a * a) + (z.u * z.u + z.v * z.v) / (b * b);
     (-PI * exponent).exp()
 }
 
-/// The largest value of the reference; 1e-9 of it is asked for, rounding being 1e-16.
+/// The largest value of the reference; the tolerance is 1e-9 of it, rounding is 1e-16.
 const LARGEST: f64 = 0.202_085_963_050_424_1;
 const TOLERANCE: f64 = 1e-9 * LARGEST;
 
-/// A measurement with one batch for each replicate, at a single frequency.
+/// Returns a measurement with one batch for each replicate, at a single frequency.
 fn measurement(values: &[Complex]) -> Measurement {
     let none = FrequencyAxis {
         half: 0,
@@ -129,7 +129,7 @@ fn sums_and_powers_of_the_reference() {
         assert!((squares - sample.sum_w2).abs() < TOLERANCE);
         assert!((sum.norm_sqr() - squares - sample.power_shot_corrected).abs() < TOLERANCE);
 
-        // The crossed power and its mean want independent replicates.
+        // The cross power and its mean need independent replicates.
         let replicate = |r| {
             let photons = block.photons.iter().filter(move |p| p.replicate == r);
             let crossings: Vec<_> = photons.map(crossing).collect();
@@ -144,7 +144,7 @@ fn sums_and_powers_of_the_reference() {
         assert!((mean - complex(sample.mean_spectrum)).norm() < TOLERANCE);
         let power = CrossPower::new(&measurement, 0).unwrap().power()[[0, 0]];
         assert!((power - sample.cross_spectrum_power).abs() < TOLERANCE);
-        // What is tested is seen: the power of the mean is another number.
+        // The test is sensitive: the power of the mean is a different number.
         assert!((mean.norm_sqr() - sample.cross_spectrum_power).abs() > 1e4 * TOLERANCE);
     }
 }

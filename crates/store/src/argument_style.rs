@@ -1,8 +1,9 @@
-//! How messages name the arguments of whoever calls a library.
+//! How messages name the arguments of a library's caller.
 
 use std::fmt::Display;
 
-/// How messages name arguments. The command and the Python package call the same functions, and each has its own way to write an argument.
+/// How messages name arguments. The command and the Python package call the same functions, and
+/// write arguments differently.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ArgumentStyle {
     /// Options of the command, such as `--look-from`.
@@ -13,7 +14,7 @@ pub enum ArgumentStyle {
 }
 
 impl ArgumentStyle {
-    /// The argument with this name in Python, without a value.
+    /// The argument with this name, without a value.
     #[must_use]
     pub fn name(self, name: &str) -> String {
         match self {
@@ -49,7 +50,7 @@ impl ArgumentStyle {
         }
     }
 
-    /// The argument that has files of others replaced.
+    /// The argument that allows replacing files of others.
     #[must_use]
     pub fn force(self) -> &'static str {
         match self {
@@ -58,7 +59,7 @@ impl ArgumentStyle {
         }
     }
 
-    /// Advice to name another folder.
+    /// The advice to name another folder.
     #[must_use]
     pub fn another_folder(self) -> &'static str {
         match self {

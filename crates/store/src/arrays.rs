@@ -9,10 +9,10 @@ use etendue_field::Complex;
 use ndarray::{Array1, Array2, Array3};
 use serde_json::{Value, json};
 
-/// The files of a plane.
+/// The file names of a plane.
 pub const NAMES: [&str; 3] = ["slices.npz", "radial.npz", "radial.exr"];
 
-/// Writes them; `made_from` says what from.
+/// Writes the files; `made_from` describes their source.
 pub fn write(
     results: &mut Results,
     made_from: Value,
@@ -30,7 +30,7 @@ pub fn write(
 /// The slices of a plane, as in `slices.npz`.
 #[derive(Debug)]
 pub struct SliceArrays {
-    /// Radians.
+    /// Azimuths, radians.
     pub azimuth: Array1<f64>,
     /// The measured spectrum, [azimuth, ρ, ν].
     pub measured: Array3<Complex>,
@@ -38,16 +38,17 @@ pub struct SliceArrays {
     pub predicted: Array3<Complex>,
     /// Standard deviation of |measured − predicted| if the prediction is true.
     pub sigma: Array3<f64>,
-    /// Standard deviation of |measured| alone, where the prediction has noise too; elsewhere it is `sigma`.
+    /// Standard deviation of |measured| alone, where the prediction has noise too; otherwise equal
+    /// to `sigma`.
     pub measured_sigma: Option<Array3<f64>>,
-    /// Cycles per metre.
+    /// Frequencies ρ, cycles per metre.
     pub rho: Array1<f64>,
-    /// Cycles per unit of u.
+    /// Frequencies ν, cycles per unit of u.
     pub nu: Array1<f64>,
 }
 
 impl SliceArrays {
-    /// Those of a plane.
+    /// The slices of a plane.
     #[must_use]
     pub fn of(plane: &PlaneComparison) -> Self {
         let grid = plane.measured.grid;
@@ -101,14 +102,14 @@ pub fn radial_z(plane: &PlaneComparison) -> Array2<f64> {
     )
 }
 
-/// (measured − predicted) / sigma; NaN where no photon told an error.
+/// (measured − predicted) / sigma; NaN where no photon gave an error.
 pub fn z(measured: &Array2<f64>, predicted: &Array2<f64>, sigma: &Array2<f64>) -> Array2<f64> {
     let mut z = measured - predicted;
     z.zip_mut_with(sigma, |z, s| *z = if *s > 0.0 { *z / s } else { f64::NAN });
     z
 }
 
-/// Four parts; ρ to the right, ν upwards.
+/// A file of four parts, with ρ to the right and ν upwards.
 fn radial_exr(mut made_from: Value, plane: &PlaneComparison) -> Result<Vec<u8>, Failure> {
     let power = &plane.radial.power;
     let difference = power - &plane.predicted_radial;

@@ -11,16 +11,16 @@ use ndarray::{Array1, Array2, Array3, Array4, ArrayView, Axis, Dimension, Remove
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
-/// What `measurement.json` says beside the scene.
+/// The content of `measurement.json`, beside the scene.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Held {
-    /// Of the photons.
+    /// Seed of the photons.
     pub seed: u64,
-    /// How they were measured.
+    /// Method of measurement.
     pub method: Method,
-    /// Photons emitted in the batches held.
+    /// Photons emitted in the stored batches.
     pub photons: u64,
-    /// The batches held.
+    /// The stored batches.
     pub batches: Range<u32>,
 }
 
@@ -65,7 +65,7 @@ pub fn files(
     each.chain([Ok((LEDGER.to_owned(), ledger))]).collect()
 }
 
-/// A file that says which batches its rows are.
+/// A file that records which batches its rows are.
 fn numbered(batches: &[&Batch]) -> Result<Npz, Failure> {
     let numbers: Array1<u32> = batches.iter().map(|b| b.index).collect();
     let emitted: Array1<u64> = batches.iter().map(|b| b.emitted).collect();
@@ -97,7 +97,7 @@ fn at_plane(plane: &VirtualPlane, batches: &[&Batch], index: usize) -> Result<Ve
         .bytes()
 }
 
-/// Adds arrays of one shape as one, with an axis before theirs.
+/// Adds arrays of equal shape as one array with an additional first axis.
 fn add_stacked<'a, A, D>(
     npz: Npz,
     name: &str,
@@ -123,7 +123,7 @@ pub fn read(stored: &Stored<Held>, planes: &[VirtualPlane]) -> Result<Measuremen
     read_files(&|name| stored.npz(name), held, planes)
 }
 
-/// Reads the batches that are held in files, which `open` opens by their names.
+/// Reads the batches stored in files, which `open` opens by name.
 pub fn read_files(
     open: &dyn Fn(&str) -> Result<NpzFile, Failure>,
     held: &Held,
@@ -157,7 +157,7 @@ pub fn read_files(
     Ok(measurement)
 }
 
-/// The batches the rows of a file stand for.
+/// The batches that the rows of a file represent.
 #[derive(PartialEq)]
 struct StoredRows {
     numbers: Array1<u32>,
@@ -165,7 +165,7 @@ struct StoredRows {
 }
 
 impl StoredRows {
-    /// They must be those the index names.
+    /// Checks that they are those in the index.
     fn read(file: &mut NpzFile, held: &Held) -> Result<Self, Failure> {
         let Range { start, end } = held.batches;
         let count = end.saturating_sub(start) as usize;

@@ -1,9 +1,10 @@
-//! Batches of a run, kept as they are measured, so that a run that ends early goes on from them.
+//! Stores batches of a run as they are measured, so that a run that ends early can be continued.
 //!
-//! Each is a file below `batches/` and the key of the run, in the folder of its results. It comes there whole, by one move, and its name has
-//! the hash of its content. A batch has the same bytes whoever measures it (on another kind of processor, the same but for
-//! rounding): processes need no lock to share the work, and one that
-//! dies holds nothing up. A batch on the way is a file too, the sum of its first parts: the next one replaces it.
+//! Each batch is a file below `batches/` and the key of the run, in the folder of its results. It
+//! is moved there as a whole, and its name holds the hash of its content. A batch has the same
+//! bytes whichever process measures it (but for rounding on another kind of processor). So
+//! processes share the work without a lock, and one that dies does not delay the others. An
+//! unfinished batch is a file too, the sum of its first parts, and is replaced by the next one.
 
 use crate::Failure;
 use crate::Method;
@@ -22,7 +23,7 @@ use std::{fmt, fs};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
-/// Where the runs of a folder keep their batches.
+/// The folder in which runs store their batches.
 const FOLDER: &str = "batches";
 
 /// The batches of one run.
@@ -37,7 +38,7 @@ pub struct CheckpointStore {
 }
 
 impl CheckpointStore {
-    /// Those of a run into `out`: of this scene, measured in this way by this version.
+    /// The batches of a run into `out`: of this scene, measured by this method and version.
     pub fn of(out: &Path, scene: &Scene, method: Method) -> Self {
         let what = format!("{VERSION} {} {}", scene.hash(), method.words());
         let key = &blake3::hash(what.as_bytes()).to_hex()[..16];
@@ -50,19 +51,19 @@ impl CheckpointStore {
         }
     }
 
-    /// Where they are, for messages.
+    /// The folder of the batches, for messages.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// How many batches are done, and how many are begun.
+    /// The numbers of finished batches and of those begun.
     pub fn count(&self) -> [usize; 2] {
         let found = self.furthest();
         let done = found.values().filter(|name| name.parts.is_none()).count();
         [done, found.len() - done]
     }
 
-    /// How far a batch is; `None` if it is not begun.
+    /// The progress of a batch; `None` if it is not begun.
     pub fn progress(&self, batch: u32) -> Option<BatchProgress> {
         let furthest = self.furthest().remove(&batch)?;
         Some(
@@ -72,7 +73,7 @@ impl CheckpointStore {
         )
     }
 
-    /// Of each batch the file with the most parts.
+    /// For each batch, the file with the most parts.
     fn furthest(&self) -> BTreeMap<u32, CheckpointName> {
         let mut furthest = BTreeMap::new();
         for name in self.names() {
@@ -84,7 +85,7 @@ impl CheckpointStore {
         furthest
     }
 
-    /// Whether no link leads out of the folder of the results.
+    /// Whether no link leads out of the results folder.
     fn is_inside(&self) -> bool {
         let below = self.folder.strip_prefix(&self.out).ok();
         let name = below.and_then(|below| below.join("batch").to_str().map(str::to_owned));
@@ -97,12 +98,12 @@ impl CheckpointStore {
         entries.filter_map(|entry| CheckpointName::parse(entry.file_name().to_str()?))
     }
 
-    /// Keeps a batch.
+    /// Stores a batch.
     pub fn write(&self, batch: &Batch) -> Result<(), Failure> {
         self.put(batch, None)
     }
 
-    /// Keeps the first parts of a batch, unless more of them are kept.
+    /// Stores the first parts of a batch, unless more of them are stored.
     pub fn write_partial(&self, batch: &PartialBatch) -> Result<(), Failure> {
         let is_new = match self.progress(batch.index) {
             None => true,
@@ -115,7 +116,7 @@ impl CheckpointStore {
         }
     }
 
-    /// Writes a file, and removes those of the same batch that hold less.
+    /// Writes a file, and removes the files of the same batch that hold less.
     fn put(&self, batch: &Batch, parts: Option<u32>) -> Result<(), Failure> {
         if !self.is_inside() {
             return Err(Failure::write(&self.folder, LINKED));
@@ -133,15 +134,16 @@ impl CheckpointStore {
         put().map_err(|e| Failure::write(&self.folder, e))?;
         for other in self.names() {
             if other.batch == name.batch && name.is_beyond(&other) {
-                // What stays is harmless, and another process may have removed it.
+                // A remaining file is harmless, and another process may have removed it.
                 let _ = fs::remove_file(self.folder.join(other.to_string()));
             }
         }
         Ok(())
     }
 
-    /// Adds the batches that are done and not yet in a measurement. Returns those that are begun, and the paths of damaged files, which
-    /// were removed: what they held is measured again. `emitted` says how many photons a batch has.
+    /// Adds the finished batches that a measurement does not have yet. Returns those that are
+    /// begun, and the paths of damaged files, which are removed and measured again. `emitted`
+    /// returns the number of photons of a batch.
     pub fn read(
         &self,
         all: &mut Measurement,
@@ -162,7 +164,7 @@ impl CheckpointStore {
                 }
                 (Err(_), _) => match fs::remove_file(&path) {
                     Ok(()) => damaged.push(path),
-                    // Another process has removed it.
+                    // Another process has removed the file.
                     Err(e) if e.kind() == ErrorKind::NotFound => {}
                     Err(e) => return Err(Failure::write(&path, e)),
                 },
@@ -185,12 +187,12 @@ impl CheckpointStore {
         unpacked(&bytes, &held, &self.planes)
     }
 
-    /// Removes them, and what a process that died has left unfinished.
+    /// Removes the batches, and unfinished files of processes that died.
     pub fn remove(&self) {
         if !self.is_inside() {
             return;
         }
-        // What stays is harmless.
+        // A remaining file is harmless.
         let _ = fs::remove_dir_all(&self.folder);
         if let Some(above) = self.folder.parent() {
             let _ = fs::remove_dir(above);
@@ -211,13 +213,13 @@ pub fn packed(planes: &[VirtualPlane], batch: &Batch) -> Result<Vec<u8>, Failure
     Ok(archive.finish().map_err(Failure::cannot_run)?.into_inner())
 }
 
-/// The batch that `held` names, from the bytes of its file.
+/// The batch described by `held`, from the bytes of its file.
 pub fn unpacked(bytes: &[u8], held: &Held, planes: &[VirtualPlane]) -> Result<Batch, Failure> {
     let open = |name: &str| {
         let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(Failure::bad_input)?;
         let mut content = Vec::new();
         let file = archive.by_name(name).map_err(Failure::bad_input)?;
-        // What is inside is stored as it is.
+        // The content is stored uncompressed.
         let most = bytes.len() as u64;
         file.take(most)
             .read_to_end(&mut content)
@@ -229,22 +231,23 @@ pub fn unpacked(bytes: &[u8], held: &Held, planes: &[VirtualPlane]) -> Result<Ba
     batch.ok_or_else(|| Failure::bad_input("no batch is in it"))
 }
 
-/// How far a batch is.
+/// The progress of a batch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BatchProgress {
-    /// So many of its first parts are summed.
+    /// This number of its first parts are summed.
     Parts(u32),
-    /// It is whole.
+    /// The batch is complete.
     Done,
 }
 
-/// The name of a file: `NUMBER-HASH.batch` of a whole batch, `NUMBER-PARTS-HASH.begun` of its first parts.
+/// The name of a file: `NUMBER-HASH.batch` for a complete batch, `NUMBER-PARTS-HASH.begun` for its
+/// first parts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct CheckpointName {
     batch: u32,
-    /// How many parts it holds; `None` of a whole batch.
+    /// The number of parts it holds; `None` for a complete batch.
     parts: Option<u32>,
-    /// Of the parts and the bytes.
+    /// Hash of the parts and the bytes.
     hash: String,
 }
 
@@ -274,7 +277,7 @@ impl CheckpointName {
         Some(Self { batch, parts, hash })
     }
 
-    /// Whether this file holds more of its batch than another one of it.
+    /// Whether this file holds more of a batch than another file of the same batch.
     fn is_beyond(&self, other: &Self) -> bool {
         let rank = |name: &Self| name.parts.map_or(u64::MAX, u64::from);
         rank(self) > rank(other)

@@ -1,4 +1,4 @@
-//! OpenEXR files: parts of one channel Y each, with what they were made from.
+//! Writes OpenEXR files: parts of one channel Y each, with a record of their source.
 
 use crate::Failure;
 use exr::prelude::{
@@ -8,7 +8,7 @@ use exr::prelude::{
 use serde_json::Value;
 use std::io::Cursor;
 
-/// One part of a file: rows from the top, each from the left.
+/// One part of a file: rows from the top, each from left to right.
 #[derive(Debug)]
 pub struct Part {
     /// Name of the channel.
@@ -42,16 +42,16 @@ pub fn exr(
     let mut bytes = Cursor::new(Vec::new());
     image
         .write()
-        // In parallel, the order of the chunks would be left to chance.
+        // In parallel the order of the chunks would be random.
         .non_parallel()
         .to_buffered(&mut bytes)
         .map_err(Failure::cannot_run)?;
     Ok(bytes.into_inner())
 }
 
-/// One attribute, since the order of several would be left to chance.
+/// A single attribute, since the order of several would be random.
 fn attribute(provenance: &Value) -> (Text, AttributeValue) {
-    // EXR holds Latin-1: what is not ASCII is written as JSON escapes.
+    // EXR holds Latin-1; other than ASCII characters are written as JSON escapes.
     let mut ascii = String::new();
     for unit in provenance.to_string().encode_utf16() {
         match u8::try_from(unit).ok().filter(u8::is_ascii) {

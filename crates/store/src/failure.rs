@@ -7,19 +7,19 @@ use std::path::Path;
 /// Why a command stopped: the message for the user and the exit code.
 #[derive(Debug)]
 pub struct Failure {
-    /// For the user; a line for each fault.
+    /// The message for the user, one line for each fault.
     pub message: String,
-    /// The exit code of a command that stops so: 2 for bad input, 3 where it cannot run here.
+    /// The exit code: 2 for bad input, 3 where the command cannot run here.
     pub code: u8,
 }
 
 /// Exit code of bad input.
 const BAD_INPUT: u8 = 2;
-/// Exit code of a run that cannot be made here: directory, disk, memory, interruption.
+/// Exit code of a run that is impossible here: directory, disk, memory, interruption.
 pub const CANNOT_RUN: u8 = 3;
 
 impl Failure {
-    /// Something that the user gave is wrong: exit code 2.
+    /// An input of the user is wrong: exit code 2.
     pub fn bad_input(message: impl Display) -> Self {
         Self {
             message: message.to_string(),
@@ -27,7 +27,7 @@ impl Failure {
         }
     }
 
-    /// What was asked cannot be done here: exit code 3.
+    /// The request cannot be carried out here: exit code 3.
     pub fn cannot_run(message: impl Display) -> Self {
         Self {
             message: message.to_string(),
@@ -35,7 +35,7 @@ impl Failure {
         }
     }
 
-    /// A scene that is not legal, or sound and too large for this machine.
+    /// The scene is invalid, or valid and too large for this machine.
     pub fn of_scene(error: &SceneError, message: impl Display) -> Self {
         match error {
             SceneError::Values(faults) if faults.iter().all(|f| f.memory) => {

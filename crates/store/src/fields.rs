@@ -1,24 +1,24 @@
-//! In which fields two JSON trees differ.
+//! Finds the fields in which two JSON trees differ.
 
 use serde_json::Value;
 
-/// A field that differs, named as for `--set`, and what it is in each of two trees.
+/// A field that differs, named as for `--set`, with its value in each of two trees.
 #[derive(Debug)]
 pub struct FieldChange {
     /// Path of the field, with dots.
     pub field: String,
-    /// Its two values, shortened.
+    /// The two values, shortened.
     pub values: [String; 2],
 }
 
-/// All fields in which two trees differ, in the order of the first. A field that one lacks is null there.
+/// All fields in which two trees differ, in the order of the first. A missing field counts as null.
 pub fn differences(a: &Value, b: &Value) -> Vec<FieldChange> {
     let mut found = Vec::new();
     collect(String::new(), a, b, &mut found);
     found
 }
 
-/// The first of them.
+/// The first field that differs.
 pub fn difference(a: &Value, b: &Value) -> Option<FieldChange> {
     differences(a, b).into_iter().next()
 }
@@ -50,7 +50,7 @@ fn collect(field: String, a: &Value, b: &Value, found: &mut Vec<FieldChange>) {
     }
 }
 
-/// A value on part of a line.
+/// A value, shortened to part of a line.
 fn brief(value: &Value) -> String {
     const MAX_CHARACTERS: usize = 60;
     let text = value.to_string();

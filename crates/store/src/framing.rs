@@ -1,19 +1,19 @@
-//! Words in JSON with the bytes that they are about, in one message.
+//! Messages that combine words in JSON with bytes.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// The length of words, the words, and the bytes that they are about.
+/// The length of the words, the words, and the bytes.
 pub fn joined(words: &impl Serialize, bytes: &[u8]) -> Vec<u8> {
     let words = serde_json::to_vec(words).unwrap_or_default();
     let length = (words.len() as u64).to_le_bytes();
     [&length, words.as_slice(), bytes].concat()
 }
 
-/// Words and bytes of [`joined`].
+/// The words and bytes of [`joined`].
 ///
 /// # Errors
-/// When they are of something else.
+/// When the bytes are not such a message.
 pub fn split<T: DeserializeOwned>(bytes: &[u8]) -> Result<(T, &[u8]), String> {
     let fault = || "a message between processes is damaged".to_owned();
     let (length, rest) = bytes.split_first_chunk().ok_or_else(fault)?;

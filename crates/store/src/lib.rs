@@ -1,7 +1,8 @@
-//! Result folders: who owns a file, how new files take the place of old ones, and what is in them.
+//! Result folders: ownership of files, replacing old files by new ones, and their content.
 //!
-//! [`Results`] claims a folder, writes files and an index of their hashes, and puts them in place together. The other
-//! modules know what the files hold: arrays, batches, predictions, and indices that a later stage reads.
+//! [`Results`] claims a folder, writes files and an index of their hashes, and puts them in place
+//! together. The other modules define the content of files: arrays, batches, predictions, and
+//! indices that a later stage reads.
 
 #![allow(
     clippy::missing_errors_doc,

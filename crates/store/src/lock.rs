@@ -1,4 +1,4 @@
-//! One writer at a time: a lock that the system takes away when its process ends.
+//! A lock for one writer at a time, which the system releases when its process ends.
 
 use crate::Failure;
 use same_file::Handle;
@@ -6,10 +6,10 @@ use std::fs::{self, File, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Why a folder cannot be had.
+/// Why a folder is not available.
 pub(super) const BUSY: &str = "another etendue is writing there";
 
-/// A locked file, which goes away with the lock.
+/// A locked file, which is removed together with the lock.
 #[derive(Debug)]
 pub(crate) struct Lock {
     pub(crate) path: PathBuf,
@@ -17,8 +17,8 @@ pub(crate) struct Lock {
 }
 
 impl Lock {
-    /// Makes and locks the file `path`, or takes over what a dead process has left there; `busy` is what a
-    /// living one is writing to, for the message.
+    /// Makes and locks the file `path`, or takes over the file of a dead process; `busy` names, for
+    /// the message, what a living process is writing.
     pub(crate) fn take(path: &Path, busy: &Path) -> Result<Self, Failure> {
         let failure = |error: io::Error| Failure::write(busy, error);
         loop {
@@ -35,7 +35,8 @@ impl Lock {
                 }
                 Err(TryLockError::Error(error)) => return Err(failure(error)),
             }
-            // Another may have removed it between opening and locking: then the lock is of nothing.
+            // Another process may have removed the file between opening and locking; the lock is
+            // then useless.
             let held = Handle::from_file(file.try_clone().map_err(failure)?);
             if Handle::from_path(path).is_ok_and(|there| held.is_ok_and(|held| held == there)) {
                 let path = path.to_owned();
@@ -47,7 +48,7 @@ impl Lock {
 
 impl Drop for Lock {
     fn drop(&mut self) {
-        // One that stays is harmless.
+        // A remaining file is harmless.
         let _ = fs::remove_file(&self.path);
     }
 }

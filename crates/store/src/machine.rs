@@ -1,12 +1,13 @@
-//! What this machine has, as far as it says so (Linux); elsewhere nothing is known and nothing refused.
+//! The resources of this machine, as far as it reports them (Linux); elsewhere nothing is known and
+//! nothing is refused.
 
 use crate::Failure;
 use etendue_scene::{Scene, SceneFile, resolve};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Memory that this process may still take without swapping, in bytes: of the machine, of the control groups it is
-/// in, and of its own limits (`ulimit -v`, `ulimit -d`).
+/// Memory that this process may still allocate without swapping, in bytes, limited by the machine,
+/// by the control groups of the process, and by its own limits (`ulimit -v`, `ulimit -d`).
 pub fn available_memory() -> u64 {
     let machine = kilobytes("/proc/meminfo", "MemAvailable:");
     let limits = [
@@ -19,7 +20,8 @@ pub fn available_memory() -> u64 {
     all.min().unwrap_or(u64::MAX)
 }
 
-/// Resolves a scene file for this machine; its meshes are in `folder`, and `shown` is where it comes from, for messages.
+/// Resolves a scene file for this machine; its meshes are in `folder`, and `shown` is its origin,
+/// for messages.
 pub fn resolved(name: &str, file: SceneFile, folder: &Path, shown: &str) -> Result<Scene, Failure> {
     resolve(name, file, folder, available_memory()).map_err(|error| {
         let message = format!("{shown}:\n{error}");
@@ -27,12 +29,12 @@ pub fn resolved(name: &str, file: SceneFile, folder: &Path, shown: &str) -> Resu
     })
 }
 
-/// The most memory this process has held, in bytes.
+/// The peak memory of this process, in bytes.
 pub fn peak_memory() -> Option<u64> {
     kilobytes("/proc/self/status", "VmHWM:")
 }
 
-/// Whether a signal was ignored when this process began, as `nohup` has it.
+/// Whether a signal was ignored when this process began, as under `nohup`.
 pub fn ignores(signal: i32) -> bool {
     let read = || {
         let text = fs::read_to_string("/proc/self/status").ok()?;
@@ -43,7 +45,7 @@ pub fn ignores(signal: i32) -> bool {
     read().unwrap_or(false)
 }
 
-/// What is left in each control group around this process, of version 2 or 1.
+/// The memory left in each control group around this process, of version 2 or 1.
 fn control_groups() -> impl Iterator<Item = u64> {
     let text = fs::read_to_string("/proc/self/cgroup").unwrap_or_default();
     let groups: Vec<PathBuf> = text.lines().flat_map(folders).collect();
@@ -65,7 +67,7 @@ fn folders(line: &str) -> Vec<PathBuf> {
     ancestors.map(|path| Path::new(root).join(path)).collect()
 }
 
-/// The limit of a control group less what it uses; cached files give way and count as left.
+/// The limit of a control group less its usage; cached files can be evicted and count as free.
 fn left_in(folder: &Path) -> Option<u64> {
     let read = |name: &str| fs::read_to_string(folder.join(name)).ok();
     let number = |name: &str| read(name)?.trim().parse::<u64>().ok();
@@ -81,14 +83,14 @@ fn limit(name: &str) -> Option<u64> {
     field(&text, name)?.parse().ok()
 }
 
-/// A number of kilobytes, in bytes.
+/// Converts a number of kilobytes to bytes.
 fn kilobytes(file: &str, name: &str) -> Option<u64> {
     let text = fs::read_to_string(file).ok()?;
     let kilobytes: u64 = field(&text, name)?.parse().ok()?;
     Some(kilobytes * 1024)
 }
 
-/// The first word behind a name that a line begins with.
+/// The first word after a name at the beginning of a line.
 fn field<'a>(text: &'a str, name: &str) -> Option<&'a str> {
     let rest = text.lines().find_map(|line| line.strip_prefix(name))?;
     rest.split_whitespace().next()

@@ -1,21 +1,21 @@
-//! How light is measured.
+//! The method of measuring light.
 
 use serde::{Deserialize, Serialize};
 
-/// How light is measured.
+/// The method of measuring light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
-    /// Photons from the light, forward.
+    /// Photons traced forward from the light.
     Photons,
     /// Rays drawn in the window of each plane, traced back to the light.
     Backward,
-    /// Photons that are not aimed at windows, to judge others.
+    /// Photons that are not aimed at windows, to judge other methods.
     Even,
 }
 
 impl Method {
-    /// Whether it knows what becomes of all flux: only photons that leave the light do.
+    /// Whether the method keeps a ledger of all flux, which only photons from the light do.
     #[must_use]
     pub fn keeps_ledger(self) -> bool {
         match self {
@@ -24,7 +24,7 @@ impl Method {
         }
     }
 
-    /// As commands have it.
+    /// The name in commands.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -34,7 +34,7 @@ impl Method {
         }
     }
 
-    /// What it measures with, in words.
+    /// What the method measures with, in words.
     #[must_use]
     pub fn words(self) -> &'static str {
         match self {

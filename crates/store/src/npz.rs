@@ -1,4 +1,4 @@
-//! NPZ files: named arrays, written to memory and read back with every fault named.
+//! NPZ files: writes named arrays to memory, and reads them back with a message for every fault.
 
 use crate::Failure;
 use etendue_field::{Complex, SliceGrid};
@@ -10,19 +10,19 @@ use std::path::PathBuf;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
-/// A number that an array may hold.
+/// A type of number that an array may hold.
 pub trait Number: Copy {
-    /// Its type as NumPy writes it, with the lowest byte first.
+    /// The type in NumPy's notation, with the lowest byte first.
     const DESCR: &'static str;
-    /// Appends its bytes.
+    /// Appends the bytes of the number.
     fn write(self, bytes: &mut Vec<u8>);
-    /// The number of as many bytes as it has.
+    /// The number from exactly as many bytes as it has.
     fn read(bytes: &[u8]) -> Option<Self>;
-    /// Whether it is neither infinite nor NaN.
+    /// Whether the number is neither infinite nor NaN.
     fn is_finite(self) -> bool;
 }
 
-/// Numbers that the standard library reads and writes.
+/// Types of number that the standard library reads and writes.
 macro_rules! plain_number {
     ($type:ty, $descr:literal, $is_finite:expr) => {
         impl Number for $type {
@@ -74,7 +74,7 @@ where
     S: Data<Elem = A>,
     D: Dimension,
 {
-    /// Numbers that are turned into bytes at a time.
+    /// The number of values that are converted to bytes at a time.
     const BLOCK: usize = 1 << 13;
     let shape: Vec<u64> = array.shape().iter().map(|length| *length as u64).collect();
     file.write_all(&NpyHeader::new(A::DESCR, &shape).bytes())?;
@@ -89,7 +89,7 @@ where
     file.write_all(&bytes)
 }
 
-/// Named arrays in the making of a file.
+/// A file of named arrays that is being written.
 pub struct Npz(ZipWriter<Cursor<Vec<u8>>>);
 
 impl fmt::Debug for Npz {
@@ -105,7 +105,7 @@ impl Default for Npz {
 }
 
 impl Npz {
-    /// No arrays yet.
+    /// A file without arrays.
     #[must_use]
     pub fn new() -> Self {
         Self(ZipWriter::new(Cursor::new(Vec::new())))
@@ -142,7 +142,7 @@ impl Npz {
     }
 }
 
-/// Larger arrays than this need the 64-bit fields of ZIP, which NumPy reads.
+/// Arrays larger than this need the 64-bit fields of ZIP, which NumPy reads.
 const MAX_SMALL_FILE: usize = 1 << 31;
 
 /// The axes of arrays [azimuth, ρ ≥ 0, ν].
@@ -171,7 +171,7 @@ impl fmt::Debug for NpzFile {
     }
 }
 
-/// The most an NPY file has before its numbers.
+/// The largest number of bytes of an NPY file before its data.
 const HEADER: usize = 1 << 16;
 
 impl NpzFile {
@@ -188,7 +188,7 @@ impl NpzFile {
         }
     }
 
-    /// The array `name`, in C order; it must have this shape and hold finite numbers.
+    /// The array `name`, in C order. It must have this shape and hold finite numbers.
     pub fn array<A: Number, I: IntoDimension>(
         &mut self,
         name: &str,
@@ -213,7 +213,7 @@ impl NpzFile {
 
     /// The numbers of an axis, of any length.
     pub fn axis(&mut self, name: &str) -> Result<Array1<f64>, Failure> {
-        // What is not compressed is no larger than the file.
+        // Uncompressed data are no larger than the file.
         let (found, numbers) = self.numbers(name, self.length)?;
         match found.shape[..] {
             [_] => Ok(Array1::from(numbers)),
@@ -224,7 +224,8 @@ impl NpzFile {
         }
     }
 
-    /// Whether the file is long enough for so many numbers of eight bytes, as it is where nothing is compressed.
+    /// Whether the file is long enough for this many numbers of eight bytes, as an uncompressed
+    /// file must be.
     pub fn may_hold(&self, numbers: usize) -> bool {
         numbers <= self.length / size_of::<f64>()
     }
@@ -266,14 +267,14 @@ impl NpzFile {
         Ok((header, numbers))
     }
 
-    /// Whether it has an array of this name.
+    /// Whether the file has an array of this name.
     pub fn has(&self, name: &str) -> bool {
         self.archive
             .index_for_name(&format!("{name}.npy"))
             .is_some()
     }
 
-    /// Its axes must be those of a grid, to the bit.
+    /// Checks that the axes are exactly those of a grid.
     pub fn check_half_axes(&mut self, grid: &SliceGrid) -> Result<(), Failure> {
         for (name, values) in half_axes(grid) {
             let found: Array1<f64> = self.array(name, [values.len()])?;
@@ -284,14 +285,14 @@ impl NpzFile {
         Ok(())
     }
 
-    /// What is wrong with array `name`, for the user.
+    /// The message for a fault of array `name`.
     pub fn fault(&self, name: &str, what: impl Display) -> Failure {
         let path = self.path.display();
         Failure::bad_input(format!("{path}: array {name}: {what}"))
     }
 
-    /// The NPY file `name` in the archive. What is compressed is not unpacked to more than `numbers` bytes
-    /// need or the whole archive holds.
+    /// The NPY file `name` in the archive. Compressed data are not unpacked beyond the bytes that
+    /// `numbers` need or that the whole archive holds.
     fn entry(&mut self, name: &str, numbers: usize) -> Result<Vec<u8>, Failure> {
         let limit = numbers.saturating_add(self.length).saturating_add(HEADER);
         let mut bytes = Vec::new();

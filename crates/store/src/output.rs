@@ -1,4 +1,4 @@
-//! A single file of the user's choosing, such as a picture or a table.
+//! A single output file chosen by the user, such as a picture or a table.
 
 use crate::Failure;
 use crate::lock::Lock;
@@ -7,18 +7,19 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use tempfile::TempPath;
 
-/// A file that is there when it is whole, and not before.
+/// A file that only appears when it is complete.
 #[derive(Debug)]
 pub struct OutputFile {
     path: PathBuf,
     force: bool,
-    /// The file that becomes it.
+    /// The temporary file that becomes the output.
     lock: Lock,
 }
 
 impl OutputFile {
-    /// Proves that the file can be written, before any work is done. What stands at the path stays, unless
-    /// `force` is there and it is a regular file; it must not be among `inputs` in any case.
+    /// Checks that the file can be written, before any work is done. An existing file at the path
+    /// is kept, unless `force` is set and it is a regular file; it must not be among `inputs` in
+    /// any case.
     pub fn claim(path: &Path, force: bool, inputs: &[PathBuf]) -> Result<Self, Failure> {
         let failure = |e: io::Error| Failure::write(path, e);
         let Some(name) = path.file_name() else {
@@ -53,13 +54,13 @@ impl OutputFile {
         })
     }
 
-    /// Writes it whole.
+    /// Writes the complete file.
     pub fn write(mut self, bytes: &[u8]) -> Result<(), Failure> {
         let mut write = || -> io::Result<()> {
             self.lock.file.set_len(0)?;
             self.lock.file.write_all(bytes)?;
             self.lock.file.sync_all()?;
-            // What is moved away must not be removed with the lock.
+            // A file that has been moved must not be removed with the lock.
             let waiting = TempPath::try_from_path(std::mem::take(&mut self.lock.path))?;
             let moved = if self.force {
                 waiting.persist(&self.path)

@@ -1,4 +1,4 @@
-//! Predictions as files: `prediction.npz` for each plane.
+//! Stores predictions as files: `prediction.npz` for each plane.
 
 use crate::Failure;
 use crate::Method;
@@ -16,16 +16,17 @@ use ndarray::{Array0, Array1, Array4, Axis, arr0};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// What `prediction.json` says beside the scene.
+/// The content of `prediction.json`, beside the scene.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct StoredPrediction {
-    /// Of the measurement it is for: where there is no theory, the other method took its place.
+    /// Method of the measurement that the prediction is for; where there is no theory, the other
+    /// method took its place.
     method: Method,
-    /// One for each plane of the scene.
+    /// A prediction for each plane of the scene.
     pub planes: Vec<PredictedPlane>,
 }
 
-/// The words of a prediction; its numbers are in the arrays.
+/// The text of a prediction; its numbers are in the arrays.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct PredictedPlane {
     name: String,
@@ -33,14 +34,14 @@ pub struct PredictedPlane {
     chain: Vec<String>,
     quadrature_error: Option<f64>,
     mesh_error: Option<f64>,
-    /// Of the chain of affine maps, whose slices are in the arrays.
+    /// Numbers of the chain of affine maps, whose slices are in the arrays.
     first_order: Option<FirstOrderChain>,
     /// Names and units of the parameters, in the order of the arrays.
     parameters: Vec<[String; 2]>,
     cuts: Vec<f64>,
     depth: Option<[f64; 2]>,
-    /// Independent replicates of the slices, and of those of the chain of affine maps; none where they
-    /// have no statistical error.
+    /// Numbers of independent replicates of the slices, and of those of the chain of affine maps;
+    /// zero where they have no statistical error.
     replicates: [usize; 2],
 }
 
@@ -53,7 +54,8 @@ pub fn names(planes: &[VirtualPlane]) -> Vec<String> {
     planes.iter().map(file_of).collect()
 }
 
-/// Writes the predictions of the planes of a scene for a measurement by `method`; returns what the index says of them.
+/// Writes the predictions of the planes of a scene for a measurement by `method`; returns their
+/// entries for the index.
 pub fn write(
     results: &mut Results,
     scene: &Scene,
@@ -82,12 +84,12 @@ pub fn unpacked(plane: &VirtualPlane, bytes: &[u8]) -> Result<Prediction, Failur
     read_plane(file, plane, &words)
 }
 
-/// The words of a prediction, and the bytes of its file of arrays.
+/// The text of a prediction, and the bytes of its file of arrays.
 fn stored(
     plane: &VirtualPlane,
     prediction: &Prediction,
 ) -> Result<(PredictedPlane, Vec<u8>), Failure> {
-    // Every field by name: a new one must be stored too.
+    // Every field is listed by name, so that a new one cannot be forgotten.
     let Prediction {
         class,
         steps,
@@ -169,7 +171,7 @@ pub fn read(
         method: predicted_for,
         planes,
     } = &stored.index.content;
-    // Else a reference would be held against light traced in the same way.
+    // Otherwise a reference would be compared with light traced in the same way.
     if planes.iter().any(|plane| plane.class == Class::Reference) && *predicted_for != method {
         let what = format!("predicted for {predicted_for:?}; the measurement is of {method:?}");
         return Err(stored.fault(what));

@@ -1,8 +1,9 @@
-//! A folder of results: it owns what it wrote, and nothing else.
+//! A folder of results, which owns only the files that it wrote.
 //!
-//! New files wait in a folder inside until all are whole, so an earlier result stays until then. An index, such
-//! as `summary.json`, lists them by their hashes and comes last. What the index of an earlier result lists, and
-//! still has that hash, is removed; anything else in the folder is somebody's, and stays (docs/files.md).
+//! New files wait in a subfolder until all are complete, so an earlier result stays until then. An
+//! index, such as `summary.json`, lists them by their hashes and comes last. Files that the index
+//! of an earlier result lists, and that still have the listed hash, are removed; anything else in
+//! the folder belongs to somebody else, and stays (docs/files.md).
 
 mod claim;
 mod commit;
@@ -35,68 +36,68 @@ pub const PICTURE: &str = "picture.json";
 pub const PROBE: &str = "probe.json";
 /// The index of `etendue covariance`.
 pub const COVARIANCE: &str = "covariance.json";
-/// Seconds of a comparison: beside the index, since they are never the same twice.
+/// Seconds of a comparison. They are outside the index, since they differ in every run.
 pub const TIMING: &str = "timing.json";
 
-/// Most bytes of an index.
+/// The largest number of bytes of an index.
 pub const MAX_INDEX_BYTES: u64 = 1 << 26;
 
-/// Where new files wait.
+/// The folder in which new files wait.
 const UNFINISHED: &str = ".etendue-unfinished";
 const LOCK: &str = ".etendue.lock";
 
 /// Why nothing is written below a folder.
 pub const LINKED: &str = "a link or a file stands where a folder is to be";
 
-/// How long another process may hold a folder before that is said.
+/// How long another process may hold a folder before a message is given.
 const PATIENCE: Duration = Duration::from_secs(3);
 
-/// What a command is going to write, and what it reads.
+/// The files that a command will write, and those it reads.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// Name of the index.
     pub index: &'static str,
     /// Files beside the index, relative to the folder, with `/`.
     pub files: Vec<String>,
-    /// What must not be among them.
+    /// Inputs, which must not be among the files written.
     pub inputs: Vec<PathBuf>,
-    /// Whether files of somebody else are replaced.
+    /// Whether files of somebody else may be replaced.
     pub force: bool,
-    /// How messages name the argument for that.
+    /// The style in which messages name the argument of `force`.
     pub arguments: ArgumentStyle,
 }
 
-/// A results folder being written by this process alone.
+/// A results folder that only this process writes to.
 #[derive(Debug)]
 pub struct Results {
     folder: PathBuf,
-    /// As the user has it, for messages.
+    /// The path as the user wrote it, for messages.
     shown: PathBuf,
     plan: Plan,
     hashes: BTreeMap<String, String>,
-    /// Ends of names of planned files that are not written.
+    /// Suffixes of planned files that are not written.
     left_out: &'static [&'static str],
-    /// Whether there was no such folder before.
+    /// Whether the folder was newly created.
     is_new: bool,
-    /// Files of somebody else that a dead process's files replaced.
+    /// Files of somebody else that the files of a dead process replaced.
     replaced: Vec<String>,
-    /// Released before the folder is removed; nothing afterwards.
+    /// The lock, released before the folder is removed; `None` afterwards.
     lock: Option<Lock>,
 }
 
-/// What became of a results folder.
+/// The outcome of writing a results folder.
 #[derive(Debug)]
 pub struct Finished {
-    /// As the user has named it.
+    /// The path as the user wrote it.
     pub folder: PathBuf,
-    /// Files of the earlier result that are there no more.
+    /// Files of the earlier result that no longer exist.
     pub gone: Vec<String>,
     /// Files of somebody else that were replaced.
     pub replaced: Vec<String>,
 }
 
 impl Finished {
-    /// Says which files of somebody else were replaced, if any.
+    /// A message that lists the replaced files of somebody else, if any.
     #[must_use]
     pub fn replaced_message(&self) -> Option<String> {
         let names = self.replaced.join(", ");
@@ -106,8 +107,9 @@ impl Finished {
 }
 
 impl Results {
-    /// Claims a folder, before any work is done: makes it, locks it, removes what a dead process left, and
-    /// refuses when a file of somebody else, or an input, stands where one is to be written.
+    /// Claims a folder, before any work is done: creates it, locks it, removes the remains of a
+    /// dead process, and refuses when a file of somebody else, or an input, is in the place of a
+    /// file to be written.
     pub fn claim(folder: &Path, plan: Plan) -> Result<Self, Failure> {
         let failure = |e| Failure::write(folder, e);
         if folder.symlink_metadata().is_ok() && !folder.is_dir() {
@@ -138,7 +140,8 @@ impl Results {
         Ok(results)
     }
 
-    /// The same for a folder `name` of an `out` that the user names: below it nothing is written through a link.
+    /// The same for a folder `name` inside `out`, which the user names: below `out` nothing is
+    /// written through a link.
     pub fn claim_below(out: &Path, name: &str, plan: Plan) -> Result<Self, Failure> {
         let folder = out.join(name);
         if inside(out, &format!("{name}/{}", plan.index)).is_none() {
@@ -153,7 +156,7 @@ impl Results {
         loop {
             match Self::claim(folder, plan.clone()) {
                 Err(failure) if failure.message.ends_with(lock::BUSY) => {
-                    // Those that share a run wait for each other for a moment, and say nothing.
+                    // Processes that share a run briefly wait for each other without a message.
                     if begun.take_if(|begun| begun.elapsed() > PATIENCE).is_some() {
                         warn(&format!("{}: waiting for it to end", failure.message));
                     }
@@ -164,7 +167,7 @@ impl Results {
         }
     }
 
-    /// Does not write planned files whose names end so.
+    /// Omits planned files whose names have one of these suffixes.
     pub fn leave_out(&mut self, ends: &'static [&'static str]) {
         self.left_out = ends;
     }
@@ -188,13 +191,14 @@ impl Results {
         Ok(())
     }
 
-    /// Writes a JSON file that is not part of the promise of same bytes, with a hash of its own.
+    /// Writes a JSON file that is exempt from the promise of identical bytes, with a hash of its
+    /// own.
     pub fn write_unlisted(&self, name: &str, json: &[u8]) -> Result<(), Failure> {
         let bytes = sealed::sealed(json);
         self.put(name, &mut |file| file.write_all(&bytes)).map(drop)
     }
 
-    /// Writes and syncs a file where new ones wait; returns its hash.
+    /// Writes and syncs a file in the folder of new files; returns its hash.
     fn put(
         &self,
         name: &str,
@@ -209,7 +213,7 @@ impl Results {
         }
         let path = self.staged(name);
         let mut write = || {
-            // An interrupted process has removed the folder, and must not make it again.
+            // An interrupted process has removed the folder, and must not create it again.
             let file = unfinished::undisturbed(|| {
                 if let Some(folder) = path.parent() {
                     fs::create_dir_all(folder)?;
@@ -227,14 +231,14 @@ impl Results {
         write().map_err(|e: io::Error| Failure::write(&shown, e))
     }
 
-    /// Makes the index of the hashes of all files so far, and puts everything in its place.
+    /// Writes the index with the hashes of all files so far, and puts everything in place.
     pub fn finish(
         mut self,
         index: impl FnOnce(&BTreeMap<String, String>) -> Vec<u8>,
     ) -> Result<Finished, Failure> {
         let bytes = sealed::sealed(&index(&self.hashes));
         self.put(self.plan.index, &mut |file| file.write_all(&bytes))?;
-        // Somebody may have put a file there since the folder was claimed.
+        // A file may have appeared there since the folder was claimed.
         self.refuse_inputs()?;
         self.refuse_foreign()?;
         let moved = unfinished::undisturbed(|| self.commit())?;
@@ -248,18 +252,18 @@ impl Results {
         })
     }
 
-    /// All that is going to be written.
+    /// The names of all files to be written.
     fn planned(&self) -> impl Iterator<Item = &str> {
         let files = self.plan.files.iter().map(String::as_str);
         files.chain([self.plan.index])
     }
 
-    /// Where a new file waits.
+    /// The temporary path of a new file.
     fn staged(&self, name: &str) -> PathBuf {
         self.folder.join(UNFINISHED).join("new").join(name)
     }
 
-    /// Where a new index waits when all files are whole and begin to move.
+    /// The temporary path of a new index, once all files are complete and begin to move.
     fn ready(&self, index: &str) -> PathBuf {
         self.folder.join(UNFINISHED).join(index)
     }
@@ -284,13 +288,13 @@ impl Results {
 
 impl Drop for Results {
     fn drop(&mut self) {
-        // What has begun to move, the next process moves on.
+        // Files that have begun to move are moved on by the next process.
         if self.ready_index().is_none() {
             let _ = fs::remove_dir_all(self.folder.join(UNFINISHED));
         }
         unfinished::ended(|| drop(self.lock.take()));
         if self.is_new {
-            // Where nothing was written.
+            // Succeeds only if nothing was written.
             let _ = fs::remove_dir(&self.folder);
         }
     }
@@ -316,7 +320,8 @@ pub fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
     Some(path)
 }
 
-/// The files an index lists, with their hashes; `None` unless it is one as Étendue wrote it.
+/// The files that an index lists, with their hashes; `None` unless the index is exactly as Étendue
+/// wrote it.
 fn listed(index: &Path) -> Option<BTreeMap<String, String>> {
     let bytes = sealed_bytes(index)?;
     let tree: serde_json::Value = serde_json::from_slice(&bytes).ok()?;
@@ -325,12 +330,12 @@ fn listed(index: &Path) -> Option<BTreeMap<String, String>> {
     files.collect()
 }
 
-/// The hash that the index of a whole result has for a file.
+/// The hash of a file in the index of a complete result.
 pub fn hash_of(folder: &Path, index: &str, name: &str) -> Option<String> {
     listed(&folder.join(index))?.remove(name)
 }
 
-/// Whether a path is a regular file itself, not a link to one.
+/// Whether a path is itself a regular file, and not a link to one.
 fn is_regular(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok_and(|found| found.is_file())
 }
@@ -345,7 +350,7 @@ fn has_hash(path: &Path, hash: &str) -> bool {
     is_regular(path) && hashed().is_some_and(|found| found.as_str() == hash)
 }
 
-/// The content of a regular file that ends with the hash of itself.
+/// The content of a regular file that ends with its own hash.
 fn sealed_bytes(path: &Path) -> Option<Vec<u8>> {
     let bytes = || read_file(path, MAX_INDEX_BYTES).ok();
     let bytes = is_regular(path).then(bytes).flatten();

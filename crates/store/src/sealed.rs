@@ -1,32 +1,32 @@
-//! JSON files that end with a hash of themselves: indices and timings.
+//! JSON files that end with their own hash: indices and timings.
 //!
-//! The last field is `index_hash`, the BLAKE3 hash of all bytes before it. What someone has edited since, in
-//! whatever way, is told apart from what Étendue wrote.
+//! The last field is `index_hash`, the BLAKE3 hash of all bytes before it. It distinguishes a file
+//! that was edited in any way from one that Étendue wrote.
 
 use serde::Serialize;
 
 /// Readable JSON with a final newline. Numbers that are not finite become null.
 pub fn json(value: &impl Serialize) -> Vec<u8> {
-    // Cannot fail: all keys are text.
+    // This cannot fail: all keys are text.
     let mut bytes = serde_json::to_vec_pretty(value).unwrap_or_default();
     bytes.push(b'\n');
     bytes
 }
 
-/// What stands before and after the 64 digits.
+/// The text before and after the 64 digits.
 const BEFORE: &str = ",\n  \"index_hash\": \"";
 const AFTER: &str = "\"\n}\n";
-/// How a JSON object ends that is to be sealed.
+/// The required end of a JSON object before it is sealed.
 const END: &str = "\n}\n";
 
-/// Adds its hash to a JSON object in readable form, of at least one field.
+/// Appends the hash of a JSON object with at least one field, in readable form.
 pub fn sealed(json: &[u8]) -> Vec<u8> {
     let body = json.strip_suffix(END.as_bytes()).unwrap_or(json);
     let hash = blake3::hash(body).to_hex();
     [body, BEFORE.as_bytes(), hash.as_bytes(), AFTER.as_bytes()].concat()
 }
 
-/// Whether bytes end with the hash of themselves.
+/// Whether bytes end with their own hash.
 pub fn is_sealed(bytes: &[u8]) -> bool {
     let hash_of = || {
         let rest = bytes.strip_suffix(AFTER.as_bytes())?;

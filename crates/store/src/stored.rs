@@ -1,4 +1,4 @@
-//! What a stage leaves in its folder for a later one: arrays, and last an index that names them.
+//! The results of a stage in its folder, for a later stage: arrays, and an index that lists them.
 
 use crate::Method;
 use crate::fields::{FieldChange, difference};
@@ -16,34 +16,34 @@ use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
-/// Where a stage keeps a copy of a mesh or picture, beside the index of that name.
+/// The path at which a stage keeps a copy of a mesh or picture, beside the index of that name.
 pub fn copy_of(index: &str, input: &str) -> String {
     let stage = index.trim_end_matches(".json");
     format!("{stage}.inputs/{input}")
 }
 
-/// The version of this program: stages of different ones do not mix.
+/// The version of this program; stages of different versions cannot be combined.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// An index: what was done, of which scene, and the hash of each file.
+/// An index: the stage, its scene, and the hash of each file.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Index<T> {
     /// Name of the scene.
     pub scene: String,
     scene_hash: String,
     version: String,
-    /// What the stage says of itself.
+    /// The stage's own data.
     #[serde(flatten)]
     pub content: T,
     /// The scene file, defaults and overrides included.
     pub scene_file: SceneFile,
-    /// BLAKE3 of each mesh and picture of the scene, by the name the scene file has for it.
+    /// BLAKE3 hash of each mesh and picture of the scene, by its name in the scene file.
     inputs: BTreeMap<String, String>,
     files: BTreeMap<String, String>,
 }
 
 impl<T: Serialize> Index<T> {
-    /// The index of what a stage did with a scene.
+    /// The index of a stage for a scene.
     pub fn new(scene: &Scene, content: T) -> Self {
         Self {
             scene: scene.name.clone(),
@@ -56,7 +56,7 @@ impl<T: Serialize> Index<T> {
         }
     }
 
-    /// Writes it after the files it lists.
+    /// Writes the index after the files it lists.
     pub fn finish(mut self, results: Results) -> Result<Finished, Failure> {
         results.finish(|files| {
             self.files.clone_from(files);
@@ -68,17 +68,17 @@ impl<T: Serialize> Index<T> {
 /// The folder of an earlier stage.
 #[derive(Debug)]
 pub struct Stored<T> {
-    /// Where it is.
+    /// Path of the folder.
     pub folder: PathBuf,
     /// Path of the index, for messages.
     path: PathBuf,
     name: &'static str,
-    /// What the stage says of itself.
+    /// The index of the stage.
     pub index: Index<T>,
 }
 
 impl<T: DeserializeOwned> Stored<T> {
-    /// Reads the index called `name` in a folder. It must be of this version, and as it was written.
+    /// Reads the index called `name` in a folder. It must be unchanged and of this version.
     pub fn read(folder: &Path, name: &'static str) -> Result<Self, Failure> {
         let path = folder.join(name);
         let shown = path.display();
@@ -86,7 +86,7 @@ impl<T: DeserializeOwned> Stored<T> {
             .map_err(|e| Failure::bad_input(format!("cannot read {shown}: {e}")))?;
         let fault = |what: String| Failure::bad_input(format!("{shown}: {what}"));
         let tree: Value = serde_json::from_slice(&bytes).unwrap_or_default();
-        // Before the rest, which another version may write in another way.
+        // Checked before the rest, which another version may write differently.
         if let Some(version) = tree["version"].as_str().filter(|v| *v != VERSION) {
             return Err(fault(format!(
                 "written by version {version}, this is {VERSION}: all stages must be of one version"
@@ -112,7 +112,7 @@ impl<T: DeserializeOwned> Stored<T> {
 }
 
 impl<T> Stored<T> {
-    /// The scene it is of; what it names are the stage's own copies.
+    /// The scene of the stage; its meshes and pictures are the stage's own copies.
     pub fn scene(&self) -> Result<Scene, Failure> {
         let Index {
             scene,
@@ -134,7 +134,7 @@ impl<T> Stored<T> {
         Ok(scene)
     }
 
-    /// The stage's copies of what its scene names must be those that were written.
+    /// Checks that the stage's copies of the scene's meshes and pictures are unchanged.
     pub fn check_inputs(&self) -> Result<(), Failure> {
         let mut names = self.index.inputs.keys();
         names.try_for_each(|name| self.bytes(&copy_of(self.name, name)).map(drop))
@@ -151,12 +151,13 @@ impl<T> Stored<T> {
         NpzFile::new(self.folder.join(name), self.bytes(name)?)
     }
 
-    /// The file `name`, whose bytes must be those that were written.
+    /// The file `name`, whose bytes must be unchanged.
     fn bytes(&self, name: &str) -> Result<Vec<u8>, Failure> {
         listed_bytes(&self.folder, self.name, &self.index.files, name)
     }
 
-    /// Fails when `other` is of another scene; with `run`, also when the scene is to be measured in another way.
+    /// Fails when `other` belongs to another scene or, with `run`, when its measurement has
+    /// different settings.
     pub fn check_scene<U>(&self, other: &Stored<U>, run: bool) -> Result<(), Failure> {
         let tree = |file: &SceneFile, inputs: &BTreeMap<String, String>| {
             let mut tree = serde_json::to_value(file).unwrap_or_default();
@@ -190,13 +191,14 @@ impl<T> Stored<T> {
         )))
     }
 
-    /// What is wrong with the index, for the user.
+    /// The message for a fault of the index.
     pub fn fault(&self, what: impl Display) -> Failure {
         Failure::bad_input(format!("{}: {what}", self.path.display()))
     }
 }
 
-/// The file `name` of a folder, whose bytes must be those that the index called `index` lists in `files`.
+/// The file `name` of a folder, whose bytes must be those listed in `files` of the index called
+/// `index`.
 pub fn listed_bytes(
     folder: &Path,
     index: &str,
@@ -217,7 +219,7 @@ pub fn listed_bytes(
     Ok(bytes)
 }
 
-/// The summary of a run of this very scene, by the same method and version.
+/// The summary of a run of exactly this scene, by the same method and version.
 pub fn summary_of(folder: &Path, scene: &Scene, method: Method) -> Option<Value> {
     let bytes = read_file(&folder.join(SUMMARY), MAX_INDEX_BYTES).ok()?;
     let summary: Value = serde_json::from_slice(&bytes).ok()?;
@@ -227,8 +229,9 @@ pub fn summary_of(folder: &Path, scene: &Scene, method: Method) -> Option<Value>
     (sealed::is_sealed(&bytes) && same).then_some(summary)
 }
 
-/// Fails where a folder holds a result of another scene, so that no result takes the place of one
-/// that only shares its name. How a scene was measured does not count. `arguments` says how the message names `force`.
+/// Fails where a folder holds a result of another scene, so that no result replaces one that only
+/// shares its name. Settings of the measurement are ignored. `arguments` is the style in which the
+/// message names `force`.
 pub fn check_earlier(
     folder: &Path,
     index: &str,

@@ -1,16 +1,16 @@
-//! Files that wait to become a result, and what becomes of them when the process is asked to stop.
+//! Files that are not yet part of a result, and their removal when the process is asked to stop.
 
 use std::fs;
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// What waits to become a result, and the lock on its folder. Global as signals are.
+/// The unfinished files, and the locks on their folders. Global, because signals are.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// What to say at the end instead, where batches are kept.
+/// The message at the end of an interrupted command whose batches are stored.
 static KEPT: Mutex<Option<&str>> = Mutex::new(None);
 
-/// From now on an interrupted command says this.
+/// Sets the message of a command that is interrupted from now on.
 pub fn keeps(message: &'static str) {
     *KEPT.lock().unwrap_or_else(PoisonError::into_inner) = Some(message);
 }
@@ -19,8 +19,8 @@ fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Makes what waits to become a result, and names all that is to be removed when the user asks to stop. A first
-/// signal waits for both.
+/// Makes unfinished files, and registers everything that is removed when the user asks to stop. A
+/// first signal waits for both.
 pub fn begin<T, E>(paths: Vec<PathBuf>, make: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
     let mut unfinished = unfinished();
     let made = make()?;
@@ -28,7 +28,7 @@ pub fn begin<T, E>(paths: Vec<PathBuf>, make: impl FnOnce() -> Result<T, E>) -> 
     Ok(made)
 }
 
-/// Releases what waited; from now on nothing waits. A first signal waits for both.
+/// Releases the unfinished files and clears the register. A first signal waits for both.
 pub fn ended(release: impl FnOnce()) {
     let mut unfinished = unfinished();
     release();
@@ -41,8 +41,8 @@ pub fn undisturbed<T>(work: impl FnOnce() -> T) -> T {
     work()
 }
 
-/// Removes what waits, and does `last` with the words for the user. Nothing begins or ends meanwhile: the process is to
-/// end in `last`.
+/// Removes the unfinished files, and calls `last` with the message for the user. Nothing begins or
+/// ends meanwhile: the process must end in `last`.
 pub fn abandon(last: impl FnOnce(&'static str)) {
     let unfinished = unfinished();
     let kept = *KEPT.lock().unwrap_or_else(PoisonError::into_inner);

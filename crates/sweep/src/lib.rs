@@ -1,7 +1,8 @@
-//! A scene with fields that take several values: every plane's numbers as one table, and curves.
+//! Runs a scene with fields that take several values, and collects the numbers of every plane as a
+//! table and as curves.
 //!
-//! Each point is a run of its own, kept below `points` in a folder named by the hash of its scene. A
-//! sweep that was stopped, or that has other values now, goes on from what is there.
+//! Each point is a separate run, stored below `points` in a folder named by the hash of its scene.
+//! A sweep that was stopped, or whose values have changed, reuses the existing points.
 
 #![allow(
     clippy::missing_errors_doc,

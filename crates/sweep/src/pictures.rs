@@ -1,4 +1,4 @@
-//! Curves of a sweep: what each plane's numbers do along its first field.
+//! Draws the curves of a sweep: each plane's numbers over the first field.
 
 use crate::table::{BANDWIDTHS, PointResult, SLOPE, TableNumber, numbers};
 use crate::values::{SweepPoint, short, shown};
@@ -6,14 +6,14 @@ use etendue_figures::{AxisQuantity, Curve, CurveKind, CurvePanel, Curves, Figure
 use etendue_pipeline::table::spaced;
 use etendue_store::Failure;
 
-/// Names of the pictures, without their endings.
+/// Names of the pictures, without extensions.
 pub(crate) const NAMES: [&str; 3] = ["bandwidth_rho", "bandwidth_nu", "slope"];
 
-/// Panels of a picture, beyond which nobody looks at them.
+/// The largest useful number of panels in a picture.
 const MAX_PANELS: usize = 24;
 
-/// The pictures of [`NAMES`], unless they would have too many panels. Of a grid of several fields
-/// there is a panel for each value of all but the first.
+/// The pictures of [`NAMES`], unless they would have too many panels. In a grid of several fields
+/// there is a panel for each combination of values of all but the first.
 #[expect(clippy::too_many_lines, reason = "one drawing, from panels to axes")]
 pub(crate) fn drawn(
     scene: &str,
@@ -71,7 +71,7 @@ pub(crate) fn drawn(
                 Some((at.point[0].1, number))
             };
             let mut numbers: Vec<(f64, TableNumber)> = at.filter_map(of_plane).collect();
-            // Lists come in any order.
+            // Lists may be in any order.
             numbers.sort_by(|a, b| a.0.total_cmp(&b.0));
             panel(plane, others, &found[0].point[0].0, &numbers)
         };
@@ -86,7 +86,7 @@ pub(crate) fn drawn(
     quantities.into_iter().map(figure).collect()
 }
 
-/// Measured and predicted numbers of a plane over the field that is swept.
+/// Measured and predicted numbers of a plane over the swept field.
 fn panel(
     plane: &str,
     others: &SweepPoint,
@@ -119,9 +119,9 @@ fn panel(
     }
 }
 
-/// Whether values, three at least, grow by equal factors.
+/// Whether three or more values grow by equal factors.
 fn go_by_factors(values: impl Iterator<Item = f64>) -> bool {
-    // What values of a range are rounded to, with room to spare.
+    // The rounding of the values of a range, with a margin.
     const ROUNDING: f64 = 1e-6;
     let mut values: Vec<f64> = values.collect();
     values.dedup();
@@ -136,7 +136,7 @@ fn name(plane: &serde_json::Value) -> &str {
     plane["name"].as_str().unwrap_or_default()
 }
 
-/// The values that tell one panel from another.
+/// The values that distinguish one panel from another.
 fn others(at: &PointResult, together: bool) -> SweepPoint {
     if together {
         SweepPoint::new()

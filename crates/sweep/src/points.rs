@@ -1,4 +1,4 @@
-//! The points of a sweep: a scene at each.
+//! The points of a sweep, each with its scene.
 
 use crate::request::SweepRequest;
 use crate::values::{Setting, Sweep, SweepPoint, message_at, points, shown};
@@ -9,7 +9,7 @@ use etendue_scene::{RunFile, Scene};
 use etendue_store::{ArgumentStyle, Failure, Method};
 use std::collections::BTreeMap;
 
-/// What is asked for: a scene at each point of a sweep.
+/// The scene at each point of the requested sweep.
 #[derive(Debug)]
 pub struct SweepPoints {
     pub(crate) source: SceneSource,
@@ -17,7 +17,7 @@ pub struct SweepPoints {
     pub(crate) sweeps: Vec<Sweep>,
     pub(crate) method: Method,
     pub(crate) points: Vec<SweepPoint>,
-    /// One for each point.
+    /// A scene for each point.
     pub(crate) scenes: Vec<Scene>,
 }
 
@@ -66,14 +66,14 @@ impl SweepPoints {
         &self.scenes
     }
 
-    /// What the user should know of the scenes, each once, with the first point it is about.
+    /// Warnings about the scenes, each once, with the first point it concerns.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut told: Vec<String> = Vec::new();
         let mut warnings = Vec::new();
         for (point, scene) in self.points.iter().zip(&self.scenes) {
             for warning in scene.warnings() {
-                // The same words with other numbers are told once.
+                // A message that differs only in its numbers is shown once.
                 let words: String = warning
                     .chars()
                     .filter(|c| !c.is_ascii_digit() && *c != '.')
@@ -98,8 +98,8 @@ impl SweepPoints {
     }
 }
 
-/// The seed of a point, told by its scene and the seed of the sweep, whatever other points there are. A number that every reader of JSON
-/// holds exactly.
+/// The seed of a point, derived from its scene and the seed of the sweep, independently of other
+/// points. Every reader of JSON represents the number exactly.
 fn seed_of(scene: &Scene) -> u64 {
     let hash = blake3::hash(scene.hash().as_bytes());
     let mut words = hash.as_bytes().chunks_exact(8).map(|word| {
@@ -109,7 +109,7 @@ fn seed_of(scene: &Scene) -> u64 {
     words.next().unwrap_or(0) >> 24
 }
 
-/// Fails where nothing is swept, or a field is given its values twice.
+/// Fails where nothing is swept, or where a field is given values twice.
 fn check(
     request: &SweepRequest,
     set: &[(String, String)],
@@ -150,7 +150,7 @@ fn check(
     }
 }
 
-/// What is set to one value, and what is swept.
+/// The fields set to one value, and those swept.
 fn settings(all: &[Setting]) -> (Vec<(String, String)>, Vec<Sweep>) {
     let (mut set, mut sweeps) = (Vec::new(), Vec::new());
     for setting in all {
@@ -162,7 +162,7 @@ fn settings(all: &[Setting]) -> (Vec<(String, String)>, Vec<Sweep>) {
     (set, sweeps)
 }
 
-/// The scene with some fields set to numbers besides; `options` are overrides of all points.
+/// The scene with some further fields set to numbers; `options` overrides fields at all points.
 pub fn scene_at(
     source: &SceneSource,
     point: &SweepPoint,

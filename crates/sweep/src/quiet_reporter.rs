@@ -1,9 +1,9 @@
-//! The work within a point of a sweep, which is not shown: the sweep shows its points.
+//! Hides the progress within a point of a sweep, since the sweep shows its points.
 
 use etendue_pipeline::{Progress, Reporter, Work};
 
-/// Tells the progress of the sweep that its work goes on, whenever a point has done something. Notes and warnings of single points are
-/// dropped.
+/// Reports to the progress of the sweep that work continues, whenever a point has advanced. Notes
+/// and warnings of single points are dropped.
 pub(crate) struct Unshown<'a>(pub(crate) &'a dyn Progress);
 
 impl Reporter for Unshown<'_> {

@@ -1,4 +1,4 @@
-//! What a sweep is asked for.
+//! The request of a sweep.
 
 use crate::values::Setting;
 use etendue_pipeline::load::SceneSource;
@@ -9,24 +9,24 @@ use etendue_store::Method;
 pub struct SweepRequest {
     /// The scene, with fields set to a value at all points.
     pub scene: SceneSource,
-    /// More fields, set to a value or to several.
+    /// Further fields, set to one or several values.
     pub set: Vec<Setting>,
-    /// Whether all points have one seed; otherwise each has its own.
+    /// Whether all points share one seed; otherwise each has its own.
     pub common_seed: bool,
     /// Whether several fields take their values in step, instead of in all combinations.
     pub together: bool,
-    /// Photons of each point, instead of the scene's.
+    /// Photons of each point, in place of the scene's.
     pub photons: Option<u64>,
-    /// Seed, instead of the scene's.
+    /// Seed, in place of the scene's.
     pub seed: Option<u64>,
-    /// How light is measured.
+    /// Method of measurement.
     pub method: Method,
-    /// Whether files that Étendue did not write are replaced.
+    /// Whether files that Étendue did not write may be replaced.
     pub force: bool,
 }
 
 impl SweepRequest {
-    /// A sweep of fields of a scene, by photons, in all combinations.
+    /// A sweep of fields of a scene, with photons and in all combinations.
     #[must_use]
     pub fn new(scene: SceneSource, set: Vec<Setting>) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! Running a sweep: points that are not done yet, then the table and curves.
+//! Runs a sweep: the points that are missing, then the table and curves.
 
 use crate::pictures;
 use crate::points::SweepPoints;
@@ -20,25 +20,26 @@ use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// The table.
+/// The file name of the table.
 const TABLE: &str = "sweep.csv";
 
-/// A sweep that is done.
+/// A finished sweep.
 #[derive(Debug)]
 pub struct FinishedSweep {
-    /// The folder of its results.
+    /// The results folder.
     pub folder: PathBuf,
-    /// The table for a terminal: a row for each plane at each point, and a header.
+    /// The table for a terminal: a header, and a row for each plane at each point.
     pub rows: Vec<Vec<String>>,
-    /// Whether there are curves: not where they would have more than 24 panels.
+    /// Whether there are curves; they are omitted if they would have more than 24 panels.
     pub has_curves: bool,
-    /// How many points pass, fail, and are undecided.
+    /// The numbers of points that pass, fail, and are undecided.
     pub verdicts: [usize; 3],
     /// Why planes are undecided, each with its point and plane.
     pub undecided: Vec<String>,
 }
 
-/// Runs the points that are not done yet, and writes the table and the pictures. `folder` keeps each point.
+/// Runs the missing points, and writes the table and the pictures. Each point is stored in
+/// `folder`.
 pub fn run(
     request: &SweepRequest,
     all: &SweepPoints,
@@ -57,7 +58,8 @@ pub fn run(
     check_earlier(folder, SWEEP, base, request.force, arguments)?;
     check_fields(request, folder, sweeps)?;
     let inputs = load::inputs(&all.source, base);
-    // Before the work, and once more for the table: each point claims a folder of its own.
+    // The folder is claimed before the work, and again for the table; each point claims a folder of
+    // its own.
     drop(Results::claim(folder, plan(request, &inputs))?);
     unfinished::keeps(
         "interrupted: the points that are done are kept, and the same command goes on from them",
@@ -105,7 +107,7 @@ fn plan(request: &SweepRequest, inputs: &[PathBuf]) -> Plan {
     }
 }
 
-/// What each point gives, run now or before.
+/// The result of each point, run now or before.
 fn run_all(
     request: &SweepRequest,
     folder: &Path,
@@ -174,7 +176,7 @@ fn run_all(
     found.collect()
 }
 
-/// The folders of the points, none of which leads out of that of the sweep.
+/// The folders of the points, checked to be inside that of the sweep.
 fn folders(
     request: &SweepRequest,
     folder: &Path,
@@ -196,14 +198,14 @@ fn name_of(scene: &Scene, request: &SweepRequest) -> String {
     blake3::hash(what.as_bytes()).to_hex()[..16].to_owned()
 }
 
-/// `sweep.json`, all but the hashes of the files.
+/// The content of `sweep.json`, except for the hashes of the files.
 #[derive(Debug, Serialize)]
 struct SweepIndex<'a> {
     scene: &'a str,
     version: &'a str,
-    /// The scene without the fields that are swept.
+    /// The scene without the swept fields.
     scene_file: &'a SceneFile,
-    /// Whether the fields go in step.
+    /// Whether the fields take their values in step.
     together: bool,
     sweeps: BTreeMap<&'a str, &'a [f64]>,
     /// Folders of the points, in the order of the table.

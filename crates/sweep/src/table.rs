@@ -11,7 +11,7 @@ pub(crate) struct TableNumber {
     pub(crate) unit: String,
     pub(crate) measured: Option<f64>,
     pub(crate) predicted: Option<f64>,
-    /// Of what is measured.
+    /// Standard error of the measured number.
     pub(crate) error: Option<f64>,
 }
 
@@ -33,7 +33,7 @@ impl PointResult {
 pub(crate) const BANDWIDTHS: [&str; 2] = ["bandwidth_95_rho", "bandwidth_95_nu"];
 pub(crate) const SLOPE: &str = "slope";
 
-/// The numbers of a plane: of its whole spectrum, and each parameter.
+/// The numbers of a plane: those of its whole spectrum, and each parameter.
 pub(crate) fn numbers(plane: &Value) -> Vec<TableNumber> {
     let of = |quantity: &str, unit: &str, of: &Value, predicted: &str| TableNumber {
         quantity: quantity.to_owned(),
@@ -62,18 +62,18 @@ pub(crate) fn numbers(plane: &Value) -> Vec<TableNumber> {
 /// A column of the table.
 enum Column {
     Words(Vec<String>),
-    /// `None` where there is no number.
+    /// Numbers, `None` where there is none.
     Numbers(Vec<Option<f64>>),
 }
 
-/// What stands in a row.
+/// The content of a row.
 struct TableRow<'a> {
     at: &'a PointResult,
     plane: &'a Value,
     number: TableNumber,
 }
 
-/// Names and columns: the fields that are swept, then what stands in each row.
+/// Names and columns: the swept fields, then the content of each row.
 fn columns(paths: &[String], found: &[PointResult]) -> Vec<(String, Column)> {
     let planes = found
         .iter()
@@ -94,7 +94,7 @@ fn columns(paths: &[String], found: &[PointResult]) -> Vec<(String, Column)> {
     let swept = swept.map(|(i, path)| (path.clone(), values(&|row| Some(row.at.point[i].1))));
     let rest = [
         ("point", words(&|row| row.at.folder.clone())),
-        // As text: not every seed is a double.
+        // Written as text, since not every seed is exact as a double.
         ("seed", words(&|row| row.at.summary["seed"].to_string())),
         ("plane", text("name")),
         ("class", text("class")),
@@ -112,7 +112,7 @@ fn columns(paths: &[String], found: &[PointResult]) -> Vec<(String, Column)> {
     swept.chain(rest).collect()
 }
 
-/// The table as CSV, all digits, empty where there is no number.
+/// The table as CSV with all digits; cells without a number are empty.
 pub(crate) fn csv(paths: &[String], found: &[PointResult]) -> Result<Vec<u8>, Failure> {
     let columns = columns(paths, found);
     let mut writer = csv::Writer::from_writer(Vec::new());

@@ -8,7 +8,7 @@ use etendue_store::{ArgumentStyle, Failure};
 pub struct Sweep {
     /// Path of the field.
     pub path: String,
-    /// Its values, in order.
+    /// The values in order.
     pub values: Vec<f64>,
 }
 
@@ -21,19 +21,20 @@ pub enum Setting {
     Sweep(Sweep),
 }
 
-/// The value of each field that is swept.
+/// The value of each swept field.
 pub type SweepPoint = Vec<(String, f64)>;
 
-/// Values of one sweep, and points of all together.
+/// The largest number of values of one sweep, and of points in total.
 const MAX_POINTS: usize = 1000;
 
-/// What `--set` of a sweep takes.
+/// Parses a `--set` argument of a sweep.
 pub fn setting(text: &str) -> Result<Setting, String> {
     let (path, values) = text.split_once('=').ok_or("must be PATH=VALUE")?;
     setting_of(path, values, ArgumentStyle::Command)
 }
 
-/// A field that is set to `values`, a value or several as `--set` of a sweep takes them behind `PATH=`.
+/// A field set to `values`: one or several, in the notation that `--set` of a sweep accepts after
+/// `PATH=`.
 pub fn setting_of(path: &str, values: &str, arguments: ArgumentStyle) -> Result<Setting, String> {
     let [path, values] = [path, values].map(|part| part.trim().to_owned());
     let is_plain = !values.contains(['(', '[', '"']);
@@ -48,7 +49,7 @@ pub fn setting_of(path: &str, values: &str, arguments: ArgumentStyle) -> Result<
     Ok(Setting::Value(path, values))
 }
 
-/// Whether there is a comma outside of parentheses and quotes, which no single value has.
+/// Whether there is a comma outside of parentheses and quotes, which no single value contains.
 fn is_list(text: &str) -> bool {
     let (mut depth, mut quoted) = (0, false);
     text.chars().any(|c| {
@@ -74,7 +75,8 @@ pub fn sweep(text: &str) -> Result<Sweep, String> {
 }
 
 impl Sweep {
-    /// A field and its values, if these are finite numbers and not too many. The message names them as Python does.
+    /// A field and its values, if these are finite and not too many. The message uses Python's
+    /// names.
     pub fn new(path: String, values: Vec<f64>) -> Result<Self, String> {
         let refused = |why: &str| {
             Err(format!(
@@ -113,7 +115,7 @@ fn number(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| format!("`{}` is no number", text.trim()))
 }
 
-/// The values of a range, from what stands before and after the dots.
+/// The values of a range, from the text before and after the dots.
 fn range(from: &str, rest: &str) -> Result<Vec<f64>, String> {
     let (to, count) = rest
         .split_once(':')
@@ -138,14 +140,15 @@ fn range(from: &str, rest: &str) -> Result<Vec<f64>, String> {
         .collect())
 }
 
-/// Value `i` of `count` from one end to the other, by equal steps or equal factors, as people write it.
+/// Value `i` of `count` from one end to the other, by equal steps or equal factors, rounded to a
+/// short decimal.
 fn between([from, to]: [f64; 2], i: usize, count: usize, is_log: bool) -> f64 {
     let share = i as f64 / (count - 1) as f64;
     let value = if is_log {
         from * libm::pow(to / from, share)
     } else {
         let value = (1.0 - share) * from + share * to;
-        // A step that meets zero but for its rounding.
+        // A step that is zero but for rounding.
         let is_zero = value.abs() < 1e-12 * from.abs().max(to.abs());
         if is_zero { 0.0 } else { value }
     };
@@ -186,7 +189,7 @@ pub fn points(sweeps: &[Sweep], together: bool) -> Result<Vec<SweepPoint>, Failu
     }))
 }
 
-/// A text about a point, which it then names.
+/// A text with the name of the point it concerns.
 pub fn message_at(point: &SweepPoint, text: String) -> String {
     if point.is_empty() || text.contains(&shown(point)) {
         text
@@ -195,13 +198,14 @@ pub fn message_at(point: &SweepPoint, text: String) -> String {
     }
 }
 
-/// A point, for texts.
+/// A description of a point.
 pub fn shown(point: &SweepPoint) -> String {
     let parts = point.iter().map(|(path, x)| format!("{path}={}", tidy(*x)));
     parts.collect::<Vec<_>>().join(", ")
 }
 
-/// The end of a path, by which its field is known: `Ggx` of `surfaces.0.event.Reflects.brdf.lobe.Ggx`, and `center.0` of `light.center.0`.
+/// The shortest end of a path that identifies its field: `Ggx` of
+/// `surfaces.0.event.Reflects.brdf.lobe.Ggx`, and `center.0` of `light.center.0`.
 pub fn short(path: &str) -> &str {
     let is_number = |part: &str| part.bytes().all(|c| c.is_ascii_digit());
     let name = path

@@ -1,16 +1,18 @@
-//! A mask made ready for many questions: the share of a ray that passes, and the shapes in its way.
+//! A mask prepared for many queries: the share of a ray's radiance that passes, and the shapes near
+//! a ray.
 
 use etendue_field::{HalfPlane, Mask, Shape};
 
-/// Lowest and highest coordinate along two axes.
+/// The lowest and highest coordinate along two axes.
 pub(crate) type Bounds = [[f64; 2]; 2];
 
-/// A mask made ready for many questions.
+/// A mask prepared for many queries.
 #[derive(Debug)]
 pub(crate) struct Barrier<'a> {
-    /// Where it stands: metres from the light, or before a receiver, as its owner counts.
+    /// The distance of the mask, metres: from the light or before a receiver, as the owner counts
+    /// it.
     pub(crate) distance: f64,
-    /// What half-planes leave open.
+    /// The region that half-planes leave open.
     pub(crate) open: Bounds,
     pub(crate) shapes: Bins<'a>,
     pub(crate) mask: &'a Mask,
@@ -42,7 +44,7 @@ impl<'a> Barrier<'a> {
         }
     }
 
-    /// The share of radiance that passes at (x, y).
+    /// Returns the share of radiance that passes at (x, y).
     pub(crate) fn transmittance(&self, x: f64, y: f64) -> f64 {
         if !matches!(self.mask, Mask::Opaque { .. }) {
             return self.mask.transmittance(x, y);
@@ -56,7 +58,7 @@ impl<'a> Barrier<'a> {
     }
 }
 
-/// Shapes, in a grid of about as many cells.
+/// Shapes, in a grid with about as many cells as shapes.
 #[derive(Debug)]
 pub(crate) struct Bins<'a> {
     shapes: &'a [Shape],
@@ -65,7 +67,7 @@ pub(crate) struct Bins<'a> {
     per_length: [f64; 2],
     /// Cells along each axis.
     side: usize,
-    /// Shapes that touch a cell, by number.
+    /// Indices of the shapes that touch each cell.
     cells: Vec<Vec<usize>>,
 }
 
@@ -93,7 +95,7 @@ impl<'a> Bins<'a> {
         bins
     }
 
-    /// The narrowest width of a shape; `None` where there are none.
+    /// Returns the narrowest width of a shape; `None` if there are no shapes.
     pub(crate) fn narrowest(&self) -> Option<f64> {
         let widths = self.shapes.iter().map(|shape| {
             let [w, h] = shape.bounds().size;
@@ -102,7 +104,8 @@ impl<'a> Bins<'a> {
         widths.min_by(f64::total_cmp)
     }
 
-    /// Cells that an interval along an axis touches; those at the ends stand for all beyond.
+    /// Returns the cells that an interval along an axis touches; the outermost cells also cover
+    /// everything beyond them.
     fn touched(&self, axis: usize, [low, high]: [f64; 2]) -> std::ops::RangeInclusive<usize> {
         self.cell(axis, low)..=self.cell(axis, high)
     }
@@ -117,8 +120,8 @@ impl<'a> Bins<'a> {
         cell.clamp(0.0, (self.side - 1) as f64) as usize
     }
 
-    /// Hands over every shape whose bounds meet a rectangle, once, in an order that depends on the
-    /// rectangle alone.
+    /// Calls `each` once for every shape whose bounds meet a rectangle, in an order that depends on
+    /// the rectangle alone.
     pub(crate) fn meeting(&self, sides: Bounds, mut each: impl FnMut(&'a Shape)) {
         if self.shapes.is_empty() {
             return;
@@ -129,7 +132,7 @@ impl<'a> Bins<'a> {
                 for &number in &self.cells[i * self.side + j] {
                     let shape = &self.shapes[number];
                     let extents = [0, 1].map(|axis| shape.bounds().extent(axis));
-                    // A shape in several of the cells is met in the first.
+                    // A shape in several of the cells is visited in the first of them.
                     let first = [(0, *x.start()), (1, *y.start())]
                         .map(|(axis, start)| self.cell(axis, extents[axis][0]).max(start));
                     let meets = |axis: usize| {

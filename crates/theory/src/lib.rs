@@ -1,13 +1,13 @@
-//! Predicted spectra of local light fields, in closed form or by nets of rays.
+//! Predicted spectra of local light fields, in closed form or from nets of rays.
 //!
-//! Whatever predicts is a [`Model`]: a [`Chain`] of parallel planes, or what is [`Observed`] of
-//! specular surfaces ([`rays`]) or of a surface with a BRDF ([`scattering`]).
+//! Every prediction comes from a [`Model`]: a [`Chain`] of parallel planes, or light [`Observed`]
+//! from specular surfaces ([`rays`]) or from a surface with a BRDF ([`scattering`]).
 //!
-//! In goes a [`Chain`]: a light, travel, opaque shapes, half-planes and cosine gratings in planes,
-//! and the cosine and diffuse reflection of a receiver. Out come the values a measurement would
-//! have without noise: the [`slices`] of the windowed spectrum, how far they may be off
-//! ([`quadrature_error`]), their [`derivative`] by any number of the chain, and the [`projection`]
-//! on (x, u).
+//! The input is a [`Chain`]: a light, travel, opaque shapes, half-planes and cosine gratings in
+//! planes, and the cosine and diffuse reflection of a receiver. The output is the values a
+//! measurement would have without noise: the [`slices`] of the windowed spectrum, a bound on their
+//! error ([`quadrature_error`]), their [`derivative`] by any number of the chain, and the
+//! [`projection`] on (x, u).
 //!
 //! Travel is a shear of (position, slope), so every edge stays a straight line and every field is a
 //! signed sum of products of convex polygons, one in (x, u) and one in (y, v); windows and gratings
@@ -16,14 +16,13 @@
 //! of cosine series; both converge exponentially.
 //!
 //! [`geometry`] has the steps of a light path that bend it (incidence, curvature, mirrors,
-//! refraction, lenses) as affine maps of rays, with what they do to spectra and covariances; a
-//! chain does not use them. [`rays`] predicts what is behind mirrors, refracting surfaces and
-//! lenses: exactly, by following rays, and to first order, by a chain of those maps read off the
-//! same surfaces. [`covariance`] follows second moments of spectra along the same paths.
-//! [`shading`] has cosines, BRDF lobes, Fresnel factors, textures and environments,
-//! in 2D.
+//! refraction, lenses) as affine maps of rays, with their effect on spectra and covariances; a
+//! chain does not use them. [`rays`] predicts light behind mirrors, refracting surfaces and lenses:
+//! exactly, by following rays, and to first order, by a chain of those maps derived from the same
+//! surfaces. [`covariance`] follows second moments of spectra along the same paths. [`shading`] has
+//! cosines, BRDF lobes, Fresnel factors, textures and environments, in 2D.
 //!
-//! This crate never sees a scene, a photon or a measured spectrum; otherwise agreement would be no
+//! This crate has no access to scenes, photons or measured spectra; otherwise agreement would be no
 //! evidence.
 //!
 //! ```

@@ -1,11 +1,11 @@
-//! Masks on the way from the light, and what else stands in the way.
+//! Masks between the light and the plane, and other occluders.
 
 use crate::barrier::Barrier;
 use crate::obstacle::{Obstacle, PreparedObstacles};
 use etendue_field::Mask;
 use glam::DVec3;
 
-/// Masks across the way from the light, and what else stands in the way.
+/// Masks between the light and the plane, and other occluders.
 #[derive(Debug)]
 pub(crate) struct Masks<'a> {
     first_leg: Vec<Barrier<'a>>,
@@ -13,7 +13,7 @@ pub(crate) struct Masks<'a> {
 }
 
 impl<'a> Masks<'a> {
-    /// Masks with their distances from the light, metres.
+    /// Takes masks with their distances from the light, metres.
     pub(crate) fn new(layers: &'a [(f64, Mask)], obstacles: &'a [Obstacle]) -> Self {
         let barriers = layers.iter();
         Self {
@@ -22,7 +22,8 @@ impl<'a> Masks<'a> {
         }
     }
 
-    /// The share of a ray with slopes (u, v) through a point that passes the masks of the first leg.
+    /// Returns the share of radiance that passes the masks of the first leg along the ray with
+    /// slopes (u, v) through a point.
     pub(crate) fn transmittance(&self, point: DVec3, [u, v]: [f64; 2]) -> f64 {
         let mut passes = 1.0;
         for barrier in &self.first_leg {

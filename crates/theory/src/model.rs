@@ -1,4 +1,4 @@
-//! What every theory answers.
+//! The interface that all models of theory share.
 
 use crate::nets::{RayBudget, RayNets};
 use crate::parameter::{New, Parameter};
@@ -7,40 +7,42 @@ use crate::predicted::Predicted;
 use crate::work::PredictionWork;
 use etendue_field::{Light, ProjectionGrid, SliceGrid, Window};
 
-/// What a prediction is over: a window, frequencies and the cells of a picture.
+/// The domain of a prediction: a window, frequencies and the cells of a picture.
 pub type Over<'a> = (&'a Window, &'a SliceGrid, &'a ProjectionGrid);
 
-/// Whatever predicts the light field at a plane.
+/// A model that predicts the light field at a plane.
 pub trait Model: Clone {
-    /// What shines.
+    /// Returns the light source.
     fn light(&self) -> &Light;
 
-    /// The numbers that a measurement may be asked for, in the order light meets them.
+    /// Returns the parameters that can be estimated from a measurement, in the order light meets
+    /// them.
     fn parameters(&self) -> Vec<Parameter>;
 
-    /// One of them in words, e.g. "travel light to blockers".
+    /// Returns the name of a parameter in words, e.g. "travel light to blockers".
     fn name(&self, parameter: Parameter) -> String;
 
-    /// Puts `new(value)` in the place of the value of a parameter. `None` if the model does not
-    /// have it, or its central ray does not arrive.
+    /// Replaces the value of a parameter by `new(value)`. Returns `None` if the model does not have
+    /// the parameter, or if the central ray does not arrive.
     fn change(&mut self, parameter: Parameter, new: New<'_>) -> Option<()>;
 
-    /// The slices with their error, a picture, and the derivatives by some of its parameters.
+    /// Predicts the slices with their error, a picture, and the derivatives by the given
+    /// parameters.
     fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: RayBudget) -> Predicted;
 
-    /// Calls `then` with the light field as nets of rays, drawn as [`predict`](Self::predict) draws them. It
-    /// is not called where no ray arrives.
+    /// Calls `then` with the light field as nets of rays, drawn as [`predict`](Self::predict) draws
+    /// them. Does not call it if no ray arrives.
     fn with_rays(&self, over: Over<'_>, budget: RayBudget, then: &mut dyn FnMut(&dyn RayNets));
 
-    /// What a prediction takes.
+    /// Estimates the work of a prediction.
     fn work(&self, over: Over<'_>, budget: RayBudget) -> PredictionWork;
 
-    /// The unit of a parameter; empty if it is a pure number.
+    /// Returns the unit of a parameter; empty for a pure number.
     fn unit(&self, parameter: Parameter) -> &'static str {
         parameter.unit(self.light())
     }
 
-    /// Its value, in its unit. `None` as for [`change`](Self::change).
+    /// Returns the value of a parameter, in its unit. `None` as for [`change`](Self::change).
     fn value(&self, parameter: Parameter) -> Option<f64> {
         let mut value = None;
         self.clone().change(parameter, &mut |current| {
@@ -50,7 +52,7 @@ pub trait Model: Clone {
         value
     }
 
-    /// The same with another value of a parameter, in its unit. `None` as for
+    /// Returns the model with another value of a parameter, in its unit. `None` as for
     /// [`change`](Self::change).
     fn with(&self, parameter: Parameter, value: f64) -> Option<Self> {
         let mut other = self.clone();
@@ -59,29 +61,29 @@ pub trait Model: Clone {
     }
 }
 
-/// A system of surfaces, and the plane at which its light is looked at.
+/// A system of surfaces, and the plane at which its light is observed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Observed<S> {
-    /// The light, and what it meets.
+    /// The light, and the surfaces it meets.
     pub system: S,
-    /// Where it is looked at.
+    /// The plane at which the light is observed.
     pub plane: Plane,
 }
 
-/// A model with a little more and a little less of a parameter.
+/// A model with a parameter slightly increased and slightly decreased.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ShiftedModels<M> {
-    /// How far apart the values are, in the parameter's unit.
+    /// The difference between the two values, in the parameter's unit.
     pub(crate) apart: f64,
-    /// With more, and with less.
+    /// The models with the larger and with the smaller value.
     pub(crate) sides: [M; 2],
 }
 
-/// Step of a derivative, as a share of the parameter's scale.
+/// The step of a derivative, as a share of the parameter's scale.
 const STEP: f64 = 1e-3;
 
 impl<M: Model> ShiftedModels<M> {
-    /// A model moved by a small step to both sides.
+    /// Returns a model with a parameter moved by a small step to both sides.
     pub(crate) fn nearby(model: &M, parameter: Parameter) -> Option<Self> {
         let step = STEP * parameter.scale(model.value(parameter)?);
         Self::new(model, parameter, step, |moved| moved)
@@ -89,7 +91,7 @@ impl<M: Model> ShiftedModels<M> {
 }
 
 impl<M> ShiftedModels<M> {
-    /// A model moved by a step to both sides, each made into another.
+    /// Moves a parameter by a step to both sides and converts both models.
     pub(crate) fn new<A: Model>(
         model: &A,
         parameter: Parameter,

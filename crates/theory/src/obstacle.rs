@@ -1,37 +1,37 @@
-//! What stands in the way of rays beside the masks of the first leg.
+//! Occluders other than the masks of the first leg.
 
 use crate::barrier::Barrier;
 use crate::rays::LegRay;
 use etendue_field::{Frame, Mask, Patch};
 use glam::DVec3;
 
-/// Something that stops rays wherever it stands in their way, in the frame at the light.
+/// An occluder, in the frame at the light; it stops every ray that meets it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Obstacle {
-    /// Name, for texts.
+    /// Name, for messages.
     pub name: String,
-    /// What it is.
+    /// The form of the obstacle.
     pub form: ObstacleForm,
 }
 
-/// What an obstacle is.
+/// The form of an obstacle.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ObstacleForm {
-    /// A mask across the first leg that light meets from a leg on, by number: where that is not the
-    /// first, it is among the layers too.
+    /// A mask across the first leg that light meets again from a given leg on. If that leg is not
+    /// the first, the mask is among the layers too.
     Mask {
-        /// The first leg on which it counts.
+        /// The index of the first leg on which the mask counts.
         from: usize,
-        /// Of its plane from the light, metres.
+        /// Distance of the mask's plane from the light, metres.
         distance: f64,
-        /// What it lets through, over x and y.
+        /// What the mask lets through, over x and y.
         mask: Mask,
     },
-    /// An opaque rectangle about the origin of a frame, across D.
+    /// An opaque rectangle centred on the origin of a frame, perpendicular to D.
     Rectangle {
-        /// Where it stands.
+        /// The frame of the rectangle.
         frame: Frame,
-        /// Along X and Y, metres.
+        /// Size along X and Y, metres.
         size: [f64; 2],
     },
     /// An opaque smooth surface.
@@ -40,7 +40,7 @@ pub enum ObstacleForm {
     Mesh(Vec<[DVec3; 3]>),
 }
 
-/// Obstacles made ready for many rays.
+/// Obstacles prepared for many rays.
 #[derive(Debug)]
 pub(crate) struct PreparedObstacles<'a>(Vec<Ready<'a>>);
 
@@ -50,14 +50,14 @@ enum Ready<'a> {
     Rectangle(&'a Frame, [f64; 2]),
     Patch(&'a Patch),
     Mesh {
-        /// Of a sphere around it.
+        /// Centre of the bounding sphere.
         center: DVec3,
         radius: f64,
         triangles: &'a [[DVec3; 3]],
     },
 }
 
-/// Share of a distance that rounding may make.
+/// Relative error of a distance that rounding may cause.
 pub(crate) const ROUNDING: f64 = 1e-9;
 
 impl<'a> PreparedObstacles<'a> {
@@ -75,7 +75,8 @@ impl<'a> PreparedObstacles<'a> {
         Self(ready.collect())
     }
 
-    /// The share of a ray of this leg that passes on its first metres.
+    /// Returns the share of a ray's radiance that passes over the first `length` metres of this
+    /// leg.
     pub(crate) fn passes(&self, leg: usize, ray: &LegRay, length: f64) -> f64 {
         let start = ROUNDING * ray.point.length();
         let is_between = |t: f64| start < t && t < length;
@@ -146,22 +147,22 @@ fn on_rectangle(frame: &Frame, size: [f64; 2], ray: &LegRay) -> Option<f64> {
     is_inside.then_some(t)
 }
 
-/// Both points of the quadric that belong to the patch.
+/// Returns both intersections of a ray with the quadric, where they lie on the patch.
 pub(crate) fn on_patch(patch: &Patch, ray: &LegRay) -> [Option<f64>; 2] {
     let point = patch.frame.to_local(ray.point);
     let direction = patch.frame.vector_to_local(ray.direction);
     let curved = DVec3::from(patch.curvature) * direction;
     let (a, b) = (curved.dot(direction), curved.dot(point) + direction.z);
     let c = patch.value(point);
-    // Nothing cancels: the root that would is the constant over the other.
+    // To avoid cancellation, the other root is computed as the constant term divided by this one.
     let root = (b * b - a * c).sqrt();
     let q = -(b + root.copysign(b));
     [q / a, c / q]
         .map(|t| Some(t).filter(|t| t.is_finite() && patch.contains(point + *t * direction)))
 }
 
-/// How far along a ray it meets a triangle: where the volumes that it spans with the edges have one
-/// sign (Plücker's coordinates).
+/// Returns the distance along a ray to a triangle. The ray meets it where the volumes that it spans
+/// with the edges have one sign (Plücker coordinates).
 fn on([a, b, c]: &[DVec3; 3], ray: &LegRay) -> Option<f64> {
     let [p, q, r] = [*a, *b, *c].map(|corner| corner - ray.point);
     let volumes = [p.cross(q), q.cross(r), r.cross(p)].map(|face| face.dot(ray.direction));
@@ -208,7 +209,8 @@ mod tests {
         assert!(stops(&from(0), 0, &RAY, 0.6) && !stops(&from(1), 1, &RAY, 0.4));
     }
 
-    /// A square, a bowl that holds it at its vertex, and two triangles in its place.
+    /// Tests a square, a bowl with its vertex on the square, and two triangles that cover the
+    /// square.
     #[test]
     fn what_is_in_the_way_stops_rays() {
         let frame = Frame::new(DVec3::new(0.0, 0.0, 0.5), DVec3::Z, DVec3::X).unwrap();

@@ -1,23 +1,23 @@
-//! Numbers of a model that a measurement may be asked for.
+//! Parameters of a model that can be estimated from a measurement.
 
 use etendue_field::{Light, Patch, Shape};
 
-/// A number of a [`Model`](crate::Model). Indices are those of the operators of a chain, or of the
-/// elements of a system.
+/// A parameter of a [`Model`](crate::Model). Indices are those of the operators of a chain, or of
+/// the elements of a system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parameter {
-    /// The side of a rectangular light along X, its other side keeping the proportion, or the
-    /// radius of a disc.
+    /// The side of a rectangular light along X (the other side keeps the proportion), or the radius
+    /// of a disc.
     SourceSize,
     /// The exponent n of a spot's cosⁿθ.
     SpotExponent,
-    /// The first width of a picture, the second keeping the proportion.
+    /// The first width of a picture; the second keeps the proportion.
     ImageWidth,
-    /// The distance of a travel. In a system: the way of the central ray from an element, or the
-    /// light (0), to the next, or the plane. Whatever comes later moves along D.
+    /// The distance of a travel. In a system: the length of the central ray from an element, or
+    /// from the light (0), to the next element or the plane. Everything later moves along D.
     Travel(usize),
-    /// The side along X, or the radius, of the first shape of an opaque mask; all its shapes keep
-    /// the proportion, all centres stay.
+    /// The side along X, or the radius, of the first shape of an opaque mask. All shapes of the
+    /// mask scale by the same factor; their centres stay.
     BlockerSide(usize),
     /// The edge of the first half-plane of an opaque mask; nothing else moves.
     HalfPlaneEdge(usize),
@@ -25,24 +25,23 @@ pub enum Parameter {
     GratingFrequency(usize),
     /// The phase of a grating.
     GratingPhase(usize),
-    /// The angle of incidence θ₀ of the central ray: the patch turns about B, and nothing else
-    /// does.
+    /// The angle of incidence θ₀ of the central ray: the patch alone turns about B.
     Incidence(usize),
-    /// A curvature of a patch, k₁ (0) or k₂ (1). Those that equal it go with it, and so does k₃.
-    /// The vertex stays.
+    /// A curvature of a patch, k₁ (0) or k₂ (1). Curvatures equal to it change with it, and so does
+    /// k₃. The vertex stays.
     Curvature(usize, usize),
-    /// Index of refraction of the denser side of a surface.
+    /// The index of refraction of the denser side of a surface.
     Index(usize),
     /// The focal length of a lens.
     FocalLength(usize),
     /// The albedo, or factor, of a BRDF.
     Albedo,
-    /// The exponent or the roughness of its lobe.
+    /// The exponent or the roughness of the BRDF's lobe.
     Lobe,
 }
 
 impl Parameter {
-    /// Those of a light.
+    /// Returns the parameters of a light.
     pub(crate) fn of_light(light: &Light) -> Vec<Self> {
         match light {
             Light::Area { exponent, .. } if *exponent > 0.0 => {
@@ -54,7 +53,7 @@ impl Parameter {
         }
     }
 
-    /// Its unit; empty if it is a pure number.
+    /// Returns the unit of the parameter; empty for a pure number.
     pub(crate) fn unit(self, light: &Light) -> &'static str {
         match self {
             Self::ImageWidth if matches!(light, Light::Projector { .. }) => "",
@@ -70,7 +69,7 @@ impl Parameter {
         }
     }
 
-    /// What a small change of it is small against.
+    /// Returns the scale against which a small change of the parameter is small.
     pub(crate) fn scale(self, value: f64) -> f64 {
         match self {
             Self::Incidence(_) | Self::Curvature(..) | Self::Albedo | Self::Lobe => {
@@ -81,7 +80,7 @@ impl Parameter {
         }
     }
 
-    /// In words, of a light with a name.
+    /// Returns the name in words of a light's parameter, for a light with a name.
     pub(crate) fn name_of_light(self, light: &Light, name: &str) -> Option<String> {
         match (self, light) {
             (Self::SourceSize, Light::Area { shape, .. }) => {
@@ -93,7 +92,8 @@ impl Parameter {
         }
     }
 
-    /// Puts `new(value)` in its place in a light. `None` if the light does not have it.
+    /// Replaces the value of the parameter in a light by `new(value)`. Returns `None` if the light
+    /// does not have it.
     pub(crate) fn change_light(self, light: &mut Light, new: New<'_>) -> Option<()> {
         match (self, light) {
             (Self::SourceSize, Light::Area { shape, .. }) => {
@@ -110,13 +110,14 @@ impl Parameter {
     }
 }
 
-/// Curvatures of a patch that are parameters, as axes: those that are alike are one.
+/// Returns the curvatures of a patch that are parameters, as axes; equal curvatures are one
+/// parameter.
 pub(crate) fn curvatures(patch: &Patch) -> Vec<usize> {
     let [k1, k2, _] = patch.curvature;
     if same(k1, k2) { vec![0] } else { vec![0, 1] }
 }
 
-/// Gives a patch another curvature along an axis, and all that equal it.
+/// Changes the curvature of a patch along an axis, and all curvatures equal to it.
 pub(crate) fn change_curvature(patch: &mut Patch, axis: usize, new: New<'_>) -> Option<()> {
     let old = *patch.curvature.get(axis)?;
     let value = new(old);
@@ -128,7 +129,7 @@ pub(crate) fn change_curvature(patch: &mut Patch, axis: usize, new: New<'_>) -> 
     Some(())
 }
 
-/// Whether two curvatures are one but for rounding.
+/// Checks whether two curvatures are equal up to rounding.
 fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-12 * a.abs().max(b.abs())
 }
@@ -136,7 +137,7 @@ fn same(a: f64, b: f64) -> bool {
 /// The new value of a parameter as a function of the old one.
 pub(crate) type New<'a> = &'a mut dyn FnMut(f64) -> f64;
 
-/// What the size of a shape is called.
+/// Returns the word for the size of a shape.
 pub(crate) fn size_word(shape: &Shape) -> &'static str {
     match shape {
         Shape::Rectangle(_) => "side",
@@ -144,7 +145,8 @@ pub(crate) fn size_word(shape: &Shape) -> &'static str {
     }
 }
 
-/// Gives the first shape a new side along X or radius, and all of them the same factor.
+/// Sets the side along X, or the radius, of the first shape and scales all shapes by the same
+/// factor.
 pub(crate) fn resize(shapes: &mut [Shape], new: New<'_>) {
     let size = match &shapes[0] {
         Shape::Rectangle(rectangle) => rectangle.size[0],

@@ -1,28 +1,29 @@
-//! Where a light field is looked at.
+//! The plane at which a light field is observed.
 
 use etendue_field::{Frame, Orientation, Patch, Quantity};
 
-/// Where the light field is looked at, after all that light meets.
+/// The plane at which the light field is observed, after everything that light meets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
-    /// Its frame in coordinates of the frame at the light: O on the central ray, D along it; on a
-    /// surface T, B and the normal there, on the side to which directions point.
+    /// The plane's frame, in coordinates of the frame at the light: O on the central ray, D along
+    /// it. On a surface: T, B and the normal there, on the side to which directions point.
     pub frame: Frame,
-    /// What its coordinates are counted from.
+    /// What the coordinates are relative to.
     pub orientation: Orientation,
-    /// θ of the central ray on a surface, radians: coordinates are (s, t, θ − longitude, φ) there.
+    /// On a surface: θ of the central ray, radians. The coordinates are then (s, t, θ − longitude,
+    /// φ).
     pub longitude: f64,
-    /// The surface, for local normals; without it they are all along D.
+    /// The surface, for local normals; without it all normals are along D.
     pub patch: Option<Patch>,
-    /// On a surface: light that arrives at it, directions turned around. The surface is then not
-    /// among the elements; else it is the last.
+    /// On a surface: whether the light is arriving, with directions reversed. If so, the surface is
+    /// not among the elements; otherwise it is the last one.
     pub arriving: bool,
-    /// What is recorded. Differential irradiance on a surface is radiance times cos θ cos² φ.
+    /// The quantity recorded. Differential irradiance on a surface is radiance times cos θ cos² φ.
     pub quantity: Quantity,
 }
 
 impl Plane {
-    /// The radiance across the central ray of a frame, on no surface.
+    /// Observes radiance across the central ray of a frame, not on a surface.
     #[must_use]
     pub fn orthogonal(frame: Frame) -> Self {
         Self {

@@ -1,45 +1,46 @@
-//! Directions of an environment, drawn by its radiance.
+//! Samples directions of an environment in proportion to its radiance.
 
 use etendue_field::{Environment, EnvironmentMap, Frame, LatLong, SphericalGaussian};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// A density over directions in proportion to the radiance from there, or nearly.
+/// A density over directions, exactly or nearly proportional to the radiance from there.
 #[derive(Clone, Debug)]
 pub(crate) enum SkyDensity<'a> {
-    /// Of spherical Gaussians.
+    /// The density of spherical Gaussians.
     Lobes(Lobes),
-    /// Of a map.
+    /// The density of a map.
     Map(Box<Pixels<'a>>),
 }
 
-/// Spherical Gaussians ready to be drawn.
+/// Spherical Gaussians prepared for sampling.
 #[derive(Clone, Debug)]
 pub(crate) struct Lobes {
-    /// Their shares of the light, added up.
+    /// Cumulative shares of the light of the Gaussians.
     shares: Vec<f64>,
-    /// σ², exp(−2/σ²) − 1, and axes with D to where most of each comes from.
+    /// For each Gaussian: σ², exp(−2/σ²) − 1, and a frame with D towards where most of its light
+    /// comes from.
     each: Vec<(f64, f64, Frame)>,
     /// The integral of the radiance over all directions.
     total: f64,
 }
 
-/// The cells of a map.
+/// The cells of a map, prepared for sampling.
 #[derive(Clone, Debug)]
 pub(crate) struct Pixels<'a> {
     map: &'a LatLong,
-    /// Shares of rows, added up from the top.
+    /// Cumulative shares of rows, from the top.
     rows: Vec<f64>,
-    /// Shares of the cells of each row, added up from the left.
+    /// Cumulative shares of the cells of each row, from the left.
     cells: Vec<Vec<f64>>,
 }
 
-/// Least cosine with which light counts that meets the surface, in the density over a map.
+/// The smallest cosine used to weight light that meets the surface, in the density over a map.
 const GRAZING: f64 = 0.05;
 
 impl<'a> SkyDensity<'a> {
-    /// The density for a surface with this normal, which is in the frame at the light; `None` where
-    /// nothing shines.
+    /// Returns the density for a surface with this normal, given in the frame at the light; `None`
+    /// if the environment is dark.
     pub(crate) fn new(environment: &'a Environment, normal: DVec3) -> Option<Self> {
         match &environment.map {
             EnvironmentMap::Lobes(lobes) => {
@@ -64,13 +65,13 @@ impl<'a> SkyDensity<'a> {
         }
     }
 
-    /// Where light comes from, of unit length in the axes of the environment.
+    /// Samples a direction that light comes from, of unit length in the axes of the environment.
     pub(crate) fn draw(&self, [a, b]: [f64; 2]) -> DVec3 {
         match self {
             Self::Lobes(lobes) => {
                 let (i, a) = picked(&lobes.shares, a);
                 let (squared, least, axes) = lobes.each[i];
-                // 1 − cos γ, by the quantiles of exp((cos γ − 1)/σ²).
+                // 1 − cos γ, from the quantiles of exp((cos γ − 1)/σ²).
                 let fall = -squared * libm::log1p(a * least);
                 let fall = fall.clamp(0.0, 2.0);
                 let sin = (fall * (2.0 - fall)).sqrt();
@@ -82,7 +83,7 @@ impl<'a> SkyDensity<'a> {
         }
     }
 
-    /// Its density per steradian, where the radiance is this.
+    /// Returns the density of a direction per steradian, given the radiance there.
     pub(crate) fn density(&self, from: DVec3, radiance: f64) -> f64 {
         match self {
             Self::Lobes(lobes) => radiance / lobes.total,
@@ -96,7 +97,7 @@ impl<'a> Pixels<'a> {
         let raster = map.raster();
         let [w, h] = [raster.width(), raster.height()];
         let pixel = |i: usize, j: usize| raster.value(i as f64 + 0.5, j as f64 + 0.5, true);
-        // Between centres of pixels the radiance is a mixture of theirs: so is the weight.
+        // Between pixel centres the radiance interpolates the pixels, and so does the weight.
         let weight = |i: usize, j: usize| {
             let columns = [i + w - 1, i, i + 1].map(|i| i % w);
             let rows = [j.saturating_sub(1), j, (j + 1).min(h - 1)];
@@ -106,7 +107,7 @@ impl<'a> Pixels<'a> {
             };
             let [a, b, c] = rows.map(row);
             let from = map.direction([i as f64 + 0.5, j as f64 + 0.5]);
-            // Environments shine forward; a cell on the border does in part.
+            // Environments shine forward; a cell on the border shines in part.
             let shines = from.dot(forward) > -(0.5 * PI / h as f64 + PI / w as f64);
             let cosine = from.dot(normal).max(GRAZING);
             if shines {
@@ -133,7 +134,7 @@ impl<'a> Pixels<'a> {
         let (j, down) = picked(&self.rows, a);
         let (i, across) = picked(&self.cells[j], b);
         let h = self.rows.len();
-        // Even in the sine of the latitude.
+        // Uniform in the sine of the latitude.
         let [top, bottom] = [j, j + 1].map(|j| libm::sin(latitude(h, j)));
         let sine = (top + down * (bottom - top)).clamp(-1.0, 1.0);
         let row = h as f64 * (0.5 - libm::asin(sine) / PI);
@@ -155,17 +156,17 @@ impl<'a> Pixels<'a> {
     }
 }
 
-/// The latitude at which row j of h begins.
+/// Returns the latitude at which row j of h begins.
 fn latitude(h: usize, j: usize) -> f64 {
     PI * (0.5 - j as f64 / h as f64)
 }
 
-/// The solid angle of a row of a map, per radian of longitude.
+/// Returns the solid angle of a row of a map, per radian of longitude.
 fn solid_angle(h: usize, j: usize) -> f64 {
     libm::sin(latitude(h, j)) - libm::sin(latitude(h, j + 1))
 }
 
-/// Shares of a whole, added up; `None` where there is nothing.
+/// Returns the cumulative shares of weights; `None` if all are zero.
 fn shares(weights: impl IntoIterator<Item = f64>) -> Option<Vec<f64>> {
     let mut sum = 0.0;
     let mut sums: Vec<f64> = weights
@@ -181,7 +182,7 @@ fn shares(weights: impl IntoIterator<Item = f64>) -> Option<Vec<f64>> {
     (sum > 0.0).then_some(sums)
 }
 
-/// The part in which a number of (0, 1) falls, and how far into it.
+/// Returns the part that a number in (0, 1) falls into, and the position within that part.
 fn picked(shares: &[f64], at: f64) -> (usize, f64) {
     let i = shares
         .partition_point(|sum| *sum <= at)
@@ -198,7 +199,7 @@ fn picked(shares: &[f64], at: f64) -> (usize, f64) {
     )
 }
 
-/// A part of a whole.
+/// Returns the share of one part.
 fn share(shares: &[f64], i: usize) -> f64 {
     shares[i] - if i == 0 { 0.0 } else { shares[i - 1] }
 }
@@ -208,7 +209,7 @@ mod tests {
     use super::*;
     use std::sync::Arc;
 
-    /// However few the columns of a map, light that shines forward is drawn.
+    /// Light that shines forward is sampled however few columns the map has.
     #[test]
     fn narrow_maps_lose_no_light() {
         let sizes = [[1, 1], [1, 8], [3, 64], [16, 8]].into_iter();
@@ -225,7 +226,7 @@ mod tests {
                 let (s, c) = libm::sincos(2.4 * t);
                 let cos = (t + 0.5) / 4000.0;
                 let sin = (1.0 - cos * cos).sqrt();
-                // Along directions that go forward.
+                // Sums over forward directions.
                 let from = environment.origin_of(DVec3::new(sin * c, sin * s, cos));
                 assert!(sky.density(from, 1.0) > 0.0, "{w} x {h}: {from}");
             }

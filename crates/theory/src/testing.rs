@@ -3,8 +3,8 @@
 use crate::{Chain, Operator, Source};
 use etendue_field::{Disc, Grating, HalfPlane, Light, Mask, Profile, Rectangle, Shape, Window};
 
-/// A square light of unit radiance on the central ray, then travel and blockers by turns; the
-/// planes are named a, b, c, …
+/// Builds a square light of unit radiance on the central ray, followed by alternating travel and
+/// blockers; the planes are named a, b, c, …
 pub(crate) fn chain(light: f64, steps: &[(f64, Vec<Rectangle>)]) -> Chain {
     let steps = steps.iter().map(|(distance, blockers)| {
         let mask = (!blockers.is_empty()).then(|| rectangles(blockers));
@@ -13,7 +13,7 @@ pub(crate) fn chain(light: f64, steps: &[(f64, Vec<Rectangle>)]) -> Chain {
     chain_of(lambertian(square([0.0, 0.0], light)), steps)
 }
 
-/// A light, then travel and masks by turns; the planes are named a, b, c, …
+/// Builds a light followed by alternating travel and masks; the planes are named a, b, c, …
 pub(crate) fn chain_of(
     light: Light,
     steps: impl IntoIterator<Item = (f64, Option<Mask>)>,
@@ -39,7 +39,7 @@ pub(crate) fn chain_of(
     }
 }
 
-/// A light of unit radiance.
+/// Builds a light of unit radiance.
 pub(crate) fn lambertian(rectangle: Rectangle) -> Light {
     spot(Shape::Rectangle(rectangle), 0.0)
 }
@@ -96,7 +96,7 @@ pub(crate) fn square(center: [f64; 2], side: f64) -> Rectangle {
     }
 }
 
-/// `count` × `count` squares, moved off a grid by a fixed pattern.
+/// Builds `count` × `count` squares, displaced from a grid by a fixed pattern.
 pub(crate) fn blockers(count: u32, pitch: f64, side: f64) -> Vec<Rectangle> {
     let cells = (0..count).flat_map(|i| (0..count).map(move |j| (f64::from(i), f64::from(j))));
     let middle = 0.5 * (f64::from(count) - 1.0);
@@ -110,7 +110,7 @@ pub(crate) fn blockers(count: u32, pitch: f64, side: f64) -> Vec<Rectangle> {
         .collect()
 }
 
-/// The same profiles along both axes.
+/// Builds a window with the same profiles along both axes.
 pub(crate) fn window(position: Profile, slope: Profile) -> Window {
     Window {
         x: position,

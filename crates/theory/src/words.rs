@@ -1,17 +1,17 @@
-//! Steps of light in words: maps, masks and numbers.
+//! Descriptions in words of the steps of light: maps, masks and numbers.
 
 use crate::geometry::Matrix;
 use crate::obstacle::{Obstacle, ObstacleForm};
 use etendue_field::{Grating, Mask, Shape, tidy};
 
-/// A number to six decimals, without those that are zero.
+/// Formats a number to six decimals, without trailing zeros.
 pub(crate) fn number(x: f64) -> String {
     let rounded = (x * 1e6).round() / 1e6;
     let sign = if rounded < 0.0 { "−" } else { "" };
     format!("{sign}{}", rounded.abs())
 }
 
-/// An angle in degrees.
+/// Formats an angle in degrees.
 pub(crate) fn degrees(radians: f64) -> String {
     let rounded = (radians.to_degrees() * 1e3).round() / 1e3;
     format!("{}°", number(rounded))
@@ -38,7 +38,7 @@ pub(crate) fn curvature([[a, b], [c, d]]: Matrix<2>) -> String {
     }
 }
 
-/// What a mask does; `named` goes before it, such as "bars: ".
+/// Describes the effect of a mask; `named` goes before it, such as "bars: ".
 pub(crate) fn mask(named: &str, mask: &Mask) -> String {
     match mask {
         Mask::Opaque {
@@ -65,7 +65,7 @@ pub(crate) fn obstacle(obstacle: &Obstacle) -> String {
     }
 }
 
-/// E.g. "4 opaque rectangles, 1 half-plane".
+/// Describes opaque shapes, e.g. "4 opaque rectangles, 1 half-plane".
 fn opaque(shapes: &[Shape], half_planes: usize) -> String {
     let discs = shapes
         .iter()
@@ -87,7 +87,7 @@ fn opaque(shapes: &[Shape], half_planes: usize) -> String {
     })
 }
 
-/// E.g. "½(1 + 0.9 cos(2π 5 x + 0.3))".
+/// Formats a grating, e.g. "½(1 + 0.9 cos(2π 5 x + 0.3))".
 pub(crate) fn formula(grating: &Grating, names: [&str; 2]) -> String {
     let Grating {
         axis,

@@ -1,20 +1,20 @@
-//! What a prediction takes.
+//! Estimates of the work of a prediction.
 
-/// The work of a prediction.
+/// The estimated work of a prediction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PredictionWork {
-    /// A core does one in about a nanosecond.
+    /// Number of elementary steps; a core does one in about a nanosecond.
     pub steps: f64,
-    /// Bytes held once.
+    /// Bytes shared by all threads.
     pub bytes: f64,
     /// Bytes held by each thread.
     pub bytes_each: f64,
-    /// What most of the steps are made of, in words.
+    /// The causes of most of the steps, in words.
     pub drivers: String,
 }
 
 impl PredictionWork {
-    /// Of what needs no prediction.
+    /// The work where no prediction is needed.
     #[must_use]
     pub fn none() -> Self {
         Self {
@@ -25,7 +25,7 @@ impl PredictionWork {
         }
     }
 
-    /// More than anyone would wait for, so that it was not counted to its end.
+    /// The work of a prediction that would take far too long, whose exact amount was not counted.
     pub(crate) fn endless(drivers: String) -> Self {
         Self {
             steps: f64::INFINITY,
@@ -34,7 +34,7 @@ impl PredictionWork {
         }
     }
 
-    /// One after the other.
+    /// Returns the work of doing one after the other.
     pub(crate) fn then(self, next: Self) -> Self {
         Self {
             steps: self.steps + next.steps,

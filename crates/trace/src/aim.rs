@@ -1,4 +1,4 @@
-//! How light from far away is sent at what planes look at.
+//! Aims the light of environments at the regions that planes see.
 
 use crate::footprint_sampler::FootprintSampler;
 use crate::plane_on_leg::PlaneOnLeg;
@@ -8,9 +8,11 @@ use etendue_field::{Environment, Orientation, Profile, TwoPlane, VirtualPlane};
 use etendue_scene::{Emission, Scene};
 use etendue_transform::random;
 
-/// A mixture, with equal shares, of strategies in which rays of an environment are drawn: a density over (x, y, u, v) at the beginning of the first leg.
+/// A mixture, with equal shares, of strategies that draw rays of an environment: a density over (x,
+/// y, u, v) at the beginning of the first leg.
 ///
-/// Emission, aimed or plain, is that of rays which some plane may look at: an environment's whole flux through all space has no end.
+/// Emission, aimed or plain, covers only rays that some plane may see, because the flux of an
+/// environment through all space is infinite.
 #[derive(Debug)]
 pub(crate) struct FromSky {
     sky: Sky,
@@ -57,7 +59,7 @@ impl Facing {
         }
     }
 
-    /// A ray of the window, given at the beginning of the leg; `None` where it has none.
+    /// A ray of the window, given at the beginning of the leg; `None` where there is none.
     fn sample(&self, r: [f64; 4]) -> Option<TwoPlane> {
         let seen = TwoPlane {
             x: self.position[0].quantile(r[0]),
@@ -83,9 +85,12 @@ impl Facing {
 }
 
 impl FromSky {
-    /// Aimed emission has a strategy for the window of each plane on the first leg, by its profiles and by the environment, and one for the part of the
-    /// first surface that each other plane looks at, and one more by the profiles of a plane on that surface. Plain emission is uniform over the windows of the former and over the first surface, always
-    /// by the environment, and over the windows of planes on that surface.
+    /// Aimed emission has, for the window of each plane on the first leg, a strategy by the plane's
+    /// profiles and one by the environment. For each other plane it has one for the part of the
+    /// first surface that the plane sees, and one by the plane's profiles if the plane is on that
+    /// surface. Plain emission is uniform over the windows of the planes on the first leg and over
+    /// the first surface, always by the environment, and over the windows of planes on that
+    /// surface.
     pub(crate) fn new(scene: &Scene, environment: &Environment) -> Self {
         let aimed = scene.run.emission == Emission::Aimed;
         let mut strategies = Vec::new();
@@ -114,7 +119,7 @@ impl FromSky {
     /// A ray from eight random words; `None` when the direction drawn does not go forward.
     pub(crate) fn sample(&self, words: [[u32; 4]; 2]) -> Option<TwoPlane> {
         let [r, s] = words.map(|words| words.map(random::unit));
-        // Whatever else there is, a direction takes four numbers.
+        // A direction always takes four numbers, whatever else is drawn.
         match self
             .strategies
             .get(random::index(words[1][3], self.strategies.len().max(1)))?
@@ -153,7 +158,7 @@ impl FromSky {
                 by_sky * position[0].density(x) * position[1].density(y)
             }
             SkyStrategy::Facing(facing) => facing.density(ray),
-            // Where no light comes from none was aimed.
+            // No light is aimed from directions without light.
             SkyStrategy::Onto(_) if by_sky <= 0.0 => 0.0,
             SkyStrategy::Onto(ground) => by_sky * ground.density(ray),
         });
@@ -161,7 +166,7 @@ impl FromSky {
     }
 }
 
-/// Whether a plane lies across the first leg: what it sees need not have met anything.
+/// Whether a plane lies across the first leg. The light it sees may not have met anything.
 pub(crate) fn looks_across(plane: &VirtualPlane) -> bool {
     plane.leg == 0 && plane.orientation == Orientation::Orthogonal
 }

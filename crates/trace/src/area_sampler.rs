@@ -1,15 +1,15 @@
-//! Surfaces of which points can be drawn, in the frame at the light.
+//! Samples points of surfaces, in the frame at the light.
 
 use etendue_sampling::{DiscreteDistribution, triangle};
 use etendue_scene::Triangles;
 use glam::DVec3;
 
-/// A surface in flat pieces.
+/// A surface that consists of flat pieces.
 #[derive(Debug)]
 pub(crate) enum AreaSampler {
-    /// A parallelogram, by a corner and those beside it.
+    /// A parallelogram, given by a corner and the two next to it.
     One([DVec3; 3]),
-    /// Triangles, by their areas.
+    /// Triangles, selected in proportion to area.
     Many(Triangles, DiscreteDistribution),
 }
 
@@ -19,7 +19,7 @@ impl AreaSampler {
         Self::Many(triangles.clone(), DiscreteDistribution::new(areas))
     }
 
-    /// The whole area.
+    /// The total area.
     pub(crate) fn area(&self) -> f64 {
         match self {
             Self::One(corners) => parallelogram(corners),
@@ -27,7 +27,7 @@ impl AreaSampler {
         }
     }
 
-    /// A uniform point of it and a normal there, from three numbers in (0, 1).
+    /// A uniform point of the surface and the normal there, from three numbers in (0, 1).
     pub(crate) fn point(&self, r: [f64; 3]) -> (DVec3, DVec3) {
         let [s, t, which] = r;
         let (corners, [s, t]) = match self {
@@ -41,12 +41,12 @@ impl AreaSampler {
     }
 }
 
-/// The edges at the first corner.
+/// The two edges at the first corner.
 fn edges([corner, b, c]: &[DVec3; 3]) -> [DVec3; 2] {
     [b - corner, c - corner]
 }
 
-/// The area of the parallelogram over three corners.
+/// The area of the parallelogram spanned by three corners.
 fn parallelogram(corners: &[DVec3; 3]) -> f64 {
     let [a, b] = edges(corners);
     a.cross(b).length()

@@ -1,4 +1,4 @@
-//! Photons at the surface that ends a leg.
+//! A photon that arrives at the surface that ends a leg.
 
 use crate::line::{direction, start};
 use crate::obstacles::HitKind;
@@ -10,11 +10,11 @@ use glam::DVec3;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Arrival {
     pub(crate) point: DVec3,
-    /// The normal on the side it came from.
+    /// The normal on the side from which the photon came.
     pub(crate) normal: DVec3,
     /// The normal on the side that the surface faces.
     pub(crate) facing: DVec3,
-    /// Where it was going, 1 along D.
+    /// The direction of travel, with component 1 along D.
     pub(crate) direction: DVec3,
     pub(crate) flux: f64,
 }
@@ -38,12 +38,13 @@ impl Arrival {
         }
     }
 
-    /// Whether it has come to the side that the surface faces.
+    /// Whether the photon arrives on the side that the surface faces.
     pub(crate) fn is_on_front(&self) -> bool {
         self.facing.dot(self.direction) < 0.0
     }
 
-    /// In the frame of another leg; both frames are in the frame at the light.
+    /// The same arrival in the frame of another leg. Both frames are given in the frame at the
+    /// light.
     pub(crate) fn moved(&self, from: &Frame, to: &Frame) -> Self {
         let vector = |v: DVec3| to.vector_to_local(from.vector_to_world(v));
         Self {

@@ -1,4 +1,4 @@
-//! Backward rays, the independent check of photons.
+//! Backward rays, an independent check of the photons.
 
 mod connected;
 mod end;

@@ -1,15 +1,15 @@
-//! Which photons a batch has, and which of them a thread takes at a time.
+//! Assigns photons to batches, and parts of batches to threads.
 
 use etendue_scene::Run;
 use std::ops::Range;
 
-/// Photons traced between two reports.
+/// Photons traced between two progress reports.
 pub(crate) const BLOCK: usize = 4096;
-/// A part of a batch holds fewer than twice as many photons, about a second of work of one thread: a run stops between parts.
-/// Summing up a part takes a few milliseconds.
+/// A part of a batch holds fewer than twice this many photons, about a second of work for one
+/// thread; a run can stop only between parts. Summing up a part takes a few milliseconds.
 const PART: u64 = 1 << 20;
 
-/// How the photons of a run are shared out: evenly over batches, in order.
+/// The division of a run's photons: evenly over batches, in order.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BatchRanges {
     photons: u64,
@@ -33,13 +33,13 @@ impl BatchRanges {
         start(batch)..start(batch + 1)
     }
 
-    /// How many parts a batch has: at least one, and none is empty unless the batch is.
+    /// The number of parts of a batch: at least one, and none is empty unless the batch is.
     pub(crate) fn parts(&self, batch: u32) -> u32 {
         let parts = self.count(batch).div_ceil(self.part_length(batch));
         u32::try_from(parts).unwrap_or(u32::MAX).max(1)
     }
 
-    /// The photons of a part, whole blocks of them but for the last.
+    /// The photons of a part: whole blocks except for the last.
     pub(crate) fn part(&self, batch: u32, part: u32) -> Range<u64> {
         let range = self.of(batch);
         let length = u128::from(self.part_length(batch));
@@ -50,7 +50,8 @@ impl BatchRanges {
         start(part)..start(part.saturating_add(1))
     }
 
-    /// Photons of each part of a batch but the last. Numbers of parts fit in 32 bits.
+    /// The number of photons of each part of a batch but the last. It is chosen so that part
+    /// numbers fit in 32 bits.
     fn part_length(&self, batch: u32) -> u64 {
         let count = self.count(batch);
         let parts = count / PART.max(count >> 31);
@@ -60,7 +61,7 @@ impl BatchRanges {
             .next_multiple_of(BLOCK as u64)
     }
 
-    /// Their number.
+    /// The number of photons of a batch.
     pub(crate) fn count(&self, batch: u32) -> u64 {
         let range = self.of(batch);
         range.end - range.start
@@ -105,7 +106,7 @@ mod tests {
                 assert!(part.end - part.start < 2 * PART, "2^{exponent}: {part:?}");
             }
         }
-        // The largest number of photons has parts that still cover it.
+        // Even the largest number of photons is covered by the parts.
         let most = two(u64::MAX);
         let last = most.parts(1) - 1;
         assert_eq!(most.part(1, last).end, u64::MAX);

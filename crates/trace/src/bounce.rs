@@ -7,18 +7,19 @@ use etendue_field::{Frame, Mixture, Patch, Reflectance, Specular};
 use etendue_scene::{Event, Object, Scene};
 use glam::DVec3;
 
-/// How light begins a leg, at the surface that ended the one before.
+/// The scattering of light at the surface between the previous leg and this one.
 #[derive(Debug)]
 pub(crate) enum Bounce {
-    /// Diffusely; the albedo, and `None` when no plane looks at light that has come so far.
+    /// Diffuse reflection: the albedo, and a scatterer, `None` when no plane sees light of this
+    /// leg.
     Diffuse(f64, Option<Scatterer>),
-    /// By a BRDF that may vary over a patch, in the frame of the leg.
+    /// Reflection by a BRDF that may vary over a patch, in the frame of the leg.
     Reflects {
         patch: Patch,
         reflectance: Box<Reflectance>,
         scatterer: Option<Scatterer>,
     },
-    /// By reflection, refraction or a lens; the lens's frame, in the frame of the leg.
+    /// Reflection, refraction or a lens; the lens's frame, in the frame of the leg.
     Specular(Frame, Specular),
 }
 
@@ -49,7 +50,8 @@ impl Bounce {
         })
     }
 
-    /// Where a photon goes on, and what it adds to radiance space; `None` when it does not.
+    /// The ray on which a photon continues, and its contribution to radiance space; `None` when the
+    /// photon stops.
     #[inline]
     pub(crate) fn sample(&self, arrival: &Arrival, words: [u32; 4]) -> Option<(DVec3, f64)> {
         match self {
@@ -60,7 +62,7 @@ impl Bounce {
                 let scatterer = scatterer.as_ref()?;
                 let (point, normal) = (arrival.point, arrival.normal);
                 let (towards, density) = scatterer.sample(point, normal, &Spread::Cosine, words)?;
-                // Radiance albedo/π · E, and a photon's flux is E at its point.
+                // Radiance is albedo/π · E, and a photon's flux stands for E at its point.
                 Some((towards, albedo * arrival.flux / (LAMBERTIAN * density)))
             }
             Self::Reflects {
@@ -84,14 +86,14 @@ impl Bounce {
                 let spread = Spread::Lobe { brdf, frame, wi };
                 let (towards, density) =
                     scatterer.as_ref()?.sample(point, facing, &spread, words)?;
-                // Radiance f · E, as above.
+                // Radiance is f · E, as above.
                 let value = spread.value(towards);
                 (value > 0.0).then(|| (towards, value * flux / density))
             }
             Self::Specular(lens, event) => {
                 let Arrival { point, facing, .. } = *arrival;
                 let onwards = event.turned(lens, facing, point, arrival.direction)?;
-                // Flux over radiance space is cos⁴θ.
+                // The ratio of flux to radiance space is cos⁴θ.
                 let secant = onwards.length() / onwards.z.abs();
                 Some((onwards, arrival.flux * secant.powi(4)))
             }

@@ -1,20 +1,20 @@
-//! Which ways light goes on a leg, and what a tracer has for each.
+//! The directions in which light travels along a leg, with a tracer's data for each.
 
 use crate::heading::Heading;
 use crate::plane_on_leg::PlaneOnLeg;
 use crate::reach::outline;
 use etendue_scene::{Leg, Scene};
 
-/// What a tracer has of a leg, for each way that light goes on it.
+/// A tracer's data for a leg, for each direction in which light travels along it.
 #[derive(Debug)]
 pub(crate) struct Both<T> {
     pub(crate) along: T,
-    /// `None` where no light goes that way.
+    /// `None` where no light travels backwards.
     against: Option<Box<T>>,
 }
 
 impl<T> Both<T> {
-    /// `make` is told the leg in the frame of each way.
+    /// `make` receives the leg in the frame of each direction.
     pub(crate) fn new(scene: &Scene, leg: usize, make: impl Fn(Heading, &Leg) -> T) -> Self {
         let this = &scene.path.legs[leg];
         let of = |heading: Heading| make(heading, &heading.leg(this));
@@ -33,8 +33,9 @@ impl<T> Both<T> {
     }
 }
 
-/// Whether light may go back along a leg: to a part of the surface at its end that lies behind a part of the one at its beginning, or
-/// where a plane on one of them looks. Light of the first leg goes forward.
+/// Whether light may travel back along a leg: to a part of the surface at its end that lies behind
+/// a part of the one at its beginning, or to where a plane on one of them sees it. Light of the
+/// first leg always goes forward.
 fn goes_back(scene: &Scene, leg: usize) -> bool {
     let this = &scene.path.legs[leg];
     let Some(leaves) = &this.leaves else {
@@ -56,7 +57,7 @@ fn goes_back(scene: &Scene, leg: usize) -> bool {
     reaches_back || looks_back
 }
 
-/// How far a leg's beginning is left behind before something can be met.
+/// The distance from a leg's beginning within which hits are ignored.
 pub(crate) fn rounding(leg: &Leg) -> f64 {
     const SHARE: f64 = 1e-9;
     match leg.leaves {

@@ -1,4 +1,4 @@
-//! Photons leave the light, eight at a time.
+//! Emits photons from the light, eight at a time.
 
 mod plain;
 
@@ -14,8 +14,8 @@ use fearless_simd::{Level, dispatch};
 use glam::DVec3;
 use plain::Plain;
 
-/// How rays leave the light: a density over (x, y, u, v) at the light, and a strategy to sample it. That of a point
-/// is over (u, v) alone, that of a beam over (x, y).
+/// How rays leave the light: a density over (x, y, u, v) at the light, and a strategy to sample it.
+/// For a point light the density is over (u, v) alone, for a beam over (x, y).
 #[derive(Debug)]
 pub struct Emitter {
     light: Light,
@@ -23,33 +23,34 @@ pub struct Emitter {
     level: Level,
 }
 
-/// What rays are drawn by.
+/// The strategy that rays are drawn by.
 #[derive(Debug)]
 enum EmissionStrategy {
     /// One proposal for each plane, as factors over (x, u) and (y, v).
     Aimed(Vec<[Proposal; 2]>),
-    /// Light from far away.
+    /// Light from an environment.
     Sky(FromSky),
-    /// Light without extent: each of these with an equal share, slopes along x and y, or positions of
-    /// a beam.
+    /// Light without extent, uniform within each of these bounds with equal shares: bounds of
+    /// slopes along x and y, or of positions of a beam.
     Even(Vec<AxisBounds>),
-    /// As the light shines.
+    /// In proportion to the emission of the light.
     Plain(Plain),
 }
 
-/// Photons that are emitted side by side.
+/// The number of photons that are emitted together.
 pub const ABREAST: usize = 8;
 
-/// x, y, u and v of rays side by side.
+/// x, y, u and v of rays that are emitted together.
 type Columns = [[f64; ABREAST]; 4];
 
 impl Emitter {
     /// The emitter of a scene.
     ///
-    /// Aimed emission is a mixture, with equal shares, of one proposal for each virtual plane whose window
-    /// the light reaches; for a plane on a later leg, of rays to the part of the first surface from which light can get there.
-    /// Where it reaches none, emission is plain: every window stays empty all the same. Of an environment only rays that a plane may look at are
-    /// emitted, aimed or plain, and the ledger is of these.
+    /// Aimed emission is a mixture, with equal shares, of one proposal for each virtual plane whose
+    /// window the light reaches; for a plane on a later leg, the proposal aims at the part of the
+    /// first surface from which light can get to the plane. Where the light reaches no window,
+    /// emission is plain, and every window stays empty. For an environment, aimed or plain, only
+    /// rays that a plane may see are emitted, and the ledger counts only these.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
         let light = scene.light.clone();
@@ -66,7 +67,8 @@ impl Emitter {
             let half = (!is_window)
                 .then(|| reach(scene, plane, 0, &corners))
                 .flatten();
-            // A plane on what ends the leg looks at some slopes, a plane beyond at any.
+            // A plane on the surface that ends the leg sees some slopes only, a plane beyond it
+            // any.
             let slopes = PlaneOnLeg::new(scene, i, plane).slopes(w);
             let slopes = slopes.filter(|_| plane.leg == 0);
             let along = |axis: usize, space: &Profile, slope: &Profile| {
@@ -75,7 +77,7 @@ impl Emitter {
                     return Proposal::new(plane.distance, extent[axis], space, slope);
                 }
                 let (length, half) = (scene.path.first_hit(), half?[axis]);
-                // The slopes of all rays from the light to there.
+                // The slopes of all rays from the light to that region.
                 let [low, high] = extent[axis].map(f64::abs);
                 let steepest = (half + low.max(high)) / length;
                 let seen = slopes.map_or(f64::INFINITY, |slopes| slopes[axis]);
@@ -105,7 +107,7 @@ impl Emitter {
             // Pictures have their own proposal.
             Light::Projector { image, .. } => EmissionStrategy::Plain(Plain::Slopes(image)),
             Light::Beam { image, .. } => EmissionStrategy::Plain(Plain::Positions(image)),
-            // Rays have their own proposal too: none of them has another ray beside it to be aimed at.
+            // Rays of a file have their own proposal too: there are no neighbouring rays to aim.
             Light::Rays { ref rays } => EmissionStrategy::Plain(Plain::Rays(rays.clone())),
             Light::Environment { ref environment } => {
                 EmissionStrategy::Sky(FromSky::new(scene, environment))
@@ -118,10 +120,11 @@ impl Emitter {
         }
     }
 
-    /// The emitter of a scene with light without extent that shines evenly at all of the first
-    /// surface, and at the windows of planes before it, whatever else planes look at.
+    /// The emitter of a scene in which light without extent shines uniformly at the whole first
+    /// surface, and at the windows of planes before it, whatever else planes see.
     ///
-    /// For any other light, and where the surface reaches back to the light, it is that of [`Self::new`].
+    /// For any other light, and where the surface reaches back to the light, it is the emitter of
+    /// [`Self::new`].
     #[must_use]
     pub fn evenly(scene: &Scene) -> Self {
         let plain = Self::new(scene);
@@ -134,8 +137,9 @@ impl Emitter {
         }
     }
 
-    /// The block of words from which on a photon's bounces take theirs. Of block 1 the emission takes
-    /// the last word, which says at which plane a ray is aimed; light from far away takes them all.
+    /// The first block of random words that a photon's bounces use. Of block 1 the emission uses
+    /// the last word, which selects the plane that a ray is aimed at; light from an environment
+    /// uses all of them.
     pub(crate) fn bounces_from(&self) -> u32 {
         if let EmissionStrategy::Sky(_) = self.strategy {
             2
@@ -144,8 +148,8 @@ impl Emitter {
         }
     }
 
-    /// Rays of photons side by side and their weights: what each stands for in radiance space, zero
-    /// where it goes nowhere. `words` are those of a block of one of them.
+    /// Rays of photons that are emitted together, with their weights in radiance space; the weight
+    /// is zero for a ray that goes nowhere. `words` are those of one block of each photon.
     #[must_use]
     pub fn emit(
         &self,
@@ -183,7 +187,7 @@ impl Emitter {
         (rays, weights)
     }
 
-    /// Rays aimed at planes, each of which is drawn as well: columns of x, y, u and v.
+    /// Rays aimed at planes, each of which is drawn at random as well: columns of x, y, u and v.
     #[inline]
     fn aimed(
         &self,
@@ -215,8 +219,8 @@ impl Emitter {
         rays
     }
 
-    /// A ray with slopes of a point or a projector, or positions of a beam, that are evenly drawn
-    /// within one of some bounds, and its density with respect to these two.
+    /// A ray with slopes of a point or a projector, or positions of a beam, uniform within one of
+    /// several bounds, and its density with respect to these two coordinates.
     fn even(&self, all: &[AxisBounds], [words, last]: [[u32; 4]; 2]) -> (TwoPlane, f64) {
         let bounds = match all {
             [only] => only,
@@ -237,7 +241,8 @@ impl Emitter {
     /// Radiance over density.
     #[inline]
     fn weight(&self, ray: &TwoPlane, density: f64) -> f64 {
-        // Rounding can put a ray on the very edge, where the density is zero: it carries nothing.
+        // Rounding can put a ray exactly on the edge, where the density is zero; the ray then
+        // carries nothing.
         if density > 0.0 {
             radiance(&self.light, ray) / density
         } else {
@@ -247,7 +252,7 @@ impl Emitter {
 }
 
 /// The density of rays aimed by several proposals, with respect to dx dy du dv; to du dv for a
-/// point.
+/// point light.
 #[inline(always)]
 fn densities(proposals: &[[Proposal; 2]], [x, y, u, v]: &Columns) -> [f64; ABREAST] {
     let mut sums = [0.0; ABREAST];
@@ -263,9 +268,9 @@ fn densities(proposals: &[[Proposal; 2]], [x, y, u, v]: &Columns) -> [f64; ABREA
 /// Lowest and highest coordinate along two axes.
 type AxisBounds = [[f64; 2]; 2];
 
-/// The slopes of a point or a projector, or positions of a beam, with which light crosses the window
-/// of each plane before the first surface, and those with which it meets that surface, for other
-/// planes; none where that is not known.
+/// The bounds of slopes of a point or a projector, or of positions of a beam, at which light
+/// crosses the window of each plane before the first surface, and at which it meets that surface
+/// for other planes; empty where they are not known.
 fn even(scene: &Scene) -> Vec<AxisBounds> {
     let light = &scene.light;
     if light.has_extent() || matches!(light, Light::Rays { .. }) {
@@ -305,7 +310,7 @@ fn even(scene: &Scene) -> Vec<AxisBounds> {
     all.unwrap_or_default()
 }
 
-/// An even density within bounds.
+/// The uniform density within bounds.
 fn evenly_over([[left, right], [low, high]]: &AxisBounds, [a, b]: [f64; 2]) -> f64 {
     let inside = (*left..=*right).contains(&a) && (*low..=*high).contains(&b);
     if inside {

@@ -1,4 +1,4 @@
-//! Points of the first surface that light meets, for light from far away to be aimed at.
+//! Samples points of the first surface, for light from an environment to be aimed at.
 
 use crate::area_sampler::AreaSampler;
 use crate::line::{direction, start};
@@ -13,7 +13,7 @@ use etendue_scene::{Object, Scene};
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// A surface, and a density over its points; in the frame at the light.
+/// A surface with a density over its points, in the frame at the light.
 #[derive(Debug)]
 pub(crate) struct FootprintSampler {
     primitives: PrimitiveSet<()>,
@@ -29,7 +29,8 @@ enum PatternPoints {
 }
 
 impl FootprintSampler {
-    /// Of the whole first surface, or of the part of it that matters for a plane; `None` if none does.
+    /// A sampler of the whole first surface, or of the part that matters for a plane; `None` if no
+    /// part does.
     pub(crate) fn new(scene: &Scene, plane: Option<&VirtualPlane>) -> Option<Self> {
         let around = Around(Frame::IDENTITY);
         let tagged = |primitive| TaggedPrimitive { primitive, tag: () };
@@ -51,7 +52,7 @@ impl FootprintSampler {
             Object::Mesh(i) => {
                 let mesh = &scene.meshes[i];
                 let pieces = AreaSampler::triangles(&mesh.triangles);
-                // As they are, whatever normals they have between them.
+                // The triangles themselves, regardless of their normals.
                 let mesh = BlockerMesh::new(&mesh.triangles, None, Frame::IDENTITY);
                 let form = Primitive::Mesh(Box::new(mesh));
                 (vec![tagged(form)], PatternPoints::Flat(pieces))
@@ -70,7 +71,7 @@ impl FootprintSampler {
         })
     }
 
-    /// A point of it, from three numbers in (0, 1).
+    /// A point of the surface, from three numbers in (0, 1).
     pub(crate) fn sample(&self, r: [f64; 3]) -> DVec3 {
         match &self.points {
             PatternPoints::Flat(pieces) => pieces.point(r).0,
@@ -81,8 +82,9 @@ impl FootprintSampler {
         }
     }
 
-    /// The density of lines through a sampled point, with respect to the dx dy in which they cross the beginning of the leg: a line that goes
-    /// through several points of the surface can be made in as many ways.
+    /// The density of lines through a sampled point, with respect to the dx dy in which they cross
+    /// the beginning of the leg. It is summed over all points in which a line meets the surface,
+    /// because the line can be drawn through each of them.
     pub(crate) fn density(&self, ray: &TwoPlane) -> f64 {
         let along = direction(ray);
         let mut sum = 0.0;
@@ -96,7 +98,7 @@ impl FootprintSampler {
                     normal.dot(patch.frame.d) / (PI * patch.aperture * patch.aperture)
                 }
             };
-            // An area dA is seen, along the line, in |n · (u, v, 1)| dA of the plane.
+            // Along the line, an area dA is projected to |n · (u, v, 1)| dA of the plane.
             sum += density / normal.dot(along).abs();
         });
         sum
@@ -129,8 +131,9 @@ mod tests {
         .unwrap()
     }
 
-    /// For any direction the density over (x, y) integrates to 1, also where lines meet the surface twice, and points follow it: their mean of a
-    /// function over the density is the integral of the function.
+    /// For any direction the density over (x, y) integrates to 1, also where lines meet the surface
+    /// twice, and points follow the density: the mean over points of a function over the density is
+    /// the integral of the function.
     #[test]
     #[expect(clippy::too_many_lines, reason = "a test may be a list of cases")]
     fn lines_follow_the_density() {
@@ -189,7 +192,8 @@ mod tests {
                 whole += density * cell;
                 covered += if density > 0.0 { cell } else { 0.0 };
             }
-            // Mid-points: the density jumps at the outline, in 1 % of the cells, and has poles where lines graze.
+            // The mid-point rule: the density jumps at the outline, in 1 % of the cells, and has
+            // poles where lines graze.
             assert!((whole - 1.0).abs() < 0.02, "{surface}: {whole}");
             let inverse = samples.iter().map(|ray| 1.0 / ground.density(ray));
             let mean = inverse.sum::<f64>() / samples.len() as f64;

@@ -1,31 +1,32 @@
-//! Which of many flat shapes holds a point.
+//! Finds which of many flat shapes holds a point.
 
 use etendue_field::{Shape, whole};
 
-/// Flat shapes side by side in a plane across the leg, and a grid that tells which of them may hold
-/// a point.
+/// Flat shapes side by side in a plane across the leg, with a grid that finds those that may hold a
+/// point.
 #[derive(Clone, Debug)]
 pub(crate) struct Grid {
-    /// Where the plane stands.
+    /// Distance of the plane along the leg.
     pub(crate) distance: f64,
-    /// Lowest and highest x, and y, of all shapes.
+    /// The lowest and the highest x, and y, of all shapes.
     pub(crate) bounds: [[f64; 2]; 2],
     counts: [usize; 2],
-    /// Cells to a metre, along x and y.
+    /// Cells per metre along x and y.
     density: [f64; 2],
-    /// Where the shapes of each cell begin, [y, x], and where the last end.
+    /// The index of the first shape of each cell, [y, x], and the end of the last.
     starts: Vec<usize>,
-    /// Those of each cell, cell by cell.
+    /// The shapes of each cell, cell by cell.
     shapes: Vec<Shape>,
 }
 
-/// Cells for each shape, so that most hold one or none.
+/// Cells per shape, chosen so that most cells hold one shape or none.
 const FINENESS: f64 = 4.0;
 
-/// Times a shape may stand in the grid, on average: more where shapes lie on top of each other.
+/// The largest average number of cells per shape; more are needed only where shapes overlap.
 const COPIES: usize = 16;
 
-/// The extent of a shape, and a little more: by rounding, its edge may hold a point beyond.
+/// The extent of a shape with a small margin: by rounding, a point just beyond the edge may count
+/// as inside.
 fn reach(shape: &Shape, axis: usize) -> [f64; 2] {
     const ROUNDING: f64 = 1e-12;
     let [low, high] = shape.bounds().extent(axis);
@@ -34,7 +35,7 @@ fn reach(shape: &Shape, axis: usize) -> [f64; 2] {
 }
 
 impl Grid {
-    /// `None` where a grid is of no help: for few shapes, and where many lie on top of each other.
+    /// `None` where a grid does not help: for few shapes, and where many overlap.
     pub(crate) fn new(distance: f64, shapes: &[Shape]) -> Option<Self> {
         const MIN_SHAPES: usize = 8;
         if shapes.len() < MIN_SHAPES {
@@ -86,7 +87,7 @@ impl Grid {
         Some(grid)
     }
 
-    /// The cell along an axis in which a coordinate within the bounds lies.
+    /// The cell along an axis that contains a coordinate within the bounds.
     #[inline]
     fn cell(&self, axis: usize, at: f64) -> usize {
         let cell = (at - self.bounds[axis][0]) * self.density[axis];
@@ -112,7 +113,7 @@ mod tests {
     use etendue_field::{Disc, Rectangle};
     use etendue_transform::random::{Stream, unit, words};
 
-    /// Shapes of all sizes up to `size`, strewn over the unit square.
+    /// Shapes of all sizes up to `size`, scattered over the unit square.
     fn strewn(count: u64, size: f64) -> Vec<Shape> {
         let shape = |i: u64| {
             let [x, y, a, b] = words(5, Stream::Photon, i, 0).map(unit);
@@ -141,7 +142,7 @@ mod tests {
                 held += usize::from(expected);
             }
             assert!(held > 500, "{held}");
-            // Corners and edges are held.
+            // Corners and edges count as inside.
             for shape in &shapes {
                 let [[left, right], [low, high]] = [0, 1].map(|axis| shape.bounds().extent(axis));
                 let [x, y] = [0.5 * (left + right), 0.5 * (low + high)];

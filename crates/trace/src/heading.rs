@@ -1,22 +1,24 @@
-//! The two ways along a leg, each with a frame of its own.
+//! The two directions of light along a leg, each with a frame of its own.
 
 use crate::line::ray_through;
 use etendue_field::{Frame, TwoPlane};
 use etendue_scene::Leg;
 use glam::DVec3;
 
-/// Which way light of a leg goes. Rays are held by slopes across the central ray, so each way has a frame of its own.
+/// The direction of light along a leg. Rays are represented by slopes across the central ray, so
+/// each direction has a frame of its own.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Heading {
     /// Along the central ray.
     #[default]
     Along,
-    /// Against it, from one wide surface back to another.
+    /// Against the central ray, from one wide surface back to another.
     Against,
 }
 
 impl Heading {
-    /// A vector or a point between the frame of the leg and that of light which goes this way: turned about X.
+    /// Converts a vector or a point between the frame of the leg and the frame of this direction: a
+    /// rotation about X.
     #[inline]
     pub(crate) fn turned(self, v: DVec3) -> DVec3 {
         match self {
@@ -25,7 +27,7 @@ impl Heading {
         }
     }
 
-    /// The leg as light has it that goes this way.
+    /// The leg as seen by light of this direction.
     pub(crate) fn leg(self, leg: &Leg) -> Leg {
         let axis = |local| leg.frame.vector_to_world(self.turned(local));
         Leg {
@@ -39,8 +41,8 @@ impl Heading {
         }
     }
 
-    /// The way of a direction, and the ray through a point along it, in the frame of that way; both are given in the frame of the leg.
-    /// `None` when it goes across the leg.
+    /// The heading of a direction, and the ray through a point along it in the frame of that
+    /// heading; both arguments are in the frame of the leg. `None` for a direction across the leg.
     #[inline]
     pub(crate) fn of(point: DVec3, direction: DVec3) -> Option<(Self, TwoPlane)> {
         let heading = if direction.z < 0.0 {

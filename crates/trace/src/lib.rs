@@ -1,12 +1,13 @@
-//! Photon tracing: from a [`Scene`](etendue_scene::Scene) to crossings of its virtual planes.
+//! Traces photons from a [`Scene`](etendue_scene::Scene) to crossings of its virtual planes.
 //!
-//! [`Tracer`] emits photons from the light, finds what each meets first and reports every virtual plane it
-//! crosses before that. It keeps the ledger of flux, and knows nothing of windows' spectra or of theory.
+//! [`Tracer`] emits photons from the light, finds what each meets first and reports every virtual
+//! plane it crosses before that. It keeps the ledger of flux, and does not depend on windows'
+//! spectra or on theory.
 //!
-//! Each leg of the path is computed in its own frame, so a direction is (u, v, 1) and a
-//! distance along the central ray is a coordinate. Light that goes back along a leg has a frame that is turned around.
-//! Its numbers are functions of (seed, batch, photon), so a photon's
-//! life does not depend on who traces it.
+//! Each leg of the path is computed in its own frame, so a direction is (u, v, 1) and a distance
+//! along the central ray is a coordinate. Light that travels back along a leg has a reversed frame.
+//! The random numbers of a photon are functions of (seed, batch, photon), so its path does not
+//! depend on the thread that traces it.
 
 mod aim;
 mod area_sampler;

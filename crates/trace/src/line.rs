@@ -1,19 +1,20 @@
-//! Rays of a leg as lines in space.
+//! Treats rays of a leg as lines in space.
 
 use etendue_field::TwoPlane;
 use glam::DVec3;
 
-/// Where a ray begins, in the frame it is given in.
+/// The origin of a ray, in the frame of the ray.
 pub(crate) fn start(ray: &TwoPlane) -> DVec3 {
     DVec3::new(ray.x, ray.y, 0.0)
 }
 
-/// Where it goes: a step of 1 along D.
+/// The direction of a ray, with component 1 along D.
 pub(crate) fn direction(ray: &TwoPlane) -> DVec3 {
     DVec3::new(ray.u, ray.v, 1.0)
 }
 
-/// The ray through a point along a direction, both in the frame it is wanted in; `None` when it does not go forward along D.
+/// The ray through a point along a direction, both in the frame of the result; `None` when it does
+/// not go forward along D.
 pub(crate) fn ray_through(point: DVec3, direction: DVec3) -> Option<TwoPlane> {
     let [u, v] = [direction.x / direction.z, direction.y / direction.z];
     (direction.z > 0.0).then_some(TwoPlane {

@@ -1,8 +1,8 @@
-//! A mesh as a leg sees it.
+//! A mesh as seen from a leg.
 //!
-//! Its triangles stay in the frame at the light, with the one hierarchy over them: a ray is turned
-//! to it. Whether it hits is decided in the frame of the leg, where a direction is (u, v, 1) and
-//! triangles that share an edge share the arithmetic.
+//! The triangles stay in the frame at the light, with one hierarchy over them, and rays are
+//! transformed to that frame. Whether a ray hits is decided in the frame of the leg, where a
+//! direction is (u, v, 1) and triangles that share an edge share the arithmetic.
 
 use crate::line::{direction, start};
 use etendue_field::triangle_distance;
@@ -16,9 +16,9 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub(crate) struct BlockerMesh {
     triangles: Triangles,
-    /// At the corners, if it is smooth.
+    /// Normals at the corners of a smooth mesh.
     normals: Option<Arc<[[DVec3; 3]]>>,
-    /// The frame of the leg, unless it is that at the light.
+    /// The frame of the leg, unless it is the frame at the light.
     leg: Option<Frame>,
 }
 
@@ -35,8 +35,8 @@ impl BlockerMesh {
         }
     }
 
-    /// The first triangle that a ray meets beyond `from`, and at what distance; of several there,
-    /// that with the lowest number. What is beyond `until` does not matter.
+    /// The first triangle that a ray meets beyond `from`, and its distance; of several there, the
+    /// one with the lowest number. Hits beyond `until` may be ignored.
     pub(crate) fn closest_hit(
         &self,
         ray: &TwoPlane,
@@ -66,8 +66,8 @@ impl BlockerMesh {
         last.map(|(at, Reverse(i))| (at, i))
     }
 
-    /// Whether a triangle is met at a distance between `from` and `distance` that will `do`; looked
-    /// for backwards.
+    /// Whether a ray meets a triangle at a distance between `from` and `distance` that satisfies
+    /// `does`; searched backwards.
     pub(crate) fn is_occluded(
         &self,
         ray: &TwoPlane,
@@ -77,13 +77,13 @@ impl BlockerMesh {
         let mut blocked = false;
         self.along(ray, -1.0, [distance, from], |at, _| {
             blocked |= does(at);
-            // Then nothing matters any more.
+            // After a hit the search ends.
             if blocked { f64::INFINITY } else { from }
         });
         blocked
     }
 
-    /// Tells every triangle on the line of a ray, and at what distance.
+    /// Passes every triangle on the line of a ray, with its distance, to `tell`.
     pub(crate) fn each(&self, ray: &TwoPlane, mut tell: impl FnMut(f64, usize)) {
         self.along(ray, 1.0, [f64::NEG_INFINITY, f64::INFINITY], |at, i| {
             tell(at, i);
@@ -91,8 +91,8 @@ impl BlockerMesh {
         });
     }
 
-    /// Goes through triangles on a ray, forward or back (`way` 1 or −1). `meet` tells how far they
-    /// still matter.
+    /// Visits triangles along a ray, forward or back (`way` 1 or −1). `meet` returns the distance
+    /// up to which they still matter.
     #[inline]
     fn along(
         &self,
@@ -137,7 +137,7 @@ impl BlockerMesh {
         interpolated_normal(&corners, &normals, point)
     }
 
-    /// All hits on the line of a ray, found without any hierarchy.
+    /// All hits on the line of a ray, found without a hierarchy.
     #[cfg(test)]
     pub(crate) fn in_turn(&self, ray: &TwoPlane) -> Vec<(f64, usize)> {
         let numbers = 0..self.triangles.len();
@@ -145,7 +145,7 @@ impl BlockerMesh {
         hits.collect()
     }
 
-    /// Lowest and highest corner of a box around it.
+    /// The lowest and the highest corner of the bounding box.
     pub(crate) fn bounds(&self) -> [DVec3; 2] {
         let [low, high] = self.triangles.bounds();
         match &self.leg {
@@ -160,7 +160,7 @@ mod tests {
     use super::*;
     use etendue_transform::random::{self, Stream};
 
-    /// Across a leg that begins far from the light, and across that at the light.
+    /// The frames of a leg that begins far from the light, and of the leg at the light.
     fn legs() -> [Frame; 2] {
         let [origin, d] = [DVec3::new(3.0, -1.0, 2.5), DVec3::new(-3.0, 1.2, -1.4)];
         [
@@ -198,7 +198,7 @@ mod tests {
         }
     }
 
-    /// From hierarchies of one part, and of several.
+    /// Hierarchies of one part and of several give the same hits.
     #[test]
     fn agrees_with_every_triangle_tried_in_turn() {
         for (n, rays) in [(16, 5000), (200, 200)] {
@@ -241,7 +241,7 @@ mod tests {
         }
     }
 
-    /// Rays at the common edges and corners of a sheet of triangles: none passes.
+    /// Rays at the common edges and corners of a sheet of triangles never pass through it.
     #[test]
     fn triangles_that_share_edges_leak_nothing() {
         const N: u32 = 16;
@@ -251,7 +251,7 @@ mod tests {
             for i in 1..N - 1 {
                 for j in 1..N - 1 {
                     let (x, y) = (0.013 * f64::from(i), -0.017 * f64::from(j));
-                    // Corners that four squares share, and points of the edge between.
+                    // Corners that four squares share, and points on the edge between them.
                     let [p, _, end] = triangles[(2 * (i * N + j)) as usize];
                     for t in [0.0, 0.3, 0.5, 1.0] {
                         let ray = ray(&leg, DVec3::new(x, y, 0.0), p.lerp(end, t));

@@ -1,32 +1,32 @@
-//! The numbers that photons are drawn from.
+//! The random numbers that photons are drawn from.
 
 use etendue_scene::{Run, Sampling};
 use etendue_transform::Net;
 use etendue_transform::random::{self, Stream};
 
-/// Which numbers, and for what they are.
+/// The source of the numbers and their layout.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PhotonNumbers {
     sampling: Sampling,
     seed: u64,
-    /// Of random numbers, and of nets.
+    /// The streams of random numbers and of nets.
     streams: [Stream; 2],
-    /// Blocks of four numbers that a photon takes at most.
+    /// The largest number of blocks of four numbers that a photon uses.
     blocks: u32,
 }
 
-/// Those of a block of photons.
+/// The numbers of a block of photons.
 #[derive(Debug)]
 pub(crate) enum Numbers {
     Random {
         seed: u64,
         stream: Stream,
     },
-    /// A net, and the photon that has its first point.
+    /// A net, and the photon that uses its first point.
     Net(Net, u64),
 }
 
-/// Points of a net: as many as there are numbers of 32 bits.
+/// Points of a net, as many as there are 32-bit numbers.
 const POINTS: u64 = 1 << 32;
 
 impl PhotonNumbers {
@@ -35,13 +35,13 @@ impl PhotonNumbers {
             sampling: run.sampling,
             seed: run.seed,
             streams,
-            // Two for the emission, and one for each surface.
+            // Two blocks for the emission, and one for each surface.
             blocks: u32::try_from(legs + 1).unwrap_or(u32::MAX),
         }
     }
 
-    /// The numbers of a batch that begins with photon `first`, from photon `start` on; nets are
-    /// keyed by the batch, and a batch of more than 2³² photons takes several.
+    /// The numbers of the batch that begins with photon `first`, from photon `start` on. Nets are
+    /// keyed by the batch, and a batch of more than 2³² photons uses several.
     pub(crate) fn of(&self, batch: u32, first: u64, start: u64) -> Numbers {
         let Self { seed, blocks, .. } = *self;
         let [random, net] = self.streams;

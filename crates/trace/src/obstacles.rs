@@ -1,4 +1,4 @@
-//! Everything that stands in the way of light on a leg.
+//! Finds the obstacles of light on a leg.
 
 use crate::grid::Grid;
 use crate::line::{direction, start};
@@ -9,7 +9,7 @@ use etendue_field::{Frame, HalfPlane, Mask, Rectangle, Shape, Side, Specular, Tw
 use etendue_scene::{Event, Leg, MeshObject, Object, Scene, Surface};
 use glam::DVec3;
 
-/// What a photon meets.
+/// The kind of thing that a photon meets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum HitKind {
     Blocker,
@@ -19,19 +19,19 @@ pub(crate) enum HitKind {
     },
 }
 
-/// What light does that meets a surface.
+/// The interaction of light with a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum ObstacleKind {
     Lambertian {
         albedo: f64,
     },
     Specular(Specular),
-    /// By a BRDF.
+    /// Reflection by a BRDF.
     Reflects,
 }
 
 impl HitKind {
-    /// What it is, if it reflects.
+    /// The object, if it reflects.
     pub(crate) fn object(&self) -> Option<Object> {
         match self {
             Self::Blocker => None,
@@ -39,34 +39,35 @@ impl HitKind {
         }
     }
 
-    /// Whether it is what a leg begins or ends on.
+    /// Whether it is the object on which a leg begins or ends.
     pub(crate) fn is(&self, end: Option<Object>) -> bool {
         end.is_some() && self.object() == end
     }
 }
 
-/// Everything that stands in the way of light on one leg, and the questions both tracers ask of it.
+/// All obstacles of light on one leg, with the queries of both tracers.
 ///
-/// Rays are given by where they cross the plane at the beginning of the leg, distances are along it.
+/// Rays are given by where they cross the plane at the beginning of the leg; distances are along
+/// the leg.
 #[derive(Debug)]
 pub(crate) struct Obstacles {
     primitives: PrimitiveSet<HitKind>,
-    /// What has no end.
+    /// Unbounded blockers.
     half_planes: Vec<Layer<HalfPlane>>,
     semi_transparent: Vec<Layer<Mask>>,
 }
 
-/// Something that fills the plane of its blockers.
+/// A blocker that fills its plane.
 #[derive(Clone, Copy, Debug)]
 struct Layer<T> {
     distance: f64,
-    /// The leg, unless it is the first one.
+    /// The frame of the leg, unless it is the first one.
     leg: Option<Frame>,
     what: T,
 }
 
 impl<T> Layer<T> {
-    /// How far along the leg a ray crosses the plane, and where in it.
+    /// The distance along the leg at which a ray crosses the plane, and the point in the plane.
     #[inline]
     fn crossing(&self, ray: &TwoPlane) -> (f64, [f64; 2]) {
         let Some(leg) = &self.leg else {
@@ -84,7 +85,7 @@ impl<T> Layer<T> {
 }
 
 impl Obstacles {
-    /// What stands around a leg of the path.
+    /// The obstacles around a leg of the path.
     #[expect(clippy::too_many_lines, reason = "a case for each kind of obstacle")]
     pub(crate) fn new(scene: &Scene, leg: &Leg) -> Self {
         let mut primitives = Vec::new();
@@ -154,7 +155,7 @@ impl Obstacles {
         }
         let ends = [0, 1].map(|axis| scene.light.extent(axis));
         let ends = ends.as_flattened().iter().map(|end| end.abs());
-        // What starts far to the side is looked for from nearer.
+        // Rays that start far to the side are tested from a nearer point.
         let origins = ends.filter(|end| end.is_finite()).fold(0.0, f64::max);
         Self {
             primitives: PrimitiveSet::new(&primitives, origins),
@@ -163,7 +164,7 @@ impl Obstacles {
         }
     }
 
-    /// What a ray meets first beyond `from`, and at what distance.
+    /// The first thing that a ray meets beyond `from`, and its distance.
     #[inline]
     pub(crate) fn closest_hit(
         &self,
@@ -188,7 +189,7 @@ impl Obstacles {
         }
     }
 
-    /// The share of light on a ray that semi-transparent masks let through between `from` and a plane.
+    /// The transmittance of semi-transparent masks along a ray between `from` and a plane.
     #[inline]
     pub(crate) fn transmittance(
         &self,
@@ -212,7 +213,8 @@ impl Obstacles {
             .is_occluded(ray, from, f64::INFINITY, false, other)
     }
 
-    /// Whether a point at a distance on a ray has another point of its own object before it, beyond `from`.
+    /// Whether a point at a distance on a ray is hidden by another point of the same object, beyond
+    /// `from`.
     pub(crate) fn is_behind(
         &self,
         own: Option<Object>,
@@ -221,14 +223,14 @@ impl Obstacles {
         distance: f64,
     ) -> bool {
         let other = |what: &HitKind| !what.is(own);
-        // The point itself is as far, but for rounding.
+        // The point itself is at the same distance, but for rounding.
         let distance = distance - ROUNDING * distance.abs();
         self.primitives
             .is_occluded(ray, from, distance, false, other)
     }
 
-    /// The share of light on a ray that reaches a plane from `from`, looked for from the plane back; what `ignored` says
-    /// does not stand in its way.
+    /// The share of light on a ray from `from` that reaches a plane, searched backwards from the
+    /// plane. Objects that `ignored` accepts do not occlude.
     pub(crate) fn visibility(
         &self,
         ray: &TwoPlane,
@@ -255,10 +257,10 @@ impl Obstacles {
     }
 }
 
-/// Share of a distance on which two ways to it may differ.
+/// The relative difference that rounding may make between two computations of a distance.
 const ROUNDING: f64 = 1e-9;
 
-/// What a ray meets in a half-plane.
+/// The primitive for a hit on a half-plane.
 static HALF_PLANE: TaggedPrimitive<HitKind> = TaggedPrimitive {
     primitive: Primitive::Flat {
         distance: 0.0,
@@ -270,7 +272,7 @@ static HALF_PLANE: TaggedPrimitive<HitKind> = TaggedPrimitive {
     tag: HitKind::Blocker,
 };
 
-/// Whether light passes what stands at `obstacle` on its way to a plane at `distance`.
+/// Whether light passes the position `obstacle` on its way to a plane at `distance`.
 fn is_passed(obstacle: f64, distance: f64, side: Side) -> bool {
     match side {
         Side::Before => obstacle < distance,
@@ -278,7 +280,7 @@ fn is_passed(obstacle: f64, distance: f64, side: Side) -> bool {
     }
 }
 
-/// A leg's view of what is given in the frame at the light.
+/// Converts from the frame at the light to that of a leg.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Around(pub(crate) Frame);
 
@@ -317,7 +319,8 @@ impl Around {
         Primitive::Mesh(Box::new(BlockerMesh::new(&mesh.triangles, normals, self.0)))
     }
 
-    /// A shape in the plane of a frame; across the leg, with axes along its own, distances are exact.
+    /// A shape in the plane of a frame. Where it lies across the leg with axes along the leg's own,
+    /// distances are exact.
     #[expect(
         clippy::float_cmp,
         reason = "rounding would only take the exact way from it"

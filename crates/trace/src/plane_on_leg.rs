@@ -1,4 +1,4 @@
-//! Virtual planes, as rays of a leg cross them.
+//! Virtual planes, and how rays of a leg cross them.
 
 use crate::heading::Heading;
 use crate::line::{direction, ray_through, start};
@@ -7,38 +7,38 @@ use etendue_scene::{Leg, Object, Scene};
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
-/// Where a plane stands on its leg, and how it looks at rays of the leg.
+/// The position of a plane on its leg, and its coordinates for rays of the leg.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlaneOnLeg {
     pub(crate) plane: usize,
-    /// Along the leg.
+    /// Distance along the leg.
     pub(crate) distance: f64,
-    /// Of the light that it looks at.
+    /// Heading of the light that the plane sees.
     heading: Heading,
     pub(crate) side: Side,
-    /// `None` across the leg.
+    /// The coordinates on a surface; `None` for a plane across the leg.
     surface: Option<SurfaceCoordinates>,
 }
 
-/// How a plane on a surface looks at it.
+/// The coordinates of a plane on a surface.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SurfaceCoordinates {
     /// (T, B, N) at the central hit, in the frame of the leg.
     frame: Frame,
     longitude: f64,
-    /// Directions are turned around: light arrives.
+    /// Whether directions are reversed because light arrives.
     arriving: bool,
-    /// And about the normal.
+    /// Whether directions are also rotated about the normal.
     mirrored: bool,
-    /// The surface itself, in the frame of the leg, where rays are counted from its local normals.
+    /// The surface itself, in the frame of the leg, where rays are measured from its local normals.
     patch: Option<Patch>,
 }
 
-/// Angles of a window at which its slopes are looked up, along each side.
+/// The number of angles along each side of a window at which slopes are evaluated.
 const SIDE: u32 = 9;
-/// Between these, slopes may be larger by less than this.
+/// Between these angles, slopes may be larger by less than this factor.
 const MARGIN: f64 = 1.1;
-/// Light that comes at larger angles to the central ray, in radians, is not aimed by its slopes.
+/// Light at larger angles to the central ray, in radians, is not aimed by its slopes.
 const MAX_AIMED_ANGLE: f64 = 0.8;
 
 /// The points of a line on a patch.
@@ -52,7 +52,8 @@ fn points(patch: &Patch, start: DVec3, along: DVec3) -> impl Iterator<Item = DVe
 }
 
 impl PlaneOnLeg {
-    /// The ray of the leg, where it begins, that the plane has as `seen`, and dA over dx dy there; `None` if there is none.
+    /// The ray at the beginning of the leg that has the coordinates `seen` at the plane, and dA
+    /// over dx dy there; `None` if there is none.
     ///
     /// On a surface itself, light is counted per area of it (docs/theory.md, section 8); everywhere else dA is dx dy.
     pub(crate) fn leg_ray(&self, seen: &TwoPlane) -> Option<(TwoPlane, f64)> {
@@ -62,8 +63,8 @@ impl PlaneOnLeg {
         }
     }
 
-    /// A point of the plane by its coordinates, in the frame of the leg, with the normal there and dA over
-    /// dx dy; `None` where the surface has none.
+    /// The point of the plane with given coordinates, in the frame of the leg, with the normal
+    /// there and dA over dx dy; `None` where the surface has no such point.
     pub(crate) fn point(&self, at: [f64; 2]) -> Option<(DVec3, DVec3, f64)> {
         let Some(view) = &self.surface else {
             return Some((DVec3::new(at[0], at[1], self.distance), DVec3::Z, 1.0));
@@ -72,14 +73,14 @@ impl PlaneOnLeg {
         Some((point, frame.d, 1.0 / frame.d.dot(view.frame.d)))
     }
 
-    /// Whether what it sees at a point, (x, y), lies ahead of where the first leg begins: a surface may
-    /// reach back beside the light.
+    /// Whether the point (x, y) of the plane lies ahead of where the first leg begins. A surface
+    /// may reach back beside the light.
     pub(crate) fn is_ahead(&self, at: [f64; 2]) -> bool {
         let arrives = self.surface.is_some_and(|view| view.arriving);
         !arrives || self.point(at).is_some_and(|(point, ..)| point.z > 0.0)
     }
 
-    /// How it looks at the surface it is on; `None` across the leg.
+    /// The coordinates on the surface of the plane; `None` across the leg.
     pub(crate) fn view(&self) -> Option<SurfaceCoordinates> {
         self.surface
     }
@@ -89,7 +90,7 @@ impl PlaneOnLeg {
         Self::of(Heading::Along, leg, scene, index, plane)
     }
 
-    /// As it looks at light that goes one way on its leg, which is given in the frame of that way.
+    /// The plane as it sees light of one heading on its leg, in the frame of that heading.
     pub(crate) fn of(
         heading: Heading,
         leg: &Leg,
@@ -126,9 +127,11 @@ impl PlaneOnLeg {
         }
     }
 
-    /// How far along its way light on a ray of the leg, from `from` on, comes to the plane; `None` if it does not.
+    /// The distance along its heading, from `from` on, at which light on a ray of the leg comes to
+    /// the plane; `None` if it does not.
     ///
-    /// Light that goes back along the leg comes to a plane on a surface, and nowhere near the central hit.
+    /// Light that travels back along the leg only reaches planes on a surface, and never near the
+    /// central hit.
     #[inline]
     pub(crate) fn crossing(&self, ray: &TwoPlane, from: f64) -> Option<f64> {
         if self.heading == Heading::Along {
@@ -138,13 +141,13 @@ impl PlaneOnLeg {
         (self.side == Side::After || point.z > from).then_some(point.z)
     }
 
-    /// The largest slopes in the leg, along x and y, of light that arrives on a surface in the window of a plane; `None` across
-    /// the leg, and where they have no bound worth aiming at.
+    /// The largest slopes in the leg, along x and y, of light that arrives on a surface in the
+    /// window of a plane; `None` across the leg, and where they are too large to aim by.
     pub(crate) fn slopes(&self, window: &Window) -> Option<[f64; 2]> {
         self.surface.as_ref()?.slopes(window)
     }
 
-    /// cos θ dω over du dv at a ray as the plane has it.
+    /// cos θ dω over du dv for a ray in the coordinates of the plane.
     pub(crate) fn flux_per_radiance(&self, seen: &TwoPlane) -> f64 {
         match &self.surface {
             None => 1.0 / (seen.secant_squared() * seen.secant_squared()),
@@ -156,7 +159,8 @@ impl PlaneOnLeg {
         }
     }
 
-    /// A ray of the leg as the plane has it, with what it adds there; `None` when it does not meet the surface.
+    /// A ray of the leg in the coordinates of the plane, with its contribution there; `None` when
+    /// it does not meet the surface.
     #[inline]
     pub(crate) fn at_plane(&self, ray: &TwoPlane, weight: f64) -> Option<(TwoPlane, f64)> {
         match &self.surface {
@@ -167,16 +171,16 @@ impl PlaneOnLeg {
 }
 
 impl SurfaceCoordinates {
-    /// The frame of the local normal at a point, on the side of the one at the central hit; `None` where the surface has
-    /// turned by a right angle or more. So of two points over the same coordinates one is left: a line meets the surface from
-    /// one side and then from the other.
+    /// The frame of the local normal at a point, on the side of the normal at the central hit;
+    /// `None` where the normals differ by a right angle or more. Of two points with the same
+    /// coordinates only one remains, because a line meets the surface once from each side.
     fn local(&self, patch: &Patch, point: DVec3) -> Option<Frame> {
         let side = patch.normal(self.frame.origin).dot(self.frame.d).signum();
         let normal = side * patch.normal(point);
         (normal.dot(self.frame.d) > 0.0).then(|| self.frame.turned_to(normal))
     }
 
-    /// The point of the surface at (x, y), and the frame of its normal.
+    /// The point of the surface at (x, y), and the frame of the normal there.
     fn point(&self, [x, y]: [f64; 2]) -> Option<(DVec3, Frame)> {
         let foot = self.frame.to_world(DVec3::new(x, y, 0.0));
         let Some(patch) = &self.patch else {
@@ -186,7 +190,8 @@ impl SurfaceCoordinates {
         over.find_map(|point| Some((point, self.local(patch, point)?)))
     }
 
-    /// Where a ray meets the surface from the side the plane looks at, and the frame of the normal there.
+    /// The point where a ray meets the surface from the side that the plane sees, and the frame of
+    /// the normal there.
     fn met(&self, start: DVec3, along: DVec3) -> Option<(DVec3, Frame)> {
         let Some(patch) = &self.patch else {
             let t = (self.frame.origin - start).dot(self.frame.d) / along.dot(self.frame.d);
@@ -224,7 +229,8 @@ impl SurfaceCoordinates {
         Some((ray, weight / (secant_squared * secant_squared * measure)))
     }
 
-    /// The coordinates of a direction away from the surface, to be counted from this frame, and dω cos θ over du dv; `None` behind it.
+    /// The coordinates of a direction away from the surface, measured in this frame, and dω cos θ
+    /// over du dv; `None` behind the surface.
     fn seen(&self, frame: &Frame, away: DVec3) -> Option<([f64; 2], f64)> {
         let turned = if self.mirrored { -1.0 } else { 1.0 };
         let DVec3 { x: t, y: b, z: n } = frame.vector_to_local(away.normalize());
@@ -240,7 +246,7 @@ impl SurfaceCoordinates {
         let turned = if self.mirrored { -1.0 } else { 1.0 };
         let angles = [turned * (u + self.longitude), turned * v];
         let [(sin, cos), (up, across)] = angles.map(libm::sincos);
-        // A turn further the same direction has no other coordinates.
+        // A direction a full turn away has the same coordinates.
         angles
             .iter()
             .all(|angle| angle.abs() < FRAC_PI_2)
@@ -249,7 +255,7 @@ impl SurfaceCoordinates {
 
     fn slopes(&self, window: &Window) -> Option<[f64; 2]> {
         let [x, y, u, v] = [window.x, window.y, window.u, window.v].map(|p| p.half_width());
-        // The normals of the patch turn by less than this within the window.
+        // An upper bound of how far the normals of the patch turn within the window.
         let turns = self.patch.map_or(0.0, |patch| {
             patch.curvature.map(f64::abs).iter().sum::<f64>() * libm::hypot(x, y)
         });
@@ -267,12 +273,12 @@ impl SurfaceCoordinates {
         (widest[0].max(widest[1]) < MAX_AIMED_ANGLE).then(|| widest.map(libm::tan))
     }
 
-    /// Whether it looks at light that arrives.
+    /// Whether the plane sees light that arrives.
     pub(crate) fn is_arriving(&self) -> bool {
         self.arriving
     }
 
-    /// What angles are counted from at a point of the surface.
+    /// The frame that angles are measured in at a point of the surface.
     fn frame_at(&self, point: DVec3) -> Option<Frame> {
         match &self.patch {
             None => Some(self.frame),
@@ -280,7 +286,7 @@ impl SurfaceCoordinates {
         }
     }
 
-    /// The direction of a ray that leaves a point of the surface and has these coordinates, (u, v).
+    /// The direction of a ray that leaves a point of the surface with the coordinates (u, v).
     pub(crate) fn direction(&self, point: DVec3, seen: [f64; 2]) -> Option<DVec3> {
         self.away(&self.frame_at(point)?, seen)
     }

@@ -1,4 +1,4 @@
-//! The forms of what ends a ray.
+//! The geometric primitives that end rays.
 
 use crate::grid::Grid;
 use crate::line::{direction, start};
@@ -6,26 +6,26 @@ use crate::mesh::BlockerMesh;
 use etendue_field::{Frame, Patch, Shape, TwoPlane, enclosing};
 use glam::DVec3;
 
-/// The form of a target, in the frame of a leg. What is large is elsewhere: flat shapes, by far the
-/// most, are to stay in the processor's cache.
+/// The geometry of a target, in the frame of a leg. Large data are stored elsewhere, so that flat
+/// shapes, by far the most frequent, stay in the processor's cache.
 #[derive(Clone, Debug)]
 pub(crate) enum Primitive {
     /// A flat shape across the central ray.
     Flat { distance: f64, shape: Shape },
-    /// Many of these at one distance.
+    /// Many flat shapes at one distance.
     Grid(Box<Grid>),
-    /// A flat shape in the plane of X and Y of a frame.
+    /// A flat shape in the XY plane of a frame.
     Oblique { frame: Box<Frame>, shape: Shape },
-    /// Triangles; what is met of it is the part with the number of a triangle.
+    /// Triangles. The part that a ray meets is the number of the triangle.
     Mesh(Box<BlockerMesh>),
     /// A smooth surface.
     Smooth(Box<Patch>),
 }
 
 impl Primitive {
-    /// The distance, along the central ray, at which a ray meets it, and the part that it meets;
-    /// where it can meet it several times, the first beyond `from`, and of a mesh, none beyond
-    /// `until`.
+    /// The distance, along the central ray, at which a ray meets the primitive, and the part that
+    /// it meets. Of several hits it is the first beyond `from`; hits of a mesh beyond `until` are
+    /// ignored.
     #[inline]
     pub(crate) fn closest_hit(
         &self,
@@ -44,7 +44,8 @@ impl Primitive {
         self.closest_hit_elsewhere(ray, from, until)
     }
 
-    /// [`Self::first`] of what is not flat: kept out of the loops that mostly meet flat shapes.
+    /// [`Self::first`] for primitives that are not flat; kept out of the loops that mostly meet
+    /// flat shapes.
     #[inline(never)]
     fn closest_hit_elsewhere(&self, ray: &TwoPlane, from: f64, until: f64) -> Option<(f64, usize)> {
         let whole = |distance| (distance, 0);
@@ -64,8 +65,8 @@ impl Primitive {
         }
     }
 
-    /// The largest distance below `until` at which the line of a ray meets it, and the part that it
-    /// meets.
+    /// The largest distance below `until` at which the line of a ray meets the primitive, and the
+    /// part that it meets.
     pub(crate) fn last(&self, ray: &TwoPlane, until: f64) -> Option<(f64, usize)> {
         match self {
             Self::Mesh(mesh) => mesh.last(ray, until),
@@ -80,7 +81,8 @@ impl Primitive {
         }
     }
 
-    /// Whether it is met at a distance between `from` and `until` that `does`.
+    /// Whether a ray meets the primitive at a distance between `from` and `until` that satisfies
+    /// `does`.
     #[inline]
     pub(crate) fn is_occluded(
         &self,
@@ -95,12 +97,13 @@ impl Primitive {
         first.is_some_and(|(at, _)| does(at))
     }
 
-    /// Tells the distances at which the line of a ray meets it, and the parts that it meets.
+    /// Passes the distances at which the line of a ray meets the primitive, and the parts that it
+    /// meets, to `tell`.
     pub(crate) fn each(&self, ray: &TwoPlane, mut tell: impl FnMut(f64, usize)) {
         match self {
             Self::Mesh(mesh) => mesh.each(ray, tell),
             Self::Smooth(patch) => {
-                // A line that meets it once has the same distance twice.
+                // A line with a single hit has the same distance twice.
                 let [first, last] = smooth_hits(patch, ray);
                 let second = (last > first).then_some(last);
                 let hits = [Some(first).filter(|at| !at.is_nan()), second];
@@ -114,7 +117,7 @@ impl Primitive {
         }
     }
 
-    /// A normal at a point of a part of it, of unit length.
+    /// The unit normal at a point of a part of the primitive.
     pub(crate) fn normal(&self, part: usize, point: DVec3) -> DVec3 {
         match self {
             Self::Flat { .. } | Self::Grid(_) => DVec3::Z,
@@ -124,7 +127,7 @@ impl Primitive {
         }
     }
 
-    /// Lowest and highest corner of a box around it.
+    /// The lowest and the highest corner of the bounding box.
     pub(crate) fn bounds(&self) -> [DVec3; 2] {
         match self {
             Self::Flat { distance, shape } => {

@@ -1,4 +1,4 @@
-//! What ends rays on a leg.
+//! The set of primitives that end rays on a leg.
 
 use crate::line::{direction, start};
 use crate::primitive::Primitive;
@@ -6,14 +6,14 @@ use etendue_bvh::BinaryHierarchy;
 use etendue_field::TwoPlane;
 use glam::DVec3;
 
-/// Something that ends a ray, and what it is.
+/// A primitive that ends a ray, with a tag that identifies it.
 #[derive(Clone, Debug)]
 pub(crate) struct TaggedPrimitive<T> {
     pub(crate) primitive: Primitive,
     pub(crate) tag: T,
 }
 
-/// A primitive that a ray meets, and which part of it.
+/// A primitive that a ray meets, and the part of it.
 #[derive(Debug)]
 pub(crate) struct PrimitiveHit<'a, T> {
     primitive: &'a Primitive,
@@ -25,11 +25,12 @@ pub(crate) struct PrimitiveHit<'a, T> {
 #[derive(Debug)]
 pub(crate) struct PrimitiveSet<T> {
     hierarchy: BinaryHierarchy,
-    /// In the order of the hierarchy's leaves.
+    /// The primitives in the order of the hierarchy's leaves.
     primitives: Vec<TaggedPrimitive<T>>,
 }
 
-/// Primitives that are tried in turn: as fast as a hierarchy takes to begin.
+/// The number of primitives up to which all are tested in turn, as fast as the start of a
+/// traversal.
 const MAX_TRIED_IN_TURN: usize = 4;
 
 impl<T> TaggedPrimitive<T> {
@@ -52,7 +53,7 @@ impl<T> Clone for PrimitiveHit<'_, T> {
 impl<T> Copy for PrimitiveHit<'_, T> {}
 
 impl<T> PrimitiveHit<'_, T> {
-    /// A normal at the point that is met, of unit length.
+    /// The unit normal at the hit.
     pub(crate) fn normal(&self, point: DVec3) -> DVec3 {
         self.primitive.normal(self.part, point)
     }
@@ -74,7 +75,7 @@ impl<T: Clone> PrimitiveSet<T> {
         }
     }
 
-    /// The first primitive that a ray meets beyond `from`, and at what distance.
+    /// The first primitive that a ray meets beyond `from`, and its distance.
     #[inline]
     pub(crate) fn closest_hit(
         &self,
@@ -106,8 +107,8 @@ impl<T: Clone> PrimitiveSet<T> {
         first.map(|(primitive, part)| (nearest, primitive.met(part)))
     }
 
-    /// The last primitive on the line of a ray before `until`, and at what distance; looked for
-    /// backwards from there.
+    /// The last primitive on the line of a ray before `until`, and its distance; searched backwards
+    /// from there.
     pub(crate) fn last(&self, ray: &TwoPlane, until: f64) -> Option<(f64, PrimitiveHit<'_, T>)> {
         let mut last = None;
         let mut farthest = f64::NEG_INFINITY;
@@ -126,7 +127,7 @@ impl<T: Clone> PrimitiveSet<T> {
         last.map(|(primitive, part)| (farthest, primitive.met(part)))
     }
 
-    /// Tells every primitive on the line of a ray, and at what distance.
+    /// Passes every primitive on the line of a ray, with its distance, to `tell`.
     pub(crate) fn each(&self, ray: &TwoPlane, mut tell: impl FnMut(f64, PrimitiveHit<'_, T>)) {
         let range = [f64::NEG_INFINITY, f64::INFINITY];
         let (start, direction) = (start(ray), direction(ray));
@@ -138,8 +139,9 @@ impl<T: Clone> PrimitiveSet<T> {
         });
     }
 
-    /// Whether light on a ray meets a primitive between `from` and `distance`; at that very distance
-    /// when `inclusive`. Looked for backwards, from there; what `ignored` says does not count.
+    /// Whether light on a ray meets a primitive between `from` and `distance`, or exactly at
+    /// `distance` when `inclusive`. The search goes backwards from there and skips primitives that
+    /// `ignored` accepts.
     pub(crate) fn is_occluded(
         &self,
         ray: &TwoPlane,
@@ -154,7 +156,7 @@ impl<T: Clone> PrimitiveSet<T> {
         self.hierarchy.along(start, back, [-distance, -from], |i| {
             let TaggedPrimitive { primitive, tag } = &self.primitives[i];
             blocked |= !ignored(tag) && primitive.is_occluded(ray, [from, distance], does);
-            // Then nothing matters any more.
+            // After a hit the search ends.
             if blocked { f64::NEG_INFINITY } else { -from }
         });
         blocked
@@ -178,7 +180,8 @@ mod tests {
         )))
     }
 
-    /// Squares that share edges, discs and triangles: the cases in which rounding would leak.
+    /// Squares that share edges, discs and triangles: the cases in which rounding could let rays
+    /// through.
     fn primitives(scale: f64) -> Vec<TaggedPrimitive<u32>> {
         let mut primitives = Vec::new();
         for layer in 1..4u32 {
@@ -226,7 +229,7 @@ mod tests {
             .collect()
     }
 
-    /// Where a ray meets primitives beyond its beginning, found without any hierarchy.
+    /// The hits of a ray with primitives beyond its origin, found without a hierarchy.
     fn in_turn(all: &[TaggedPrimitive<u32>], ray: &TwoPlane) -> Vec<f64> {
         let met = all.iter().flat_map(|primitive| match &primitive.primitive {
             Primitive::Mesh(mesh) => mesh.in_turn(ray),
@@ -281,7 +284,8 @@ mod tests {
         }
     }
 
-    /// What no legal scene has: the builder is spared it, and what is sound beside it is found.
+    /// Invalid primitives, which no legal scene has, are kept from the builder, and the valid ones
+    /// beside them are found.
     #[test]
     fn forms_without_a_box_are_candidates_everywhere() {
         for bad in [f64::NAN, f64::INFINITY, 1e300] {

@@ -1,12 +1,13 @@
-//! Densities that rays are drawn from, so that they pass a window.
+//! Densities for drawing rays that pass a window.
 
 use etendue_field::Profile;
 
 /// A density on |t| < half that follows a window's profile and can be sampled on any interval.
 ///
-/// Hann is followed by a tent, 1 − |t|/half: their ratio stays in 0..1.14 and falls to zero at the edge,
-/// so the weights are bounded. Other profiles do not vanish at their edge: they get a constant.
-/// The light that a surface receives is followed by its cosine.
+/// A Hann profile is approximated by a tent, 1 − |t|/half: their ratio stays in 0..1.14 and falls
+/// to zero at the edge, so the weights are bounded. Other profiles do not vanish at their edge and
+/// are approximated by a constant. For light that a surface receives the density follows the
+/// cosine.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ProfileDensity {
     half: f64,
@@ -17,7 +18,7 @@ pub(crate) struct ProfileDensity {
 enum ProposalKind {
     Constant,
     Tent,
-    /// In proportion to g(t) = (1 + t²)^(−3/2).
+    /// Density in proportion to g(t) = (1 + t²)^(−3/2).
     Cosine,
 }
 
@@ -37,13 +38,14 @@ impl ProfileDensity {
         Self { half, kind }
     }
 
-    /// For slopes of light that a surface receives, up to `half`: as the cosine weighs them in 2D (docs/theory.md (6)).
+    /// For slopes, up to `half`, of light that a surface receives: weighted by the cosine as in 2D
+    /// (docs/theory.md (6)).
     pub(crate) fn cosine(half: f64) -> Self {
         let kind = ProposalKind::Cosine;
         Self { half, kind }
     }
 
-    /// Sine of the angle with the largest slope.
+    /// Sine of the angle at the largest slope.
     #[inline(always)]
     fn sine(&self) -> f64 {
         self.half / (1.0 + self.half * self.half).sqrt()
@@ -71,7 +73,8 @@ impl ProfileDensity {
     pub(crate) fn quantile(&self, p: f64) -> f64 {
         let s = match self.kind {
             ProposalKind::Constant => 2.0 * p - 1.0,
-            // One formula for both sides: a processor guesses the side wrong every other time.
+            // One formula serves both sides, because a branch would be mispredicted every other
+            // time.
             ProposalKind::Tent => {
                 let beyond = p.min(1.0 - p).max(0.0);
                 (1.0 - (2.0 * beyond).sqrt()).copysign(p - 0.5)
@@ -101,8 +104,8 @@ impl ProfileDensity {
         }
     }
 
-    /// A function of this for each of some numbers. The kind is known within each of the loops, so
-    /// that they are done several numbers at a time.
+    /// A function of this density for each of several numbers. The kind is known inside each loop,
+    /// so the loops are vectorised.
     #[inline(always)]
     fn each<const N: usize>(&self, t: [f64; N], f: impl Fn(&Self, f64) -> f64) -> [f64; N] {
         let of = |kind: ProposalKind| Self { kind, ..*self };
@@ -114,7 +117,7 @@ impl ProfileDensity {
     }
 }
 
-/// A number for each index. That of `std` is a call for each of them.
+/// A number for each index. The function of `std` would be called separately for each.
 #[inline(always)]
 pub(crate) fn lanes<const N: usize>(f: impl Fn(usize) -> f64) -> [f64; N] {
     let mut all = [0.0; N];
@@ -124,8 +127,8 @@ pub(crate) fn lanes<const N: usize>(f: impl Fn(usize) -> f64) -> [f64; N] {
     all
 }
 
-/// Slopes along one axis, at a point of a surface, of rays that cross a window some way from it: by the window's profile
-/// over the slopes that do.
+/// Slopes along one axis, at a point of a surface, of rays that cross a window at some distance:
+/// distributed by the window's profile over the slopes that cross it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Aim {
     distance: f64,
@@ -142,7 +145,8 @@ impl Aim {
         }
     }
 
-    /// Cumulative of the slope at the ends of the range that crosses the window from `x` at distance `from`; `None` if empty.
+    /// The cumulative of the slope at the ends of the range that crosses the window from `x` at
+    /// distance `from`; `None` if the range is empty.
     #[inline]
     fn range(&self, x: f64, from: f64) -> Option<[f64; 2]> {
         let distance = self.distance - from;
@@ -176,11 +180,11 @@ impl Aim {
     }
 }
 
-/// Rays of one plane of coordinates, (x, u) or (y, v), that leave the light and cross a window.
+/// Rays in one pair of coordinates, (x, u) or (y, v), that leave the light and cross a window.
 ///
-/// First u by the window's profile over the slopes that can do both, then x by the profile over the light's
-/// image at that slope. No sample misses the light or the window. From a point light there is no choice of x,
-/// and the density is that of u alone.
+/// Draws u first, by the window's profile over the slopes of rays that do both, then x, by the
+/// profile over the light's image at that slope. No sample misses the light or the window. For a
+/// point light x is fixed, and the density is that of u alone.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Proposal {
     /// Distance of the window from the light.
@@ -189,14 +193,15 @@ pub(crate) struct Proposal {
     light: [f64; 2],
     space: ProfileDensity,
     slope: ProfileDensity,
-    /// Cumulative of the slope at the ends of its range.
+    /// The cumulative of the slope at the ends of its range.
     range: [f64; 2],
 }
 
 impl Proposal {
-    /// For light at `extent`, seen at `distance` through a window that `space` and `slope` follow.
+    /// For light of extent `extent` and a window with the profiles `space` and `slope` at
+    /// `distance`.
     ///
-    /// `None` when no ray does both.
+    /// `None` when no ray both leaves the light and crosses the window.
     pub(crate) fn new(
         distance: f64,
         extent: [f64; 2],
@@ -229,7 +234,7 @@ impl Proposal {
         self.light[1] <= self.light[0]
     }
 
-    /// Cumulative of the position in the window at the ends of the light's image at slopes `u`.
+    /// The cumulative of the position in the window at the ends of the light's image at slopes `u`.
     #[inline(always)]
     fn images<const N: usize>(&self, u: &[f64; N]) -> [[f64; N]; 2] {
         let at = |x: f64| {

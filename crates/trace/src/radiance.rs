@@ -1,10 +1,11 @@
-//! Radiance of lights along a ray.
+//! The radiance of lights along a ray.
 
 use crate::sky;
 use etendue_field::{Light, TwoPlane, power};
 
-/// Radiance on a ray given at the light; for a point, with respect to du dv alone, for a beam to dx dy, for rays of a file over the share of flux: dω is
-/// du dv / (1 + u² + v²)^(3/2), and a ray of flux Φ adds Φ (1 + u² + v²)² to radiance space.
+/// The radiance along a ray given at the light. It is with respect to du dv alone for a point
+/// light, to dx dy for a beam, and per share of flux for rays of a file: dω is du dv / (1 + u² +
+/// v²)^(3/2), and a ray of flux Φ adds Φ (1 + u² + v²)² to radiance space.
 #[inline]
 pub(crate) fn radiance(light: &Light, ray: &TwoPlane) -> f64 {
     match light {
@@ -27,7 +28,7 @@ pub(crate) fn radiance(light: &Light, ray: &TwoPlane) -> f64 {
         }
         Light::Beam { irradiance, image } => irradiance * image.value(ray.x, ray.y),
         Light::Environment { environment } => sky::radiance(environment, ray),
-        // By the share of the flux that a ray is drawn with.
+        // Divided by the share of the flux with which the ray is drawn.
         Light::Rays { rays } => rays.flux() * ray.secant_squared() * ray.secant_squared(),
     }
 }

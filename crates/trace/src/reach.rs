@@ -1,4 +1,5 @@
-//! Where light that a plane looks at can come from: what emission and scattering are aimed at.
+//! The regions that light seen by a plane can come from, at which emission and scattering are
+//! aimed.
 
 use crate::line::{direction, start};
 use crate::plane_on_leg::PlaneOnLeg;
@@ -8,9 +9,10 @@ use etendue_field::{
 use etendue_scene::{Event, Hit, Leg, Object, Scene, Surface};
 use glam::{DVec2, DVec3};
 
-/// Half-widths, across the end of `leg`, of a box around the central ray through which all light passes that can
-/// reach the window of `plane`, on a later leg or on what ends this one, coming from `origins` (in the frame of the leg); `None` if there is none, and
-/// where light of a later leg must go across it or back along it.
+/// Half-widths, across the end of `leg`, of a box around the central ray through which all light
+/// from `origins` (in the frame of the leg) passes that can reach the window of `plane`, on a later
+/// leg or on the surface that ends this one. `None` if there is none, and where light of a later
+/// leg must go across or back along that leg.
 pub(crate) fn reach(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -18,12 +20,12 @@ pub(crate) fn reach(
     origins: &[DVec3],
 ) -> Option<[f64; 2]> {
     let this = &scene.path.legs[leg];
-    // A plane that looks at a surface from before it sees nothing of what the light has left.
+    // A plane that sees a surface from before it does not see light that has left the surface.
     let before = leg + 1 == plane.leg && !looks_at_surface(plane);
     let points = if before || leg == plane.leg {
         seen(scene, plane)
     } else {
-        // Diffuse light that leaves the next surface anywhere can go on to the window.
+        // Diffuse light can reach the window from anywhere on the next surface.
         outline(scene, scene.path.ends_at(leg)?.object)
     };
     let points: Vec<DVec3> = points.iter().map(|p| this.frame.to_local(*p)).collect();
@@ -34,7 +36,7 @@ pub(crate) fn reach(
             if leg > 0 && ahead < MIN_COSINE * this.length {
                 return None;
             }
-            // What lies behind the light cannot be reached from there.
+            // Points behind the light cannot be reached from it.
             let share = (this.length - from.z) / ahead.max(MIN_COSINE * this.length);
             let at = from.lerp(*to, share);
             half = [half[0].max(at.x.abs()), half[1].max(at.y.abs())];
@@ -43,7 +45,8 @@ pub(crate) fn reach(
     (!points.is_empty()).then_some(half.map(|h| h * (1.0 + MARGIN)))
 }
 
-/// The corners of what light can leave, in the frame at the light; those of a box around a mesh.
+/// The corners of the region that light can leave, in the frame at the light; for a mesh, those of
+/// its bounding box.
 pub(crate) fn outline(scene: &Scene, object: Object) -> Vec<DVec3> {
     match object {
         Object::Surface(i) => scene.surfaces[i].corners().to_vec(),
@@ -55,8 +58,9 @@ pub(crate) fn outline(scene: &Scene, object: Object) -> Vec<DVec3> {
     }
 }
 
-/// The part of a flat surface, the first on the path, from which light can reach the window of a plane on it or beyond it, as lowest and highest
-/// coordinates in the surface's frame; `None` if there is none.
+/// The part of the first surface on the path, if flat, from which light can reach the window of a
+/// plane on or beyond it, as lowest and highest coordinates in the surface's frame; `None` if there
+/// is none.
 pub(crate) fn footprint(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -89,7 +93,7 @@ fn corners(scene: &Scene, plane: &VirtualPlane) -> Vec<DVec3> {
     box_corners(-half, half).map(to_light).to_vec()
 }
 
-/// The corners of the part of its surface that a plane's window sees, or of more than that.
+/// The corners of the part of its surface that a plane's window sees, or of a larger part.
 fn seen(scene: &Scene, plane: &VirtualPlane) -> Vec<DVec3> {
     let leg = &scene.path.legs[plane.leg];
     let arriving = looks_at_surface(plane);
@@ -106,7 +110,8 @@ fn seen(scene: &Scene, plane: &VirtualPlane) -> Vec<DVec3> {
         Object::Patch(i) if arriving && plane.orientation.is_local() => {
             return seen_of_patch(scene, plane, hit, &scene.patches[i].patch).unwrap_or(all);
         }
-        // Where a tangent plane goes on beyond the surface, it sees what passes beside.
+        // Where a tangent plane extends beyond the surface, the plane sees light that passes beside
+        // the surface.
         _ if arriving => return corners(scene, plane),
         Object::Surface(i) => i,
         Object::Patch(i) if reflects(scene, hit.object) => {
@@ -116,7 +121,8 @@ fn seen(scene: &Scene, plane: &VirtualPlane) -> Vec<DVec3> {
     };
     let surface = &scene.surfaces[i];
     let met: Option<Vec<DVec3>> = if plane.orientation == Orientation::Orthogonal {
-        // Edges of the tube of rays that cross the window meet the surface at the corners of what is seen of it.
+        // The edges of the tube of rays that cross the window meet the surface at the corners of
+        // the visible part.
         let tube = tube(plane, scene.path.along(plane), leg);
         let side = leg.frame.d.dot(surface.frame.d).signum();
         let met = tube.iter();
@@ -149,12 +155,13 @@ pub(crate) fn reflects(scene: &Scene, object: Object) -> bool {
     matches!(object, Object::Patch(i) if matches!(scene.patches[i].event, Event::Reflects(_)))
 }
 
-/// Whether a plane looks at the light that arrives on a surface, in coordinates of the surface.
+/// Whether a plane records the light that arrives on a surface, in coordinates of the surface.
 pub(crate) fn looks_at_surface(plane: &VirtualPlane) -> bool {
     plane.orientation != Orientation::Orthogonal && plane.side == Side::Before
 }
 
-/// The corners of a box around the part of a patch that a plane's window sees, in the frame at the light; `None` when it may see all of it.
+/// The corners of a box around the part of a patch that a plane's window sees, in the frame at the
+/// light; `None` when the window may see the whole patch.
 fn seen_of_patch(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -180,7 +187,7 @@ fn seen_of_patch(
     for x in ends(&w.x) {
         for y in ends(&w.y) {
             if plane.orientation.is_local() {
-                // Positions are those of the points hit.
+                // The positions are the points hit.
                 rays.push([DVec3::new(x, y, 0.0), DVec3::Z]);
                 continue;
             }
@@ -194,14 +201,15 @@ fn seen_of_patch(
             }
         }
     }
-    // What leaves along the surface or behind it has come from no part of it that has an end.
+    // Light that leaves along or behind the surface comes from an unbounded part of it.
     if rays.iter().any(|[_, along]| along.z < MIN_COSINE) {
         return None;
     }
     let corners = patch.corners().map(|p| at.to_local(p));
     let [mut low, mut high] = enclosing(&corners);
-    // A point of the patch at distance r from the normal at the hit is at most |k| r² off the tangent plane, and lines of the window
-    // that are that near to it meet it in a box: again and again, from the whole patch down.
+    // A point of the patch at distance r from the normal at the hit is at most |k| r² off the
+    // tangent plane, and lines of the window meet the slab of that thickness in a box. The bound is
+    // iterated, starting from the whole patch.
     for _ in 0..8 {
         let [x, y] = [low.x.abs().max(high.x.abs()), low.y.abs().max(high.y.abs())];
         let depth = sharpest * (x * x + y * y);
@@ -242,15 +250,15 @@ fn tube(plane: &VirtualPlane, along: f64, leg: &Leg) -> Vec<[DVec3; 2]> {
     rays
 }
 
-/// Where the line through two points meets the plane of a surface, in the surface's frame; `None` when it leaves to the
-/// other side of it or along it.
+/// The point where the line through two points meets the plane of a surface, in the surface's
+/// frame; `None` when the line leaves to the other side of the surface or along it.
 fn meets(from: DVec3, to: DVec3, surface: &Frame, side: f64) -> Option<DVec3> {
     let [a, b] = [from, to].map(|p| surface.to_local(p));
     let leaves = (b - a).z;
     (side * leaves > MIN_COSINE).then(|| a - (a.z / leaves) * (b - a))
 }
 
-/// Cosine, and share of a leg, below which light runs along a surface.
+/// The cosine, and the share of a leg, below which light counts as parallel to a surface.
 const MIN_COSINE: f64 = 1e-3;
-/// What is aimed at is wider than what is looked at by more than rounding.
+/// The margin, larger than rounding, by which the aimed region exceeds the visible one.
 const MARGIN: f64 = 1e-9;

@@ -1,10 +1,10 @@
-//! Points and directions from even random numbers.
+//! Points and directions from uniform random numbers.
 
 use etendue_field::Shape;
 use glam::DVec2;
 use std::f64::consts::PI;
 
-/// π: the flux a Lambertian surface sends out per radiance and area.
+/// π: the flux that a Lambertian surface emits per radiance and area.
 pub(crate) const LAMBERTIAN: f64 = PI;
 
 /// A uniform point of a shape, from two numbers in (0, 1).

@@ -1,4 +1,4 @@
-//! Directions in which a surface scatters light, aimed at windows.
+//! Draws the directions in which a surface scatters light, aimed at windows.
 
 use crate::brdf;
 use crate::plane_on_leg::{PlaneOnLeg, SurfaceCoordinates};
@@ -11,11 +11,12 @@ use etendue_scene::{Emission, Scene};
 use etendue_transform::random;
 use glam::DVec3;
 
-/// How light leaves the surface at the beginning of a leg: a density over slopes at each of its
-/// points, and a strategy to sample it. Directions are in the frame of the leg, 1 along D or against it: (u, v, ±1).
+/// How light leaves the surface at the beginning of a leg: a density over slopes at each point of
+/// the surface, and a strategy to sample it. Directions are in the frame of the leg, with component
+/// 1 along D or against it: (u, v, ±1).
 #[derive(Clone, Debug)]
 pub(crate) struct Scatterer {
-    /// Ways to draw a ray, with equal shares.
+    /// The strategies to draw a ray, with equal shares.
     strategies: Vec<SamplingStrategy>,
 }
 
@@ -24,25 +25,26 @@ pub(crate) struct Scatterer {
 enum SamplingStrategy {
     /// Towards a window, along X and along Y.
     Window([Aim; 2]),
-    /// In the directions that a plane on the surface looks at.
+    /// In the directions that a plane on the surface sees.
     Angles(Box<Angles>),
-    /// As the surface itself sends light on.
+    /// In proportion to the surface's own scattering.
     Lobe,
 }
 
-/// What a plane on the surface looks at.
+/// The angles that a plane on the surface sees.
 #[derive(Clone, Copy, Debug)]
 struct Angles {
     view: SurfaceCoordinates,
     across: [ProfileDensity; 2],
 }
 
-/// How a surface sends light on from one of its points.
+/// How a surface scatters light from one of its points.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Spread<'a> {
-    /// By the cosine of the angle to its normal.
+    /// By the cosine of the angle to the normal.
     Cosine,
-    /// By a sum of BRDFs, in a frame with D along the normal; light has come from a direction in that frame.
+    /// By a sum of BRDFs, in a frame with D along the normal, for light from a direction in that
+    /// frame.
     Lobe {
         brdf: Mixture<'a>,
         frame: Frame,
@@ -50,11 +52,11 @@ pub(crate) enum Spread<'a> {
     },
 }
 
-/// Slopes towards a surface are bounded by its size alone.
+/// Practically no bound: slopes towards a surface are bounded by its size alone.
 const ANY_SLOPE: f64 = 1e6;
 
 impl Spread<'_> {
-    /// A direction in which light leaves, where the surface has this normal.
+    /// A direction in which light leaves a point where the surface has this normal.
     #[inline]
     fn sample(&self, normal: DVec3, [a, b]: [f64; 2]) -> DVec3 {
         match self {
@@ -78,7 +80,7 @@ impl Spread<'_> {
         }
     }
 
-    /// The BRDF towards a direction; without the albedo, where light is spread by the cosine.
+    /// The BRDF towards a direction; for scattering by the cosine, without the albedo.
     #[inline]
     pub(crate) fn value(&self, towards: DVec3) -> f64 {
         match self {
@@ -113,7 +115,7 @@ fn per_slope(secant_squared: f64, cosine: f64) -> f64 {
 }
 
 impl Scatterer {
-    /// `None` when no plane looks at light that has come to this leg.
+    /// `None` when no plane sees light that has come to this leg.
     pub(crate) fn new(scene: &Scene, leg: usize) -> Option<Self> {
         let this = &scene.path.legs[leg];
         let leaves = this.leaves?.object;
@@ -141,7 +143,8 @@ impl Scatterer {
                 ]))
             } else {
                 let half = reach(scene, plane, leg, &origins).filter(|_| is_ahead)?;
-                // A plane on what ends the leg looks at some slopes, a plane beyond at any.
+                // A plane on the surface that ends the leg sees some slopes only, a plane beyond it
+                // any.
                 let slopes = plane_on_leg.slopes(w).filter(|_| plane.leg == leg);
                 let slopes = slopes.unwrap_or([ANY_SLOPE; 2]).map(ProfileDensity::cosine);
                 Some(SamplingStrategy::Window([0, 1].map(|axis| {
@@ -155,7 +158,8 @@ impl Scatterer {
         looking.peek()?;
         let aims = looking.map(aim);
         let strategies: Vec<SamplingStrategy> = if by_brdf {
-            // A lobe may be narrower than any window, or wider than all: it has half of the shares.
+            // A lobe may be narrower than any window, or wider than all; it gets half of the
+            // shares.
             let mut strategies: Vec<SamplingStrategy> = aims.flatten().collect();
             let lobes = strategies.len().max(1);
             strategies.extend((0..lobes).map(|_| SamplingStrategy::Lobe));
@@ -167,8 +171,9 @@ impl Scatterer {
         Some(Self { strategies })
     }
 
-    /// A direction in which light leaves a point, where the surface has this normal, and its density with respect to du dv over n · (u, v, ±1);
-    /// `None` when the chosen plane cannot be reached from there, or the direction goes behind the surface.
+    /// A direction in which light leaves a point where the surface has this normal, and its density
+    /// with respect to du dv over n · (u, v, ±1); `None` when the chosen plane cannot be reached
+    /// from the point, or the direction goes behind the surface.
     #[inline]
     pub(crate) fn sample(
         &self,

@@ -1,4 +1,4 @@
-//! Directions in proportion to the radiance of an environment.
+//! Draws directions in proportion to the radiance of an environment.
 
 use crate::line::{direction, ray_through};
 use crate::sampling::LAMBERTIAN;
@@ -7,27 +7,27 @@ use etendue_sampling::{DiscreteDistribution, LatLongSampler, about, cosine_hemis
 use etendue_transform::random::{self, Stream};
 use glam::DVec3;
 
-/// An environment, and how directions of its light are drawn.
+/// An environment, with a strategy to draw directions of its light.
 #[derive(Clone, Debug)]
 pub(crate) struct Sky {
     environment: Environment,
     choice: Choice,
-    /// The share of slopes that are drawn by the cosine instead: where most light goes back, what is
-    /// left goes forward too seldom.
+    /// The share of slopes that are drawn by the cosine instead. It is needed where most light goes
+    /// backwards and the rest would be drawn too rarely.
     by_cosine: f64,
 }
 
-/// What directions are drawn from.
+/// The distribution that directions are drawn from.
 #[derive(Clone, Debug)]
 enum Choice {
-    /// Lobes by their flux.
+    /// Lobes, selected by their flux.
     Lobes(Vec<SphericalGaussian>, DiscreteDistribution),
     Map(LatLongSampler),
 }
 
-/// Directions drawn to see how many go forward.
+/// The number of directions drawn to estimate how many go forward.
 const TRIED: u64 = 1000;
-/// Some are always drawn by the light, and some by the cosine.
+/// The limit keeps some directions drawn by the light.
 const MOST_BY_COSINE: f64 = 0.9;
 const LEAST_BY_COSINE: f64 = 0.1;
 
@@ -52,7 +52,8 @@ impl Sky {
         sky
     }
 
-    /// A direction in which light travels, of unit length, in the frame at the light; from four numbers in (0, 1).
+    /// A unit direction in which light travels, in the frame at the light, from four numbers in (0,
+    /// 1).
     pub(crate) fn sample(&self, r: [f64; 4]) -> DVec3 {
         let from = match &self.choice {
             Choice::Lobes(lobes, flux) => {
@@ -103,8 +104,9 @@ impl Sky {
         radiance(&self.environment, ray)
     }
 
-    /// The irradiance at a point with this normal, from one direction, drawn by the cosine or by the environment with equal chances; `incident`
-    /// says what radiance arrives along a ray at a distance on the first leg.
+    /// The irradiance at a point with this normal, from one direction drawn by the cosine or by the
+    /// environment with equal probability. `incident` returns the radiance that arrives along a ray
+    /// at a distance on the first leg.
     pub(crate) fn irradiance(
         &self,
         point: DVec3,
@@ -137,7 +139,7 @@ pub(crate) fn radiance(environment: &Environment, ray: &TwoPlane) -> f64 {
     }
 }
 
-/// Cosine of the angle to the central ray from which on light goes forward.
+/// The cosine of the angle to the central ray above which light goes forward.
 const FORWARD: f64 = 1e-6;
 
 #[cfg(test)]
@@ -158,7 +160,7 @@ mod tests {
             lobe(DVec3::NEG_Y, 0.8, 0.5),
             lobe(DVec3::X, 1000.0, 0.1),
         ];
-        // Bright on one pixel at the left edge, so that light goes round, and at the poles.
+        // Bright pixels at the left edge, where longitude wraps around, and at the poles.
         let map = LatLong::from_fn(12, 7, |d| {
             let edge = d.z < -0.8 && d.x > 0.0;
             if edge { 4.0 } else { 0.2 * d.y * d.y }

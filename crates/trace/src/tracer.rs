@@ -1,4 +1,4 @@
-//! The forward tracer: photons from the light, leg by leg.
+//! The forward tracer: traces photons from the light, leg by leg.
 
 use crate::arrival::{Arrival, radiance_per_flux};
 use crate::batch_ranges::{BLOCK, BatchRanges};
@@ -17,12 +17,14 @@ use std::ops::Range;
 
 /// The forward tracer of a scene.
 ///
-/// A photon leaves the light and crosses the planes in front of what it meets first; gratings on the way take
-/// their share of it. Blockers absorb it, a Lambertian surface absorbs 1 − albedo of it. What the surface at the end of a leg
-/// sends on crosses the planes on the next one, and so on; anything else it meets ends it.
+/// A photon leaves the light and crosses the planes in front of the first thing it meets; gratings
+/// on the way attenuate it. Blockers absorb it, and a Lambertian surface absorbs the share 1 −
+/// albedo. Light that the surface at the end of a leg scatters, reflects or refracts crosses the
+/// planes on the next leg, and so on; anything else ends the photon.
 ///
-/// What arrives at a surface with a BRDF, on the side it faces, is booked as stopped: the share it reflects has no closed form. Light that
-/// is scattered onwards, by the cosine or by a BRDF, is aimed, and in no account.
+/// Light that arrives at a surface with a BRDF, on the side that the surface faces, is booked as
+/// stopped, because the reflected share has no closed form. Light that is scattered onwards, by the
+/// cosine or by a BRDF, is aimed and not booked.
 #[derive(Debug)]
 pub struct Tracer {
     emitter: Emitter,
@@ -32,25 +34,26 @@ pub struct Tracer {
     numbers: PhotonNumbers,
 }
 
-/// A leg of the path, as photons see it.
+/// A leg of the path for photons.
 #[derive(Debug)]
 struct FlightLeg {
     courses: Both<Course>,
-    /// How light begins the leg; `None` for the first.
+    /// The scattering at the beginning of the leg; `None` for the first.
     bounce: Option<Bounce>,
-    /// What the leg begins and ends on.
+    /// The objects on which the leg begins and ends.
     leaves: Option<Object>,
     ends: Option<Object>,
-    /// What it begins on, if light may meet that again: a flat surface is left for good.
+    /// The object on which the leg begins, if light may meet it again; light never meets a flat
+    /// surface again.
     rejoins: Option<Object>,
-    /// Distances that are zero but for rounding.
+    /// Distances up to which a hit counts as rounding.
     rounding: f64,
 }
 
-/// What photons see that go one way on a leg.
+/// What photons of one heading can meet on a leg.
 #[derive(Debug)]
 struct Course {
-    /// In the frame at the light.
+    /// The frame of the heading, in the frame at the light.
     frame: Frame,
     obstacles: Obstacles,
     planes_on_leg: Vec<PlaneOnLeg>,
@@ -61,18 +64,18 @@ struct Course {
 pub(crate) struct Flight {
     pub(crate) ray: TwoPlane,
     pub(crate) heading: Heading,
-    /// Where it begins, along its way.
+    /// The distance along its heading at which the photon begins.
     pub(crate) from: f64,
-    /// What it adds to radiance space.
+    /// The contribution to radiance space.
     pub(crate) weight: f64,
 }
 
-/// A photon of a block, on the leg that the block has come to.
+/// A photon of a block, on the current leg of the block.
 #[derive(Debug)]
 struct Photon {
     index: u64,
     flight: Flight,
-    /// Whether the ledger is told of it.
+    /// Whether its flux is added to the ledger.
     counts: bool,
 }
 
@@ -80,7 +83,7 @@ impl Tracer {
     /// The tracer of a scene.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
-        // Legs beyond the last plane are of no interest.
+        // Legs beyond the last plane are not traced.
         let last = scene.planes.iter().map(|plane| plane.leg).max();
         let legs = (0..=last.unwrap_or(0)).map(|leg| FlightLeg::new(scene, leg));
         let legs: Vec<FlightLeg> = legs.collect();
@@ -93,11 +96,11 @@ impl Tracer {
         }
     }
 
-    /// A second tracer of photons, for light without extent that no backward ray finds: it shares no random number and no
-    /// aim of the emission with that of [`Self::new`].
+    /// A second tracer of photons, for light without extent that no backward ray finds. It shares
+    /// no random number and no aim of the emission with the tracer of [`Self::new`].
     ///
-    /// It sends light evenly at all of the first surface and at windows before that. How photons are
-    /// followed, and how scattered light is aimed, is the same.
+    /// It emits light uniformly towards the whole first surface and the windows before it. Photons
+    /// are traced, and scattered light is aimed, in the same way.
     #[must_use]
     pub fn evenly(scene: &Scene) -> Self {
         let plain = Self::new(scene);
@@ -112,7 +115,7 @@ impl Tracer {
         }
     }
 
-    /// Emits the photons of a block, of which those drawn beside the light are none.
+    /// Emits the photons of a block, omitting those drawn outside the light.
     #[inline]
     fn emit_block(
         &self,
@@ -122,11 +125,12 @@ impl Tracer {
         ledger: &mut Ledger,
     ) {
         for first in range.clone().step_by(ABREAST) {
-            // Beyond the end the last is emitted once more, and goes nowhere.
+            // Beyond the end the last photon is emitted again and discarded.
             let index = |i: usize| (first + i as u64).min(range.end - 1);
             let (rays, weights) = self.emitter.emit(|i, block| numbers.words(index(i), block));
             for ((index, ray), weight) in (first..range.end).zip(rays).zip(weights) {
-                // Drawn in the bounds of a disc, but beside it: it is counted, and carries nothing anywhere.
+                // A point drawn in the bounds of a disc but outside it is counted, and carries no
+                // light.
                 if weight > 0.0 {
                     ledger.emitted += weight / radiance_per_flux(&ray);
                     photons.push(Photon {
@@ -144,8 +148,8 @@ impl Tracer {
         }
     }
 
-    /// Follows a photon over a leg: what it meets, the planes it crosses before that, and how it
-    /// begins the next leg. False where it ends.
+    /// Traces a photon over a leg: what it meets, the planes it crosses before that, and its start
+    /// on the next leg. Returns false where the photon ends.
     #[inline]
     fn follow(
         &self,
@@ -156,7 +160,7 @@ impl Tracer {
         ledger: &mut Ledger,
     ) -> bool {
         let this = &self.legs[leg];
-        // Scattered light is aimed at windows: what becomes of it is in no account.
+        // Scattered light is aimed at windows and not booked.
         let mut beyond = Ledger::default();
         let account = if photon.counts { ledger } else { &mut beyond };
         let Flight {
@@ -237,7 +241,8 @@ impl FlightLeg {
         }
     }
 
-    /// How a photon that arrives at the end of the leg before begins this one; `None` when it does not.
+    /// The start on this leg of a photon that arrives at the end of the previous leg; `None` when
+    /// it ends there.
     #[inline(never)]
     fn begin(&self, before: &Course, arrival: &Arrival, words: [u32; 4]) -> Option<Flight> {
         let arrival = arrival.moved(&before.frame, &self.courses.along.frame);
@@ -252,7 +257,7 @@ impl FlightLeg {
         })
     }
 
-    /// The planes a photon crosses before what it meets.
+    /// Reports the planes that a photon crosses before it meets anything.
     #[inline]
     fn record(
         &self,
@@ -269,8 +274,8 @@ impl FlightLeg {
             planes_on_leg,
             ..
         } = course;
-        // What would meet again what it has left is gone, even where something stops it before: no
-        // blocker beyond a plane lights it.
+        // Light that would meet again the object it has left is lost, even if something stops it
+        // before: a blocker beyond a plane does not add light.
         let stopped = self.rejoins.is_some() && met.is_some();
         if stopped && obstacles.meets(self.rejoins, &ray, from) {
             return;
@@ -282,12 +287,14 @@ impl FlightLeg {
             let Some(distance) = plane_on_leg.crossing(&ray, from) else {
                 continue;
             };
-            // A plane beside something is at the very same distance: no rounding can come between.
+            // A plane beside an object is at exactly the same distance, so rounding cannot separate
+            // them.
             let crossed = match side {
                 Side::Before => distance <= end,
                 Side::After => distance < end,
             };
-            // A surface that is not flat, or not across the leg, begins before the plane that looks at what it receives.
+            // A surface that is not flat, or not across the leg, may begin before the plane that
+            // records the light it receives.
             let ends = |what: &HitKind| what.is(self.ends);
             let crossed =
                 crossed || on_path && obstacles.visibility(&ray, from, distance, side, ends) > 0.0;
@@ -365,7 +372,7 @@ impl PhotonSource for Tracer {
                 record(plane, crossings);
                 crossings.clear();
             }
-            // Sums of sums: rounding grows with the number of blocks, not of photons.
+            // Sums of sums: rounding grows with the number of blocks, not with that of photons.
             total.add(&block);
             progress(end - start);
         }

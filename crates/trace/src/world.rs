@@ -1,11 +1,11 @@
-//! Crossings of a plane as rays of the world.
+//! Crossings of a plane as rays in world coordinates.
 
 use crate::plane_on_leg::PlaneOnLeg;
 use etendue_field::{Crossing, Frame, TwoPlane};
 use etendue_scene::Scene;
 use glam::DVec3;
 
-/// Turns crossings of a plane into rays of the world with their power.
+/// Converts crossings of a plane to rays in world coordinates with their power.
 #[derive(Debug)]
 pub struct PlaneInWorld {
     plane_on_leg: PlaneOnLeg,
@@ -25,8 +25,9 @@ impl PlaneInWorld {
         })
     }
 
-    /// Where a ray crosses the plane, in metres, and the unit vector along which light travels there. On a surface itself the point is
-    /// one of the surface. `None` for coordinates that no ray has.
+    /// The point where a ray crosses the plane, in metres, and the unit vector along which light
+    /// travels there. For a plane on a surface the point lies on the surface. `None` for
+    /// coordinates that no ray has.
     #[must_use]
     pub fn ray(&self, seen: &TwoPlane) -> Option<[DVec3; 2]> {
         let (point, ..) = self.plane_on_leg.point([seen.x, seen.y])?;
@@ -41,8 +42,8 @@ impl PlaneInWorld {
         Some([self.leg.to_world(point), along])
     }
 
-    /// The flux of a photon times the number of those emitted, W: its weight without what it was multiplied by for radiance space,
-    /// 1 over cos θ dω / du dv (docs/conventions.md).
+    /// The flux of a photon times the number of photons emitted, W: its weight without the factor
+    /// that converts to radiance space, 1 over cos θ dω / du dv (docs/conventions.md).
     #[must_use]
     pub fn flux(&self, crossing: &Crossing) -> f64 {
         crossing.weight * self.plane_on_leg.flux_per_radiance(&crossing.ray)

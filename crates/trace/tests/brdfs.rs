@@ -1,4 +1,5 @@
-//! Surfaces with BRDFs, three ways: photons aimed at the windows, photons as light emits and reflects them, and rays traced back.
+//! Tests surfaces with BRDFs in three ways: photons aimed at the windows, photons emitted and
+//! reflected without aiming, and backward rays.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -6,10 +7,10 @@ use crate::common::estimates;
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_trace::{Backward, Tracer};
 
-/// What a scene is called, its surfaces, its path, its planes.
+/// The name of a scene, its surfaces, its path and its planes.
 type Case = (&'static str, &'static str, &'static str, &'static str);
 
-/// All there is to see of one surface.
+/// All kinds of planes on one surface.
 const ON_IT: &str = r#"(name: "incidence", at: Before("it"), orientation: Tangent), (name: "curvature", at: Before("it"), orientation: LocalNormals),
     (name: "mirrored", at: Before("it"), orientation: Mirrored), (name: "reflected", at: After("it"), orientation: LocalNormals),
     (name: "back", at: After("it"), orientation: Tangent, quantity: DifferentialIrradiance),
@@ -89,7 +90,8 @@ const CASES: &[Case] = &[
 ];
 
 fn scene((_, surfaces, path, planes): &Case, emission: &str, photons: u32, seed: u32) -> Scene {
-    // No angle to the normal comes near 90 degrees: the variance of what plain photons weigh there is infinite.
+    // Angles to the normal stay well below 90 degrees, where the variance of the weights of plain
+    // photons is infinite.
     let u = if surfaces.contains("0.966") { 0.2 } else { 0.4 };
     let text = format!(
         r#"(
@@ -135,7 +137,7 @@ fn all_ways_agree(cases: &[Case]) {
                 for (a, b) in a.iter().zip(b) {
                     let z = (a[0] - b[0]) / a[1].hypot(b[1]);
                     tests += 1;
-                    // Some 300 tests: 4.5 standard errors are passed in one run of 500.
+                    // Some 300 tests: 4.5 standard errors are exceeded in one run of 500.
                     assert!(z.abs() < 4.5, "{at}: {a:?} and {b:?}");
                 }
                 let most = if way == "aimed" { 0.04 } else { 0.3 };
@@ -147,7 +149,7 @@ fn all_ways_agree(cases: &[Case]) {
     assert!(tests > 120, "{tests} tests");
 }
 
-/// What a mirror sends off itself is what arrives, turned about the normals.
+/// The light that leaves a mirror is the arriving light, rotated about the normals.
 #[test]
 fn mirrored_light_is_what_a_mirror_sends_on() {
     let surface = r#"Smooth(name: "it", center: (0, 0, 1), facing: (0.605, 0.1, -0.796), form: Sphere(0.8), aperture: 0.5, event: Mirror)"#;
@@ -156,7 +158,7 @@ fn mirrored_light_is_what_a_mirror_sends_on() {
     let scene = scene(&case, "Aimed", 100_000, 1);
     let (photons, _) = estimates(&Tracer::new(&scene), &scene);
     for (a, b) in photons[0].iter().zip(&photons[1]) {
-        // The same photons: rounding.
+        // The photons are the same, so the difference is rounding.
         assert!(
             (a[0] - b[0]).abs() < 1e-9 * photons[0][0][0],
             "{a:?} and {b:?}"
@@ -164,10 +166,12 @@ fn mirrored_light_is_what_a_mirror_sends_on() {
     }
 }
 
-/// A beam on a rough plane: all that leaves it over what arrives is its directional albedo, known by a quadrature of its own.
+/// A beam on a rough plane: the ratio of leaving to arriving light is the directional albedo, known
+/// from a separate quadrature.
 #[test]
 fn exitant_over_incident_flux_is_the_directional_albedo() {
-    // ∫ f cos θ dω of GGX with α = 0.5, Gauss-Legendre over cos θ and equal steps around, converged to 7 digits.
+    // ∫ f cos θ dω of GGX with α = 0.5, Gauss-Legendre over cos θ and equal steps in azimuth,
+    // converged to 7 digits.
     for (angle, albedo) in [(0.6_f64, 0.680_308_7), (1.2, 0.702_574_3)] {
         let (sin, cos) = angle.sin_cos();
         let text = format!(
@@ -199,7 +203,7 @@ fn exitant_over_incident_flux_is_the_directional_albedo() {
     }
 }
 
-/// The example in the repository, both ways.
+/// The example in the repository, by both tracers.
 #[test]
 fn both_ways_agree_on_the_sphere_of_table_1() {
     let file = SceneFile::parse(include_str!("../../../scenes/table1/ggx_sphere.ron")).unwrap();
@@ -213,7 +217,7 @@ fn both_ways_agree_on_the_sphere_of_table_1() {
         let name = &scene.planes[plane].name;
         for (a, b) in a.iter().zip(b) {
             let z = (a[0] - b[0]) / a[1].hypot(b[1]);
-            // 21 tests: 4 standard errors are passed in one run of 700.
+            // 21 tests: 4 standard errors are exceeded in one run of 700.
             assert!(z.abs() < 4.0, "{name}: {a:?} and {b:?}");
         }
         assert!(b[0][1] < 0.02 * b[0][0], "{name}: {b:?} is too noisy");

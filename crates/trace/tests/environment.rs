@@ -1,4 +1,4 @@
-//! Light from far away: aimed, plain and backward, and against known integrals.
+//! Tests light from environments: aimed, plain and backward, and against known integrals.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -67,7 +67,7 @@ impl Bench<'_> {
         resolve("test", SceneFile::parse(&text).unwrap(), folder, u64::MAX).unwrap()
     }
 
-    /// Three ways, at each plane; the number of tests.
+    /// Compares the three ways at each plane; returns the number of tests.
     fn agrees(&self, what: &str) -> usize {
         let aimed = self.scene("Aimed", 600_000);
         let plain = self.scene("Plain", 2_000_000);
@@ -89,7 +89,7 @@ impl Bench<'_> {
                 for (a, b) in a.iter().zip(b) {
                     let z = (a[0] - b[0]) / a[1].hypot(b[1]);
                     tests += 1;
-                    // Some 200 tests: 4.3 standard errors are passed in one run of 300.
+                    // Some 200 tests: 4.3 standard errors are exceeded in one run of 300.
                     assert!(z.abs() < 4.3, "{what}: {way} at {name}: {a:?} and {b:?}");
                 }
             }
@@ -98,7 +98,7 @@ impl Bench<'_> {
     }
 }
 
-/// A map of 24 × 12 pixels, faint but for one, as a file.
+/// A map of 24 × 12 pixels, all faint but one, written to a file.
 fn write_map(folder: &Path, name: &str, bright: (usize, usize)) {
     let map = LatLong::from_fn(24, 12, |d| 0.1 + 0.05 * d.y);
     #[expect(clippy::cast_possible_truncation, reason = "what the file holds")]
@@ -113,7 +113,7 @@ fn write_map(folder: &Path, name: &str, bright: (usize, usize)) {
     image.write().to_file(folder.join(name)).unwrap();
 }
 
-/// Turning the picture by a pixel is seen, turning the axes back undoes it.
+/// Shifting the picture by a pixel has an effect, and rotating the axes back undoes it.
 #[test]
 fn a_map_is_where_its_axes_put_it() {
     let folder = tempfile::tempdir().unwrap();
@@ -144,7 +144,8 @@ fn a_map_is_where_its_axes_put_it() {
         let z = pairs.map(|(a, b)| (a[0] - b[0]).abs() / a[1].hypot(b[1]));
         z.fold(0.0, f64::max)
     };
-    // Six standard errors, and four of differences that share their random numbers. The faint pixels are alike around the pole.
+    // Six standard errors, and four for differences that share their random numbers. The faint
+    // pixels around the pole are equal.
     assert!(differs(0, 1) > 6.0, "{}: {found:?}", differs(0, 1));
     assert!(differs(0, 2) < 4.0, "{}: {found:?}", differs(0, 2));
 }
@@ -257,7 +258,7 @@ fn irradiance(light: &str) -> [[f64; 2]; 2] {
         ..Bench::default()
     };
     let scene = bench.scene("Aimed", 400_000);
-    // Of Hann windows in x, y, u and v.
+    // The integral of Hann windows in x, y, u and v.
     let window = 0.4_f64.powi(4);
     let found = [
         estimates(&Tracer::new(&scene), &scene).0,
@@ -268,7 +269,7 @@ fn irradiance(light: &str) -> [[f64; 2]; 2] {
 
 #[test]
 fn even_light_gives_a_wall_pi_times_its_radiance() {
-    // Even to a millionth.
+    // Uniform to a millionth.
     let even = "Environment(center: (0, 0, 0), map: Lobes([(from: (1, 2, -1), width: 1000, radiance: 1.5)]))";
     for [found, error] in irradiance(even) {
         assert!(error < 5e-3 * found, "{found} ± {error}");
@@ -295,7 +296,7 @@ fn a_lobe_gives_a_wall_what_a_plain_sum_says() {
     sum *= 0.5 * PI * TAU / f64::from(n * n);
     for [found, error] in irradiance(lobe) {
         assert!(error < 5e-3 * found, "{found} ± {error}");
-        // Four standard errors; mid-points are good to (step)²/24 of the whole, 1e-6.
+        // Four standard errors; the mid-point rule is accurate to (step)²/24 of the whole, 1e-6.
         assert!(
             (found - sum).abs() < 4.0 * error,
             "{found} ± {error}, {sum}"

@@ -1,4 +1,5 @@
-//! Several reflections in a row, oblique surfaces and light that leaves a mesh: three ways, and a plain quadrature.
+//! Tests several reflections in a row, oblique surfaces and light that leaves a mesh: in three
+//! ways, and against a plain quadrature.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -14,7 +15,7 @@ const WALL: &str = r#"Rectangle(name: "wall", center: (0.1, 0, 2), size: (2, 1.6
 const STAR: &str = r#"Mesh(name: "wall", center: (0, 0, 2), mesh: Star(radius: 0.5, relief: 0.3, lobes: 4, rings: 30), albedo: 0.8)"#;
 const FLOOR: &str = r#"Rectangle(name: "floor", center: (1.5, 0.3, 1.8), size: (2, 2), facing: (-1, 0, 0.1), albedo: 0.5)"#;
 const CEILING: &str = r#"Rectangle(name: "ceiling", center: (0.6, 1.2, 3), size: (1.5, 1.5), facing: (0, -1, -0.2), albedo: 0.9)"#;
-/// Stands beside the light's way, and in that of what leaves the wall.
+/// Stands beside the light's path, and in the path of light that leaves the wall.
 const BLACK: &str =
     r#"Shapes(name: "black", center: (0.7, 0, 1.6), shapes: [Disc(center: (0, 0), radius: 0.2)])"#;
 const GRATING: &str =
@@ -35,7 +36,7 @@ fn windowed(
     window: &str,
 ) -> Scene {
     let legs = visits.len();
-    // The near side of a mesh looks back.
+    // The near side of a mesh faces backwards.
     let floor = match wall {
         STAR => FLOOR.replace("(1.5, 0.3, 1.8)", "(1.3, 0.3, 0.6)"),
         _ => FLOOR.to_owned(),
@@ -78,7 +79,7 @@ fn all_ways_agree_on_every_leg() {
         (STAR, &nearer),
         (STAR, GRATING),
     ] {
-        // What leaves a mesh goes anywhere: a plain photon seldom finds a third surface.
+        // Light leaves a mesh in all directions, so a plain photon rarely finds a third surface.
         let visits = &["wall", "floor", "ceiling"][..if wall == STAR { 2 } else { 3 }];
         let aimed = scene(wall, blockers, visits, "Aimed", 800_000);
         let plain = scene(wall, blockers, visits, "Plain", 2_500_000);
@@ -93,7 +94,7 @@ fn all_ways_agree_on_every_leg() {
                 for (a, b) in a.iter().zip(b) {
                     let z = (a[0] - b[0]) / a[1].hypot(b[1]);
                     tests += 1;
-                    // Some 120 tests: 4.2 standard errors are passed in one run of 300.
+                    // Some 120 tests: 4.2 standard errors are exceeded in one run of 300.
                     assert!(
                         z.abs() < 4.2,
                         "{way} at {name}: {a:?} and {b:?}, {wall}, {blockers}"
@@ -113,7 +114,7 @@ fn all_ways_agree_on_every_leg() {
 /// ∫ L W at the plane before the floor, whose light left the wall: every integral as a plain sum, in world coordinates.
 #[test]
 fn light_that_left_an_oblique_wall_is_what_a_plain_sum_says() {
-    // Mid-points of Hann windows converge faster than any power.
+    // The mid-point rule for Hann windows converges faster than any power.
     const N: u32 = 12;
     let wide = WALL.replace("size: (2, 1.6)", "size: (3.2, 3.2)");
     let window = "(x: Hann(0.3), y: Hann(0.2), u: Hann(0.3), v: Hann(0.3))";
@@ -152,7 +153,7 @@ fn light_that_left_an_oblique_wall_is_what_a_plain_sum_says() {
     let (photons, _) = estimates(&Tracer::new(&scene), &scene);
     let [mean, error] = photons[2][0];
     assert!(error < 3e-3 * mean, "{mean} ± {error}");
-    // Mid-points of the light, 8 × 8 of them, are good to 1e-3; the rest is noise.
+    // The mid-point rule over the light, 8 × 8 points, is accurate to 1e-3; the rest is noise.
     assert!(
         (mean - sum).abs() < 4.0 * error + 1e-3 * sum,
         "{mean} ± {error}, {sum}"
@@ -220,7 +221,7 @@ fn both_ways_agree_behind_smooth_surfaces() {
             let name = &scene.planes[plane].name;
             for (a, b) in a.iter().zip(b) {
                 let z = (a[0] - b[0]) / a[1].hypot(b[1]);
-                // Some 60 tests: 4 standard errors are passed in one run of 250.
+                // Some 60 tests: 4 standard errors are exceeded in one run of 250.
                 assert!(z.abs() < 4.0, "{what}: {name}: {a:?} and {b:?}");
             }
             for [mean, error] in [a[0], b[0]] {
@@ -233,11 +234,12 @@ fn both_ways_agree_behind_smooth_surfaces() {
     }
 }
 
-/// A wall that lights a floor near to it from all around, so that light goes along and against the central ray.
+/// A wall that lights a nearby floor from all around, so that light travels along and against the
+/// central ray.
 const WIDE: &str = r#"Rectangle(name: "wall", center: (-0.5, 0, 1.2), size: (2, 3), facing: (0, 0, -1), albedo: 0.9)"#;
 const GLOSSY: &str = r#"Smooth(name: "wall", center: (-0.3, 0, 1.2), facing: (0, 0, -1), form: Plane, aperture: 1, event: Reflects(brdf: (lobe: Phong(2), albedo: 0.9)))"#;
 const NEAR: &str = r#"Rectangle(name: "floor", center: (-0.5, 0, 1), size: (0.4, 0.5), facing: (0, 0, 1), albedo: 0.5)"#;
-/// Stands in the way of light that goes back.
+/// Occludes light that travels backwards.
 const CARD: &str = r#"Shapes(name: "card", center: (-0.8, 0, 1.1), shapes: [Rectangle(center: (0, 0), size: (0.15, 0.2))])"#;
 const ABOVE: &str = r#"Rectangle(name: "ceiling", center: (-0.9, 0, 1.16), size: (0.3, 0.4), facing: (0, 0, -1), albedo: 0.5)"#;
 
@@ -281,7 +283,7 @@ fn light_that_goes_back_along_a_leg_arrives() {
             let name = &scene.planes[plane].name;
             for (a, b) in a.iter().zip(b) {
                 let z = (a[0] - b[0]) / a[1].hypot(b[1]);
-                // 24 tests: 4 standard errors are passed in one run of 600.
+                // 24 tests: 4 standard errors are exceeded in one run of 600.
                 assert!(z.abs() < 4.0, "{name}: {a:?} and {b:?}, {wall}, {blockers}");
             }
             let [mean, error] = b[0];

@@ -1,6 +1,7 @@
-//! What a mesh of a million triangles takes: it has one hierarchy, whatever looks at it.
+//! Measures the memory of a mesh of a million triangles: it has one hierarchy, however many legs
+//! see it.
 //!
-//! A process of its own, since it asks for what the whole process holds.
+//! This is a process of its own, since it measures the memory of the whole process.
 
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
@@ -24,7 +25,7 @@ const SCENE: &str = r#"(
     frequencies: (rho: (max: 4), nu: (max: 4)),
 )"#;
 
-/// A number of bytes that the kernel tells about this process.
+/// A number of bytes that the kernel reports for this process.
 fn bytes(what: &str) -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap();
     let line = status.lines().find(|line| line.starts_with(what)).unwrap();
@@ -46,7 +47,7 @@ fn all_legs_and_tracers_share_what_a_mesh_takes() {
     let tracers = [Tracer::new(&scene), Tracer::evenly(&scene)];
     let backward = Backward::new(&scene).unwrap();
     let more = each(bytes("VmRSS") - held);
-    // A triangle's number takes 4.
+    // The number of a triangle takes 4 bytes.
     assert!(more < 4.0, "{more} more bytes a triangle for three tracers");
     drop((tracers, backward));
 }

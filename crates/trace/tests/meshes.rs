@@ -1,5 +1,5 @@
-//! Random smooth meshes: each is refused in words, or has unit normals and finite frames and can be
-//! traced.
+//! Tests random smooth meshes: each is refused with a message, or has unit normals and finite
+//! frames and can be traced.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -15,7 +15,7 @@ use std::path::Path;
 
 const MESHES: u64 = 2000;
 
-/// Numbers of one mesh, one after the other.
+/// The random numbers of one mesh, in sequence.
 struct Draw {
     mesh: u64,
     next: Cell<u32>,
@@ -110,11 +110,11 @@ fn parts(draw: &Draw, kind: u64) -> Parts {
     let any = draw.below(parts.triangles.len());
     let [a, b, c] = parts.triangles[any];
     match kind {
-        // Wound the other way, there twice, and there from both sides.
+        // A reversed triangle, a duplicate, and one present from both sides.
         3 => parts.triangles[any] = [a, c, b],
         4 => parts.triangles.extend([parts.triangles[any]; 2]),
         5 => parts.triangles.push([a, c, b]),
-        // The other side of all of it.
+        // Reverses the whole mesh.
         6 => {
             let other = |[a, b, c]: &[usize; 3]| [*a, *c, *b];
             let other: Vec<_> = parts.triangles.iter().map(other).collect();
@@ -260,7 +260,8 @@ fn random_smooth_meshes_are_refused_or_traced() {
             Err(other) => panic!("{other}: {text}"),
         }
     }
-    // Both answers must occur often, or the meshes were too wild or too tame to ask anything.
+    // Both outcomes must occur often; otherwise the meshes were too irregular or too regular for
+    // the test.
     let often = |counts: [u32; 13]| counts.iter().sum::<u32>() > 400;
     assert!(often(sound) && often(refused), "{sound:?} and {refused:?}");
 }

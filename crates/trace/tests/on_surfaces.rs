@@ -1,4 +1,4 @@
-//! Planes in the coordinates of surfaces met obliquely, by photons and by backward rays.
+//! Tests planes in the coordinates of obliquely met surfaces, by photons and by backward rays.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -6,7 +6,7 @@ use crate::common::estimates;
 use etendue_scene::{SceneFile, resolve};
 use etendue_trace::{Backward, Tracer};
 
-/// Towards where light comes from, turned out of the plane of X and the central ray.
+/// Towards the arriving light, rotated out of the plane of X and the central ray.
 const FACING: &str = "(0.3, -0.5, -0.8)";
 
 fn smooth(event: &str) -> String {
@@ -15,7 +15,7 @@ fn smooth(event: &str) -> String {
     )
 }
 
-/// Both tracers see the same light at every plane that is called for.
+/// Checks that both tracers find the same light at every given plane.
 fn agree(surface: &str, planes: &[&str]) {
     agree_along("\"s\"", surface, planes);
 }
@@ -44,11 +44,11 @@ fn agree_in(window: &str, visits: &str, surface: &str, planes: &[&str]) {
     let (photons, _) = estimates(&Tracer::new(&scene), &scene);
     let (rays, _) = estimates(&Backward::new(&scene).unwrap(), &scene);
     for (plane, (a, b)) in planes.iter().zip(photons.iter().zip(&rays)) {
-        // Noise must not hide light that is missing.
+        // Noise must not be so large that it hides missing light.
         assert!(a[0][1] < 0.02 * b[0][0], "{surface}, {plane}: {a:?}");
         for (a, b) in a.iter().zip(b) {
             let z = (a[0] - b[0]) / a[1].hypot(b[1]);
-            // Some 70 tests: 4.5 standard errors are passed in one run of 2,000.
+            // Some 70 tests: 4.5 standard errors are exceeded in one run of 2,000.
             assert!(z.abs() < 4.5, "{surface}, {plane}: {a:?} and {b:?}");
         }
     }
@@ -58,7 +58,7 @@ fn named((i, plane): (usize, &&str)) -> String {
     format!("(name: \"p{i}\", {plane})")
 }
 
-/// Light that arrives is seen in full, whatever the surface does to it.
+/// Arriving light is recorded completely, whatever the surface does to it.
 #[test]
 fn arriving() {
     let tangent = r#"at: Before("s"), orientation: Tangent"#;
@@ -85,7 +85,7 @@ fn arriving_behind_the_light() {
     }
 }
 
-/// A tangent plane that goes on beyond its surface sees what passes beside.
+/// A tangent plane that extends beyond its surface records light that passes beside.
 #[test]
 fn arriving_beside() {
     for event in ["Mirror", "Reflects(brdf: (lobe: Lambertian))"] {
@@ -94,14 +94,14 @@ fn arriving_beside() {
     }
 }
 
-/// Light that leaves a wall is seen about its normal, and not about the central ray.
+/// Light that leaves a wall is recorded about the wall's normal, and not about the central ray.
 #[test]
 fn leaving() {
     let wall =
         format!(r#"Rectangle(name: "s", center: (0, 0, 1), size: (3, 3), facing: {FACING})"#);
     let after = r#"at: After("s"), orientation: Tangent"#;
     agree(&wall, &[after]);
-    // The wall's axes are not those of the leg.
+    // The wall's axes differ from those of the leg.
     agree_in(
         "(x: Hann(0.4), y: Box(0.05), u: Hann(0.3))",
         "\"s\"",
@@ -110,8 +110,8 @@ fn leaving() {
     );
 }
 
-/// Some slopes of a window may look along a tilted wall, or at its back: what is seen of it has no
-/// end there.
+/// Some slopes of a window may point along a tilted wall, or at its back: the visible part of the
+/// wall is then unbounded.
 #[test]
 fn leaving_along_the_wall() {
     let wall = r#"Smooth(name: "s", center: (0, 0, 1.5), facing: (0.93, 0, -0.36), form: Plane, aperture: 4.2, event: Reflects(brdf: (lobe: Lambertian)))"#;
@@ -119,7 +119,7 @@ fn leaving_along_the_wall() {
     agree_in(window, "\"s\"", wall, &["at: Distance(1.6)"]);
 }
 
-/// Narrow slopes, too, are found from all of a wide light.
+/// Narrow slopes, too, are found from the whole of a wide light.
 #[test]
 fn narrow_slopes() {
     let window = "(x: Hann(0.1), u: Box(0.001))";
@@ -134,7 +134,7 @@ fn narrow_slopes() {
     }
 }
 
-/// Light for a plane on the second surface comes from all of the first.
+/// Light for a plane on the second surface comes from the whole first surface.
 #[test]
 fn arriving_from_a_wall() {
     let wall =

@@ -1,4 +1,5 @@
-//! The tracer against closed forms, its two ways of emission against each other, and its ledger.
+//! Tests the tracer against closed forms, its two kinds of emission against each other, and its
+//! ledger.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -73,7 +74,7 @@ fn aimed_and_plain_emission_agree_at_every_plane() {
     for (plane, (aimed, plain)) in estimate("Aimed").iter().zip(estimate("Plain")).enumerate() {
         let z = (aimed[0] - plain[0]) / aimed[1].hypot(plain[1]);
         assert!(aimed[1] < plain[1], "aiming does not pay at plane {plane}");
-        // Four planes; 3.7 standard errors are passed once in a thousand runs.
+        // Four planes; 3.7 standard errors are exceeded once in a thousand runs.
         assert!(z.abs() < 3.7, "plane {plane}: {aimed:?} and {plain:?}");
     }
 }
@@ -99,7 +100,7 @@ fn ledger_closes() {
     }
 }
 
-/// Plain emission of a Lambertian square sends out L · area · π.
+/// Plain emission of a Lambertian square emits L · area · π.
 #[test]
 fn plain_flux_is_radiance_times_area_times_pi() {
     let scene = scene(&[
@@ -117,7 +118,8 @@ fn plain_flux_is_radiance_times_area_times_pi() {
     ); // every photon carries the same: rounding
 }
 
-/// Blockers that close the plane let nothing through; without blockers both sides of it see the same photons.
+/// Blockers that close the plane let nothing through; without blockers both sides of the plane see
+/// the same photons.
 #[test]
 fn blockers_block() {
     let count = |overrides: &[(&str, &str)]| {

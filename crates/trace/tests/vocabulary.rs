@@ -1,4 +1,4 @@
-//! Every kind of light, blocker and plane, three ways: aimed, plain, and traced backwards.
+//! Tests every kind of light, blocker and plane in three ways: aimed, plain and backward.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -6,7 +6,7 @@ use crate::common::estimates;
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_trace::{Backward, Tracer};
 
-/// A scene with a light, blockers, and planes on both ways.
+/// A scene with a light, blockers, and planes on both legs.
 fn scene(light: &str, blockers: &str, emission: &str, photons: u32) -> Scene {
     let text = format!(
         r#"(
@@ -71,7 +71,7 @@ fn all_ways_agree() {
                     for (a, b) in a.iter().zip(b) {
                         let z = (a[0] - b[0]) / a[1].hypot(b[1]);
                         tests += 1;
-                        // Some 400 tests: 4.5 standard errors are passed in one run of 400.
+                        // Some 400 tests: 4.5 standard errors are exceeded in one run of 400.
                         assert!(
                             z.abs() < 4.5,
                             "{of}: {way} at plane {plane}: {a:?} and {b:?}"

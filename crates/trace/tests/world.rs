@@ -1,4 +1,5 @@
-//! Crossings as rays of the world: they hold the flux that crossed, and lie on the lines that photons go along.
+//! Tests crossings as rays in world coordinates: they hold the flux that crossed, and lie on the
+//! lines of the photons.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -9,7 +10,8 @@ use glam::DVec3;
 use std::f64::consts::PI;
 use std::path::Path;
 
-/// A square light off the origin of the world that shines obliquely; on a curved glossy surface, if that is visited.
+/// A square light away from the world's origin that shines obliquely, on a curved glossy surface if
+/// that is visited.
 fn scene(visits: &str, planes: &str) -> Scene {
     let text = format!(
         r#"(light: Rectangle(center: (0.3, -0.2, 0.1), size: (0.06, 0.04), radiance: 2),
@@ -23,7 +25,7 @@ fn scene(visits: &str, planes: &str) -> Scene {
     resolve("test", file, Path::new("."), u64::MAX).unwrap()
 }
 
-/// All photons that cross a plane: where, along which direction, and their flux in W.
+/// All photons that cross a plane: position, direction, and flux in W.
 fn rays(scene: &Scene, plane: usize) -> Vec<(DVec3, DVec3, f64)> {
     let tracer = Tracer::new(scene);
     let world = PlaneInWorld::new(scene, plane).unwrap();
@@ -46,7 +48,8 @@ fn total(rays: &[(DVec3, DVec3, f64)]) -> f64 {
     rays.iter().map(|(.., watts)| watts).sum()
 }
 
-/// All light that a Lambertian rectangle sends out: π L A. Emission plain, each photon has the same flux.
+/// All light that a Lambertian rectangle emits: π L A. With plain emission each photon has the same
+/// flux.
 #[test]
 fn at_the_light_it_is_the_flux_of_the_light() {
     let scene = scene(
@@ -56,21 +59,22 @@ fn at_the_light_it_is_the_flux_of_the_light() {
     for plane in 0..2 {
         let rays = rays(&scene, plane);
         let expected = PI * 2.0 * 0.06 * 0.04;
-        // The sum of 32768 roundings; on the way light grazes the surface beside, and some is lost.
+        // The sum of 32768 rounding errors; on the way light grazes the adjacent surface, and some
+        // is lost.
         let slack = [1e-11, 0.3][plane];
         assert!(
             (total(&rays) / expected - 1.0).abs() < slack,
             "{}",
             total(&rays)
         );
-        // Back along each ray there is the light.
+        // Each ray traced back ends at the light.
         let (center, d) = (DVec3::new(0.3, -0.2, 0.1), DVec3::new(0.0, 0.6, 0.8));
         for (point, along, _) in rays {
             assert!((along.length() - 1.0).abs() < 1e-12 && along.dot(d) > 0.0);
             let back = (point - center).dot(d) / along.dot(d);
             let from = point - back * along - center;
             let y = DVec3::new(0.0, 0.8, -0.6);
-            // Half-sides, and rounding that steep rays magnify.
+            // Half-sides, plus rounding, which steep rays magnify.
             let steep = 1.0 / along.dot(d);
             assert!(
                 from.x.abs() < 0.03 + 1e-12 * steep && from.dot(y).abs() < 0.02 + 1e-12 * steep,
@@ -80,7 +84,8 @@ fn at_the_light_it_is_the_flux_of_the_light() {
     }
 }
 
-/// Planes on one hit see the same photons in other coordinates: flux, directions and lines are the same.
+/// Planes on one hit record the same photons in different coordinates: flux, directions and lines
+/// are the same.
 #[test]
 fn planes_on_a_surface_have_one_flux() {
     let planes = r#"(name: "across", at: Before("it")), (name: "tangent", at: Before("it"), orientation: Tangent),
@@ -92,13 +97,14 @@ fn planes_on_a_surface_have_one_flux() {
     for ((p, d, watts), (q, e, same)) in local.iter().zip(&mirrored) {
         assert!((*p - *q).length() < 1e-12 && (*d - *e).length() < 1e-9); // arcsines of numbers near 1 lose half their digits
         assert!((watts / same - 1.0).abs() < 1e-9); // the same
-        // On the sphere of radius 2 whose vertex is the central hit.
+        // The point lies on the sphere of radius 2 whose vertex is the central hit.
         let normal = DVec3::new(0.2, -0.5, -1.0).normalize();
         let center = DVec3::new(0.3, 0.4, 0.9) - 2.0 * normal;
         assert!(((*p - center).length() - 2.0).abs() < 1e-9);
         assert!(d.dot(*p - center) < 0.0); // it arrives from outside
     }
-    // The same photons among those of planes that see more, or other ones: on the same line, with the same power.
+    // The same photons occur among those of planes that see more or different ones: on the same
+    // line, with the same power.
     for others in [&across, &tangent] {
         let mut found = 0;
         for (p, d, watts) in &local[..50] {

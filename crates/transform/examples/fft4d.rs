@@ -1,11 +1,11 @@
-//! Times the 4D real transform, or transforms a file; the other side of `tests/peers/fft4d.py`.
+//! Times the 4D real transform, or transforms a file; the counterpart of `tests/peers/fft4d.py`.
 //!
 //!     cargo run --release -p etendue-transform --example fft4d -- time 64 [ROUNDS] [THREADS]
 //!     cargo run --release -p etendue-transform --example fft4d -- serve 64 kept|fresh
 //!     cargo run --release -p etendue-transform --example fft4d -- file NX NY NU NV IN OUT
 //!
-//! `serve` answers each line of its input with the milliseconds of one transform, and the end of it with its peak
-//! memory in megabytes. `file` reads and writes raw little-endian f64.
+//! `serve` answers each line of its input with the milliseconds of one transform, and the end of
+//! input with its peak memory in megabytes. `file` reads and writes raw little-endian f64.
 
 #![allow(clippy::print_stdout, reason = "its purpose")]
 
@@ -33,12 +33,12 @@ fn main() -> Result<(), Failure> {
     }
 }
 
-/// A transform with its input, n⁴ reals, and the memory it is done in.
+/// A transform with its input, n⁴ reals, and the memory it uses.
 struct Job {
     plan: RealFft4,
     input: Vec<f64>,
     place: Vec<Complex>,
-    /// Whether each transform is done in new memory.
+    /// Whether each transform uses newly allocated memory.
     fresh: bool,
 }
 
@@ -54,7 +54,8 @@ impl Job {
         }
     }
 
-    /// Milliseconds of one transform: in memory that is there and filled, or new memory and filling it included.
+    /// Returns the milliseconds of one transform: in existing, filled memory, or including the
+    /// allocation and filling of new memory.
     fn run(&mut self) -> f64 {
         if self.fresh {
             self.place = Vec::new();
@@ -85,7 +86,7 @@ impl Job {
     }
 }
 
-/// Peak memory of this process so far, in megabytes.
+/// Returns the peak memory of this process so far, in megabytes.
 fn peak() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));

@@ -1,4 +1,5 @@
-//! Times the slice transform: nanoseconds for each ray and azimuth, milliseconds for the FFTs of a batch.
+//! Times the slice transform: nanoseconds per ray and azimuth, and milliseconds for the FFTs of a
+//! batch.
 //!
 //! `cargo run --release -p etendue-transform --example speed`
 
@@ -20,7 +21,7 @@ fn main() {
     }
 }
 
-/// Low-discrepancy rays in (−1, 1)² × (−1/2, 1/2)², far from one another one after another.
+/// Returns low-discrepancy rays in (−1, 1)² × (−1/2, 1/2)²; consecutive rays are far apart.
 fn ray(i: u32) -> TwoPlane {
     let at = |step: f64| (f64::from(i) * step).fract() - 0.5;
     TwoPlane {
@@ -31,7 +32,7 @@ fn ray(i: u32) -> TwoPlane {
     }
 }
 
-/// The best of ten.
+/// Returns the best of ten times.
 fn best(mut seconds: impl FnMut() -> f64) -> f64 {
     (0..10).map(|_| seconds()).fold(f64::INFINITY, f64::min)
 }

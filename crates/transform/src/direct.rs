@@ -1,9 +1,10 @@
-//! The plain sums that the slice transform is held against.
+//! Plain sums, the reference for the slice transform.
 
 use etendue_field::{Complex, Crossing, SliceGrid, Slices, TwoPlane, cis};
 use std::f64::consts::TAU;
 
-/// Σ weight · `window`(ray) · e^(−2πi Ω·z) over `crossings`, at the 4D `frequency` Ω = (Ωx, Ωy, Ωu, Ωv).
+/// Returns Σ weight · `window`(ray) · e^(−2πi Ω·z) over `crossings`, at the 4D `frequency` Ω = (Ωx,
+/// Ωy, Ωu, Ωv).
 ///
 /// Exact to rounding. Divided by the number of emitted photons, it estimates the transform of L W at Ω.
 pub fn at<'a>(
@@ -21,7 +22,7 @@ pub fn at<'a>(
         .sum()
 }
 
-/// The same sum at every frequency of `grid`.
+/// Returns the same sum at every frequency of `grid`.
 pub fn slices(
     crossings: &[Crossing],
     window: impl Fn(&TwoPlane) -> f64,

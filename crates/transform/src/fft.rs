@@ -7,30 +7,31 @@ use rustfft::{Fft, FftPlanner};
 use std::fmt;
 use std::sync::Arc;
 
-/// Columns that are gathered, transformed and put back at a time.
+/// Number of columns that are gathered, transformed and written back at a time.
 const COLUMNS: usize = 8;
 
-/// Consecutive columns of one task along the first axis.
+/// Number of consecutive columns of one task along the first axis.
 const BAND: usize = 512;
 
 /// The plan of a 4D Fourier transform of real numbers, in place and on the threads of the current rayon pool.
 ///
-/// F[a, b, c, d] = Σ f[i, j, k, l] e^(−2πi (a i/n₀ + b j/n₁ + c k/n₂ + d l/n₃)), without a factor in front, for
-/// d = 0 … n₃/2; the rest are conjugates.
+/// F[a, b, c, d] = Σ f[i, j, k, l] e^(−2πi (a i/n₀ + b j/n₁ + c k/n₂ + d l/n₃)), without a
+/// normalisation factor, for d = 0 … n₃/2; the other values are conjugates of these.
 ///
-/// The array is [n₀, n₁, n₂, [`row`](Self::row)] complex numbers, C order. Before the transform a row holds
-/// n₃ reals, two to a complex number (real part first) and what is left over unused, as FFTW's in-place transforms of
-/// reals have it. See [`real`] and [`real_mut`].
+/// The array is [n₀, n₁, n₂, [`row`](Self::row)] complex numbers, C order. Before the transform a
+/// row holds n₃ reals, two to a complex number (real part first), and the rest of the row is
+/// unused, as in FFTW's in-place transforms of reals. See [`real`] and [`real_mut`].
 ///
-/// The one-dimensional transforms are those of `realfft` along rows and of `rustfft` along the other axes. Each is the
-/// work of one thread, and columns are grouped alike on any number of threads, so the bits do not depend on
-/// it. They do depend on the kind of processor, since both take the best instructions it has.
+/// The one-dimensional transforms are those of `realfft` along rows and of `rustfft` along the
+/// other axes. Each is computed by one thread, and columns are grouped in the same way on any
+/// number of threads, so the result is bitwise independent of that number. It depends on the kind
+/// of processor, since both libraries use the best instructions available.
 ///
 /// Error, relative to the root mean square of F: 2 to 5·10⁻¹⁶, at most 1.5·10⁻¹⁵ (AVX, shapes up to 64 × 64 and 9⁴).
 #[derive(Clone)]
 pub struct RealFft4 {
     shape: [usize; 4],
-    /// Along the first three axes.
+    /// The transforms along the first three axes.
     along: [Arc<dyn Fft<f64>>; 3],
     along_row: Arc<dyn RealToComplex<f64>>,
 }
@@ -43,7 +44,7 @@ impl fmt::Debug for RealFft4 {
     }
 }
 
-/// The real number `index` of a row that has not been transformed yet.
+/// Returns the real number `index` of a row that is not transformed yet.
 #[inline]
 #[must_use]
 pub fn real(row: &[Complex], index: usize) -> f64 {
@@ -55,7 +56,7 @@ pub fn real(row: &[Complex], index: usize) -> f64 {
     }
 }
 
-/// The place of the real number `index` in a row.
+/// Returns the position of the real number `index` in a row.
 #[inline]
 pub fn real_mut(row: &mut [Complex], index: usize) -> &mut f64 {
     let pair = &mut row[index / 2];
@@ -66,7 +67,7 @@ pub fn real_mut(row: &mut [Complex], index: usize) -> &mut f64 {
     }
 }
 
-/// What a thread works in.
+/// The working memory of a thread.
 struct Workspace4 {
     /// The reals of a row.
     reals: Vec<f64>,
@@ -77,11 +78,11 @@ struct Workspace4 {
 }
 
 impl RealFft4 {
-    /// The transform of arrays of `shape`.
+    /// Plans the transform of arrays of `shape`.
     ///
     /// # Panics
     ///
-    /// When an axis is empty.
+    /// If an axis is empty.
     #[must_use]
     pub fn new(shape: [usize; 4]) -> Self {
         assert!(!shape.contains(&0), "an axis of {shape:?} is empty");
@@ -94,30 +95,30 @@ impl RealFft4 {
         }
     }
 
-    /// The lengths of the axes.
+    /// Returns the lengths of the axes.
     #[must_use]
     pub fn shape(&self) -> [usize; 4] {
         self.shape
     }
 
-    /// Complex numbers of a row, n₃/2 + 1.
+    /// Returns the number of complex numbers of a row, n₃/2 + 1.
     #[must_use]
     pub fn row(&self) -> usize {
         self.shape[3] / 2 + 1
     }
 
-    /// Complex numbers of the array.
+    /// Returns the number of complex numbers of the array.
     #[must_use]
     pub fn size(&self) -> usize {
         let [n0, n1, n2, _] = self.shape;
         n0 * n1 * n2 * self.row()
     }
 
-    /// An array for [`forward`](Self::forward) from reals in C order.
+    /// Builds an array for [`forward`](Self::forward) from reals in C order.
     ///
     /// # Panics
     ///
-    /// When `reals` does not hold n₀ n₁ n₂ n₃ numbers.
+    /// If `reals` does not hold n₀ n₁ n₂ n₃ numbers.
     #[must_use]
     pub fn padded(&self, reals: &[f64]) -> Vec<Complex> {
         let [n, row] = [self.shape[3], self.row()];
@@ -132,7 +133,7 @@ impl RealFft4 {
             let at = |l: usize| reals.get(l).copied().unwrap_or_default();
             Complex::new(at(2 * (i % row)), at(2 * (i % row) + 1))
         };
-        // On all threads: most of the time goes into touching new memory.
+        // On all threads: most of the time is spent touching new memory.
         let all = (0..self.size()).into_par_iter().with_min_len(1 << 14);
         all.map(pair).collect()
     }
@@ -141,7 +142,7 @@ impl RealFft4 {
     ///
     /// # Panics
     ///
-    /// When `data` does not hold [`size`](Self::size) numbers.
+    /// If `data` does not hold [`size`](Self::size) numbers.
     pub fn forward(&self, data: &mut [Complex]) {
         assert_eq!(
             data.len(),
@@ -151,7 +152,7 @@ impl RealFft4 {
         );
         let [_, n1, n2, _] = self.shape;
         let plane = n2 * self.row();
-        // Three axes while a block is in the cache.
+        // Transforms three axes while a block is in the cache.
         data.par_chunks_exact_mut(n1 * plane).for_each_init(
             || self.memory(),
             |memory, block| {
@@ -204,7 +205,7 @@ impl RealFft4 {
     }
 }
 
-/// Transforms the columns of a matrix that lies in one piece.
+/// Transforms the columns of a contiguous matrix.
 fn columns(data: &mut [Complex], fft: &dyn Fft<f64>, memory: &mut Workspace4) {
     let inner = data.len() / fft.len();
     let mut rows: Vec<_> = data.chunks_exact_mut(inner).collect();

@@ -1,16 +1,15 @@
-//! Points of Sobol' nets, scrambled at random, each by its number.
+//! Points of randomly scrambled Sobol' nets, addressed by index.
 //!
-//! Of 2ᵐ points of such a net there is one in each of the boxes into which halving the sides of the
-//! unit cube in turn divides it, where random points crowd here and leave gaps there. Scrambling
-//! moves each point at random and keeps that, so that a mean over a net has no bias, and nets with
-//! different keys are independent (Owen 1997, *Scrambled net variance for integrals of smooth
-//! functions*).
+//! A net of 2ᵐ points has one point in each of the boxes formed by halving the sides of the unit
+//! cube in turn, whereas random points leave clusters and gaps. Scrambling moves each point at
+//! random and preserves this property, so a mean over a net is unbiased, and nets with different
+//! keys are independent (Owen 1997, *Scrambled net variance for integrals of smooth functions*).
 
 use crate::random::{self, Stream};
 
-/// Coordinates of a block.
+/// Number of coordinates of a block.
 const WIDTH: usize = 4;
-/// Blocks that are one net of 8 dimensions; each further one is a net of its own.
+/// Number of blocks that form one net of 8 dimensions; each further block is a separate net.
 const JOINT: usize = 2;
 
 /// Degree, inner coefficients and first direction numbers of each coordinate but the first
@@ -28,11 +27,12 @@ const POLYNOMIALS: [(usize, u32, [u32; 5]); 9] = [
     (5, 7, [1, 1, 7, 11, 19]),
 ];
 
-/// What a byte of a point's number adds to its coordinates without carry, [block, byte, value].
+/// The contribution of each byte of a point's index to its coordinates, combined without carry,
+/// [block, byte, value].
 static ADDED: [[[[u32; WIDTH]; 256]; 4]; JOINT] = added();
 
-/// What each bit of a point's number adds to a coordinate of Sobol' points, without carry; of ten
-/// coordinates, from 0 on.
+/// Returns the contribution of each bit of a point's index to a coordinate of Sobol' points,
+/// combined without carry; there are ten coordinates, starting at 0.
 #[must_use]
 pub const fn sobol_directions(dimension: usize) -> [u32; 32] {
     let mut all = [0; 32];
@@ -82,25 +82,24 @@ const fn added() -> [[[[u32; WIDTH]; 256]; 4]; JOINT] {
     table
 }
 
-/// How a block of coordinates is scrambled: what is added and what it is multiplied by.
+/// The scrambling of a block of coordinates: an addend and a multiplier.
 #[derive(Clone, Copy, Debug)]
 struct Keys {
     added: [u32; WIDTH],
     factors: [u32; WIDTH],
-    /// The same of the order of its points.
+    /// The addend and multiplier that scramble the order of the points.
     order: [u32; 2],
 }
 
-/// A net of 2³² points, scrambled with keys of its own.
+/// A net of 2³² points, scrambled with its own keys.
 #[derive(Clone, Debug)]
 pub struct Net {
-    /// Of each block.
+    /// The keys of each block.
     keys: Vec<Keys>,
 }
 
 impl Net {
-    /// Net number `index` of what a stream of `seed` is for, with `blocks` blocks of four
-    /// coordinates.
+    /// Returns net number `index` for a stream of `seed`, with `blocks` blocks of four coordinates.
     #[must_use]
     pub fn new(seed: u64, stream: Stream, index: u64, blocks: u32) -> Self {
         let words = |block: u32| random::words(seed, stream, index, block);
@@ -118,13 +117,14 @@ impl Net {
         }
     }
 
-    /// Block `block` of a point, as random words. Any 2ᵐ points from a multiple of 2ᵐ on are a net.
+    /// Returns block `block` of a point, as random words. Any 2ᵐ points that start at a multiple of
+    /// 2ᵐ are a net.
     #[inline]
     #[must_use]
     pub fn words(&self, point: u32, block: u32) -> [u32; WIDTH] {
         let block = block as usize;
         let keys = &self.keys[block];
-        // The first blocks belong to each other; what is beyond them meets them in a random order.
+        // The first blocks form a joint net; further blocks are combined with it in a random order.
         let (table, point) = if block < JOINT {
             (&ADDED[block], point)
         } else {
@@ -138,9 +138,9 @@ impl Net {
     }
 }
 
-/// Owen's scrambling by a hash of the reversed bits, each of which depends on those above it alone
-/// (Laine and Karras 2011; the hash of Vegdahl 2021, *Building a better LK hash*, with a factor that
-/// is independent of what is added: so each number is as likely as any other).
+/// Owen scrambling by a hash of the reversed bits, each of which depends only on the bits above it
+/// (Laine and Karras 2011; the hash of Vegdahl 2021, *Building a better LK hash*, with a multiplier
+/// that is independent of the addend, which makes all numbers equally likely).
 #[inline]
 fn scrambled(value: u32, [added, factor]: [u32; 2]) -> u32 {
     let mut x = value.reverse_bits();
@@ -157,7 +157,7 @@ mod tests {
     use super::*;
     use crate::random::unit;
 
-    /// Coordinates, of two blocks that belong to each other and one more.
+    /// Number of coordinates of two joint blocks and one more.
     const ALL: usize = 3 * WIDTH;
 
     fn points(key: u64, count: u32) -> Vec<[f64; ALL]> {
@@ -175,8 +175,8 @@ mod tests {
             .count()
     }
 
-    /// Each coordinate, and the first two of a block in every box of volume 2⁻ᵐ that halves their
-    /// sides, has one of 2ᵐ points.
+    /// Each coordinate has one of 2ᵐ points in every interval of length 2⁻ᵐ, and the first two of a
+    /// block have one in every box of volume 2⁻ᵐ that halves their sides.
     #[test]
     fn boxes_hold_one_point_each() {
         const N: u32 = 256;
@@ -201,8 +201,8 @@ mod tests {
         }
     }
 
-    /// The mean of a product over all coordinates has no bias, and less noise than random numbers
-    /// have; so has that over the coordinates of one block.
+    /// The mean of a product over all coordinates is unbiased and has less noise than with random
+    /// numbers; so is the mean over the coordinates of one block.
     #[test]
     fn nets_beat_random_numbers() {
         const N: u32 = 1 << 12;
@@ -221,7 +221,7 @@ mod tests {
             let random = ((1.0_f64 + 0.25 / 12.0).powi(factors) - 1.0) / f64::from(N);
             assert!(power < less * random, "{from}..{to}: {:e}", power / random);
             let mean = errors.iter().sum::<f64>() / NETS as f64;
-            // Four of its own standard errors.
+            // Four of its standard errors.
             assert!(
                 mean.abs() < 4.0 * (power / NETS as f64).sqrt(),
                 "{from}..{to}"
@@ -229,8 +229,8 @@ mod tests {
         }
     }
 
-    /// Points 5, 16 and 32, times 64, as `scipy.stats.qmc.Sobol(8, scramble=False)` of SciPy 1.17 has
-    /// them; it counts in Gray's code, so that they are its points 6, 31 and 63.
+    /// Points 5, 16 and 32, times 64, as in `scipy.stats.qmc.Sobol(8, scramble=False)` of SciPy
+    /// 1.17, which counts in Gray code, where they are points 6, 31 and 63.
     #[test]
     fn points_are_those_of_sobol() {
         let point = |[low, high]: [usize; 2]| -> Vec<u32> {

@@ -3,11 +3,11 @@
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
-/// Rules are found once.
+/// Each rule is computed once.
 static RULES: [OnceLock<Vec<(f64, f64)>>; 256] = [const { OnceLock::new() }; 256];
 
-/// Nodes and weights of the Gauss–Legendre rule of `n` points on (−1, 1), ascending: exact to rounding for
-/// polynomials of degree 2n − 1.
+/// Returns nodes and weights of the Gauss–Legendre rule of `n` points on (−1, 1), ascending: exact
+/// to rounding for polynomials of degree 2n − 1.
 #[must_use]
 pub fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
     let found = || (0..n).map(|i| node(n, i)).collect();
@@ -16,7 +16,8 @@ pub fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
         .map_or_else(found, |rule| rule.get_or_init(found).clone())
 }
 
-/// Root i of the Legendre polynomial of degree n by Newton's method, and its weight 2/((1 − x²) P'(x)²).
+/// Returns root i of the Legendre polynomial of degree n by Newton's method, and its weight 2/((1 −
+/// x²) P'(x)²).
 fn node(n: usize, i: usize) -> (f64, f64) {
     let mut x = -libm::cos(PI * (i as f64 + 0.75) / (n as f64 + 0.5));
     // Quadratic convergence from an error below 0.1/n²: five steps reach rounding.
@@ -28,7 +29,7 @@ fn node(n: usize, i: usize) -> (f64, f64) {
     (x, 2.0 / ((1.0 - x * x) * slope * slope))
 }
 
-/// The Legendre polynomial of degree n and its derivative, by recurrence.
+/// Returns the Legendre polynomial of degree n and its derivative, by recurrence.
 fn legendre(n: usize, x: f64) -> (f64, f64) {
     let (mut before, mut value) = (1.0, x);
     for j in 2..=n {
@@ -61,7 +62,8 @@ mod tests {
             for degree in 0..2 * count {
                 assert!(error(degree) < 1e-14, "{count}, {degree}"); // rounding of values up to 1
             }
-            // The rule of n points misses ∫ x^2n by about 4^−n; with many points that is below rounding.
+            // The rule of n points has an error of about 4^−n for ∫ x^2n; with many points that is
+            // below rounding.
             assert_eq!(error(2 * count) > 1e-8, count < 16, "{count}");
         }
     }

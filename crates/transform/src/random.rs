@@ -1,8 +1,9 @@
-//! Counter-based random numbers: a number is a function of what it is for, never of who drew it when.
+//! Counter-based random numbers: a number depends only on its purpose and index, not on the thread
+//! or the order of draws.
 //!
 //! Philox4x32-10 (Salmon, Moraes, Dror, Shaw 2011, *Parallel random numbers: as easy as 1, 2, 3*, section 4.3).
 
-/// What a random number is for; keeps the streams of one seed apart.
+/// The purpose of a random number; separates the streams of one seed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stream {
     /// The life of photon `index`.
@@ -13,15 +14,15 @@ pub enum Stream {
     Flip,
     /// Backward ray `index`.
     Backward,
-    /// The life of photon `index` of emission that is not aimed, to judge photons of aimed emission.
+    /// The life of photon `index` without aimed emission, a reference for aimed emission.
     Even,
     /// The scrambling of net `index` of photons.
     Net,
-    /// That of a net of emission that is not aimed.
+    /// The scrambling of a net for emission that is not aimed.
     EvenNet,
 }
 
-/// Four random words for `block` of item `index` in a stream of `seed`.
+/// Returns four random words for `block` of item `index` in a stream of `seed`.
 #[inline]
 #[must_use]
 #[expect(
@@ -35,14 +36,14 @@ pub fn words(seed: u64, stream: Stream, index: u64, block: u32) -> [u32; 4] {
     )
 }
 
-/// A random word as a number in (0, 1): the centre of one of 2³² equal cells.
+/// Converts a random word to a number in (0, 1): the centre of one of 2³² equal cells.
 #[inline]
 #[must_use]
 pub fn unit(word: u32) -> f64 {
     (f64::from(word) + 0.5) * (1.0 / 4_294_967_296.0)
 }
 
-/// A random word as one of 0..`count`, `count` > 0.
+/// Converts a random word to one of 0..`count`, `count` > 0.
 #[inline]
 #[must_use]
 #[expect(

@@ -1,14 +1,14 @@
-//! The 4D transform against the plain sum.
+//! Tests of the 4D transform against the plain sum.
 
 use crate::random::Random;
 use etendue_field::Complex;
 use etendue_transform::{RealFft4, real, real_mut};
 use std::f64::consts::TAU;
 
-/// Random reals laid out for `plan`.
+/// Returns random reals laid out for `plan`.
 fn field(plan: &RealFft4, seed: u64) -> Vec<Complex> {
     let mut random = Random(seed);
-    // What a row leaves over is not to be read: it is filled, too.
+    // The unused part of a row must not be read, so it is filled too.
     let mut data = vec![Complex::new(1e9, -1e9); plan.size()];
     for row in data.chunks_exact_mut(plan.row()) {
         for l in 0..plan.shape()[3] {
@@ -23,7 +23,7 @@ fn indices([n0, n1, n2, n3]: [usize; 4]) -> impl Iterator<Item = [usize; 4]> {
     (0..n0 * n1 * n2 * n3).map(all)
 }
 
-/// The plain sum at `frequency`.
+/// Returns the plain sum at `frequency`.
 fn plain(shape: [usize; 4], reals: &[f64], frequency: [usize; 4]) -> Complex {
     let term = |(z, f): ([usize; 4], &f64)| {
         let cycles =
@@ -39,7 +39,8 @@ fn reals(plan: &RealFft4, data: &[Complex]) -> Vec<f64> {
         .collect()
 }
 
-/// The largest difference between the transform and the plain sum, relative to the root mean square of the latter.
+/// Returns the largest difference between the transform and the plain sum, relative to the root
+/// mean square of the plain sum.
 fn error(shape: [usize; 4]) -> f64 {
     let plan = RealFft4::new(shape);
     let mut data = field(&plan, 7);
@@ -86,7 +87,7 @@ fn arrays_are_padded_by_rows() {
     }
 }
 
-/// Bands of the first axis and blocks of columns, with some left over.
+/// Several bands of the first axis and blocks of columns, with incomplete ones.
 #[test]
 fn large_shapes_are_put_together_right() {
     let shape = [6, 10, 9, 14];

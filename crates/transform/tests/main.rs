@@ -1,4 +1,4 @@
-//! The transforms of this crate against plain sums.
+//! Tests of this crate's transforms against plain sums.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 

@@ -1,4 +1,4 @@
-//! Random crossings, and the windows and grids that they are summed with.
+//! Random crossings for tests, with their windows and grids.
 
 use etendue_field::{Crossing, FrequencyAxis, Profile, SliceGrid, TwoPlane, Window};
 
@@ -6,7 +6,7 @@ use etendue_field::{Crossing, FrequencyAxis, Profile, SliceGrid, TwoPlane, Windo
 pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
-    /// Uniform in [0, 1).
+    /// Returns a number uniform in [0, 1).
     pub(crate) fn unit(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
@@ -15,12 +15,13 @@ impl Random {
         ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Uniform in (−half, half).
+    /// Returns a number uniform in (−half, half).
     pub(crate) fn within(&mut self, half: f64) -> f64 {
         half * (2.0 * self.unit() - 1.0)
     }
 
-    /// A crossing up to `reach` half-widths of `window` from its centre, of weight in [0, 2).
+    /// Returns a crossing up to `reach` half-widths of `window` from its centre, with a weight in
+    /// [0, 2).
     pub(crate) fn crossing(&mut self, window: &Window, reach: f64) -> Crossing {
         let mut along = |profile: Profile| self.within(reach * profile.half_width());
         let ray = TwoPlane {
@@ -54,7 +55,8 @@ pub(crate) fn boxed() -> Window {
     }
 }
 
-/// `azimuths` slices with `half` of ρ and ν on either side of zero, `fineness` samples to 1/(2 half-width).
+/// Returns `azimuths` slices with `half` values of ρ and of ν on either side of zero, `fineness`
+/// samples to 1/(2 half-width).
 pub(crate) fn grid(window: &Window, azimuths: usize, half: [usize; 2], fineness: f64) -> SliceGrid {
     let axis = |half, profile: Profile| FrequencyAxis {
         half,

@@ -1,4 +1,4 @@
-//! The fast transform against the plain sum.
+//! Tests of the fast transform against the plain sum.
 
 use crate::random::{Random, boxed, grid, hann};
 use etendue_field::{Complex, Crossing, SliceGrid, Slices, TwoPlane, Window};
@@ -13,7 +13,7 @@ fn fast(crossings: &[Crossing], window: &Window, grid: &SliceGrid) -> Slices {
     sum.finish(1.0)
 }
 
-/// The largest difference over all frequencies, relative to Σ|w|.
+/// Returns the largest difference over all frequencies, relative to Σ|w|.
 fn error(a: &Slices, b: &Slices, crossings: &[Crossing], window: &Window) -> f64 {
     let differences = a.half.iter().zip(&b.half).map(|(a, b)| (a - b).norm());
     let largest = differences.fold(0.0, f64::max);
@@ -34,7 +34,8 @@ fn the_transform_is_the_plain_sum() {
         ] {
             let grid = grid(&window, azimuths, half, fineness);
             let many: Vec<_> = (0..1000).map(|_| random.crossing(&window, 1.0)).collect();
-            // The corners, where x cos φ + y sin φ goes beyond a period; one ray has no mate to average with.
+            // The corners, where x cos φ + y sin φ exceeds a period; a single ray, so errors do not
+            // average out.
             let corner = |sign: f64| Crossing {
                 ray: TwoPlane {
                     x: 0.999_999 * window.x.half_width(),
@@ -72,7 +73,7 @@ fn a_wrong_spacing_is_seen() {
     let mut random = Random(2);
     let crossings: Vec<_> = (0..100).map(|_| random.crossing(&window, 1.0)).collect();
     let plain = direct::slices(&crossings, |z| window.value(z), &wrong);
-    // A phase wrong by 2π · 8 · 1e-5 · 0.3 periods, averaged over a hundred rays.
+    // A phase error of 2π · 8 · 1e-5 · 0.3 periods, averaged over a hundred rays.
     assert!(
         error(
             &fast(&crossings, &window, &right),
@@ -143,7 +144,8 @@ fn power_over_all_frequencies_is_the_sum_of_squares() {
     }
     let power = sum.finish(1.0).radial_power();
     let mean = power.sum() / power.len() as f64;
-    // Each |S|² is off by 2 · 1e-7 Σw |S|; 21 · 15 rays of mean weight 1/2, so Σw = 158, |S| ~ √Σw², few large.
+    // The error of each |S|² is 2 · 1e-7 Σw |S|; 21 · 15 rays of mean weight 1/2, so Σw = 158, |S|
+    // ~ √Σw², few large.
     assert!((mean / squares - 1.0).abs() < 1e-5, "{mean} {squares}");
 }
 

@@ -1,4 +1,4 @@
-//! Pictures with few shading samples, their maps, and how long each stage took.
+//! Pictures with few shading samples, their maps, and the time of each stage.
 
 use crate::finite::require_finite;
 use crate::picture_request::PictureRequest;
@@ -17,10 +17,10 @@ use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-/// Files beside those of a reference.
+/// Files in addition to those of a reference.
 pub(crate) const FILES: &[&str] = &["bandwidth.png", "samples.png", TIMING];
 
-/// Renders and writes; returns what is to be said of it.
+/// Renders and writes a picture; returns a description of the effort.
 pub(crate) fn render(
     request: &PictureRequest,
     method: SampleMethod,
@@ -80,7 +80,7 @@ pub(crate) fn render(
     ))
 }
 
-/// So many steps more are done.
+/// Advances a progress bar by this many steps.
 fn advance(bar: &Mutex<Option<Box<dyn Progress + '_>>>, steps: u64) {
     let bar = bar.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(bar) = bar.as_ref() {
@@ -88,7 +88,7 @@ fn advance(bar: &Mutex<Option<Box<dyn Progress + '_>>>, steps: u64) {
     }
 }
 
-/// What is being done, and for how long each stage was.
+/// The current stage, and the durations of the previous ones.
 struct StageWatch<'a> {
     reporter: &'a dyn Reporter,
     bar: Mutex<Option<Box<dyn Progress + 'a>>>,
@@ -167,7 +167,7 @@ fn write(results: &mut Results, rendered: &Rendered, made_from: &Value) -> Resul
     ];
     let mut parts = Vec::new();
     let mut npz = Npz::new();
-    // A method has the maps that it needs.
+    // A method produces only the maps that it needs.
     for (name, values) in layers.into_iter().filter(|(_, of)| !of.is_empty()) {
         #[expect(clippy::cast_possible_truncation, reason = "EXR viewers want 32 bits")]
         let samples = values.iter().map(|x| *x as f32).collect();

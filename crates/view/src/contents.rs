@@ -1,22 +1,22 @@
-//! What a scene of another program holds, for people.
+//! Describes the content of another program's scene.
 
 use crate::world_source::{WorldSource, has_light, load, no_camera, no_light, notes};
 use etendue_pipeline::table::aligned;
 use etendue_store::{ArgumentStyle, Failure};
 use etendue_world::{Camera, Geometry, Light, Projection, World};
 
-/// What a scene holds, and what was left out of it or approximated.
+/// The content of a scene, and what was omitted from it or approximated.
 #[derive(Clone, Debug)]
 pub struct Contents {
-    /// What there is of each kind, such as `triangles`, and how many.
+    /// The number of each kind of content, such as `triangles`.
     pub counts: Vec<(&'static str, usize)>,
-    /// Its cameras, the first of which is used unless another is named.
+    /// Cameras of the scene; the first is used unless another is named.
     pub cameras: Vec<Camera>,
-    /// Whether something shines.
+    /// Whether the scene has a light.
     pub has_light: bool,
-    /// Most surfaces that light meets between a source and the camera, if there is a limit.
+    /// The largest number of surfaces that light meets between a source and the camera, if limited.
     pub depth: Option<u32>,
-    /// A sentence for all that was left out or approximated.
+    /// A sentence for each omission or approximation.
     pub notes: Vec<String>,
     arguments: ArgumentStyle,
 }
@@ -37,7 +37,7 @@ impl Contents {
         })
     }
 
-    /// All of it, line by line.
+    /// The whole description, line by line.
     #[must_use]
     pub fn lines(&self) -> Vec<String> {
         let counts = self.counts.iter();
@@ -59,7 +59,7 @@ impl Contents {
     }
 }
 
-/// What there is of each kind, and how many.
+/// The number of each kind of content.
 fn counts(world: &World) -> Vec<(&'static str, usize)> {
     let mut counts: Vec<(&'static str, usize)> = Vec::new();
     let mut count = |kind, by| match counts.iter_mut().find(|(known, _)| *known == kind) {

@@ -1,4 +1,5 @@
-//! What a camera of a scene of another program sees: pictures, with many samples or few, and the light field behind a pixel.
+//! Renders what a camera in another program's scene sees: pictures, with many samples or few, and
+//! the light field behind a pixel.
 
 #![allow(
     clippy::missing_errors_doc,

@@ -1,4 +1,4 @@
-//! What a camera of a scene sees.
+//! Renders the picture of a camera in a scene.
 
 use crate::adaptive;
 use crate::finite::require_finite;
@@ -18,14 +18,14 @@ use std::path::Path;
 
 const FILES: [&str; 3] = ["picture.exr", "picture.npz", "picture.png"];
 
-/// A picture that is done.
+/// A finished picture.
 #[derive(Debug)]
 pub struct RenderedPicture {
-    /// Pixels across and down.
+    /// Number of pixels across and down.
     pub size: [usize; 2],
-    /// What was left out of the scene or approximated.
+    /// What was omitted from the scene or approximated.
     pub notes: Vec<String>,
-    /// How few samples it is from and how long they took, in words; empty for a reference.
+    /// The number of samples and the time they took, in words; empty for a reference.
     pub effort: String,
 }
 
@@ -110,7 +110,7 @@ pub fn render(
     })
 }
 
-/// Radiance and its standard error, for programs; and a picture to look at.
+/// Writes radiance and its standard error, for programs, and a picture for viewing.
 fn write(results: &mut Results, picture: &Picture, made_from: &Value) -> Result<(), Failure> {
     let [w, h] = picture.size;
     let errors: Vec<f64> = picture

@@ -1,44 +1,44 @@
-//! A picture that is asked for.
+//! A request for a picture.
 
 use crate::world_source::{CameraChoice, WorldSource};
 use etendue_adaptive::{BLOCKER_RAYS, SampleMethod};
 
-/// A picture that is asked for.
+/// A request for a picture.
 #[derive(Clone, Debug)]
 pub struct PictureRequest {
     /// The scene.
     pub source: WorldSource,
     /// The camera.
     pub camera: CameraChoice,
-    /// How few shading samples are spent; `None` for a reference.
+    /// The method of placing few shading samples; `None` for a reference.
     pub method: Option<SampleMethod>,
     /// Paths for each pixel of a reference.
     pub samples: u32,
-    /// Shading samples of the whole picture; otherwise one for each 20 pixels.
+    /// Shading samples of the whole picture; one for each 20 pixels by default.
     pub shading_samples: Option<u32>,
     /// Paths of each shading sample.
     pub paths: u32,
-    /// Rays of each point by which the distance of blockers is found.
+    /// Rays per point that estimate the distance of blockers.
     pub blocker_rays: u32,
-    /// Whether samples are as dense along all directions.
+    /// Whether sample density is the same along all directions.
     pub isotropic: bool,
     /// Seed of the paths.
     pub seed: u64,
-    /// Whether files that Étendue did not write are replaced.
+    /// Whether files that Étendue did not write may be replaced.
     pub force: bool,
 }
 
 impl PictureRequest {
-    /// Paths for each pixel of a reference, unless said.
+    /// Default number of paths for each pixel of a reference.
     pub const SAMPLES: u32 = 64;
-    /// Paths of each shading sample, unless said.
+    /// Default number of paths of each shading sample.
     pub const PATHS: u32 = 128;
-    /// Rays by which the distance of blockers is found, unless said.
+    /// Default number of rays that estimate the distance of blockers.
     pub const BLOCKER_RAYS: u32 = BLOCKER_RAYS;
-    /// The seed, unless said.
+    /// Default seed.
     pub const SEED: u64 = 1;
 
-    /// Each method by its name.
+    /// The methods by name.
     pub const METHODS: [(&str, Option<SampleMethod>); 6] = [
         ("reference", None),
         ("uniform", Some(SampleMethod::Uniform)),
@@ -48,7 +48,7 @@ impl PictureRequest {
         ("variance", Some(SampleMethod::Variance)),
     ];
 
-    /// A reference of a scene as its first camera sees it.
+    /// A reference picture of a scene from its first camera.
     #[must_use]
     pub fn new(source: WorldSource) -> Self {
         Self {
@@ -65,7 +65,7 @@ impl PictureRequest {
         }
     }
 
-    /// The method where none is named: a reference, unless a number of shading samples is.
+    /// The default method: a reference, unless a number of shading samples is given.
     #[must_use]
     pub fn usual_method(shading_samples: Option<u32>) -> Option<SampleMethod> {
         shading_samples.map(|_| SampleMethod::Predicted)

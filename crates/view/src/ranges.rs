@@ -1,14 +1,15 @@
-//! What the numbers of a scene, a picture and a probe may be. Whoever fills a request holds them against these.
+//! The allowed ranges of numbers for a scene, a picture and a probe, checked by the code that fills
+//! in a request.
 
 use std::ops::RangeInclusive;
 
 /// Pixels along a side of a picture.
 pub const SIDE: RangeInclusive<u64> = 1..=1 << 14;
-/// Coordinates of a camera that is put into a scene, on either side of zero.
+/// Largest coordinate, in absolute value, of a camera that is added to a scene.
 pub const MAX_COORDINATE: f64 = 1e9;
-/// Its angle from side to side is above zero and below this, degrees.
+/// Upper limit of the camera's horizontal angle of view, which is above zero, degrees.
 pub const MAX_ANGLE: f64 = 180.0;
-/// Radiance of a sky that is added, W/(m² sr).
+/// Radiance of an added sky, W/(m² sr).
 pub const SKY: RangeInclusive<f64> = 0.0..=1e9;
 
 /// Paths for each pixel of a reference.
@@ -17,7 +18,7 @@ pub const SAMPLES: RangeInclusive<u64> = 2..=u32::MAX as u64;
 pub const SHADING_SAMPLES: RangeInclusive<u64> = 1..=100_000_000;
 /// Paths of each shading sample.
 pub const PATHS: RangeInclusive<u64> = 2..=1_000_000;
-/// Rays of each point by which the distance of blockers is found.
+/// Rays per point that estimate the distance of blockers.
 pub const BLOCKER_RAYS: RangeInclusive<u64> = 1..=100_000;
 
 /// Surfaces along the ray of a probe.

@@ -1,4 +1,4 @@
-//! Scenes of other programs, as they are read for pictures and probes.
+//! Reads other programs' scenes for pictures and probes.
 
 use etendue_import::{Imported, Options, import};
 use etendue_store::{ArgumentStyle, Failure};
@@ -6,47 +6,48 @@ use etendue_world::{Camera, Light, Projection, World};
 use glam::{DAffine3, DMat3, DVec3};
 use std::path::PathBuf;
 
-/// A scene file of another program, and what is changed in it.
+/// Another program's scene file, and the changes to it.
 #[derive(Clone, Debug)]
 pub struct WorldSource {
-    /// Mitsuba 3, pbrt-v4, glTF 2.0, OBJ or PLY.
+    /// A file in Mitsuba 3, pbrt-v4, glTF 2.0, OBJ or PLY format.
     pub path: PathBuf,
-    /// How it is read.
+    /// Options of the importer.
     pub options: Options,
-    /// Most surfaces that light meets between a source and the camera, instead of the file's.
+    /// The largest number of surfaces that light meets between a source and the camera, in place of
+    /// the file's.
     pub bounces: Option<u32>,
-    /// Radiance that comes from everywhere, W/(m² sr).
+    /// Radiance of a uniform sky, W/(m² sr).
     pub sky: Option<f64>,
-    /// A camera that the scene need not have: the first, named `command`.
+    /// A camera that is added to the scene as the first, with the name `command`.
     pub viewpoint: Option<Viewpoint>,
-    /// How messages name arguments.
+    /// The style in which messages name arguments.
     pub arguments: ArgumentStyle,
 }
 
-/// Where a camera of 512 × 512 pixels stands, and where it looks, in coordinates of the scene.
+/// The position and direction of a camera of 512 × 512 pixels, in coordinates of the scene.
 #[derive(Clone, Copy, Debug)]
 pub struct Viewpoint {
-    /// Its place.
+    /// Position of the camera.
     pub from: DVec3,
-    /// What is in the middle of its picture.
+    /// The point in the middle of the picture.
     pub at: DVec3,
-    /// What is up in its picture.
+    /// The up direction of the picture.
     pub up: DVec3,
-    /// Its angle from side to side, degrees.
+    /// The horizontal angle of view, degrees.
     pub fov: f64,
 }
 
-/// Which camera looks.
+/// The selected camera.
 #[derive(Clone, Debug, Default)]
 pub struct CameraChoice {
-    /// Its name; otherwise the first.
+    /// Name of the camera; the first by default.
     pub name: Option<String>,
-    /// Pixels across and down, instead of the camera's.
+    /// Number of pixels across and down, in place of the camera's.
     pub size: Option<[usize; 2]>,
 }
 
 impl WorldSource {
-    /// A scene file as it is.
+    /// A scene file without changes.
     #[must_use]
     pub fn new(path: PathBuf, arguments: ArgumentStyle) -> Self {
         Self {
@@ -61,24 +62,24 @@ impl WorldSource {
 }
 
 impl Viewpoint {
-    /// What is up, unless said.
+    /// Default up direction.
     pub const UP: DVec3 = DVec3::Y;
-    /// The angle from side to side, unless said, degrees.
+    /// Default horizontal angle of view, degrees.
     pub const FOV: f64 = 45.0;
 }
 
-/// Says how a scene comes to a camera.
+/// A message on how to add a camera to a scene.
 pub(crate) fn no_camera(arguments: ArgumentStyle) -> String {
     let [from, at] = ["look_from", "look_at"].map(|name| arguments.name(name));
     format!("the scene has no camera: {from} and {at} add one")
 }
 
-/// Says how a scene comes to a light.
+/// A message on how to add a light to a scene.
 pub(crate) fn no_light(arguments: ArgumentStyle) -> String {
     format!("the scene has no light: {} adds one", arguments.name("sky"))
 }
 
-/// Reads a scene; causes for which it is refused come all together.
+/// Reads a scene; all reasons for a refusal are reported together.
 pub(crate) fn load(source: &WorldSource) -> Result<Imported, Failure> {
     let mut imported = import(&source.path, &source.options).map_err(Failure::bad_input)?;
     if source.bounces.is_some() {
@@ -96,12 +97,12 @@ pub(crate) fn load(source: &WorldSource) -> Result<Imported, Failure> {
     Ok(imported)
 }
 
-/// What was left out of the scene or approximated, for result files and the terminal.
+/// What was omitted from the scene or approximated, for result files and the terminal.
 pub(crate) fn notes(imported: &Imported) -> Vec<String> {
     imported.notes.iter().map(ToString::to_string).collect()
 }
 
-/// The camera that a viewpoint puts into the scene.
+/// The camera that a viewpoint adds to the scene.
 fn camera_at(viewpoint: &Viewpoint, arguments: ArgumentStyle) -> Result<Camera, Failure> {
     let ahead = (viewpoint.at - viewpoint.from).try_normalize();
     let frame = ahead.and_then(|ahead| {
@@ -127,13 +128,13 @@ fn camera_at(viewpoint: &Viewpoint, arguments: ArgumentStyle) -> Result<Camera, 
     })
 }
 
-/// Whether something shines.
+/// Whether the scene has a light.
 pub(crate) fn has_light(world: &World) -> bool {
     let shines = world.shapes.iter().any(|shape| shape.emission.is_some());
     shines || !world.lights.is_empty()
 }
 
-/// Requires something that shines.
+/// Fails if the scene has no light.
 pub(crate) fn require_light(world: &World, arguments: ArgumentStyle) -> Result<(), Failure> {
     if has_light(world) {
         return Ok(());
@@ -141,7 +142,7 @@ pub(crate) fn require_light(world: &World, arguments: ArgumentStyle) -> Result<(
     Err(Failure::bad_input(no_light(arguments)))
 }
 
-/// The camera that is asked for, or the first, with the size that is asked for.
+/// The requested camera, or the first, with the requested size.
 pub(crate) fn camera(
     world: &World,
     choice: &CameraChoice,

@@ -2,59 +2,61 @@
 
 use glam::{DAffine3, DVec3};
 
-/// What looks at a world. It looks along Z of `to_world`, Y is up in the picture and X to the left.
+/// A camera. It looks along Z of `to_world`, Y is up in the picture and X to the left.
 #[derive(Clone, Debug)]
 pub struct Camera {
-    /// What the file calls it.
+    /// Its name in the file.
     pub name: String,
-    /// From coordinates of the camera to those of the world; without scale, but for orthographic cameras.
+    /// The map from camera to world coordinates; without scale, except for orthographic cameras.
     pub to_world: DAffine3,
-    /// Pixels across and down.
+    /// Width and height in pixels.
     pub size: [usize; 2],
-    /// How rays leave it.
+    /// The projection.
     pub projection: Projection,
-    /// Nearer than this along Z nothing is seen, nor beyond the second.
+    /// The near and far distance along Z of the visible range.
     pub clip: [f64; 2],
 }
 
-/// How rays of a camera leave it.
+/// The projection of a camera.
 #[derive(Clone, Copy, Debug)]
 pub enum Projection {
-    /// From one point, or from a lens about it.
+    /// Rays from one point, or from a lens around it.
     Perspective {
         /// Half the width of the picture at z = 1.
         half_width: f64,
-        /// By how much of the picture's width and height its middle is moved to the right and down.
+        /// The shift of the picture's centre to the right and down, relative to its width and
+        /// height.
         shift: [f64; 2],
-        /// `None` for a pinhole.
+        /// The lens; `None` for a pinhole.
         lens: Option<Lens>,
     },
-    /// All along Z, from x and y within ±1 across; as far down as pixels are square.
+    /// Rays along Z, from x within ±1; the range of y makes pixels square.
     Orthographic,
 }
 
 /// A thin lens in the plane z = 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Lens {
-    /// Of its disc.
+    /// Radius of its disc.
     pub radius: f64,
-    /// z of the plane that is in focus.
+    /// z of the plane of focus.
     pub focus: f64,
 }
 
 /// A ray in the world.
 #[derive(Clone, Copy, Debug)]
 pub struct Look {
-    /// Where it begins.
+    /// Its origin.
     pub from: DVec3,
-    /// Where it goes, of unit length.
+    /// Its direction, of unit length.
     pub along: DVec3,
-    /// Distances along it that are seen.
+    /// The visible range of distances along it.
     pub seen: [f64; 2],
 }
 
 impl Camera {
-    /// The ray through a place of the picture, counted in pixels to the right and down from its top left, and a point of the lens in the unit disc.
+    /// The ray through a point of the picture, in pixels to the right and down from its top left,
+    /// and a point of the lens in the unit disc.
     #[must_use]
     pub fn look(&self, [right, down]: [f64; 2], lens: [f64; 2]) -> Look {
         let [w, h] = self.size.map(|n| n as f64);
@@ -80,7 +82,7 @@ impl Camera {
             Projection::Orthographic => (DVec3::new(across, up, 0.0), DVec3::Z),
         };
         let world = self.to_world.transform_vector3(along);
-        // Clip planes are across Z: a ray at an angle reaches them later.
+        // Clip planes are perpendicular to Z: an oblique ray reaches them later.
         let longer = along.length();
         Look {
             from: self.to_world.transform_point3(from),

@@ -1,7 +1,8 @@
-//! A world: surfaces, each with a geometry and a material, lights, and cameras that look at them.
+//! A world: surfaces, each with a geometry and a material, lights, and cameras.
 //!
-//! It is what scenes of other programs are read as. Coordinates are right-handed, or left-handed where the file's are: then maps of
-//! cameras mirror. They are in the units of the file, which are metres where the file says nothing else. Light is one number: the luminance of what the file has as a colour, or one of its channels.
+//! Scenes of other programs are read into worlds. Coordinates are right-handed, or left-handed if
+//! the file's are: then maps of cameras mirror. They are in the units of the file, metres by
+//! default. Light is one number: the luminance of a colour in the file, or one of its channels.
 
 mod camera;
 mod light;
@@ -19,16 +20,17 @@ pub use texture::{Bitmap, Filter, Texture, Wrap};
 /// Everything that a camera may see.
 #[derive(Clone, Debug, Default)]
 pub struct World {
-    /// Surfaces, which may also shine.
+    /// Surfaces, including emitting ones.
     pub shapes: Vec<Shape>,
-    /// Materials, which shapes name by their number.
+    /// Materials, to which shapes refer by index.
     pub materials: Vec<Material>,
-    /// Lights that are no surfaces.
+    /// Lights that are not surfaces.
     pub lights: Vec<Light>,
-    /// Cameras: at least one where pictures or pixels are asked for.
+    /// Cameras: at least one is needed for pictures or probes.
     pub cameras: Vec<Camera>,
-    /// Most surfaces that light meets between its source and the camera, less one; `None` without an end. 0 shows sources alone, 1 adds direct light.
+    /// Maximum number of surfaces between a source and the camera; `None` for no limit. 0 shows
+    /// only sources, 1 adds direct light.
     pub depth: Option<u32>,
-    /// Whether sources that a camera sees directly are left dark.
+    /// Whether directly visible sources are shown black.
     pub hides_sources: bool,
 }

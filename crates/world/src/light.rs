@@ -1,65 +1,65 @@
-//! Lights that are no surfaces.
+//! Lights that are not surfaces.
 
 use crate::Texture;
 use etendue_field::LatLong;
 use glam::{DAffine3, DMat3, DVec3};
 use std::sync::Arc;
 
-/// A light that is no surface.
+/// A light that is not a surface.
 #[derive(Clone, Debug)]
 pub enum Light {
-    /// From a point to all sides.
+    /// A point light that emits in all directions.
     Point {
-        /// Where.
+        /// Its position.
         position: DVec3,
         /// W sr⁻¹.
         intensity: f64,
     },
-    /// From a point into a cone about the Z axis of `to_world`.
+    /// A point light that emits into a cone around the Z axis of `to_world`.
     Spot {
-        /// Where it is, and where it points to; without scale.
+        /// Its position and orientation; without scale.
         to_world: DAffine3,
         /// W sr⁻¹ within `beam`.
         intensity: f64,
-        /// Half of the angle of full intensity, radians.
+        /// Half-angle of the cone of full intensity, radians.
         beam: f64,
-        /// Half of the angle beyond which it is dark, radians.
+        /// Half-angle beyond which it is dark, radians.
         cutoff: f64,
-        /// How intensity falls between both.
+        /// The falloff of intensity between both angles.
         falloff: Falloff,
     },
-    /// From so far away that all of it goes one way.
+    /// A distant light in a single direction.
     Directional {
-        /// The way it goes, of unit length.
+        /// The direction of light, of unit length.
         direction: DVec3,
-        /// W m⁻² across that direction.
+        /// W m⁻² on a surface across that direction.
         irradiance: f64,
     },
-    /// The same radiance from everywhere around.
+    /// Uniform radiance from all directions.
     Constant {
         /// W m⁻² sr⁻¹.
         radiance: f64,
     },
-    /// Radiance by the direction that it comes from.
+    /// Radiance by direction.
     Sky(SkyMap),
 }
 
-/// How the intensity of a spot falls from its beam to where it is dark.
+/// The falloff of a spot's intensity from its beam to the dark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Falloff {
-    /// Linearly with the angle, as in Mitsuba 3.
+    /// Linear in the angle, as in Mitsuba 3.
     Angle,
     /// As t² (3 − 2t), with t from 1 to 0 linearly with the cosine of the angle, as in pbrt-v4.
     SmoothCosine,
-    /// As t², as glTF 2.0 advises.
+    /// As t², as recommended by glTF 2.0.
     SquaredCosine,
 }
 
 impl Falloff {
-    /// The share of the intensity that is left at an angle, of a beam and a cutoff.
+    /// The fraction of the intensity at an angle, for a beam and a cutoff.
     #[must_use]
     pub fn share(self, angle: f64, beam: f64, cutoff: f64) -> f64 {
-        // A beam without an edge is sharp.
+        // With equal angles, the beam has a sharp edge.
         let between = |at: f64, full: f64, dark: f64| match full - dark {
             0.0 if at >= full => 1.0,
             0.0 => 0.0,
@@ -79,7 +79,7 @@ impl Falloff {
     }
 }
 
-/// Radiance from far away, by direction.
+/// Distant radiance by direction.
 #[derive(Clone, Debug)]
 pub struct SkyMap {
     /// Rotates directions of the map to those of the world.
@@ -88,5 +88,5 @@ pub struct SkyMap {
     pub radiance: Arc<LatLong>,
 }
 
-/// Radiance of a surface on its front, the same to all directions: an area light.
+/// The radiance emitted by the front of a surface, the same in all directions: an area light.
 pub type EmittedRadiance = Texture;

@@ -1,21 +1,22 @@
-//! What surfaces of a world do to light.
+//! Materials of surfaces.
 
 use crate::Texture;
 use etendue_field::MicrofacetDistribution;
 
-/// What a surface does to light.
+/// The material of a surface.
 ///
-/// The front is the side that the normal of the [`Shape`](crate::Shape) points to. What scatters light on its front alone lets none through: its back is black.
+/// The front is the side to which the normal of the [`Shape`](crate::Shape) points. A material that
+/// scatters light only on its front is opaque: its back is black.
 #[derive(Clone, Debug)]
 pub enum Material {
-    /// The same radiance to all directions of the front: Lambert's BRDF, reflectance / π.
+    /// Lambert's BRDF on the front, reflectance / π.
     Diffuse {
-        /// The share of light that is reflected.
+        /// The fraction of light that is reflected.
         reflectance: Texture,
     },
     /// A metal, on its front.
     Conductor(Conductor),
-    /// An interface between two media that let light through, on both sides.
+    /// A transmitting interface between two media, on both sides.
     Dielectric(Dielectric),
     /// A diffuse base below a dielectric coat, on its front.
     Plastic(Plastic),
@@ -28,70 +29,73 @@ pub enum Material {
         /// n.
         exponent: Texture,
     },
-    /// One material on each side: what both do on their fronts. Neither lets light through.
+    /// One opaque material on each side, each acting as on its front.
     TwoSided(Box<[Self; 2]>),
-    /// Light goes on as if nothing were there, but for a share that meets the material within.
+    /// A partly transparent surface: light passes unchanged except for a fraction that hits the
+    /// material.
     Mask {
-        /// That share.
+        /// The fraction that hits the material.
         opacity: Texture,
-        /// What is met.
+        /// The material.
         of: Box<Self>,
     },
-    /// A mixture: the first with weight 1 − w, the second with w.
+    /// A mixture of two materials with weights 1 − w and w.
     Blend {
         /// w.
         weight: Texture,
-        /// Both.
+        /// Both materials.
         of: Box<[Self; 2]>,
     },
 }
 
-/// A metal: a mirror, or microfacets that are mirrors (Walter et al. 2007).
+/// A metal: a mirror, or mirror-like microfacets (Walter et al. 2007).
 #[derive(Clone, Debug)]
 pub struct Conductor {
-    /// Index of refraction n + i k, relative to the medium outside; `None` reflects all.
+    /// Index of refraction n + i k, relative to the medium outside; `None` is a perfect reflector.
     pub index: Option<[f64; 2]>,
-    /// A factor on what is reflected.
+    /// A factor on the reflected light.
     pub reflectance: Texture,
-    /// `None` for a mirror.
+    /// The roughness; `None` for a mirror.
     pub roughness: Option<Roughness>,
 }
 
-/// An interface that light is reflected by and refracted through.
+/// An interface that reflects and refracts light.
 #[derive(Clone, Debug)]
 pub struct Dielectric {
-    /// Index of refraction behind the front over that before it.
+    /// Ratio of the index of refraction behind the front to that before it.
     pub index: f64,
-    /// A factor on what is reflected.
+    /// A factor on the reflected light.
     pub reflectance: Texture,
-    /// A factor on what goes through.
+    /// A factor on the transmitted light.
     pub transmittance: Texture,
-    /// `None` for a smooth interface.
+    /// The roughness; `None` for a smooth interface.
     pub roughness: Option<Roughness>,
-    /// A thin sheet of such an interface on both sides: light goes straight through, with all reflections within summed.
+    /// Whether it is a thin sheet with such an interface on both sides: light passes straight
+    /// through, with all internal reflections summed.
     pub is_thin: bool,
 }
 
-/// A diffuse base below a dielectric coat. Light that the base scatters is refracted on its way in and out, and reflected within.
+/// A diffuse base below a dielectric coat. Light scattered by the base is refracted on its way in
+/// and out, and reflected internally.
 #[derive(Clone, Debug)]
 pub struct Plastic {
-    /// Index of refraction of the coat over that outside.
+    /// Ratio of the index of refraction of the coat to that outside.
     pub index: f64,
     /// Reflectance of the base.
     pub diffuse: Texture,
-    /// A factor on what the coat reflects.
+    /// A factor on the light reflected by the coat.
     pub specular: Texture,
-    /// Whether each reflection within takes the colour of the base once more.
+    /// Whether each internal reflection is multiplied by the colour of the base.
     pub is_nonlinear: bool,
-    /// Of the coat, which the base does not see; `None` for a smooth one.
+    /// Roughness of the coat, which does not affect the base; `None` for a smooth coat.
     pub roughness: Option<Roughness>,
 }
 
-/// How normals of microfacets are distributed.
+/// The distribution of microfacet normals.
 #[derive(Clone, Debug)]
 pub struct Roughness {
     /// The distribution.
     pub distribution: MicrofacetDistribution,
-    /// α along the tangents of u and v: for Beckmann √2 times the root mean square slope.
+    /// α along the tangents of u and v: for Beckmann, √2 times the root mean square slope.
     pub alpha: [Texture; 2],
 }

@@ -7,21 +7,23 @@ use std::sync::Arc;
 /// A surface with one material.
 #[derive(Clone, Debug)]
 pub struct Shape {
-    /// What the file calls it.
+    /// Its name in the file.
     pub name: String,
-    /// In coordinates of its own.
+    /// The geometry in local coordinates.
     pub geometry: Geometry,
-    /// From its own coordinates to those of the world. Normals are mapped as such, by the inverse transpose: a mirror leaves the front where it is. Spheres and cylinders are scaled alike along all axes, cylinders by another factor along Z.
+    /// The map from local to world coordinates. Normals are mapped by the inverse transpose: a
+    /// mirror keeps the front. Spheres and cylinders are scaled uniformly, but cylinders may have
+    /// another factor along Z.
     pub to_world: DAffine3,
-    /// Whether its front is the other side than [`Geometry`] says.
+    /// Whether its front is opposite to that of [`Geometry`].
     pub is_flipped: bool,
-    /// The number of its material.
+    /// The index of its material.
     pub material: usize,
-    /// What it emits on its front, W m⁻² sr⁻¹; `None` for none.
+    /// Radiance emitted on its front, W m⁻² sr⁻¹; `None` for none.
     pub emission: Option<EmittedRadiance>,
 }
 
-/// Where a surface is, with its front and its texture coordinates (u, v).
+/// The geometry of a surface, with its front and its texture coordinates (u, v).
 #[derive(Clone, Debug)]
 pub enum Geometry {
     /// z = 0, x and y from −1 to 1. Front: Z. (u, v) = ((x + 1)/2, (y + 1)/2).
@@ -38,8 +40,8 @@ pub enum Geometry {
 
 /// Triangles with shared vertices.
 ///
-/// Corners run counterclockwise seen from the front. Valid by construction: corners are among the vertices, and there are as many normals and
-/// texture coordinates as vertices.
+/// Corners are counterclockwise seen from the front. Valid by construction: corners refer to
+/// vertices, and there are as many normals and texture coordinates as vertices.
 #[derive(Clone, Debug)]
 pub struct Triangles {
     vertices: Vec<DVec3>,
@@ -49,7 +51,8 @@ pub struct Triangles {
 }
 
 impl Triangles {
-    /// `None` unless corners are among the vertices and lengths agree. Normals of any length but zero are taken; with none, triangles are flat.
+    /// `None` unless corners refer to vertices and lengths agree. Normals may have any length but
+    /// zero; without normals, triangles are flat.
     #[must_use]
     pub fn new(
         vertices: Vec<DVec3>,
@@ -72,7 +75,7 @@ impl Triangles {
         })
     }
 
-    /// Places of the vertices.
+    /// Positions of the vertices.
     #[must_use]
     pub fn vertices(&self) -> &[DVec3] {
         &self.vertices
@@ -84,7 +87,7 @@ impl Triangles {
         &self.corners
     }
 
-    /// Normals at the vertices, for shading.
+    /// Shading normals at the vertices.
     #[must_use]
     pub fn normals(&self) -> Option<&[DVec3]> {
         self.normals.as_deref()

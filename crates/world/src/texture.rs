@@ -1,4 +1,4 @@
-//! Numbers that vary over a surface.
+//! Textures: numbers that vary over a surface.
 
 use etendue_field::Raster;
 use glam::{DAffine2, DVec2};
@@ -7,11 +7,12 @@ use std::sync::Arc;
 /// A number that may vary over a surface, by its texture coordinates (u, v).
 #[derive(Clone, Debug)]
 pub enum Texture {
-    /// The same everywhere.
+    /// A constant.
     Constant(f64),
-    /// Squares of half a unit, by turns: the first number where (u, v) mod 1 are both below ½ or both above.
+    /// Alternating squares of half a unit: the first number where (u, v) mod 1 are both below ½ or
+    /// both above.
     Checkerboard {
-        /// From the surface's (u, v) to the board's.
+        /// The map from the surface's (u, v) to the board's.
         to_uv: DAffine2,
         /// Both numbers.
         values: [f64; 2],
@@ -20,31 +21,32 @@ pub enum Texture {
     Bitmap(Bitmap),
 }
 
-/// A picture over the unit square of texture coordinates: u to the right and v down from the first pixel, which is at the top left.
+/// A picture over the unit square of texture coordinates: u to the right and v down from the first
+/// pixel, at the top left.
 #[derive(Clone, Debug)]
 pub struct Bitmap {
-    /// From the surface's (u, v) to the picture's.
+    /// The map from the surface's (u, v) to the picture's.
     pub to_uv: DAffine2,
     /// Its pixels.
     pub pixels: Arc<Raster>,
-    /// What is beyond its edges.
+    /// The values beyond its edges.
     pub wrap: Wrap,
-    /// What is between centres of pixels.
+    /// The interpolation between pixel centres.
     pub filter: Filter,
 }
 
-/// What a picture shows beyond its edges.
+/// The continuation of a picture beyond its edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wrap {
-    /// Itself again.
+    /// Repeated.
     Repeat,
-    /// Itself mirrored, by turns.
+    /// Repeated with alternating mirror images.
     Mirror,
-    /// The nearest pixel of the edge.
+    /// The nearest edge pixel.
     Clamp,
 }
 
-/// What a picture shows between centres of pixels.
+/// The interpolation between pixel centres.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Filter {
     /// Bilinear interpolation.
@@ -54,7 +56,7 @@ pub enum Filter {
 }
 
 impl Texture {
-    /// Its value at texture coordinates of the surface.
+    /// The value at texture coordinates of the surface.
     #[must_use]
     pub fn value(&self, uv: DVec2) -> f64 {
         match self {
@@ -100,7 +102,7 @@ impl Bitmap {
     }
 }
 
-/// The number of a pixel; texture coordinates far away have the last there are.
+/// The index of a pixel; very large texture coordinates are clamped.
 #[expect(clippy::cast_possible_truncation, reason = "brought into range before")]
 fn whole(x: f64) -> i64 {
     x.floor().clamp(-1e15, 1e15) as i64
@@ -146,7 +148,7 @@ mod tests {
             (Wrap::Clamp, 7.5, 4.0),
             (Wrap::Clamp, -7.5, 1.0),
         ] {
-            // Rounding of u / 3.
+            // The tolerance for rounding of u / 3.
             assert!(
                 (at(wrap, Filter::Nearest, u) - nearest).abs() < 1e-12,
                 "{wrap:?} {u}"
@@ -168,7 +170,7 @@ mod tests {
             (0.6, 0.9, 0.4),
             (-0.1, 0.2, 0.2),
         ] {
-            // The very number.
+            // The values are exactly equal.
             assert!(
                 (board.value(DVec2::new(u, v)) - value).abs() < 1e-300,
                 "({u}, {v})"

@@ -1,7 +1,8 @@
-//! The assumptions of theory, told apart by the words in which `check` says that one does not hold.
+//! The assumptions of theory, identified by phrases in the reasons that `check` gives for
+//! violations.
 
-/// Each assumption, and a phrase of the reasons that are given where it does not hold. A reason
-/// belongs to the first phrase it has.
+/// Each assumption, with a phrase from the reasons for its violation. A reason belongs to the first
+/// phrase it contains.
 const PHRASES: [(&str, &str); 15] = [
     ("surfaces are met in their order", "out of turn"),
     (
@@ -37,19 +38,20 @@ const PHRASES: [(&str, &str); 15] = [
 
 const ACROSS: &str = "the plane is across the path";
 
-/// What a check decides besides: where it does not hold, theory is right, and takes longer.
+/// A further reason of a check: the assumption is not needed for a right prediction, only for a
+/// fast one.
 pub(super) const DARK: &str = "some light comes";
 
-/// What a reason is of whose words are new, and a check that panics.
+/// The name for reasons with unknown wording, and for panics of a check.
 pub(super) const UNKNOWN: &str = "not in this list";
 
-/// The assumption that a reason says not to hold; `None` where it is in none of the words above.
+/// The violated assumption named in a reason; `None` if no phrase matches.
 pub(super) fn assumption(reason: &str) -> Option<&'static str> {
     let found = PHRASES.iter().find(|(_, phrase)| reason.contains(phrase));
     found.map(|(assumption, _)| *assumption)
 }
 
-/// All of them, each once.
+/// All assumptions, each once.
 pub(super) fn assumptions() -> Vec<&'static str> {
     let mut all: Vec<&str> = PHRASES.iter().map(|(assumption, _)| *assumption).collect();
     all.extend([DARK, UNKNOWN]);

@@ -1,6 +1,7 @@
-//! Whether each assumption of theory that is checked is needed.
+//! Tests whether each checked assumption of theory is needed.
 //!
-//! Where one alone does not hold, theory predicts all the same, and photons say what that is worth.
+//! If only one assumption is violated, theory predicts nevertheless, and photons judge the
+//! prediction.
 
 mod kind;
 mod tally;
@@ -18,24 +19,24 @@ use std::path::{Path, PathBuf};
 use tally::section;
 use trial::{Trial, trials};
 
-/// Which scenes are tried.
+/// Options of the tested scenes.
 #[derive(Debug, clap::Args)]
 pub(crate) struct AssumptionOptions {
-    /// Random scenes.
+    /// Number of random scenes.
     #[arg(long, default_value_t = 1000)]
     scenes: u64,
-    /// Number of the first.
+    /// Index of the first scene.
     #[arg(long, default_value_t = 0)]
     first: u64,
-    /// Another seed gives other scenes.
+    /// Seed of the random scenes.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Photons for each plane.
+    /// Photons per plane.
     #[arg(long, default_value_t = 200_000)]
     photons: u64,
 }
 
-/// A scene, and what came of its planes; `None` where it was not drawn, or is not legal.
+/// A scene, and the trials of its planes; `None` if it was not drawn, or is invalid.
 type TriedScene = (String, Option<Vec<Trial>>);
 
 /// Tries all random scenes, and those of the repository.
@@ -78,7 +79,7 @@ fn random(options: &AssumptionOptions, number: u64) -> io::Result<Option<Scene>>
 /// The scenes of the repository.
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes");
 
-/// The scene files in a folder and the folders in it, by name.
+/// The scene files in a folder and its subfolders, sorted by name.
 fn files_of(folder: &Path, found: &mut Vec<PathBuf>) -> io::Result<()> {
     let entries: io::Result<Vec<_>> = fs::read_dir(folder)?.collect();
     let mut paths: Vec<PathBuf> = entries?.iter().map(fs::DirEntry::path).collect();
@@ -93,7 +94,7 @@ fn files_of(folder: &Path, found: &mut Vec<PathBuf>) -> io::Result<()> {
     Ok(())
 }
 
-/// A scene of the repository, with so many photons.
+/// A scene of the repository, with this number of photons.
 fn kept(path: &Path, photons: u64) -> Option<Scene> {
     let mut file = SceneFile::parse(&fs::read_to_string(path).ok()?).ok()?;
     emit(&mut file.run, Some(photons));
@@ -119,7 +120,7 @@ mod tests {
     use etendue_compare::Verdict;
     use std::path::Path;
 
-    /// What is broken alone at each plane, and what photons say of theory all the same.
+    /// The only violated assumption at each plane, and the verdict of photons on theory.
     fn judged(scene: &Scene) -> Vec<(&'static str, Verdict)> {
         let judged = |trial: Trial| match trial.ending {
             Some(TrialEnding::Judged { verdict, .. }) => {
@@ -146,7 +147,8 @@ mod tests {
         }
     }
 
-    /// A fine mesh beside a mirror breaks an assumption, and only one that stops light is seen.
+    /// A fine mesh beside a mirror violates an assumption, but only a mesh that blocks light makes
+    /// a difference.
     #[test]
     fn photons_accept_theory_where_nothing_comes_of_it() {
         for (x, verdict) in [(3.0, Verdict::Pass), (0.55, Verdict::Fail)] {

@@ -1,4 +1,4 @@
-//! What all trials come to, a row for each assumption.
+//! Summary of all trials, with a row for each assumption.
 
 use super::kind::{DARK, UNKNOWN, assumptions};
 use super::trial::TrialEnding;
@@ -7,23 +7,23 @@ use crate::report::Bound::AtLeast;
 use crate::report::{self, Check, ReportSection};
 use etendue_compare::Verdict;
 
-/// Scenes of a list that are named.
+/// Maximum number of scenes named in a list.
 const NAMED: usize = 4;
 
-/// What came of the planes of which an assumption does not hold.
+/// The outcomes of the planes that violate an assumption.
 #[derive(Default)]
 struct AssumptionRow {
     planes: usize,
-    /// Of which nothing else is broken.
+    /// Number of planes where nothing else is violated.
     alone: usize,
     speechless: usize,
     skipped: usize,
     panics: usize,
-    /// The scenes of the planes that fail.
+    /// The scenes of the failed planes.
     fails: Vec<String>,
     undecided: usize,
     passes: usize,
-    /// Planes that photons came to.
+    /// Number of planes that photons reach.
     lit: usize,
 }
 
@@ -62,7 +62,7 @@ impl AssumptionRow {
         self.fails.len() + self.undecided + self.passes
     }
 
-    /// How many fail of those judged, and the first of them.
+    /// The number of failures among the judged planes, and the first of them.
     fn caught(&self) -> String {
         let mut named = self.fails.clone();
         named.dedup();
@@ -77,7 +77,7 @@ impl AssumptionRow {
     }
 }
 
-/// The table, and whether each assumption is caught that is tried.
+/// The table, and checks that the violation of each tested assumption is detected.
 pub(super) fn section(
     options: &AssumptionOptions,
     random: &[TriedScene],

@@ -1,4 +1,4 @@
-//! A plane predicted as if what theory takes for granted were so, and held against photons.
+//! A plane predicted as if the assumptions of theory held, and compared with photons.
 
 use super::kind::{DARK, UNKNOWN, assumption};
 use crate::scenes::traced;
@@ -12,40 +12,40 @@ use etendue_theory::{Model, Predicted, RayBudget};
 use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// A plane of which a check says that theory does not hold, or that it is dark.
+/// A plane that a check reports as outside theory, or as dark.
 pub(super) struct Trial {
     pub(super) plane: String,
-    /// What does not hold, each once.
+    /// The violated assumptions, each once.
     pub(super) broken: BTreeSet<&'static str>,
-    /// What comes of theory without the check; `None` where more than one assumption is broken,
-    /// so that nothing would be learnt of any.
+    /// The outcome of theory without the check; `None` if more than one assumption is violated,
+    /// which would be inconclusive.
     pub(super) ending: Option<TrialEnding>,
 }
 
-/// What comes of a prediction that is not checked.
+/// The outcome of an unchecked prediction.
 #[derive(Debug)]
 pub(super) enum TrialEnding {
-    /// Photons were held against it, so many of them in the window.
+    /// Compared with photons, with their number in the window.
     Judged { verdict: Verdict, inside: u64 },
-    /// No theory has words for what the central ray meets.
+    /// No theory can describe the surfaces on the central ray.
     Speechless,
-    /// It would take too long.
+    /// The prediction would take too long.
     Skipped,
-    /// It panicked, and said this.
+    /// The prediction panicked, with this message.
     Panicked(#[expect(dead_code, reason = "what it said is printed")] String),
 }
 
-/// Both must find the same fault: one true plane in a hundred fails with one of them.
+/// Both seeds must find the same fault: one correct plane in a hundred fails with one of them.
 const SEEDS: [u64; 2] = [1, 2];
-/// Seconds of one core that a prediction may take at most, with its derivatives.
+/// Maximum seconds of one core for a prediction with its derivatives.
 const LONGEST: f64 = 60.0;
-/// As for 2·10⁵ photons of a run.
+/// The budget for 2·10⁵ photons of a run.
 const BUDGET: RayBudget = RayBudget {
     nodes: 1.1e6,
     error: 3e-3,
 };
 
-/// Tries the planes of a scene for which a check has a reason, each as if it were alone.
+/// Tries the planes of a scene with a reported violation, each on its own.
 pub(super) fn trials(scene: &Scene) -> Vec<Trial> {
     let alone = (0..scene.planes.len()).map(|plane| scene.seen_at(&[plane]));
     alone.filter_map(|scene| trial(&scene)).collect()
@@ -79,9 +79,9 @@ fn trial(scene: &Scene) -> Option<Trial> {
     }
 }
 
-/// What `work` returns, or says in panic.
+/// The result of `work`, or its panic message.
 fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
-    // Nothing that is changed on the way is looked at afterwards.
+    // Nothing modified by the work is used after a panic.
     catch_unwind(AssertUnwindSafe(work)).map_err(|panic| {
         let text = panic.downcast_ref::<&str>().map(ToString::to_string);
         let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
@@ -89,7 +89,7 @@ fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     })
 }
 
-/// Predicts without the check, and judges by photons.
+/// Predicts without the check, and compares with photons.
 fn unchecked(scene: &Scene, plane: &VirtualPlane, checked: &Applicability) -> TrialEnding {
     let theory = Theory::of(scene, plane);
     if !has_words(scene, plane, &theory) {
@@ -107,7 +107,7 @@ fn unchecked(scene: &Scene, plane: &VirtualPlane, checked: &Applicability) -> Tr
         return TrialEnding::Skipped;
     }
     let found = predicted(plane, &regardless[0].theory);
-    // What is left out is the chain of affine maps, which has a verdict of its own.
+    // The affine chain is left out, because it has its own verdict.
     let prediction = Prediction {
         slices: found.slices,
         replicates: found.replicates,
@@ -124,8 +124,8 @@ fn unchecked(scene: &Scene, plane: &VirtualPlane, checked: &Applicability) -> Tr
     }
 }
 
-/// Whether a theory has words for what the central ray meets. Between parallel planes that is
-/// one Lambertian surface in the light of a lamp.
+/// Whether a theory can describe the surfaces on the central ray. Between parallel planes this is
+/// one Lambertian surface lit by a lamp.
 fn has_words(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> bool {
     let Theory::Parallel(_) = theory else {
         return true;
@@ -140,7 +140,7 @@ fn has_words(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> bool {
         })
 }
 
-/// What a theory says of a plane, without derivatives.
+/// The prediction of a theory for a plane, without derivatives.
 fn predicted(plane: &VirtualPlane, theory: &Theory) -> Predicted {
     let picture = ProjectionGrid::new(&plane.window, 1);
     let over = (&plane.window, &plane.grid, &picture);
@@ -153,7 +153,7 @@ fn predicted(plane: &VirtualPlane, theory: &Theory) -> Predicted {
     }
 }
 
-/// What photons with this seed say of the prediction of the only plane.
+/// The verdict of photons with this seed on the prediction of the only plane.
 fn judged(scene: &Scene, seed: u64, prediction: &Prediction) -> TrialEnding {
     let mut scene = scene.clone();
     scene.run.seed = seed;

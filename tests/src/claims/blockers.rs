@@ -22,7 +22,7 @@ pub(super) fn claims(photons: u64) -> Vec<Claim> {
     ]
 }
 
-/// Light right behind blockers, in a wide window.
+/// Light directly behind blockers, in a wide window.
 fn behind(blockers: &str, half: f64, [rho, spacing]: [f64; 2], photons: u64) -> SeenScene {
     let window = format!("x: Hann({half}), u: Box(2)");
     let frequencies = format!("rho: (max: {rho}, spacing: {spacing}), nu: (max: 1)");
@@ -149,7 +149,8 @@ fn jitter(photons: u64) -> Claim {
     }
 }
 
-/// Half-covering squares at pitches for which an odd number of halves cover the light's image, where ripples are largest; and how many there are along each axis.
+/// Squares with fill one half, at pitches for which the light's image covers an odd number of half
+/// periods, where ripples are largest; with their number along each axis.
 const PITCHES: [(f64, u32); 3] = [(0.2, 14), (0.2 / 3.0, 38), (0.04, 62)];
 
 fn ripples(at: &str, frequencies: &str, photons: u64) -> [ClaimNumber; 3] {
@@ -240,14 +241,14 @@ fn before_average(photons: u64) -> Claim {
     }
 }
 
-/// Strips of a pair of masks about the central ray, m.
+/// Strips of a pair of masks, centred on the central ray, m.
 fn centred(pair: u32, offset: f64) -> Strips {
     let mut open = strips(pair, offset);
     open.iter_mut().flatten().for_each(|edge| *edge -= 0.5);
     open
 }
 
-/// What lets no light through between, as opaque rectangles over ± 1 m.
+/// The complement of the open strips, as opaque rectangles over ± 1 m.
 fn opaque(open: &Strips) -> String {
     let mut edges = vec![-1.0];
     edges.extend(open.iter().flatten());
@@ -260,7 +261,8 @@ fn opaque(open: &Strips) -> String {
     format!("Shapes(name: \"blockers\", center: (0, 0, 1), shapes: [{shapes}])")
 }
 
-/// Frequencies up to which bounds are held against spectra, and up to which they are summed, /m.
+/// Maximum frequencies at which bounds are compared with spectra, and up to which they are summed,
+/// /m.
 const HELD: usize = 12;
 const SUMMED: usize = 40;
 
@@ -355,7 +357,7 @@ fn soft_shadows(photons: u64) -> Claim {
     let mut off = 0.0_f64;
     let numbers = [0.2, 0.5, 1.0, 2.0].map(|after| {
         let floor = 1.0 + after;
-        // The grating's image on the floor.
+        // The image of the grating on the floor.
         let rho = frequency / floor;
         let seen = |phase: f64| {
             let blockers = format!(
@@ -371,7 +373,8 @@ fn soft_shadows(photons: u64) -> Claim {
             bench.seen(photons)
         };
         let [plus, minus] = [0.0, PI].map(seen);
-        // Gratings half a period apart: their difference is the shadow, their sum the light without it.
+        // Gratings half a period apart: their difference is the shadow, their sum is the light
+        // without it.
         let contrast = number(&[(&plus, 0), (&minus, 0)], &|slices| {
             let [a, b] = [0, 1].map(|i| at(&slices[i], 0, [rho, 0.0]));
             let all = slices[0].at_zero() + slices[1].at_zero();

@@ -1,4 +1,5 @@
-//! Statements about locality and discontinuities: windows narrowed, the central ray moved, tails of spectra.
+//! Statements about locality and discontinuities: narrow windows, a shifted central ray, tails of
+//! spectra.
 
 use super::number::{at, line, power};
 use super::scene::{ClaimBench, LIGHT, SeenScene, number, plane, squares};
@@ -13,7 +14,7 @@ pub(super) fn claims(photons: u64) -> Vec<Claim> {
     all
 }
 
-/// Light past a small square and without it, in a window that holds the whole shadow.
+/// Light past a small square and without it, in a window that contains the whole shadow.
 fn shadow(
     light: &str,
     floor: f64,
@@ -41,12 +42,13 @@ fn shadow(
     })
 }
 
-/// Exponents of the tails of shadows whose profiles have a jump in their n-th derivative.
+/// Exponents of the tails of shadows whose profiles have a discontinuous n-th derivative.
 fn tails(photons: u64) -> Claim {
-    // √2: of a square seen along its diagonal.
+    // 1/√2: the side of a square seen along its diagonal.
     let diagonal = std::f64::consts::FRAC_1_SQRT_2;
     let bar = "Rectangle(center: (0, 0, 0), size: (0.2, 0.002))";
-    // Light, plane, half-width of the window, azimuth, and the width of the boxes whose convolution the shadow is.
+    // Light, plane, half-width of the window, azimuth, and the widths of the boxes whose
+    // convolution is the shadow.
     let cases = [
         (LIGHT, "After(\"blockers\")", 0.08, 0, 0.1, 4),
         (LIGHT, "After(\"blockers\")", 0.08, 1, 0.1 * diagonal, 4),
@@ -78,10 +80,10 @@ fn tails(photons: u64) -> Claim {
     }
 }
 
-/// Half-widths of windows that narrow, metres.
+/// Half-widths of narrowing windows, metres.
 const HALVES: [f64; 4] = [0.8, 0.4, 0.2, 0.1];
 
-/// Light behind a grating of 5 /m in windows that narrow.
+/// Light behind a grating of 5 /m in narrowing windows.
 fn through(modulation: f64, photons: u64) -> [SeenScene; 4] {
     let grating = format!(
         "Grating(name: \"blockers\", center: (0, 0, 1), axis: X, frequency: 5, modulation: {modulation})"
@@ -146,7 +148,8 @@ fn narrowed(photons: u64) -> [Claim; 2] {
     ]
 }
 
-/// The share of the power between 15 and 25 /m of an array that ends at ± 2 m, its centre beside the central ray.
+/// The share of the power between 15 and 25 /m for an array that ends at ± 2 m, centred off the
+/// central ray.
 fn share(offset: f64, half: f64, photons: u64) -> super::number::ClaimNumber {
     let blockers = squares([80, 80], 0.05, "fill: 0.5")
         .replace("center: (0, 0, 1)", &format!("center: ({offset}, 0, 1)"));

@@ -1,4 +1,4 @@
-//! What the paper says in words, measured with photons: a row for each statement.
+//! Statements in the paper's text, measured with photons: a row for each statement.
 
 mod blockers;
 mod locality;
@@ -10,25 +10,25 @@ use crate::report::Bound::AtMost;
 use crate::report::{Check, ReportSection, Row};
 use number::ClaimNumber;
 
-/// Photons of a scene, unless others are given.
+/// Default number of photons of a scene.
 const PHOTONS: u64 = 1 << 20;
-/// The most that a measured number may be off its prediction, in errors.
+/// Maximum deviation of a measured number from its prediction, in standard errors.
 const PULL: f64 = 4.0;
 const CHANCE: &str = "1 in 16,000 by chance, of some 60 numbers";
 
-/// A statement, and what photons say.
+/// A statement, with the result from photons.
 struct Claim {
     said: &'static str,
-    /// What the numbers are.
+    /// A description of the numbers.
     shown: String,
     numbers: Vec<ClaimNumber>,
-    /// Beyond that each number is as predicted.
+    /// Checks in addition to agreement of each number with its prediction.
     checks: Vec<Check>,
-    /// "holds", or in which part.
+    /// "holds", or the part that holds.
     holds: &'static str,
 }
 
-/// The section.
+/// Returns the section.
 pub(crate) fn claims(photons: Option<u64>) -> ReportSection {
     let photons = photons.unwrap_or(PHOTONS);
     let parts = [blockers::claims, surfaces::claims, locality::claims];
@@ -68,7 +68,7 @@ fn row(claim: Claim) -> Row {
     Row::new(cells, checks)
 }
 
-/// That each number is below the one before it, beyond noise.
+/// Checks that the numbers decrease, beyond noise.
 fn decreasing(numbers: &[ClaimNumber]) -> Check {
     let falls = numbers.windows(2).all(|pair| {
         let error = pair[0].error.hypot(pair[1].error);

@@ -1,4 +1,4 @@
-//! Numbers read off measured spectra, with errors and predictions by the same estimator.
+//! Numbers derived from measured spectra, with errors and predictions by the same estimator.
 
 use etendue_field::{Complex, Slices, decimals, fixed, uncertain, whole};
 
@@ -8,12 +8,12 @@ pub(super) struct ClaimNumber {
     pub(super) value: f64,
     /// Standard error of measured minus predicted.
     pub(super) error: f64,
-    /// What the prediction gives by the same estimator.
+    /// The prediction by the same estimator.
     pub(super) predicted: f64,
 }
 
 impl ClaimNumber {
-    /// Measured minus predicted, in errors.
+    /// Measured minus predicted, in standard errors.
     pub(super) fn pull(&self) -> f64 {
         (self.value - self.predicted) / self.error
     }
@@ -35,11 +35,11 @@ impl ClaimNumber {
     }
 }
 
-/// Slices in independent batches: one list for each plane that a number is read off.
+/// Slices in independent batches: one list for each plane used by a number.
 pub(super) type Batches = Vec<Vec<Slices>>;
 
-/// A number of the mean slices, and its standard error, by the delete-one jackknife. The bias of the order of the noise power,
-/// which |S|² has, is taken out (Quenouille 1956).
+/// A number computed from the mean slices, and its standard error, by the delete-one jackknife. The
+/// bias of |S|², of the order of the noise power, is removed (Quenouille 1956).
 pub(super) fn jackknife(batches: &Batches, of: &dyn Fn(&[Slices]) -> f64) -> [f64; 2] {
     let count = batches[0].len();
     let sums: Vec<Slices> = batches.iter().map(|each| sum(each)).collect();
@@ -90,7 +90,7 @@ pub(super) fn line(slices: &Slices, k: usize) -> Vec<(f64, Complex)> {
         .collect()
 }
 
-/// Σ |S|² on the line ν = 0 of slice 0, over frequencies that are wanted.
+/// Σ |S|² on the line ν = 0 of slice 0, over the selected frequencies.
 pub(super) fn power(slices: &Slices, wanted: impl Fn(f64) -> bool) -> f64 {
     let along = line(slices, 0).into_iter();
     let inside = along.filter(|(rho, _)| wanted(*rho));

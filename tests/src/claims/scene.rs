@@ -1,4 +1,4 @@
-//! Small scenes of the statements, traced and predicted.
+//! Small scenes for the statements, traced and predicted.
 
 use super::number::{Batches, ClaimNumber, jackknife};
 use crate::scenes::{predicted, traced};
@@ -7,10 +7,10 @@ use etendue_field::Slices;
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::Measurement;
 
-/// Light, blockers and a floor, all across the central ray.
+/// Light, blockers and a floor, all perpendicular to the central ray.
 pub(super) struct ClaimBench<'a> {
     pub(super) light: &'a str,
-    /// As in a scene file; they stand 1 m from the light.
+    /// The blockers as in a scene file, 1 m from the light.
     pub(super) blockers: &'a str,
     /// Distance from the light to the floor, metres.
     pub(super) floor: f64,
@@ -39,7 +39,7 @@ impl ClaimBench<'_> {
     }
 }
 
-/// Squares without jitter unless `rest` states one, 1 m from the light.
+/// Squares, without jitter unless `rest` gives one, 1 m from the light.
 pub(super) fn squares(count: [u32; 2], pitch: f64, rest: &str) -> String {
     let [x, y] = count;
     format!(
@@ -47,17 +47,17 @@ pub(super) fn squares(count: [u32; 2], pitch: f64, rest: &str) -> String {
     )
 }
 
-/// A plane with a window and frequencies of its own.
+/// A plane with its own window and frequencies.
 pub(super) fn plane(at: &str, window: &str, frequencies: &str) -> String {
     format!(
         "(name: \"plane\", at: {at}, window: ({window}), frequencies: (azimuths: 1, {frequencies})),"
     )
 }
 
-/// A scene of a text without window and run.
+/// A scene from a text without window and run.
 ///
 /// # Panics
-/// When it is not sound.
+/// If the scene is invalid.
 pub(super) fn scene(text: &str, photons: u64) -> Scene {
     let text = format!(
         "({text}, window: (x: Hann(0.5), u: Hann(0.5)), frequencies: (azimuths: 1, rho: (max: 16), nu: (max: 4)),
@@ -75,7 +75,7 @@ pub(super) struct SeenScene {
 
 impl SeenScene {
     /// # Panics
-    /// When no theory applies to a plane.
+    /// If no theory applies to a plane.
     pub(super) fn of(scene: Scene) -> Self {
         Self {
             measurement: traced(&scene),
@@ -83,7 +83,7 @@ impl SeenScene {
         }
     }
 
-    /// A number of one plane.
+    /// A number computed from one plane.
     pub(super) fn number(&self, plane: usize, of: impl Fn(&Slices) -> f64) -> ClaimNumber {
         number(&[(self, plane)], &|slices| of(&slices[0]))
     }
@@ -94,7 +94,7 @@ impl SeenScene {
     }
 }
 
-/// A number of several planes, also of different scenes: batch by batch of each.
+/// A number computed from several planes, possibly of different scenes, batch by batch.
 pub(super) fn number(planes: &[(&SeenScene, usize)], of: &dyn Fn(&[Slices]) -> f64) -> ClaimNumber {
     let each = planes.iter();
     let batches: Batches = each.clone().map(|(seen, i)| seen.batches(*i)).collect();

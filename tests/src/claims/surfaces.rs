@@ -27,7 +27,8 @@ pub(super) fn claims(photons: u64) -> Vec<Claim> {
     all
 }
 
-/// A surface at the origin that is met at `incidence`, radians, and left at `outgoing` on the other side of its normal.
+/// A surface at the origin with a central ray that arrives at `incidence`, radians, and leaves at
+/// `outgoing` on the other side of its normal.
 fn surface(light: &str, [incidence, outgoing]: [f64; 2], form: &str, brdf: &str) -> String {
     let (sine, cosine) = incidence.sin_cos();
     let leaves = PI - incidence - outgoing;
@@ -50,7 +51,8 @@ fn planes(at: &str, orientation: &str, window: &str, frequencies: &str) -> Strin
     )
 }
 
-/// Light at a glossy plane at one angle, seen at another, over the irradiance; both ways, and their ratio.
+/// Light reflected by a glossy plane from one angle to another, over the irradiance; in both
+/// directions, and their ratio.
 fn both_ways(brdf: &str, photons: u64) -> ClaimNumber {
     let angles = [20.0_f64, 50.0].map(f64::to_radians);
     let [there, back] = [angles, [angles[1], angles[0]]].map(|angles| {
@@ -107,7 +109,7 @@ fn fresnel(photons: u64) -> Claim {
     }
 }
 
-/// A sphere of 0.5 m in a beam that is wider than it, looked at from three sides.
+/// A sphere of 0.5 m in a wider beam, seen from three sides.
 fn mirror_sphere(photons: u64) -> Claim {
     let found = [0.0, 0.7, 1.4].map(|incidence| {
         let text = surface(
@@ -162,7 +164,8 @@ fn mirror_sphere(photons: u64) -> Claim {
     }
 }
 
-/// The angles from where the beam comes from of the normal where a photon leaves a sphere of 0.5 m, and of its direction.
+/// The angles between the direction towards the beam's source and, first, the normal at which a
+/// photon leaves a sphere of 0.5 m, and second, the photon's direction.
 fn angles(plane: &VirtualPlane, crossing: &Crossing) -> [f64; 2] {
     let ray = crossing.ray;
     let (s, t) = (2.0 * ray.x, 2.0 * ray.y);
@@ -171,7 +174,7 @@ fn angles(plane: &VirtualPlane, crossing: &Crossing) -> [f64; 2] {
     let ((sin, cos), (up, across)) = ((ray.u + plane.longitude).sin_cos(), ray.v.sin_cos());
     let local = plane.frame.turned_to(normal);
     let leaves = local.vector_to_world(DVec3::new(across * sin, up, across * cos));
-    // The arccosine is blunt at its ends.
+    // The arccosine is inaccurate at its ends.
     [normal, leaves].map(|d| d.x.hypot(d.y).atan2(-d.z))
 }
 
@@ -257,7 +260,7 @@ fn cosine(photons: u64) -> Claim {
         );
         let scene = scene(&format!("{text}, {planes}"), photons);
         let whole = SeenScene::of(scene.clone());
-        // cos θ for cos θ cos φ.
+        // Replaces cos θ cos φ by cos θ.
         let tampered = |mut crossing: Crossing| {
             crossing.weight /= crossing.ray.v.cos();
             crossing
@@ -271,7 +274,7 @@ fn cosine(photons: u64) -> Claim {
             slices[0].relative_difference(&slices[1])
         })
     });
-    // Photons of one scene, weighted twice: there is no prediction of the difference.
+    // Photons of one scene, weighted in two ways: there is no prediction of the difference.
     let numbers: Vec<ClaimNumber> = apart
         .iter()
         .map(|n| ClaimNumber {
@@ -314,7 +317,7 @@ fn lobe(photons: u64) -> Claim {
         );
         let seen = SeenScene::of(scene(&format!("{text}, {planes}"), 4 * photons));
         seen.number(0, |slices| {
-            // A Hann window alone has half its value at the first frequency.
+            // A Hann window alone has half its peak at the first frequency.
             let [theta, phi] =
                 [0, 1].map(|k| (at(slices, k, [0.0, nu]) / slices.at_zero() - 0.5).norm());
             theta / phi
@@ -344,7 +347,7 @@ fn lobe(photons: u64) -> Claim {
     }
 }
 
-/// A diffuse sphere of curvature k, with a window and frequencies that go with it.
+/// A diffuse sphere of curvature k, with a matching window and frequencies.
 fn diffuse(light: &str, (k, seed): (f64, u64), photons: u64) -> SeenScene {
     let text = surface(
         light,
@@ -359,7 +362,7 @@ fn diffuse(light: &str, (k, seed): (f64, u64), photons: u64) -> SeenScene {
         &format!("azimuths: 4, rho: (max: {}), nu: (max: 4)", 8.0 * k),
     );
     let mut scene = scene(&format!("{text}, {planes}"), photons);
-    // Photons of spheres of two sizes are else the same but for their scale.
+    // Without different seeds, photons of spheres of two sizes are equal up to scale.
     scene.run.seed = seed;
     SeenScene::of(scene)
 }
@@ -400,7 +403,7 @@ fn environment(photons: u64) -> [Claim; 2] {
     ]
 }
 
-/// Lights of growing size: the criterion takes them to have all frequencies.
+/// Lights of increasing size: the criterion assumes that they contain all frequencies.
 fn criteria(photons: u64) -> Claim {
     let lobe = 1000.0;
     let criterion = Criterion {

@@ -1,4 +1,4 @@
-//! How small a fault of the main scene is still rejected.
+//! The smallest faults of the main scene that are still rejected.
 
 use super::{Predict, TamperedBlock, chained, each_rectangle, scale_travel, shifted, unchanged};
 use crate::progress::progress;
@@ -11,11 +11,11 @@ use etendue_scene::{Sampling, Scene};
 use etendue_spectrum::Measurement;
 use etendue_trace::Tracer;
 
-/// The largest size tried, and how many halves of it.
+/// The largest fault size, and the number of times it is halved.
 const LARGEST: f64 = 0.01;
 const HALVES: i32 = 10;
 
-/// A fault of a size: what is predicted instead, or how photons are tampered with.
+/// A fault of a given size: a changed prediction, or changed photons.
 enum SizedFault {
     Predicted(fn(f64) -> Box<Predict>),
     Photons(fn(f64, Crossing) -> Crossing),
@@ -64,7 +64,7 @@ const FAULTS: [(&str, SizedFault); 7] = [
     ),
 ];
 
-/// A prediction through wider windows.
+/// The prediction for wider windows.
 fn widened(space: f64, slope: f64) -> Box<Predict> {
     Box::new(move |scene, plane| {
         let mut wide = plane.clone();
@@ -78,7 +78,8 @@ fn widened(space: f64, slope: f64) -> Box<Predict> {
     })
 }
 
-/// Faults of 1 % and its halves: the smallest that is rejected, and all larger ones too.
+/// Tries faults of 1 % and repeated halves of it, and finds the smallest size such that it and all
+/// larger ones are rejected.
 pub(crate) fn smallest(photons: u64, seed: u64) -> ReportSection {
     let kinds = [Sampling::Net, Sampling::Random];
     let scenes = kinds.map(|kind| sampled(fig9b(photons, seed), kind));
@@ -115,7 +116,7 @@ pub(crate) fn smallest(photons: u64, seed: u64) -> ReportSection {
     }
 }
 
-/// The smallest size that is rejected.
+/// The smallest rejected size.
 fn rejected(fault: &SizedFault, scene: &Scene, sound: &Measurement) -> Option<f64> {
     let sizes = (0..=HALVES).map(|halves| LARGEST * 0.5_f64.powi(halves));
     sizes
@@ -132,7 +133,7 @@ fn rejected(fault: &SizedFault, scene: &Scene, sound: &Measurement) -> Option<f6
         .last()
 }
 
-/// Whether a plane disagrees.
+/// Whether any plane disagrees.
 fn is_rejected(scene: &Scene, measurement: &Measurement, predict: &Predict) -> bool {
     let level = sidak(scene.run.alpha, scene.planes.len());
     let p_value = |(i, plane): (usize, &VirtualPlane)| {

@@ -1,9 +1,9 @@
-//! Mutations of bytes that know nothing of the format: flips, cuts, copies and extreme numbers.
+//! Mutations of bytes that ignore the format: flips, cuts, copies and extreme numbers.
 
 use super::dice::Dice;
 use std::ops::Range;
 
-/// Whole numbers that lengths, counts and offsets go wrong at.
+/// Integers that are critical as lengths, counts and offsets.
 const NUMBERS: [u64; 12] = [
     0,
     1,
@@ -19,7 +19,7 @@ const NUMBERS: [u64; 12] = [
     0xffff_ffff_ffff_ffff,
 ];
 
-/// Numbers that arithmetic goes wrong at.
+/// Numbers that are critical in arithmetic.
 const FLOATS: [f64; 8] = [
     f64::NAN,
     f64::INFINITY,
@@ -31,10 +31,10 @@ const FLOATS: [f64; 8] = [
     -1.0,
 ];
 
-/// The most bytes that one mutation adds.
+/// Maximum number of bytes added by one mutation.
 const LONGEST: usize = 1 << 16;
 
-/// One to three mutations anywhere.
+/// Applies one to three mutations anywhere.
 pub(crate) fn mutate(bytes: &mut Vec<u8>, dice: &mut Dice) {
     for _ in 0..*dice.pick(&[1, 1, 2, 3]) {
         let all = 0..bytes.len();
@@ -42,7 +42,7 @@ pub(crate) fn mutate(bytes: &mut Vec<u8>, dice: &mut Dice) {
     }
 }
 
-/// One to three mutations that begin within `range`.
+/// Applies one to three mutations that begin within `range`.
 pub(crate) fn mutate_within(bytes: &mut Vec<u8>, range: &Range<usize>, dice: &mut Dice) {
     for _ in 0..*dice.pick(&[1, 1, 2, 3]) {
         let range = range.start.min(bytes.len())..range.end.min(bytes.len());

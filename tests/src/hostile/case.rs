@@ -1,4 +1,4 @@
-//! One case: input, the command run on it, and what is wrong with how that ended.
+//! One case: input, the command run on it, and the faults of the outcome.
 
 use super::child::{self, Ended, LARGEST, LONGEST};
 use super::folder::{self, Folder};
@@ -37,38 +37,38 @@ impl InputKind {
     }
 }
 
-/// What is attacked with, and how.
+/// An attack: the input, and the commands run on it.
 #[derive(Debug)]
 pub(crate) struct Attack {
-    /// All files that are there before.
+    /// All files before the run.
     pub(crate) files: Folder,
     pub(crate) arguments: Vec<String>,
-    /// What is run on it too, if the first command finds it sound.
+    /// A second command, run on the input if the first accepts it.
     pub(crate) then: Option<Vec<String>>,
-    /// The files before the mutation, where these may take long too: then it is no fault.
+    /// The files before the mutation, if these may take long too: slowness is no fault then.
     pub(crate) sound: Option<Folder>,
-    /// The summary that must come out if the input is accepted; `None` where it may be another.
+    /// The expected summary if the input is accepted; `None` if it may differ.
     pub(crate) summary: Option<Vec<u8>>,
 }
 
-/// What must not be.
+/// A fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum HostileFault {
-    /// Also an exit code that the program does not have.
+    /// A panic, or an undefined exit code.
     Panic,
-    /// Ended by a signal, or for want of memory.
+    /// Ended by a signal, or for lack of memory.
     Abort,
     Slow,
     Large,
-    /// Something written beside the results, or anything on exit 2.
+    /// Wrote something outside the results, or anything with exit code 2.
     Wrote,
     /// No message, a long one, or one with control characters.
     Message,
-    /// Damaged, accepted, and with another result.
+    /// Accepted a damaged input, with a different result.
     Changed,
 }
 
-/// How far the program got.
+/// The stage that the program reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Reached {
     Syntax,
@@ -77,23 +77,23 @@ pub(crate) enum Reached {
     Ran,
 }
 
-/// What became of a case.
+/// The outcome of a case.
 #[derive(Debug)]
 pub(crate) struct CaseOutcome {
     pub(crate) reached: Reached,
     pub(crate) faults: Vec<HostileFault>,
     pub(crate) seconds: f64,
     pub(crate) peak: u64,
-    /// The command lines and how they ended, for whoever looks into it.
+    /// The command lines and their outcomes, for inspection.
     pub(crate) log: String,
 }
 
-/// The folder the input is in, within that of the case.
+/// The folder of the input, within that of the case.
 const WORK: &str = "work";
-/// The only place for results, within the former.
+/// The only folder for results, within the input folder.
 pub(crate) const OUT: &str = "out";
 
-/// Runs a case in a fresh folder within `at`, which is removed again.
+/// Runs a case in a fresh folder within `at`, which is then removed.
 pub(crate) fn run(program: &Path, attack: &Attack, at: &Path) -> io::Result<CaseOutcome> {
     let place = at.join("case");
     let work = place.join(WORK);
@@ -129,7 +129,7 @@ pub(crate) fn run(program: &Path, attack: &Attack, at: &Path) -> io::Result<Case
     Ok(outcome)
 }
 
-/// Runs one command and notes what is wrong with it.
+/// Runs one command and records its faults.
 fn step(
     program: &Path,
     attack: &Attack,
@@ -163,7 +163,7 @@ fn step(
     Ok(ended)
 }
 
-/// Whether this takes much of the time allowed without the mutation too.
+/// Whether the input without the mutation also takes much of the time limit.
 fn is_slow(program: &Path, attack: &Attack, then: &[String], at: &Path) -> io::Result<bool> {
     let Some(sound) = &attack.sound else {
         return Ok(false);
@@ -175,13 +175,13 @@ fn is_slow(program: &Path, attack: &Attack, then: &[String], at: &Path) -> io::R
     Ok(ended.seconds > LONGEST.as_secs_f64() / 3.0)
 }
 
-/// What is wrong with the process itself.
+/// The faults of the process itself.
 fn faults(ended: &Ended) -> Vec<HostileFault> {
     let message = String::from_utf8_lossy(&ended.stderr);
     let slow = ended.hung || ended.seconds > LONGEST.as_secs_f64();
     let large = ended.peak > LARGEST;
     let panicked = message.contains("panicked");
-    // Those that were ended from here did not abort.
+    // Processes killed by this test did not abort.
     let aborted = ended.signal.is_some() && !slow && !large;
     let aborted = aborted || message.contains("memory allocation of");
     let known = matches!(ended.code, None | Some(0..=4));
@@ -203,8 +203,8 @@ fn faults(ended: &Ended) -> Vec<HostileFault> {
     .collect()
 }
 
-/// Names of what should not have changed: only results may, of a command that makes them, if the
-/// input was not refused.
+/// Names of files that were wrongly changed: only results may change, of a command that makes them
+/// and accepts the input.
 fn wrote(
     attack: &Attack,
     arguments: &[String],
@@ -228,16 +228,16 @@ fn wrote(
     Ok(names.into_iter().map(str::to_owned).collect())
 }
 
-/// Whether the message says where in the text the fault is.
+/// Whether the message gives the position of the fault in the text.
 fn is_syntax(stderr: &[u8]) -> bool {
     let message = String::from_utf8_lossy(stderr);
     message.contains(": line ") && message.contains(", column ")
 }
 
-/// The most frequencies of a scene that is run: what takes long because it is large is no fault.
+/// Maximum number of frequencies of a scene that is run: slowness through size is no fault.
 const MOST_FREQUENCIES: u64 = 200_000;
 
-/// Whether `check` found few enough frequencies, azimuths x rho x nu at each plane.
+/// Whether `check` reports few enough frequencies, as azimuths x rho x nu at each plane.
 fn is_small(checked: &[u8]) -> bool {
     let text = String::from_utf8_lossy(checked);
     let planes = text.lines().filter(|line| line.contains("  looked at in "));

@@ -1,4 +1,4 @@
-//! The program as a child process: with a limit of time, and its peak of memory watched.
+//! The program as a child process, with a time limit and a record of its peak memory.
 
 use std::fs::{self, File};
 use std::io;
@@ -7,40 +7,40 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// After this a child has hung.
+/// Time after which a child counts as hung.
 pub(crate) const LONGEST: Duration = Duration::from_secs(30);
 
-/// Beyond this a child takes more memory than any of these inputs is worth.
+/// Memory that is excessive for any of these inputs.
 pub(crate) const LARGEST: u64 = 1 << 30;
 
-/// Beyond this a child is ended, for the sake of the machine.
+/// Memory at which a child is killed, to protect the machine.
 const DANGEROUS: u64 = 4 << 30;
 
-/// After how long a child has hung.
+/// The time limits of a child.
 #[derive(Clone, Copy)]
 pub(crate) struct Limit {
-    /// By the clock.
+    /// Wall-clock time.
     pub(crate) clock: Duration,
-    /// By the work of processors, which does not depend on what else there is to do.
+    /// Processor time, which does not depend on the load of the machine.
     pub(crate) work: Duration,
 }
 
-/// How a child ended.
+/// The outcome of a child.
 #[derive(Debug)]
 pub(crate) struct Ended {
-    /// None if a signal ended it.
+    /// The exit code; `None` if a signal ended it.
     pub(crate) code: Option<i32>,
     pub(crate) signal: Option<i32>,
-    /// It was ended because it took too long.
+    /// Whether it was killed because it took too long.
     pub(crate) hung: bool,
     pub(crate) seconds: f64,
-    /// The most memory it was seen with, bytes.
+    /// The peak memory observed, bytes.
     pub(crate) peak: u64,
     pub(crate) stdout: Vec<u8>,
     pub(crate) stderr: Vec<u8>,
 }
 
-/// The program to attack: the one given, or the one beside this program.
+/// The program to attack: the given one, or the one in the folder of this program.
 pub(crate) fn program(given: Option<&Path>) -> io::Result<PathBuf> {
     let path = match given {
         Some(path) => path.to_owned(),
@@ -55,8 +55,8 @@ pub(crate) fn program(given: Option<&Path>) -> io::Result<PathBuf> {
     })
 }
 
-/// Runs `program` in `folder`, what it says going to files in `scratch`, until it ends or is too
-/// long about it.
+/// Runs `program` in `folder`, with its output in files in `scratch`, until it ends or takes too
+/// long.
 pub(crate) fn call(
     program: &Path,
     folder: &Path,
@@ -70,7 +70,7 @@ pub(crate) fn call(
     call_within(limit, program, folder, arguments, scratch)
 }
 
-/// The same with another limit of time.
+/// Like [`call`], with another time limit.
 pub(crate) fn call_within(
     limit: Limit,
     program: &Path,
@@ -101,13 +101,13 @@ pub(crate) fn call_within(
     })
 }
 
-/// Waits for the end, or brings it about; returns the peak of memory, and whether it took too long.
+/// Waits for the end or kills the child; returns the peak of memory, and whether it took too long.
 fn watch(child: &mut Child, start: Instant, limit: Limit) -> io::Result<(u64, bool)> {
     let status = format!("/proc/{}/status", child.id());
     let stat = format!("/proc/{}/stat", child.id());
     let mut peak = 0;
     loop {
-        // One that has ended and was not waited for says nothing of its memory any more.
+        // A zombie process has no memory statistics.
         if let Some(now) = fs::read_to_string(&status).ok().and_then(|s| peak_of(&s)) {
             peak = peak.max(now);
         }
@@ -132,12 +132,12 @@ fn peak_of(status: &str) -> Option<u64> {
     Some(kilobytes * 1024)
 }
 
-/// The time that processors have worked for it, in the user's programs and in the system's.
+/// The processor time in user and kernel mode.
 fn work_of(stat: &str) -> Option<Duration> {
-    // The name of the program, in brackets, may hold spaces.
+    // The program name, in parentheses, may contain spaces.
     let (_, fields) = stat.rsplit_once(')')?;
     let ticks = fields.split_whitespace().skip(11).take(2);
     let ticks: u64 = ticks.filter_map(|field| field.parse::<u64>().ok()).sum();
-    // Linux counts hundredths of a second here, on any machine.
+    // Linux uses hundredths of a second here, on any machine.
     Some(Duration::from_millis(10 * ticks))
 }

@@ -1,4 +1,4 @@
-//! Random choices of one case: a function of the seed, the case and how many were made before.
+//! Random choices of one case: a function of the seed, the case and the number of previous choices.
 
 use etendue_transform::random::{self, Stream};
 
@@ -24,34 +24,34 @@ impl Dice {
         random::words(self.seed, Stream::Photon, self.case, self.block)
     }
 
-    /// One of 0..`n`, and 0 when there is none.
+    /// A number in 0..`n`, or 0 if `n` is 0.
     pub(crate) fn below(&mut self, n: usize) -> usize {
         random::index(self.words()[0], n.max(1))
     }
 
-    /// True once in `n` times.
+    /// True with probability 1/`n`.
     pub(crate) fn one_in(&mut self, n: usize) -> bool {
         self.below(n) == 0
     }
 
-    /// One of these; the list must not be empty.
+    /// A random element; the list must not be empty.
     pub(crate) fn pick<'a, T>(&mut self, all: &'a [T]) -> &'a T {
         &all[self.below(all.len())]
     }
 
-    /// A length up to `most`, short ones as often as long ones.
+    /// A length up to `most`, short and long ones with equal probability.
     pub(crate) fn length(&mut self, most: usize) -> usize {
         let doublings = usize::BITS - most.leading_zeros();
         let reach = 1_usize << self.below(doublings as usize + 1).min(62);
         1 + self.below(reach.min(most))
     }
 
-    /// A byte of any value.
+    /// A random byte.
     pub(crate) fn byte(&mut self) -> u8 {
         self.words()[0].to_le_bytes()[0]
     }
 
-    /// A number in (0, 1).
+    /// A random number in (0, 1).
     pub(crate) fn unit(&mut self) -> f64 {
         random::unit(self.words()[0])
     }

@@ -5,10 +5,10 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-/// Files by their names relative to the folder, with `/`; folders have no bytes.
+/// Files by name relative to the folder, with `/`; folders have no bytes.
 pub(crate) type Folder = BTreeMap<String, Option<Vec<u8>>>;
 
-/// Writes these files, and the folders they are in.
+/// Writes files and their folders.
 pub(crate) fn write(at: &Path, files: &Folder) -> io::Result<()> {
     fs::create_dir_all(at)?;
     for (name, bytes) in files {
@@ -24,7 +24,7 @@ pub(crate) fn write(at: &Path, files: &Folder) -> io::Result<()> {
     Ok(())
 }
 
-/// Everything below a folder; nothing if it is not there.
+/// Reads everything below a folder; empty if it does not exist.
 pub(crate) fn read(at: &Path) -> io::Result<Folder> {
     let mut found = Folder::new();
     if at.exists() {
@@ -47,7 +47,7 @@ fn read_into(at: &Path, before: &str, found: &mut Folder) -> io::Result<()> {
     Ok(())
 }
 
-/// The names of what is in one and not, or not the same, in the other.
+/// The names of entries that are in only one of the two, or differ.
 pub(crate) fn differences<'a>(one: &'a Folder, other: &'a Folder) -> Vec<&'a str> {
     let names = one
         .keys()
@@ -56,7 +56,7 @@ pub(crate) fn differences<'a>(one: &'a Folder, other: &'a Folder) -> Vec<&'a str
     names.filter(differs).map(String::as_str).collect()
 }
 
-/// The files with all folders that they are in.
+/// The files with all their parent folders.
 pub(crate) fn with_parents(files: &Folder) -> Folder {
     let mut all = files.clone();
     for name in files.keys() {

@@ -1,13 +1,13 @@
-//! Mutated indices of results folders, and indices made to fit files that were changed.
+//! Mutated indices of results folders, and indices adapted to changed files.
 
 use super::dice::Dice;
 use super::text;
 use serde_json::{Value, json};
 
-/// What comes before the hash of an index, which is of all bytes before this.
+/// The text before the hash of an index, which covers all preceding bytes.
 pub(crate) const TAIL: &str = ",\n  \"index_hash\": \"";
 
-/// Words of JSON, and of the indices.
+/// Tokens of JSON, and of the indices.
 const WORDS: [&str; 16] = [
     "null",
     "true",
@@ -27,23 +27,23 @@ const WORDS: [&str; 16] = [
     "0.1.1",
 ];
 
-/// The text of an index, changed.
+/// The text of an index, mutated.
 pub(crate) fn mutated(index: &str, dice: &mut Dice) -> Vec<u8> {
     text::mutated(index, &WORDS, dice)
 }
 
-/// The index with one value within it changed, and sealed again.
+/// The index with one value changed, and a matching hash.
 pub(crate) fn with_other_value(index: &str, dice: &mut Dice) -> Option<String> {
     let mut tree: Value = serde_json::from_str(index).ok()?;
     change(&mut tree, dice);
     Some(printed(&tree, index.contains(TAIL)))
 }
 
-/// The index with another scene file, its hash and that of the index made to fit.
+/// The index with another scene file, and matching hashes.
 pub(crate) fn with_scene(index: &str, scene: &Value) -> Option<String> {
     let mut tree: Value = serde_json::from_str(index).ok()?;
     tree["scene_file"] = scene.clone();
-    // As the program hashes it, if it is one that could have been written.
+    // Hashes the scene as the program does, if the program could have written it.
     if let Ok(file) = serde_json::from_value::<etendue_scene::SceneFile>(scene.clone()) {
         let text = serde_json::to_vec(&file).ok()?;
         tree["scene_hash"] = json!(blake3::hash(&text).to_hex().as_str());
@@ -59,14 +59,14 @@ pub(crate) fn other_scene(index: &str, dice: &mut Dice) -> Option<Value> {
     Some(scene)
 }
 
-/// An index in which `old`, the hash of a file, gives way to that of the `new` bytes; its own hash
-/// fits again.
+/// An index in which `old`, the hash of a file, is replaced by that of the `new` bytes; its own
+/// hash matches again.
 pub(crate) fn with_hash_of(index: &str, old: &[u8], new: &[u8]) -> String {
     let [old, new] = [old, new].map(|bytes| blake3::hash(bytes).to_hex());
     sealed(&index.replace(old.as_str(), new.as_str()))
 }
 
-/// The index with a hash of its own that fits, if it has one.
+/// The index with a matching hash, if it has one.
 fn sealed(index: &str) -> String {
     match index.find(TAIL) {
         Some(at) => with_own_hash(&index[..at]),

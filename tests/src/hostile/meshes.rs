@@ -1,4 +1,4 @@
-//! Mutated meshes: OBJ, and PLY as text and in both orders of bytes, as a blocker and as a curved
+//! Mutated meshes: OBJ, and PLY as text and in both byte orders, as a blocker and as a curved
 //! mirror.
 
 use super::case::Attack;
@@ -8,7 +8,7 @@ use super::scenes::{SCENE, on_scene};
 use super::{bytes, text};
 use etendue_scene::{Fault, Mesh};
 
-/// Words of both formats.
+/// Tokens of both formats.
 const WORDS: [&str; 26] = [
     "v",
     "f",
@@ -59,7 +59,7 @@ const MIRROR: &str = r#"(
     frequencies: (azimuths: 2, rho: (max: 10), nu: (max: 10)),
 )"#;
 
-/// What a user may write by hand, with most of what the format has.
+/// A hand-written file that uses most of the format.
 const OBJ: &str = "# made by hand\nmtllib none.mtl\no tetra\nv 1 1 1 0.5 0.5 0.5\nv -1. -1 1\n\
     v -1 1 -1 \nv +1 -1e0 -1\nvn 0 0 1\nvt 0.5 .5\ng one two\nusemtl red\ns 1\nf 1/1/1 2/1/1 3//1\n\
     f 1 4 \\\n 2\ng\nf -4 -2 -1\nf 2 4 3\nl 1 2 3\np 1\nv 2 2 2\nv 2 3 2\nv 3 3 2\nv 3 2 2\n\
@@ -72,10 +72,10 @@ const PLY: &str = "ply\r\nformat ascii 1.0\r\ncomment made by hand\r\nobj_info n
     255 1 1 1\r\n0 -1 -1 1\r\n0 -1 1 -1\r\n7 1 -1 -1\r\n2 0.5 .5\r\n0\r\n\
     3 0 1 2 0\r\n3 0 3 1 -1\r\n3 0 2 3 5\r\n3 1 3 2 0\r\n";
 
-/// Names and contents of sound meshes.
+/// Names and contents of valid meshes.
 pub(crate) type Meshes = Vec<(&'static str, Vec<u8>)>;
 
-/// Those for a blocker and those for a mirror.
+/// The meshes for a blocker and for a mirror.
 pub(crate) fn seeds() -> Result<[Meshes; 2], Fault> {
     let star = Mesh::star(1.0, 0.3, 4, 8)?;
     let bowl = Mesh::paraboloid([-0.5, 0.3], 0.5, 16)?;
@@ -119,7 +119,7 @@ fn header(format: &str, mesh: &Mesh) -> String {
     )
 }
 
-/// A mutated mesh in a sound scene.
+/// A mutated mesh in a valid scene.
 pub(crate) fn attack(seeds: &[Meshes; 2], dice: &mut Dice) -> Attack {
     let role = dice.below(2);
     let (name, whole) = dice.pick(&seeds[role]);

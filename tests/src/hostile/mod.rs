@@ -1,7 +1,7 @@
 //! Attacks on the program from outside: mutated input of every kind, given to it as a child
 //! process.
 //!
-//! A case is a function of the seed and its number, so that any can be run again alone.
+//! A case is a function of the seed and its number, so that it can be repeated alone.
 
 mod bytes;
 mod case;
@@ -28,33 +28,33 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use table::Tallies;
 
-/// What to attack with, and where.
+/// Options of the attack.
 #[derive(Debug, clap::Args)]
 pub(crate) struct HostileOptions {
-    /// Cases.
+    /// Number of cases.
     #[arg(long, default_value_t = 20_000)]
     count: u64,
-    /// Another seed gives other cases.
+    /// Seed of the cases.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Only this case; it is kept whatever becomes of it.
+    /// Run only this case, and keep it whatever its outcome.
     #[arg(long)]
     case: Option<u64>,
-    /// Scenes are checked only, and none is run.
+    /// Only check scenes, and run none.
     #[arg(long)]
     quick: bool,
-    /// Cases at a time [default: one for each core].
+    /// Number of parallel cases [default: one for each core].
     #[arg(long)]
     threads: Option<usize>,
-    /// Where the input of bad cases is kept, with the command line.
+    /// Folder for the input of bad cases, with the command line.
     #[arg(long, default_value = "target/hostile")]
     keep: PathBuf,
-    /// The program [default: the one beside this].
+    /// Program to attack [default: the one in the same folder].
     #[arg(long)]
     etendue: Option<PathBuf>,
 }
 
-/// All that cases are made of.
+/// The valid inputs that cases are derived from.
 struct Seeds {
     scenes: Vec<String>,
     meshes: [meshes::Meshes; 2],
@@ -122,7 +122,7 @@ pub(crate) fn hostile(options: &HostileOptions) -> io::Result<ReportSection> {
     Ok(tallies.section(options.seed))
 }
 
-/// Runs `worker(0)`, `worker(1)`, ... on so many threads, or one for each core.
+/// Runs `worker(0)`, `worker(1)`, ... on the given number of threads, or one for each core.
 pub(crate) fn on_threads(
     threads: Option<usize>,
     worker: impl Fn(usize) -> io::Result<()> + Sync,
@@ -140,7 +140,7 @@ pub(crate) fn on_threads(
     })
 }
 
-/// Keeps the input of a case, and what became of it.
+/// Saves the input and the outcome of a case.
 fn keep(
     options: &HostileOptions,
     number: u64,

@@ -1,5 +1,4 @@
-//! Mutated NPZ files: their arrays one by one, the headers of those, and the structure of the
-//! archive.
+//! Mutated NPZ files: their arrays, array headers, and the structure of the archive.
 
 use super::bytes;
 use super::dice::Dice;
@@ -8,7 +7,7 @@ use std::io::{self, Cursor, Read, Write};
 use zip::write::SimpleFileOptions;
 use zip::{ZipArchive, ZipWriter};
 
-/// Words of the headers of arrays.
+/// Tokens of array headers.
 const WORDS: [&str; 14] = [
     "'>f8'",
     "'<f4'",
@@ -26,7 +25,7 @@ const WORDS: [&str; 14] = [
     "'shape'",
 ];
 
-/// The file with an array changed, or its archive.
+/// The file with a mutated array or archive.
 pub(crate) fn mutated(npz: &[u8], dice: &mut Dice) -> io::Result<Vec<u8>> {
     if dice.one_in(4) {
         let mut new = npz.to_vec();
@@ -75,7 +74,7 @@ fn archive(entries: &[(String, Vec<u8>)]) -> io::Result<Vec<u8>> {
     Ok(writer.finish()?.into_inner())
 }
 
-/// Where the numbers of an array begin.
+/// The offset of an array's numbers.
 fn data(npy: &[u8]) -> usize {
     let length = npy
         .get(8..10)
@@ -83,7 +82,7 @@ fn data(npy: &[u8]) -> usize {
     (10 + usize::from(length)).min(npy.len())
 }
 
-/// Another header, its length told rightly or not.
+/// Replaces the header, with the right or a wrong length.
 fn change_header(npy: &mut Vec<u8>, dice: &mut Dice) {
     let end = data(npy);
     let old = String::from_utf8_lossy(npy.get(10..end).unwrap_or_default()).into_owned();

@@ -1,4 +1,4 @@
-//! Mutated pictures: OpenEXR and PNG in their many forms, as an environment and as a texture.
+//! Mutated pictures: variants of OpenEXR and PNG, as an environment and as a texture.
 
 use super::bytes;
 use super::case::Attack;
@@ -11,7 +11,7 @@ use exr::prelude::{
 };
 use std::io::{self, Cursor};
 
-/// Light from a picture all around.
+/// A scene with an environment picture as light.
 const SKY: &str = r#"(
     light: Environment(center: (0, 0, 0), map: File("NAME")),
     surfaces: [Rectangle(name: "floor", center: (0, 0, 1), size: (6, 6))],
@@ -36,7 +36,7 @@ const TEXTURE: &str = r#"(
 /// Width and height of the pictures.
 const SIZE: [usize; 2] = [16, 8];
 
-/// Sound pictures: OpenEXR, then PNG.
+/// Valid pictures: OpenEXR, then PNG.
 pub(crate) fn seeds() -> io::Result<[Vec<Vec<u8>>; 2]> {
     let compressions = [
         Compression::Uncompressed,
@@ -132,11 +132,11 @@ fn one_png(color: png::ColorType, depth: png::BitDepth) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// A mutated picture in a sound scene.
+/// A mutated picture in a valid scene.
 pub(crate) fn attack(seeds: &[Vec<Vec<u8>>; 2], dice: &mut Dice) -> Attack {
     let format = dice.below(2);
     let mut picture = dice.pick(&seeds[format]).clone();
-    // What is said about the pixels is more worth an attack than they are.
+    // The metadata is a better target than the pixels.
     let head = 0..picture.len().min(if format == 0 { 400 } else { 60 });
     if dice.one_in(2) {
         bytes::mutate(&mut picture, dice);
@@ -158,7 +158,7 @@ pub(crate) fn attack(seeds: &[Vec<Vec<u8>>; 2], dice: &mut Dice) -> Attack {
     on_scene(Folder::from(files), dice)
 }
 
-/// Makes the checks of all chunks of a PNG file right again, as far as its chunks can be followed.
+/// Repairs the checksums of all chunks of a PNG file, as far as they can be parsed.
 fn repair(png: &mut [u8]) {
     let mut at = 8;
     while let Some(length) = png.get(at..at + 4) {
@@ -176,7 +176,7 @@ fn repair(png: &mut [u8]) {
     }
 }
 
-/// CRC-32 as PNG has it (ISO 3309).
+/// CRC-32 as defined for PNG (ISO 3309).
 fn crc(bytes: &[u8]) -> u32 {
     let step = |crc: u32, byte: &u8| {
         let shift = |crc: u32, _| (crc >> 1) ^ if crc & 1 == 1 { 0xEDB8_8320 } else { 0 };

@@ -8,7 +8,7 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-/// Words of the language of scene files.
+/// Tokens of scene files.
 const WORDS: [&str; 30] = [
     "()",
     "[]",
@@ -51,7 +51,7 @@ pub(crate) fn seeds() -> io::Result<Vec<String>> {
             .map(|entry| Ok(entry?.path()))
             .collect::<io::Result<_>>()?;
         paths.retain(|path| path.extension().is_some_and(|e| e == "ron"));
-        // The order of a folder is not the same everywhere.
+        // The order of directory entries depends on the system.
         paths.sort();
         for path in paths {
             let text = fs::read_to_string(path)?;
@@ -77,7 +77,8 @@ pub(crate) fn attack(seeds: &[String], dice: &mut Dice) -> Attack {
 /// The name of a scene file.
 pub(crate) const SCENE: &str = "scene.ron";
 
-/// An attack on the scene file among these files: checked, and once in eight times run, or swept, or drawn as a figure.
+/// An attack on the scene file among these files: it is checked, and once in eight times run,
+/// swept, or drawn as a figure.
 pub(crate) fn on_scene(files: Folder, dice: &mut Dice) -> Attack {
     let words = |line: &str| line.split_whitespace().map(str::to_owned).collect();
     let run = *dice.pick(&[
@@ -86,7 +87,7 @@ pub(crate) fn on_scene(files: Folder, dice: &mut Dice) -> Attack {
         "sweep scene.ron --photons 2000 --set run.seed=1,2 --out out",
         "figure scene.ron --set run.photons=16000 --quality draft --out out",
     ]);
-    // Few azimuths: it is the values that may break something, not their number.
+    // Few azimuths: the values of fields may break something, rather than the number of azimuths.
     let run = format!("{run} --quiet --threads 2 --set frequencies.azimuths=2");
     Attack {
         files,

@@ -1,7 +1,7 @@
-//! Mutated folders of the stages: parts of a measurement and predictions, for `compare`.
+//! Mutated stage folders: parts of a measurement and predictions, for `compare`.
 //!
-//! A change whose hashes were not made to fit must be refused or harmless. With hashes that fit
-//! nobody can tell, but the readers behind the hashes are reached.
+//! A change without matching hashes must be refused or harmless. A change with matching hashes
+//! cannot be detected, but it tests the readers that follow the hash check.
 
 use super::case::{Attack, OUT};
 use super::child;
@@ -12,7 +12,7 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-/// A scene that takes a moment.
+/// A scene that runs in a moment.
 pub(crate) const SMALL: &str = r#"(
     light: Rectangle(center: (0.1, 0.2, 0.3), size: (0.2, 0.17)),
     blockers: [JitteredSquares(name: "blockers", center: (0.12, 0.2, 1.3),
@@ -25,8 +25,8 @@ pub(crate) const SMALL: &str = r#"(
     run: (photons: 2000, seed: 1, batches: 32),
 )"#;
 
-/// The same with a mesh from a file: it has a reference instead of a prediction, and copies of the
-/// mesh.
+/// The same scene with a mesh from a file: it has a reference instead of a prediction, and copies
+/// of the mesh.
 pub(crate) fn with_mesh() -> String {
     let mesh = r#"blockers: [Mesh(name: "tetra", center: (0.1, 0.2, 1), 
         mesh: File("meshes/tetra.obj"), scale: 0.1), "#;
@@ -39,7 +39,7 @@ pub(crate) const TETRA: &str =
 
 const COMPARE: &str = "compare --measured a b --predicted p --out out --quiet --threads 1";
 
-/// Sound folders of both stages, and the summary that comes of them.
+/// Valid folders of both stages, and the resulting summary.
 #[derive(Debug)]
 pub(crate) struct Seed {
     files: Folder,
@@ -80,7 +80,7 @@ fn seed(program: &Path, at: &Path, scene: &str) -> io::Result<Seed> {
     Ok(Seed { files, summary })
 }
 
-/// A command line without quotes, as its words.
+/// A command line without quotes, split into words.
 pub(crate) fn words(command: &str) -> Vec<String> {
     command.split_whitespace().map(str::to_owned).collect()
 }
@@ -104,7 +104,7 @@ fn attack(seed: &Seed, stage: &str, index: &str, dice: &mut Dice) -> io::Result<
         3 => change_scene(&mut files, dice),
         _ => change_file(&mut files, stage, &index, dice)?,
     };
-    // Changed hashes may tell of nothing wrong any more; and a mutation may change nothing.
+    // With changed hashes a fault may be undetectable; and a mutation may change nothing.
     let summary = (!fits || files == seed.files).then(|| seed.summary.clone());
     Ok(Attack {
         files,
@@ -115,7 +115,7 @@ fn attack(seed: &Seed, stage: &str, index: &str, dice: &mut Dice) -> io::Result<
     })
 }
 
-/// Changes an index; returns whether its own hash fits.
+/// Changes an index; returns whether its own hash matches.
 fn change_index(files: &mut Folder, index: &str, dice: &mut Dice) -> bool {
     let old = text(files, index);
     if dice.one_in(3)
@@ -129,7 +129,7 @@ fn change_index(files: &mut Folder, index: &str, dice: &mut Dice) -> bool {
     false
 }
 
-/// Changes the scene in all indices alike, and makes their hashes fit.
+/// Makes the same change to the scene in all indices, with matching hashes.
 fn change_scene(files: &mut Folder, dice: &mut Dice) -> bool {
     let indices = [
         "a/measurement.json",
@@ -147,7 +147,7 @@ fn change_scene(files: &mut Folder, dice: &mut Dice) -> bool {
     true
 }
 
-/// Changes another file, or takes it away; returns whether its hash fits.
+/// Changes or removes another file; returns whether its hash matches.
 fn change_file(files: &mut Folder, stage: &str, index: &str, dice: &mut Dice) -> io::Result<bool> {
     let own = |(name, bytes): &(&String, &Option<Vec<u8>>)| {
         bytes.is_some() && name.starts_with(stage) && *name != index
@@ -162,7 +162,7 @@ fn change_file(files: &mut Folder, stage: &str, index: &str, dice: &mut Dice) ->
             return Ok(false);
         }
         2 => Vec::new(),
-        // Another file's content.
+        // The content of another file.
         3 => files
             .get(dice.pick(&names))
             .cloned()

@@ -1,4 +1,4 @@
-//! What came of all cases: one row for each kind of input.
+//! The outcomes of all cases: one row for each kind of input.
 
 use super::case::{CaseOutcome, HostileFault, InputKind, Reached};
 use crate::report::{Check, ReportSection, Row};
@@ -18,11 +18,11 @@ struct CaseTally {
 #[derive(Debug, Default)]
 pub(crate) struct Tallies {
     kinds: [CaseTally; InputKind::ALL.len()],
-    /// The bad ones by their numbers.
+    /// The bad cases by number.
     bad: BTreeMap<u64, String>,
 }
 
-/// The most bad cases that are told one by one.
+/// Maximum number of bad cases that are listed.
 const MOST_TOLD: usize = 60;
 
 impl Tallies {
@@ -42,7 +42,7 @@ impl Tallies {
         tally.peak = tally.peak.max(outcome.peak);
     }
 
-    /// The table; it has passed if nothing went wrong in any case.
+    /// The table; it passes if no case has a fault.
     pub(crate) fn section(&self, seed: u64) -> ReportSection {
         let pairs = InputKind::ALL.iter().zip(&self.kinds);
         let rows = pairs.map(|(kind, tally)| row(*kind, tally)).collect();
@@ -90,7 +90,7 @@ fn row(kind: InputKind, tally: &CaseTally) -> Row {
         tally.cases.to_string(),
         share(reached(Reached::Syntax)),
         share(reached(Reached::Values)),
-        // What was run was found sound before.
+        // Cases that were run had been accepted before.
         share(reached(Reached::Sound) + reached(Reached::Ran)),
         share(reached(Reached::Ran)),
     ];

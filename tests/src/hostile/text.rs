@@ -1,9 +1,9 @@
-//! Mutations of text, token by token, so that many of them get past the syntax.
+//! Mutations of text by tokens, many of which keep the syntax valid.
 
 use super::bytes;
 use super::dice::Dice;
 
-/// Numbers that break things, in any language.
+/// Critical numbers, for any format.
 const NUMBERS: [&str; 22] = [
     "0",
     "-0.0",
@@ -29,7 +29,7 @@ const NUMBERS: [&str; 22] = [
     "18446744073709551616",
 ];
 
-/// Names that are no names of files, and text that a terminal obeys.
+/// Invalid file names, and terminal control sequences.
 const NAMES: [&str; 14] = [
     "",
     ".",
@@ -48,7 +48,7 @@ const NAMES: [&str; 14] = [
 ];
 
 /// The text with one to three tokens replaced, removed, doubled or swapped, blocks of it repeated,
-/// or worse; `words` are tokens of its own language.
+/// or worse; `words` are tokens of its format.
 pub(crate) fn mutated(text: &str, words: &[&str], dice: &mut Dice) -> Vec<u8> {
     let mut tokens = split(text);
     let mut raw = false;
@@ -80,7 +80,7 @@ pub(crate) fn mutated(text: &str, words: &[&str], dice: &mut Dice) -> Vec<u8> {
     text
 }
 
-/// A number near the old one, or a sound one of any size.
+/// A number near the old one, or a valid one of any size.
 fn another(old: &str, dice: &mut Dice) -> String {
     if let (Ok(old), true) = (old.parse::<f64>(), dice.one_in(2)) {
         return format!("{:.4}", old * (0.5 + dice.unit()));
@@ -103,7 +103,7 @@ fn replace_number(tokens: &mut [String], dice: &mut Dice, new: fn(&str, &mut Dic
     }
 }
 
-/// Puts another name between quotes.
+/// Replaces a quoted name.
 fn replace_name(tokens: &mut Vec<String>, dice: &mut Dice) {
     let quotes: Vec<usize> = (0..tokens.len()).filter(|i| tokens[*i] == "\"").collect();
     if let [.., _] = quotes[..] {
@@ -127,7 +127,7 @@ fn repeat_block(tokens: &mut Vec<String>, at: usize, dice: &mut Dice) {
     tokens.splice(at..at, copies);
 }
 
-/// Opens brackets, and closes them again or not.
+/// Inserts opening brackets, with or without closing ones.
 fn nest(tokens: &mut Vec<String>, at: usize, dice: &mut Dice) {
     let depth = dice.length(100_000);
     let [open, close] = *dice.pick(&[["(", ")"], ["[", "]"], ["{", "}"], ["Some(", ")"]]);
@@ -137,7 +137,7 @@ fn nest(tokens: &mut Vec<String>, at: usize, dice: &mut Dice) {
     tokens.insert(at, open.repeat(depth));
 }
 
-/// Words, numbers and single characters.
+/// Splits a text into words, numbers and single characters.
 fn split(text: &str) -> Vec<String> {
     let mut tokens: Vec<String> = Vec::new();
     let word = |c: char| c.is_alphanumeric() || c == '_' || c == '.';

@@ -1,17 +1,16 @@
-//! Whether a folder is what its index says: a reading of the format that shares no code with the
-//! program.
+//! Checks of a folder against its index, with a reader that shares no code with the program.
 
 use crate::hostile::folder::Folder;
 use crate::hostile::index::TAIL;
 use serde_json::Value;
 
-/// What an index says of its folder.
+/// The state of a folder according to its index.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum IndexState {
-    /// There is none: the folder holds no result, and does not claim to.
+    /// There is no index: the folder does not claim to hold a result.
     Absent,
     Whole,
-    /// The folder claims to be a result and is not.
+    /// The folder claims to hold a result, but is broken.
     Broken(String),
 }
 
@@ -41,7 +40,7 @@ fn whole(files: &Folder, index: &str, bytes: &[u8]) -> Result<(), String> {
     }
 }
 
-/// The names and hashes that an index lists, which lies beside them.
+/// The names and hashes listed in an index.
 pub(super) fn listed(index: &str, bytes: &[u8]) -> Option<Vec<(String, String)>> {
     let beside = index.rfind('/').map_or("", |at| &index[..=at]);
     let tree: Value = serde_json::from_slice(bytes).ok()?;
@@ -52,7 +51,7 @@ pub(super) fn listed(index: &str, bytes: &[u8]) -> Option<Vec<(String, String)>>
     pairs.map(pair).collect()
 }
 
-/// What a missing hash is called, by which it is counted apart.
+/// The message for a missing hash, which is counted separately.
 pub(super) const NO_HASH: &str = "has no hash of its own";
 
 /// The last field of an index is the hash of all bytes before it.

@@ -1,20 +1,20 @@
-//! A disk that is nearly full: a small one of its own, or a limit on the size of files.
+//! A nearly full disk: a small tmpfs, or a limit on file sizes.
 
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// How a full disk is made.
+/// The way to simulate a full disk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum FullDisk {
-    /// A tmpfs is mounted, which only root can do.
+    /// Mount a tmpfs, which requires root.
     Tmpfs,
-    /// The shell's `ulimit -f`.
+    /// Use the shell's `ulimit -f`.
     Limit,
 }
 
 impl FullDisk {
-    /// The better of the two that works here.
+    /// The better of the two methods available here.
     pub(super) fn best() -> io::Result<Self> {
         let place = tempfile::tempdir()?;
         let mounted = Mount::new(place.path(), 1 << 20);
@@ -26,12 +26,12 @@ impl FullDisk {
     }
 }
 
-/// A small disk, taken away when dropped.
+/// A small disk, unmounted when dropped.
 #[derive(Debug)]
 pub(super) struct Mount(PathBuf);
 
 impl Mount {
-    /// Mounts a disk of so many bytes.
+    /// Mounts a disk of this many bytes.
     pub(super) fn new(at: &Path, size: u64) -> io::Result<Self> {
         let options = format!("size={size}");
         let mut command = Command::new("mount");
@@ -42,7 +42,7 @@ impl Mount {
         Ok(Self(at.to_owned()))
     }
 
-    /// Makes place on it.
+    /// Enlarges the disk.
     pub(super) fn widen(&self) -> io::Result<()> {
         let mut command = Command::new("mount");
         succeeds(command.args(["-o", "remount,size=1g"]).arg(&self.0))
@@ -51,7 +51,7 @@ impl Mount {
 
 impl Drop for Mount {
     fn drop(&mut self) {
-        // There is nobody left to tell.
+        // An error in `drop` cannot be reported.
         let _ = succeeds(Command::new("umount").arg("-l").arg(&self.0));
     }
 }
@@ -66,7 +66,7 @@ fn succeeds(command: &mut Command) -> io::Result<()> {
     }
 }
 
-/// A command whose files cannot grow beyond so many blocks; writing more is an error, not a signal.
+/// A command whose files are limited to this many blocks; writing more is an error, not a signal.
 pub(super) fn limited(program: &Path, blocks: usize) -> Command {
     let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$@\"");
     let mut command = Command::new("sh");

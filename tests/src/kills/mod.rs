@@ -1,4 +1,4 @@
-//! Kills at random moments, two writers at once and full disks: what is left is a whole result or
+//! Kills at random moments, two writers at once and full disks: each must leave a whole result or
 //! none.
 
 mod check;
@@ -16,27 +16,27 @@ use std::path::PathBuf;
 use task::Verb;
 use trial::{Finding, KillTrouble, TrialBench};
 
-/// What to try, and where.
+/// Options of the trials.
 #[derive(Debug, clap::Args)]
 pub(crate) struct KillOptions {
-    /// Trials.
+    /// Number of trials.
     #[arg(long, default_value_t = 200)]
     count: u64,
-    /// Another seed gives other moments.
+    /// Seed of the trials.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// How a full disk is made [default: tmpfs, where one can be mounted].
+    /// How to simulate a full disk [default: tmpfs, if it can be mounted].
     #[arg(long)]
     full_disk: Option<FullDisk>,
-    /// The program [default: the one beside this].
+    /// Program to test [default: the one in the same folder].
     #[arg(long)]
     etendue: Option<PathBuf>,
 }
 
-/// How often each was found, for each command.
+/// The number of times each finding occurred, for each command.
 type Counts = [[u64; Finding::COUNT]; Verb::ALL.len()];
 
-/// Makes all trials.
+/// Runs all trials.
 pub(crate) fn kills(options: &KillOptions) -> io::Result<ReportSection> {
     let program = child::program(options.etendue.as_deref())?;
     let place = tempfile::tempdir()?;
@@ -55,7 +55,7 @@ pub(crate) fn kills(options: &KillOptions) -> io::Result<ReportSection> {
     let mut counts = Counts::default();
     let mut told = Vec::new();
     let all = tasks.iter().flat_map(|task| troubles.map(|t| (task, t)));
-    // Neighbours are of different commands and troubles, so that a few trials are of all.
+    // Adjacent trials have different commands and troubles, so a few trials cover all.
     let all: Vec<_> = all.collect();
     for (number, at) in (0..options.count).zip((0..all.len()).cycle()) {
         let (task, trouble) = all[at * 5 % all.len()];
@@ -75,7 +75,7 @@ pub(crate) fn kills(options: &KillOptions) -> io::Result<ReportSection> {
     Ok(section(options, &counts, &told))
 }
 
-/// The most faults that are told one by one.
+/// Maximum number of faults that are listed.
 const MOST_TOLD: usize = 60;
 
 fn section(options: &KillOptions, counts: &Counts, told: &[String]) -> ReportSection {

@@ -1,5 +1,4 @@
-//! The commands that are killed, and the folder they are killed in: an earlier result among the
-//! user's files.
+//! The commands to kill, and their folder: an earlier result among the user's files.
 
 use crate::hostile::child;
 use crate::hostile::folder::{self, Folder};
@@ -30,7 +29,7 @@ impl Verb {
         Self::Figure,
     ];
 
-    /// Its index, in the folder that it was told.
+    /// The name of its index in the output folder.
     pub(super) fn index(self) -> &'static str {
         match self {
             Self::Run | Self::Compare => "summary.json",
@@ -41,7 +40,7 @@ impl Verb {
         }
     }
 
-    /// Its command line; another seed gives another result.
+    /// The command line; another seed gives another result.
     pub(super) fn arguments(self, seed: u64) -> Vec<String> {
         let ending = format!("--out out --quiet --threads 2 --seed {seed}");
         words(&match self {
@@ -63,7 +62,7 @@ impl Verb {
 /// The seed of the earlier result.
 pub(super) const EARLIER: u64 = 1;
 
-/// A command, what is in its folder before, and how long it takes.
+/// A command, the previous content of its folder, and its duration.
 #[derive(Debug)]
 pub(super) struct KillTask {
     pub(super) verb: Verb,
@@ -71,7 +70,7 @@ pub(super) struct KillTask {
     pub(super) before: Folder,
     /// The user's files among them.
     pub(super) foreign: Folder,
-    /// What `compare` reads.
+    /// The inputs of `compare`.
     pub(super) inputs: Folder,
     pub(super) takes: Duration,
 }
@@ -104,7 +103,7 @@ fn task(
     let out = place.join("out");
     let mut arguments = verb.arguments(EARLIER);
     if verb == Verb::Run {
-        // The earlier result has files that the next one does not.
+        // The earlier result contains files that the next one does not.
         arguments.extend(words("--save photons"));
     }
     let mut takes = Duration::MAX;
@@ -135,7 +134,7 @@ fn task(
     })
 }
 
-/// The scene, which lies in the folder of its results, and the mesh that it names.
+/// The scene, in the folder of its results, and its mesh.
 fn users() -> Folder {
     let scene = stages::with_mesh().replace("meshes/tetra.obj", "tetra.obj");
     let files = [("scene.ron", scene.as_str()), ("tetra.obj", TETRA)];

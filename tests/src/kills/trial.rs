@@ -1,4 +1,4 @@
-//! One trial: a command starts into a folder, something happens to it, and the folder is looked at.
+//! One trial: a command starts in a folder, is disturbed, and the folder is checked.
 
 use super::check::{self, IndexState, NO_HASH};
 use super::disk::{FullDisk, Mount, limited};
@@ -12,7 +12,7 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// What happens beside a kill.
+/// A disturbance other than a kill.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum KillTrouble {
     Nothing,
@@ -20,27 +20,27 @@ pub(super) enum KillTrouble {
     FullDisk(FullDisk),
 }
 
-/// Something to count.
+/// A finding that is counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Finding {
     TwoWriters,
     FullDisk,
-    /// The index is still the earlier one, is gone, or is new.
+    /// The index is still the earlier one, is missing, or is new.
     Before,
     Between,
     After,
     Whole,
     /// A writer was refused because of the other.
     Refused,
-    // From here on what must not be.
+    // From here on, findings are faults.
     Broken,
     NoHash,
     Lost,
-    /// A writer that was left alone ended as none should.
+    /// An undisturbed writer ended with a wrong exit code.
     Exit,
     NextFailed,
     Leftover,
-    /// A result that the user has edited was written over.
+    /// A result that the user has edited was overwritten.
     Overwritten,
 }
 
@@ -52,10 +52,10 @@ impl Finding {
     }
 }
 
-/// The findings of a trial, with words for those that are bad.
+/// The findings of a trial, with a description of the faults.
 pub(super) type Findings = Vec<(Finding, String)>;
 
-/// A place for trials, and the program tried.
+/// A folder for trials, and the tested program.
 #[derive(Debug)]
 pub(super) struct TrialBench<'a> {
     pub(super) program: &'a Path,
@@ -63,7 +63,7 @@ pub(super) struct TrialBench<'a> {
 }
 
 impl TrialBench<'_> {
-    /// Makes a trial in a fresh folder, which is removed again.
+    /// Runs a trial in a fresh folder, which is then removed.
     pub(super) fn trial(
         &self,
         task: &KillTask,
@@ -99,7 +99,7 @@ impl TrialBench<'_> {
         Ok(findings)
     }
 
-    /// Starts one writer or two and ends the first at some moment, or leaves them alone.
+    /// Starts one or two writers, and kills the first at some moment or leaves them alone.
     fn disturbed(
         &self,
         task: &KillTask,
@@ -157,7 +157,7 @@ impl TrialBench<'_> {
             .spawn()
     }
 
-    /// An ordinary run must succeed, and leave nothing but its result and what is the user's.
+    /// An ordinary run must succeed, and leave nothing but its result and the user's files.
     fn next(&self, task: &KillTask, findings: &mut Findings) -> io::Result<()> {
         let place = self.at.join("trial");
         let ended = child::call(self.program, &place, &task.verb.arguments(5), self.at)?;
@@ -176,7 +176,7 @@ impl TrialBench<'_> {
         let own = [task.verb.index(), "timing.json"];
         let belongs = |name: &str| {
             own.contains(&name)
-                // Runs of a sweep are kept for the next, each as a result of its own.
+                // Points of a sweep are kept for the next one, each as a separate result.
                 || (task.verb == Verb::Sweep && name.starts_with("points/"))
                 || task.foreign.contains_key(name)
                 || listed.iter().any(|(known, _)| known == name)
@@ -190,7 +190,7 @@ impl TrialBench<'_> {
         Ok(())
     }
 
-    /// A result that the user has edited is theirs: the command is refused and changes nothing.
+    /// A result that the user has edited is protected: the command is refused and changes nothing.
     fn edited(&self, task: &KillTask, findings: &mut Findings) -> io::Result<()> {
         let place = self.at.join("trial");
         let out = place.join("out");
@@ -214,22 +214,23 @@ impl TrialBench<'_> {
     }
 }
 
-/// Whether this is what a writer that has ended leaves. A point of a sweep is cleared when it is run again.
+/// Whether this file is a remnant of a killed writer. A point of a sweep is cleared when it is run
+/// again.
 fn is_unfinished(task: &KillTask, name: &str) -> bool {
     let is_point = task.verb == Verb::Sweep && name.starts_with("points/");
     name.contains(".etendue") && !is_point
 }
 
-/// Size of a disk that holds what is there, and some of what comes.
+/// Size of a disk that holds the existing files, and some of the new ones.
 fn room(task: &KillTask, dice: &mut Dice) -> u64 {
-    // Each file and folder takes whole pages.
+    // Each file and folder occupies whole pages.
     let pages = |bytes: &Option<Vec<u8>>| 1 + bytes.as_ref().map_or(0, Vec::len).div_ceil(4096);
     let there: usize = task.before.values().map(pages).sum();
     let room = 4 + dice.below(there * 6 / 5);
     4096 * (there + room) as u64
 }
 
-/// Ends a child, unless it has ended.
+/// Kills a child, unless it has ended.
 fn end(child: &mut Child, signal: &str) -> io::Result<()> {
     if signal == "KILL" {
         return child.kill();
@@ -239,7 +240,7 @@ fn end(child: &mut Child, signal: &str) -> io::Result<()> {
     kill.stderr(Stdio::null()).status().map(drop)
 }
 
-/// Waits for a child; its exit code, or none if it was killed or has hung.
+/// Waits for a child; returns its exit code, or `None` if it was killed or has hung.
 fn ended(child: &mut Child) -> io::Result<Option<i32>> {
     let start = Instant::now();
     loop {
@@ -253,7 +254,7 @@ fn ended(child: &mut Child) -> io::Result<Option<i32>> {
     }
 }
 
-/// Looks at the index, its files and the user's.
+/// Checks the index, its files and the user's files.
 fn judge(task: &KillTask, files: &Folder, when: &str, findings: &mut Findings) {
     match check::state(files, task.verb.index()) {
         IndexState::Absent => (),

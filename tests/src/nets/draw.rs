@@ -1,21 +1,21 @@
-//! Scenes drawn at random from the vocabulary of scene files, as their text.
+//! Generator of random scenes from the features of scene files, as text.
 //!
 //! A scene is a function of its number. Sizes are metres, slopes tangents, as in any scene file.
 
 use etendue_transform::random::{self, Stream};
 
-/// What stands between light and plane.
+/// The elements between light and plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum BlockerKind {
-    /// Light across the way, behind masks.
+    /// A plane across the light, behind masks.
     Across,
-    /// Of a point.
+    /// The same with a point light.
     PointAcross,
-    /// Times the cosine of a receiver.
+    /// Irradiance at a receiver, with its cosine.
     Cosine,
     /// Reflected by a diffuse receiver.
     Diffuse,
-    /// The same in the light of a point.
+    /// The same with a point light.
     PointDiffuse,
     /// Behind a mirror.
     Mirror,
@@ -23,16 +23,16 @@ pub(super) enum BlockerKind {
     Refraction,
     /// Behind a thin lens.
     Lens,
-    /// A projector or a beam before one of these.
+    /// A projector or a beam before one of the others.
     Picture,
     /// Reflected by a BRDF.
     Brdf,
-    /// The same in the light of an environment.
+    /// The same in an environment.
     Sky,
 }
 
 impl BlockerKind {
-    /// How many scenes there are of each: 130 with a closed form, 70 without.
+    /// The number of scenes of each kind: 130 with a closed form, 70 without.
     pub(super) const ALL: [(Self, usize); 11] = [
         (Self::Across, 40),
         (Self::PointAcross, 20),
@@ -63,7 +63,7 @@ impl BlockerKind {
         }
     }
 
-    /// Whether there are closed forms to compare with.
+    /// Whether there are closed forms for comparison.
     pub(super) fn is_chain(self) -> bool {
         matches!(
             self,
@@ -72,13 +72,13 @@ impl BlockerKind {
     }
 }
 
-/// Random numbers of one scene, in the order they are asked for.
+/// Random numbers of one scene, in order of use.
 pub(super) struct SceneDice {
     index: u64,
     next: u32,
 }
 
-/// The seed of all scenes: fixed beforehand, and not chosen.
+/// The seed of all scenes: fixed in advance, and not chosen by its results.
 const SEED: u64 = 1;
 
 impl SceneDice {
@@ -160,9 +160,8 @@ fn light(kind: BlockerKind, dice: &mut SceneDice) -> String {
     }
 }
 
-/// Masks before z = 0.9, none to three. Pictures have one that is opaque at least: without, they
-/// are predicted
-/// by a rule that is not of nets. So are points.
+/// None to three masks before z = 0.9. Pictures have at least one opaque mask: otherwise they are
+/// predicted by a rule without nets. The same holds for points.
 fn blockers(kind: BlockerKind, dice: &mut SceneDice) -> String {
     if kind == BlockerKind::Sky {
         return String::new();
@@ -193,7 +192,7 @@ fn blockers(kind: BlockerKind, dice: &mut SceneDice) -> String {
     layers.join(", ")
 }
 
-/// Rectangles or discs in the cells of a board, some of four.
+/// Rectangles or discs in the cells of a board, including some of four.
 fn shapes(dice: &mut SceneDice, square: bool) -> String {
     let pitch = dice.between(0.1, 0.35);
     let count = 1 + dice.of(4);

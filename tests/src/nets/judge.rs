@@ -1,4 +1,4 @@
-//! What scenes drawn at random say of stated errors, in tables.
+//! Tables of the deviations of random scenes in units of their stated errors.
 
 use super::draw::BlockerKind;
 use super::scene::{Measured, SceneOutcome};
@@ -6,26 +6,26 @@ use crate::report::Bound::{AtLeast, Below};
 use crate::report::{Check, ReportSection, Row, worse};
 use crate::statistics::{mean, uniformity};
 
-/// Standard errors of shares and means that are borne.
+/// Permitted standard errors of fractions and means.
 const BORNE: f64 = 3.0;
-/// The largest L2 ratio that is borne: one real number is beyond it in 3·10⁻⁵ of all scenes.
+/// Maximum permitted L2 ratio: one real number exceeds it in 3·10⁻⁵ of all scenes.
 const LARGEST: f64 = 5.0;
 /// The mean square of a Student's t with 31 degrees of freedom.
 const OF_ONE: f64 = 31.0 / 29.0;
-/// The share of Student's t with 31 degrees of freedom beyond 1, 2 and 3.
+/// The fraction of Student's t with 31 degrees of freedom beyond 1, 2 and 3.
 const STUDENT: [f64; 3] = [0.3251, 0.0543, 0.0053];
-/// Scenes with the largest ratios that are listed.
+/// Number of scenes listed by largest ratio.
 const WORST: usize = 12;
 
-/// The share of complex numbers that are beyond a distance.
+/// The expected fraction of complex numbers beyond a distance.
 fn beyond(distance: f64) -> f64 {
     (1.0 + 2.0 * distance.powi(2) / 31.0).powi(-15)
 }
 
-/// What scenes are judged by.
+/// The measured quantity of a scene that is judged.
 type Reading = fn(&SceneOutcome) -> &Measured;
 
-/// All tables, and those of planted faults.
+/// All tables, including those of planted faults.
 pub(super) fn sections(outcomes: &[SceneOutcome], left_out: usize) -> Vec<ReportSection> {
     let sound: Reading = |outcome| &outcome.sound;
     let all = judged(outcomes, sound, 1.0);
@@ -44,10 +44,10 @@ pub(super) fn sections(outcomes: &[SceneOutcome], left_out: usize) -> Vec<Report
     sections
 }
 
-/// Whether scenes of a kind are in a group.
+/// Whether a kind of scene belongs to a group.
 type Belongs = fn(BlockerKind) -> bool;
 
-/// The shares beyond 1, 2 and 3 standard errors, with errors scaled by a factor.
+/// The fractions beyond 1, 2 and 3 standard errors, with errors scaled by a factor.
 fn judged(outcomes: &[SceneOutcome], reading: Reading, scale: f64) -> ReportSection {
     let mut rows = Vec::new();
     let groups: [(&str, Belongs); 3] = [
@@ -97,7 +97,7 @@ fn judged(outcomes: &[SceneOutcome], reading: Reading, scale: f64) -> ReportSect
     }
 }
 
-/// Those of a group of scenes.
+/// The fractions for a group of scenes.
 fn row(name: &str, of_group: &[&Measured], scale: f64) -> Row {
     let cells = vec![name.to_owned(), of_group.len().to_string()];
     let mut row = Row::new(cells, Vec::new());
@@ -136,9 +136,8 @@ fn row(name: &str, of_group: &[&Measured], scale: f64) -> Row {
     row
 }
 
-/// The standard error of a mean square over scenes: the nets are the same in all of them, so it is
-/// told by the
-/// scatter of what pairs of nets make of it.
+/// The standard error of a mean square over scenes: all scenes use the same nets, so it is
+/// estimated from the scatter over pairs of nets.
 fn common(of_group: &[&Measured], scale: f64) -> f64 {
     let count = of_group[0].pairs.len();
     let squares = (0..count).map(|pair| {
@@ -149,10 +148,10 @@ fn common(of_group: &[&Measured], scale: f64) -> f64 {
     error * (count as f64).sqrt()
 }
 
-/// Adds a share to a row, which must be as expected of so many numbers.
+/// Adds a fraction to a row, with a check against the expectation for this many numbers.
 fn put(row: &mut Row, shares: &[f64], expected: f64, numbers: f64) {
     let [share, error] = mean(shares);
-    // Where few are far, their scatter over the scenes says little.
+    // With few distant values, their scatter over the scenes is a poor estimate.
     let error = error.max((expected * (1.0 - expected) / numbers).sqrt());
     let cell = format!("{:.2} ± {:.2} %", 100.0 * share, 100.0 * error);
     row.cells.push(cell);
@@ -161,7 +160,7 @@ fn put(row: &mut Row, shares: &[f64], expected: f64, numbers: f64) {
         .push(Check::new("share", off, Below(BORNE), "standard errors"));
 }
 
-/// Shares and ratios of each kind of scene.
+/// Fractions and ratios for each kind of scene.
 fn by_kind(outcomes: &[SceneOutcome], left_out: usize) -> ReportSection {
     let row = |(kind, _): (BlockerKind, usize)| {
         let of_kind: Vec<&SceneOutcome> = outcomes.iter().filter(|o| o.kind == kind).collect();

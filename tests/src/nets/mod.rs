@@ -1,5 +1,5 @@
-//! Errors stated are errors made: predictions by nets of rays against the truth, over scenes drawn
-//! at random.
+//! Checks that stated errors equal actual errors: predictions by nets of rays compared with the
+//! truth, over random scenes.
 
 mod draw;
 mod judge;
@@ -8,14 +8,14 @@ mod scene;
 use std::fs;
 use std::process::ExitCode;
 
-/// The text of the scene with this number; the kinds take turns.
+/// The text of the scene with this number; the kinds alternate.
 pub(crate) fn scene(number: u64) -> String {
     let kinds = draw::BlockerKind::ALL;
     let (kind, _) = kinds[usize::try_from(number).unwrap_or_default() % kinds.len()];
     draw::scene(kind, &mut draw::SceneDice::new(number))
 }
 
-/// Draws the scenes, prints what was found, and writes docs/nets.md.
+/// Draws the scenes, prints the results, and writes docs/nets.md.
 #[expect(
     clippy::print_stdout,
     clippy::print_stderr,

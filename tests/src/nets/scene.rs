@@ -1,4 +1,5 @@
-//! One scene drawn at random: how far its prediction by nets is from the truth, in its own errors.
+//! One random scene: the deviation of its prediction by nets from the truth, in units of its stated
+//! error.
 
 use super::draw::{BlockerKind, SceneDice, scene};
 use etendue_compare::{Applicability, Theory};
@@ -7,36 +8,35 @@ use etendue_field::{ProjectionGrid, Window};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_theory::{Model, REPLICATES, RayBudget};
 
-/// What is known of the light field of a scene.
+/// The results for the light field of a scene.
 pub(super) struct SceneOutcome {
     pub(super) kind: BlockerKind,
-    /// Its number: [`super::draw`] makes the same scene of it again.
+    /// The number of the scene, from which [`super::draw`] reproduces it.
     pub(super) number: u64,
-    /// ‖error‖/‖F‖ as stated.
+    /// The stated ‖error‖/‖F‖.
     pub(super) stated: f64,
-    /// Error of the truth, over what is stated.
+    /// Error of the truth, over the stated error.
     pub(super) of_truth: f64,
-    /// The prediction against the truth.
+    /// The prediction compared with the truth.
     pub(super) sound: Measured,
-    /// The same had a density with which rays are drawn been 2 % too large, and their weights too
-    /// small.
+    /// The same with a planted fault: a ray density 2 % too large, so that weights are too small.
     pub(super) planted: Measured,
 }
 
-/// How far a prediction is from the truth.
+/// The deviation of a prediction from the truth.
 pub(super) struct Measured {
-    /// ‖F − truth‖/‖truth‖ over what is stated.
+    /// ‖F − truth‖/‖truth‖ over the stated error.
     pub(super) ratio: f64,
-    /// Squares of the same for the means of neighbouring pairs of nets, whose error is four times
-    /// that of all.
+    /// The squared ratio for the means of adjacent pairs of nets, whose error is four times that of
+    /// all nets.
     pub(super) pairs: Vec<f64>,
     /// (F − truth)/(standard error) at zero frequency.
     pub(super) zero: f64,
-    /// The same elsewhere: Hotelling's T of real and imaginary part, over √2.
+    /// The same at other frequencies: Hotelling's T of real and imaginary part, over √2.
     pub(super) apart: Vec<f64>,
 }
 
-/// Scenes of each kind, those that theory does not take and those that leave no light drawn again.
+/// Scenes of each kind; those without a theory and those without light are replaced by new draws.
 pub(super) fn outcomes(each: impl Fn(&SceneOutcome)) -> (Vec<SceneOutcome>, usize) {
     let (mut outcomes, mut left_out, mut number) = (Vec::new(), 0, 0);
     for (kind, count) in BlockerKind::ALL {
@@ -57,26 +57,26 @@ pub(super) fn outcomes(each: impl Fn(&SceneOutcome)) -> (Vec<SceneOutcome>, usiz
     (outcomes, left_out)
 }
 
-/// The truth is not known well enough.
+/// The error that the truth is not known well enough.
 struct Untold;
 
-/// What a prediction comes to.
+/// The result of a prediction.
 struct PredictionFound {
     slices: Slices,
     replicates: Vec<Slices>,
     error: f64,
 }
 
-/// Shares of the stated error that the truth may be off.
+/// Permitted error of the truth relative to the stated error.
 const OF_STATED: f64 = 0.1;
-/// How many times as many nodes are the truth where there is no closed form.
+/// Factor in the number of nodes for the truth, if there is no closed form.
 const HUNDREDFOLD: f64 = 128.0;
-/// A density that is too large by this factor.
+/// The factor of the planted fault in a density.
 const PLANTED: f64 = 1.02;
-/// Above this there is hardly any light: a few rays make the prediction.
+/// Errors above this mean that there is hardly any light: the prediction depends on a few rays.
 const DARK: f64 = 0.3;
 
-/// `None` where theory has no word or no light comes.
+/// The outcome; `None` if no theory applies or no light arrives.
 fn outcome(kind: BlockerKind, number: u64) -> Result<Option<SceneOutcome>, Untold> {
     let mut dice = SceneDice::new(number);
     let text = scene(kind, &mut dice);
@@ -124,7 +124,7 @@ fn measured(found: &PredictionFound, truth: &Slices) -> Measured {
     }
 }
 
-/// The squared L2 ratio of the mean of two of the nets.
+/// The squared L2 ratio for the mean of two nets.
 fn of_pair(pair: &[Slices], truth: &Slices, error: f64) -> f64 {
     let mut mean = pair[0].clone();
     mean.half += &pair[1].half;
@@ -148,7 +148,7 @@ impl PredictionFound {
     }
 }
 
-/// Single frequencies: [azimuth, ρ ≥ 0, ν] by number, ν = 0 being the fifth.
+/// Single frequencies as indices [azimuth, ρ ≥ 0, ν]; index 4 of ν is ν = 0.
 const SINGLE: [[usize; 3]; 4] = [[0, 1, 4], [1, 2, 6], [0, 3, 3], [1, 5, 8]];
 
 fn theory(scene: &Scene, plane: &VirtualPlane) -> Option<Theory> {
@@ -174,7 +174,8 @@ fn found(theory: &Theory, plane: &VirtualPlane, budget: RayBudget) -> Option<Pre
     })
 }
 
-/// The truth and its error: a closed form, or as many more rays as make the error small.
+/// The truth and its error: a closed form, or a prediction with enough rays to make the error
+/// small.
 fn truth(
     theory: &Theory,
     plane: &VirtualPlane,
@@ -184,7 +185,7 @@ fn truth(
     let enough = OF_STATED * stated;
     if let Theory::Parallel(chain) = theory {
         let window: &Window = &plane.window;
-        // A quadrature over the receiver has the more nodes the higher the frequencies.
+        // A quadrature over the receiver uses more nodes for higher frequencies.
         for more in [1, 2, 4] {
             let mut grid = plane.grid;
             grid.rho.half *= more;
@@ -205,7 +206,7 @@ fn truth(
     Ok((found.slices, found.error))
 }
 
-/// Slices at the lower of their frequencies, those of the plane.
+/// Slices restricted to the frequencies of the plane.
 fn within(slices: &Slices, plane: &VirtualPlane) -> Slices {
     let mut lower = Slices::zeros(plane.grid);
     for (at, value) in lower.half.indexed_iter_mut() {
@@ -220,7 +221,7 @@ fn residuals(found: &PredictionFound, truth: &Slices, at: [usize; 3]) -> Vec<Com
     replicates.map(|r| r.half[at] - truth.half[at]).collect()
 }
 
-/// Student's t of a real number.
+/// Student's t of the real value at zero frequency.
 fn at_zero(found: &PredictionFound, truth: &Slices) -> f64 {
     let zero = [0, 0, truth.grid.nu.half];
     let values: Vec<f64> = residuals(found, truth, zero).iter().map(|d| d.re).collect();
@@ -228,7 +229,7 @@ fn at_zero(found: &PredictionFound, truth: &Slices) -> f64 {
     mean / error
 }
 
-/// Hotelling's T over √2: with circular noise |d|/σ.
+/// Hotelling's T over √2: for circular noise it is |d|/σ.
 fn at_frequency(found: &PredictionFound, truth: &Slices, at: [usize; 3]) -> f64 {
     let values = residuals(found, truth, at);
     let r = values.len() as f64;

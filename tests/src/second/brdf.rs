@@ -85,7 +85,7 @@ fn phong(exponent: f64, from: Vector, to: Vector, fault: &str) -> f64 {
     unit / (2.0 * PI) * (exponent * cosine.ln()).exp()
 }
 
-/// The normal of the facets that mirror one direction into the other.
+/// The microfacet normal that reflects one direction into the other.
 fn facet(from: Vector, to: Vector, fault: &str) -> Vector {
     match fault {
         "facet on the side of one direction" => unit(plus(from, 1.1, to)),
@@ -102,8 +102,8 @@ fn facets(density: f64, mask: impl Fn(Vector) -> f64, [from, to]: [Vector; 2], f
     density * masks / (4.0 * from[2] * to[2])
 }
 
-/// Slopes of facets are normal, each with the variance α²/2; per solid angle 1/cos⁴
-/// (Beckmann and Spizzichino 1963).
+/// Slopes of microfacets are normally distributed with variance α²/2 each; per solid angle this
+/// gains 1/cos⁴ (Beckmann and Spizzichino 1963).
 fn beckmann(roughness: f64, facet: Vector, fault: &str) -> f64 {
     let squared = match fault {
         "α² is the variance along an axis" => 2.0 * roughness * roughness,
@@ -114,7 +114,8 @@ fn beckmann(roughness: f64, facet: Vector, fault: &str) -> f64 {
     (-steep / squared).exp() / (PI * squared) / facet[2].powi(4)
 }
 
-/// The normals of an ellipsoid with half-axes 1, 1 and α (Trowbridge and Reitz 1975).
+/// The distribution of normals of an ellipsoid with half-axes 1, 1 and α (Trowbridge and Reitz
+/// 1975).
 fn ggx(roughness: f64, facet: Vector, fault: &str) -> f64 {
     let squared = roughness * roughness;
     let [x, y, z] = facet;
@@ -127,9 +128,9 @@ fn ggx(roughness: f64, facet: Vector, fault: &str) -> f64 {
     1.0 / (PI * squared * stretched.powf(power))
 }
 
-/// Smith's Λ (Smith 1967; Heitz 2014, *Understanding the masking-shadowing function*): the mean of
-/// what slopes s along a direction exceed its cotangent μ, over μ: ∫ (s − μ) p(s) ds / μ over s >
-/// μ. Here p = exp(−s²/α²)/(α√π), and s = α w.
+/// Smith's Λ (Smith 1967; Heitz 2014, *Understanding the masking-shadowing function*): the mean
+/// excess of slopes s along a direction over its cotangent μ, divided by μ: ∫ (s − μ) p(s) ds / μ
+/// over s > μ. Here p = exp(−s²/α²)/(α√π), and s = α w.
 fn masked_beckmann(roughness: f64, angle: f64) -> f64 {
     let from = 1.0 / (angle.tan() * roughness);
     if from > 6.0 {
@@ -139,7 +140,7 @@ fn masked_beckmann(roughness: f64, angle: f64) -> f64 {
     integral([from, from + 7.0], 600, exceeds) / from
 }
 
-/// The same with p = α²/(2 (α² + s²)^(3/2)), and s = α tan ψ.
+/// The same Λ with p = α²/(2 (α² + s²)^(3/2)), and s = α tan ψ.
 fn masked_ggx(roughness: f64, angle: f64) -> f64 {
     let cotangent = 1.0 / angle.tan();
     let from = (cotangent / roughness).atan();
@@ -147,7 +148,7 @@ fn masked_ggx(roughness: f64, angle: f64) -> f64 {
     integral([from, PI / 2.0], 150, exceeds) / cotangent
 }
 
-/// By Simpson's rule, in pairs of steps.
+/// An integral by Simpson's rule, with this many pairs of steps.
 fn integral([from, to]: [f64; 2], pairs: u32, value: impl Fn(f64) -> f64) -> f64 {
     let step = (to - from) / f64::from(2 * pairs);
     let at = |i: u32| value(from + step * f64::from(i));
@@ -155,10 +156,10 @@ fn integral([from, to]: [f64; 2], pairs: u32, value: impl Fn(f64) -> f64) -> f64
     step / 3.0 * (at(0) + inner.sum::<f64>() + at(2 * pairs))
 }
 
-/// The share of unpolarised light that is reflected: the mean of |r|² across (s) and along (p) the
-/// plane of incidence (Fresnel 1823; Born and Wolf 1999, 1.5.2 and 14.2), with the angle of
-/// refraction of Snell's law, complex where the index is. The mean is the same with s and p
-/// swapped, so a fault is one of the two alone.
+/// The reflectance of unpolarised light: the mean of |r|² across (s) and along (p) the plane of
+/// incidence (Fresnel 1823; Born and Wolf 1999, 1.5.2 and 14.2), with the angle of refraction of
+/// Snell's law, complex if the index is. The mean is unchanged if s and p are swapped, so a fault
+/// affects only one of them.
 fn reflected(fresnel: &Fresnel, angle: f64, fault: &str) -> f64 {
     let index = match *fresnel {
         Fresnel::White => return 1.0,
@@ -182,7 +183,7 @@ fn reflected(fresnel: &Fresnel, angle: f64, fault: &str) -> f64 {
     }
 }
 
-/// The direction that a facet mirrors another one into.
+/// The direction into which a microfacet reflects another one.
 pub(super) fn mirrored(from: Vector, facet: Vector) -> Vector {
     plus(from.map(|c| -c), 2.0 * dot(from, facet), facet)
 }

@@ -1,4 +1,4 @@
-//! A function held against its second implementation, as it is and with faults planted in the
+//! Comparison of a function with its second implementation, without and with faults planted in the
 //! second.
 
 use super::SEED;
@@ -9,23 +9,23 @@ use crate::report::{
     Bound::{Above, AtMost, Below},
 };
 
-/// The largest difference of a round, with a fault planted in the second implementation or, where
-/// none is named, without.
+/// The largest difference in a round, with the named fault planted in the second implementation, if
+/// any.
 type Difference = dyn Fn(&mut Dice, &str) -> f64;
 
-/// What is held against what.
+/// A comparison of two implementations.
 pub(super) struct SecondCheck {
     pub(super) name: &'static str,
-    /// Times that random numbers are thrown, and points for each.
+    /// Number of rounds, and of points in each.
     pub(super) rounds: [u32; 2],
-    /// The largest difference that may be, and why it may.
+    /// Maximum permitted difference, with the reason for it.
     pub(super) tolerance: (f64, &'static str),
-    /// Each changes the second implementation, which must then be seen to differ.
+    /// Faults of the second implementation, each of which must be detected.
     pub(super) faults: &'static [&'static str],
     pub(super) difference: Box<Difference>,
 }
 
-/// What came of it: differences without a fault and with each.
+/// The result: differences without a fault and with each.
 pub(super) struct Outcome {
     pub(super) difference: f64,
     pub(super) planted: Vec<f64>,
@@ -48,8 +48,8 @@ impl SecondCheck {
         self.rounds[0] * self.rounds[1]
     }
 
-    /// The two agree, and do not with a fault: then they differ by a number, so that no fault
-    /// passes for seen because it is nonsense.
+    /// Checks that the two agree, and differ with a fault: by a finite number, so that no fault is
+    /// detected merely through NaN.
     pub(super) fn required(&self, difference: f64, planted: f64) -> Vec<report::Check> {
         let (most, reason) = self.tolerance;
         vec![
@@ -60,7 +60,7 @@ impl SecondCheck {
     }
 }
 
-/// How far two numbers are apart, as a share of the larger.
+/// The difference of two numbers relative to the larger.
 pub(super) fn relative(a: f64, b: f64) -> f64 {
     let larger = worse(a.abs(), b.abs());
     if larger > 0.0 {

@@ -1,4 +1,4 @@
-//! A surface with a picture, written down in a scene file: the picture's format, its place on the
+//! A surface with a picture, defined in a scene file: the picture's format, its placement on the
 //! surface, blend and texture.
 
 use super::check::{SecondCheck, worse};
@@ -15,7 +15,7 @@ use std::path::Path;
 use std::rc::Rc;
 use tempfile::TempDir;
 
-/// Places for each scene.
+/// Points per scene.
 const EACH: u32 = 20;
 
 const FAULTS: &[&str] = &[
@@ -27,10 +27,10 @@ const FAULTS: &[&str] = &[
     "along turned over",
 ];
 
-/// The picture in the folder.
+/// The file name of the picture.
 const FILE: &str = "blend.png";
 
-/// Red, green and blue in luminance (Rec. ITU-R BT.709).
+/// The luminance of red, green and blue (Rec. ITU-R BT.709).
 fn luminance([r, g, b]: [f64; 3]) -> f64 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }
@@ -104,7 +104,7 @@ fn in_words(brdf: &Brdf) -> String {
     format!("(lobe: Ggx({roughness:?}), albedo: {albedo:?}, fresnel: Dielectric({index:?}))")
 }
 
-/// Writes the picture, of 16 bits and in colour, and says what its levels are.
+/// Writes the picture, with 16 bits and in colour, and returns its levels.
 pub(super) fn write_picture(folder: &Path, dice: &mut Dice) -> io::Result<Levels> {
     let (width, height) = (7_u16, 5_u16);
     let count = usize::from(width) * usize::from(height);
@@ -131,7 +131,7 @@ pub(super) fn write_picture(folder: &Path, dice: &mut Dice) -> io::Result<Levels
     })
 }
 
-/// Writes a map of the sky, in 32-bit colour, and says what its levels are.
+/// Writes a map of the sky, in 32-bit colour, and returns its levels.
 pub(super) fn write_map(path: &Path, dice: &mut Dice) -> io::Result<Levels> {
     let (width, height) = (16_u16, 9_u16);
     let count = usize::from(width) * usize::from(height);

@@ -1,4 +1,4 @@
-//! The BRDFs of the tracers and those of theory against the second ones.
+//! The BRDFs of the tracers and of theory, compared with the second implementation.
 
 use super::brdf::{self, mirrored};
 use super::check::{SecondCheck, relative};
@@ -10,7 +10,8 @@ use etendue_field::{AngleTable, Brdf, Fresnel, Lobe, Mixture, Pattern, Reflectan
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// A BRDF of one side: of a description and two directions, the normal being along Z.
+/// A BRDF implementation under test: a function of a description and two directions, with the
+/// normal along Z.
 type Fast = fn(&Brdf, Vector, Vector) -> f64;
 
 fn traced(brdf: &Brdf, from: Vector, to: Vector) -> f64 {
@@ -21,7 +22,7 @@ fn predicted(brdf: &Brdf, from: Vector, to: Vector) -> f64 {
     etendue_theory::scattering::brdf::value(brdf, DVec3::Z, from.into(), to.into())
 }
 
-/// The same of a sum of BRDFs.
+/// The same for a sum of BRDFs.
 type FastSum = fn(&Mixture<'_>, Vector, Vector) -> f64;
 
 fn traced_sum(mixture: &Mixture<'_>, from: Vector, to: Vector) -> f64 {
@@ -119,13 +120,13 @@ fn of_sum(name: &'static str, fast: FastSum) -> SecondCheck {
     }
 }
 
-/// As a share of the value.
+/// The largest difference relative to the value.
 fn difference(fast: Fast, lobe: fn(&mut Dice) -> Lobe, dice: &mut Dice, fault: &str) -> f64 {
     let brdf = Brdf::new(lobe(dice), dice.unit(), fresnel(dice));
     compared(fast, &brdf, dice, fault)
 }
 
-/// The same of a Phong lobe between lists of factors of both angles.
+/// The same for a Phong lobe between lists of factors of both angles.
 fn separable(fast: Fast, dice: &mut Dice, fault: &str) -> f64 {
     let exponent = scale(dice, 0.1, 1e3);
     let mut list = || {
@@ -143,7 +144,7 @@ fn separable(fast: Fast, dice: &mut Dice, fault: &str) -> f64 {
     compared(fast, &brdf, dice, fault)
 }
 
-/// The value of a sum of BRDFs with weights of its own.
+/// The same for a sum of BRDFs with weights.
 fn summed(fast: FastSum, dice: &mut Dice, fault: &str) -> f64 {
     let mut term = |exponent: f64| Term {
         brdf: Brdf::new(Lobe::Phong { exponent }, dice.unit(), fresnel(dice)),
@@ -190,7 +191,7 @@ pub(super) fn fresnel(dice: &mut Dice) -> Fresnel {
     }
 }
 
-/// A direction where the lobe is, now and then below the surface.
+/// A direction within the lobe, occasionally below the surface.
 fn to(dice: &mut Dice, lobe: Lobe, from: Vector) -> Vector {
     match lobe {
         Lobe::Lambertian => direction(dice),

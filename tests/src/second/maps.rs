@@ -1,5 +1,6 @@
-//! Theory's affine maps at surfaces against differences of rays followed by the second
-//! implementation. They are theory's own, but read off the conventions that the tracers share.
+//! Theory's affine maps at surfaces, compared with differences of rays traced by the second
+//! implementation. The maps are used by theory alone, but depend on conventions that the tracers
+//! share.
 
 use super::check::{SecondCheck, worse};
 use super::paths::{Legs, Turn};
@@ -48,7 +49,7 @@ pub(super) fn checks() -> Vec<SecondCheck> {
     ]
 }
 
-/// A surface that the central ray meets, and as theory has it.
+/// A surface on the central ray, with theory's description of it.
 struct Met {
     world: World,
     smooth: Smooth,
@@ -73,7 +74,7 @@ impl Met {
         }
     }
 
-    /// The frame of some axes in the coordinates at the light.
+    /// The frame of axes in the coordinates at the light.
     fn frame(&self, axes: &Axes) -> Frame {
         let vector = |a: Vector| self.world.light.components(a).into();
         Frame {
@@ -107,7 +108,7 @@ impl Met {
         (light.point([x, y, 0.0]), unit(light.vector([u, v, 1.0])))
     }
 
-    /// The system of reflection off its surface.
+    /// The system for reflection at the surface.
     fn scattering(&self, plane: Plane) -> Observed<scattering::ScatteringSystem> {
         let brdf = Brdf::new(Lobe::Lambertian, 1.0, Fresnel::White);
         let system = scattering::ScatteringSystem {
@@ -122,7 +123,7 @@ impl Met {
     }
 }
 
-/// How far a map is from the derivative of a function at a ray.
+/// The deviation of a map from the derivative of a function at a ray.
 fn apart(map: &AffineMap<4>, at: [f64; 4], of: impl Fn([f64; 4]) -> Option<[f64; 4]>) -> f64 {
     let each = (0..4).map(|i| {
         let moved = |by: f64| {
@@ -190,7 +191,7 @@ fn onto(dice: &mut Dice, fault: &str) -> f64 {
     })
 }
 
-/// From (s, t, θ, φ) of light that leaves the surface to the coordinates of a plane.
+/// The map from (s, t, θ, φ) of light that leaves the surface to the coordinates of a plane.
 fn off(dice: &mut Dice, fault: &str) -> f64 {
     let met = Met::new(dice);
     let leaving = *dice.pick(&PLANES[4..]);

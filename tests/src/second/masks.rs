@@ -1,5 +1,5 @@
-//! Blockers, slides and windows against their definitions; blockers and slides as written in scene
-//! files.
+//! Blockers, slides and windows, compared with their definitions; blockers and slides as written in
+//! scene files.
 
 use super::check::{SecondCheck, relative, worse};
 use super::pattern::cosine;
@@ -12,7 +12,7 @@ use etendue_scene::Scene;
 use std::f64::consts::PI;
 use std::path::Path;
 
-/// Places for each scene.
+/// Points per scene.
 const EACH: u32 = 20;
 
 const SHAPES: &[&str] = &[
@@ -52,7 +52,8 @@ fn layer(dice: &mut Dice, world: &World) -> ([f64; 2], Vector) {
     ([x, y], world.light.point([x, y, 0.5]))
 }
 
-/// What the resolved mask lets through at places around its center, against what is so by words.
+/// The transmittance of the resolved mask at points around its center, compared with its
+/// definition.
 fn against(
     dice: &mut Dice,
     scene: &Scene,
@@ -118,7 +119,7 @@ fn shapes(dice: &mut Dice, fault: &str) -> f64 {
     })
 }
 
-/// Squares on a regular grid: the middle of it at the center.
+/// Squares on a regular grid, centred at the center of the layer.
 fn squares(dice: &mut Dice, fault: &str) -> f64 {
     let mut world = World::new(dice).with_wall(1.0);
     let (center, origin) = layer(dice, &world);
@@ -153,7 +154,7 @@ fn squares(dice: &mut Dice, fault: &str) -> f64 {
     })
 }
 
-/// ½ (1 + m cos(2π f t + p)), t from the center.
+/// ½ (1 + m cos(2π f t + p)), with t measured from the center.
 fn masked_by_grating(dice: &mut Dice, fault: &str) -> f64 {
     let mut world = World::new(dice).with_wall(1.0);
     let (center, origin) = layer(dice, &world);
@@ -217,7 +218,7 @@ fn slide_of_projector(dice: &mut Dice, fault: &str) -> f64 {
     each.fold(0.0, worse)
 }
 
-/// The four profiles of docs/conventions.md, Window.
+/// The four profiles in docs/conventions.md, section Window.
 fn window(dice: &mut Dice, fault: &str) -> f64 {
     let profiles = [0; 4].map(|_| match dice.below(3) {
         0 => Profile::Hann(scale(dice, 0.1, 1.0)),

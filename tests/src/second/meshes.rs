@@ -1,5 +1,5 @@
-//! Triangles, and meshes as smooth surfaces, against linear equations and the paraboloid that a
-//! mesh is cut from.
+//! Triangles, and meshes as smooth surfaces, compared with linear equations and the paraboloid that
+//! a mesh is sampled from.
 
 use super::check::{SecondCheck, worse};
 use super::vector::{
@@ -13,7 +13,7 @@ use glam::DVec3;
 use std::f64::consts::TAU;
 use std::path::Path;
 
-/// Directions at a hit.
+/// Directions per hit.
 const EACH: u32 = 50;
 
 const TRIANGLE: &[&str] = &["normals in another order", "u and v swapped"];
@@ -52,7 +52,7 @@ pub(super) fn checks() -> Vec<SecondCheck> {
     ]
 }
 
-/// A ray and a triangle before it, some beside it.
+/// A ray and a triangle in front of it, which some rays miss.
 fn triangle(dice: &mut Dice, fault: &str) -> f64 {
     let corners = [0; 3].map(|_| plus([0.0, 0.0, 2.0], 1.0, direction(dice)));
     let normals = [0; 3].map(|_| {
@@ -97,19 +97,19 @@ fn triangle(dice: &mut Dice, fault: &str) -> f64 {
     worse((fast - d).abs(), distance(smooth.to_array(), unit(normal)))
 }
 
-/// A mesh cut from z = −(k x² + l y²)/2, made `scale` times as large, and a place on it at which
-/// the central ray arrives from above.
+/// A mesh sampled from z = −(k x² + l y²)/2 and scaled by `scale`, and a point on it at which the
+/// central ray arrives from above.
 struct Hill {
     light: Axes,
     scene: Scene,
     curvature: [f64; 2],
     scale: f64,
-    /// Before it is scaled.
+    /// The point before scaling.
     at: [f64; 2],
 }
 
 impl Hill {
-    /// The second implementation is at fault, the scene is not.
+    /// The fault is in the second implementation, not in the scene.
     fn new(dice: &mut Dice, fault: &str) -> Self {
         let tilt = between(dice, 0.0, 0.8);
         let down = aside(dice, [0.0, 0.0, -1.0], tilt);
@@ -181,7 +181,8 @@ fn curvatures(dice: &mut Dice, fault: &str) -> f64 {
         let tangent: DVec3 = hill.light.components(unit(tangent)).into();
         let [a, b] = [tangent.dot(x), tangent.dot(y)];
         let [k, l, _] = patch.curvature;
-        // Euler 1760, over what of the tangent lies in the fitted plane.
+        // Euler 1760, divided by the squared length of the tangent's projection into the fitted
+        // plane.
         let fast = (k * a * a + l * b * b) / (a * a + b * b);
         (fast - second).abs() / largest
     });

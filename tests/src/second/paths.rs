@@ -20,12 +20,12 @@ const FRAMES: &[&str] = &[
 
 const RECTANGLE: &[&str] = &["edges along Y", "turned over"];
 
-/// What happens to the central ray at a surface.
+/// The event of the central ray at a surface.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Turn {
-    /// It goes along a direction on the side it came from.
+    /// It is reflected along a direction, on the side it came from.
     Back(Vector),
-    /// It goes through, along a direction.
+    /// It is transmitted, along a direction.
     Through(Vector),
 }
 
@@ -104,8 +104,8 @@ impl Legs {
         }
     }
 
-    /// That of a mirror, X turned round, or that in which it came; turned by the smallest angle to
-    /// where it goes.
+    /// The frame after an event: that of a mirror, with X reversed, or that of the arriving ray;
+    /// rotated by the smallest angle to the new direction.
     fn after(before: &Axes, normal: Vector, turn: Turn, fault: &str) -> Axes {
         let mirrored = |a: Vector| plus(a, -2.0 * dot(a, normal), normal);
         let x_sign = if fault == "X not turned round" {
@@ -135,13 +135,13 @@ impl Legs {
     }
 }
 
-/// A direction that leaves a surface on the side that light comes from.
+/// A direction that leaves a surface on the side of the arriving light.
 fn leaves(dice: &mut Dice, normal: Vector) -> Vector {
     let tilt = between(dice, 0.0, 1.3);
     super::vector::aside(dice, normal, tilt)
 }
 
-/// What happens to the central ray, and the words for it.
+/// A random event of the central ray, and its text.
 fn turn(dice: &mut Dice, light: &Axes, facing: Vector) -> (Turn, String, String) {
     let mirror = plus(light.d, -2.0 * dot(light.d, facing), facing);
     match dice.below(3) {
@@ -190,7 +190,7 @@ fn frames(dice: &mut Dice, fault: &str) -> f64 {
     apart.fold(0.0, worse)
 }
 
-/// Edges are along the part of X that is orthogonal to where it faces, and across.
+/// A rectangle's edges are along the component of X orthogonal to its normal, and across it.
 fn rectangle(dice: &mut Dice, fault: &str) -> f64 {
     let mut world = World::new(dice);
     let center = world.light.point([0.0, 0.0, 2.0]);

@@ -17,12 +17,12 @@ pub(super) struct Levels {
 pub(super) enum Pattern {
     Cosine(Grating),
     Checkerboard(f64),
-    /// With its width and height, metres.
+    /// A picture with its width and height, metres.
     Picture(Levels, [f64; 2]),
 }
 
 impl Pattern {
-    /// Its value at a place along the axes of the surface.
+    /// The value at a point given along the axes of the surface.
     pub(super) fn value(&self, at: [f64; 2], fault: &str) -> f64 {
         let [s, t] = match fault {
             "axes swapped" => [at[1], at[0]],
@@ -47,8 +47,8 @@ pub(super) fn cosine(grating: &Grating, at: [f64; 2], fault: &str) -> f64 {
     0.5 + 0.5 * grating.modulation * angle.cos()
 }
 
-/// Squares of half a period are counted along both axes from the vertex: where the sum is even it
-/// is 1.
+/// A checkerboard: squares of half a period are counted along both axes from the vertex; it is 1
+/// where the sum is even.
 fn checkerboard(period: f64, at: [f64; 2], fault: &str) -> f64 {
     let side = match fault {
         "a side is a period" => period,
@@ -68,8 +68,8 @@ impl Levels {
         self.values[row * self.width + column]
     }
 
-    /// A picture around the vertex, its top along Y: bilinear between centres of pixels, as at the
-    /// nearest centre beyond the outermost, 0 beyond its edge.
+    /// A picture around the vertex, with its top along Y: bilinear between pixel centres, constant
+    /// beyond the outermost centres, 0 beyond its edge.
     fn picture(&self, [width, height]: [f64; 2], [s, t]: [f64; 2], fault: &str) -> f64 {
         if s.abs() > width / 2.0 || t.abs() > height / 2.0 {
             return 0.0;
@@ -99,8 +99,8 @@ impl Levels {
     }
 }
 
-/// The last of ascending centres before a place, and how far on towards the next one it is; the
-/// outermost hold beyond.
+/// The last of the ascending centres before a position, and the fraction of the way to the next;
+/// clamped beyond the outermost.
 fn between(centres: &[f64], at: f64, fault: &str) -> (usize, f64) {
     let last = centres.len() - 1;
     if at <= centres[0] {
@@ -127,8 +127,8 @@ pub(super) struct Varied {
 }
 
 impl Varied {
-    /// How much of each there is at a place: of `brdf` as much as the blend says, of `other` the
-    /// rest. The texture multiplies.
+    /// The weight of each BRDF at a point: the blend for `brdf`, and the rest for `other`. The
+    /// texture multiplies both.
     pub(super) fn at(&self, at: [f64; 2], fault: &str) -> [(f64, &Brdf); 2] {
         let share = self.blend.value(at, fault);
         let share = match fault {

@@ -1,4 +1,4 @@
-//! Environments, written down in scene files, against their definition: axes, pixels and lobes.
+//! Environments defined in scene files, compared with their definition: axes, pixels and lobes.
 
 use super::check::{SecondCheck, relative, worse};
 use super::pattern::Levels;
@@ -11,7 +11,7 @@ use std::path::Path;
 use std::rc::Rc;
 use tempfile::TempDir;
 
-/// Directions for each scene.
+/// Directions per scene.
 const EACH: u32 = 20;
 
 const MAP: &[&str] = &[
@@ -24,7 +24,7 @@ const MAP: &[&str] = &[
 ];
 const LOBES: &[&str] = &["the way light goes", "axes of the world", "2 σ² for σ²"];
 
-/// The name of a map in the folder.
+/// The file name of a map.
 pub(super) const FILE: &str = "sky.exr";
 
 pub(super) fn checks(folder: &Rc<TempDir>, map: &Levels) -> Vec<SecondCheck> {
@@ -47,12 +47,12 @@ pub(super) fn checks(folder: &Rc<TempDir>, map: &Levels) -> Vec<SecondCheck> {
     ]
 }
 
-/// The axes of a map: Y is `up`, Z is `front` as far as it is orthogonal to it, X = Y × Z.
+/// The axes of a map: Y is `up`, Z is the component of `front` orthogonal to it, X = Y × Z.
 fn axes(dice: &mut Dice) -> (Axes, String) {
     let up = direction(dice);
     let tilt = between(dice, 0.3, 2.8);
     let front = aside(dice, up, tilt);
-    // D is up and X to the front, so Y = D × X is the X of the map.
+    // D is up and X points to the front, so Y = D × X is the X of the map.
     let text = format!("up: {}, front: {}", triple(up), triple(times(3.0, front)));
     (Axes::new([0.0; 3], up, front), text)
 }
@@ -66,7 +66,7 @@ fn seen(axes: &Axes, from: Vector, fault: &str) -> Vector {
     [x, up, front]
 }
 
-/// Where light comes from that goes along a direction.
+/// The direction from which light that travels along a direction comes.
 fn origin(along: Vector, fault: &str) -> Vector {
     match fault {
         "the way light goes" => along,
@@ -74,7 +74,7 @@ fn origin(along: Vector, fault: &str) -> Vector {
     }
 }
 
-/// What the scene has along a direction of the world.
+/// The radiance of the scene's light along a direction of the world.
 fn fast(world: &World, light: &Light, along: Vector) -> f64 {
     let Light::Environment { environment } = light else {
         return f64::NAN;
@@ -100,10 +100,10 @@ fn mapped(dice: &mut Dice, fault: &str, folder: &Path, map: &Levels) -> f64 {
 }
 
 impl Levels {
-    /// Radiance from a direction (x, up, front): the centre of column i of w is at longitude
-    /// π (1 − (2 i + 1)/w), from the front towards x, that of row j of h at latitude
-    /// π (½ − (j + ½)/h). Bilinear between, all around; from the outermost rows to the poles as in
-    /// the row.
+    /// Radiance from a direction (x, up, front): the centre of column i of w is at longitude π (1 −
+    /// (2 i + 1)/w), from the front towards x, that of row j of h at latitude π (½ − (j + ½)/h).
+    /// Interpolation is bilinear and periodic in longitude; beyond the outermost rows the value of
+    /// the row is used up to the poles.
     fn radiance(&self, [x, up, front]: Vector, fault: &str) -> f64 {
         let longitude = angle([0.0, 0.0, 1.0], [x, 0.0, front]) * x.signum();
         let latitude = PI / 2.0 - angle([0.0, 1.0, 0.0], [x, up, front]);
@@ -119,7 +119,7 @@ impl Levels {
             _ => latitude,
         };
         let row = |j: usize| {
-            // Columns left and right of the place, the last one again before the first.
+            // The adjacent columns, with the last one repeated before the first.
             let columns = (0..=self.width).map(|i| {
                 let right = PI * (1.0 - (2.0 * i as f64 + 1.0) / w);
                 let past = (right + TAU / w - longitude).rem_euclid(TAU) / (TAU / w);
@@ -174,7 +174,7 @@ fn lobed(dice: &mut Dice, fault: &str, folder: &Path) -> f64 {
         let second: f64 = lobes
             .iter()
             .map(|(middle, width, radiance)| {
-                // The fault takes the numbers of the file for directions of the world.
+                // The fault uses the numbers in the file as world directions.
                 let middle = match fault {
                     "axes of the world" => seen(&axes, *middle, ""),
                     _ => *middle,
@@ -185,7 +185,7 @@ fn lobed(dice: &mut Dice, fault: &str, folder: &Path) -> f64 {
                 radiance * (-fall / squared).exp()
             })
             .sum();
-        // Where nothing of the lobes is left there is nothing to compare.
+        // Where the lobes vanish there is nothing to compare.
         relative(
             fast(&world, &scene.light, along) + 1e-9,
             brightness * second + 1e-9,

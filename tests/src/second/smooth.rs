@@ -4,7 +4,7 @@ use super::vector::{Axes, Vector, aside, between, dot, length, plus, times, unit
 use super::world::{World, triple};
 use crate::hostile::dice::Dice;
 
-/// What a scene file calls a form.
+/// The form, as named in a scene file.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Form {
     Plane,
@@ -13,8 +13,8 @@ pub(super) enum Form {
     Paraboloid(f64, f64),
 }
 
-/// A surface with its vertex at the origin of its axes, which faces along D and whose first
-/// curvature is along X.
+/// A surface with its vertex at the origin of its axes, facing along D, with its first curvature
+/// along X.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Smooth {
     pub(super) axes: Axes,
@@ -23,8 +23,8 @@ pub(super) struct Smooth {
 }
 
 impl Smooth {
-    /// A surface that the central ray of a world meets at its vertex, tilted by up to `most`, and
-    /// its words but for the event.
+    /// A surface with its vertex on the central ray, tilted by up to `most`, and its text without
+    /// the event.
     pub(super) fn new(dice: &mut Dice, world: &World, most: f64) -> (Self, String) {
         let tilt = between(dice, 0.1, most);
         let facing = aside(dice, times(-1.0, world.light.d), tilt);
@@ -59,7 +59,7 @@ impl Smooth {
         (smooth, words)
     }
 
-    /// The same with a fault.
+    /// The surface with a fault.
     pub(super) fn wrong(mut self, fault: &str) -> Self {
         let Axes { origin, x, y, d } = self.axes;
         match (fault, self.form) {
@@ -75,7 +75,7 @@ impl Smooth {
         self
     }
 
-    /// The middle of the ball, or of the bar at the vertex: behind the vertex where the surface is
+    /// The centre of the ball, or of the bar at the vertex: behind the vertex if the surface is
     /// convex.
     fn middle(&self, k: f64) -> Vector {
         plus(self.axes.origin, -1.0 / k, self.axes.d)
@@ -83,7 +83,7 @@ impl Smooth {
 
     /// The point over (s, t).
     pub(super) fn point(&self, s: f64, t: f64) -> Vector {
-        // How far a circle of radius 1/k is below its top.
+        // The sag of a circle of radius 1/k.
         let sagged = |k: f64, r2: f64| (1.0 - (1.0 - k * k * r2).sqrt()) / k;
         let below = match self.form {
             Form::Plane => 0.0,
@@ -94,7 +94,7 @@ impl Smooth {
         self.axes.point([s, t, -below])
     }
 
-    /// The normal at a point of it, on the side it faces.
+    /// The normal at a point, on the side the surface faces.
     pub(super) fn normal(&self, point: Vector) -> Vector {
         match self.form {
             Form::Plane => self.axes.d,
@@ -107,12 +107,12 @@ impl Smooth {
         }
     }
 
-    /// The part of a vector across the bar, which is along Y.
+    /// The component of a vector across the bar, which is along Y.
     fn round(&self, a: Vector) -> Vector {
         plus(a, -dot(a, self.axes.y), self.axes.y)
     }
 
-    /// How far along a ray with a unit direction it is met, nearest first.
+    /// The distances of hits along a ray with a unit direction, nearest first.
     pub(super) fn hits(&self, start: Vector, towards: Vector) -> Vec<f64> {
         let roots = match self.form {
             Form::Plane => {
@@ -152,7 +152,8 @@ impl Smooth {
     }
 }
 
-/// Where a line enters and leaves a ball whose middle is `to_middle` away from where it starts.
+/// The distances at which a line enters and leaves a ball whose centre is at `to_middle` from the
+/// line's start.
 fn chord(to_middle: Vector, towards: Vector, radius: f64) -> Vec<f64> {
     let nearest = dot(to_middle, towards);
     let off = length(plus(to_middle, -nearest, towards));

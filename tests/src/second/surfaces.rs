@@ -1,4 +1,4 @@
-//! Smooth surfaces of scene files, and what they do to single rays, against solids and angles.
+//! Smooth surfaces of scene files and their effect on single rays, compared with solids and angles.
 
 use super::check::{SecondCheck, worse};
 use super::smooth::Smooth;
@@ -12,7 +12,7 @@ use etendue_field::{Frame, Patch, Specular};
 use std::f64::consts::PI;
 use std::path::Path;
 
-/// Places or rays for each scene.
+/// Points or rays per scene.
 const EACH: u32 = 20;
 
 const FORMS: &[&str] = &[
@@ -61,7 +61,7 @@ pub(super) fn checks() -> Vec<SecondCheck> {
     ]
 }
 
-/// A surface of a scene, and the same as a solid.
+/// A surface of a scene, and the equivalent solid.
 fn surface(dice: &mut Dice) -> (World, Smooth, Patch) {
     let mut world = World::new(dice);
     let (smooth, words) = Smooth::new(dice, &world, 1.0);
@@ -84,7 +84,7 @@ fn points(dice: &mut Dice, fault: &str) -> f64 {
     each.fold(0.0, worse)
 }
 
-/// One of the two misses where the other does not is a difference of a metre.
+/// If only one of the two is a miss, the difference is one metre.
 fn hits(dice: &mut Dice, fault: &str) -> f64 {
     let (world, smooth, patch) = surface(dice);
     let smooth = smooth.wrong(fault);
@@ -135,7 +135,7 @@ fn event(dice: &mut Dice, fault: &str) -> f64 {
         Specular::Mirror if fault == "about the surface, not the normal" => {
             Some(turned(along, normal, PI))
         }
-        // The direction it came from, turned half round about the normal.
+        // The reversed direction, rotated by half a turn about the normal.
         Specular::Mirror => Some(turned(times(-1.0, along), normal, PI)),
         Specular::Refraction { front, back } => {
             let indices = if fault == "indices swapped" {
@@ -161,7 +161,7 @@ fn event(dice: &mut Dice, fault: &str) -> f64 {
     }
 }
 
-/// By the angles of Snell's law (Born and Wolf 1999, 1.5.1); `None` where all is reflected.
+/// Refraction by Snell's law in angles (Born and Wolf 1999, 1.5.1); `None` for total reflection.
 fn refracted(along: Vector, normal: Vector, [front, back]: [f64; 2]) -> Option<Vector> {
     let is_from_front = dot(along, normal) < 0.0;
     let (ahead, ratio) = if is_from_front {
@@ -177,8 +177,7 @@ fn refracted(along: Vector, normal: Vector, [front, back]: [f64; 2]) -> Option<V
     })
 }
 
-/// Parallel rays meet in the focal plane, where the one through the middle of the lens goes
-/// straight on.
+/// Parallel rays meet in the focal plane, where the ray through the lens centre arrives undeviated.
 fn focused(along: Vector, lens: &Axes, point: Vector, focal_length: f64) -> Vector {
     let ahead = dot(along, lens.d).abs();
     let meet = plus(lens.origin, focal_length / ahead, along);

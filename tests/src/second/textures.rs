@@ -1,4 +1,4 @@
-//! Patterns, pictures and blends against the second ones.
+//! Patterns, pictures and blends, compared with the second implementation.
 
 use super::check::{SecondCheck, worse};
 use super::lobes;
@@ -67,7 +67,8 @@ fn blended(dice: &mut Dice, fault: &str) -> f64 {
     apart(&reflectance.at(at[0], at[1]), varied.at(at, fault))
 }
 
-/// How far the weights of two sums are apart; of a BRDF that is in one alone, by all of its weight.
+/// The difference of the weights in two sums; a BRDF in only one of them counts with its full
+/// weight.
 pub(super) fn apart(mixture: &Mixture<'_>, varied: [(f64, &Brdf); 2]) -> f64 {
     let weight = |brdf: &Brdf| {
         let weights = mixture.weighted().filter(|(_, of)| *of == brdf);
@@ -81,7 +82,7 @@ fn place(dice: &mut Dice) -> [f64; 2] {
     [between(dice, -0.7, 0.7), between(dice, -0.7, 0.7)]
 }
 
-/// The same pattern as the fast side has it.
+/// The same pattern in the fast implementation.
 fn fast(pattern: &Pattern) -> field::Pattern {
     match pattern {
         Pattern::Cosine(grating) => field::Pattern::Cosine(*grating),

@@ -1,5 +1,5 @@
-//! Vectors and axes in plain numbers, so that the second implementation shares no frame with the
-//! first.
+//! Vectors and axes in plain numbers, so that the second implementation shares no frame code with
+//! the first.
 
 use crate::hostile::dice::Dice;
 use etendue_field::Frame;
@@ -41,17 +41,17 @@ pub(super) fn distance(a: Vector, b: Vector) -> f64 {
     length(plus(a, -1.0, b))
 }
 
-/// The angle between two directions, good where it is small.
+/// The angle between two directions, accurate for small angles.
 pub(super) fn angle(a: Vector, b: Vector) -> f64 {
     length(cross(a, b)).atan2(dot(a, b))
 }
 
-/// The part of a vector that is orthogonal to a unit vector, of unit length.
+/// The component of a vector orthogonal to a unit vector, normalised.
 pub(super) fn across(a: Vector, normal: Vector) -> Vector {
     unit(plus(a, -dot(a, normal), normal))
 }
 
-/// A vector turned about a unit vector (Rodrigues 1840).
+/// A vector rotated about a unit vector (Rodrigues 1840).
 pub(super) fn turned(a: Vector, axis: Vector, by: f64) -> Vector {
     let along = times(dot(a, axis), axis);
     let aside = plus(a, -1.0, along);
@@ -59,7 +59,7 @@ pub(super) fn turned(a: Vector, axis: Vector, by: f64) -> Vector {
     plus(along, 1.0, turned)
 }
 
-/// A vector turned as the smallest turn from one unit vector to another takes it.
+/// A vector under the smallest rotation from one unit vector to another.
 pub(super) fn turned_along(a: Vector, from: Vector, to: Vector) -> Vector {
     let axis = cross(from, to);
     if length(axis) < 1e-12 {
@@ -68,7 +68,7 @@ pub(super) fn turned_along(a: Vector, from: Vector, to: Vector) -> Vector {
     turned(a, unit(axis), angle(from, to))
 }
 
-/// Three orthogonal directions X, Y = D × X and D, at a place.
+/// Three orthogonal directions X, Y = D × X and D, at a point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Axes {
     pub(super) origin: Vector,
@@ -78,7 +78,7 @@ pub(super) struct Axes {
 }
 
 impl Axes {
-    /// X is the part of `x` that is orthogonal to `d`.
+    /// Creates axes in which X is the component of `x` orthogonal to `d`.
     pub(super) fn new(origin: Vector, d: Vector, x: Vector) -> Self {
         let d = unit(d);
         let x = across(x, d);
@@ -96,7 +96,7 @@ impl Axes {
         plus(self.origin, 1.0, self.vector(at))
     }
 
-    /// A frame given in these axes, in those of the world.
+    /// Converts a frame in these axes to world coordinates.
     pub(super) fn in_world(&self, local: &Frame) -> Frame {
         let vector = |a: DVec3| DVec3::from(self.vector(a.to_array()));
         Frame {
@@ -122,12 +122,12 @@ pub(super) fn between(dice: &mut Dice, low: f64, high: f64) -> f64 {
     low + (high - low) * dice.unit()
 }
 
-/// Small ones as often as large ones.
+/// A random number with uniform logarithm.
 pub(super) fn scale(dice: &mut Dice, low: f64, high: f64) -> f64 {
     low * (high / low).powf(dice.unit())
 }
 
-/// Any direction.
+/// A random direction.
 pub(super) fn direction(dice: &mut Dice) -> Vector {
     let height = between(dice, -1.0, 1.0);
     let around = between(dice, 0.0, TAU);
@@ -135,7 +135,7 @@ pub(super) fn direction(dice: &mut Dice) -> Vector {
     [across * around.cos(), across * around.sin(), height]
 }
 
-/// A direction at an angle to a unit vector.
+/// A random direction at an angle to a unit vector.
 pub(super) fn aside(dice: &mut Dice, from: Vector, by: f64) -> Vector {
     let axis = across(direction(dice), from);
     unit(turned(from, axis, by.min(PI)))

@@ -1,5 +1,5 @@
-//! Coordinates of planes on surfaces: photons that cross a plane across the central ray, and the
-//! same photons as planes on the surface have them.
+//! Coordinates of planes on surfaces: photons that cross a plane across the central ray, compared
+//! with the same photons at planes on the surface.
 
 use super::check::{SecondCheck, relative, worse};
 use super::paths::{Legs, Turn};
@@ -11,7 +11,7 @@ use etendue_field::{Crossing, PhotonSource, TwoPlane, VirtualPlane};
 use etendue_trace::Tracer;
 use std::path::Path;
 
-/// Photons of a batch, of which there is one.
+/// Photons of the single batch.
 const EACH: u32 = 32;
 
 const VIEWS: &[&str] = &[
@@ -23,7 +23,7 @@ const VIEWS: &[&str] = &[
     "cosines left out",
 ];
 
-/// Planes, each with whether light arrives there, and its orientation.
+/// Planes, each with a flag for arriving light, and its orientation.
 pub(super) const PLANES: [(&str, bool, View); 7] = [
     ("Orthogonal", true, View::Across),
     ("Tangent", true, View::Tangent),
@@ -81,7 +81,7 @@ fn difference(dice: &mut Dice, fault: &str) -> f64 {
     let mut largest = 0.0;
     for (i, plane) in PLANES.iter().enumerate() {
         let across = if plane.1 { 0 } else { 4 };
-        // The same photons in the same order.
+        // All planes must have the same photons in the same order.
         if crossings[i].is_empty() || crossings[i].len() != crossings[across].len() {
             return 1.0;
         }
@@ -94,7 +94,7 @@ fn difference(dice: &mut Dice, fault: &str) -> f64 {
     largest
 }
 
-/// How a plane looks at the surface.
+/// The view of a plane on the surface.
 pub(super) struct Looking<'a> {
     pub(super) smooth: &'a Smooth,
     pub(super) leg: Axes,
@@ -115,7 +115,7 @@ impl Looking<'_> {
         } else {
             (legs.after, legs.leaving)
         };
-        // Light that is turned about the normal has the longitude of where a mirror would send it.
+        // Light rotated about the normal has the longitude of its mirror direction.
         let turned = if view == View::Mirrored { -1.0 } else { 1.0 };
         Looking {
             smooth,
@@ -127,8 +127,8 @@ impl Looking<'_> {
         }
     }
 
-    /// How far coordinates, weight and the factor of differential irradiance are from those of the
-    /// ray across the leg.
+    /// The deviation of coordinates, weight and the factor of differential irradiance from those of
+    /// the ray across the leg.
     fn off(&self, plane: &VirtualPlane, across: &Crossing, seen: &Crossing, fault: &str) -> f64 {
         let ray = across.ray;
         let secant_squared = 1.0 + ray.u * ray.u + ray.v * ray.v;
@@ -148,7 +148,7 @@ impl Looking<'_> {
         } else {
             cosines
         };
-        // Flux Φ adds Φ (1 + u² + v²)² across the leg, Φ/(cos θ cos² φ) on the surface.
+        // Flux Φ has weight Φ (1 + u² + v²)² across the leg, Φ/(cos θ cos² φ) on the surface.
         let weight = across.weight / (secant_squared * secant_squared) / per_flux;
         let TwoPlane { x, y, u, v } = seen.ray;
         let z = [x, y, u, v].into_iter().zip(second);
@@ -185,8 +185,8 @@ impl Looking<'_> {
         Some([s, t, theta - self.longitude, phi])
     }
 
-    /// Where the line of a ray meets what the plane looks at, nearest to the central hit, and the
-    /// normal there.
+    /// The point where the line of a ray meets the plane's surface nearest to the central hit, and
+    /// the normal there.
     fn met(&self, foot: Vector, along: Vector, fault: &str) -> Option<(Vector, Vector)> {
         let n = self.surface.d;
         let tangent = || {

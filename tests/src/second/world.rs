@@ -1,5 +1,5 @@
-//! A scene file in the words of docs/scenes.md, with its central ray anywhere in the world, and
-//! what it resolves to.
+//! A scene file in the terms of docs/scenes.md, with its central ray anywhere in the world, and the
+//! resolved scene.
 
 use super::vector::{Axes, Vector, aside, between, direction};
 use crate::hostile::dice::Dice;
@@ -7,23 +7,23 @@ use etendue_field::Frame;
 use etendue_scene::{Scene, SceneFile, resolve};
 use std::path::Path;
 
-/// Parts of a scene file. The light's center, the path's direction and its X axis are drawn.
+/// Parts of a scene file. The light's center, the path's direction and its X axis are random.
 #[derive(Clone, Debug)]
 pub(super) struct World {
     /// The frame at the light.
     pub(super) light: Axes,
-    /// X as the file has it: not orthogonal to D.
+    /// X as in the file: not orthogonal to D.
     x_axis: Vector,
     pub(super) lamp: String,
     pub(super) blockers: String,
     pub(super) surfaces: String,
-    /// More of the path, behind a comma.
+    /// Further fields of the path, after a comma.
     pub(super) onwards: String,
     pub(super) planes: String,
 }
 
 impl World {
-    /// A point light, nothing in its way.
+    /// A point light without occluders.
     pub(super) fn new(dice: &mut Dice) -> Self {
         let origin = direction(dice);
         let d = direction(dice);
@@ -40,12 +40,12 @@ impl World {
         }
     }
 
-    /// The same with its central ray along another direction.
+    /// Rotates the central ray to another direction.
     pub(super) fn turn_to(&mut self, d: Vector) {
         self.light = Axes::new(self.light.origin, d, self.x_axis);
     }
 
-    /// A rectangle across the path.
+    /// Adds a rectangle across the path.
     pub(super) fn with_wall(mut self, distance: f64) -> Self {
         let center = triple(self.light.point([0.0, 0.0, distance]));
         self.surfaces = format!("Rectangle(name: \"it\", center: {center}, size: (1, 1))");
@@ -71,14 +71,13 @@ impl World {
         resolve("second", file, folder, u64::MAX).unwrap_or_else(|error| panic!("{error}: {text}"))
     }
 
-    /// A point of the world in the coordinates of the resolved scene, those of the frame at the
-    /// light.
+    /// A world point in the coordinates of the resolved scene, those of the frame at the light.
     pub(super) fn resolved(&self, point: Vector) -> Vector {
         self.light.coordinates(point)
     }
 }
 
-/// Numbers as a scene file has them.
+/// Formats numbers for a scene file.
 pub(super) fn triple([a, b, c]: Vector) -> String {
     format!("({a:?}, {b:?}, {c:?})")
 }
@@ -87,7 +86,7 @@ pub(super) fn pair([a, b]: [f64; 2]) -> String {
     format!("({a:?}, {b:?})")
 }
 
-/// How far two frames are apart, in place and directions.
+/// The difference of two frames in position and directions.
 pub(super) fn frames_apart(fast: &Frame, axes: &Axes) -> f64 {
     let pairs = [
         (fast.origin, axes.origin),

@@ -1,14 +1,16 @@
-//! Light of an environment that arrives at a sphere, by a quadrature of its own beside the nets of theory.
+//! Light of an environment that arrives at a sphere, by a quadrature independent of the nets of
+//! theory.
 
 use etendue_field::{Complex, Environment, Slices, TwoPlane, VirtualPlane};
 use etendue_scene::Scene;
 use glam::DVec3;
 use std::f64::consts::TAU;
 
-/// Nodes of the midpoint rule along x and y, and along θ and φ: over four for each cycle of the highest frequency.
+/// Nodes of the midpoint rule along x and y, and along θ and φ: over four per cycle of the highest
+/// frequency.
 const NODES: [usize; 2] = [40, 36];
 
-/// A sphere in an environment that nothing hides.
+/// A sphere in an unoccluded environment.
 pub(super) struct Sphere<'a> {
     pub(super) scene: &'a Scene,
     pub(super) environment: &'a Environment,
@@ -17,9 +19,10 @@ pub(super) struct Sphere<'a> {
 }
 
 impl Sphere<'_> {
-    /// The windowed spectrum at the scene's plane, which is on the sphere in local normals.
+    /// The windowed spectrum at the scene's plane on the sphere, in local normals.
     ///
-    /// `turn` is −1 where (θ, φ) are those of where light comes from, turned about the normal, and +1 where they are not.
+    /// `turn` is −1 if (θ, φ) are those of the direction that light comes from, rotated about the
+    /// normal, and +1 if they are not rotated.
     pub(super) fn slices(&self, turn: f64) -> Slices {
         let plane = &self.scene.planes[0];
         let w = &plane.window;
@@ -45,7 +48,7 @@ impl Sphere<'_> {
                 .collect();
             for k in 0..grid.azimuths {
                 let (sin, cos) = grid.azimuth(k).sin_cos();
-                // Along one azimuth a place is one number, and so is an angle.
+                // Along one azimuth position and angle are one number each.
                 let place = x * cos + y * sin;
                 for (n, nu) in grid.nu.values().into_iter().enumerate() {
                     let terms = directions.iter().zip(&values).map(|([u, v], value)| {
@@ -72,7 +75,7 @@ impl Sphere<'_> {
         let local = plane.frame.turned_to(plane.frame.vector_to_world(normal));
         let from = local.vector_to_world(DVec3::new(across * sin, up, across * cos));
         let along = self.scene.path.frame.vector_to_local(-from);
-        // The integral is over the sphere's area.
+        // Converts to an integral over the area of the sphere.
         self.environment.radiance(along) / normal.z
     }
 }

@@ -1,16 +1,16 @@
-//! The sampling criteria of section 6.2 against traced rays.
+//! The sampling criteria of section 6.2 compared with traced rays.
 
 use super::eye::EyeScene;
 use crate::report::Bound::Below;
 use crate::report::{Check, ReportSection, Row};
 use etendue_theory::shading::{Criterion, PlanarLobe};
 
-/// Six digits.
+/// The tolerance: six digits.
 const DIGITS: f64 = 1e-6;
 /// An image a thousand times narrower than the circle's radius.
 const IMAGE: f64 = 0.01;
 
-/// The scene that sweeps go through.
+/// The scene from which the sweeps start.
 pub(super) fn criterion(curvature: f64, angle: f64, distance: f64, blocker: f64) -> Criterion {
     Criterion {
         curvature,
@@ -90,7 +90,7 @@ fn sweeps() -> Vec<(&'static str, Criterion)> {
     all
 }
 
-/// The section.
+/// Returns the section.
 pub(super) fn bandwidths() -> ReportSection {
     let mut rows = Vec::new();
     for (name, criterion) in sweeps() {
@@ -100,7 +100,7 @@ pub(super) fn bandwidths() -> ReportSection {
         let (said, said_edge) = (criterion.environment(), criterion.blocker());
         let images = [scene.image(false, said), scene.image(true, said_edge)];
         let bound = criterion.combined();
-        // The bound is reached where both parts have one sign.
+        // The bound is reached if both parts have the same sign.
         let reached =
             1.0 + 2.0 * criterion.curvature * criterion.distance / criterion.outgoing.cos() > 0.0;
         let digits = |id, figure| Check::new(id, figure, Below(DIGITS), "six digits");

@@ -1,4 +1,4 @@
-//! A plane of a sound scene, measured and predicted, for what is wrong to be held against.
+//! A plane of a valid scene, measured and predicted, for comparison with faults.
 
 use crate::predicted;
 use crate::scenes::traced;
@@ -20,14 +20,14 @@ pub(super) struct Bench {
 
 impl Bench {
     /// # Panics
-    /// When the plane does not look at light that a BRDF has scattered.
+    /// If the plane is not after a BRDF.
     pub(super) fn new(scene: Scene) -> Self {
         let view = seen(&scene);
         let sound = said(&view, &scene.planes[0]);
         Self::of(scene, sound)
     }
 
-    /// With a prediction from elsewhere.
+    /// Creates a bench with a prediction from elsewhere.
     pub(super) fn of(scene: Scene, sound: Slices) -> Self {
         let photons = traced(&scene);
         Self {
@@ -37,14 +37,14 @@ impl Bench {
         }
     }
 
-    /// The prediction of a system that was changed.
+    /// The prediction of a modified system.
     pub(super) fn predicted(&self, change: impl Fn(&mut ScatteringSystem)) -> Slices {
         let mut view = seen(&self.scene);
         change(&mut view.system);
         said(&view, &self.scene.planes[0])
     }
 
-    /// The photons of a scene that was changed, their crossings tampered with.
+    /// The photons of a modified scene, with modified crossings.
     pub(super) fn tampered(
         &self,
         change: impl Fn(&mut Scene),
@@ -59,7 +59,7 @@ impl Bench {
     /// p of photons against a prediction.
     ///
     /// # Panics
-    /// When there is neither light nor a prediction of any.
+    /// If there is neither light nor a prediction of any.
     pub(super) fn p_value(&self, photons: &Measurement, said: &Slices) -> f64 {
         let p = Residuals::new(photons, 0, said).p_value(self.scene.run.seed);
         p.expect("light")
@@ -78,7 +78,7 @@ impl Bench {
 /// The measured slices.
 ///
 /// # Panics
-/// When there are too few batches.
+/// If there are too few batches.
 pub(super) fn mean(photons: &Measurement) -> Slices {
     let estimate = estimate::slices(photons, 0);
     estimate.expect("a scene has 64 batches").mean
@@ -94,10 +94,10 @@ fn said(view: &Observed<ScatteringSystem>, plane: &VirtualPlane) -> Slices {
     exact
 }
 
-/// The surface of a scene that reflects by a BRDF, for changes.
+/// The BRDF of a scene, for modification.
 ///
 /// # Panics
-/// When it has none.
+/// If the scene has none.
 pub(super) fn reflectance(scene: &mut Scene) -> &mut etendue_field::Reflectance {
     match &mut scene.patches[0].event {
         Event::Reflects(reflectance) => reflectance,
@@ -105,7 +105,8 @@ pub(super) fn reflectance(scene: &mut Scene) -> &mut etendue_field::Reflectance 
     }
 }
 
-/// A direction at a place of a plane on a flat surface, and where the light of a projector comes from there: unit vectors along (T, B, N).
+/// The direction at a point of a plane on a flat surface, and the direction towards a projector
+/// there: unit vectors along (T, B, N).
 pub(super) fn on_flat(scene: &Scene, crossing: &Crossing) -> [DVec3; 2] {
     let plane = &scene.planes[0];
     let ray = crossing.ray;
@@ -116,7 +117,7 @@ pub(super) fn on_flat(scene: &Scene, crossing: &Crossing) -> [DVec3; 2] {
     [away, (light - place).normalize()]
 }
 
-/// A tracer whose crossings are tampered with before they are recorded.
+/// A tracer that modifies crossings before they are recorded.
 pub(crate) struct Tampered<F> {
     tracer: Tracer,
     crossing: F,

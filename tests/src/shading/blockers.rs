@@ -7,11 +7,12 @@ use crate::table1::slope;
 use etendue_field::Complex;
 use std::f64::consts::{PI, TAU};
 
-/// Half the width of a light, its distance to the blockers, and from there to the receiver, in metres.
+/// Half-width of a light, its distance to the blockers, and the distance from there to the
+/// receiver, in metres.
 const LIGHT: f64 = 0.2;
 const BEFORE: f64 = 1.0;
 const AFTER: f64 = 0.5;
-/// Frequencies up to which coefficients of patterns are summed.
+/// Maximum frequency in sums of pattern coefficients.
 const SUMMED: usize = 48;
 
 pub(super) fn statements() -> Vec<Statement> {
@@ -23,11 +24,11 @@ pub(super) fn statements() -> Vec<Statement> {
     all
 }
 
-/// Light through strips, windowed: where its spectrum peaks beside the middle.
+/// Light through strips, windowed: the off-centre peaks of its spectrum.
 fn replicas() -> Statement {
     let mut worst = 0.0_f64;
     for pitch in [0.2, 0.1, 0.05] {
-        // The light seen within slopes of 0.3, at x.
+        // The light visible within slopes of 0.3, at x.
         let seen = |x: f64| {
             let [low, high] =
                 [x - LIGHT, x + LIGHT].map(|edge: f64| (edge / BEFORE).clamp(-0.5, 0.5));
@@ -67,7 +68,7 @@ fn replicas() -> Statement {
     }
 }
 
-/// 90 % bandwidth of coefficients: the smallest |n| below which so much of the energy is.
+/// 90 % bandwidth of coefficients: the smallest |n| below which this much of the energy lies.
 fn bandwidth(coefficients: &[Complex]) -> usize {
     let middle = coefficients.len() / 2;
     let energy =
@@ -82,7 +83,8 @@ fn bandwidth(coefficients: &[Complex]) -> usize {
         .unwrap_or(middle)
 }
 
-/// Pairs of patterns in one plane: the spectrum of their product, and what magnitudes alone would make of it.
+/// Pairs of patterns in one plane: the spectrum of their product, and its estimate from magnitudes
+/// alone.
 fn combined() -> Vec<Statement> {
     let (mut largest, mut under, mut over) = (0.0_f64, 0, 0);
     let pairs: u32 = 200;
@@ -102,7 +104,7 @@ fn combined() -> Vec<Statement> {
                 Complex::from(terms.sum::<f64>())
             })
             .collect();
-        // Within half of the coefficients the sum leaves out little that is not far away.
+        // For |n| up to half of the coefficients, the sum omits only small distant terms.
         for n in 32..=64 {
             largest = largest.max(true_one[n].norm() / bound[n].norm());
         }
@@ -142,7 +144,8 @@ fn combined() -> Vec<Statement> {
 fn complementary() -> f64 {
     let [a, b] = [[0.0, 0.5], [0.5, 1.0]].map(|half| coefficients(&vec![half], SUMMED));
     let middle = a.len() / 2;
-    // Σ c_m d_(n−m), and of the magnitudes, with the tail of 1/m² summed: for n = 0, opposite phases.
+    // Σ c_m d_(n−m), and the sum of magnitudes, including the tail of 1/m²: opposite phases for n =
+    // 0.
     let product: Complex = (0..a.len()).map(|m| a[m] * b[2 * middle - m]).sum();
     let size: f64 = (0..a.len())
         .map(|m| a[m].norm() * b[2 * middle - m].norm())
@@ -192,11 +195,11 @@ fn wedge() -> Vec<Statement> {
     ]
 }
 
-/// E(x) = ∫ cos θ dθ over what is seen of the light through strips, in closed form.
+/// E(x) = ∫ cos θ dθ over the part of the light visible through strips, in closed form.
 fn irradiance(x: f64, pitch: f64, phase: f64) -> f64 {
     let distance = BEFORE + AFTER;
     let sine = |u: f64| (u - x) / (u - x).hypot(distance);
-    // The strip's plane is met at y = x + (u − x) d₂/D.
+    // The line crosses the strips' plane at y = x + (u − x) d₂/D.
     let onto = |y: f64| x + (y - x) * distance / AFTER;
     let ends = [-LIGHT, LIGHT].map(|u| x + (u - x) * AFTER / distance);
     let mut n = (ends[0] / pitch - phase).floor() - 1.0;
@@ -218,7 +221,8 @@ fn average() -> Vec<Statement> {
         let sine = |u: f64| (u - x) / (u - x).hypot(distance);
         sine(LIGHT) - sine(-LIGHT)
     };
-    // Pitches of which an odd number of halves cover the light's image: there the first harmonic is largest.
+    // Pitches for which the light's image covers an odd number of half periods: there the first
+    // harmonic is largest.
     let image = 2.0 * LIGHT * AFTER / distance;
     let pitches = [4.5, 9.5, 18.5, 36.5].map(|count| image / count);
     let ripple = |pitch: f64| {
@@ -259,14 +263,15 @@ fn average() -> Vec<Statement> {
                 spectrum[0], spectrum[1]
             ),
             number: (spectrum[0] / spectrum[1]).log2(),
-            // A Gaussian's tail at f d₁/D − 0.7: from 1.5 to 3.7 cycles per metre, in a window of 0.4 m.
+            // The tail of a Gaussian at f d₁/D − 0.7: from 1.5 to 3.7 cycles per metre, in a window
+            // of 0.4 m.
             expected: [4.0, 100.0],
             holds: "holds, faster than any power: only replicas' tails arrive",
         },
     ]
 }
 
-/// ∫ light(u) B(y(u)) du, against the convolution of a scaled light and the blockers.
+/// ∫ light(u) B(y(u)) du, compared with the convolution of a scaled light and the blockers.
 fn soft_shadow() -> Vec<Statement> {
     let distance = BEFORE + AFTER;
     let mask = |y: f64| 0.5 + 0.5 * (TAU * 6.0 * y).cos() * (-y * y).exp();
@@ -277,7 +282,8 @@ fn soft_shadow() -> Vec<Statement> {
             lit(u, v) * mask(x + AFTER * v)
         })
     };
-    // The light's image at the blockers, a box of d₂/D the size, convolved with the blockers at x d₁/D.
+    // The light's image at the blockers, a box scaled by d₂/D, convolved with the blockers at x
+    // d₁/D.
     let convolved = |x: f64| {
         let size = AFTER / distance;
         let at = x * BEFORE / distance;

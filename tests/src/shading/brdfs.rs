@@ -29,12 +29,12 @@ pub(super) fn reflection(terms: Vec<SeparableTerm<'_>>) -> PlanarReflection<'_> 
         outgoing: THETA1,
         curvature: K,
         terms,
-        // The narrowest Gaussian has 0.75 cycles per radian for one deviation.
+        // The narrowest Gaussian has a standard deviation of 0.75 cycles per radian.
         lattice: Lattice::circle(12.0),
     }
 }
 
-/// The same surface in the primal, with a clamped cosine.
+/// The same surface in the primal domain, with a clamped cosine.
 pub(super) fn surface<'a>(lobe: Option<&'a dyn Fn(f64, f64) -> f64>) -> PrimalSurface<'a> {
     PrimalSurface {
         theta0: THETA0,
@@ -71,12 +71,12 @@ pub(super) const fn term(before: Factor<'_>, lobe: Option<PlanarLobe>) -> Separa
     }
 }
 
-/// cos θ (1 + 0.6 sin θ), which is not even: sin θ moves a spectrum by ± 1/2π.
+/// cos θ (1 + 0.6 sin θ), which is not even: sin θ shifts a spectrum by ± 1/2π.
 pub(super) fn lopsided(theta: f64) -> f64 {
     theta.cos() * (1.0 + 0.6 * theta.sin())
 }
 
-/// Its transform.
+/// The Fourier transform of [`lopsided`].
 pub(super) fn lopsided_hat(q: f64) -> Complex {
     let side = cosine_hat(q - 1.0 / TAU) - cosine_hat(q + 1.0 / TAU);
     Complex::new(cosine_hat(q), -0.3 * side)
@@ -198,12 +198,12 @@ fn separable() -> Vec<OperatorComparison> {
     ]
 }
 
-/// f and h by lists of values over |θ|, with kinks.
+/// f and h given by lists of values over |θ|, with kinks.
 fn listed() -> [OperatorComparison; 2] {
     let table = AngleTable {
         values: [1.0, 0.9, 0.2, 0.3, 0.8].into(),
     };
-    // The list once more, by the nearest two of its angles.
+    // Interpolates the list between the nearest two angles.
     let value = |t: f64| {
         let at = t.abs() / FRAC_PI_2 * 4.0;
         let hats = [1.0, 0.9, 0.2, 0.3, 0.8].iter().zip(0_u32..);
@@ -257,7 +257,7 @@ fn listed() -> [OperatorComparison; 2] {
     ]
 }
 
-/// Two lobes with weights ½ (1 + 0.9 cos(2π 1.5 s + 0.4)) and what is left of them.
+/// Two lobes with weights ½ (1 + 0.9 cos(2π 1.5 s + 0.4)) and its complement.
 fn weighted() -> OperatorComparison {
     let weight = |s: f64| 0.5 * (1.0 + 0.9 * (TAU * 1.5 * s + 0.4).cos());
     let both = |s: f64, d: f64| weight(s) * GLOSS.value(d) + (1.0 - weight(s)) * PHONG.value(d);
@@ -360,7 +360,7 @@ fn textured() -> OperatorComparison {
     }
 }
 
-/// ρ(s, δ) = exp(−½ zᵀ C⁻¹ z)/√2π σ: its lobe turns along the surface.
+/// ρ(s, δ) = exp(−½ zᵀ C⁻¹ z)/√2π σ: the lobe rotates along the surface.
 fn varying() -> OperatorComparison {
     let bell = super::light::Bell {
         amplitude: 3.0,

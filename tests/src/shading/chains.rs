@@ -1,4 +1,5 @@
-//! Faults of the affine maps onto a surface that scatters and off it, judged by the rule for first-order chains.
+//! Faults of the affine maps to and from a scattering surface, judged by the rule for first-order
+//! chains.
 
 use super::scenes::{alone, changed};
 use crate::predicted;
@@ -13,9 +14,9 @@ use etendue_spectrum::Measurement;
 use etendue_theory::geometry::AffineMap;
 use etendue_theory::scattering::{ScatteringChain, chain, defect};
 
-/// Of the exact prediction, which is not asked here.
+/// Level of the exact prediction, which is not used here.
 const LEVEL: f64 = 0.01;
-/// Photons, unless others are given.
+/// Default number of photons.
 const PHOTONS: u64 = 1 << 22;
 const SCENE: &str = "textured_glossy";
 
@@ -53,7 +54,7 @@ fn row(map: &mut AffineMap<4>, row: usize, by: f64) {
     map.offset[row] *= by;
 }
 
-/// The section.
+/// Returns the section.
 pub(super) fn chains(photons: Option<u64>) -> ReportSection {
     let photons = photons.unwrap_or(PHOTONS);
     let mut rows = Vec::new();
@@ -64,7 +65,7 @@ pub(super) fn chains(photons: Option<u64>) -> ReportSection {
         let sound = Prediction::new(&scene, place, &Applicability::new(&scene, place));
         let view = scattered(&scene, place).expect("a plane behind a BRDF");
         for (name, fault) in faults() {
-            // On the surface nothing has come off it yet.
+            // On the surface, maps off it have no effect yet.
             if plane == "texture" && name.starts_with("off") {
                 continue;
             }
@@ -122,7 +123,7 @@ pub(super) fn chains(photons: Option<u64>) -> ReportSection {
     }
 }
 
-/// With the slices that a tampered chain predicts.
+/// The verdict with the slices predicted by a modified chain.
 fn judged(
     scene: &Scene,
     measurement: &Measurement,

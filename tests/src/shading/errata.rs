@@ -1,4 +1,4 @@
-//! The paper's misprints about shading, each beside what should stand there.
+//! The paper's misprints about shading, each beside the corrected formula.
 
 use super::bandwidth::criterion;
 use super::brdfs::{
@@ -19,25 +19,26 @@ use etendue_theory::shading::{
 };
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// What corrected formulas may be off by: both sides are quadratures good to 10⁻¹², or traced to six digits.
+/// Maximum error of corrected formulas: both sides are quadratures accurate to 10⁻¹², or traced to
+/// six digits.
 const QUADRATURE: f64 = 1e-9;
 const TRACED: f64 = 1e-6;
-/// What a print must be off by where no figure is known: far beyond the above.
+/// Minimum error of a misprint without a known figure: far above [`QUADRATURE`].
 const BY_FAR: f64 = 0.02;
 
 struct Erratum {
     place: &'static str,
     printed: String,
     corrected: String,
-    /// Relative error of the print, and the least that is required.
+    /// Relative error of the printed formula, and the required minimum.
     off: f64,
     at_least: f64,
-    /// Relative error of what is corrected, and the most that is allowed.
+    /// Relative error of the corrected formula, and the permitted maximum.
     mended: f64,
     at_most: f64,
 }
 
-/// The section.
+/// Returns the section.
 pub(super) fn errata() -> ReportSection {
     let mut all = irradiance();
     all.extend(brdf());
@@ -254,7 +255,7 @@ fn criteria() -> Vec<Erratum> {
             let traced = EyeScene { criterion }.traced()[usize::from(edge)];
             let [printed, corrected, traced] =
                 [printed, corrected, traced].map(|b| b / criterion.lobe_cutoff);
-            // The figures known beforehand (docs/theory.md, section 9), to the digits they have.
+            // Known figures (docs/theory.md, section 9), to their stated digits.
             let unlike = (printed - known[0]).abs() > 0.01 || (traced - known[1]).abs() > 0.01;
             Erratum {
                 place,
@@ -282,7 +283,7 @@ fn criteria() -> Vec<Erratum> {
     };
     let twenty_one =
         |place, c: Criterion, known| row(place, c, true, c.printed_blocker(), c.blocker(), known);
-    // Travel as section 6.2 has it: Ω_ρ − d a of the content (−a, Ω_ρ).
+    // Travel as in section 6.2: Ω_ρ − d a of the content (−a, Ω_ρ).
     let towards = (2.0 * convex.lobe_cutoff - convex.environment()).abs();
     vec![
         row(

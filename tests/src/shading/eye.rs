@@ -1,17 +1,17 @@
-//! What an eye sees of a glossy circle, by tracing rays back.
+//! The view of a glossy circle from an eye, by tracing rays back.
 
 use etendue_theory::shading::Criterion;
 use std::f64::consts::TAU;
 
-/// Step of differences, in slope and radians; what is left out is its fourth power.
+/// Step of differences, in slope and radians; the error is of fourth order.
 const STEP: f64 = 1e-3;
 
-/// A circle, an eye and a blocker, as they are.
+/// A circle, an eye and a blocker, without approximation.
 pub(super) struct EyeScene {
     pub(super) criterion: Criterion,
 }
 
-/// Where a ray of the eye hits: arc length and local outgoing angle.
+/// The hit of an eye ray: arc length and local outgoing angle.
 struct EyeHit {
     turn: f64,
     point: [f64; 2],
@@ -19,11 +19,11 @@ struct EyeHit {
 }
 
 impl EyeScene {
-    /// The ray that reaches the eye with a slope, from where it leaves the circle.
+    /// The hit on the circle of the ray that reaches the eye with a slope.
     fn hit(&self, slope: f64) -> EyeHit {
         let c = &self.criterion;
         let (sine, cosine) = c.outgoing.sin_cos();
-        // X = cos T − sin N across the central ray, which runs along D = sin T + cos N.
+        // X = cos T − sin N across the central ray, which is along D = sin T + cos N.
         let angle = slope.atan() + c.outgoing;
         let along = [angle.sin(), angle.cos()];
         let back = -slope * c.distance;
@@ -42,13 +42,15 @@ impl EyeScene {
         }
     }
 
-    /// Where the light of the ray of a slope comes from, mirrored: its direction, and where it crosses the plane of the blocker.
+    /// The origin of the mirrored light of a ray: its direction, and its crossing with the plane of
+    /// the blocker.
     fn origin(&self, slope: f64) -> [f64; 2] {
         let hit = self.hit(slope);
         self.from(&hit, self.aside() - hit.local)
     }
 
-    /// How far beside the mirror direction the central ray leaves; the lobe does not change that.
+    /// The offset of the outgoing central ray from the mirror direction; the lobe does not change
+    /// it.
     fn aside(&self) -> f64 {
         self.criterion.incidence + self.criterion.outgoing
     }
@@ -64,8 +66,8 @@ impl EyeScene {
         [angle, across + (distance - along) * tangent]
     }
 
-    /// How phases of the environment and at the blocker change with the slope at the eye, over how they change with the local angle of
-    /// the mirrored light at one point.
+    /// The rates at which phases of the environment and at the blocker change with the slope at the
+    /// eye, relative to their rates with the local angle of the mirrored light at one point.
     pub(super) fn ratios(&self) -> [f64; 2] {
         let seen = derivative(&|slope| self.origin(slope));
         let center = self.hit(0.0);
@@ -80,7 +82,8 @@ impl EyeScene {
         let center = self.hit(0.0);
         let there = derivative(&|angle| self.from(&center, angle + self.aside() - center.local));
         let [environment, blocker] = self.ratios();
-        // A wave g in the environment and f at the blocker, where their sum on the surface is at its limit.
+        // A wave g in the environment and f at the blocker whose sum on the surface is at its
+        // limit.
         let mut most = 0.0_f64;
         for (limit, g) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
             let g = g * c.environment_cutoff;
@@ -90,8 +93,9 @@ impl EyeScene {
         [c.lobe_cutoff * environment, c.lobe_cutoff * blocker, most]
     }
 
-    /// The frequency below which 99 % of the energy of an image lies, over what is said of it; for a Gaussian lobe so narrow that the surface is
-    /// linear. The image is that of a distant point, or the derivative of that of an edge.
+    /// The frequency below which 99 % of the energy of an image lies, divided by the predicted one,
+    /// for a Gaussian lobe narrow enough for the surface to be linear. The image is that of a
+    /// distant point, or the derivative of that of an edge.
     pub(super) fn image(&self, edge: bool, said: f64) -> f64 {
         const DEVIATION: f64 = 1e-4;
         const COUNT: i32 = 240;
@@ -141,7 +145,7 @@ impl EyeScene {
     }
 }
 
-/// By central differences, extrapolated.
+/// The derivative by central differences, extrapolated.
 fn derivative(f: &dyn Fn(f64) -> [f64; 2]) -> [f64; 2] {
     let slope = |h: f64, i: usize| (f(h)[i] - f(-h)[i]) / (2.0 * h);
     [0, 1].map(|i| (4.0 * slope(0.5 * STEP, i) - slope(STEP, i)) / 3.0)

@@ -1,4 +1,4 @@
-//! Cosines, Fresnel factors and lobes by themselves, diffuse irradiance, and environments.
+//! Cosines, Fresnel factors and lobes on their own, diffuse irradiance, and environments.
 
 use super::operators::OperatorComparison;
 use super::primal::{about, between, transform, wave};
@@ -21,7 +21,8 @@ fn curve(f: impl Fn(f64) -> f64) -> Vec<Complex> {
     line().into_iter().map(|omega| f(omega).into()).collect()
 }
 
-/// The transform of a function on |θ| < `end`, given where θ > 0 and even, with panels towards the middle and the end.
+/// The transform of an even function on |θ| < `end`, given for θ > 0, with panels refined towards
+/// the middle and the end.
 fn plain(end: f64, inner: f64, f: &dyn Fn(f64) -> f64) -> Vec<Complex> {
     let mut cuts = vec![0.0];
     let mut at = inner;
@@ -113,7 +114,7 @@ fn fresnel() -> Vec<OperatorComparison> {
             fault: (name, apart(&curve(wrong), &primal)),
         }
     };
-    // Fresnel's formulas once more, in sines and tangents of the refracted angle.
+    // Fresnel's formulas in another form, with sines and tangents of the refracted angle.
     let snell = |theta: f64| {
         let theta = theta.max(1e-4);
         let beyond = (theta.sin() / 1.5).asin();
@@ -166,7 +167,7 @@ fn fresnel() -> Vec<OperatorComparison> {
 }
 
 fn lobes() -> Vec<OperatorComparison> {
-    // Shapes written out anew, normalised by their own quadrature; end and scale.
+    // Lobe shapes written out again, normalised by their own quadrature; end and scale.
     let row = |operator,
                lobe: PlanarLobe,
                off: PlanarLobe,
@@ -264,7 +265,7 @@ fn differential_irradiance() -> OperatorComparison {
                 .sum()
         })
         .collect();
-    // g falls as 1/v³ and has no end: copies 3000 apart add 10⁻¹⁰.
+    // g decays as 1/v³ without end: copies 3000 apart add 10⁻¹⁰.
     let lattice = Lattice {
         spacing: 1.0 / 3000.0,
         reach: 6.0,

@@ -1,4 +1,5 @@
-//! The sampling criteria of section 6.2 against photons: sweeps through every length and angle they hold.
+//! The sampling criteria of section 6.2 compared with photons: sweeps of all their lengths and
+//! angles.
 
 use crate::report::Bound::{Above, Below};
 use crate::report::{Check, ReportSection, Row};
@@ -10,33 +11,33 @@ use etendue_theory::shading::Criterion;
 use etendue_trace::Tracer;
 use std::f64::consts::SQRT_2;
 
-/// Photons of a point, unless told.
+/// Default number of photons per point.
 const PHOTONS: u64 = 1_000_000;
-/// Standard errors between measured and exact.
+/// Maximum difference between measured and exact, in standard errors.
 const MOST: f64 = 3.3;
-/// The error of a criterion, relative.
+/// Permitted relative error of a criterion.
 const ERROR: f64 = 0.05;
-/// The 95 % bandwidth of a Gaussian lobe times its deviation.
+/// The 95 % bandwidth of a Gaussian lobe times its standard deviation.
 const GAUSSIAN: f64 = 0.2206;
 /// The 95 % bandwidth of a box times its half-width.
 const BOX: f64 = 1.03;
 /// Half-width of the window in x, metres.
 const ACROSS: f64 = 0.05;
-/// The widest window in slope.
+/// Maximum half-width of a window in slope.
 const WIDEST: f64 = 0.25;
 
-/// What lights the surface.
+/// The light on the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Lit {
-    /// From far away.
+    /// Distant light.
     Beam,
-    /// A point at this distance.
+    /// A point light at this distance.
     Point(f64),
-    /// A slit at this distance, before a light that fills it.
+    /// A slit at this distance, in front of a light that fills it.
     Slit(f64),
 }
 
-/// Whose lobe a surface has.
+/// The kind of lobe of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum LobeOwner {
     Phong(f64),
@@ -51,7 +52,7 @@ struct GlossyBench {
     curvature: f64,
     /// θ₀, radians.
     incidence: f64,
-    /// Of the central ray that leaves, from the mirror direction, radians.
+    /// Angle between the leaving central ray and the mirror direction, radians.
     aside: f64,
     distance: f64,
     lobe: LobeOwner,
@@ -66,11 +67,11 @@ const BASE: GlossyBench = GlossyBench {
     lobe: LobeOwner::Phong(2500.0),
 };
 
-/// What is kept of the light at the eye.
+/// The windows and grids at the eye.
 struct Windows {
     /// Half-widths in u and v.
     slope: [f64; 2],
-    /// Largest frequencies, in ρ and ν.
+    /// Maximum frequencies in ρ and ν.
     most: [f64; 2],
     /// Width of the beam.
     beam: f64,
@@ -87,7 +88,7 @@ impl GlossyBench {
         let (sine, cosine) = self.incidence.sin_cos();
         let (light, slit, from) = match self.lit {
             Lit::Beam => {
-                // Farther than the eye.
+                // The beam starts farther away than the eye.
                 let (w, from) = (windows.beam, 1.0_f64.max(1.5 * self.distance));
                 (
                     format!(
@@ -100,7 +101,8 @@ impl GlossyBench {
             }
             Lit::Point(d) => (format!("Point(center: (0, 0, {}))", -d), String::new(), d),
             Lit::Slit(d) => {
-                // 2 % of the distance wide: less than half of the lobe's deviation.
+                // Its width of 2 % of the distance is less than half of the lobe's standard
+                // deviation.
                 let (half, from) = (0.01 * d, 1.01 * d);
                 (
                     format!(
@@ -117,7 +119,7 @@ impl GlossyBench {
                 )
             }
         };
-        // The angle from Z of the normal is π − θ₀, and of what leaves π − 2 θ₀.
+        // The angle of the normal from Z is π − θ₀, and that of the leaving ray π − 2 θ₀.
         let leaves = std::f64::consts::PI - 2.0 * self.incidence + self.aside;
         let lobe = match self.lobe {
             LobeOwner::Phong(n) => format!("Phong({n})"),
@@ -146,7 +148,7 @@ impl GlossyBench {
     }
 
     /// # Panics
-    /// When the scene is not sound.
+    /// If the scene is invalid.
     fn scene(&self, windows: &Windows, photons: u64, seed: u64) -> Scene {
         let text = self.text(windows, photons, seed);
         let file = SceneFile::parse(&text).expect("a scene file");
@@ -154,7 +156,7 @@ impl GlossyBench {
     }
 
     /// # Panics
-    /// When the plane has none.
+    /// If the plane has none.
     fn criterion(&self) -> Criterion {
         let scene = self.scene(&ANY, 1000, 1);
         let plane = &scene.planes[0];
@@ -162,7 +164,7 @@ impl GlossyBench {
         found.expect("across a ray that left a glossy surface")
     }
 
-    /// Bandwidth corrected and as printed.
+    /// The bandwidth, corrected and as printed.
     fn says(&self, c: &Criterion) -> [f64; 2] {
         match self.lit {
             Lit::Beam => [c.environment(), c.printed_environment()],
@@ -170,11 +172,12 @@ impl GlossyBench {
         }
     }
 
-    /// Windows that hold the lobe and grids that hold the spectrum, and how far the window in u widens it.
+    /// Windows that contain the lobe, grids that contain the spectrum, and the widening by the
+    /// window in u.
     fn windows(&self, c: &Criterion) -> (Windows, f64) {
         let deviation = GAUSSIAN / c.lobe_cutoff;
         let finer = self.says(c)[0] / c.lobe_cutoff;
-        // The lobe's middle and edges are at x/(seen slope) of the first, in angles at the surface.
+        // The lobe's centre and edges are at x/(seen slope) of the first, in angles at the surface.
         let nearness = match self.lit {
             Lit::Beam => 0.0,
             Lit::Point(d) | Lit::Slit(d) => c.incidence.cos() / d,
@@ -190,7 +193,8 @@ impl GlossyBench {
             (tails * deviation + self.aside.abs() + 0.7 * along.abs() * ACROSS) / finer.max(1e-6);
         let u = wanted.min(WIDEST);
         let floor = if wanted > WIDEST { BOX / u } else { 0.0 };
-        // Across, the slice at zero integrates; a lobe that is no product is cut narrow, so that what is seen lies in the plane of incidence.
+        // The slice at zero integrates across; a lobe that is not a product gets a narrow window,
+        // so that the visible light is in the plane of incidence.
         let across = 1.0
             + self.distance
                 * (nearness / c.incidence.cos() + 2.0 * c.curvature * c.incidence.cos());
@@ -202,14 +206,14 @@ impl GlossyBench {
         let windows = Windows {
             slope: [u, v],
             most: [2.0 * along.abs() * c.lobe_cutoff + 2.0 / ACROSS, 2.5 * said],
-            // So wide that the lobe is a seventh of it, seen from the eye.
+            // Wide enough for the lobe, seen from the eye, to be a seventh of it.
             beam: 18.0 * self.distance * (u / tails).max(deviation / finer.max(0.2)) + 2.0 * ACROSS,
         };
         (windows, floor)
     }
 }
 
-/// A sweep: its name, what is swept, and how it changes the bench.
+/// A sweep: its name, the swept variable, and its effect on the bench.
 struct GlossySweep {
     name: &'static str,
     quantity: AxisQuantity,
@@ -333,10 +337,10 @@ fn sweeps() -> Vec<GlossySweep> {
     ]
 }
 
-/// The section and its picture.
+/// Returns the section and its picture.
 ///
 /// # Panics
-/// When a scene cannot be measured.
+/// If a scene cannot be measured.
 pub(crate) fn glossy(photons: Option<u64>) -> (ReportSection, Curves) {
     let photons = photons.unwrap_or(PHOTONS);
     let mut rows = Vec::new();
@@ -350,7 +354,7 @@ pub(crate) fn glossy(photons: Option<u64>) -> (ReportSection, Curves) {
             let c = bench.criterion();
             let (windows, floor) = bench.windows(&c);
             count += 1;
-            // One for each point, so that they are independent.
+            // Each point has its own seed, so that they are independent.
             let scene = bench.scene(&windows, photons, count.unsigned_abs().into());
             let plane = &scene.planes[0];
             let theory = Applicability::new(&scene, plane);
@@ -369,7 +373,7 @@ pub(crate) fn glossy(photons: Option<u64>) -> (ReportSection, Curves) {
             let [ours, theirs] = [said, printed].map(|b| range(b, floor));
             let holds =
                 |[low, high]: [f64; 2], x: f64, slack: f64| low - slack < x && x < high + slack;
-            // Whether some measurement with this noise could be what both say.
+            // Whether both ranges are compatible with some measurement of this noise.
             let apart = ours[1] + 2.0 * noise < theirs[0] || theirs[1] + 2.0 * noise < ours[0];
             let rejected = !holds(theirs, found.value, noise);
             told += i32::from(rejected);
@@ -410,7 +414,7 @@ pub(crate) fn glossy(photons: Option<u64>) -> (ReportSection, Curves) {
             panels.push(panel(&sweep, points));
         }
     }
-    // Two-sided, of normal errors.
+    // Two-sided, for normal errors.
     let one = libm::erfc(worst / SQRT_2);
     let all = 1.0 - (1.0 - one).powi(count);
     let section = ReportSection {
@@ -455,16 +459,17 @@ pub(crate) fn glossy(photons: Option<u64>) -> (ReportSection, Curves) {
     (section, picture)
 }
 
-/// What may be measured where a criterion says `bandwidth` and the window widens the spectrum by `floor` at most.
+/// The range of measurements for a criterion of `bandwidth`, if the window widens the spectrum by
+/// at most `floor`.
 fn range(bandwidth: f64, floor: f64) -> [f64; 2] {
     let error = ERROR * bandwidth;
     [bandwidth - error, bandwidth.hypot(floor) + error]
 }
 
-/// Points and the curves of the criteria.
+/// The measured points and the curves of the criteria.
 fn panel(sweep: &GlossySweep, points: Vec<[f64; 3]>) -> CurvePanel {
     const COUNT: u32 = 80;
-    // Curves need no more.
+    // Four digits are enough for curves.
     let digits = |x: f64| (x * 1e4).round() / 1e4;
     let first = points.first().map_or(0.0, |p| p[0]);
     let last = points.last().map_or(1.0, |p| p[0]);

@@ -1,13 +1,13 @@
-//! The light of these sections, and its reflection to first order by quadrature of the primal.
+//! The light of these sections, and its first-order reflection by quadrature in the primal domain.
 
 use super::primal::{about, between, wave};
 use etendue_field::Complex;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Deviations up to which a Gaussian is summed: 2·10⁻¹⁶.
+/// Standard deviations up to which a Gaussian is summed: 2·10⁻¹⁶.
 const REACH: f64 = 8.5;
 
-/// A Gaussian of a light field, A exp(−½ (z − μ)ᵀ C⁻¹ (z − μ)), z = (x, θ).
+/// A Gaussian component of a light field, A exp(−½ (z − μ)ᵀ C⁻¹ (z − μ)), z = (x, θ).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bell {
     pub(super) amplitude: f64,
@@ -36,7 +36,7 @@ impl Bell {
     }
 }
 
-/// Two Gaussians, wide enough in angle that the horizon cuts them.
+/// Two Gaussians, wide enough in angle to be cut by the horizon.
 pub(super) const LIGHT: [Bell; 2] = [
     Bell {
         amplitude: 1.0,
@@ -69,27 +69,28 @@ pub(super) fn frequencies() -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// A surface and its reflection, in the primal.
+/// A surface and its reflection in the primal domain.
 pub(super) struct PrimalSurface<'a> {
     pub(super) theta0: f64,
     pub(super) theta1: f64,
     pub(super) k: f64,
-    /// Angles of incidence up to which light is summed: π/2, or beyond if nothing is to be cut.
+    /// Maximum angle of incidence in sums: π/2, or more if nothing is to be cut.
     pub(super) horizon: f64,
     /// f(θ_i').
     pub(super) before: &'a dyn Fn(f64) -> f64,
     /// ρ(s, δ); `None` is a Dirac.
     pub(super) lobe: Option<&'a dyn Fn(f64, f64) -> f64>,
-    /// h(θ_o'), on the half-circle; `None` is 1 all around.
+    /// h(θ_o'), on the half-circle; `None` is 1 on the whole circle.
     pub(super) after: Option<&'a dyn Fn(f64) -> f64>,
-    /// Angles at which f or h has a corner, ascending.
+    /// Angles at which f or h has a kink, ascending.
     pub(super) kinks: &'a [f64],
     /// T(s).
     pub(super) texture: &'a dyn Fn(f64) -> f64,
 }
 
 impl PrimalSurface<'_> {
-    /// Nodes up to an angle on both sides, with so many on each side of the middle of each piece between corners.
+    /// Nodes up to an angle on both sides, with `count` on each side of the centre of each piece
+    /// between kinks.
     fn pieces(&self, end: f64, count: i32) -> Vec<(f64, f64)> {
         let ends = [&[-end], self.kinks, &[end]].concat();
         let pieces = ends
@@ -98,13 +99,14 @@ impl PrimalSurface<'_> {
         pieces.flatten().collect()
     }
 
-    /// The transform of the reflected light field in the light frame after, all angles and positions being linear in those before:
-    /// x = −c₀ s, θ = θ_i' + k s − θ₀, θ_r' = −θ_i', x'' = c₁ s, θ'' = θ_o' + k s − θ₁.
+    /// The transform of the reflected light field in the outgoing light frame, with all angles and
+    /// positions linear in the incoming ones: x = −c₀ s, θ = θ_i' + k s − θ₀, θ_r' = −θ_i', x'' =
+    /// c₁ s, θ'' = θ_o' + k s − θ₁.
     pub(super) fn transform(&self, light: &dyn Fn([f64; 2]) -> f64, omega: [f64; 2]) -> Complex {
         let (c0, c1) = (self.theta0.cos(), self.theta1.cos());
         let incident = self.pieces(self.horizon, 120);
         let outgoing = self.pieces(FRAC_PI_2, 160);
-        // ρ over δ, with its phase; where ρ does not vary it is summed once.
+        // The sum of ρ over δ with its phase; computed once if ρ does not vary.
         let spread = |s: f64, mirror: f64| -> Complex {
             let Some(lobe) = self.lobe else {
                 let h = self.after.map_or(1.0, |h| h(mirror));

@@ -1,4 +1,4 @@
-//! The misprints about shading that photons can tell.
+//! The misprints about shading that photons can detect.
 
 use super::arriving::Sphere;
 use super::bench::Bench;
@@ -11,9 +11,9 @@ use etendue_field::{Complex, Light, Quantity, Slices};
 use etendue_scene::Scene;
 use std::f64::consts::PI;
 
-/// Share of true sections that may be rejected, over all misprints.
+/// False rejection rate over all misprints.
 const ALPHA: f64 = 0.01;
-/// Photons, unless others are given.
+/// Default number of photons.
 const PHOTONS: u64 = 1 << 22;
 /// Curvature of the sphere in the environment, as in the file, per metre.
 pub(super) const K: f64 = 1.25;
@@ -25,7 +25,7 @@ struct Misprint {
     said: Slices,
 }
 
-/// The section.
+/// Returns the section.
 pub(super) fn misprints(photons: Option<u64>) -> ReportSection {
     let photons = photons.or(Some(PHOTONS));
     let all = [diffuse(photons), mirror(photons), environment(photons)];
@@ -121,7 +121,7 @@ fn mirror(photons: Option<u64>) -> (Bench, Vec<Misprint>) {
     (Bench::of(scene, sound), vec![misprint])
 }
 
-/// The scene of the environment with a plane in the light that arrives, alone.
+/// The scene of the environment with a single plane, in the arriving light.
 pub(super) fn arriving(photons: Option<u64>) -> Scene {
     let plane = "(name: \"arriving\", at: Before(\"sphere\"), orientation: Mirrored, quantity: DifferentialIrradiance),";
     let texts = [["planes: [", &format!("planes: [{plane}")]];

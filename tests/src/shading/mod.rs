@@ -1,4 +1,5 @@
-//! Shading: what cosines, BRDFs, textures and environments do to spectra, in 2D against plain quadrature and traced rays, in 4D against photons.
+//! Shading: the effect of cosines, BRDFs, textures and environments on spectra, in 2D compared with
+//! plain quadrature and traced rays, in 4D with photons.
 
 mod arriving;
 mod bandwidth;
@@ -30,7 +31,8 @@ pub(crate) use glossy::glossy;
 
 use crate::report::ReportSection;
 
-/// All sections. Those in 2D need no photons; the others have those of their files, or `photons` for each scene.
+/// All sections. The 2D sections need no photons; the others use those of their files, or `photons`
+/// for each scene.
 pub(crate) fn shading(photons: Option<u64>) -> Vec<ReportSection> {
     let mut sections = vec![
         operators::operators(),

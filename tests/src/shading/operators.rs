@@ -5,20 +5,20 @@ use crate::report::Bound::{Above, Below};
 use crate::report::{Check, ReportSection, Row};
 use crate::rows::Line;
 
-/// Both sides are good to 10⁻¹² or so.
+/// Maximum difference: both sides are accurate to about 10⁻¹².
 const REQUIRED: f64 = 1e-9;
-/// What a planted fault must differ by at least.
+/// Minimum difference of a planted fault.
 const SEEN: f64 = 1e-3;
 
-/// An operator held against the primal.
+/// An operator compared with the primal domain.
 pub(super) struct OperatorComparison {
     pub(super) operator: &'static str,
-    /// What it is in the paper's Table 1, if it is there.
+    /// Its row in the paper's Table 1, if there is one.
     pub(super) line: Option<Line>,
     pub(super) compared: String,
-    /// ‖said − quadrature‖/‖quadrature‖.
+    /// ‖predicted − quadrature‖/‖quadrature‖.
     pub(super) off: f64,
-    /// A wrong form, and how far it is off.
+    /// A wrong form, and its error.
     pub(super) fault: (&'static str, f64),
 }
 

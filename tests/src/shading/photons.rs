@@ -1,4 +1,5 @@
-//! Every plane of the scenes of shading: photons, the exact prediction, the first-order chain and backward rays.
+//! Every plane of the shading scenes: photons, the exact prediction, the first-order chain and
+//! backward rays.
 
 use super::scenes;
 use crate::report::Bound::{AtLeast, Below};
@@ -9,12 +10,12 @@ use etendue_compare::{PlaneComparison, Verdict, sidak};
 use etendue_field::{Lobe, Orientation, Quantity, VirtualPlane};
 use etendue_scene::{Event, Object, Scene};
 
-/// Share of true sections that may be rejected, over all planes.
+/// False rejection rate over all planes.
 const ALPHA: f64 = 0.01;
-/// Flux that rounding may lose of what is emitted.
+/// Maximum rounding error of the flux balance relative to the emitted flux.
 const LEDGER: f64 = 1e-12;
 
-/// A scene, run.
+/// The results of a scene.
 struct ShadedRun {
     scene: Scene,
     planes: Vec<PlaneComparison>,
@@ -23,7 +24,7 @@ struct ShadedRun {
     imbalance: f64,
 }
 
-/// The section, with the photons of the files or with `photons` for each scene.
+/// Returns the section, with the photons of the files or with `photons` for each scene.
 pub(super) fn photons(photons: Option<u64>) -> ReportSection {
     let all = scenes::all(photons);
     let planes = all.iter().map(|scene| scene.planes.len()).sum();
@@ -140,7 +141,7 @@ fn row(outcome: &ShadedRun, index: usize, level: f64) -> Row {
     Row::new(cells, checks).of(lines)
 }
 
-/// The last step on the way to a plane, and the rows of the paper's table that it is.
+/// The last step before a plane, and its rows in the paper's table.
 fn operator(scene: &Scene, plane: &VirtualPlane) -> (String, Vec<Line>) {
     let (word, line) = match (plane.leg, plane.orientation, plane.quantity) {
         (0, Orientation::Tangent, _) => ("incidence", Line::Incidence),
@@ -159,7 +160,7 @@ fn operator(scene: &Scene, plane: &VirtualPlane) -> (String, Vec<Line>) {
     (word.to_owned(), vec![line])
 }
 
-/// The BRDF that light leaves the first surface by.
+/// The BRDF of the first surface.
 fn reflection(scene: &Scene) -> (String, Vec<Line>) {
     let hit = scene.path.legs[1].leaves.map(|hit| hit.object);
     let Some(Object::Patch(i)) = hit else {

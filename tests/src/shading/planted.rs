@@ -1,4 +1,4 @@
-//! Faults of shading, planted in the prediction or in the photons: a comparison is judged by what it rejects.
+//! Faults of shading, planted in the prediction or in the photons, which a comparison must reject.
 
 use super::arriving::Sphere;
 use super::bench::{Bench, mean, reflectance};
@@ -14,24 +14,24 @@ use etendue_theory::scattering::ScatteringSystem;
 use glam::DQuat;
 use std::f64::consts::TAU;
 
-/// Share of true sections that may be rejected, over all benches.
+/// False rejection rate over all benches.
 const ALPHA: f64 = 0.01;
-/// Photons of a bench, unless others are given: those by which the subtlest faults are seen.
+/// Default number of photons of a bench, enough to detect the subtlest faults.
 const PHOTONS: u64 = 1 << 22;
-/// A pixel of an environment of 256 pixels all around, radians.
+/// The width of a pixel in an environment of 256 pixels around, radians.
 const PIXEL: f64 = TAU / 256.0;
 
-/// What is wrong.
+/// A planted fault.
 enum Plant {
-    /// The prediction, of a system that was changed.
+    /// In the prediction, by a modified system.
     ScatteringSystem(fn(&mut ScatteringSystem)),
-    /// The prediction, by a factor.
+    /// In the prediction, by a factor.
     Factor(f64),
-    /// The photons: those of a scene that was changed, and what is made of their crossings.
+    /// In the photons, by a modified scene and modified crossings.
     Photons(fn(&mut Scene), fn(&Scene, Crossing) -> Crossing),
 }
 
-/// A plane, what is changed in the text of its scene, and the faults held against its photons.
+/// A plane, the modifications of its scene's text, and the faults compared with its photons.
 struct Stand {
     scene: &'static str,
     plane: &'static str,
@@ -39,10 +39,10 @@ struct Stand {
     faults: Vec<(&'static str, Plant)>,
 }
 
-/// The section.
+/// Returns the section.
 pub(super) fn planted(photons: Option<u64>) -> ReportSection {
     let stands = stands();
-    // And the one in the light that arrives.
+    // Plus the bench in the arriving light.
     let count = stands.len() + 1;
     let level = sidak(ALPHA, count);
     let mut rows = Vec::new();
@@ -90,7 +90,7 @@ pub(super) fn planted(photons: Option<u64>) -> ReportSection {
 }
 
 impl Plant {
-    /// p, and how far the spectrum is changed.
+    /// p, and the change of the spectrum.
     fn judged(&self, bench: &Bench) -> (f64, f64) {
         let by_prediction = |said: &Slices| {
             let p = bench.p_value(&bench.photons, said);
@@ -287,7 +287,7 @@ fn lobe(system: &mut ScatteringSystem, factor: f64) {
     }
 }
 
-/// f for h and h for f.
+/// Swaps f and h.
 fn turned_round(reflectance: &mut Reflectance) {
     for Term { brdf, .. } in &mut reflectance.terms {
         std::mem::swap(&mut brdf.incoming, &mut brdf.outgoing);
@@ -301,7 +301,7 @@ pub(super) fn swapped(reflectance: &mut Reflectance) {
     }
 }
 
-/// Weights that go down to 0.
+/// Extends the range of weights down to 0.
 fn full(reflectance: &mut Reflectance) {
     for Term { weight, .. } in &mut reflectance.terms {
         if let Weight::Pattern(Pattern::Cosine(grating)) | Weight::Rest(Pattern::Cosine(grating)) =
@@ -318,7 +318,8 @@ fn texture(system: &mut ScatteringSystem, factor: f64) {
     }
 }
 
-/// Light of the environment that arrives at the sphere, times the cosine: of it as it is, and turned.
+/// Light of the environment arriving at the sphere, times the cosine: with its direction unrotated,
+/// and rotated.
 fn turned(photons: Option<u64>) -> (Bench, [(&'static str, Slices); 2]) {
     let scene = misprints::arriving(photons);
     let Light::Environment { environment } = &scene.light else {
@@ -344,7 +345,7 @@ fn turned(photons: Option<u64>) -> (Bench, [(&'static str, Slices); 2]) {
     (Bench::of(scene, sound), turned)
 }
 
-/// A fault with where it is planted.
+/// A row for a fault and its place.
 fn row(
     [name, place]: [&str; 2],
     bench: &Bench,

@@ -1,13 +1,13 @@
-//! Plain quadrature of functions of position and angle, apart from that of the theory.
+//! Plain quadrature of functions of position and angle, independent of that of the theory.
 
 use etendue_field::Complex;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// Beyond this the nodes of the double exponential rule are closer to the ends than rounding.
+/// Beyond this the nodes of the double exponential rule differ from the ends by less than rounding.
 const LAST: f64 = 3.1;
 
-/// Nodes and weights of the double exponential rule between two ends (Takahasi and Mori 1974): good where a function has corners or roots
-/// at its ends.
+/// Nodes and weights of the double exponential rule between two ends (Takahasi and Mori 1974):
+/// accurate for functions with kinks or roots at the ends.
 pub(super) fn between([low, high]: [f64; 2], count: i32) -> Vec<(f64, f64)> {
     let step = LAST / f64::from(count);
     let half = 0.5 * (high - low);
@@ -21,7 +21,8 @@ pub(super) fn between([low, high]: [f64; 2], count: i32) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Nodes and weights of trapezoids over a middle ± a reach: good for what is nothing at the ends.
+/// Nodes and weights of the trapezoid rule over a centre ± a reach: accurate for functions that
+/// vanish at the ends.
 pub(super) fn about(middle: f64, reach: f64, count: i32) -> impl Iterator<Item = (f64, f64)> {
     let step = reach / f64::from(count);
     (-count..=count).map(move |i| (middle + f64::from(i) * step, step))

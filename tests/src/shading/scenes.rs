@@ -27,14 +27,14 @@ const SCENES: &[(&str, &str)] = &[
     scene!("fresnel_aluminium", "table1/fresnel_aluminium"),
     scene!("fresnel_diamond", "table1/fresnel_diamond"),
     scene!("semi_convolution", "table1/semi_convolution"),
-    // For a misprint about mirrors; it has its place in Table 1.
+    // Used for a misprint about mirrors; listed in Table 1.
     scene!("concave_oblique", "table1/concave_oblique"),
 ];
 
-/// How many of them scatter light: all but the last.
+/// The number of scenes that scatter light: all but the last.
 const SHADED: usize = 14;
 
-/// Every scene that scatters, with the photons of its file unless others are given.
+/// Every scattering scene, by default with the photons of its file.
 pub(super) fn all(photons: Option<u64>) -> Vec<Scene> {
     let shaded = SCENES[..SHADED].iter();
     shaded
@@ -42,10 +42,10 @@ pub(super) fn all(photons: Option<u64>) -> Vec<Scene> {
         .collect()
 }
 
-/// A scene with the texts of its file replaced, one after the other.
+/// A scene with texts of its file replaced in order.
 ///
 /// # Panics
-/// When there is no such scene, a text is not in it, or it is not sound then.
+/// If there is no such scene, a text is not in it, or it becomes invalid.
 pub(super) fn changed(name: &str, photons: Option<u64>, texts: &[[&str; 2]]) -> Scene {
     let found = SCENES.iter().find(|(known, _)| *known == name);
     let (_, text) = found.expect("a scene of shading");
@@ -58,10 +58,10 @@ pub(super) fn changed(name: &str, photons: Option<u64>, texts: &[[&str; 2]]) -> 
     resolve(name, file, ".".as_ref(), u64::MAX).expect("a scene of shading is sound")
 }
 
-/// A scene with one of its planes alone: all photons are aimed at its window.
+/// A scene reduced to one of its planes: all photons are aimed at its window.
 ///
 /// # Panics
-/// When there is no such plane.
+/// If there is no such plane.
 pub(super) fn alone(mut scene: Scene, plane: &str) -> Scene {
     scene.planes.retain(|p| p.name == plane);
     assert_eq!(scene.planes.len(), 1, "{} has no {plane}", scene.name);

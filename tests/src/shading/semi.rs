@@ -1,4 +1,5 @@
-//! The semi-convolution in 4D: the spectrum behind a sum of BRDFs from that before it, of photons and of rays.
+//! The semi-convolution in 4D: the spectrum after a sum of BRDFs computed from that before it, for
+//! photons and for rays.
 
 use super::bench::reflectance;
 use super::planted::swapped;
@@ -15,7 +16,7 @@ use ndarray::Array3;
 
 const SCENE: &str = "semi_convolution";
 
-/// A change of the BRDFs that the operator is made of.
+/// A modification of the operator's BRDFs.
 type BrdfChange = fn(&mut Reflectance);
 
 const FAULTS: [(&str, BrdfChange); 6] = [
@@ -53,11 +54,11 @@ fn change(weight: &mut Weight, by: fn(&mut Grating)) {
     }
 }
 
-/// The slices before the surface and behind it.
+/// The slices before and after the surface.
 struct Sides {
     before: Slices,
     after: Slices,
-    /// Of the second, by [azimuth, ρ ≥ 0, ν].
+    /// Variance of the slices after the surface, by [azimuth, ρ ≥ 0, ν].
     variance: Array3<f64>,
 }
 
@@ -90,8 +91,8 @@ impl Sides {
         }
     }
 
-    /// ‖operator(before) − after‖ beyond noise, and the noise, over ‖after‖: of the slice along x,
-    /// at all frequencies from which no shift leads out of the grid.
+    /// ‖operator(before) − after‖ beyond noise, and the noise, relative to ‖after‖: for the slice
+    /// along x, at all frequencies whose shifts stay within the grid.
     fn apart(&self, reflectance: &Reflectance, axes: [[f64; 2]; 2]) -> [f64; 2] {
         let grid = &self.after.grid;
         let (before, after) = (self.before.full(), self.after.full());
@@ -118,7 +119,7 @@ impl Sides {
     }
 }
 
-/// Where a frequency is on an axis; `None` beyond its ends.
+/// The index of a frequency on an axis; `None` beyond its ends.
 fn index(axis: &FrequencyAxis, value: f64) -> Option<usize> {
     let values = axis.values();
     values
@@ -142,7 +143,7 @@ fn axes(scene: &Scene) -> [[f64; 2]; 2] {
     [patch.x, patch.y].map(|axis| [plane.x.dot(axis), plane.y.dot(axis)])
 }
 
-/// The section.
+/// Returns the section.
 pub(super) fn semi(photons: Option<u64>) -> ReportSection {
     let mut scene = changed(SCENE, photons, &[]);
     let [photons, rays] = [Sides::measured(&scene), Sides::of_rays(&scene)];
@@ -195,7 +196,7 @@ pub(super) fn semi(photons: Option<u64>) -> ReportSection {
     }
 }
 
-/// The largest distance of a sound operator.
+/// Maximum error of a correct operator.
 const LARGEST: f64 = 0.002;
 const WHY: &str = "4 and 8 million photons leave 0.11 % and 0.13 % beyond their noise; noise spreads by less than itself";
 

@@ -20,7 +20,7 @@ pub(super) fn statements() -> Vec<Statement> {
     all
 }
 
-/// cosⁿ on the half-circle jumps in its n-th derivative.
+/// cosⁿ on the half-circle has a discontinuous n-th derivative.
 fn discontinuity(n: i32) -> Statement {
     // |sin(π²Ω)| or |cos(π²Ω)| is one at these.
     let shift = if n % 2 == 0 { 0.5 } else { 0.0 };
@@ -44,7 +44,7 @@ fn discontinuity(n: i32) -> Statement {
     }
 }
 
-/// The reflection of the other sections at a curvature, with a cosine or without.
+/// The reflection used in the other sections with a curvature, with or without a cosine.
 fn reflection(curvature: f64, before: Factor<'static>) -> PlanarReflection<'static> {
     PlanarReflection {
         incidence: THETA0,
@@ -60,7 +60,7 @@ fn reflection(curvature: f64, before: Factor<'static>) -> PlanarReflection<'stat
     }
 }
 
-/// Root mean square of Ωθ over a power.
+/// Root mean square of Ωθ weighted by a power.
 fn spread(power: impl Fn(f64) -> f64) -> f64 {
     let [mut all, mut square] = [0.0; 2];
     for (omega, w) in about(0.0, 8.0, 80) {
@@ -78,7 +78,7 @@ fn curvature() -> Vec<Statement> {
         let [low, high] = [f64::min, f64::max].map(|pick| all.into_iter().fold(all[0], pick));
         high / low - 1.0
     };
-    // Of the whole light field: all positions, |L|² summed over Ωx.
+    // For the whole light field: all positions, |L|² summed over Ωx.
     let everywhere = |step: ReflectionStep, before: Factor<'static>| {
         change(&|k| {
             let chain = reflection(k, before);
@@ -90,7 +90,7 @@ fn curvature() -> Vec<Statement> {
             })
         })
     };
-    // At one point 1.5 m away: the projection along Ωx.
+    // At a single point 1.5 m away: the projection along Ωx.
     let eye = change(&|k| {
         let chain = reflection(k, Factor::One);
         spread(|t| {
@@ -173,7 +173,7 @@ fn cosine() -> Vec<Statement> {
                 "irradiance of an environment on a convex surface against env ⊗ cos⁺, as spectra"
                     .to_owned(),
             number: off(&|_| 1.0),
-            // Trapezoids over the corner of the cosine: step²/12.
+            // The trapezoid rule across the kink of the cosine: step²/12.
             expected: [0.0, 2e-4],
             holds: "holds for light that depends on direction alone",
         },

@@ -1,4 +1,4 @@
-//! Strips that let light through, over a period of 1, and the Fourier coefficients of what they leave open.
+//! Transparent strips over a period of 1, and the Fourier coefficients of the openings.
 
 use super::primal::wave;
 use etendue_field::Complex;
@@ -7,7 +7,8 @@ use std::f64::consts::TAU;
 /// Open intervals, [from, to].
 pub(crate) type Strips = Vec<[f64; 2]>;
 
-/// Three strips between 0 and 1 of a mask of a pair, which its offset tells from the other; the same every time (additive recurrences, Weyl).
+/// Three strips between 0 and 1 of a mask of a pair, with an offset for the second mask;
+/// reproducible (additive recurrences, Weyl).
 pub(crate) fn strips(pair: u32, offset: f64) -> Strips {
     let cut = |i: u32| (0.618_034 * f64::from(6 * pair + i) + offset * f64::from(i + 1)).fract();
     let mut cuts: Vec<f64> = (0..6).map(cut).collect();
@@ -15,7 +16,7 @@ pub(crate) fn strips(pair: u32, offset: f64) -> Strips {
     cuts.chunks(2).map(|cut| [cut[0], cut[1]]).collect()
 }
 
-/// What two masks in one plane leave open together.
+/// The common openings of two masks in one plane.
 pub(crate) fn in_common(a: &Strips, b: &Strips) -> Strips {
     let pairs = a.iter().flat_map(|p| b.iter().map(move |q| (p, q)));
     let both = pairs.map(|(p, q)| [p[0].max(q[0]), p[1].min(q[1])]);

@@ -1,4 +1,4 @@
-//! What is made of crossings to plant a fault in photons.
+//! Modifications of crossings that plant faults in photons.
 
 use super::bench::on_flat;
 use etendue_field::Crossing;
@@ -10,13 +10,14 @@ pub(super) fn scaled(mut crossing: Crossing, factor: f64) -> Crossing {
     crossing
 }
 
-/// Of the angle at which light comes in.
+/// The cosine of the angle of incidence.
 pub(super) fn cosine(scene: &Scene, crossing: &Crossing) -> f64 {
     let [_, from] = on_flat(scene, crossing);
     from.z
 }
 
-/// Shares of s and p that glass of index 1.5 reflects, over their mean (Fresnel's equations with Snell's law).
+/// Reflectances of glass of index 1.5 for s and p, over their mean (Fresnel's equations with
+/// Snell's law).
 pub(super) fn polarised(cosine: f64) -> [f64; 2] {
     const INDEX: f64 = 1.5;
     let inner = (1.0 - (1.0 - cosine * cosine) / (INDEX * INDEX)).sqrt();
@@ -25,7 +26,8 @@ pub(super) fn polarised(cosine: f64) -> [f64; 2] {
     [s, p].map(|share| 2.0 * share / (s + p))
 }
 
-/// The texture of `textured_glossy` where the light is, with 1/cos θ₁ for positions along the surface.
+/// The texture of `textured_glossy` at the position of the light, with 1/cos θ₁ for positions along
+/// the surface.
 pub(super) fn textured_here(scene: &Scene, crossing: Crossing) -> Crossing {
     const MIRROR: f64 = 0.796_083_799;
     let etendue_scene::Event::Reflects(reflectance) = &scene.patches[0].event else {
@@ -37,7 +39,8 @@ pub(super) fn textured_here(scene: &Scene, crossing: Crossing) -> Crossing {
     scaled(crossing, factor)
 }
 
-/// What leaves about the mirror direction, turned until that is the normal; solid angles stay, those of (θ, φ) do not.
+/// Rotates light leaving about the mirror direction to the normal; solid angles are preserved,
+/// those of (θ, φ) are not.
 pub(super) fn around_the_normal(scene: &Scene, mut crossing: Crossing) -> Crossing {
     let [away, from] = on_flat(scene, &crossing);
     let mirrored = DVec3::new(-from.x, -from.y, from.z);

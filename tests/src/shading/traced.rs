@@ -1,4 +1,4 @@
-//! All seven steps of a reflection against rays traced off a circle.
+//! All seven steps of a reflection, compared with rays traced off a circle.
 
 use super::light::Bell;
 use super::primal::{about, wave};
@@ -16,7 +16,7 @@ use std::f64::consts::TAU;
 
 /// Sizes of the neighbourhood.
 const SIZES: [f64; 4] = [0.02, 0.01, 0.005, 0.0025];
-/// Where a step leaves nothing out: what trapezoids up to seven deviations leave.
+/// The error of an exact step: that of the trapezoid rule up to seven standard deviations.
 const ROUNDING: f64 = 1e-9;
 const REACH: f64 = 7.0;
 
@@ -24,17 +24,17 @@ const REACH: f64 = 7.0;
 struct Circle {
     theta0: f64,
     k: f64,
-    /// Deviation of the lobe, relative to the size; `None` is a Dirac.
+    /// Standard deviation of the lobe, relative to the size; `None` is a Dirac.
     lobe: Option<f64>,
 }
 
-/// What a chain with a fault must still be off by at the smallest size, in what the right one is off by there.
+/// Minimum error of a chain with a fault at the smallest size, relative to that of the right chain.
 const SEEN: f64 = 3.0;
 
 /// A change to the theory's chain.
 type ChainChange = dyn Fn(&mut PlanarReflection<'static>);
 
-/// Faults, each alone, and what they do to the spectrum after the last step.
+/// Single faults, and their effect on the spectrum after the last step.
 fn planted() -> Vec<(&'static str, Box<ChainChange>)> {
     let twice: &'static dyn Fn(f64) -> Complex = &|q| cosine_squared_hat(q).into();
     vec![
@@ -55,7 +55,7 @@ fn planted() -> Vec<(&'static str, Box<ChainChange>)> {
     ]
 }
 
-/// The section.
+/// Returns the section.
 pub(super) fn traced() -> ReportSection {
     let circle = |theta0, k, lobe| Circle { theta0, k, lobe };
     let cases = [
@@ -147,7 +147,7 @@ const fn line(step: ReflectionStep) -> Line {
 }
 
 impl Circle {
-    /// What is known beforehand; `None` where nothing is left out.
+    /// The known order of the error; `None` if the step is exact.
     fn known(&self, step: ReflectionStep) -> Option<f64> {
         match step {
             _ if self.theta0 != 0.0 => Some(1.0),
@@ -179,7 +179,7 @@ impl Circle {
                 after: Factor::One,
                 weight: None,
             }],
-            // A deviation of the light's content is 0.18/e; the shears tilt it.
+            // The light's content has standard deviation 0.18/e; shears tilt it.
             lattice: Lattice::circle(2.5 / size),
         };
         plant(&mut reflection);
@@ -197,7 +197,7 @@ impl Circle {
         apart(&said, &self.rays(step, size, &omegas))
     }
 
-    /// The steps of a mirror, for where content goes.
+    /// The map of a mirror's steps, which locates the content.
     fn map(&self, step: ReflectionStep) -> AffineMap<2> {
         let mut map = AffineMap::identity();
         for next in ReflectionStep::ALL {
@@ -216,7 +216,7 @@ impl Circle {
         map
     }
 
-    /// Transforms of the field traced, by trapezoids over rays where they hit.
+    /// Transforms of the traced field, by the trapezoid rule over rays at their hits.
     fn rays(&self, step: ReflectionStep, size: f64, omegas: &[[f64; 2]]) -> Vec<Complex> {
         let bell = Self::light(size);
         let mut sums = vec![Complex::from(0.0); omegas.len()];
@@ -230,7 +230,7 @@ impl Circle {
             _ => None,
         };
         for (s, ds) in about(0.0, REACH * size / self.theta0.cos(), 26) {
-            // On the tangent the first step has s, the others are on the arc.
+            // The first step has s on the tangent, the others on the arc.
             let turn = if step == ReflectionStep::Incidence {
                 0.0
             } else {
@@ -241,7 +241,7 @@ impl Circle {
                 _ => [turn.sin() / self.k, (turn.cos() - 1.0) / self.k],
             };
             for (theta, dt) in about(0.0, REACH * size, 26) {
-                // The light that goes along −ω(θ₀ + θ) through the point, in its own frame.
+                // The light along −ω(θ₀ + θ) through the point, in the light's frame.
                 let radiance = bell.value([-self.across(self.theta0, point, theta), theta]);
                 let incident = self.theta0 + theta - turn;
                 let weight = radiance * ds * dt;
@@ -281,13 +281,15 @@ impl Circle {
                 let theta = local + turn + self.theta0;
                 let point = [turn.sin() / self.k, (turn.cos() - 1.0) / self.k];
                 let x = self.across(-self.theta0, point, theta);
-                // Parallel rays keep their distances: cos θ dx = cos θ_o' ds.
+                // The position of light that leaves at arc length s in a local direction, and the
+                // ratio of its coordinates' area to ds dθ.
                 ([x, theta], local.cos() / theta.cos())
             }
         }
     }
 
-    /// Where the line through a point at an angle θ to a central direction crosses the line across the latter, from the origin along cos T − sin N.
+    /// The position where the line through a point at an angle θ to a central direction crosses the
+    /// line perpendicular to that direction, from the origin along cos T − sin N.
     fn across(&self, central: f64, [t, n]: [f64; 2], theta: f64) -> f64 {
         let (sine, cosine) = central.sin_cos();
         t * cosine - n * sine - (t * sine + n * cosine) * theta.tan()

@@ -1,4 +1,4 @@
-//! Visibility: what theory says of light behind a mask, against the light field itself.
+//! Visibility: theory's prediction of light behind a mask, compared with the light field itself.
 
 use super::operators::OperatorComparison;
 use super::primal::{between, wave};
@@ -7,16 +7,17 @@ use crate::table1::apart;
 use etendue_field::{Complex, HalfPlane, Light, Mask, Profile, Rectangle, Shape, Window};
 use etendue_theory::{Chain, Operator, Source, at};
 
-/// Half the sides of the light, its distance to the mask, and from there to the plane, metres.
+/// Half-sides of the light, its distance to the mask, and the distance from there to the plane,
+/// metres.
 const LIGHT: [f64; 2] = [0.2, 0.3];
 const BEFORE: f64 = 1.0;
 const AFTER: f64 = 0.7;
 /// Half-widths of Hann windows over position and slope.
 const WINDOW: [f64; 2] = [0.4, 0.5];
-/// Nodes to either side of the middle, between two kinks.
+/// Nodes on either side of the centre, between two kinks.
 const NODES: i32 = 30;
 
-/// A rectangle and a half-plane in the light's way.
+/// A rectangle and a half-plane as occluders.
 pub(super) fn all() -> Vec<OperatorComparison> {
     let rectangle = Rectangle {
         center: [0.1, -0.05],
@@ -109,7 +110,7 @@ fn frequencies() -> Vec<[f64; 4]> {
         .collect()
 }
 
-/// ∫∫ of the windowed light of a strip that passed the mask within `passed`, in (x, u).
+/// ∫∫ of the windowed light of a strip that passes the mask within `passed`, in (x, u).
 fn section(light: f64, passed: [f64; 2], [along_x, along_u]: [f64; 2]) -> Complex {
     let [half, steepest] = WINDOW;
     let hann = |t: f64, half: f64| 0.5 + 0.5 * (std::f64::consts::PI * t / half).cos();

@@ -1,21 +1,21 @@
-//! What the paper says in words, as numbers.
+//! Statements in the paper's text, as numbers.
 
 use super::{blockers, spreading};
 use crate::report::Bound::{AtLeast, AtMost};
 use crate::report::{Check, ReportSection, Row};
 
-/// A statement, and what was measured.
+/// A statement with its measured number.
 pub(super) struct Statement {
     pub(super) said: &'static str,
     pub(super) measured: String,
     pub(super) number: f64,
-    /// Where the number must lie, known beforehand.
+    /// The expected range of the number, known in advance.
     pub(super) expected: [f64; 2],
-    /// "holds", or in which part.
+    /// "holds", or the part that holds.
     pub(super) holds: &'static str,
 }
 
-/// The section.
+/// Returns the section.
 pub(super) fn words() -> ReportSection {
     let all = blockers::statements()
         .into_iter()

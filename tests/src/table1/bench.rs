@@ -1,4 +1,4 @@
-//! A scene with one mirror whose steps can be had wrong, and held against its photons.
+//! A scene with one mirror whose steps can be changed and compared with its photons.
 
 use super::TableRun;
 use super::steps::Steps;
@@ -8,7 +8,7 @@ use etendue_compare::{FirstOrder, FirstOrderChain, FirstOrderReport, Prediction}
 use etendue_theory::geometry::{Edition, Matrix, SpectrumMap};
 use etendue_theory::{Model, Parameter, rays};
 
-/// Of the exact prediction, which is not asked here.
+/// Level of the exact prediction, which is not used here.
 const LEVEL: f64 = 0.01;
 
 /// A scene with one mirror, and its steps.
@@ -21,7 +21,7 @@ pub(super) struct MirrorBench<'a> {
 
 impl<'a> MirrorBench<'a> {
     /// # Panics
-    /// When the scene is not one sphere or plane.
+    /// If the scene is not one sphere or plane.
     pub(super) fn new(outcome: &'a TableRun) -> Self {
         let view = outcome.system(outcome.planes.len() - 1);
         let value = |p: Parameter| view.value(p).expect("one mirror");
@@ -38,7 +38,7 @@ impl<'a> MirrorBench<'a> {
         Steps::sound(self.distance, self.theta0, self.shape)
     }
 
-    /// How far the steps are from the chain that theory reads off the scene.
+    /// The difference between the steps and the chain that theory derives from the scene.
     pub(super) fn apart(&self, plane: usize) -> f64 {
         let Some(read) = rays::chain(&self.outcome.system(plane), Edition::Corrected) else {
             return f64::NAN;
@@ -54,7 +54,7 @@ impl<'a> MirrorBench<'a> {
         pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
     }
 
-    /// Holds the photons of a plane against the chain of some steps, by the first-order rule.
+    /// Compares the photons of a plane with the chain of some steps, by the first-order rule.
     pub(super) fn judged(&self, plane: usize, steps: &Steps) -> FirstOrderReport {
         let TableRun {
             scene,

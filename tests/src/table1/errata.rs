@@ -1,4 +1,4 @@
-//! The paper's misprints, each alone, beside what should stand there.
+//! The paper's misprints, one at a time, beside the corrected formulas.
 
 use super::bench::MirrorBench;
 use super::steps::Steps;
@@ -9,10 +9,10 @@ use etendue_compare::{FirstOrderReport, Verdict};
 use etendue_theory::geometry::{AffineMap, Edition, Matrix};
 use std::f64::consts::TAU;
 
-/// What a chain that was put together here may differ from the one read off the scene.
+/// Permitted difference between a chain composed here and the one derived from the scene.
 const SAME: f64 = 1e-8;
 
-/// Makes a change to the steps, given θ₀ and the shape operator.
+/// Modifies the steps, given θ₀ and the shape operator.
 type StepMisprint = Box<dyn Fn(&mut Steps, f64, Matrix<2>)>;
 
 fn all() -> Vec<(&'static str, &'static str, StepMisprint)> {
@@ -30,7 +30,7 @@ fn all() -> Vec<(&'static str, &'static str, StepMisprint)> {
     };
     let cosine = |cosine: fn(f64) -> f64, sign: f64| -> StepMisprint {
         Box::new(move |steps, theta0, shape| {
-            // The shear by M alone has the cosine of 1 beside M; its sign stays right.
+            // The shear by M alone has cosine 1 beside M, with the right sign.
             let longitude = cosine(theta0);
             steps.curvature =
                 AffineMap::<4>::curvature(shape.map(|r| r.map(|m| sign * m)), longitude)
@@ -112,7 +112,8 @@ fn all() -> Vec<(&'static str, &'static str, StepMisprint)> {
     ]
 }
 
-/// Every misprint alone on a hollow sphere, and those of a plane mirror's on it.
+/// A row for each misprint alone: all of them on a hollow sphere, and on a plane mirror those that
+/// concern it.
 fn rows(outcome: &TableRun) -> Vec<Row> {
     let bench = MirrorBench::new(outcome);
     let mut rows = Vec::new();
@@ -155,7 +156,7 @@ fn rows(outcome: &TableRun) -> Vec<Row> {
     rows
 }
 
-/// The errata.
+/// The section on the errata.
 fn section(outcomes: &[&TableRun]) -> ReportSection {
     ReportSection {
         title: "Errata: each misprint alone".to_owned(),
@@ -181,12 +182,12 @@ fn section(outcomes: &[&TableRun]) -> ReportSection {
     }
 }
 
-/// On the hollow mirror and the plane one.
+/// The misprints on the hollow mirror and the plane one.
 pub(super) fn misprints(sphere: &TableRun, flat: &TableRun) -> ReportSection {
     section(&[sphere, flat])
 }
 
-/// The scene files that ask for the printed formulas: `--expect disagreement`.
+/// The scene files that request the printed formulas: `--expect disagreement`.
 pub(super) fn as_printed(outcomes: &[&TableRun], level: f64) -> ReportSection {
     let mut rows = Vec::new();
     let mut checks = Vec::new();

@@ -1,4 +1,4 @@
-//! The foci of the solar oven, from photons alone.
+//! The foci of the solar oven, determined from photons alone.
 
 use super::TableRun;
 use crate::predicted;
@@ -10,15 +10,16 @@ use etendue_scene::{Emission, LightFile, Scene, resolve};
 use etendue_trace::Tracer;
 use rayon::prelude::*;
 
-/// Beams, by their width in metres: that of the file, and one so narrow that its aberration is below its noise.
+/// Beam widths in metres: that of the file, and one so narrow that its aberration is below its
+/// noise.
 const WIDTHS: [f64; 2] = [0.1, 1e-5];
-/// Standard errors.
+/// Maximum deviation in standard errors.
 const MOST: f64 = 4.0;
 
 /// Sums over the crossings of a plane: weight, weight · x, weight · x², for x and y.
 type CrossingSums = [[f64; 3]; 2];
 
-/// Where the beam is narrowest in the plane of incidence and across.
+/// The positions at which the beam is narrowest in the plane of incidence and across.
 pub(super) fn foci(outcome: &TableRun) -> ReportSection {
     let theta0: f64 = 0.7;
     let radius = 2.0;
@@ -40,7 +41,7 @@ pub(super) fn foci(outcome: &TableRun) -> ReportSection {
             let spread: f64 = without.iter().map(|f| (f[axis] - mean).powi(2)).sum();
             let error = (spread * (count - 1.0) / count).sqrt();
             let off = [exact[axis], known[axis]].map(|f| (measured[axis] - f) / error);
-            // A wide beam has an aberration, which the exact prediction knows.
+            // A wide beam has an aberration, which the exact prediction includes.
             let narrow = (width - WIDTHS[1]).abs() < 1e-12;
             let within = |id, off: f64| Check::new(id, off.abs(), Below(MOST), "standard errors");
             let mut checks = vec![within("predicted", off[0])];
@@ -82,7 +83,7 @@ pub(super) fn foci(outcome: &TableRun) -> ReportSection {
 }
 
 /// # Panics
-/// When the scene has no beam.
+/// If the scene has no beam.
 fn with_beam(scene: &Scene, width: f64) -> Scene {
     let mut file = scene.file.clone();
     let LightFile::Beam { image, .. } = &mut file.light else {
@@ -115,7 +116,7 @@ fn sums(scene: &Scene) -> Vec<Vec<CrossingSums>> {
     (0..scene.run.batches).into_par_iter().map(batch).collect()
 }
 
-/// Of all batches but one.
+/// The sums over all batches, or all but one.
 fn total(batches: &[Vec<CrossingSums>], without: Option<usize>) -> Vec<[f64; 2]> {
     let planes = batches[0].len();
     let variance = |plane: usize| {
@@ -135,10 +136,10 @@ fn total(batches: &[Vec<CrossingSums>], without: Option<usize>) -> Vec<[f64; 2]>
     (0..planes).map(variance).collect()
 }
 
-/// The same of rays.
+/// The foci predicted by rays.
 ///
 /// # Panics
-/// When no light arrives.
+/// If no light arrives.
 fn predicted(scene: &Scene, distances: &[f64]) -> [f64; 2] {
     let all = Profile::Box(10.0);
     let window = Window {
@@ -157,7 +158,7 @@ fn predicted(scene: &Scene, distances: &[f64]) -> [f64; 2] {
     narrowest(&variances, distances)
 }
 
-/// Where parabolas through variances are least.
+/// The minima of parabolas fitted to variances.
 fn narrowest(variances: &[[f64; 2]], distances: &[f64]) -> [f64; 2] {
     [0, 1].map(|axis: usize| {
         let values: Vec<f64> = variances.iter().map(|v| v[axis]).collect();
@@ -165,7 +166,7 @@ fn narrowest(variances: &[[f64; 2]], distances: &[f64]) -> [f64; 2] {
     })
 }
 
-/// The vertex of the parabola that fits points best.
+/// The vertex of the least-squares parabola.
 fn vertex(x: &[f64], y: &[f64]) -> f64 {
     let count = x.len() as f64;
     let mean = x.iter().sum::<f64>() / count;
@@ -174,7 +175,7 @@ fn vertex(x: &[f64], y: &[f64]) -> f64 {
         let terms = x.iter().zip(y).map(|(x, y)| (x - mean).powi(n) * y);
         terms.sum::<f64>()
     };
-    // Normal equations with the first moment zero.
+    // Normal equations for a first moment of zero.
     let [m0, m2, m3, m4] = [count, power(2), power(3), power(4)];
     let [b0, b1, b2] = [with(0), with(1), with(2)];
     // a m0 + c m2 = b0; b m2 + c m3 = b1; a m2 + b m3 + c m4 = b2.

@@ -1,4 +1,5 @@
-//! Table 1 of Durand et al. 2005, line by line: theory against quadrature in 2D, photons against theory in 4D.
+//! Table 1 of Durand et al. 2005, line by line: theory compared with quadrature in 2D, and photons
+//! with theory in 4D.
 
 mod bench;
 mod errata;
@@ -24,10 +25,10 @@ use etendue_spectrum::Measurement;
 use etendue_theory::Observed;
 use etendue_theory::rays::SpecularSystem;
 
-/// Share of true tables that may be rejected, over all planes.
+/// False rejection rate over all planes.
 const ALPHA: f64 = 0.01;
 
-/// A scene of the table, run.
+/// The results of a scene of the table.
 struct TableRun {
     scene: Scene,
     measurement: Measurement,
@@ -36,10 +37,10 @@ struct TableRun {
 }
 
 impl TableRun {
-    /// What theory sees of a plane.
+    /// The specular system before a plane.
     ///
     /// # Panics
-    /// When the plane is not one that theory follows rays to.
+    /// If theory does not trace rays to the plane.
     fn system(&self, plane: usize) -> Observed<SpecularSystem> {
         system(&self.scene, &self.scene.planes[plane]).expect("a scene of free specular surfaces")
     }
@@ -47,7 +48,7 @@ impl TableRun {
     /// The index of a plane.
     ///
     /// # Panics
-    /// When there is none of that name.
+    /// If there is no plane of that name.
     fn plane(&self, name: &str) -> usize {
         let planes = &self.scene.planes;
         let found = planes.iter().position(|p| p.name == name);

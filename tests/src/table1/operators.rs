@@ -13,7 +13,7 @@ use etendue_theory::geometry::Media;
 use etendue_theory::rays::SpecularSystem;
 use etendue_theory::{Model, Observed, Parameter};
 
-/// What two quadratures, each good to 10⁻⁴, may differ by where first order is exact.
+/// Permitted difference between two quadratures, each accurate to 10⁻⁴, where first order is exact.
 const QUADRATURE: f64 = 2e-4;
 
 /// The 4D half of the table.
@@ -122,7 +122,7 @@ fn follows(fall: &Fall, known: KnownOrder) -> Check {
     Check::new("order", largest, Below(QUADRATURE), "two quadratures")
 }
 
-/// The last step on the way to a plane, and the row of the paper's table that it is.
+/// The last step before a plane, and its row in the paper's table.
 fn operator(view: &Observed<SpecularSystem>) -> (&'static str, Option<Line>) {
     let Observed { system, plane } = view;
     let last = system.elements.last();
@@ -152,7 +152,8 @@ fn operator(view: &Observed<SpecularSystem>) -> (&'static str, Option<Line>) {
     }
 }
 
-/// What the plane of incidence cuts out of a scene with one surface, whose principal axes lie along it.
+/// The 2D scene in the plane of incidence, for a scene with one surface whose principal axes are
+/// along it.
 fn section(view: &Observed<SpecularSystem>) -> Option<(MirrorPath, PathStage)> {
     let Observed { system, plane } = view;
     let value = |p: Parameter| view.value(p);
@@ -175,7 +176,7 @@ fn section(view: &Observed<SpecularSystem>) -> Option<(MirrorPath, PathStage)> {
         None => plane.patch,
     };
     let [k1, k2, _] = patch.map_or([0.0; 3], |patch| patch.curvature);
-    // Principal axes elsewhere are no matter where there is one curvature.
+    // Other principal axes do not matter if both curvatures are equal.
     let across = patch.is_some_and(|p| p.frame.x.y.abs() > 1e-9);
     if across && (k1 - k2).abs() > 1e-12 {
         return None;

@@ -1,4 +1,5 @@
-//! How fast the error of the first-order chain falls with the size of the neighbourhood.
+//! The order at which the error of the first-order chain decreases with the size of the
+//! neighbourhood.
 
 use super::TableRun;
 use crate::predicted;
@@ -8,34 +9,34 @@ use etendue_theory::geometry::Edition;
 use etendue_theory::rays::{self, SpecularSystem};
 use etendue_theory::{Model, Observed, Parameter};
 
-/// Sizes of the neighbourhood, in that of the scene.
+/// Sizes of the neighbourhood, relative to that of the scene.
 const SIZES: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
 
-/// How far a fitted order may be from what is known beforehand.
+/// Maximum deviation of a fitted order from the known one.
 pub(crate) const ORDER: f64 = 0.15;
 
-/// The check of an order fitted to what falls.
+/// Checks an order fitted to decreasing errors.
 pub(crate) fn check(fitted: f64, known: f64) -> Check {
     let off = (fitted - known).abs();
     Check::new("order", off, AtMost(ORDER), "a fit of four sizes")
 }
 
-/// Angles of incidence below this are none, radians.
+/// Smaller angles of incidence count as 0, radians.
 const NORMAL: f64 = 1e-6;
 
-/// What is known beforehand (docs/theory.md, section 7).
+/// The order known in advance (docs/theory.md, section 7).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum KnownOrder {
-    /// Travel and plane mirrors leave nothing out.
+    /// Exact: travel and plane mirrors only.
     Exact,
-    /// Somewhere light comes at an angle.
+    /// First order: light arrives obliquely at some surface.
     First,
-    /// Light comes along every normal.
+    /// Second order: light arrives along every normal.
     Second,
 }
 
 impl KnownOrder {
-    /// That of a plane, before anything is computed.
+    /// The known order for a plane.
     pub(super) fn expected(view: &Observed<SpecularSystem>) -> Self {
         let Observed { system, plane } = view;
         let across = plane.orientation == Orientation::Orthogonal;
@@ -66,7 +67,7 @@ impl KnownOrder {
     }
 }
 
-/// The error at each size, and the exponent that fits them all best.
+/// The error at each size, and the fitted exponent.
 #[derive(Clone, Debug)]
 pub(super) struct Fall {
     pub(super) errors: [f64; 4],
@@ -76,7 +77,7 @@ pub(super) struct Fall {
 /// ‖first order − exact‖/‖exact‖ on neighbourhoods of all sizes.
 ///
 /// # Panics
-/// When the chain does not arrive.
+/// If the chain does not arrive.
 pub(super) fn fall(outcome: &TableRun, index: usize) -> Fall {
     let view = outcome.system(index);
     let at = &outcome.scene.planes[index];
@@ -98,7 +99,7 @@ pub(super) fn fall(outcome: &TableRun, index: usize) -> Fall {
     }
 }
 
-/// The slope of the straight line that fits points best.
+/// The slope of the least-squares line.
 pub(crate) fn slope(points: &[[f64; 2]]) -> f64 {
     let count = points.len() as f64;
     let mean = |axis: usize| points.iter().map(|p| p[axis]).sum::<f64>() / count;

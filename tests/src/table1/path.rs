@@ -1,4 +1,4 @@
-//! A path over one surface in 2D: its operators, and its rays.
+//! A 2D path with one surface: its operators, and its rays.
 
 use etendue_theory::geometry::{AffineMap, Media};
 
@@ -16,7 +16,7 @@ pub(super) enum PathStage {
 
 use PathStage::{Back, Beyond, Curvature, Event, Incidence, Outgoing, Travel};
 
-/// Travel, and a surface: a mirror unless it has media.
+/// Travel and a surface: a mirror, or an interface if it has media.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MirrorPath {
     /// Metres of travel before and after the surface.
@@ -68,7 +68,7 @@ impl MirrorPath {
         map
     }
 
-    /// Where a ray really goes, (x, θ) at the light to the coordinates of a stage.
+    /// Traces a ray exactly, from (x, θ) at the light to the coordinates of a stage.
     pub(super) fn trace(&self, stage: PathStage, [x, theta]: [f64; 2]) -> [f64; 2] {
         let x = x + self.travels[0] * theta.tan();
         if stage == Travel {
@@ -102,7 +102,7 @@ impl MirrorPath {
         if stage == Back {
             return [back, global];
         }
-        // The frame after: X = c₁ T − sin θ₁ N, or that of light that goes on through.
+        // The frame after the surface: X = c₁ T − sin θ₁ N, or that of transmitted light.
         let theta1 = self.theta1();
         let (sin, cos) = theta1.sin_cos();
         let sign = if self.media.is_some() { -1.0 } else { 1.0 };
@@ -122,7 +122,7 @@ impl MirrorPath {
         [x + self.travels[1] * theta.tan(), theta]
     }
 
-    /// Where a line meets the circle, near the origin.
+    /// The point where a line hits the circle near the origin.
     fn hit(&self, [s, h]: [f64; 2], along: Direction) -> [f64; 2] {
         let Direction(a, b) = along;
         // k (s² + h²) + 2 h = 0.

@@ -1,4 +1,5 @@
-//! The operators in 2D: against a plain quadrature of the mapped field, and against rays traced off a circle.
+//! The operators in 2D: compared with a plain quadrature of the mapped field, and with rays traced
+//! off a circle.
 
 use super::order::{self, ORDER, slope};
 use super::path::MirrorPath;
@@ -109,12 +110,12 @@ const fn line(stage: PathStage) -> Line {
     }
 }
 
-/// What a stage of a path comes to.
+/// The errors at a stage of a path.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StageFound {
-    /// Of the operators' spectrum against a quadrature of the field they map.
+    /// Error of the operators' spectrum relative to a quadrature of the mapped field.
     pub(super) map: f64,
-    /// Against that of the field traced, at all sizes.
+    /// Errors relative to the traced field, at all sizes.
     pub(super) traced: [f64; 4],
     pub(super) order: f64,
     pub(super) known: f64,
@@ -149,7 +150,8 @@ impl MirrorPath {
         }
     }
 
-    /// Beforehand: 1 at an angle, 2 along the normal, and where nothing is left out but that slopes are tangents.
+    /// The order known in advance: 1 if oblique, 2 along the normal, and also if only the tangent
+    /// slopes are approximated.
     fn known(&self, stage: PathStage) -> f64 {
         let flat_mirror = self.k == 0.0 && self.media.is_none();
         match stage {
@@ -160,12 +162,12 @@ impl MirrorPath {
         }
     }
 
-    /// What the operators say of a field of some size; the frequencies; the field.
+    /// The operators' spectrum of a field of some size; the frequencies; the field.
     fn said(&self, stage: PathStage, size: f64) -> (Vec<Complex>, Vec<[f64; 2]>, Matrix<2>) {
         let map = self.map(stage);
         let field = FIELD.map(|row| row.map(|s| s * size * size));
         let content = |i: i32| {
-            // Content of the field, moved to where the map puts it.
+            // Content of the field, moved by the map.
             let radius = 0.06 * f64::from(i / 6) / size;
             let angle = TAU * f64::from(i % 6) / 6.0 + 0.2;
             map.content([radius * angle.cos(), radius * angle.sin()])

@@ -19,7 +19,7 @@ fn turned(map: &mut SpectrumMap<4>, row: usize) {
     map.matrix[row] = map.matrix[row].map(|x| -x);
 }
 
-/// Multiplies a scale by the square of a cosine: from 1/cos to cos.
+/// Multiplies a scale by a squared cosine: from 1/cos to cos.
 fn cosine(map: &mut SpectrumMap<4>, at: usize, by: f64) {
     map.matrix[at] = map.matrix[at].map(|x| x * by);
 }
@@ -62,7 +62,7 @@ fn faults() -> Vec<(&'static str, MirrorChange)> {
             s.mirror.factor *= b.theta0.cos();
         }),
         ("curvature: cos θ₀ on the row of θ", |s, b| {
-            // diag(c₀, 1) M for diag(1, c₀) M.
+            // Replaces diag(1, c₀) M by diag(c₀, 1) M.
             s.curvature = swapped(b, -1.0).spectrum_map();
             s.back = swapped(b, 1.0).spectrum_map();
         }),
@@ -89,7 +89,7 @@ pub(super) fn first_order(oblique: &TableRun, normal: &TableRun) -> ReportSectio
         let straight = bench.theta0.abs() < 1e-6;
         for (name, fault) in faults() {
             if straight && (name.contains("cos") || name.contains('θ') && name.contains("sign")) {
-                // Along the normal these are none.
+                // Along the normal these faults have no effect.
                 continue;
             }
             let mut steps = bench.sound();

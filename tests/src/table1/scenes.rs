@@ -38,10 +38,10 @@ const SCENES: &[(&str, &str)] = &[
     scene!("printed_sagittal"),
 ];
 
-/// Every scene of the table, with the photons of its file unless others are given.
+/// Every scene of the table, by default with the photons of its file.
 ///
 /// # Panics
-/// When one is not sound.
+/// If a scene is invalid.
 pub(super) fn all(photons: Option<u64>) -> Vec<Scene> {
     let resolved = SCENES.iter().map(|(name, text)| {
         let mut file = SceneFile::parse(text).expect("a scene of the table is a scene file");

@@ -1,9 +1,9 @@
-//! The steps of one mirror one by one, so that each can be had wrong.
+//! The single steps at one mirror, so that each can be changed.
 
 use etendue_field::{Orientation, Side, VirtualPlane};
 use etendue_theory::geometry::{AffineMap, Matrix, SpectrumMap};
 
-/// Travel to a mirror met in the plane of (X, D), and the steps at it.
+/// Travel to a mirror, with incidence in the plane of (X, D), and the steps at it.
 #[derive(Clone, Debug)]
 pub(super) struct Steps {
     pub(super) distance: f64,
@@ -15,7 +15,7 @@ pub(super) struct Steps {
 }
 
 impl Steps {
-    /// As ray geometry has them.
+    /// The steps according to ray geometry.
     pub(super) fn sound(distance: f64, theta0: f64, shape: Matrix<2>) -> Self {
         Self {
             distance,

@@ -9,9 +9,9 @@ use etendue_theory::geometry::Edition;
 use etendue_theory::rays::{self, SpecularSurface, SpecularSystem};
 use glam::DVec3;
 
-/// Step of the differences, metres and direction cosines; their error is of its sixth power.
+/// Step of the differences, metres and direction cosines; their error is of sixth order.
 const STEP: f64 = 2e-3;
-/// What is left of rounding, 10⁻¹⁶ over the step, and of a sixth power.
+/// The error left by rounding, 10⁻¹⁶ over the step, and by the sixth order.
 const ROUNDING: f64 = 1e-10;
 
 /// A straight leg of a ray.
@@ -21,7 +21,7 @@ struct VolumeRay {
     direction: DVec3,
 }
 
-/// Phase-space volume and reversibility on every scene with surfaces.
+/// Phase-space volume and reversibility for every scene with surfaces.
 pub(super) fn volume(outcomes: &[&TableRun]) -> ReportSection {
     let mut rows = Vec::new();
     for outcome in outcomes {
@@ -83,7 +83,7 @@ pub(super) fn volume(outcomes: &[&TableRun]) -> ReportSection {
     }
 }
 
-/// Index at the light over index at the plane.
+/// Ratio of the index at the light to that at the plane.
 fn index_ratio(system: &SpecularSystem) -> f64 {
     let mut ratio = 1.0;
     let mut ray = start([0.0; 4]);
@@ -96,7 +96,7 @@ fn index_ratio(system: &SpecularSystem) -> f64 {
     ratio
 }
 
-/// Index before over index after.
+/// Ratio of the index before to that after.
 fn crossed(element: &SpecularSurface, direction: DVec3) -> f64 {
     let etendue_field::Specular::Refraction { front, back } = element.event else {
         return 1.0;
@@ -118,7 +118,7 @@ fn bundle() -> impl Iterator<Item = [f64; 4]> {
     })
 }
 
-/// Of volume, of the invariant, and of the way back.
+/// The errors of volume, of the invariant, and of the way back.
 fn defects(system: &SpecularSystem, plane: &Frame, at: [f64; 4], ratio: f64) -> Option<[f64; 3]> {
     let slopes = has_lens(system);
     let map = |z: [f64; 4]| -> Option<[f64; 4]> {
@@ -130,7 +130,7 @@ fn defects(system: &SpecularSystem, plane: &Frame, at: [f64; 4], ratio: f64) -> 
         if slopes {
             z = with_slopes(z);
         }
-        // n at the light is taken as one.
+        // The index at the light is taken as one.
         z[2] /= ratio;
         z[3] /= ratio;
         Some(z)
@@ -167,7 +167,8 @@ fn defects(system: &SpecularSystem, plane: &Frame, at: [f64; 4], ratio: f64) -> 
     ])
 }
 
-/// An ideal lens bends slopes, and keeps the volume of positions and slopes; no real lens does.
+/// Whether there is an ideal lens: it bends slopes, and preserves the volume of positions and
+/// slopes; no real lens does.
 fn has_lens(system: &SpecularSystem) -> bool {
     let events = system.elements.iter().map(|e| e.event);
     events
@@ -185,7 +186,7 @@ fn with_cosines([x, y, u, v]: [f64; 4]) -> [f64; 4] {
     [x, y, u / length, v / length]
 }
 
-/// From a point of the light's plane with direction cosines.
+/// A ray from a point of the light's plane with direction cosines.
 fn start([x, y, p, q]: [f64; 4]) -> VolumeRay {
     VolumeRay {
         point: DVec3::new(x, y, 0.0),
@@ -218,7 +219,7 @@ fn follow(element: &SpecularSurface, ray: &VolumeRay) -> Option<VolumeRay> {
     })
 }
 
-/// Where the line of a ray crosses a plane, and its direction cosines.
+/// The point where a ray's line crosses a plane, and its direction cosines.
 fn coordinates(plane: &Frame, ray: &VolumeRay) -> Option<[f64; 4]> {
     let (at, along) = (
         plane.to_local(ray.point),

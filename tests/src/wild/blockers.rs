@@ -1,4 +1,4 @@
-//! Blockers drawn at random, across the first leg of the path.
+//! Random blockers, across the first leg of the path.
 
 use super::draw::SceneDraw;
 use super::light::{axis, modulation};
@@ -7,14 +7,14 @@ use etendue_scene::{AxisName, BlockersFile, HalfName, LightFile, MeshSource, Sha
 use glam::DVec3;
 use std::io;
 
-/// The least size a scene file may state, metres.
+/// The smallest size permitted in a scene file, metres.
 const LEAST: f64 = 1e-9;
-/// Products of shapes that a prediction may have to go through, and still end soon.
+/// Maximum number of shape products in a prediction of acceptable duration.
 const MOST: f64 = 3e4;
-/// Rectangles that a disc counts as.
+/// Number of rectangles that a disc counts as.
 const STRIPS: f64 = 64.0;
 
-/// None to three layers before the first surface, which is at this distance.
+/// None to three layers before the first surface, whose distance is given.
 pub(super) fn blockers(
     draw: &mut SceneDraw,
     light: &LightFile,
@@ -126,7 +126,7 @@ fn board(draw: &mut SceneDraw) -> Vec<ShapeFile> {
     (0..count).map(|i| shape(draw, i)).collect()
 }
 
-/// One edge, or a slit: now and then a very narrow one, or none at all.
+/// One edge, or a slit, which is occasionally very narrow or closed.
 fn half_planes(draw: &mut SceneDraw) -> Vec<ShapeFile> {
     let axis: AxisName = axis(draw);
     let edge = draw.unit * draw.between(-0.15, 0.15);
@@ -146,7 +146,7 @@ fn half_planes(draw: &mut SceneDraw) -> Vec<ShapeFile> {
     ]
 }
 
-/// A mesh that does not reach the light, nor what comes after.
+/// A mesh that touches neither the light nor the following objects.
 fn mesh(
     draw: &mut SceneDraw,
     name: String,

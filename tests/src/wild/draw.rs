@@ -1,4 +1,4 @@
-//! Random choices of a scene: what is drawn, how extreme, and in which frame.
+//! Random choices of a scene: values, their extremes, and the frame.
 
 use crate::hostile::dice::Dice;
 use etendue_field::Frame;
@@ -6,24 +6,24 @@ use glam::DVec3;
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
-/// The choices of one scene, in the order they are asked for.
+/// The choices of one scene, in order of use.
 pub(super) struct SceneDraw {
     dice: Dice,
-    /// One value in so many is extreme; none where it is 0.
+    /// One value in this many is extreme; none if it is 0.
     rarity: usize,
-    /// What lengths of the scene are in proportion to, metres.
+    /// The scale of all lengths in the scene, metres.
     pub(super) unit: f64,
-    /// The frame at the light. All else is drawn in its coordinates.
+    /// The frame at the light, in whose coordinates everything else is drawn.
     pub(super) frame: Frame,
-    /// Where pictures and meshes of the scene are written.
+    /// The folder for pictures and meshes of the scene.
     pub(super) folder: PathBuf,
-    /// How many of them there are.
+    /// The number of these files.
     pub(super) inputs: usize,
 }
 
-/// Units that make all lengths of a scene tiny or huge: nothing but numbers may depend on them.
+/// Units that make all lengths of a scene tiny or huge: results must not depend on them.
 const UNITS: [f64; 4] = [1e-3, 1e-2, 1e2, 1e4];
-/// Lengths a scene file may state, metres.
+/// The range of lengths permitted in a scene file, metres.
 const LENGTHS: [f64; 2] = [1e-9, 1e9];
 
 impl SceneDraw {
@@ -36,7 +36,7 @@ impl SceneDraw {
             folder: folder.to_owned(),
             inputs: 0,
         };
-        // Scenes in which everything is extreme are mostly dark. So some have nothing that is.
+        // Scenes with many extreme values are mostly dark, so some scenes have none.
         draw.rarity = *draw.pick(&[0, 20, 5, 5]);
         if draw.is_extreme() {
             draw.unit = *draw.pick(&UNITS);
@@ -53,7 +53,7 @@ impl SceneDraw {
         Frame::new(origin, d, x).unwrap_or(Frame::IDENTITY)
     }
 
-    /// A direction, all alike.
+    /// A uniform direction.
     pub(super) fn direction(&mut self) -> DVec3 {
         let z = self.between(-1.0, 1.0);
         let (sin, cos) = self.between(0.0, TAU).sin_cos();
@@ -81,42 +81,41 @@ impl SceneDraw {
         low + (high - low) * self.dice.unit()
     }
 
-    /// One of `low` to `high`, both included.
+    /// A random integer from `low` to `high`, both included.
     pub(super) fn whole(&mut self, low: u32, high: u32) -> u32 {
         let more = self.below((high - low + 1) as usize);
         low + u32::try_from(more).unwrap_or(0)
     }
 
-    /// A positive number, alike in all orders of magnitude: of those that are usual, or of those
-    /// that are legal.
+    /// A positive number with uniform logarithm, from the usual range or from the legal one.
     pub(super) fn value(&mut self, usual: [f64; 2], legal: [f64; 2]) -> f64 {
         let [low, high] = if self.is_extreme() { legal } else { usual };
         rounded(self.between(low.ln(), high.ln()).exp()).clamp(low, high)
     }
 
-    /// The same as a length, in units of the scene.
+    /// A length drawn like [`Self::value`], in units of the scene.
     pub(super) fn length(&mut self, usual: [f64; 2], legal: [f64; 2]) -> f64 {
         let [low, high] = LENGTHS;
         (self.unit * self.value(usual, legal)).clamp(low, high)
     }
 
-    /// The number, or its opposite.
+    /// The number with a random sign.
     pub(super) fn signed(&mut self, x: f64) -> f64 {
         if self.one_in(2) { -x } else { x }
     }
 
-    /// A place of the frame at the light, in world coordinates.
+    /// A point in the frame at the light, in world coordinates.
     pub(super) fn place(&self, local: DVec3) -> [f64; 3] {
         self.frame.to_world(local).to_array()
     }
 
-    /// A direction of the frame at the light, in world coordinates.
+    /// A direction in the frame at the light, in world coordinates.
     pub(super) fn along(&self, local: DVec3) -> [f64; 3] {
         self.frame.vector_to_world(local).to_array()
     }
 }
 
-/// Four digits: a scene is to be read.
+/// Rounds to four digits, to keep scenes readable.
 pub(super) fn rounded(x: f64) -> f64 {
     format!("{x:.3e}").parse().unwrap_or(x)
 }

@@ -1,4 +1,5 @@
-//! What a run of a scene comes to: whether its verdict is wrong, and who of three is.
+//! The outcome of a run: whether its verdict is wrong, and which of tracers and prediction is at
+//! fault.
 
 use super::run::{PlaneSummary, RunEnding, Runner};
 use crate::scenes::{measured, traced, traced_backwards};
@@ -8,13 +9,13 @@ use etendue_trace::{Tracer, finds};
 use std::io;
 use std::path::Path;
 
-/// What is wrong with a scene, and stays so while it is made smaller.
+/// A fault of a scene, which must persist while the scene is reduced.
 #[derive(Clone)]
 pub(super) enum SceneTrouble {
     Panic,
     Hang,
     Killed,
-    /// This plane fails, by photons or by backward rays, and again with other seeds.
+    /// This plane fails, with photons or with backward rays, and again with other seeds.
     Wrong {
         plane: String,
         backward: bool,
@@ -22,16 +23,16 @@ pub(super) enum SceneTrouble {
     },
 }
 
-/// Who is wrong where a plane fails.
+/// The cause of a failed plane.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Culprit {
-    /// Both tracers agree, the prediction does not.
+    /// The prediction: both tracers agree, but not with it.
     Theory,
-    /// The tracers do not agree.
+    /// A tracer: the two disagree.
     Tracer,
-    /// The verdict, given by a handful of rays.
+    /// The verdict, which is based on too few rays.
     Handful,
-    /// One of these.
+    /// One of these, undetermined.
     Unknown,
 }
 
@@ -46,30 +47,31 @@ impl Culprit {
     }
 }
 
-/// A scene looked into.
+/// The judgement of a scene.
 #[derive(Default)]
 pub(super) struct JudgedScene {
-    /// Why it was refused.
+    /// The reason for a refusal.
     pub(super) refused: Option<String>,
-    /// What the scene came to.
+    /// The verdicts of the scene.
     pub(super) verdicts: Vec<String>,
-    /// Runs with a verdict, those with a plane that fails, and those that do not repeat.
+    /// Number of runs with a verdict, of those with a failed plane, and of failures that do not
+    /// repeat.
     pub(super) runs: usize,
     pub(super) fails: usize,
     pub(super) chance: usize,
-    /// What is wrong, in words.
+    /// The faults, with descriptions.
     pub(super) troubles: Vec<(SceneTrouble, String)>,
 }
 
-/// Fewer rays than this in the window are too few for the spread of 64 batches: about ten in each.
+/// Minimum number of rays in the window for the spread of 64 batches: about ten in each.
 pub(crate) const HANDFUL: u64 = 640;
 
-/// The seed of the first run of a scene, which is its own, and those of two more runs.
+/// The seed of the scene for its first run, and those of two more runs.
 fn seeds(file: &SceneFile) -> [u64; 3] {
     [0, 1, 2].map(|i| file.run.seed + i)
 }
 
-/// Runs a scene, and looks into what fails.
+/// Runs a scene, and investigates failures.
 pub(super) fn judge(runner: &Runner, file: &SceneFile) -> io::Result<JudgedScene> {
     let mut judged = JudgedScene::default();
     let [first, ..] = seeds(file);
@@ -99,7 +101,7 @@ pub(super) fn judge(runner: &Runner, file: &SceneFile) -> io::Result<JudgedScene
     Ok(judged)
 }
 
-/// What is wrong with a run that did not come to an end.
+/// The fault of a run that did not finish.
 fn trouble(ending: &RunEnding) -> Option<(SceneTrouble, String)> {
     match ending {
         RunEnding::Panic(says) => Some((SceneTrouble::Panic, says.clone())),
@@ -110,7 +112,7 @@ fn trouble(ending: &RunEnding) -> Option<(SceneTrouble, String)> {
 }
 
 impl JudgedScene {
-    /// Takes the verdicts of a run; what fails is run again with other seeds.
+    /// Records the verdicts of a run; failures are run again with other seeds.
     fn count(
         &mut self,
         runner: &Runner,
@@ -166,7 +168,7 @@ fn shown(x: Option<f64>) -> String {
     x.map_or("–".into(), |x| format!("{x:.3e}"))
 }
 
-/// Who of photons, backward rays and prediction is wrong.
+/// Determines which of photons, backward rays and prediction is wrong.
 fn who(
     runner: &Runner,
     file: &SceneFile,
@@ -213,15 +215,15 @@ fn who(
     ))
 }
 
-/// Photons of one plane, and backward rays or what takes their place.
+/// Photons of one plane, and backward rays or a substitute.
 struct Tracers {
     verdict: Verdict,
     p: Option<f64>,
-    /// How many were in the window.
+    /// Numbers of rays in the window.
     inside: [u64; 2],
 }
 
-/// Photons compared with backward rays, or with photons sent evenly where these find no light.
+/// Compares photons with backward rays, or with unaimed photons if backward rays find no light.
 fn of_tracers(file: &SceneFile, folder: &Path, name: &str) -> Option<Tracers> {
     let mut scene = resolve("scene", file.clone(), folder, u64::MAX).ok()?;
     scene.planes.retain(|plane| plane.name == name);
@@ -243,7 +245,7 @@ fn of_tracers(file: &SceneFile, folder: &Path, name: &str) -> Option<Tracers> {
     })
 }
 
-/// Whether a scene is still in the same trouble, chance left out.
+/// Whether a scene still has the same fault, beyond chance.
 pub(super) fn persists(
     runner: &Runner,
     file: &SceneFile,

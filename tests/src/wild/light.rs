@@ -1,4 +1,4 @@
-//! Lights drawn at random.
+//! Random lights.
 
 use super::draw::SceneDraw;
 use super::pictures::sky;
@@ -73,12 +73,12 @@ fn image(draw: &mut SceneDraw, unit: f64) -> ImageFile {
     ImageFile { width, grating }
 }
 
-/// X or Y.
+/// A random axis, X or Y.
 pub(super) fn axis(draw: &mut SceneDraw) -> AxisName {
     *draw.pick(&[AxisName::X, AxisName::Y])
 }
 
-/// Between none and all.
+/// A random modulation between 0 and 1.
 pub(super) fn modulation(draw: &mut SceneDraw) -> f64 {
     if draw.is_extreme() {
         *draw.pick(&[0.0, 1.0])
@@ -98,7 +98,7 @@ fn environment(draw: &mut SceneDraw, center: [f64; 3]) -> io::Result<LightFile> 
         EnvironmentFile::File(sky(draw)?)
     } else {
         let count = 1 + draw.below(3);
-        // Lobes are in the axes of the map; with plain ones these are of the world.
+        // Lobes are in the axes of the map; plain ones are in world axes.
         EnvironmentFile::Lobes((0..count).map(|_| lobe(draw, plain)).collect())
     };
     Ok(LightFile::Environment {
@@ -112,7 +112,7 @@ fn environment(draw: &mut SceneDraw, center: [f64; 3]) -> io::Result<LightFile> 
 
 fn lobe(draw: &mut SceneDraw, plain: bool) -> SphericalGaussianFile {
     let width = draw.value([0.05, 0.6], [1e-3, 100.0]);
-    // From where nothing is known of the axes a lobe must be wide, to reach forward.
+    // If the axes are unknown, a lobe must be wide to reach forward.
     let (from, width) = if plain {
         let [x, y] = [(); 2].map(|()| draw.between(-0.7, 0.7));
         (draw.along(DVec3::new(x, y, -1.0)), width)

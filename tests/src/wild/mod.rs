@@ -1,7 +1,7 @@
-//! A hunt for scenes on which Étendue is wrong.
+//! A search for scenes on which Étendue is wrong.
 //!
-//! Scenes are drawn from the whole vocabulary of scene files and run as a user runs them. What
-//! panics, hangs or fails with several seeds is made as small as it goes and kept.
+//! Scenes are drawn from all features of scene files and run as a user runs them. A scene that
+//! panics, hangs or fails with several seeds is reduced as far as possible and kept.
 
 mod blockers;
 mod draw;
@@ -39,37 +39,37 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 use tally::Tally;
 
-/// What to hunt for, and where.
+/// Options of the search.
 #[derive(Debug, clap::Args)]
 pub(crate) struct WildOptions {
-    /// Scenes.
+    /// Number of scenes.
     #[arg(long, default_value_t = 100)]
     scenes: u64,
-    /// Number of the first.
+    /// Index of the first scene.
     #[arg(long, default_value_t = 0)]
     first: u64,
-    /// Another seed gives other scenes.
+    /// Seed of the random scenes.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Photons of each run.
+    /// Photons per run.
     #[arg(long, default_value_t = 200_000)]
     photons: u64,
-    /// Seconds after which a run has hung.
+    /// Seconds after which a run counts as hung.
     #[arg(long, default_value_t = 60)]
     limit: u64,
-    /// Seconds to make a scene smaller.
+    /// Seconds to spend on reducing a scene.
     #[arg(long, default_value_t = 120)]
     shrink: u64,
-    /// Scenes at a time [default: one for each core].
+    /// Number of parallel scenes [default: one for each core].
     #[arg(long)]
     threads: Option<usize>,
-    /// Where scenes are kept on which something is wrong.
+    /// Folder for scenes with a fault.
     #[arg(long, default_value = "target/wild")]
     out: PathBuf,
-    /// Only draws the scenes, and keeps them all.
+    /// Only draw the scenes, and keep them all.
     #[arg(long)]
     draw: bool,
-    /// The program [default: the one beside this].
+    /// Program to test [default: the one in the same folder].
     #[arg(long)]
     etendue: Option<PathBuf>,
 }
@@ -111,8 +111,8 @@ fn told(seed: u64, number: u64, says: &str) {
     eprintln!("seed {seed}, scene {number}: {says}");
 }
 
-/// Draws a scene, runs and judges it; keeps it where something is wrong, and tells what. `None`
-/// where nothing could be drawn.
+/// Draws a scene, runs and judges it; if it has a fault, keeps the scene and reports the fault.
+/// `None` if no scene could be drawn.
 fn one(
     options: &WildOptions,
     program: &Path,
@@ -152,7 +152,7 @@ fn one(
     Ok(Some(judged))
 }
 
-/// Keeps a scene and the files it names.
+/// Saves a scene and its files.
 fn keep(options: &WildOptions, number: u64, what: &str, text: &str, from: &Path) -> io::Result<()> {
     let folder = options.out.join(format!("{}-{number}", options.seed));
     fs::create_dir_all(&folder)?;

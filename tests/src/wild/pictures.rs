@@ -1,4 +1,4 @@
-//! Pictures and meshes drawn at random, written beside the scene.
+//! Random pictures and meshes, written beside the scene.
 
 use super::draw::SceneDraw;
 use exr::prelude::write_rgb_file;
@@ -7,20 +7,20 @@ use std::fmt::Write as _;
 use std::fs;
 use std::io;
 
-/// A map of light from far away; its file.
+/// Writes a random environment map; returns its file.
 pub(super) fn sky(draw: &mut SceneDraw) -> io::Result<String> {
     let width = 1 << draw.whole(1, 6);
     let bright = draw.one_in(2);
     picture(draw, [width, (width / 2).max(1)], bright)
 }
 
-/// A picture on a surface, of numbers from 0 to 1; its file.
+/// Writes a random picture for a surface, with values from 0 to 1; returns its file.
 pub(super) fn texture(draw: &mut SceneDraw) -> io::Result<String> {
     let size = [(); 2].map(|()| draw.whole(1, 9) as usize);
     picture(draw, size, false)
 }
 
-/// Pixels from 0 to 1, and one of a thousand where it is `bright`.
+/// Pixels from 0 to 1; if `bright`, one pixel is a thousand.
 fn picture(draw: &mut SceneDraw, [width, height]: [usize; 2], bright: bool) -> io::Result<String> {
     let mut pixels: Vec<f32> = Vec::new();
     for _ in 0..width * height {
@@ -38,7 +38,7 @@ fn picture(draw: &mut SceneDraw, [width, height]: [usize; 2], bright: bool) -> i
     Ok(name)
 }
 
-/// A wavy sheet across `d`, around the origin, as far as `half` to each side; its file.
+/// Writes a wavy sheet across `d`, around the origin, up to `half` to each side; returns its file.
 pub(super) fn sheet(draw: &mut SceneDraw, [x, y, n]: [DVec3; 3], half: f64) -> io::Result<String> {
     let cells = draw.whole(1, 8);
     let relief = half * draw.between(0.0, 0.15);

@@ -1,4 +1,4 @@
-//! Planes, windows and frequencies drawn at random.
+//! Random planes, windows and frequencies.
 
 use super::draw::SceneDraw;
 use etendue_field::{Orientation, Profile, Quantity};
@@ -6,7 +6,7 @@ use etendue_scene::{
     AxisFile, CentralRay, FrequenciesFile, Place, PlaneFile, SceneFile, SurfaceFile, WindowFile,
 };
 
-/// One to three planes at places of the path.
+/// One to three planes at points of the path.
 pub(super) fn planes(draw: &mut SceneDraw, file: &SceneFile, path: &CentralRay) -> Vec<PlaneFile> {
     let mut planes = Vec::new();
     for i in 0..*draw.pick(&[1, 1, 2, 2, 3]) {

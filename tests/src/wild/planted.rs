@@ -1,4 +1,4 @@
-//! Faults planted in predictions of light that two glossy surfaces send on.
+//! Faults planted in predictions of light reflected by two glossy surfaces.
 
 use crate::report::Bound::Below;
 use crate::report::{Check, ReportSection, Row};
@@ -11,29 +11,29 @@ use etendue_theory::reflections::{Interaction, ReflectionSystem};
 use etendue_theory::{Model, Observed, RayBudget};
 use glam::DQuat;
 
-/// Photons by which the subtlest fault is seen.
+/// Enough photons to detect the subtlest fault.
 const PHOTONS: u64 = 1 << 26;
-/// Errors of a fifth of the photons' noise.
+/// The error of the prediction is a fifth of the photons' noise.
 const BUDGET: RayBudget = RayBudget {
     nodes: 2e7,
     error: 1e-3,
 };
-/// A fault is seen at this p.
+/// The p below which a fault counts as detected.
 const SEEN: f64 = 0.01;
-/// The scene and its plane.
+/// The name of the scene.
 const SCENE: &str = "two_glossy";
 const PLANE: &str = "beyond";
 
 type PlantedFault = (&'static str, fn(&mut ReflectionSystem));
 
-/// What is wrong, and what of it.
+/// The faults, with descriptions.
 const FAULTS: [PlantedFault; 6] = [
     ("square left out", |system| system.obstacles.clear()),
     ("first lobe 1 % wider", |system| {
         change_lobe(system, 0, 1.01);
     }),
     ("second lobe 1 % wider", |system| {
-        // Its width is in proportion to the root of the exponent.
+        // The width is proportional to the inverse root of the exponent.
         change_lobe(system, 1, 1.01_f64.powi(-2));
     }),
     ("curvature of the first left out", |system| {
@@ -70,7 +70,7 @@ fn tilt(system: &mut ReflectionSystem, angle: f64) {
     };
 }
 
-/// The section.
+/// Returns the section.
 pub(super) fn planted() -> ReportSection {
     let scene = named(SCENE, Some(PHOTONS), None);
     let number = scene.planes.iter().position(|plane| plane.name == PLANE);
@@ -109,7 +109,7 @@ pub(super) fn planted() -> ReportSection {
     }
 }
 
-/// p of what is predicted for a view, all else being like another prediction.
+/// p of the prediction for a view, with all else taken from another prediction.
 fn p_value(
     scene: &Scene,
     measured: &Measurement,

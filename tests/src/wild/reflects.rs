@@ -1,4 +1,4 @@
-//! BRDFs drawn at random, and what varies them over a surface.
+//! Random BRDFs, and their variation over a surface.
 
 use super::draw::SceneDraw;
 use super::light::{axis, modulation};

@@ -1,4 +1,4 @@
-//! A scene run by the program, as a user runs it, in a child process with a limit of time.
+//! A scene run by the program, as a user runs it, in a child process with a time limit.
 
 use crate::hostile::child::{self, Ended, Limit};
 use etendue_scene::SceneFile;
@@ -10,48 +10,48 @@ use std::io;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// The scene file in the folder.
+/// The name of the scene file in the folder.
 const SCENE: &str = "scene.ron";
-/// How many times the limit a run may take by the clock.
+/// Maximum wall-clock time of a run, as a multiple of the limit.
 const LONGER: u32 = 10;
-/// What a panic ends with.
+/// The exit code of a panic.
 const PANIC: i32 = 101;
-/// What refused input ends with, and what cannot be run.
+/// The exit codes for refused input, and for scenes that cannot be run.
 const REFUSED: [i32; 2] = [2, 3];
 
-/// Where scenes are run, and how.
+/// The folders and limits for running scenes.
 pub(super) struct Runner {
     pub(super) program: PathBuf,
-    /// The folder of the scene, with the files it names.
+    /// The folder of the scene and its files.
     pub(super) folder: PathBuf,
-    /// A folder for what comes of it.
+    /// A folder for results.
     pub(super) scratch: PathBuf,
-    /// Of work, whatever else the machine has to do.
+    /// Limit of processor time, whatever the load of the machine.
     pub(super) limit: Duration,
 }
 
-/// How a run ended.
+/// The outcome of a run.
 pub(super) enum RunEnding {
     /// With a verdict on each plane.
     Done(Vec<PlaneSummary>),
-    /// The scene was refused, for this reason.
+    /// Refused, for this reason.
     Refused(String),
-    /// With a panic that says this.
+    /// Panicked, with this message.
     Panic(String),
-    /// Not within the limit of time.
+    /// Exceeded the time limit.
     Hang,
-    /// By a signal, or otherwise than any command should.
+    /// Ended by a signal, or with an undefined exit code.
     Killed(String),
 }
 
-/// What a summary says of a plane.
+/// The summary of a plane.
 pub(super) struct PlaneSummary {
     pub(super) name: String,
     pub(super) class: String,
     pub(super) verdict: String,
-    /// Of the prediction as it is, and of the chain of affine maps where there is one.
+    /// p of the exact prediction, and of the affine chain if there is one.
     pub(super) p: [Option<f64>; 2],
-    /// Relative error, noise limit, error of the prediction.
+    /// Relative error, noise limit and error of the prediction.
     pub(super) errors: [Option<f64>; 3],
 }
 
@@ -76,7 +76,7 @@ impl PlaneSummary {
         self.verdict == "undecided"
     }
 
-    /// Whether the other tracer took the place of theory.
+    /// Whether the other tracer was used instead of theory.
     pub(super) fn is_reference(&self) -> bool {
         self.class == "reference"
     }
@@ -131,7 +131,7 @@ impl Runner {
     }
 }
 
-/// The end of a run that left no result.
+/// The outcome of a run without a result.
 fn early(ended: &Ended) -> Option<RunEnding> {
     let stderr = String::from_utf8_lossy(&ended.stderr);
     if ended.hung {
@@ -153,7 +153,7 @@ fn early(ended: &Ended) -> Option<RunEnding> {
     }
 }
 
-/// Why it was refused, without numbers and names.
+/// The reason for a refusal, without numbers and names.
 fn reason(stderr: &str) -> String {
     let lines = stderr.lines().filter(|line| {
         let line = line.trim_start();
@@ -166,7 +166,7 @@ fn reason(stderr: &str) -> String {
         match c {
             '"' => quoted = !quoted,
             _ if quoted => {}
-            // What is in brackets gives details.
+            // Parentheses enclose details.
             '(' => depth += 1,
             ')' => depth = depth.saturating_sub(1),
             _ if depth > 0 => {}

@@ -1,4 +1,4 @@
-//! A scene drawn at random: surfaces one after the other, as the central ray comes to them.
+//! Random scenes: surfaces are added one after the other, along the central ray.
 
 use super::draw::SceneDraw;
 use super::planes::{frequencies, planes, window};
@@ -13,10 +13,10 @@ use glam::DVec3;
 use std::io;
 use std::path::Path;
 
-/// Tries to find a place for a surface that the central ray meets.
+/// Maximum number of attempts to place a surface on the central ray.
 const TRIES: usize = 8;
 
-/// The scene of a seed with this number. Pictures and meshes it names are written to the folder.
+/// The scene with this index for a seed. Its pictures and meshes are written to the folder.
 pub(crate) fn scene(seed: u64, index: u64, photons: u64, folder: &Path) -> io::Result<SceneFile> {
     let mut draw = SceneDraw::new(seed, index, folder);
     let mut file = empty(&mut draw, photons)?;
@@ -26,18 +26,18 @@ pub(crate) fn scene(seed: u64, index: u64, photons: u64, folder: &Path) -> io::R
     if draw.one_in(10) {
         file.surfaces
             .push(passed(&mut draw, "beside".into(), first));
-        // On an earlier leg the path would have to visit it.
+        // A surface on an earlier leg would have to be visited by the path.
         if central_ray(&file, folder).is_none() {
             file.surfaces.pop();
         }
     }
-    // What was put beside the way may shorten its last leg.
+    // A surface placed beside the path may shorten its last leg.
     let path = central_ray(&file, folder).unwrap_or(path);
     file.planes = planes(&mut draw, &file, &path);
     if draw.one_in(4) {
         file.run.sampling = Sampling::Random;
     }
-    // With one seed for all scenes their failures by chance would come together.
+    // With a common seed, scenes would fail together by chance.
     file.run.seed = u64::from(draw.whole(1, 1 << 30));
     Ok(file)
 }
@@ -86,7 +86,7 @@ fn empty(draw: &mut SceneDraw, photons: u64) -> io::Result<SceneFile> {
     })
 }
 
-/// Puts one to three surfaces on the way; returns it.
+/// Adds one to three surfaces along the path; returns the path.
 fn surfaces(draw: &mut SceneDraw, file: &mut SceneFile) -> io::Result<CentralRay> {
     let count = *draw.pick(&[1, 1, 1, 1, 2, 2, 3]);
     let mut leg = Frame::IDENTITY;
@@ -115,7 +115,7 @@ fn surfaces(draw: &mut SceneDraw, file: &mut SceneFile) -> io::Result<CentralRay
     if path.legs.is_empty() {
         return Err(io::Error::other("the central ray meets nothing"));
     }
-    // The path leaves the last surface in a direction of its own now and then.
+    // Occasionally the path leaves the last surface in a direction given by the file.
     if !file.surfaces.last().is_some_and(is_specular) && draw.one_in(4) {
         file.path.leaves = Some(draw.along(leg.d));
         match central_ray(file, &draw.folder) {
@@ -126,8 +126,8 @@ fn surfaces(draw: &mut SceneDraw, file: &mut SceneFile) -> io::Result<CentralRay
     Ok(path)
 }
 
-/// The leg on which the next surface may be: where a specular surface sends the central ray, and
-/// anywhere in front of another.
+/// The leg for the next surface: along the central ray after a specular surface, and in any
+/// direction in front of another.
 fn onwards(draw: &mut SceneDraw, file: &SceneFile, path: &CentralRay) -> Frame {
     let last = &path.legs[path.legs.len() - 1];
     let specular = file.surfaces.last().is_some_and(is_specular);
@@ -153,7 +153,7 @@ fn is_specular(surface: &SurfaceFile) -> bool {
     event.is_some_and(|event| !matches!(event, EventFile::Reflects { .. } | EventFile::Sum { .. }))
 }
 
-/// The central ray of a scene that is legal.
+/// The central ray of a valid scene.
 fn central_ray(file: &SceneFile, folder: &Path) -> Option<CentralRay> {
     let scene = resolve("wild", file.clone(), folder, u64::MAX).ok()?;
     Some(scene.path)
@@ -180,7 +180,7 @@ mod tests {
                 refused.push(format!("{number}: {error}"));
             }
         }
-        // One in twenty may be refused: it is not worth knowing all that is illegal here.
+        // One scene in twenty may be refused: the generator need not know all rules.
         assert!(20 * refused.len() as u64 <= SCENES, "{refused:#?}");
     }
 }

@@ -1,5 +1,5 @@
-//! Random scenes whose light several surfaces send on, with masks on any leg: photons must reject no
-//! prediction.
+//! Random scenes with several surfaces that scatter or redirect light, and masks on any leg:
+//! photons must reject no prediction.
 
 use super::draw::SceneDraw;
 use super::planted::planted;
@@ -14,24 +14,24 @@ use std::io;
 use std::path::Path;
 use std::time::Instant;
 
-/// Cycles across the window at the highest frequencies: few, for a few photons come that far.
+/// Cycles across the window at the highest frequencies: few, because few photons arrive.
 const CYCLES: f64 = 3.0;
-/// How many surfaces that scatter are told apart.
+/// Maximum number of scattering surfaces that are counted separately.
 const MAX_SCATTERERS: usize = 3;
-/// An object in the way is this share of the light as wide, at most and at least.
+/// Range of the width of an occluder, relative to that of the light.
 const WIDE: [f64; 2] = [0.02, 0.4];
 
-/// A plane, with what came of it.
+/// A plane, with its outcome.
 struct Tried {
     number: u64,
     scatterers: usize,
-    /// Whether the theory of light that several surfaces send on predicts it.
+    /// Whether it is predicted by the theory for several surfaces.
     by_paths: bool,
     ending: SmallEnding,
     seconds: f64,
 }
 
-/// Plants faults, or tries all scenes.
+/// Plants faults, or tests all scenes.
 pub(crate) fn several(options: &SmallOptions) -> io::Result<ReportSection> {
     if options.planted {
         return Ok(planted());
@@ -66,8 +66,7 @@ pub(crate) fn several(options: &SmallOptions) -> io::Result<ReportSection> {
     Ok(section(options, &tried?))
 }
 
-/// A scene whose central ray visits two surfaces or more, with one plane and, mostly, an object in
-/// its light.
+/// A scene whose central ray visits two or more surfaces, with one plane and usually an occluder.
 fn drawn(options: &SmallOptions, number: u64, folder: &Path) -> Option<Scene> {
     const TRIES: u64 = 40;
     let resolved = |file: &SceneFile| resolve("several", file.clone(), folder, u64::MAX).ok();
@@ -100,7 +99,7 @@ fn drawn(options: &SmallOptions, number: u64, folder: &Path) -> Option<Scene> {
     None
 }
 
-/// Surfaces that scatter light before the plane.
+/// The number of scattering surfaces before the plane.
 fn scatterers(scene: &Scene) -> usize {
     let legs = scene.path.legs[..=scene.planes[0].leg].iter();
     let hits = legs.filter_map(|leg| leg.leaves);

@@ -1,7 +1,7 @@
-//! Makes a scene smaller while the same is wrong with it.
+//! Reduction of a scene that keeps its fault.
 //!
-//! A scene is changed as the tree of values that it is: things are left out one at a time, and
-//! numbers made round. What is no scene any more does not fail in the same way, and is not taken.
+//! The scene is changed as a tree of values: elements are removed one at a time, and numbers
+//! rounded. An invalid scene does not have the same fault, and is not accepted.
 
 use super::judge::{SceneTrouble, persists};
 use super::run::Runner;
@@ -11,11 +11,11 @@ use serde_json::{Value, json};
 use std::io;
 use std::time::{Duration, Instant};
 
-/// Lists of which elements can be left out.
+/// Lists whose elements can be removed.
 const LISTS: [&str; 6] = [
     "planes", "blockers", "visits", "surfaces", "shapes", "Lobes",
 ];
-/// Fields that can be left out, or as if they were.
+/// Fields that can be removed or disabled.
 const OPTIONAL: [&str; 11] = [
     "y",
     "v",
@@ -29,7 +29,7 @@ const OPTIONAL: [&str; 11] = [
     "grating",
     "description",
 ];
-/// Words that are the plainest of their kind.
+/// Replacements of variants by the simplest of their kind.
 const PLAIN: [(&str, &str); 6] = [
     ("quantity", "Radiance"),
     ("orientation", "Orthogonal"),
@@ -39,7 +39,7 @@ const PLAIN: [(&str, &str); 6] = [
     ("form", "Plane"),
 ];
 
-/// The smallest scene found in this time.
+/// The smallest scene found in the given time.
 pub(super) fn shrink(
     runner: &Runner,
     file: &SceneFile,
@@ -52,7 +52,7 @@ pub(super) fn shrink(
     while begun.elapsed() < time {
         let candidates = candidates(&best);
         let Some(candidate) = candidates.get(next) else {
-            // A round without a change is the last one.
+            // A round without a change ends the search.
             if !taken {
                 break;
             }
@@ -71,7 +71,7 @@ pub(super) fn shrink(
     serde_json::from_value(best).map_err(io::Error::other)
 }
 
-/// Every smaller scene that is one step away, those that leave out most first.
+/// All scenes one step smaller, those with the largest removals first.
 fn candidates(tree: &Value) -> Vec<Value> {
     let mut found = Vec::new();
     let places = places(tree, String::new());
@@ -107,7 +107,7 @@ fn candidates(tree: &Value) -> Vec<Value> {
     found
 }
 
-/// Blends go with what they blend in.
+/// Removes blends together with the BRDFs they blend in.
 fn without_blends(tree: &Value, places: &[(String, &Value)]) -> Vec<Value> {
     let blends = places
         .iter()
@@ -119,7 +119,7 @@ fn without_blends(tree: &Value, places: &[(String, &Value)]) -> Vec<Value> {
     blends.map(without).collect()
 }
 
-/// All numbers with fewer digits, then one after the other.
+/// All numbers with fewer digits at once, then one at a time.
 fn rounder(tree: &Value, places: &[(String, &Value)]) -> Vec<Value> {
     let numbers = places
         .iter()
@@ -136,11 +136,11 @@ fn rounder(tree: &Value, places: &[(String, &Value)]) -> Vec<Value> {
     };
     let mut found: Vec<Value> = [2, 1].map(all).into_iter().filter(|t| t != tree).collect();
     for (place, x) in &numbers {
-        // What is put at 0 is put into the light.
+        // An object whose centre becomes 0 moves into the light.
         let moved = place.contains("/center/");
         let round = [0.0, 1.0].into_iter().filter(|_| !moved);
         for y in round.chain([short(*x, 0), short(*x, 1)]) {
-            // Each step must be one towards fewer digits, or there would be no end.
+            // Each step must reduce the number of digits, so that the search ends.
             if digits(y) < digits(*x) {
                 found.push(with(tree, place, json!(y)));
             }
@@ -153,7 +153,7 @@ fn short(x: f64, digits: usize) -> f64 {
     format!("{x:.digits$e}").parse().unwrap_or(x)
 }
 
-/// How long a number is to read; 0 is the shortest, then 1.
+/// The length of a number when written; 0 is the shortest, then 1.
 fn digits(x: f64) -> usize {
     match format!("{:e}", x.abs()).as_str() {
         "0e0" => 0,
@@ -162,7 +162,7 @@ fn digits(x: f64) -> usize {
     }
 }
 
-/// Every value of a tree, with its place.
+/// Every value of a tree, with its path.
 fn places(tree: &Value, at: String) -> Vec<(String, &Value)> {
     let mut found = vec![(at.clone(), tree)];
     match tree {
@@ -204,7 +204,7 @@ mod tests {
         let found = candidates(&tree);
         assert!(found.contains(&json!({"blockers": [], "planes": [{"name": "a"}]})));
         assert!(found.contains(&json!({"blockers": [{"pitch": 0.1}], "planes": [{"name": "a"}]})));
-        // The last plane stays.
+        // The last plane is kept.
         assert!(found.iter().all(|tree| tree["planes"][0]["name"] == "a"));
     }
 

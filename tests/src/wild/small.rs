@@ -1,5 +1,5 @@
-//! Small objects at random places in the light of random scenes: theory must either have them or
-//! not speak of the plane.
+//! Small objects at random positions in the light of random scenes: theory must either include them
+//! or not apply to the plane.
 
 use super::draw::SceneDraw;
 use super::run::text;
@@ -18,45 +18,45 @@ use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
-/// Which scenes are tried.
+/// Options of the tested scenes.
 #[derive(Debug, clap::Args)]
 pub(crate) struct SmallOptions {
-    /// Random scenes.
+    /// Number of random scenes.
     #[arg(long, default_value_t = 2000)]
     pub(super) scenes: u64,
-    /// Number of the first.
+    /// Index of the first scene.
     #[arg(long, default_value_t = 0)]
     pub(super) first: u64,
-    /// Another seed gives other scenes.
+    /// Seed of the random scenes.
     #[arg(long, default_value_t = 1)]
     pub(super) seed: u64,
-    /// Photons for each plane.
+    /// Photons per plane.
     #[arg(long, default_value_t = 10_000_000)]
     pub(super) photons: u64,
-    /// Only counts classes, and traces nothing.
+    /// Only count classes, and trace nothing.
     #[arg(long)]
     pub(super) classes: bool,
-    /// Only plants faults, where scenes have several surfaces.
+    /// Only plant faults, for scenes with several surfaces.
     #[arg(long)]
     pub(super) planted: bool,
-    /// Where scenes are kept whose prediction photons reject.
+    /// Folder for scenes whose prediction is rejected by photons.
     #[arg(long, default_value = "target/small")]
     out: PathBuf,
 }
 
-/// Seconds of one core that a prediction may take at most.
+/// Maximum seconds of one core for a prediction.
 const LONGEST_PREDICTION: f64 = 120.0;
-/// A disagreement must repeat with the second seed: one true plane in a hundred fails with one.
+/// A disagreement must repeat with the second seed: one correct plane in a hundred fails with one.
 const SEEDS: [u64; 2] = [1, 2];
-/// Tries to place an object.
+/// Maximum number of attempts to place an object.
 const TRIES: usize = 10;
 
-/// Radius of an object as a share of the light's width.
+/// Range of the radius of an object, relative to the light's width.
 const SMALL: [f64; 2] = [5e-3, 0.05];
-/// What stands in the light.
+/// The kinds of objects.
 const KINDS: [&str; 3] = ["a mask", "a black mesh", "a surface off the path"];
 
-/// A plane, with what came of it.
+/// A plane, with its outcome.
 struct TriedSmall {
     number: u64,
     kind: usize,
@@ -65,17 +65,17 @@ struct TriedSmall {
 
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum SmallEnding {
-    /// Theory does not speak, and names the object.
+    /// No theory applies, and the reason names the object.
     Named,
-    /// Theory does not speak for another reason.
+    /// No theory applies, for another reason.
     Other,
     /// The prediction would take too long.
     Skipped,
-    /// Photons judge the prediction.
+    /// The verdict of photons on the prediction.
     Judged(Class, Verdict),
 }
 
-/// Tries all scenes.
+/// Tests all scenes.
 pub(crate) fn small(options: &SmallOptions) -> io::Result<ReportSection> {
     let bar = progress(options.scenes, "scenes");
     let numbers = options.first..options.first + options.scenes;
@@ -103,7 +103,7 @@ pub(crate) fn small(options: &SmallOptions) -> io::Result<ReportSection> {
     Ok(section(options, &tried?))
 }
 
-/// Keeps a scene and the files it names.
+/// Saves a scene and its files.
 pub(super) fn keep(
     options: &SmallOptions,
     number: u64,
@@ -118,7 +118,7 @@ pub(super) fn keep(
     fs::write(folder.join("scene.ron"), text(&scene.file)?)
 }
 
-/// A scene with one plane and a small object in its light, of one of [`KINDS`].
+/// A scene with one plane and a small object of one of [`KINDS`] in its light.
 fn drawn(options: &SmallOptions, number: u64, folder: &Path) -> Option<(Scene, usize)> {
     let mut draw = SceneDraw::new(options.seed ^ 0x5311, number, folder);
     let mut file = scene(options.seed, number, options.photons, folder).ok()?;
@@ -140,11 +140,11 @@ fn drawn(options: &SmallOptions, number: u64, folder: &Path) -> Option<(Scene, u
     None
 }
 
-/// Cycles across the window at the highest frequencies: of a shadow an eighth as wide.
+/// Cycles across the window at the highest frequencies, enough for a shadow an eighth as wide.
 const CYCLES: f64 = 8.0;
 
-/// Gives a scene a window with edges, so that a small object at its border is not dim, and
-/// frequencies up to so many cycles across it.
+/// Gives a scene a window with sharp edges, so that a small object near its border has full weight,
+/// and frequencies up to `cycles` across it.
 pub(super) fn sharpen(file: &mut SceneFile, cycles: f64) {
     let WindowFile { x, y, u, v } = &mut file.window;
     let halves = [*x, y.unwrap_or(*x), *u, v.unwrap_or(*u)].map(|profile| profile.half_width());
@@ -161,7 +161,7 @@ pub(super) fn sharpen(file: &mut SceneFile, cycles: f64) {
     };
 }
 
-/// A plane across a leg, mostly the last.
+/// A plane across a leg, usually the last.
 pub(super) fn plane(draw: &mut SceneDraw, scene: &Scene) -> PlaneFile {
     let legs = &scene.path.legs;
     let last = legs.len() - 1;
@@ -182,7 +182,7 @@ pub(super) fn plane(draw: &mut SceneDraw, scene: &Scene) -> PlaneFile {
     }
 }
 
-/// A coordinate of the window as a share of it: anywhere, or near its edge.
+/// A relative coordinate in the window: anywhere, or near its edge.
 fn share(draw: &mut SceneDraw) -> f64 {
     if draw.one_in(2) {
         draw.between(-1.0, 1.0)
@@ -192,8 +192,8 @@ fn share(draw: &mut SceneDraw) -> f64 {
     }
 }
 
-/// A point that a ray of the window passes on the leg of the plane, in the frame at the light, and
-/// how wide light is there.
+/// A point on a ray of the window on the leg of the plane, in the frame at the light, and the width
+/// of the light there.
 fn place(draw: &mut SceneDraw, scene: &Scene, plane: &VirtualPlane) -> (DVec3, f64) {
     let window = &plane.window;
     let profiles = [window.x, window.y, window.u, window.v];
@@ -205,7 +205,7 @@ fn place(draw: &mut SceneDraw, scene: &Scene, plane: &VirtualPlane) -> (DVec3, f
     (frame.to_world(local), wide)
 }
 
-/// Puts an object into the light, its radius a share of the light's width; returns its kind.
+/// Adds an object in the light, with a radius relative to the light's width; returns its kind.
 pub(super) fn object(
     draw: &mut SceneDraw,
     scene: &Scene,
@@ -263,7 +263,7 @@ fn towards_light(scene: &Scene) -> DVec3 {
     -scene.path.frame.decompose(&plane.frame).d
 }
 
-/// What theory says of the plane, and photons of that.
+/// The outcome of theory for the plane, with the verdict of photons on it.
 pub(super) fn ending(scene: &Scene, classes: bool) -> SmallEnding {
     let plane = &scene.planes[0];
     let theory = Applicability::new(scene, plane);

@@ -1,10 +1,10 @@
-//! A scene moved and turned so that its central ray begins at the origin and runs along z.
+//! Moves and rotates a scene so that its central ray begins at the origin along z.
 
 use etendue_field::Frame;
 use glam::DVec3;
 use serde_json::{Value, json};
 
-/// Fields that hold a direction of the world.
+/// Fields that hold a world direction.
 const DIRECTIONS: [&str; 7] = [
     "facing",
     "along",
@@ -15,9 +15,9 @@ const DIRECTIONS: [&str; 7] = [
     "front",
 ];
 
-/// The same scene in the frame at its light; `None` where it is in it already.
+/// The scene in the frame at its light; `None` if it is already in it.
 ///
-/// Meshes are not turned: whether such a scene is still the same, a run of it will tell.
+/// Meshes are not rotated: a run must show whether such a scene still has its fault.
 pub(super) fn straightened(tree: &Value) -> Option<Value> {
     let vector = |value: &Value| -> Option<DVec3> { serde_json::from_value(value.clone()).ok() };
     let light = tree.get("light")?.as_object()?.values().next()?;
@@ -57,7 +57,7 @@ fn turn(tree: &mut Value, frame: &Frame) {
     }
 }
 
-/// Without what rounding has left.
+/// Removes rounding errors.
 fn tidy(v: DVec3) -> [f64; 3] {
     let largest = v.abs().max_element();
     v.to_array().map(|x| {

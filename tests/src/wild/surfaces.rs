@@ -1,4 +1,4 @@
-//! Surfaces drawn at random, for the central ray to visit or to pass.
+//! Random surfaces, on the central ray or beside it.
 
 use super::draw::SceneDraw;
 use super::pictures::sheet;
@@ -8,7 +8,7 @@ use etendue_scene::{EventFile, FormFile, MeshSource, SurfaceFile};
 use glam::DVec3;
 use std::io;
 
-/// A surface across a leg of the path, so far along it.
+/// A surface across a leg of the path, at this distance along it.
 pub(super) fn surface(
     draw: &mut SceneDraw,
     name: String,
@@ -24,7 +24,7 @@ pub(super) fn surface(
     }
 }
 
-/// A normal towards where light comes from, straight or oblique, grazing now and then.
+/// A normal facing the arriving light, at normal or oblique incidence, occasionally grazing.
 fn facing(draw: &mut SceneDraw, leg: &Frame) -> DVec3 {
     if draw.one_in(3) {
         return -leg.d;
@@ -58,7 +58,7 @@ fn rectangle(
     on_axis: DVec3,
     normal: DVec3,
 ) -> SurfaceFile {
-    // Across the first leg it need not say where it faces.
+    // Across the first leg the file may omit the facing direction.
     let plain = leg.d == DVec3::Z && draw.one_in(2);
     SurfaceFile::Rectangle {
         name,
@@ -178,7 +178,7 @@ fn form(draw: &mut SceneDraw) -> FormFile {
     }
 }
 
-/// A small rectangle beside the first leg: the path does not visit it, and it stops light.
+/// A small rectangle beside the first leg: the path does not visit it, but it blocks light.
 pub(super) fn passed(draw: &mut SceneDraw, name: String, first: f64) -> SurfaceFile {
     let size = [(); 2].map(|()| draw.unit * draw.between(0.05, 0.3));
     let gap = draw.unit * draw.between(0.01, 0.2);

@@ -1,4 +1,4 @@
-//! What all scenes come to, as a table.
+//! The outcomes of all scenes, as a table.
 
 use super::judge::{Culprit, JudgedScene, SceneTrouble};
 use crate::report::{Check, ReportSection, Row};
@@ -14,7 +14,7 @@ pub(super) struct Tally {
     runs: usize,
     fails: usize,
     chance: usize,
-    /// Scenes that the generator could not make, by their numbers.
+    /// Indices of scenes that could not be generated.
     undrawn: Vec<u64>,
     panics: Vec<u64>,
     hangs: Vec<u64>,
@@ -22,7 +22,7 @@ pub(super) struct Tally {
     wrong: BTreeMap<Culprit, Vec<u64>>,
 }
 
-/// Share of true scenes that a run rejects.
+/// False rejection rate over the scenes of a run.
 const ALPHA: f64 = 0.01;
 
 impl Tally {

@@ -1,4 +1,5 @@
-//! The house as ARCHITECTURE.md has it: which crate may use which, no circles of modules, files that say what they hold.
+//! Checks of the rules in ARCHITECTURE.md: which crate may use which, no cycles of modules, a first
+//! sentence in each file that describes it.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -10,7 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Each crate with those that it may use.
+/// Each crate with the crates it may use.
 const MAY_USE: &[(&str, &[&str])] = &[
     ("field", &[]),
     ("transform", &["field"]),
@@ -105,10 +106,10 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// Lines of a file above which it needs a reason.
+/// Number of lines above which a file needs a reason.
 const MAX_LINES: usize = 500;
 
-/// Longer files, each with why it is not two.
+/// Longer files, each with the reason not to split it.
 const LONG_FILES: &[(&str, &str)] = &[
     (
         "crates/compare/src/plane.rs",
@@ -136,7 +137,7 @@ fn crates() -> Vec<String> {
     names
 }
 
-/// The crates of the workspace that a manifest names as dependencies, those of tests left out.
+/// The workspace crates among the dependencies of a manifest, without those of tests.
 fn uses(manifest: &str) -> BTreeSet<String> {
     let own = manifest
         .split("\n[dependencies]")
@@ -150,7 +151,7 @@ fn uses(manifest: &str) -> BTreeSet<String> {
         .collect()
 }
 
-/// What of `found` may not be there.
+/// The forbidden elements of `found`.
 fn forbidden(name: &str, found: &BTreeSet<String>) -> Vec<String> {
     let allowed = MAY_USE.iter().find(|(known, _)| *known == name);
     let allowed = allowed.map_or(&[] as &[&str], |(_, allowed)| *allowed);
@@ -172,7 +173,7 @@ fn crates_use_those_below_them() {
         let forbidden = forbidden(&name, &found);
         assert!(forbidden.is_empty(), "{name} may not use {forbidden:?}");
     }
-    // No row is below one that it uses.
+    // Each row comes after those it uses.
     for (i, (name, uses)) in MAY_USE.iter().enumerate() {
         let place =
             |other: &&&str| MAY_USE.iter().position(|(known, _)| known == *other) >= Some(i);
@@ -232,7 +233,7 @@ fn a_planted_circle_is_found() {
         ]),
         1
     );
-    // Through what the root exports again, and in nested groups.
+    // Through re-exports of the root, and in nested groups.
     assert_eq!(
         of(&[
             root,
@@ -278,7 +279,7 @@ fn a_planted_circle_is_found() {
     );
 }
 
-/// Files of the workspace's sources with their text.
+/// The source files of the workspace with their text.
 fn files() -> BTreeMap<String, String> {
     fn collect(folder: &Path, found: &mut BTreeMap<String, String>) {
         for entry in fs::read_dir(folder).unwrap() {
@@ -306,7 +307,7 @@ fn files() -> BTreeMap<String, String> {
     found
 }
 
-/// Whether a text opens with a sentence on what it holds.
+/// Whether a text begins with a sentence that describes it.
 fn has_head(text: &str) -> bool {
     let first = text.lines().next().unwrap_or_default();
     first

@@ -1,22 +1,22 @@
-//! The modules of a crate, and which of them use which, read from their text.
+//! The modules of a crate and their dependencies, read from their text.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
-/// The names from the root of a crate to a module; empty for the root.
+/// The path of names from the root of a crate to a module; empty for the root.
 pub(crate) type Module = Vec<String>;
 
 /// The modules of a crate with their text.
 pub(crate) type Modules = BTreeMap<Module, String>;
 
-/// What a name of a module stands for: the parts of the path that it was imported by.
+/// The imported names of a module, each with the path it was imported by.
 type Imports = BTreeMap<String, Vec<String>>;
 
-/// A re-export may lead to another one; more than this are a circle of their own.
+/// Maximum length of a chain of re-exports; more is a cycle.
 const MAX_REEXPORTS: usize = 8;
 
-/// The modules below a folder with sources. Of each the part that is compiled outside of tests, without comments.
+/// The modules below a source folder, each without comments and code compiled only for tests.
 pub(crate) fn modules(src: &Path) -> Modules {
     let mut found = Modules::new();
     collect(src, &Module::new(), &mut found);
@@ -44,7 +44,7 @@ fn collect(folder: &Path, parent: &Module, found: &mut Modules) {
     }
 }
 
-/// A text without tests, comments and what stands in quotes.
+/// A text without tests, comments and string contents.
 pub(crate) fn code(text: &str) -> String {
     let end = text.find("\n#[cfg(test)]\n").unwrap_or(text.len());
     let lines = text[..end].lines();
@@ -54,7 +54,7 @@ pub(crate) fn code(text: &str) -> String {
     outside.collect::<Vec<_>>().join("\"\"")
 }
 
-/// The circles of modules that use each other, each in order of names.
+/// The cycles of modules that use each other, each sorted by name.
 pub(crate) fn circles(modules: &Modules) -> Vec<BTreeSet<String>> {
     let names: Vec<&Module> = modules.keys().collect();
     let uses: BTreeMap<&Module, BTreeSet<Module>> = names
@@ -85,7 +85,7 @@ fn shown(module: &Module) -> String {
     }
 }
 
-/// All that a module leads to, over any number of others.
+/// All modules reachable from a module.
 fn reached<'a>(
     uses: &'a BTreeMap<&'a Module, BTreeSet<Module>>,
     from: &Module,
@@ -100,7 +100,7 @@ fn reached<'a>(
     reached
 }
 
-/// The other modules that a module uses. What it only exports again does not count.
+/// The other modules that a module uses. Mere re-exports do not count.
 fn used(modules: &Modules, module: &Module) -> BTreeSet<Module> {
     let text = &modules[module];
     let (imports, body) = split(text);
@@ -114,7 +114,7 @@ fn used(modules: &Modules, module: &Module) -> BTreeSet<Module> {
     resolved.filter(|found| found != module).collect()
 }
 
-/// Imports of a text, each with whether it is exported again, and the rest.
+/// The imports of a text, each with a flag for re-exports, and the remaining text.
 fn split(text: &str) -> (Vec<(bool, Vec<String>)>, String) {
     let mut imports = Vec::new();
     let mut rest = String::new();
@@ -133,7 +133,7 @@ fn split(text: &str) -> (Vec<(bool, Vec<String>)>, String) {
     (imports, rest)
 }
 
-/// Where a `use` begins.
+/// The position of the first `use`.
 fn find_use(text: &str) -> Option<usize> {
     let starts = text.match_indices("use ").map(|(at, _)| at);
     let is_word = |at: &usize| {
@@ -147,7 +147,7 @@ fn find_use(text: &str) -> Option<usize> {
     })
 }
 
-/// The paths of a tree of imports, such as `a::{b, c::d as e}`; the last part is the name that it has here.
+/// The paths of an import tree, such as `a::{b, c::d as e}`; the last part is the local name.
 fn expanded(tree: &str) -> Vec<Vec<String>> {
     let tree = tree.trim();
     let Some(open) = tree.find('{') else {
@@ -176,7 +176,7 @@ fn expanded(tree: &str) -> Vec<Vec<String>> {
         .collect()
 }
 
-/// Paths in the code itself: those that begin at the crate, at a parent, or at a module below.
+/// Paths in the code itself: those that begin at the crate, at a parent, or at a child module.
 fn paths_of(body: &str) -> Vec<Vec<String>> {
     let is_part = |c: char| c.is_alphanumeric() || c == '_' || c == ':';
     let words = body
@@ -188,7 +188,7 @@ fn paths_of(body: &str) -> Vec<Vec<String>> {
         .collect()
 }
 
-/// A path from the root of the crate; `None` for one of another crate.
+/// The path from the root of the crate; `None` for another crate.
 fn absolute(modules: &Modules, module: &Module, path: &[String]) -> Option<Module> {
     let mut base = module.clone();
     let mut path = path;
@@ -213,7 +213,7 @@ fn absolute(modules: &Modules, module: &Module, path: &[String]) -> Option<Modul
     Some(base)
 }
 
-/// The module in which a path ends, through what modules export again.
+/// The module in which a path ends, following re-exports.
 fn resolve(modules: &Modules, path: &[String], depth: usize) -> Option<Module> {
     let longest = (0..=path.len()).rev();
     let known = longest

@@ -1,4 +1,4 @@
-//! Names of types: one meaning each, or a reason why a name has two.
+//! Checks that each type name has one meaning, or a reason for two.
 
 use super::files;
 use super::modules::code;
@@ -29,11 +29,11 @@ const SHARED_NAMES: &[(&str, &str)] = &[
         "a bitmap of a scene, of a camera, and of a figure",
     ),
 ];
-/// Files whose types may be called as those elsewhere: tests, the second implementation, which shares nothing with the first, and
-/// the binding, which has Python's names.
+/// Files whose types may share names with others: tests, the second implementation, which is
+/// independent of the first, and the binding, which uses Python's names.
 const APART: [&str; 3] = ["/src/tests/", "tests/src/second/", "python/src/"];
 
-/// The types that a text defines outside of its tests.
+/// The types defined by a text outside its tests.
 fn types(text: &str) -> Vec<String> {
     let text = code(text);
     let names = text.lines().filter_map(|line| {
@@ -52,7 +52,7 @@ fn types(text: &str) -> Vec<String> {
     names.collect()
 }
 
-/// The names of several types, with the files that define them.
+/// The names shared by several types, with the files that define them.
 fn shared<'a>(
     files: impl IntoIterator<Item = (&'a String, &'a String)>,
 ) -> BTreeMap<String, Vec<&'a str>> {

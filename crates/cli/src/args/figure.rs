@@ -6,7 +6,7 @@ use clap::builder::TypedValueParser;
 use etendue_paper::Quality;
 use std::path::PathBuf;
 
-/// How much work may go into a figure.
+/// Effort levels of a figure.
 fn qualities() -> impl TypedValueParser<Value = Quality> {
     let named = |quality: Quality, help| (quality, quality.name(), help);
     one_of([
@@ -63,7 +63,8 @@ pub(crate) struct FigureArgs {
     #[arg(long, value_name = "PATH=VALUE", value_parser = assignment)]
     pub(crate) set: Vec<(String, String)>,
 
-    /// The plane at which scene files are shown; of one scene file, it alone [default: of several the last, of one all]
+    /// Plane at which scene files are shown; with one scene file, only that plane [default: with
+    /// several the last, with one all]
     #[arg(long, value_name = "NAME")]
     pub(crate) plane: Option<String>,
 
@@ -71,13 +72,14 @@ pub(crate) struct FigureArgs {
     #[arg(long, value_name = "DIR", default_value = "results/figures")]
     pub(crate) out: PathBuf,
 
-    /// Looks, in RON; each field may be left out: (titles: false, scene: false, verdicts: false, width: 3.33,
-    /// floor: -40, palette: Viridis). Titles go with their notes; the scene is the drawing above its planes; width is
-    /// that of the page in inches, 3.3 to 7; floor that of spectra in dB; palettes are Inferno, Magma, Viridis and Cividis
+    /// Style, in RON; each field may be left out: (titles: false, scene: false, verdicts: false,
+    /// width: 3.33, floor: -40, palette: Viridis). titles includes the notes; scene is the drawing
+    /// above the planes; width is the page width in inches, 3.3 to 7; floor is the lowest level of
+    /// spectra in dB; palettes are Inferno, Magma, Viridis and Cividis
     #[arg(long, value_name = "FILE")]
     pub(crate) style: Option<PathBuf>,
 
-    /// How much work goes into it
+    /// How much work to put into the figure
     #[arg(long, value_name = "QUALITY", default_value = Quality::default().name(), value_parser = qualities())]
     pub(crate) quality: Quality,
 

@@ -16,11 +16,11 @@ The first bytes of FILE determine its format; the ending of the output file dete
   .npy              f64 [rays, 8]: x, y, z (m), kx, ky, kz, power, wavelength (m; NaN where it is not known)
 A note lists what the other format cannot hold. Copies in the same format keep everything. docs/rays.md has the units.")]
 pub(crate) struct RaysArgs {
-    /// Ray file: IES TM-25, MCPL (also in gzip) or NPY
+    /// Ray file: IES TM-25, MCPL (also gzipped) or NPY
     #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,
 
-    /// Write the rays into this file too, in the format of its ending
+    /// Also write the rays into this file, in the format of its extension
     #[arg(long, value_name = "OTHER")]
     pub(crate) out: Option<PathBuf>,
 

@@ -45,15 +45,15 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "TIME", value_parser = humantime::parse_duration, conflicts_with = "target_error")]
     pub(crate) time: Option<Duration>,
 
-    /// What else to keep
+    /// Additional data to keep
     #[arg(long, value_name = "WHAT", value_delimiter = ',', value_parser = saves())]
     pub(crate) save: Vec<Save>,
 
-    /// A small folder for an archive: without CSV and SVG beside the pictures, and without the explorer
+    /// Write a small folder for an archive: no CSV and SVG beside the pictures, and no explorer
     #[arg(long)]
     pub(crate) compact: bool,
 
-    /// Succeed when measured and predicted disagree, fail when they agree
+    /// Succeed if measurement and prediction disagree, fail if they agree
     #[arg(long, value_name = "OUTCOME")]
     pub(crate) expect: Option<Expect>,
 
@@ -151,7 +151,7 @@ pub(crate) struct CompareArgs {
     #[command(flatten)]
     pub(crate) out: StageFolderArgs,
 
-    /// Succeed when measured and predicted disagree, fail when they agree
+    /// Succeed if measurement and prediction disagree, fail if they agree
     #[arg(long, value_name = "OUTCOME")]
     pub(crate) expect: Option<Expect>,
 
@@ -247,14 +247,14 @@ pub(crate) struct SchemaArgs {
     pub(crate) page: bool,
 }
 
-/// What `--to` knows.
+/// The values of `--to`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Program {
     /// Mitsuba 3: scene.xml, PLY files, and planes.json
     Mitsuba,
 }
 
-/// What `--save` keeps.
+/// The values of `--save`.
 fn saves() -> impl TypedValueParser<Value = Save> {
     let named = |save: Save, help| (save, save.name(), help);
     one_of([
@@ -277,14 +277,14 @@ fn saves() -> impl TypedValueParser<Value = Save> {
     ])
 }
 
-/// What `--expect` may expect.
+/// The values of `--expect`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Expect {
     /// Photons must agree with the exact predictions, and a first-order chain must have a wrong map.
     Disagreement,
 }
 
-/// Batches A..B, at least one.
+/// Parses batches A..B, at least one.
 fn range(text: &str) -> Result<Range<u32>, String> {
     let ends = text.split_once("..").map(|(a, b)| (a.parse(), b.parse()));
     match ends {

@@ -1,4 +1,4 @@
-//! Arguments that several commands have.
+//! Arguments shared by several commands.
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -8,10 +8,10 @@ use etendue_scene::RunFile;
 use etendue_store::Method;
 use std::path::{Path, PathBuf};
 
-/// How a scene is measured, where it is not as the scene says.
+/// Overrides of the scene's measurement settings.
 #[derive(Debug, Args)]
 pub(crate) struct PhotonArgs {
-    /// Photons to emit, instead of the scene's
+    /// Number of photons to emit, instead of the scene's
     #[arg(long, value_name = "N", value_parser = whole_number, allow_hyphen_values = true)]
     pub(crate) photons: Option<u64>,
 
@@ -19,12 +19,12 @@ pub(crate) struct PhotonArgs {
     #[arg(long, value_name = "N")]
     pub(crate) seed: Option<u64>,
 
-    /// How light is measured
+    /// Measurement method
     #[arg(long, value_name = "METHOD", default_value = "photons", value_parser = methods())]
     pub(crate) method: Method,
 }
 
-/// Takes one of some values by its name; each has a line of help.
+/// Parses one of several named values, each with a line of help.
 pub(super) fn one_of<T: Copy + Send + Sync + 'static, const N: usize>(
     all: [(T, &'static str, &'static str); N],
 ) -> impl TypedValueParser<Value = T> {
@@ -36,7 +36,7 @@ pub(super) fn one_of<T: Copy + Send + Sync + 'static, const N: usize>(
     })
 }
 
-/// Takes one of some values by its name.
+/// Parses one of several named values.
 pub(super) fn one_named<T: Copy + Send + Sync + 'static, const N: usize>(
     all: [(&'static str, T); N],
 ) -> impl TypedValueParser<Value = T> {
@@ -46,7 +46,7 @@ pub(super) fn one_named<T: Copy + Send + Sync + 'static, const N: usize>(
     })
 }
 
-/// The methods that a user may name.
+/// The methods a user may choose.
 pub(super) fn methods() -> impl TypedValueParser<Value = Method> {
     let named = |method: Method, help| (method, method.name(), help);
     one_of([
@@ -59,7 +59,7 @@ pub(super) fn methods() -> impl TypedValueParser<Value = Method> {
 }
 
 impl PhotonArgs {
-    /// Overrides what a scene says.
+    /// Overrides the settings of a scene.
     pub(crate) fn set(&self, run: &mut RunFile) {
         run.photons = self.photons.unwrap_or(run.photons);
         run.seed = self.seed.unwrap_or(run.seed);
@@ -68,7 +68,7 @@ impl PhotonArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct ForceArgs {
-    /// Replace files that etendue did not write, or that were changed since; each is named
+    /// Replace files that etendue did not write or that were changed since; each is named
     #[arg(long)]
     pub(crate) force: bool,
 }
@@ -80,7 +80,7 @@ pub(crate) struct ThreadArgs {
     pub(crate) count: Option<u16>,
 }
 
-/// How a long command works.
+/// Options of long commands.
 #[derive(Debug, Args)]
 pub(crate) struct WorkArgs {
     #[command(flatten)]
@@ -94,23 +94,23 @@ pub(crate) struct WorkArgs {
     pub(crate) quiet: bool,
 }
 
-/// Where the results of a scene go.
+/// The folder for the results of a scene.
 #[derive(Debug, Args)]
 pub(crate) struct FolderArgs {
-    /// Folder for the results [default: below out, named after the scene]
+    /// Folder for the results [default: in out, named after the scene]
     #[arg(long = "out", value_name = "DIR")]
     pub(crate) folder: Option<PathBuf>,
 }
 
 impl FolderArgs {
-    /// The folder that is asked for, or else `out/NAME`.
+    /// The requested folder, or else `out/NAME`.
     pub(crate) fn or_named(&self, name: impl AsRef<Path>) -> PathBuf {
         let named = || Path::new("out").join(name);
         self.folder.clone().unwrap_or_else(named)
     }
 }
 
-/// Where a stage of `run` leaves its results.
+/// The folder for the results of a stage of `run`.
 #[derive(Debug, Args)]
 pub(crate) struct StageFolderArgs {
     /// Folder for the results
@@ -141,10 +141,10 @@ pub(super) fn assignment(text: &str) -> Result<(String, String), String> {
     Ok((path.trim().to_owned(), value.trim().to_owned()))
 }
 
-/// Shares without a unit are below this: a larger number is likely a percentage.
+/// The largest share without a unit: a larger number is probably meant as a percentage.
 const MAX_PLAIN_SHARE: f64 = 0.05;
 
-/// A share in (0, 1] in per cent, or a small one as a number.
+/// Parses a share in (0, 1], in per cent or, if small, as a number.
 pub(super) fn share(text: &str) -> Result<f64, String> {
     let fault = || "must be a share of the spectrum, such as 0.1% or 0.001".to_owned();
     let parsed = |number: &str| number.trim().parse().ok().filter(|x: &f64| *x > 0.0);
@@ -162,7 +162,7 @@ pub(super) fn share(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A whole number, also as 10_000_000, 1e7 or 2^23.
+/// Parses a whole number, also as 10_000_000, 1e7 or 2^23.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

@@ -25,17 +25,19 @@ pub(crate) struct SweepArgs {
     #[arg(value_name = "SCENE.ron")]
     pub(crate) path: PathBuf,
 
-    /// Set a field to a value, to N values from A to B (A..B:N; A..B:Nlog by equal factors) or to those of
-    /// a list (A,B,C); may be repeated
+    /// Set a field to a value, to N values from A to B (A..B:N; A..B:Nlog for logarithmic spacing)
+    /// or to those of a list (A,B,C); may be repeated
     #[arg(long, value_name = "PATH=VALUES", value_parser = setting)]
     pub(crate) set: Vec<Setting>,
 
-    /// All points have the seed of the scene or of --seed: differences between points have less noise, and their errors are not
-    /// independent. Otherwise each point has a seed of its own, made from that seed and its values
+    /// Use the seed of the scene or of --seed at all points: differences between points have less
+    /// noise, but their errors are not independent. Otherwise each point has its own seed, derived
+    /// from that seed and its values
     #[arg(long)]
     pub(crate) common_seed: bool,
 
-    /// Several fields take their values in step, instead of in all combinations; each must have as many
+    /// Vary several fields in step, instead of in all combinations; each must have the same number
+    /// of values
     #[arg(long)]
     pub(crate) together: bool,
 
@@ -50,7 +52,7 @@ pub(crate) struct SweepArgs {
 }
 
 impl SweepArgs {
-    /// The sweep that is asked for.
+    /// The requested sweep.
     pub(crate) fn request(&self) -> SweepRequest {
         SweepRequest {
             scene: SceneSource::file(&self.path, &[]),
@@ -84,16 +86,17 @@ pub(crate) struct BandwidthArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
 
-    /// Trace the scene and measure the bandwidth; beside it stands that of the exact prediction
+    /// Also trace the scene and measure the bandwidth; that of the exact prediction is shown beside
+    /// it
     #[arg(long)]
     pub(crate) measure: bool,
 
-    /// Set a field to N values from A to B (A..B:N; A..B:Nlog by equal factors) or to those of a list (A,B,C);
-    /// may be repeated
+    /// Set a field to N values from A to B (A..B:N; A..B:Nlog for logarithmic spacing) or to those
+    /// of a list (A,B,C); may be repeated
     #[arg(long, value_name = "PATH=VALUES", value_parser = sweep)]
     pub(crate) sweep: Vec<Sweep>,
 
-    /// Write the table into this file too, with all digits
+    /// Also write the table into this file, with all digits
     #[arg(long, value_name = "FILE")]
     pub(crate) csv: Option<PathBuf>,
 

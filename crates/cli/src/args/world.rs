@@ -1,4 +1,4 @@
-//! Arguments of commands that take scenes of other programs.
+//! Arguments of commands that read scenes of other programs.
 
 use super::shared::{FolderArgs, WorkArgs, assignment, one_named, whole_number};
 use clap::Args;
@@ -12,7 +12,7 @@ use glam::DVec3;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
-/// A whole number in a range.
+/// Parses a whole number in a range.
 fn within<T: TryFrom<u64> + Clone + Send + Sync>(
     range: RangeInclusive<u64>,
 ) -> RangedU64ValueParser<T>
@@ -36,15 +36,16 @@ pub(crate) struct WorldArgs {
     #[arg(long, value_name = "CHANNEL", default_value = "luminance", value_parser = one_named(Color::ALL))]
     pub(crate) color: Color,
 
-    /// Give a parameter of the file, such as Mitsuba's $res, a value; may be repeated
+    /// Set a parameter of the file, such as Mitsuba's $res; may be repeated
     #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
     pub(crate) set: Vec<(String, String)>,
 
-    /// Most surfaces that light meets between a source and the camera, instead of the file's: 0 shows sources, 1 adds direct light
+    /// Maximum number of surfaces between a source and the camera, instead of the file's: 0 shows
+    /// sources, 1 adds direct light
     #[arg(long, value_name = "N")]
     pub(crate) bounces: Option<u32>,
 
-    /// Add light of the same radiance from everywhere, W/(m² sr); always there where it is given
+    /// Add uniform light of this radiance from all directions, W/(m² sr); it is never left out
     #[arg(long, value_name = "RADIANCE", value_parser = radiance)]
     pub(crate) sky: Option<f64>,
 
@@ -52,22 +53,23 @@ pub(crate) struct WorldArgs {
     pub(crate) view: ViewArgs,
 }
 
-/// A camera that the scene need not have: named `command`, and the first.
+/// A camera from the command line, independent of the scene: it is named `command` and becomes the
+/// first.
 #[derive(Debug, Args)]
 pub(crate) struct ViewArgs {
     /// Put a camera of 512 × 512 pixels here, in coordinates of the scene
     #[arg(long, value_name = "X,Y,Z", value_parser = point, requires = "look_at", allow_hyphen_values = true)]
     pub(crate) look_from: Option<DVec3>,
 
-    /// What is in the middle of its picture
+    /// Point at the centre of the picture
     #[arg(long, value_name = "X,Y,Z", value_parser = point, requires = "look_from", allow_hyphen_values = true)]
     pub(crate) look_at: Option<DVec3>,
 
-    /// What is up in its picture
+    /// Up direction of the picture
     #[arg(long, value_name = "X,Y,Z", value_parser = point, requires = "look_from", default_value = "0,1,0", allow_hyphen_values = true)]
     pub(crate) up: DVec3,
 
-    /// Its angle from side to side, degrees
+    /// Horizontal angle of view, degrees
     #[arg(long, value_name = "DEG", value_parser = angle, requires = "look_from", default_value_t = Viewpoint::FOV)]
     pub(crate) fov: f64,
 }
@@ -99,7 +101,7 @@ fn radiance(text: &str) -> Result<f64, String> {
 }
 
 impl WorldArgs {
-    /// The scene that is named.
+    /// The requested scene.
     pub(crate) fn source(&self) -> WorldSource {
         let ViewArgs { up, fov, .. } = self.view;
         let ends = self.view.look_from.zip(self.view.look_at);
@@ -118,7 +120,7 @@ impl WorldArgs {
 }
 
 impl CameraArgs {
-    /// The camera that is asked for.
+    /// The requested camera.
     pub(crate) fn choice(&self) -> CameraChoice {
         CameraChoice {
             name: self.name.clone(),
@@ -128,7 +130,7 @@ impl CameraArgs {
 }
 
 impl RenderArgs {
-    /// The picture that is asked for.
+    /// The requested picture.
     pub(crate) fn request(&self) -> PictureRequest {
         PictureRequest {
             source: self.scene.source(),
@@ -148,7 +150,7 @@ impl RenderArgs {
     }
 }
 
-/// How samples of a picture are spent; `None` for a reference.
+/// How the samples of a picture are distributed; `None` for a reference.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RenderMethod(Option<SampleMethod>);
 
@@ -194,28 +196,31 @@ pub(crate) struct RenderArgs {
     #[command(flatten)]
     pub(crate) camera: CameraArgs,
 
-    /// How samples are spent: all over (reference), or few shading samples where the method puts them [default: reference, or predicted
-    /// with --shading-samples]
+    /// Distribution of samples: everywhere (reference), or few shading samples where the method
+    /// puts them [default: reference, or predicted with --shading-samples]
     #[arg(long, value_name = "METHOD", value_parser = one_named(PictureRequest::METHODS.map(|(name, method)| (name, RenderMethod(method)))))]
     pub(crate) method: Option<RenderMethod>,
 
-    /// Paths for each pixel of a reference, at least 2
+    /// Paths per pixel of a reference, at least 2
     #[arg(long, value_name = "N", default_value_t = PictureRequest::SAMPLES, value_parser = within::<u32>(ranges::SAMPLES))]
     pub(crate) samples: u32,
 
-    /// Shading samples of the whole picture, for all methods but reference [default: one for each 20 pixels]
+    /// Shading samples in the whole picture, for all methods but reference [default: one for each
+    /// 20 pixels]
     #[arg(long, value_name = "N", value_parser = within::<u32>(ranges::SHADING_SAMPLES))]
     pub(crate) shading_samples: Option<u32>,
 
-    /// Paths of each shading sample
+    /// Paths per shading sample
     #[arg(long, value_name = "N", default_value_t = PictureRequest::PATHS, value_parser = within::<u32>(ranges::PATHS))]
     pub(crate) paths: u32,
 
-    /// Rays of each point by which the distance of blockers is found, as many again to lights; the paper has 100
+    /// Rays per point to find the distance of blockers, and as many again to lights; the paper uses
+    /// 100
     #[arg(long, value_name = "N", default_value_t = PictureRequest::BLOCKER_RAYS, value_parser = within::<u32>(ranges::BLOCKER_RAYS))]
     pub(crate) blocker_rays: u32,
 
-    /// Samples as dense along all directions, as in the paper; without it denser along the direction in which light changes faster
+    /// Use isotropic sample densities, as in the paper; otherwise they are denser along the
+    /// direction in which light changes faster
     #[arg(long)]
     pub(crate) isotropic: bool,
 
@@ -254,11 +259,12 @@ pub(crate) struct ProbeArgs {
     #[arg(long, value_name = "X,Y", value_parser = pixel, required_unless_present = "map")]
     pub(crate) pixel: Option<[usize; 2]>,
 
-    /// Instead of one pixel, the bandwidths at the camera for as many as this, evenly over the picture: by rays traced back alone
+    /// Instead of one pixel, compute the bandwidths at the camera for this many pixels, evenly over
+    /// the picture; by backward rays alone
     #[arg(long, value_name = "WxH", value_parser = size, conflicts_with_all = ["pixel", "photons", "surfaces"])]
     pub(crate) map: Option<[usize; 2]>,
 
-    /// Most surfaces along the ray
+    /// Maximum number of surfaces along the ray
     #[arg(long = "depth", value_name = "N", default_value_t = ProbeRequest::SURFACES, value_parser = within::<u16>(ranges::SURFACES))]
     pub(crate) surfaces: u16,
 
@@ -266,19 +272,20 @@ pub(crate) struct ProbeArgs {
     #[arg(long, value_name = "PIXELS", default_value_t = ProbeRequest::WINDOW, value_parser = window)]
     pub(crate) window: f64,
 
-    /// Rays traced back for each plane [default: 2^20; for a map, 2^15]
+    /// Backward rays per plane [default: 2^20; for a map, 2^15]
     #[arg(long, value_name = "N", value_parser = enough)]
     pub(crate) rays: Option<u64>,
 
-    /// Photons that check them [default: 2^25]
+    /// Photons that check the backward rays [default: 2^25]
     #[arg(long, value_name = "N", value_parser = enough)]
     pub(crate) photons: Option<u64>,
 
-    /// Seed of both
+    /// Seed of backward rays and photons
     #[arg(long, value_name = "N", default_value_t = ProbeRequest::SEED)]
     pub(crate) seed: u64,
 
-    /// Measure the covariance of each plane's spectrum too, and hold that of the camera against covariance tracing from the first surface
+    /// Also measure the covariance of each plane's spectrum, and compare that of the camera with
+    /// covariance tracing from the first surface
     #[arg(long, conflicts_with = "map")]
     pub(crate) covariance: bool,
 
@@ -290,7 +297,7 @@ pub(crate) struct ProbeArgs {
 }
 
 impl ProbeArgs {
-    /// What is asked for.
+    /// The requested probe.
     pub(crate) fn request(&self) -> ProbeRequest {
         let default = match self.map {
             Some(_) => ProbeRequest::RAYS_OF_MAP,
@@ -311,7 +318,7 @@ impl ProbeArgs {
     }
 }
 
-/// At least one in each of 64 batches.
+/// Parses a number that gives at least one ray to each of 64 batches.
 fn enough(text: &str) -> Result<u64, String> {
     let number = whole_number(text)?;
     if ranges::RAYS.contains(&number) {
@@ -335,10 +342,10 @@ fn window(text: &str) -> Result<f64, String> {
     sound.ok_or_else(|| "allowed: 0.01 to 10000".to_owned())
 }
 
-/// Which camera looks.
+/// The selected camera.
 #[derive(Debug, Args)]
 pub(crate) struct CameraArgs {
-    /// The camera, where the scene has several [default: the first]
+    /// Camera to use, if the scene has several [default: the first]
     #[arg(long = "camera", value_name = "NAME")]
     pub(crate) name: Option<String>,
 

@@ -4,10 +4,10 @@ use etendue_compare::{AXES, CovarianceReport};
 use etendue_field::{tidy, uncertain};
 use etendue_pipeline::table::aligned;
 
-/// The entries of a matrix that are shown: variances, and what travel makes.
+/// The matrix entries that are shown: variances, and the covariances that travel creates.
 const SHOWN: [[usize; 2]; 6] = [[0, 0], [0, 2], [2, 2], [1, 1], [1, 3], [3, 3]];
 
-/// A table for each plane, with what there is to say of it.
+/// A table for each plane, with remarks.
 pub(super) fn text(reports: &[CovarianceReport]) -> String {
     let mut lines = vec![
         "Covariance of the power spectrum, cycles² per m², per m of slope and per slope²."

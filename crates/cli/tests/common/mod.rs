@@ -1,4 +1,4 @@
-//! What the tests of the command share.
+//! Helpers shared by the tests of the command.
 
 #![allow(
     dead_code,
@@ -49,7 +49,7 @@ pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     found
 }
 
-/// Small, and full of numbers whose decimals are easily read back as a neighbour.
+/// A small scene with many numbers whose decimals are easily read back as a neighbouring number.
 pub const SCENE: &str = r#"(
     light: Rectangle(center: (0.1, 0.2, 0.30000000000000004), size: (0.2, 0.17320508075688773)),
     blockers: [JitteredSquares(name: "blockers", center: (0.1234567890123456, 0.2, 1.3000000000000003),
@@ -79,7 +79,7 @@ pub fn stages() -> TempDir {
     folder
 }
 
-/// `etendue` with these arguments, quietly; names of files are below `folder`.
+/// Runs `etendue` with these arguments, quietly; file names are relative to `folder`.
 pub fn call(folder: &Path, arguments: &str) -> Output {
     etendue()
         .current_dir(folder)
@@ -89,7 +89,8 @@ pub fn call(folder: &Path, arguments: &str) -> Output {
         .unwrap()
 }
 
-/// The command refuses bad input in one line that holds all `parts`, and does not write to `out`.
+/// Checks that the command refuses bad input with one line that holds all `parts`, and does not
+/// write to `out`.
 pub fn refused(folder: &Path, arguments: &str, parts: &[&str]) {
     let output = call(folder, arguments);
     let message = String::from_utf8(output.stderr).unwrap();
@@ -105,7 +106,7 @@ pub fn refused(folder: &Path, arguments: &str, parts: &[&str]) {
     assert!(!folder.join("out").exists(), "{arguments}: out was written");
 }
 
-/// A JSON object with the hash of itself at its end, as indices are written.
+/// A JSON object that ends with its own hash, as indices do.
 pub fn sealed(mut tree: Value) -> Vec<u8> {
     tree.as_object_mut().unwrap().remove("index_hash");
     let text = tree.to_string();

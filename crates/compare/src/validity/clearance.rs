@@ -1,4 +1,4 @@
-//! How far the path of a ray, as theory has it, passes from what theory does not know of.
+//! How far a ray's path, as theory assumes it, passes from objects that theory ignores.
 
 use super::rays::CheckRay;
 use super::surroundings::{Meets, SurroundingForm, Surroundings};
@@ -13,14 +13,14 @@ pub(super) struct PathPiece {
     pub(super) ray: CheckRay,
     /// Distances along the ray at which the piece begins and ends.
     pub(super) extent: [f64; 2],
-    /// The surface that the ray has left, and the one that ends its leg.
+    /// The surface that the ray has left, and the surface that ends its leg.
     pub(super) leaves: Option<Object>,
     pub(super) ends: Option<Object>,
     /// Whether the piece ends at the plane.
     pub(super) is_last: bool,
 }
 
-/// Something that a ray may meet on a leg where theory does not have it.
+/// An obstacle that a ray may meet on a leg where theory does not expect it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Suspect {
     pub(super) leg: usize,
@@ -30,22 +30,22 @@ pub(super) struct Suspect {
 /// The object, or the part of a layer of blockers, that a ray may meet.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum What {
-    /// A shape of a layer, by their numbers.
+    /// A shape of a layer, both by index.
     Shape { layer: usize, shape: usize },
     /// A half-plane of a layer.
     HalfPlane { layer: usize, half: usize },
     /// A grating, which has no edge.
     Grating { layer: usize },
-    /// A surface of the path, by its number among the objects of the surroundings.
+    /// A surface of the path, by its index among the objects of the surroundings.
     Object(usize),
 }
 
-/// Share of a distance within which a ray meets the surface that ends its leg.
+/// The share of a distance within which a ray counts as meeting the surface that ends its leg.
 const AT_END: f64 = 1e-6;
 
 impl Suspect {
-    /// Everything that rays may meet on the legs of these paths. Of a layer with many shapes, those
-    /// nearest to where the rays cross it.
+    /// Everything that rays may meet on the legs of these paths. For a layer with many shapes, only
+    /// those nearest to where the rays cross it.
     pub(super) fn all(around: &Surroundings<'_>, paths: &[&[PathPiece]]) -> Vec<Self> {
         let legs = paths.first().map_or(0, |pieces| pieces.len());
         let on_leg = |leg: usize| {
@@ -59,7 +59,7 @@ impl Suspect {
         (0..legs).flat_map(on_leg).collect()
     }
 
-    /// What is said of it once a ray meets it.
+    /// The description of the obstacle once a ray meets it.
     pub(super) fn meets(&self, around: &Surroundings<'_>, piece: &PathPiece) -> Meets {
         match self.what {
             What::Shape { layer: index, .. }
@@ -79,8 +79,8 @@ impl Suspect {
         }
     }
 
-    /// How far a piece of a path passes from it, metres; zero where it meets it against theory,
-    /// infinite where it cannot.
+    /// The distance by which a piece of a path misses the obstacle, metres: zero where it meets the
+    /// obstacle unexpectedly, infinite where it cannot.
     pub(super) fn gap(&self, around: &Surroundings<'_>, piece: &PathPiece) -> f64 {
         let (layer, outside): (usize, &dyn Fn(DVec3) -> f64) = match self.what {
             What::Object(i) => return object_gap(around, i, piece),
@@ -107,18 +107,19 @@ impl Suspect {
         let off = if piece.leg > 0 || !around.is_known(layer) {
             beyond(t, [from, to])
         } else {
-            // Theory has it: what would be wrong is to meet the surface first.
+            // Theory expects the surface here; the error would be to meet it earlier.
             (to - t).max(0.0)
         };
         libm::hypot(off, outside(piece.ray.at(t)))
     }
 }
 
-/// Shapes of a layer that are all looked at on a leg.
+/// The number of shapes of a layer up to which all are considered on a leg.
 const MAX_SHAPES: usize = 64;
-/// How many are looked at where there are more: each costs thousands of rays past all of them.
+/// The number of shapes considered where there are more: each costs thousands of rays traced
+/// through the scene.
 const NEAREST_SHAPES: usize = 16;
-/// Rays whose crossings say which shapes of a layer are the nearest.
+/// The number of rays whose crossings determine the nearest shapes of a layer.
 const CROSSINGS: usize = 300;
 
 /// The parts of a layer that rays may meet on a leg.
@@ -164,7 +165,7 @@ fn beyond(t: f64, [from, to]: [f64; 2]) -> f64 {
     (from - t).max(t - to).max(0.0)
 }
 
-/// How far a point of its plane lies outside a shape, metres.
+/// How far a point in the plane of a shape lies outside the shape, metres.
 fn outside_shape(shape: &Shape, at: DVec3) -> f64 {
     match *shape {
         Shape::Rectangle(Rectangle { center, size }) => {
@@ -183,23 +184,23 @@ fn outside_rectangle(at: [f64; 2], size: [f64; 2]) -> f64 {
     libm::hypot(x, y)
 }
 
-/// How far a point of its plane lies outside a half-plane, metres.
+/// How far a point in the plane of a half-plane lies outside it, metres.
 fn outside_half_plane(half: &HalfPlane, at: DVec3) -> f64 {
     let coordinate = if half.axis == 0 { at.x } else { at.y };
     let off = half.edge - coordinate;
     if half.above { off } else { -off }.max(0.0)
 }
 
-/// How far a piece of a path passes from a surface of the path where theory does not have it.
+/// How far a piece of a path passes from a surface of the path where theory does not expect it.
 fn object_gap(around: &Surroundings<'_>, index: usize, piece: &PathPiece) -> f64 {
     let (object, form) = &around.objects[index];
     let [from, to] = piece.extent;
     let own = |which: Option<Object>| which == Some(*object);
     let extent = match (own(piece.ends), own(piece.leaves), piece.is_last) {
-        // Theory has it there.
+        // Theory expects it there.
         (true, _, true) => return f64::INFINITY,
         (true, _, false) => [from, to * (1.0 - AT_END)],
-        // Light that meets again what it has left is gone, wherever the plane is.
+        // Light that meets again the surface it has left is lost, wherever the plane is.
         (false, true, true) => [from, f64::INFINITY],
         _ => piece.extent,
     };
@@ -227,14 +228,14 @@ fn flat_gap(surface: &Surface, ray: &CheckRay, extent: [f64; 2]) -> f64 {
     )
 }
 
-/// How far a ray passes from a patch between two distances: it may meet the quadric beside the
-/// patch or off the piece, or pass the quadric.
+/// How far a ray passes from a patch between two distances. It may meet the quadric outside the
+/// patch or outside the piece, or miss the quadric.
 fn patch_gap(patch: &Patch, ray: &CheckRay, extent: [f64; 2]) -> f64 {
     let CheckRay { point, direction } = ray.seen_from(&patch.frame);
     let off = |t: f64| {
         let at = point + t * direction;
         let aside = (libm::hypot(at.x, at.y) - patch.aperture).max(0.0);
-        // The other half of a sphere or a cylinder.
+        // Excludes the other half of a sphere or a cylinder.
         let below = patch.aperture * (-patch.gradient(at).z).max(0.0);
         libm::hypot(libm::hypot(beyond(t, extent), aside), below)
     };
@@ -259,7 +260,8 @@ fn box_gap([low, high]: &[DVec3; 2], ray: &CheckRay, [from, to]: [f64; 2]) -> f6
         let at = ray.at(t);
         at.distance(at.clamp(*low, *high))
     };
-    // It is convex along a line. What has no end need not be followed farther than the box.
+    // The distance is convex along a line. An unbounded piece need not be followed farther than the
+    // box.
     let far = (ray.point - 0.5 * (*low + *high)).length() + low.distance(*high);
     let [mut a, mut b] = [from, to.min(from + far)];
     for _ in 0..60 {

@@ -1,4 +1,5 @@
-//! Rays in the coordinates of a plane, read from docs/conventions.md for this check.
+//! Converts rays to the coordinates of a plane, written for this check from docs/conventions.md
+//! alone.
 
 use super::rays::CheckRay;
 use etendue_field::{Frame, Orientation, TwoPlane};
@@ -6,7 +7,7 @@ use etendue_theory::rays::Plane;
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
-/// The frame that angles are counted from on a surface, where its unit normal is known.
+/// The frame that angles are measured in on a surface, where its unit normal is known.
 fn local(plane: &Plane, normal: DVec3) -> Frame {
     if plane.orientation.is_local() {
         plane
@@ -17,7 +18,7 @@ fn local(plane: &Plane, normal: DVec3) -> Frame {
     }
 }
 
-/// −1 where directions are turned about the normal.
+/// −1 where directions are rotated about the normal.
 fn turned(plane: &Plane) -> f64 {
     if plane.orientation == Orientation::Mirrored {
         -1.0
@@ -26,7 +27,7 @@ fn turned(plane: &Plane) -> f64 {
     }
 }
 
-/// The coordinates of a ray; `on_surface` is the point and the unit normal of the surface that the
+/// The coordinates of a ray. `on_surface` is the point and the unit normal of the surface that the
 /// plane is on, where the plane needs them. `None` where the ray does not pass.
 pub(super) fn coordinates(
     plane: &Plane,
@@ -73,11 +74,11 @@ pub(super) fn direction(plane: &Plane, normal: DVec3, [u, v]: [f64; 2]) -> DVec3
     local(plane, normal).vector_to_world(DVec3::new(across * sin, up, across * cos))
 }
 
-/// The ray with these coordinates, (x, y, u, v), at a plane; `None` where the plane is on a surface
-/// that is not there.
+/// The ray with the coordinates (x, y, u, v) at a plane; `None` where the plane is on a surface and
+/// there is no surface at that point.
 pub(super) fn seen(plane: &Plane, [x, y, u, v]: [f64; 4]) -> Option<CheckRay> {
     let on_surface = plane.orientation != Orientation::Orthogonal;
-    // A turn further the same direction has no other coordinates.
+    // A direction a full turn away has the same coordinates.
     if on_surface && (u + plane.longitude).abs().max(v.abs()) >= FRAC_PI_2 {
         return None;
     }

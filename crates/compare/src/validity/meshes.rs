@@ -1,4 +1,4 @@
-//! How far smooth meshes lead light beside where their osculating patches do.
+//! Measures how far smooth meshes send light from where their osculating patches send it.
 
 use super::coordinates::coordinates;
 use super::mesh_error::OffPatches;
@@ -10,29 +10,30 @@ use etendue_transform::SliceTransform;
 use glam::DVec3;
 use ndarray::Array3;
 
-/// Rays that are drawn for those with light in the window.
+/// Rays that are drawn to find those with light in the window.
 const TRIES: u32 = 300_000;
-/// Fewest and most rays with light in the window that are followed.
+/// The smallest and the largest number of rays with light in the window that are followed.
 const MIN_RAYS: usize = 300;
 const MAX_RAYS: usize = 3000;
-/// Triangles looked at for these, where more than the fewest are followed.
+/// The number of triangles tested for these rays, where more than the smallest number are followed.
 const LOOKED_AT: usize = 30_000_000;
-/// Edges of a triangle within which it is around the point that a ray leaves.
+/// The distance, in edges of a triangle, within which the triangle counts as a neighbour of the
+/// point that a ray leaves.
 const NEIGHBOURS: f64 = 5.0;
-/// What light meets again is as far off as can be.
+/// The displacement of light that meets a surface again: the largest possible.
 const LOST: f64 = 1.0;
 
-/// A ray that brings light into the window: where it is predicted, and where it arrives by
-/// triangles, if it does.
+/// A ray that brings light into the window: its predicted arrival, and its arrival by triangles, if
+/// any.
 struct Displaced {
     predicted: TwoPlane,
     by_triangles: Option<TwoPlane>,
-    /// Light before the window weighs it.
+    /// The light of the ray before the window weights it.
     before: f64,
 }
 
 impl Follower<'_> {
-    /// How far smooth meshes lead light beside where their patches do; `None` without a mesh.
+    /// How far smooth meshes send light from where their patches send it; `None` without a mesh.
     pub(super) fn off_patches(&self) -> Option<OffPatches> {
         let legs = &self.scene.path.legs[1..=self.plane.leg];
         let objects = legs.iter().filter_map(|leg| Some(leg.leaves?.object));
@@ -47,7 +48,7 @@ impl Follower<'_> {
         let most = (LOOKED_AT / triangles).clamp(MIN_RAYS, MAX_RAYS);
         let draws = || (0..TRIES).map(RayDraw::new);
         match self.system.light {
-            // Evenly in the window, and the volume of rays stays what it is on their way.
+            // Rays are uniform in the window, and their phase-space volume is conserved on the way.
             Light::Environment { .. } => {
                 self.displacement(draws().filter_map(|draw| self.ray_of_window(&draw)), most)
             }
@@ -55,7 +56,7 @@ impl Follower<'_> {
         }
     }
 
-    /// A ray of the light, and how much light it stands for beside others.
+    /// A ray of the light, and the relative amount of light that it represents.
     fn weighted(&self, draw: &RayDraw) -> Option<(CheckRay, f64)> {
         let (ray, strength) = self.ray(draw)?;
         let patch = &self.system.elements.first()?.patch;
@@ -64,7 +65,7 @@ impl Follower<'_> {
         let center = patch.frame.to_local(self.scene.path.ends_at(0)?.point);
         let offset = patch.frame.to_local(point) - center;
         let drawn = [offset.x, offset.y].map(|d| d / (2.0 * patch.aperture));
-        // Seen along the ray, of what is one on the tangent plane at the vertex.
+        // The area seen along the ray, for a unit area on the tangent plane at the vertex.
         let area = ray.direction.dot(normal) / normal.dot(patch.frame.d);
         let on_surface = strength * area.abs() / density(drawn);
         let squared = length * length;
@@ -79,7 +80,7 @@ impl Follower<'_> {
         })
     }
 
-    /// The same of at most so many given rays; `None` if none brings light into the window.
+    /// The same for at most a given number of rays; `None` if none brings light into the window.
     fn displacement(
         &self,
         rays: impl Iterator<Item = (CheckRay, f64)>,
@@ -109,7 +110,8 @@ impl Follower<'_> {
         })
     }
 
-    /// How far apart a ray arrives, in half-widths of the window along the axis where that is most.
+    /// The distance between the two arrivals of a ray, in half-widths of the window along the axis
+    /// where it is largest.
     fn apart(&self, ray: &Displaced) -> f64 {
         let window = &self.plane.window;
         let half = [window.x, window.y, window.u, window.v].map(|p| Profile::half_width(&p));
@@ -121,8 +123,8 @@ impl Follower<'_> {
         })
     }
 
-    /// How much rays change the slices when they arrive by triangles: the mean of two halves of
-    /// the rays, and half of their difference, which is its standard error.
+    /// How much the slices change when rays arrive by triangles: the mean of two halves of the
+    /// rays, and half of their difference, which is its standard error.
     fn change(&self, lit: &[(f64, Displaced)]) -> f64 {
         let transform = SliceTransform::new(&self.plane.grid);
         let mut sum = transform.accumulator();
@@ -145,8 +147,8 @@ impl Follower<'_> {
         norm(&a + &b) + norm(a - b)
     }
 
-    /// Where a ray arrives by the triangles of smooth meshes; nowhere if it misses one or meets it
-    /// again.
+    /// The arrival of a ray by the triangles of smooth meshes; `None` if it misses a mesh or meets
+    /// one again.
     fn by_triangles(&self, light: CheckRay) -> PlaneArrival {
         let mut ray = light;
         let mut share = 1.0;
@@ -176,7 +178,8 @@ impl Follower<'_> {
     }
 }
 
-/// Distances along a ray, beyond one, at which it meets triangles of a mesh, and their numbers.
+/// The distances at which a ray meets triangles of a mesh, beyond a given distance, and the
+/// triangles' numbers.
 fn hits<'a>(
     mesh: &'a MeshObject,
     ray: &'a CheckRay,

@@ -1,16 +1,16 @@
-//! Rays of the light, drawn for a check: the same in every run.
+//! Draws rays of the light for a check, the same in every run.
 
 use etendue_field::{EnvironmentMap, Frame, Light, Patch, Rectangle, Shape, Window};
 use glam::DVec3;
 use std::f64::consts::TAU;
 
-/// Light of less than this share of the strongest that comes into the window changes no verdict.
+/// Light with less than this share of the strongest light in the window changes no verdict.
 const DARK: f64 = 1e-5;
 
-/// What a ray is drawn by.
+/// The numbers from which a ray is drawn.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RayDraw {
-    /// Its number, which chooses between ways to draw it.
+    /// The number of the draw, which selects one of several ways to draw.
     pub(super) index: u32,
     /// Six numbers in [0, 1].
     pub(super) numbers: [f64; 6],
@@ -25,9 +25,9 @@ impl RayDraw {
     }
 }
 
-/// The first of rays that carry light into the window, `most` of them, without those that are dark
-/// beside others. What shines into the window alone says how strong light is there: the
-/// strongest of the sky may be behind it.
+/// The first `most` rays that carry light into the window, without those that are relatively dark.
+/// Only light inside the window determines what is dark: the strongest part of the sky may be
+/// behind it.
 pub(super) fn bright<T>(rays: impl Iterator<Item = (f64, T)>, most: usize) -> Vec<(f64, T)> {
     let mut strongest = 0.0;
     let mut found = Vec::new();
@@ -57,7 +57,7 @@ impl CheckRay {
         self.point + t * self.direction
     }
 
-    /// The same ray, from where it crosses the plane of the light.
+    /// The same ray, starting where it crosses the plane of the light.
     pub(super) fn begun(&self) -> Self {
         Self {
             point: self.at(-self.point.z / self.direction.z),
@@ -65,7 +65,7 @@ impl CheckRay {
         }
     }
 
-    /// A ray back along it, from beyond a surface that it meets.
+    /// The reversed ray, starting beyond a surface that it meets.
     pub(super) fn back(&self, patch: &Patch) -> Self {
         let far = 4.0 * patch.aperture + (self.point - patch.frame.origin).length();
         Self {
@@ -82,7 +82,7 @@ impl CheckRay {
         }
     }
 
-    /// How far along it meets a triangle (Möller and Trumbore 1997).
+    /// The distance along the ray at which it meets a triangle (Möller and Trumbore 1997).
     pub(super) fn meets_triangle(&self, [a, b, c]: &[DVec3; 3]) -> Option<f64> {
         let [side, other, from] = [*b - *a, *c - *a, self.point - *a];
         let across = self.direction.cross(other);
@@ -94,9 +94,9 @@ impl CheckRay {
         (s >= 0.0 && t >= 0.0 && s + t <= 1.0).then_some(at)
     }
 
-    /// Where theory meets a surface: on the side of the quadric's extremum along the ray on which
-    /// it crosses the tangent plane at the vertex (`etendue_theory::rays`, by Newton's method from
-    /// there).
+    /// The distance at which theory meets a surface: on the side of the quadric's extremum along
+    /// the ray on which the ray crosses the tangent plane at the vertex (`etendue_theory::rays`, by
+    /// Newton's method from there).
     pub(super) fn theory_hit(&self, patch: &Patch) -> Option<f64> {
         let Self { point, direction } = self.seen_from(&patch.frame);
         let from = if direction.z.abs() > 1e-3 {
@@ -106,7 +106,7 @@ impl CheckRay {
         };
         let curved = DVec3::from(patch.curvature) * direction;
         let (a, b) = (curved.dot(direction), curved.dot(point) + direction.z);
-        // Nothing cancels: the root that would is the constant over the other.
+        // Avoids cancellation: the other root is the constant over this one.
         let root = (b * b - a * patch.value(point)).sqrt();
         let q = -(b + root.copysign(b));
         let roots = [q / a, patch.value(point) / q];
@@ -117,7 +117,8 @@ impl CheckRay {
         found.filter(|t| patch.contains(point + *t * direction))
     }
 
-    /// Where it comes to a surface from the side of a normal, whatever it meets before.
+    /// The distance at which the ray meets a surface from the side of a normal, whatever it meets
+    /// before.
     pub(super) fn front_hit(&self, patch: &Patch, side: DVec3) -> Option<f64> {
         let Self { point, direction } = self.seen_from(&patch.frame);
         let side = patch.frame.d.dot(side).signum();
@@ -127,8 +128,8 @@ impl CheckRay {
     }
 }
 
-/// Six numbers in (0, 1) that fill the cube evenly: multiples of powers of the root of x⁷ = x + 1
-/// (Roberts 2018, *The unreasonable effectiveness of quasirandom sequences*).
+/// Six numbers in (0, 1) that fill the cube uniformly: multiples of powers of the root of x⁷ = x +
+/// 1 (Roberts 2018, *The unreasonable effectiveness of quasirandom sequences*).
 pub(super) fn lattice(index: u32) -> [f64; 6] {
     const ROOT: f64 = 1.112_775_684_278_705_6;
     std::array::from_fn(|axis| {
@@ -137,7 +138,7 @@ pub(super) fn lattice(index: u32) -> [f64; 6] {
     })
 }
 
-/// Coordinates at a plane, evenly in its window.
+/// Coordinates at a plane, uniform in its window.
 pub(super) fn within(window: &Window, r: [f64; 6]) -> [f64; 4] {
     let Window { x, y, u, v } = window;
     let profiles = [x, y, u, v];
@@ -147,8 +148,8 @@ pub(super) fn within(window: &Window, r: [f64; 6]) -> [f64; 4] {
 /// The smallest number that [`centred`] draws densely.
 const CENTRE: f64 = 1e-3;
 
-/// A number in [−1, 1]: every other one evenly, else as densely near zero as its size, down to a
-/// thousandth.
+/// A number in [−1, 1]: every other one is uniform, the rest are distributed logarithmically around
+/// zero, down to a thousandth.
 pub(super) fn centred(index: u32, r: f64) -> f64 {
     let s = 2.0 * r - 1.0;
     if index.is_multiple_of(2) {
@@ -168,7 +169,7 @@ pub(super) fn density(pair: [f64; 2]) -> f64 {
     0.5 * (0.25 + dense[0] * dense[1])
 }
 
-/// A ray of the light through a point, and how strong it is; `None` where none is.
+/// A ray of the light through a point, and its strength; `None` where there is none.
 pub(super) fn ray_to(
     light: &Light,
     point: DVec3,
@@ -188,7 +189,7 @@ pub(super) fn ray_to(
         Light::Environment { environment } => {
             let frame = &environment.frame;
             let direction = match &environment.map {
-                // What is left far from its middle may be all that goes forward.
+                // The light far from a lobe's centre may be all that travels forward.
                 EnvironmentMap::Lobes(lobes) if (index / 4).is_multiple_of(2) => {
                     let lobe = &lobes[(index / 8) as usize % lobes.len().max(1)];
                     let around = Frame::IDENTITY.turned_to(lobe.from);
@@ -205,13 +206,13 @@ pub(super) fn ray_to(
             let direction = direction.normalize();
             CheckRay { point, direction }.begun()
         }
-        // No theory that asks follows rays of a file.
+        // No theory that uses this check traces rays of a file.
         Light::Rays { .. } => return None,
     };
     (ray.direction.z > 0.0).then(|| (ray, strength(light, &ray)))
 }
 
-/// How strong the light is that goes along a ray which begins at the light, beside its other rays.
+/// The strength of a ray that starts at the light, relative to the other rays.
 pub(super) fn strength(light: &Light, ray: &CheckRay) -> f64 {
     let CheckRay { point, direction } = ray;
     match light {
@@ -226,8 +227,8 @@ pub(super) fn strength(light: &Light, ray: &CheckRay) -> f64 {
     }
 }
 
-/// The point of a shape at an offset from its centre, as a share of its size; beside a disc it is
-/// drawn in.
+/// The point of a shape at an offset from its centre, as a share of its size; a point outside a
+/// disc is pulled in.
 fn point_of(shape: &Shape, [a, b]: [f64; 2]) -> DVec3 {
     match shape {
         Shape::Rectangle(rectangle) => {
@@ -244,7 +245,7 @@ fn point_of(shape: &Shape, [a, b]: [f64; 2]) -> DVec3 {
     }
 }
 
-/// The area of a shape over that of the square of offsets that [`point_of`] turns into it, and the
+/// The area of a shape over that of the square of offsets that [`point_of`] maps to it, and the
 /// offset of a point.
 pub(super) fn offset_of(shape: &Shape, point: DVec3) -> (f64, [f64; 2]) {
     match shape {
@@ -255,7 +256,7 @@ pub(super) fn offset_of(shape: &Shape, point: DVec3) -> (f64, [f64; 2]) {
         }
         Shape::Disc(disc) => {
             let [x, y] = [point.x - disc.center[0], point.y - disc.center[1]];
-            // The circle of radius r comes from the square of side 2 r/R.
+            // The circle of radius r is the image of the square of side 2 r/R.
             let wide = x.abs().max(y.abs()).max(f64::MIN_POSITIVE);
             let share = wide / libm::hypot(x, y).max(f64::MIN_POSITIVE);
             let scale = disc.radius * share;
@@ -264,7 +265,7 @@ pub(super) fn offset_of(shape: &Shape, point: DVec3) -> (f64, [f64; 2]) {
     }
 }
 
-/// The point of a surface near where the central ray hits it, drawn over all of it.
+/// A point of a surface, drawn over all of it but mostly near where the central ray hits it.
 pub(super) fn point_on(patch: &Patch, hit: DVec3, index: u32, r: [f64; 2]) -> Option<DVec3> {
     let center = patch.frame.to_local(hit);
     let [s, t] = [0, 1].map(|axis| 2.0 * patch.aperture * centred(index, r[axis]));

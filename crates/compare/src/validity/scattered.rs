@@ -1,5 +1,5 @@
-//! Light that a surface with a BRDF receives and sends on: what photons meet, and where theory
-//! looks.
+//! Compares, for light scattered by a surface with a BRDF, what photons meet with what theory
+//! assumes.
 
 use super::clearance::PathPiece;
 use super::coordinates::{coordinates, direction, seen};
@@ -12,8 +12,8 @@ use etendue_theory::Observed;
 use etendue_theory::rays::Plane;
 use etendue_theory::scattering::ScatteringSystem;
 
-/// What light for a plane meets before or behind a surface with a BRDF that theory does not know
-/// of, in words; and the blockers that theory takes.
+/// Descriptions of what light for a plane meets, before or behind a surface with a BRDF, that
+/// theory ignores; and the blockers that theory includes.
 pub(crate) fn unforeseen_by_scattering(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -89,13 +89,13 @@ impl Followed for CheckedScatterer<'_> {
     }
 }
 
-/// Light that comes to the surface and leaves it into the window.
+/// A light path that comes to the surface and leaves it into the window.
 struct LightPath {
     light: f64,
     arriving: CheckRay,
-    /// How far the surface is from the light.
+    /// Distance of the surface from the light.
     end: f64,
-    /// Blockers that theory does not have on the way to the surface.
+    /// Blockers on the way to the surface that theory does not include.
     meets: Option<Meets>,
     leaving: CheckRay,
 }
@@ -123,8 +123,8 @@ impl CheckedScatterer<'_> {
         })
     }
 
-    /// A ray that leaves the surface: from a point of it, or, every other one across the leg, as it
-    /// comes through the window.
+    /// A ray that leaves the surface: from a point of it or, for every other draw of a plane across
+    /// the leg, as it comes through the window.
     fn leaving(&self, draw: &RayDraw) -> Option<CheckRay> {
         let r = draw.numbers;
         let [x, y, u, v] = within(&self.plane.window, r);
@@ -140,15 +140,15 @@ impl CheckedScatterer<'_> {
         Some(CheckRay { point, direction })
     }
 
-    /// What stands between the light and a point of the surface.
+    /// The occluder between the light and a point of the surface.
     fn shadow(&self, ray: &CheckRay, end: f64) -> Option<Meets> {
         let (t, object) = self.around.first(ray, 0.0, None)?;
         let before = t < end * (1.0 - 1e-9);
         before.then(|| self.named(object))
     }
 
-    /// What stands between a point of the surface and the plane; the surface itself wherever it is,
-    /// as photons that would meet it again are gone, whatever stops them before.
+    /// The occluder between a point of the surface and the plane. The surface itself counts at any
+    /// distance, because photons that would meet it again are lost, whatever stops them before.
     fn beyond(&self, ray: &CheckRay) -> Option<Meets> {
         let end = self.around.to_plane(ray);
         let from = self.around.rounding(1);
@@ -171,8 +171,8 @@ impl CheckedScatterer<'_> {
         }
     }
 
-    /// Whether it is from this point that theory has the ray leave: it looks from far out back
-    /// along it.
+    /// Whether theory takes the ray to leave from this point: it looks back along the ray from far
+    /// away.
     fn looks_at(&self, leaving: &CheckRay) -> bool {
         let back = leaving.back(&self.system.patch);
         let far = (back.point - leaving.point).length();

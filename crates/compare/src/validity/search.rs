@@ -1,9 +1,9 @@
-//! A search for light in the window that meets what theory does not know of.
+//! Searches for light in the window that meets objects theory ignores.
 //!
-//! A few thousand rays fill the window evenly and find what is in the way of much of the light. An
-//! object that stands in the way of little of it may lie between them, at the edge or in the corner
-//! of the window. So for each such object the rays that pass it nearest are moved until they meet
-//! it or come no nearer: a distance that falls along a smooth path finds the smallest object.
+//! A few thousand rays fill the window uniformly and find the occluders of much of the light. An
+//! object that occludes little of it may lie between these rays, at the edge or in the corner of
+//! the window. So for each such object the rays that pass it nearest are moved until they meet it
+//! or come no nearer: a distance that falls along a smooth path finds the smallest object.
 
 use super::clearance::{PathPiece, Suspect};
 use super::rays::{RayDraw, bright, lattice};
@@ -11,40 +11,42 @@ use super::surroundings::{Meets, Surroundings};
 
 /// Rays with light in the window that are followed for a plane.
 const LIT_RAYS: usize = 3000;
-/// Rays tried for these.
+/// Rays tried to find the lit rays.
 const TRIED_RAYS: u32 = 60_000;
-/// How many of the rays that pass an object nearest are moved towards it.
+/// Number of rays nearest to an object that are moved towards it.
 const STARTS: usize = 4;
-/// Moves of each.
+/// Moves of each ray.
 const MOVES: u32 = 300;
-/// The first moves go as far as rays are from each other: 3000 fill a window of four axes with
-/// seven on each.
+/// Length of the first moves, the spacing of the rays: 3000 fill a window of four axes with seven
+/// on each.
 const FIRST_MOVE: f64 = 0.15;
-/// A move that comes nearer makes the next this much longer. One that does not makes it shorter so
-/// that one success in twelve keeps the length: in a corner most axes are at their ends.
+/// Factor by which a move that comes nearer lengthens the next. A move that does not shortens the
+/// next, by an amount that keeps the length at one success in twelve: in a corner most axes are at
+/// their ends.
 const LONGER: f64 = 1.5;
 const SHORTER: f64 = 0.964;
-/// An object is out of reach whose distance from the nearest ray exceeds this share of the range of
-/// distances: the nearest corner of a window of four axes lies a seventh of it beyond.
+/// An object is out of reach if its distance from the nearest ray exceeds this share of the range
+/// of distances: the nearest corner of a window of four axes lies a seventh of it beyond.
 const REACH: f64 = 0.5;
-/// A shadow in light of this share of the strongest has 10⁻⁶ of the power of one in the strongest,
-/// which 10⁹ photons do not show.
+/// A shadow in light of this share of the strongest has 10⁻⁶ of the power of a shadow in the
+/// strongest, which 10⁹ photons cannot resolve.
 const FAINT: f64 = 1e-3;
 
 /// Rays that theory follows from the light to a plane.
 pub(super) trait Followed {
-    /// How much light a ray brings into the window, and what it meets on its way that theory does
-    /// not know of, if anything; `None` if it brings none.
+    /// The amount of light that a ray brings into the window, and the first thing it meets that
+    /// theory ignores, if any; `None` if it brings none.
     fn check(&self, draw: &RayDraw) -> Option<(f64, Option<Meets>)>;
 
-    /// How much light it brings by theory's path, and the pieces of that; `None` if it brings none.
+    /// The amount of light that a ray brings along theory's path, and the pieces of that path;
+    /// `None` if it brings none.
     fn pieces(&self, draw: &RayDraw) -> Option<(f64, Vec<PathPiece>)>;
 
-    /// What stands around the path.
+    /// The surroundings of the path.
     fn around(&self) -> &Surroundings<'_>;
 }
 
-/// What rays meet that theory does not know of.
+/// Everything that rays meet and theory ignores.
 pub(super) fn found(rays: &impl Followed) -> Vec<Meets> {
     let checked = (0..TRIED_RAYS).filter_map(|index| {
         let draw = RayDraw::new(index);
@@ -93,7 +95,7 @@ impl<R: Followed> Search<'_, R> {
             .gap(self.rays.around(), &pieces[self.suspect.leg])
     }
 
-    /// The rays that pass the object nearest, and how near; none if it is out of reach.
+    /// The rays that pass the object nearest, with their distances; empty if it is out of reach.
     fn starts(&self, paths: &[(RayDraw, Vec<PathPiece>)]) -> Vec<(f64, RayDraw)> {
         let gaps = paths.iter().map(|(draw, pieces)| (self.gap(pieces), *draw));
         let mut gaps: Vec<(f64, RayDraw)> = gaps.filter(|(gap, _)| gap.is_finite()).collect();
@@ -106,7 +108,7 @@ impl<R: Followed> Search<'_, R> {
         gaps
     }
 
-    /// Moves a ray towards the object; what it meets, if it comes to meet anything.
+    /// Moves a ray towards the object; returns what the ray meets, if it meets anything.
     fn approach(&self, (mut gap, mut at): (f64, RayDraw)) -> Option<Meets> {
         let mut length = FIRST_MOVE;
         for number in 0..MOVES {
@@ -132,8 +134,8 @@ impl<R: Followed> Search<'_, R> {
     }
 }
 
-/// A draw at most so far from another along each axis; two of three moves go along one axis, since
-/// in a corner of the window few other moves stay inside.
+/// A draw that differs from another by at most `length` along each axis. Two of three moves go
+/// along one axis, since in a corner of the window few other moves stay inside.
 fn moved(from: &RayDraw, length: f64, number: u32) -> RayDraw {
     let step = lattice(number);
     let mut numbers = from.numbers;

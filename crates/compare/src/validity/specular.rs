@@ -1,4 +1,4 @@
-//! Rays through specular surfaces: what photons meet, and where theory looks.
+//! Compares, for rays through specular surfaces, what photons meet with what theory assumes.
 
 use super::clearance::PathPiece;
 use super::coordinates::{coordinates, seen};
@@ -12,9 +12,9 @@ use etendue_theory::Observed;
 use etendue_theory::rays::{Plane, SpecularSystem};
 use glam::DVec3;
 
-/// What light for a plane meets between or at the surfaces of a system that theory does not know
-/// of, in words, and the blockers that theory takes; `off` is how far meshes lead it
-/// beside, see [`off_patches`].
+/// Descriptions of what light for a plane meets, between or at the surfaces of a system, that
+/// theory ignores, and the blockers that theory includes. `off` is the displacement by meshes, see
+/// [`off_patches`].
 pub(crate) fn unforeseen_by_rays(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -36,7 +36,8 @@ pub(crate) fn unforeseen_by_rays(
     (found, later)
 }
 
-/// How far smooth meshes lead rays beside where their osculating patches do; `None` without a mesh.
+/// How far smooth meshes send rays from where their osculating patches send them; `None` without a
+/// mesh.
 pub(crate) fn off_patches(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -46,8 +47,9 @@ pub(crate) fn off_patches(
     Follower::new(scene, plane, view, &around).off_patches()
 }
 
-/// How far rays of a mesh may arrive from those of its osculating patch, in half-widths of the
-/// window. What such rays change of a spectrum is some ten times as much, and is stated.
+/// The largest accepted distance between the arrivals of rays by a mesh and by its osculating
+/// patch, in half-widths of the window. Such rays change a spectrum by some ten times as much,
+/// which is reported.
 const OFF_PATCHES: f64 = 1e-4;
 
 pub(super) struct Follower<'a> {
@@ -58,7 +60,7 @@ pub(super) struct Follower<'a> {
     around: &'a Surroundings<'a>,
 }
 
-/// Rays of a follower, in one of two ways to draw them.
+/// The rays of a follower, drawn in one of two ways.
 struct FollowedRays<'a>(
     &'a Follower<'a>,
     fn(&Follower<'a>, &RayDraw) -> Option<(CheckRay, f64)>,
@@ -82,10 +84,10 @@ impl Followed for FollowedRays<'_> {
     }
 }
 
-/// A ray at the plane, and the share of it that masks on the first leg let pass.
+/// A ray at the plane, and the share of it that masks on the first leg transmit.
 pub(super) type PlaneArrival = Option<(TwoPlane, f64)>;
 
-/// Distances closer than this share are one.
+/// Distances closer than this share count as equal.
 const SAME_DISTANCE: f64 = 1e-6;
 
 impl<'a> Follower<'a> {
@@ -106,8 +108,8 @@ impl<'a> Follower<'a> {
 }
 
 impl Follower<'_> {
-    /// How much light a ray brings into the window, and what it meets on its way that theory does not
-    /// know of, if anything; `None` if it brings none.
+    /// The amount of light that a ray brings into the window, and the first thing it meets that
+    /// theory ignores, if any; `None` if it brings none.
     fn check(&self, (ray, emitted): (CheckRay, f64)) -> Option<(f64, Option<Meets>)> {
         let (arrival, meets) = self.photon(ray);
         let brought = [arrival, self.theory(ray)].into_iter().flatten();
@@ -116,7 +118,7 @@ impl Follower<'_> {
         (light > 0.0).then_some((light, meets))
     }
 
-    /// A ray of the light, towards the first surface, and how strong it is.
+    /// A ray of the light towards the first surface, and its strength.
     pub(super) fn ray(&self, draw: &RayDraw) -> Option<(CheckRay, f64)> {
         let RayDraw { index, numbers: r } = *draw;
         let hit = self.scene.path.ends_at(0)?;
@@ -143,9 +145,9 @@ impl Follower<'_> {
         ray_to(&self.system.light, target, index, [r[2], r[3]])
     }
 
-    /// A ray that theory has arrive in the window: hardly any ray of the light itself may
-    /// come into a narrow one, or onto a part of a wide one that is close to the light. Light without
-    /// extent is sent to places in the window, where nothing turns it first.
+    /// A ray that theory predicts to arrive in the window. It is needed because few rays of the
+    /// light itself may reach a narrow window, or a part of a wide one that is close to the light.
+    /// Light without extent is aimed at places in the window if no surface deflects it first.
     pub(super) fn ray_of_window(&self, draw: &RayDraw) -> Option<(CheckRay, f64)> {
         let light = &self.system.light;
         let coordinates = within(&self.plane.window, draw.numbers);
@@ -173,12 +175,12 @@ impl Follower<'_> {
         (begins && ray.direction.z > 0.0).then(|| (ray, strength(light, &ray)))
     }
 
-    /// Where theory has a ray arrive.
+    /// The arrival of a ray as theory predicts it.
     pub(super) fn theory(&self, light: CheckRay) -> PlaneArrival {
         self.follow(light, |_| {})
     }
 
-    /// Where theory has a ray arrive; its straight pieces are told one after the other.
+    /// The arrival of a ray as theory predicts it; `tell` receives its straight pieces in order.
     fn follow(&self, light: CheckRay, mut tell: impl FnMut(PathPiece)) -> PlaneArrival {
         let path = &self.scene.path;
         let piece = |leg: usize, ray: CheckRay, end: f64| PathPiece {
@@ -201,7 +203,7 @@ impl Follower<'_> {
         Some((coordinates(self.at, &ray, self.counted_at(&ray)?)?, share))
     }
 
-    /// How far a ray of the last leg goes: to the plane, or to the surface that the plane is on.
+    /// The length of a ray of the last leg: to the plane, or to the surface that the plane is on.
     fn end(&self, ray: &CheckRay) -> f64 {
         let across = self.around.to_plane(ray);
         let ends = self.scene.path.ends_at(self.plane.leg);
@@ -210,7 +212,7 @@ impl Follower<'_> {
         hit.unwrap_or(across)
     }
 
-    /// The share of a ray that passes what theory has on the first leg.
+    /// The share of a ray that passes the blockers that theory includes on the first leg.
     pub(super) fn passed(&self, leg: usize, ray: &CheckRay, end: f64) -> f64 {
         if leg == 0 {
             self.around.first_leg(ray, end).0[1]
@@ -220,7 +222,7 @@ impl Follower<'_> {
     }
 
     /// The point of the plane's surface at which theory counts a ray of the last leg, and the unit
-    /// normal there; none across the leg. `None` where the ray does not meet it.
+    /// normal there, if the plane is on a surface. `None` where the ray does not meet the surface.
     pub(super) fn counted_at(&self, ray: &CheckRay) -> Option<Option<[DVec3; 2]>> {
         let Some(patch) = self.at.patch.as_ref() else {
             return Some(None);
@@ -233,7 +235,7 @@ impl Follower<'_> {
         Some(Some(on(patch, point)))
     }
 
-    /// Where a photon arrives, and the first thing it meets that theory does not know of.
+    /// The arrival of a photon, and the first thing it meets that theory ignores.
     fn photon(&self, light: CheckRay) -> (PlaneArrival, Option<Meets>) {
         let mut ray = light;
         let mut share = 1.0;
@@ -263,7 +265,7 @@ impl Follower<'_> {
         (seen.map(|z| (z, share)), unforeseen.or(meets))
     }
 
-    /// How far a photon goes until it meets the surface that ends its leg; nothing where it meets
+    /// The distance at which a photon meets the surface that ends its leg; `None` where it meets
     /// another first.
     fn next(
         &self,
@@ -289,7 +291,7 @@ impl Follower<'_> {
         }
     }
 
-    /// The coordinates at the plane of a photon that has met all surfaces before it.
+    /// The coordinates at the plane of a photon that has met all surfaces before the plane.
     fn last_leg(&self, ray: &CheckRay) -> (Option<TwoPlane>, Option<Meets>) {
         let path = &self.scene.path;
         let leg = self.plane.leg;
@@ -299,8 +301,8 @@ impl Follower<'_> {
         let end = self.end(ray);
         let nearer = self.around.first(ray, from, ends);
         let nearer = nearer.filter(|(t, object)| *t < end && Some(*object) != leaves);
-        // A photon that would meet again what it has left is gone, wherever the plane is and
-        // whatever stops it before.
+        // A photon that would meet again the surface it has left is lost, wherever the plane is and
+        // whatever stops the photon before.
         let again = leaves.filter(|left| self.around.hit(ray, from, *left).is_some());
         let mut unforeseen = nearer
             .map(|(_, object)| Meets::OutOfTurn(object))
@@ -308,7 +310,7 @@ impl Follower<'_> {
         if leg > 0 {
             unforeseen = unforeseen.or_else(|| self.around.later_leg(ray, leg, from, end));
         } else if self.at.arriving {
-            // Across the leg blockers and planes are parallel.
+            // For a plane across the leg, blockers and plane are parallel.
             unforeseen = unforeseen.or(self.around.first_leg(ray, end).1);
         }
         let Some(patch) = &self.at.patch else {
@@ -325,8 +327,9 @@ impl Follower<'_> {
         (seen, unforeseen)
     }
 
-    /// The point of a surface at which a plane on it counts a photon: where it comes to its front,
-    /// or, of light that leaves, that of its line nearest to where the central ray hits.
+    /// The point of a surface at which a plane on it counts a photon: where an arriving photon
+    /// meets its front or, for leaving light, the intersection of its line nearest to where the
+    /// central ray hits.
     fn counted(&self, patch: &Patch, ray: &CheckRay) -> Option<DVec3> {
         if self.at.arriving {
             return Some(ray.at(ray.front_hit(patch, self.at.frame.d)?));

@@ -1,4 +1,4 @@
-//! What stands around the path, and what a ray of a leg meets of it.
+//! The surroundings of the path, and what a ray of a leg meets in them.
 
 use super::rays::CheckRay;
 use crate::chain::stands_before;
@@ -6,19 +6,19 @@ use etendue_field::{Patch, VirtualPlane};
 use etendue_scene::{Hit, Object, Scene, Surface};
 use glam::DVec3;
 
-/// What a ray meets that theory does not know of.
+/// An object that a ray meets and theory ignores.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Meets {
     /// Blockers, on this leg.
     Layer { index: usize, leg: usize },
-    /// A surface of the path, out of turn.
+    /// A surface of the path, met out of turn.
     OutOfTurn(Object),
-    /// The surface that it has just left, or another part of the one it comes to.
+    /// The surface that the ray has just left, or another part of the surface it comes to.
     Itself(Object),
 }
 
 impl Meets {
-    /// In words; blockers are taken.
+    /// The description in words; `None` for blockers, which theory includes.
     fn describe(self, scene: &Scene) -> Option<String> {
         match self {
             Self::Layer { .. } => None,
@@ -36,11 +36,11 @@ impl Meets {
     }
 }
 
-/// What light meets that theory does not know of, in words, each once, and the blockers that it
-/// meets where the central ray does not, which theory takes.
+/// Descriptions of what light meets and theory ignores, each once, and the blockers that light
+/// meets where the central ray does not, which theory then includes.
 ///
-/// A ray tells of the first thing that it meets. Blockers are therefore taken and rays followed
-/// again, until they meet no others.
+/// A ray reports only the first thing that it meets. So blockers are included in the theory and
+/// rays are traced again, until they meet no further blockers.
 pub(super) fn unforeseen<'a>(
     scene: &Scene,
     mut around: Surroundings<'a>,
@@ -79,31 +79,31 @@ pub(super) struct Surroundings<'a> {
     pub(super) scene: &'a Scene,
     plane: &'a VirtualPlane,
     pub(super) objects: Vec<(Object, SurroundingForm<'a>)>,
-    /// Blockers that theory has wherever light meets them.
+    /// Blockers that theory includes wherever light meets them.
     pub(super) taken: Vec<TakenLayer>,
 }
 
 /// Blockers that light meets where the central ray does not.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TakenLayer {
-    /// Among those of the scene.
+    /// Index among the layers of the scene.
     pub(crate) index: usize,
-    /// The first leg on which that is so.
+    /// The first leg on which light meets them.
     pub(crate) from: usize,
 }
 
 pub(super) enum SurroundingForm<'a> {
     Smooth(Patch),
     Flat(&'a Surface),
-    /// A box around a mesh, its lowest and highest corner.
+    /// A box around a mesh: its lowest and highest corners.
     Around([DVec3; 2]),
 }
 
-/// Share of a distance that rounding may make.
+/// Rounding error, as a share of a distance.
 const ROUNDING: f64 = 1e-9;
 
 impl<'a> Surroundings<'a> {
-    /// Meshes that the plane's light has left are not among them: theory knows them by the surface
+    /// Meshes that the plane's light has left are excluded: theory represents them by the surface
     /// that osculates them where the central ray hits.
     pub(super) fn new(scene: &'a Scene, plane: &'a VirtualPlane) -> Self {
         let mut objects: Vec<(Object, SurroundingForm<'a>)> = Vec::new();
@@ -127,14 +127,14 @@ impl<'a> Surroundings<'a> {
         }
     }
 
-    /// A distance on a leg that is zero but for rounding.
+    /// The rounding error of a distance on a leg.
     pub(super) fn rounding(&self, leg: usize) -> f64 {
         let leg = &self.scene.path.legs[leg];
         ROUNDING * (leg.start + leg.leaves.map_or(0.0, |Hit { point, .. }| point.length()))
     }
 
-    /// How far along a ray of its leg the plane is; of a plane on a surface, the plane across the
-    /// leg where the central ray hits.
+    /// The distance to the plane along a ray of its leg; for a plane on a surface, to the plane
+    /// across the leg where the central ray hits.
     pub(super) fn to_plane(&self, ray: &CheckRay) -> f64 {
         let path = &self.scene.path;
         let leg = &path.legs[self.plane.leg];
@@ -143,7 +143,7 @@ impl<'a> Surroundings<'a> {
         -local.point.z / local.direction.z
     }
 
-    /// The surface that a ray meets first beyond `from`, and where; `ignored` is not met.
+    /// The surface that a ray meets first beyond `from`, and where; `ignored` is skipped.
     pub(super) fn first(
         &self,
         ray: &CheckRay,
@@ -163,15 +163,15 @@ impl<'a> Surroundings<'a> {
         hits.min_by(|(a, _), (b, _)| a.total_cmp(b))
     }
 
-    /// Where a ray meets an object beyond `from`, whatever it meets first.
+    /// The distance at which a ray meets an object beyond `from`, whatever it meets first.
     pub(super) fn hit(&self, ray: &CheckRay, from: f64, what: Object) -> Option<f64> {
         let forms = self.objects.iter().filter(|(object, _)| *object == what);
         let hits = forms.flat_map(|(_, form)| form.hits(ray));
         hits.filter(|t| *t > from).min_by(f64::total_cmp)
     }
 
-    /// The share of a ray of the first leg that passes the blockers before `end`; and that which
-    /// passes those that theory puts before the plane.
+    /// The share of a ray of the first leg that passes the blockers before `end`, and the share
+    /// that passes those that theory places before the plane.
     pub(super) fn first_leg(&self, ray: &CheckRay, end: f64) -> ([f64; 2], Option<Meets>) {
         let mut shares = [1.0; 2];
         let mut meets = None;
@@ -215,7 +215,7 @@ impl<'a> Surroundings<'a> {
         Some(Meets::Layer { index, leg })
     }
 
-    /// Whether theory has blockers wherever light meets them on a leg.
+    /// Whether theory includes blockers wherever light meets them on a leg.
     pub(super) fn has_taken(&self, index: usize, leg: usize) -> bool {
         let mut taken = self.taken.iter();
         taken.any(|layer| layer.index == index && layer.from <= leg)
@@ -226,12 +226,12 @@ impl<'a> Surroundings<'a> {
         self.taken.push(TakenLayer { index, from });
     }
 
-    /// Whether theory has a layer of blockers on the first leg, before the plane.
+    /// Whether theory includes a layer of blockers on the first leg, before the plane.
     pub(super) fn is_known(&self, index: usize) -> bool {
         stands_before(self.scene.blockers[index].distance, self.scene, self.plane)
     }
 
-    /// How far along a ray it crosses the plane of blockers.
+    /// The distance at which a ray crosses the plane of blockers.
     pub(super) fn crossing(&self, ray: &CheckRay, index: usize) -> Option<f64> {
         let t = (self.scene.blockers[index].distance - ray.point.z) / ray.direction.z;
         t.is_finite().then_some(t)
@@ -245,7 +245,7 @@ impl<'a> Surroundings<'a> {
 }
 
 impl SurroundingForm<'_> {
-    /// Where a ray meets it; NaN for nowhere.
+    /// The distances at which a ray meets it; NaN for none.
     fn hits(&self, ray: &CheckRay) -> [f64; 2] {
         match self {
             Self::Around([low, high]) => {

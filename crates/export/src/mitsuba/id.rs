@@ -1,8 +1,8 @@
-//! Identifiers of what a scene holds.
+//! Identifiers of the objects of a scene.
 
 use etendue_scene::Object;
 
-/// Names in the scene file may hold anything, identifiers may not.
+/// Names in the scene file may contain any character, identifiers may not.
 pub(super) fn id(object: Object) -> String {
     match object {
         Object::Surface(i) => format!("surface_{i}"),

@@ -6,9 +6,9 @@ use super::{NotInMitsuba, Writer, sky};
 use etendue_field::{Image, Light, Rectangle, Shape};
 use std::f64::consts::PI;
 
-/// Pixels along a side of a picture.
+/// Width and height of a picture in pixels.
 const PIXELS: usize = 1024;
-/// Widths of a picture at which it ends, where our photons end too.
+/// Extent of a picture in widths, equal to that of our photons.
 const WIDTHS: f64 = 3.0;
 
 impl Writer {
@@ -46,7 +46,8 @@ impl Writer {
         Ok(())
     }
 
-    /// Mitsuba's irradiance is π (1 + u² + v²)^(3/2) times less than the intensity (measured with 3.9.1); its picture has −x to the right and y up.
+    /// Mitsuba's irradiance is the intensity divided by π (1 + u² + v²)^(3/2) (measured with
+    /// 3.9.1); its picture has −x to the right and y up.
     fn projector(&mut self, intensity: f64, image: &Image) {
         let half = WIDTHS * image.width[0].max(image.width[1]);
         let picture = sampled([PIXELS; 2], |column, row| {
@@ -60,7 +61,7 @@ impl Writer {
         self.xml.projector(&file, angle);
     }
 
-    /// A sheet that shines along its normal. Its picture has x to the right and y down.
+    /// A sheet that emits along its normal. Its picture has x to the right and y down.
     fn beam(&mut self, irradiance: f64, image: &Image) {
         let half = WIDTHS * image.width[0].max(image.width[1]);
         let picture = sampled([PIXELS; 2], |column, row| {
@@ -82,11 +83,12 @@ impl Writer {
     }
 }
 
-/// How far a picture that is straight between pixels is from a smooth one: an eighth of the second derivative times the square of a pixel.
+/// The interpolation error of a picture, linear between pixels, of a smooth function: an eighth of
+/// the second derivative times the squared pixel width.
 fn error_of(image: &Image, half: f64) -> String {
     let pixel = 2.0 * half / PIXELS as f64;
     let narrow = image.width[0].min(image.width[1]);
-    // The second derivative of exp(−π a²/w²) is 2π/w² at most, of the grating (2πf)²/2.
+    // The second derivative of exp(−π a²/w²) is at most 2π/w², that of the grating (2πf)²/2.
     let wave = image
         .grating
         .map_or(0.0, |g| 2.0 * PI * PI * g.frequency * g.frequency);

@@ -1,4 +1,4 @@
-//! What surfaces do to light, as Mitsuba's BSDFs.
+//! BRDFs and interfaces of surfaces, as Mitsuba's BSDFs.
 
 use super::texture::VariedTexture;
 use super::xml::{black, spectrum};
@@ -6,13 +6,13 @@ use super::{NotInMitsuba, Writer};
 use etendue_field::{Brdf, Fresnel, Lobe, Pattern, Picture, Reflectance, Specular, Term, Weight};
 
 impl Writer {
-    /// A mirror, an interface.
+    /// A mirror or an interface.
     pub(super) fn specular(event: &Specular, name: &str) -> Result<String, NotInMitsuba> {
         match *event {
             Specular::Mirror => Ok(format!(
                 "<bsdf type=\"twosided\"><bsdf type=\"conductor\">{NO_METAL}</bsdf></bsdf>"
             )),
-            // Normals point to the front, which is Mitsuba's outside.
+            // Normals point to the front, which is the outside in Mitsuba.
             Specular::Refraction { front, back } => Ok(format!(
                 "<bsdf type=\"dielectric\">{}{}</bsdf>",
                 float("int_ior", back),
@@ -24,7 +24,8 @@ impl Writer {
         }
     }
 
-    /// A BRDF that may vary over a surface within `aperture` of its vertex. All are black on the back.
+    /// A BRDF that may vary over a surface within `aperture` of its vertex. All BRDFs are black on
+    /// the back.
     pub(super) fn reflects(
         &mut self,
         reflectance: &Reflectance,
@@ -65,7 +66,8 @@ impl Writer {
         })
     }
 
-    /// What follows a pattern, and what is there beyond the edge of a picture: Mitsuba has nothing beyond it but more of it.
+    /// Blends `inside` with `outside` beyond the edge of a picture: Mitsuba itself can only
+    /// continue the picture there.
     fn inside(
         &mut self,
         pattern: &Pattern,
@@ -91,7 +93,8 @@ impl Writer {
                     format!("<bsdf type=\"diffuse\">{albedo}</bsdf>"),
                 )
             }
-            // A word of Mitsuba 0.6, which tests/peers/etendue_bsdfs.py adds to Mitsuba 3. Its lobe is (n + 2)/2π cosⁿ, ours (n + 1)/2π cosⁿ.
+            // A plugin of Mitsuba 0.6, which tests/peers/etendue_bsdfs.py adds to Mitsuba 3. Its
+            // lobe is (n + 2)/2π cosⁿ, ours (n + 1)/2π cosⁿ.
             Lobe::Phong { exponent } => {
                 let share = (exponent + 1.0) / (exponent + 2.0);
                 let albedo = self.varied("specular_reflectance", &albedo.times(share));
@@ -126,10 +129,10 @@ impl Writer {
     }
 }
 
-/// All is reflected.
+/// A perfect reflector.
 const NO_METAL: &str = "<string name=\"material\" value=\"none\"/>";
 
-/// n and k: a dielectric reflects as a metal that absorbs nothing.
+/// n and k: a dielectric reflects like a metal without absorption.
 fn index(fresnel: &Fresnel) -> Option<[f64; 2]> {
     match *fresnel {
         Fresnel::White => None,
@@ -138,7 +141,7 @@ fn index(fresnel: &Fresnel) -> Option<[f64; 2]> {
     }
 }
 
-/// A lobe times the Fresnel factor of the angle at which light arrives. Mitsuba has no word for it:
+/// A lobe times the Fresnel factor of the angle of incidence. Mitsuba has no such plugin:
 /// `tests/peers/etendue_bsdfs.py` adds one, without which the scene does not load.
 fn factored(fresnel: &Fresnel, lobe: String) -> String {
     match index(fresnel) {
@@ -155,7 +158,7 @@ fn blended(weight: &str, zero: &str, one: &str) -> String {
     format!("<bsdf type=\"blendbsdf\">{weight}{zero}{one}</bsdf>")
 }
 
-/// Whether a picture reaches everywhere within a radius of its middle.
+/// Whether a picture covers a circle of this radius around its centre.
 fn covers(picture: &Picture, radius: f64) -> bool {
     picture.size.iter().all(|side| 0.5 * side >= radius)
 }

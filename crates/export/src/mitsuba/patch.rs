@@ -1,29 +1,31 @@
-//! Smooth surfaces as fine meshes: Mitsuba has whole spheres and cylinders, but no pieces of them around a vertex.
+//! Smooth surfaces as fine meshes: Mitsuba has whole spheres and cylinders, but no patches of them
+//! around a vertex.
 
 use etendue_field::Patch;
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 
-/// Rings of triangles, at most and at least.
+/// Minimum and maximum number of rings of triangles.
 const RINGS: [usize; 2] = [16, 256];
-/// Triangles lie nearer to the surface than this share of the aperture, unless that takes too many.
+/// Maximum distance of triangles from the surface relative to the aperture, unless this takes too
+/// many.
 const NEAR: f64 = 1e-5;
-/// Corners of a ring for each ring: triangles at the edge are as long as they are wide, 2π/6 for 1.
+/// Corners of a ring, per ring index: edge triangles are about as long as wide, 2π/6 for 1.
 const SECTORS: usize = 6;
-/// Corners of the edge of what is flat: it lies within (π/512)²/2 = 2·10⁻⁵ of its radius.
+/// Corners of the edge of a flat patch, which deviates by (π/512)²/2 = 2·10⁻⁵ of its radius.
 const EDGE: usize = 512;
 
 /// A patch as triangles.
 #[derive(Debug)]
 pub(super) struct PatchMesh {
     pub(super) vertices: Vec<MeshVertex>,
-    /// Counterclockwise as the patch faces.
+    /// Triangles, counterclockwise seen from the front of the patch.
     pub(super) faces: Vec<[u32; 3]>,
-    /// How far its triangles are from the patch, metres.
+    /// Maximum distance of its triangles from the patch, metres.
     pub(super) error: f64,
 }
 
-/// A corner of triangles.
+/// A vertex of the mesh.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MeshVertex {
     pub(super) point: DVec3,
@@ -48,7 +50,7 @@ pub(super) fn mesh(patch: &Patch) -> PatchMesh {
     }
 }
 
-/// The middle, and rings of corners around it.
+/// The centre, and rings of corners around it.
 fn rings(patch: &Patch, rings: usize, sectors: usize) -> PatchMesh {
     let vertex = |r: f64, turn: f64| {
         let (sin, cos) = libm::sincos(TAU * turn);
@@ -57,7 +59,8 @@ fn rings(patch: &Patch, rings: usize, sectors: usize) -> PatchMesh {
         let normal = patch.normal(point);
         MeshVertex { point, normal, uv }
     };
-    // Of a half ball the edge is steep: there rings are nearer to each other, as on a ball they are alike.
+    // The edge of a hemisphere is steep: there rings are closer together, as if evenly spaced on
+    // the ball.
     let steep = (patch.aperture * patch.curvature[2].abs()).min(1.0);
     let radius = |share: f64| {
         if steep > 0.0 {
@@ -102,7 +105,8 @@ fn rings(patch: &Patch, rings: usize, sectors: usize) -> PatchMesh {
     }
 }
 
-/// How far a triangle is from the patch, in the middle and half-way along its sides, to first order.
+/// The distance of a triangle from the patch, at its centre and the midpoints of its sides, to
+/// first order.
 fn off(patch: &Patch, [a, b, c]: [DVec3; 3]) -> f64 {
     let middles = [
         (a + b + c) / 3.0,
@@ -168,7 +172,7 @@ mod tests {
         }
     }
 
-    /// Half a ball: its edge is upright, and its triangles lie on it no less.
+    /// A hemisphere: its edge is vertical, and its triangles are as accurate there.
     #[test]
     fn half_a_ball_is_met_as_well() {
         let mesh = mesh(&patch([10.0 / 3.0; 3], 0.3));

@@ -1,6 +1,7 @@
-//! Pictures as PFM files (Debevec 1998): one 32-bit number a pixel, which is all that Mitsuba keeps of it.
+//! Pictures as PFM files (Debevec 1998): one 32-bit number per pixel, the precision that Mitsuba
+//! keeps.
 
-/// Rows from the top, each from the left; the file has the lowest row first.
+/// Encodes rows from the top, each from the left; the file has the lowest row first.
 pub(super) fn pfm(width: usize, values: &[f64]) -> Vec<u8> {
     let rows = values.len() / width;
     let mut bytes = format!("Pf\n{width} {rows}\n-1.0\n").into_bytes();
@@ -13,7 +14,8 @@ pub(super) fn pfm(width: usize, values: &[f64]) -> Vec<u8> {
     bytes
 }
 
-/// A picture of a function of the place, in pixels from the left and from the top, at the centres of its pixels.
+/// A picture that samples a function at pixel centres, given in pixels from the left and from the
+/// top.
 pub(super) fn sampled(
     [width, height]: [usize; 2],
     value: impl Fn(f64, f64) -> f64,

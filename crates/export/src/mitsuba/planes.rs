@@ -5,7 +5,7 @@ use etendue_field::{Frame, Orientation, Quantity, Side, SliceGrid, Window};
 use etendue_scene::{Hit, Scene};
 use serde::Serialize;
 
-/// `planes.json`.
+/// The content of `planes.json`.
 #[derive(Serialize)]
 struct PlanesFile<'a> {
     /// Name of the scene.
@@ -18,7 +18,7 @@ struct PlanesFile<'a> {
 #[derive(Serialize)]
 struct RecordedPlane<'a> {
     name: &'a str,
-    /// In the exported coordinates; on a surface X, Y and D are T, B and N.
+    /// The frame in the exported coordinates; on a surface X, Y and D are T, B and N.
     frame: Frame,
     orientation: Orientation,
     /// θ of the central ray on a surface.
@@ -26,9 +26,9 @@ struct RecordedPlane<'a> {
     distance: f64,
     side: Side,
     leg: usize,
-    /// Identifiers of the shapes that light has left on its way, in its order.
+    /// Identifiers of the shapes that light has left on its way, in order.
     visits: Vec<String>,
-    /// Of the shape that ends the leg, if any does.
+    /// Identifier of the shape that ends the leg, if there is one.
     ends: Option<String>,
     quantity: Quantity,
     window: Window,
@@ -63,7 +63,7 @@ pub(super) fn json(scene: &Scene) -> Vec<u8> {
         world: scene.path.frame,
         planes: planes.collect(),
     };
-    // Numbers and names: nothing that JSON cannot hold.
+    // The numbers and names are all valid in JSON.
     let mut bytes = serde_json::to_vec_pretty(&file).unwrap_or_default();
     bytes.push(b'\n');
     bytes

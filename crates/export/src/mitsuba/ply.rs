@@ -63,7 +63,7 @@ fn written<const N: usize>(
     bytes
 }
 
-/// Vertices in the order in which they are first met, and the triangles over them.
+/// Vertices in order of first use, and the triangles over them.
 fn indexed<const N: usize>(
     triangles: impl Iterator<Item = [[f64; N]; 3]>,
 ) -> (Vec<[f64; N]>, Vec<[u32; 3]>) {

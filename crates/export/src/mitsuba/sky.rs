@@ -1,17 +1,20 @@
-//! Environments as the pictures that Mitsuba has of them.
+//! Environments as Mitsuba's environment pictures.
 //!
-//! In both, columns are areas of longitude. Rows are areas in ours, and nodes in Mitsuba's: its first row is the upper pole, its last the lower.
+//! In both, columns are areas of longitude. Rows are areas in ours, but nodes in Mitsuba's: its
+//! first row is the upper pole, its last the lower.
 
 use etendue_field::{Environment, EnvironmentMap};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// Pixels around, at least. Lobes are straight between them: off by (2π/4096/σ)²/8 of the peak, 2·10⁻⁶ at σ = 0.4, 2·10⁻⁴ at σ = 0.04.
+/// Minimum number of pixels around. Lobes are interpolated linearly, with an error of
+/// (2π/4096/σ)²/8 of the peak: 2·10⁻⁶ at σ = 0.4, 2·10⁻⁴ at σ = 0.04.
 const AROUND: usize = 4096;
 
-/// Pixels in a row, and radiance row by row.
+/// The pixels per row, and the radiance row by row.
 ///
-/// A map of pixels is met exactly: the new nodes hold all the old ones. Dark is what would shine against the central ray.
+/// A pixel map is represented exactly: the new nodes include all old ones. Light against the
+/// central ray is set to 0.
 pub(super) fn map(environment: &Environment) -> (usize, Vec<f64>) {
     let [width, rows] = match &environment.map {
         EnvironmentMap::Lobes(_) => [AROUND, AROUND / 2 + 1],
@@ -25,7 +28,7 @@ pub(super) fn map(environment: &Environment) -> (usize, Vec<f64>) {
         let column = (i % width) as f64 + 0.5;
         let row = (i / width) as f64;
         let from = toward(column / width as f64, row / (rows - 1) as f64);
-        // Light that comes from there travels the other way; z is along the central ray.
+        // Light from this direction travels the opposite way; z is along the central ray.
         if environment.frame.vector_to_world(from).z >= 0.0 {
             return 0.0;
         }
@@ -43,13 +46,14 @@ pub(super) fn map(environment: &Environment) -> (usize, Vec<f64>) {
     (width, pixels.collect())
 }
 
-/// By how much pixels are made smaller. Odd, so that the centres of old pixels are centres of new ones.
+/// The subdivision factor of pixels. It is odd, so that centres of old pixels are centres of new
+/// ones.
 fn finer(width: usize) -> usize {
     let least = AROUND.div_ceil(width);
     if width >= AROUND / 2 { 1 } else { least | 1 }
 }
 
-/// The direction of a share of the way around, and of the way down from the upper pole.
+/// The direction at a fraction of the full azimuth, and of the way down from the upper pole.
 fn toward(around: f64, down: f64) -> DVec3 {
     let (sin, cos) = libm::sincos(TAU * (0.5 - around));
     let (across, up) = libm::sincos(PI * down);
@@ -62,12 +66,12 @@ mod tests {
     use etendue_field::{Frame, LatLong, Raster};
     use std::sync::Arc;
 
-    /// What Mitsuba reads between its nodes is what we read between our pixels.
+    /// Mitsuba's interpolation between its nodes equals ours between our pixels.
     #[test]
     fn rows_become_nodes() {
         let values = (0..24).map(|i| f64::from(i * i % 17)).collect();
         let latlong = LatLong::new(Raster::new(6, 4, values).unwrap());
-        // Half of the sky is dark: light comes from −Z alone.
+        // Half of the sky is dark: light comes only from −Z.
         let frame = Frame::IDENTITY;
         let environment = Environment {
             frame,

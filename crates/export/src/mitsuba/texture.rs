@@ -1,4 +1,5 @@
-//! What varies over a surface, as pictures over its texture coordinates, which are (s, t) in metres.
+//! Parameters that vary over a surface, as pictures over its texture coordinates, which are (s, t)
+//! in metres.
 
 use super::Writer;
 use super::picture::{pfm, sampled};
@@ -6,15 +7,16 @@ use super::xml::spectrum;
 use etendue_field::{Grating, Pattern, Picture};
 use std::f64::consts::TAU;
 
-/// Pixels of a period of a cosine. Between them it is straight: off by (2π/512)²/8 = 2·10⁻⁵ of its amplitude at most.
+/// Pixels per period of a cosine. The error of linear interpolation is at most (2π/512)²/8 = 2·10⁻⁵
+/// of its amplitude.
 const PERIOD: usize = 512;
 
 /// A number that follows a pattern.
 #[derive(Clone, Copy)]
 pub(super) struct VariedTexture<'a> {
-    /// `None` where it is the same everywhere, the second of the range.
+    /// The pattern; `None` for a constant, the second of the range.
     pub(super) pattern: Option<&'a Pattern>,
-    /// Its values where the pattern is 0 and 1.
+    /// The values where the pattern is 0 and 1.
     pub(super) range: [f64; 2],
 }
 
@@ -24,7 +26,7 @@ impl VariedTexture<'_> {
         low + share * (high - low)
     }
 
-    /// The same, times a factor.
+    /// The number times a factor.
     pub(super) fn times(self, factor: f64) -> Self {
         let range = self.range.map(|value| factor * value);
         Self { range, ..self }
@@ -34,8 +36,8 @@ impl VariedTexture<'_> {
 impl Writer {
     /// A parameter of a material.
     ///
-    /// Checkerboards are pictures too, of four pixels: Mitsuba 3.9.1 takes the colours of its own the other way round
-    /// where it is asked for a number.
+    /// Checkerboards are pictures of four pixels too, because Mitsuba 3.9.1 swaps the colours of
+    /// its own checkerboard if it is used as a number.
     pub(super) fn varied(&mut self, name: &str, varied: &VariedTexture<'_>) -> String {
         match varied.pattern {
             None => spectrum(name, varied.range[1]),
@@ -67,7 +69,7 @@ impl Writer {
             modulation,
             phase,
         } = *grating;
-        // Mitsuba makes pictures of one row larger.
+        // Mitsuba enlarges pictures of one row.
         let (mut size, mut scale, mut offset) = ([2; 2], [0.0; 2], [0.0; 2]);
         size[axis] = PERIOD;
         scale[axis] = frequency;
@@ -79,7 +81,7 @@ impl Writer {
         self.bitmap(name, picture, "bilinear", "repeat", &scaled(scale, offset))
     }
 
-    /// 1 within a picture and 0 beyond its edge: the middle of nine pixels.
+    /// 1 within a picture and 0 beyond its edge: the middle one of nine pixels.
     pub(super) fn within(&mut self, name: &str, picture: &Picture) -> String {
         let middle = sampled([3, 3], |column, row| {
             let is_middle = |at: f64| (1.0..2.0).contains(&at);
@@ -111,7 +113,7 @@ impl Writer {
     }
 }
 
-/// Where (s, t) is on a picture, from its top left to (1, 1): a factor and what is added.
+/// The map from (s, t) to a picture, from its top left to (1, 1): a factor and an offset.
 fn placed(picture: &Picture) -> [[f64; 2]; 2] {
     let [width, height] = picture.size;
     [[1.0 / width, -1.0 / height], [0.5; 2]]

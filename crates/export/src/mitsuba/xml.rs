@@ -4,11 +4,12 @@ use etendue_field::{Disc, Frame, Rectangle, Shape, VirtualPlane};
 use etendue_scene::Scene;
 use glam::DVec3;
 
-/// A scene file being written. Numbers are Rust's shortest that read back the same.
+/// A scene file being written. Numbers are written in Rust's shortest form that reads back exactly.
 pub(super) struct Xml(String);
 
 impl Xml {
-    /// The head: where the coordinates are in the world, the virtual planes, and how light is followed.
+    /// The header: the placement of the coordinates in the world, the virtual planes, and the
+    /// integrator.
     pub(super) fn new(scene: &Scene) -> Self {
         let mut xml =
             Self("<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<scene version=\"3.0.0\">\n".into());
@@ -40,7 +41,7 @@ impl Xml {
         xml
     }
 
-    /// A comment. XML allows no two hyphens in one: they are spaced out.
+    /// A comment. XML forbids double hyphens in comments: they are separated by spaces.
     pub(super) fn comment(&mut self, text: &str) {
         let text = text.replace("--", "- -").replace("--", "- -");
         self.line(&format!("<!-- {text} -->"));
@@ -72,14 +73,15 @@ impl Xml {
         ));
     }
 
-    /// A mesh with normals of its own.
+    /// A mesh with normals.
     pub(super) fn smooth_mesh(&mut self, id: &str, file: &str, looks: &str) {
         self.line(&format!(
             "<shape type=\"ply\" id=\"{id}\"><string name=\"filename\" value=\"{file}\"/>{looks}</shape>"
         ));
     }
 
-    /// A projector at the origin that shines along z, with y up and −x to the right in its square picture.
+    /// A projector at the origin that emits along z, with y up and −x to the right in its square
+    /// picture.
     pub(super) fn projector(&mut self, file: &str, degrees: f64) {
         self.line(&format!(
             "<emitter type=\"projector\" id=\"light\"><float name=\"fov\" value=\"{degrees:?}\"/>\
@@ -88,7 +90,8 @@ impl Xml {
         ));
     }
 
-    /// Light from far away, by a picture of all directions; Y of the frame is up, D in its middle.
+    /// Distant light, given by a picture of all directions; Y of the frame is up, D is at its
+    /// centre.
     pub(super) fn sky(&mut self, file: &str, frame: &Frame) {
         let axes = [frame.x, frame.y, frame.d, DVec3::ZERO];
         self.line(&format!(
@@ -97,7 +100,7 @@ impl Xml {
         ));
     }
 
-    /// A mesh from a file beside this one.
+    /// A mesh from a file in the same folder.
     pub(super) fn mesh(&mut self, id: &str, file: &str, looks: &str) {
         self.line(&format!(
             "<shape type=\"ply\" id=\"{id}\"><string name=\"filename\" value=\"{file}\"/>\
@@ -124,24 +127,24 @@ impl Xml {
     }
 }
 
-/// The light's emission, on the side its shape faces.
+/// The emission of the light, on the front of its shape.
 pub(super) fn emitter(radiance: f64) -> String {
     let radiance = spectrum("radiance", radiance);
     format!("<emitter type=\"area\">{radiance}</emitter>")
 }
 
-/// A Lambertian material, the same on both sides; Mitsuba's own has a black back.
+/// A Lambertian material, the same on both sides; Mitsuba's diffuse material has a black back.
 pub(super) fn diffuse(albedo: f64) -> String {
     let albedo = spectrum("reflectance", albedo);
     format!("<bsdf type=\"twosided\"><bsdf type=\"diffuse\">{albedo}</bsdf></bsdf>")
 }
 
-/// A material that reflects nothing; without one, Mitsuba's shapes reflect half.
+/// A black material; Mitsuba's default reflects half.
 pub(super) fn black() -> String {
     "<ref id=\"black\"/>".to_owned()
 }
 
-/// A picture as it is, over all of a light.
+/// An unscaled picture over the whole of a light.
 pub(super) fn picture(name: &str, file: &str) -> String {
     format!(
         "<texture type=\"bitmap\" name=\"{name}\"><string name=\"filename\" value=\"{file}\"/>\
@@ -149,7 +152,7 @@ pub(super) fn picture(name: &str, file: &str) -> String {
     )
 }
 
-/// Where the axes and the origin of a shape are.
+/// The matrix of the axes and origin of a shape.
 fn matrix([x, y, z, origin]: [DVec3; 4]) -> String {
     let row = |i: usize| format!("{:?} {:?} {:?} {:?}", x[i], y[i], z[i], origin[i]);
     let rows = [0, 1, 2].map(row).join(" ");
@@ -175,7 +178,7 @@ fn plane_text(plane: &VirtualPlane) -> String {
     )
 }
 
-/// Coordinates, a space between them.
+/// Coordinates separated by spaces.
 fn spaced(v: DVec3) -> String {
     format!("({:?} {:?} {:?})", v.x, v.y, v.z)
 }

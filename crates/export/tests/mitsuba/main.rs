@@ -1,4 +1,4 @@
-//! What is written for Mitsuba, read back.
+//! The files written for Mitsuba, read back.
 
 mod smooth;
 
@@ -17,7 +17,7 @@ fn stored(name: &str) -> Scene {
     scene(name, &std::fs::read_to_string(path).expect("scenes/"))
 }
 
-/// A scene with light and blockers of one's own; the floor is 1/3 by 0.1.
+/// A scene with given light and blockers; the floor is 1/3 by 0.1.
 fn of(light: &str, blockers: &str) -> Scene {
     let text = format!(
         r#"(
@@ -41,7 +41,7 @@ fn text<'a>(export: &'a Export, name: &str) -> &'a str {
     std::str::from_utf8(file(export, name)).expect("text")
 }
 
-/// Whether a mesh states these numbers of vertices and faces.
+/// Whether a mesh file states these numbers of vertices and faces.
 fn counts(export: &Export, name: &str, [vertices, faces]: [usize; 2]) -> bool {
     let ply = String::from_utf8_lossy(file(export, name));
     ply.contains(&format!("element vertex {vertices}\n"))
@@ -55,7 +55,7 @@ fn of_type<'a>(xml: &'a Document<'a>, kind: &str) -> Vec<Node<'a, 'a>> {
         .collect()
 }
 
-/// Numbers in the attributes of the first such element inside.
+/// The numbers in the attributes of the first descendant with this tag.
 fn numbers(node: &Node<'_, '_>, tag: &str, names: &[&str]) -> Vec<f64> {
     let mut inside = node.descendants().filter(|n| n.has_tag_name(tag));
     let element = inside.next().expect("such an element");
@@ -95,7 +95,7 @@ fn every_shape_is_there_once_with_its_numbers() {
     );
     assert_eq!(of_type(&xml, "ply").len(), 1);
     assert!(counts(&export, "blockers_0.ply", [8, 4]));
-    // Whatever has no material of its own reflects half in Mitsuba.
+    // A shape without a material reflects half in Mitsuba.
     let shapes = xml.descendants().filter(|n| n.has_tag_name("shape"));
     for shape in shapes {
         let material =

@@ -1,4 +1,4 @@
-//! What smooth surfaces, their BRDFs and patterns become, and lights with pictures.
+//! The export of smooth surfaces, their BRDFs and patterns, and lights with pictures.
 
 use super::{file, numbers, of_type, scene, stored, text};
 use etendue_export::{Export, NotInMitsuba, mitsuba};
@@ -6,7 +6,7 @@ use roxmltree::{Document, Node};
 
 const PROJECTOR: &str = "Projector(center: (0, 0, 0), intensity: 2, image: (width: (0.12, 0.06)))";
 
-/// One smooth surface of one's own, 0.5 m around its vertex.
+/// A scene with a given smooth surface, 0.5 m around its vertex.
 fn smooth(light: &str, form: &str, event: &str) -> Result<Export, NotInMitsuba> {
     let text = format!(
         r#"(
@@ -28,7 +28,7 @@ fn reflects(form: &str, brdf: &str) -> Export {
     smooth(PROJECTOR, form, &format!("Reflects({brdf})")).expect("words of Mitsuba")
 }
 
-/// A parameter's number.
+/// The value of a parameter.
 fn number(node: &Node<'_, '_>, name: &str) -> f64 {
     let mut inside = node.descendants();
     let found = inside.find(|n| n.attribute("name") == Some(name));
@@ -36,7 +36,7 @@ fn number(node: &Node<'_, '_>, name: &str) -> f64 {
     value.expect("a value").parse().expect("a number")
 }
 
-/// Width and rows of a picture, and its numbers, the lowest row first.
+/// Width and height of a picture, and its values, the lowest row first.
 fn picture(export: &Export, name: &str) -> ([usize; 2], Vec<f32>) {
     let bytes = file(export, name);
     let head = bytes.iter().enumerate().filter(|(_, b)| **b == b'\n');
@@ -88,10 +88,11 @@ fn every_lobe_has_its_word_and_its_numbers() {
         ] {
             assert!((number(&rough, name) - expected).abs() < 1e-12, "{name}"); // the very number
         }
-        // What is flat and uniform needs no triangles.
+        // A flat uniform surface needs no triangles.
         assert_eq!(of_type(&xml, "disk").len(), 1);
     }
-    // A dielectric reflects as a metal that absorbs nothing; without a factor, all of it.
+    // A dielectric reflects like a metal without absorption; without a factor, it reflects
+    // everything.
     let glass = parsed(&reflects(
         "Plane",
         "brdf: (lobe: Ggx(0.2), fresnel: Dielectric(1.5))",
@@ -99,7 +100,7 @@ fn every_lobe_has_its_word_and_its_numbers() {
     assert!(glass.contains(r#"name="eta" value="1.5"/><spectrum name="k" value="0.0"/>"#));
     let white = parsed(&reflects("Plane", "brdf: (lobe: Ggx(0.2))"));
     assert!(white.contains(r#"name="material" value="none""#));
-    // The factor of the angle of incidence is no word of Mitsuba's.
+    // Mitsuba has no Fresnel factor on a lobe.
     for lobe in ["Phong(30)", "Lambertian"] {
         let brdf = format!("brdf: (lobe: {lobe}, fresnel: Dielectric(1.5))");
         let xml = parsed(&reflects("Plane", &brdf));
@@ -155,12 +156,13 @@ fn patterns_become_pictures() {
         .try_into()
         .unwrap();
     assert_eq!(numbers(&bitmap, "scale", &["x", "y"]), [5.0, 5.0]);
-    // Texture coordinates are metres, so that even what is flat is a mesh.
+    // Texture coordinates are in metres, so even a flat surface becomes a mesh.
     assert!(file(&board, "smooth_0.ply").len() > 1000);
     let cosine = texture("Cosine(axis: Y, frequency: 15, modulation: 0.9, phase: 1.5)");
     let ([width, rows], values) = picture(&cosine, "smooth_0_reflectance.pfm");
     assert_eq!([width, rows], [2, 512]);
-    // The lowest row of the file is the last: half a pixel before a period is over, the cosine is nearly 1.
+    // The lowest row of the file is the last: half a pixel before the end of a period the cosine is
+    // nearly 1.
     let expected = 0.25 * (1.0 + 0.9 * f64::cos(std::f64::consts::TAU * 0.5 / 512.0));
     assert!((f64::from(values[0]) - expected).abs() < 1e-7); // 32 bits
     let xml = Document::parse(text(&cosine, "scene.xml")).unwrap();
@@ -180,7 +182,7 @@ fn blends_are_of_two_lobes() {
     );
     let xml = Document::parse(text(&tiles, "scene.xml")).unwrap();
     let [blend] = of_type(&xml, "blendbsdf").try_into().unwrap();
-    // Weight 0 is the first of them: the other.
+    // Weight 0 selects the first, which is the other lobe.
     let lobes: Vec<f64> = of_type(&xml, "phong")
         .iter()
         .map(|n| number(n, "exponent"))
@@ -227,7 +229,7 @@ fn lights_shine_through_pictures() {
     let projector = smooth(PROJECTOR, "Plane", "Mirror").unwrap();
     let ([width, rows], values) = picture(&projector, "light_picture.pfm");
     assert_eq!([width, rows], [1024, 1024]);
-    // Its middle has 2/π; across, three widths of 0.12 are seen to each side.
+    // The centre value is 2/π; three widths of 0.12 are visible to each side.
     assert!((f64::from(values[512 * 1024 + 512]) - 2.0 / std::f64::consts::PI).abs() < 1e-4); // half a pixel beside
     let xml = Document::parse(text(&projector, "scene.xml")).unwrap();
     let [light] = of_type(&xml, "projector").try_into().unwrap();
@@ -245,7 +247,7 @@ fn lights_shine_through_pictures() {
     assert_eq!(of_type(&xml, "directionalarea").len(), 1);
 }
 
-/// The sky is dark where it would shine against the central ray.
+/// The sky is dark where it would emit against the central ray.
 #[test]
 fn environments_become_maps() {
     let sky =
@@ -256,7 +258,8 @@ fn environments_become_maps() {
     let most = values.iter().copied().fold(0.0_f32, f32::max);
     assert!((most - 3.0).abs() < 1e-4); // half a pixel beside the peak
     let dark = values.iter().filter(|v| **v == 0.0).count();
-    // Half of all directions; longitude is uniform, so half of the pixels as well, to a column or two.
+    // Half of all directions; longitude is uniform, so this is half of the pixels too, within a
+    // column or two.
     assert!(dark.abs_diff(values.len() / 2) < 3 * rows, "{dark}");
     let xml = Document::parse(text(&export, "scene.xml")).unwrap();
     assert_eq!(of_type(&xml, "envmap").len(), 1);

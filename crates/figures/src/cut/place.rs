@@ -1,4 +1,4 @@
-//! Where things of a cut go.
+//! Placement of numbers and names in a cut.
 
 use crate::section::{PlaneMark, Section, Segment};
 use crate::sizes::TICK_TEXT;
@@ -6,9 +6,9 @@ use crate::svg::Area;
 use crate::text::width;
 use etendue_field::Side;
 
-/// Half of the distance of two numbers.
+/// Half of the minimum distance of two numbers.
 const ASIDE: f64 = 9.0;
-/// Where a segment's name is written.
+/// The position of a segment's name.
 #[derive(Debug)]
 pub(super) struct SegmentName {
     pub(super) text: String,
@@ -16,7 +16,8 @@ pub(super) struct SegmentName {
     pub(super) row: usize,
 }
 
-/// Places of the planes' numbers: below their lines, to their side of them where others are near, and apart from each other.
+/// Positions of the plane numbers: below their lines, shifted to their side if others are near,
+/// without overlaps.
 pub(super) fn number_places(section: &Section, across: impl Fn(f64) -> f64) -> Vec<f64> {
     let true_places = || section.planes.iter().map(|plane| across(plane.distance));
     let aside = |(i, plane): (usize, &PlaneMark)| {
@@ -31,7 +32,7 @@ pub(super) fn number_places(section: &Section, across: impl Fn(f64) -> f64) -> V
     let mut places: Vec<f64> = section.planes.iter().enumerate().map(aside).collect();
     let mut order: Vec<usize> = (0..places.len()).collect();
     order.sort_by(|a, b| places[*a].total_cmp(&places[*b]));
-    // Those before something make room in front of it, the others behind.
+    // Planes before an object move forwards, the others backwards.
     for pair in order.windows(2).rev() {
         if section.planes[pair[0]].side == Side::Before {
             places[pair[0]] = places[pair[0]].min(places[pair[1]] - 2.0 * ASIDE);
@@ -43,7 +44,7 @@ pub(super) fn number_places(section: &Section, across: impl Fn(f64) -> f64) -> V
     places
 }
 
-/// Names above their segments, in as many rows as it takes to keep them apart.
+/// Places names above their segments, in as many rows as needed to avoid overlaps.
 pub(super) fn names(
     segments: &[Segment],
     area: Area,

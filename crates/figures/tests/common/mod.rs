@@ -1,4 +1,4 @@
-//! What the tests of the figures share.
+//! Helpers shared by the tests of the figures.
 
 #![allow(
     dead_code,
@@ -15,7 +15,7 @@ use etendue_figures::{
 };
 use ndarray::{Array2, ArrayView2};
 
-/// Red, green, blue, row by row from the top.
+/// RGB pixels, row by row from the top.
 pub struct Pixels {
     pub width: usize,
     pub height: usize,
@@ -159,12 +159,12 @@ pub fn corner() -> Array2<f64> {
     values
 }
 
-/// A plate of so many columns, with long texts and bars.
+/// A plate with this number of columns, with long texts and bars.
 pub fn grid(count: usize, values: ArrayView2<'_, f64>) -> Figure {
     plate_of(count, values, |_| [16.5, 32.5])
 }
 
-/// The same, each picture with axes of its own.
+/// The same plate, with different axes for each picture.
 pub fn uneven_grid(count: usize, values: ArrayView2<'_, f64>) -> Figure {
     plate_of(count, values, |i| {
         [0.15 + 0.2 * i as f64, 0.3 + 7.0 * i as f64]

@@ -1,4 +1,4 @@
-//! Buffers and what is read from them.
+//! Buffers and accessors.
 
 use super::reader::GltfReader;
 use super::uri::{BufferSource, source};
@@ -8,7 +8,7 @@ use ::gltf::json::validation::Checked;
 use ::gltf::json::{Accessor, Index};
 use std::sync::Arc;
 
-/// Rows of numbers in a buffer, all of them there.
+/// Rows of numbers in a buffer, checked to lie within it.
 struct AccessorRows {
     bytes: Arc<[u8]>,
     start: usize,
@@ -135,7 +135,8 @@ impl GltfReader<'_> {
         })
     }
 
-    /// Where elements begin and how many there are, if all are within their view and the view within its buffer.
+    /// The start and number of elements, if they are all within their view and the view within its
+    /// buffer.
     fn fit(
         &self,
         accessor: &Accessor,
@@ -198,7 +199,7 @@ impl GltfReader<'_> {
             .ok_or_else(|| format!("has {found} bytes; byteLength is {said}"))
     }
 
-    /// What a URI names.
+    /// The bytes that a URI refers to.
     pub(super) fn bytes_of(&self, uri: &str) -> Result<Vec<u8>, String> {
         match source(uri, self.files.left())? {
             BufferSource::Data(bytes) => {

@@ -6,14 +6,14 @@ use png::{BitDepth, ColorType, Decoder, Transformations};
 use std::io::Cursor;
 use std::path::Path;
 
-/// A number for the alpha of each pixel; that of pictures without it is 1.
+/// Reads a number from the alpha of each pixel; alpha is 1 in pictures without it.
 pub(super) fn read(
     extension: &str,
     bytes: &[u8],
     number: impl Fn(f64) -> f64,
 ) -> Result<Raster, String> {
     let file = Path::new("image").with_extension(extension);
-    // Checks the size before anything is made.
+    // Decoding checks the size before anything is allocated.
     let colours = pictures::decode(&file, bytes)?;
     let (width, height) = (colours.width, colours.height);
     drop(colours);
@@ -28,7 +28,7 @@ pub(super) fn read(
     Raster::new(width, height, values).ok_or_else(|| "has no pixels".to_owned())
 }
 
-/// Alphas of a PNG picture of a size that was checked; `None` if it has none.
+/// The alpha values of a PNG picture whose size was checked; `None` if it has none.
 fn alphas(bytes: &[u8]) -> Result<Option<Vec<f64>>, String> {
     let damaged = |error: png::DecodingError| format!("is damaged ({error})");
     let mut decoder = Decoder::new(Cursor::new(bytes));

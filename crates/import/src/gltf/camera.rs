@@ -7,10 +7,10 @@ use ::gltf::json::camera::{Orthographic, Perspective};
 use etendue_world::{Camera, Projection};
 use std::f64::consts::PI;
 
-/// Pixels across; files have no number of pixels.
+/// Width of pictures in pixels; files do not state a resolution.
 const ACROSS: usize = 512;
 
-/// Widths over heights that make a picture of at least one pixel, and not too many.
+/// Range of aspect ratios that give at least one pixel, and not too many.
 const ASPECTS: [f64; 2] = [1.0 / 32.0, 512.0];
 
 impl<'a> GltfReader<'a> {
@@ -45,7 +45,7 @@ impl<'a> GltfReader<'a> {
         self.note_once("cameras have no number of pixels: 512 across, and as many down as their aspect ratio asks for");
     }
 
-    /// The projection, how much it is scaled, the picture's width over its height, and its clip planes.
+    /// The projection, its scale, the aspect ratio of the picture, and the clip planes.
     fn perspective(
         &mut self,
         of: &Perspective,
@@ -106,7 +106,7 @@ impl<'a> GltfReader<'a> {
     }
 }
 
-/// Pixels across and down.
+/// Width and height in pixels.
 fn size(aspect: f64) -> [usize; 2] {
     #[expect(
         clippy::cast_possible_truncation,

@@ -1,13 +1,13 @@
-//! The JSON of a file, checked; and the buffer of a binary one.
+//! The checked JSON of a file, and the buffer of a binary file.
 
 use crate::report::{Report, SourcePlace, quoted};
 use ::gltf::json::validation::{Error, Validate};
 use ::gltf::json::{Path, Root};
 
-/// What a binary file begins with.
+/// The first bytes of a binary file.
 const MAGIC: &[u8] = b"glTF";
 
-/// Extensions that files may require.
+/// Supported required extensions.
 const KNOWN: &[&str] = &[
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
@@ -20,7 +20,7 @@ const KNOWN: &[&str] = &[
     "KHR_texture_transform",
 ];
 
-/// A file, checked so that its indices are those of things it has.
+/// A file with valid indices.
 pub(super) struct Document {
     pub(super) root: Root,
     /// The buffer of a binary file.
@@ -80,7 +80,7 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
     }
 }
 
-/// Whether all indices are within range and all words are known; else causes.
+/// Whether all indices are within range and all keywords are known; reports causes otherwise.
 fn check(root: &Root, place: &SourcePlace, report: &Report) -> bool {
     let version = &root.asset.version;
     if version.split('.').next() != Some("2") {
@@ -93,14 +93,14 @@ fn check(root: &Root, place: &SourcePlace, report: &Report) -> bool {
             report.cause(place, message);
         }
     }
-    // The crate looks at the accessors of positions before it checks that they are there.
+    // The gltf crate accesses the accessors of positions before it checks that they exist.
     if !has_positions(root, place, report) {
         return false;
     }
     root.validate(root, Path::new, &mut |path, error| {
         let path = path();
         let path = path.as_str();
-        // Nothing here needs bounds, and extensions were looked at above.
+        // Bounds are not needed here, and extensions were checked above.
         let is_bound = path.ends_with(".min") || path.ends_with(".max");
         if error == Error::Unsupported || (error == Error::Missing && is_bound) {
             return;

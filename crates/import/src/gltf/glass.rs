@@ -1,4 +1,4 @@
-//! `KHR_materials_transmission`, as interfaces that light goes through.
+//! `KHR_materials_transmission`, as transmitting interfaces.
 
 use super::metallic::roughness;
 use super::reader::GltfReader;
@@ -6,7 +6,7 @@ use super::surface::Draft;
 use etendue_world::{Dielectric, Material, Texture};
 
 impl GltfReader<'_> {
-    /// What lets a share of light through, and otherwise is `opaque`. `None` after a cause.
+    /// A material that transmits a share of light, and otherwise is `opaque`. `None` after a cause.
     pub(super) fn with_glass(
         &mut self,
         draft: &mut Draft<'_>,
@@ -72,7 +72,7 @@ impl GltfReader<'_> {
         }))
     }
 
-    /// Whether the surface bounds a body.
+    /// Whether the surface encloses a volume.
     fn has_volume(&self, draft: &Draft<'_>) -> bool {
         let extensions = draft.source.extensions.as_ref();
         let Some(volume) = extensions.and_then(|of| of.volume.as_ref()) else {

@@ -1,4 +1,4 @@
-//! Images, as numbers.
+//! Images, converted to numbers.
 
 use super::level::{TextureChannel, cut};
 use super::raster_key::RasterKey;
@@ -9,7 +9,7 @@ use etendue_scene::Channels;
 use std::path::Path;
 use std::sync::Arc;
 
-/// What an image begins with, as the extension of a file.
+/// The file extension that matches the first bytes of an image.
 fn extension(bytes: &[u8]) -> Option<&'static str> {
     match bytes {
         [0x89, b'P', b'N', b'G', ..] => Some("png"),
@@ -62,7 +62,7 @@ impl GltfReader<'_> {
         let color = self.color;
         let is_grey = channels.count == 1;
         let raster = channels.raster(|rgb| match level {
-            // Rounding would move the luminance of three equal numbers off them.
+            // Rounding would make the luminance of three equal numbers differ from them.
             TextureChannel::Color(factor) if is_grey => pictures::linear(rgb[0]) * color.of(factor),
             TextureChannel::Color(factor) => {
                 let linear = rgb.map(pictures::linear);

@@ -1,10 +1,10 @@
-//! What files hold that a world does not.
+//! Content of files that a world cannot represent.
 
 use super::reader::GltfReader;
 use crate::report::quoted;
 
 impl GltfReader<'_> {
-    /// Notes on parts of the file as a whole.
+    /// Adds notes on ignored parts of the file as a whole.
     pub(super) fn tell_leftovers(&self) {
         let root = self.root;
         for (i, animation) in root.animations.iter().enumerate() {

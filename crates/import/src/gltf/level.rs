@@ -1,19 +1,19 @@
-//! The number that is taken from a pixel.
+//! The texture channel that is read from a pixel.
 
-/// The number that is taken from a pixel.
+/// The texture channel that is read from a pixel.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum TextureChannel {
-    /// An sRGB colour, made linear, times these factors.
+    /// A linearised sRGB colour, times these factors.
     Color([f64; 3]),
     /// The square of the second channel times a factor.
     GreenSquared(f64),
     /// The third channel times a factor.
     Blue(f64),
-    /// Alpha times a factor; 0 or 1 with a cutoff.
+    /// Alpha times a factor; with a cutoff, 0 or 1.
     Alpha { factor: f64, cutoff: Option<f64> },
 }
 
-/// Alpha, or whether it reaches the cutoff.
+/// Alpha, or 0 or 1 depending on the cutoff.
 pub(super) fn cut(alpha: f64, cutoff: Option<f64>) -> f64 {
     match cutoff {
         Some(cutoff) if alpha >= cutoff => 1.0,

@@ -12,7 +12,8 @@ use etendue_world::{Material, Texture};
 use std::collections::BTreeSet;
 
 impl<'a> GltfReader<'a> {
-    /// A material by its number; without one that of the specification. `None` after a cause.
+    /// A material by number; without a number, the default material of the specification. `None`
+    /// after a cause.
     pub(super) fn material(&mut self, number: Option<usize>) -> Option<GltfSurface> {
         if let Some(known) = self.materials.get(&number) {
             return known.clone();
@@ -64,11 +65,11 @@ impl<'a> GltfReader<'a> {
         })
     }
 
-    /// What scatters light, on one side or both.
+    /// The scattering of a material, on one side or both.
     fn scatter(&mut self, draft: &mut Draft<'_>) -> Option<Material> {
         let metallic_roughness = self.metallic_roughness(draft)?;
         let opaque = match draft.source.double_sided {
-            // What shines on both sides is two surfaces, each with its front.
+            // A surface that emits on both sides becomes two surfaces, each with its front.
             true if !is_lit(draft.source) => {
                 Material::TwoSided(Box::new([metallic_roughness.clone(), metallic_roughness]))
             }
@@ -81,7 +82,7 @@ impl<'a> GltfReader<'a> {
         self.with_glass(draft, opaque)
     }
 
-    /// What is emitted on the front. The outer `None` is after a cause.
+    /// The emission of the front. The outer `None` is after a cause.
     #[expect(clippy::option_option, reason = "the outer none is a cause")]
     fn emission(&mut self, draft: &mut Draft<'_>) -> Option<Option<Texture>> {
         let path = format!("{}.emissiveFactor", draft.path);
@@ -107,7 +108,7 @@ impl<'a> GltfReader<'a> {
         }
     }
 
-    /// The share of light that does not pass; inner `None` for all of it. The outer `None` is after a cause.
+    /// The opacity; the inner `None` means opaque. The outer `None` is after a cause.
     #[expect(clippy::option_option, reason = "the outer none is a cause")]
     fn opacity(&mut self, draft: &mut Draft<'_>) -> Option<Option<Texture>> {
         let source = draft.source;

@@ -8,7 +8,7 @@ use ::gltf::json::{Accessor, Index};
 use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
 
-/// Most corners; their numbers are of 32 bits.
+/// Maximum number of corners; indices have 32 bits.
 const MAX_CORNERS: usize = u32::MAX as usize;
 
 fn attribute(primitive: &Primitive, of: Semantic) -> Option<Index<Accessor>> {
@@ -16,7 +16,8 @@ fn attribute(primitive: &Primitive, of: Semantic) -> Option<Index<Accessor>> {
 }
 
 impl GltfReader<'_> {
-    /// The triangles of a primitive, with the texture coordinates that its material asks for; `None` if there are none, or after a cause.
+    /// The triangles of a primitive, with the texture coordinates that its material uses; `None` if
+    /// there are none, or after a cause.
     pub(super) fn parts(
         &mut self,
         primitive: &Primitive,
@@ -63,7 +64,7 @@ impl GltfReader<'_> {
         Some(parts)
     }
 
-    /// Corners of a primitive without indices: all vertices in their order.
+    /// Corners of a primitive without indices: all vertices in order.
     fn all(&self, count: usize, path: &str) -> Option<Vec<u32>> {
         let count = u32::try_from(count.min(MAX_CORNERS)).ok()?;
         let spent = self.files.spend(u64::from(count) * 4);
@@ -80,7 +81,7 @@ impl GltfReader<'_> {
         self.numbers(index)
     }
 
-    /// Drops what no ray meets, and turns normals to the front.
+    /// Drops empty triangles, and turns normals to the front.
     fn finish(&self, parts: &mut MeshParts, path: &str) -> Option<()> {
         let spent = self.files.spend(parts.bytes());
         spent.map_err(|error| self.cause(path, error)).ok()?;
@@ -122,7 +123,7 @@ impl GltfReader<'_> {
     }
 }
 
-/// Triangles of a list, a strip or a fan; a strip turns every second one over.
+/// Triangles of a list, a strip or a fan; every second triangle of a strip is flipped.
 fn corners(listed: &[u32], mode: Mode) -> Vec<[u32; 3]> {
     match mode {
         Mode::Triangles => listed.as_chunks().0.to_vec(),
@@ -141,7 +142,7 @@ fn corners(listed: &[u32], mode: Mode) -> Vec<[u32; 3]> {
     }
 }
 
-/// The same triangles with their back for a front, `gap` behind them. Corners at one place move together.
+/// The same triangles flipped, `gap` behind the originals. Corners at one place move together.
 pub(super) fn back_of(parts: &etendue_world::Triangles, gap: f64) -> MeshParts {
     let bits = |v: DVec3| v.to_array().map(|x| (x + 0.0).to_bits());
     let mut sums: BTreeMap<[u64; 3], DVec3> = BTreeMap::new();

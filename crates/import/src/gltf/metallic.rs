@@ -1,24 +1,24 @@
-//! Metallic roughness, as plastic and metal.
+//! The metallic-roughness model, as plastic and metal.
 
 use super::level::TextureChannel;
 use super::reader::GltfReader;
 use super::surface::Draft;
 use etendue_world::{Conductor, Material, MicrofacetDistribution, Plastic, Roughness, Texture};
 
-/// Index of refraction, if nothing is said.
+/// Default index of refraction.
 const INDEX: f64 = 1.5;
 
-/// Field of both pictures.
+/// The JSON field that holds both pictures.
 const PBR: &str = "pbrMetallicRoughness";
 
-/// What a dielectric reflects at its surface.
+/// The reflection at the surface of a dielectric.
 struct DielectricCoat {
     index: f64,
     specular: f64,
 }
 
 impl GltfReader<'_> {
-    /// What the front of an opaque material does; `None` after a cause.
+    /// The scattering at the front of an opaque material; `None` after a cause.
     pub(super) fn metallic_roughness(&mut self, draft: &mut Draft<'_>) -> Option<Material> {
         let color = self.base_color(draft);
         let metallic = self.share(draft, "metallicFactor");
@@ -49,13 +49,13 @@ impl GltfReader<'_> {
         }
     }
 
-    /// `metallicFactor`, with its picture.
+    /// `metallicFactor`, times its picture.
     fn share(&mut self, draft: &mut Draft<'_>, name: &str) -> Option<Texture> {
         let pbr = &draft.source.pbr_metallic_roughness;
         let path = format!("{}.{PBR}.{name}", draft.path);
         let factor = self.within(&path, pbr.metallic_factor.0, [0.0, 1.0])?;
         match &pbr.metallic_roughness_texture {
-            // Nothing is left of the picture.
+            // With factor 0 the picture has no effect.
             Some(info) if factor > 0.0 => {
                 let field = format!("{PBR}.metallicRoughnessTexture");
                 self.bitmap(draft, info, &field, TextureChannel::Blue(factor))
@@ -78,7 +78,7 @@ impl GltfReader<'_> {
         }
     }
 
-    /// All angles reflect the base colour.
+    /// The base colour is the reflectance at all angles.
     fn metal(&self, draft: &Draft<'_>, reflectance: Texture, alpha: Texture) -> Material {
         let is_white = matches!(reflectance, Texture::Constant(v) if (v - 1.0).abs() < 1e-9);
         if !is_white {
@@ -170,7 +170,7 @@ impl GltfReader<'_> {
     }
 }
 
-/// Microfacets of the same α along both tangents; `None` for a smooth surface.
+/// Isotropic microfacet roughness α; `None` for a smooth surface.
 pub(super) fn roughness(alpha: Texture) -> Option<Roughness> {
     match alpha {
         Texture::Constant(..=0.0) => None,

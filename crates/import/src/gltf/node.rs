@@ -1,4 +1,4 @@
-//! Nodes: where everything is.
+//! Nodes and their placement.
 
 use super::reader::GltfReader;
 use crate::range::{MAX_NUMBER, holds};
@@ -6,10 +6,10 @@ use crate::report::quoted;
 use ::gltf::json::Node;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
-/// By how much the length of a turn may be off 1.
+/// Maximum deviation of the length of a rotation quaternion from 1.
 const UNIT: f64 = 1e-3;
 
-/// A node and where it is.
+/// A node and its transform.
 pub(super) struct PlacedNode<'a> {
     pub(super) node: &'a Node,
     pub(super) path: String,
@@ -17,7 +17,7 @@ pub(super) struct PlacedNode<'a> {
 }
 
 impl<'a> GltfReader<'a> {
-    /// Adds all that the nodes of the scene hold. Without recursion: each node is met once.
+    /// Adds the content of all nodes of the scene, without recursion: each node is visited once.
     pub(super) fn nodes(&mut self) {
         let mut met = vec![false; self.root.nodes.len()];
         let mut open: Vec<(usize, DAffine3)> = Vec::new();
@@ -48,7 +48,7 @@ impl<'a> GltfReader<'a> {
         self.tell_unmet(&met);
     }
 
-    /// The nodes of the scene to be shown; without scenes those that are below no other.
+    /// The root nodes of the default scene; without scenes, the nodes without a parent.
     fn tops(&self) -> Vec<usize> {
         let chosen = self.root.scene.map_or(0, |scene| scene.value());
         let Some(scene) = self.root.scenes.get(chosen) else {
@@ -69,7 +69,7 @@ impl<'a> GltfReader<'a> {
         scene.nodes.iter().map(|node| node.value()).collect()
     }
 
-    /// Nodes that no scene shows. Without scenes only nodes that are below themselves are below no top.
+    /// Notes nodes that are not visited. Without scenes, these are only nodes in cycles.
     fn tell_unmet(&self, met: &[bool]) {
         let unmet = met.iter().filter(|met| !**met).count();
         match (met.iter().position(|met| !met), self.root.scenes.is_empty()) {
@@ -84,7 +84,7 @@ impl<'a> GltfReader<'a> {
         }
     }
 
-    /// What is at a node.
+    /// Adds the content of a node.
     fn hold(&mut self, placed: &PlacedNode<'a>) {
         let (node, path) = (placed.node, &placed.path);
         if !holds(placed.to_world) {
@@ -115,7 +115,7 @@ impl<'a> GltfReader<'a> {
         }
     }
 
-    /// What a node does to its contents; `None` after a cause.
+    /// The local transform of a node; `None` after a cause.
     fn own(&self, node: &Node, path: &str) -> Option<DAffine3> {
         let is_split =
             node.translation.is_some() || node.rotation.is_some() || node.scale.is_some();
@@ -129,7 +129,7 @@ impl<'a> GltfReader<'a> {
         }
     }
 
-    /// Sixteen numbers, one column after the other.
+    /// A matrix from sixteen numbers in column-major order.
     fn matrix(&self, matrix: [f32; 16], path: &str) -> Option<DAffine3> {
         let m = matrix.map(f64::from);
         let is_affine = [m[3], m[7], m[11], m[15] - 1.0]
@@ -144,7 +144,7 @@ impl<'a> GltfReader<'a> {
         Some(DAffine3::from_mat3_translation(linear, column(3)))
     }
 
-    /// Scale first, then the turn, then the move.
+    /// A transform from scale, rotation and translation, applied in this order.
     fn split(&self, node: &Node, path: &str) -> Option<DAffine3> {
         let three = |v: Option<[f32; 3]>, or| v.map_or(or, |v| DVec3::from(v.map(f64::from)));
         let turn = match &node.rotation {
@@ -172,7 +172,8 @@ impl<'a> GltfReader<'a> {
 }
 
 impl PlacedNode<'_> {
-    /// Where it is and how it is turned, looking along −Z with Y up, as a camera or light of a world looks along Z. Scale is left out, a mirror too.
+    /// The position and orientation of a camera or light, which look along −Z with Y up here and
+    /// along Z in a world. Scale and mirrors are left out.
     pub(super) fn looking(&self) -> Option<DAffine3> {
         let linear = self.to_world.matrix3;
         let ahead = (-linear.z_axis).try_normalize()?;

@@ -1,8 +1,8 @@
-//! What tells rasters apart that are made once.
+//! Keys of rasters that are made once.
 
 use super::level::TextureChannel;
 
-/// An image, and which numbers are taken from it.
+/// An image, and the channel read from it.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) struct RasterKey {
     image: usize,

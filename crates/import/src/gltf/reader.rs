@@ -13,10 +13,10 @@ use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Most shapes, and most lights.
+/// Maximum number of shapes, and of lights.
 pub(super) const MAX_SHAPES: usize = 1 << 20;
 
-/// Makes a world of a file.
+/// Converts a file to a world.
 pub(super) struct GltfReader<'a> {
     pub(super) root: &'a Root,
     pub(super) chunk: Option<&'a [u8]>,
@@ -26,16 +26,16 @@ pub(super) struct GltfReader<'a> {
     pub(super) folder: PathBuf,
     pub(super) color: Color,
     pub(super) world: World,
-    /// Bytes of the buffers that were asked for; `None` after a cause.
+    /// Bytes of the buffers read so far; `None` after a cause.
     pub(super) buffers: HashMap<usize, Option<Arc<[u8]>>>,
-    /// Meshes by their number and that of the primitive; `None` if there is nothing to see, or after a cause.
+    /// Meshes by mesh and primitive number; `None` if there are no triangles, or after a cause.
     pub(super) meshes: HashMap<(usize, usize), Option<Arc<Triangles>>>,
-    /// The same with their back for a front, moved aside.
+    /// The same meshes flipped and moved back.
     pub(super) backs: HashMap<(usize, usize), Option<Arc<Triangles>>>,
-    /// Materials by their number; `None` after a cause. The default one has no number.
+    /// Materials by number; `None` after a cause. The default material has no number.
     pub(super) materials: HashMap<Option<usize>, Option<GltfSurface>>,
     pub(super) rasters: HashMap<RasterKey, Result<Arc<Raster>, String>>,
-    /// Notes that are told once.
+    /// Notes that are given only once.
     pub(super) told: HashSet<&'static str>,
 }
 
@@ -65,33 +65,33 @@ impl<'a> GltfReader<'a> {
         }
     }
 
-    /// The world of the file.
+    /// Returns the world of the file.
     pub(super) fn world(mut self) -> World {
         self.tell_leftovers();
         self.nodes();
         self.world
     }
 
-    /// The file is refused, because of what is at a path of its JSON.
+    /// Adds a cause for the element at a JSON path.
     pub(super) fn cause(&self, path: &str, message: impl AsRef<str>) {
         self.report
             .cause(&self.place, format!("{path}: {}", message.as_ref()));
     }
 
-    /// What is at a path of the JSON is dropped or approximated.
+    /// Adds a note that the element at a JSON path is dropped or approximated.
     pub(super) fn note(&self, path: &str, message: impl AsRef<str>) {
         self.report
             .note(&self.place, format!("{path}: {}", message.as_ref()));
     }
 
-    /// A note on the file as a whole, told once.
+    /// Adds a note on the file as a whole, once.
     pub(super) fn note_once(&mut self, message: &'static str) {
         if self.told.insert(message) {
             self.report.note(&self.place, message);
         }
     }
 
-    /// A number within range; `None` after a cause.
+    /// Checks that a number is within range; `None` after a cause.
     pub(super) fn within(&self, path: &str, value: f32, [low, high]: [f64; 2]) -> Option<f64> {
         let value = f64::from(value);
         if (low..=high).contains(&value) && value.is_finite() {
@@ -101,7 +101,7 @@ impl<'a> GltfReader<'a> {
         None
     }
 
-    /// Numbers from 0 to 1; `None` after a cause.
+    /// Checks that numbers are from 0 to 1; `None` after a cause.
     pub(super) fn shares<const N: usize>(&self, path: &str, values: [f32; N]) -> Option<[f64; N]> {
         for value in values {
             self.within(path, value, [0.0, 1.0])?;

@@ -11,10 +11,11 @@ use etendue_world::{Geometry, Shape, Triangles};
 use glam::{DAffine3, DVec3};
 use std::sync::Arc;
 
-/// How far the back of a surface that shines on both sides is behind its front, over the size of its mesh.
+/// Distance between the back and the front of a surface that emits on both sides, relative to the
+/// size of its mesh.
 const GAP: f64 = 1e-5;
 
-/// Most characters of a name.
+/// Maximum number of characters of a name.
 const LONGEST: usize = 100;
 
 impl<'a> GltfReader<'a> {
@@ -23,7 +24,7 @@ impl<'a> GltfReader<'a> {
         let Some(mesh) = self.root.meshes.get(number) else {
             return;
         };
-        // A determinant of an f64 product may round to no exact 0.
+        // The determinant of a product in f64 may not round to exactly 0.
         let linear = placed.to_world.matrix3;
         let lengths = [linear.x_axis, linear.y_axis, linear.z_axis].map(DVec3::length);
         let size: f64 = lengths.iter().product();
@@ -34,7 +35,7 @@ impl<'a> GltfReader<'a> {
         }
         let own = || mesh.name.clone();
         let name = placed.node.name.clone().or_else(own).unwrap_or_default();
-        // Many nodes may show one mesh.
+        // Many nodes may use one mesh.
         let name: String = name.chars().take(LONGEST).collect();
         for (i, primitive) in mesh.primitives.iter().enumerate() {
             self.primitive(placed, [number, i], primitive, &name);
@@ -50,7 +51,7 @@ impl<'a> GltfReader<'a> {
     ) {
         let path = format!("meshes[{}].primitives[{}]", key[0], key[1]);
         if self.world.shapes.len() >= MAX_SHAPES {
-            // The first one says it.
+            // Only the first excess shape gives a cause.
             if !self.report.has_causes() {
                 self.cause(&placed.path, format!("more than {MAX_SHAPES} shapes"));
             }
@@ -109,7 +110,7 @@ impl<'a> GltfReader<'a> {
         });
     }
 
-    /// A surface that shines on both sides is two: each shines on its front.
+    /// Adds the second surface of one that emits on both sides: each emits on its front.
     fn add_back(
         &mut self,
         key: (usize, usize),
@@ -141,7 +142,7 @@ impl<'a> GltfReader<'a> {
     }
 }
 
-/// The diagonal of the box around a mesh.
+/// The diagonal of the bounding box of a mesh.
 fn extent(mesh: &Triangles) -> f64 {
     let nothing = [DVec3::INFINITY, DVec3::NEG_INFINITY];
     let grow = |[low, high]: [DVec3; 2], v: &DVec3| [low.min(*v), high.max(*v)];

@@ -1,31 +1,31 @@
-//! What `uri` names: data within the file, or another file.
+//! Sources that a `uri` refers to: data within the file, or another file.
 
 use base64::Engine;
 use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 
-/// Base64 whose padding may be missing.
+/// Base64 with optional padding.
 const BASE64: GeneralPurpose = GeneralPurpose::new(
     &STANDARD,
     GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
 );
 
-/// Where the bytes are.
+/// The location of the bytes.
 pub(super) enum BufferSource {
-    /// Here.
+    /// Embedded data.
     Data(Vec<u8>),
-    /// In a file of this name.
+    /// A file of this name.
     File(String),
 }
 
-/// Reads a URI; data may have at most `most` bytes.
+/// Parses a URI; data may have at most `most` bytes.
 pub(super) fn source(uri: &str, most: u64) -> Result<BufferSource, String> {
     if let Some(data) = uri.strip_prefix("data:") {
         let (kind, text) = data.split_once(',').ok_or("is data without a comma")?;
         if !kind.ends_with(";base64") {
             return Err("is data in another code; allowed: base64".to_owned());
         }
-        // Four letters are three bytes.
+        // Four characters encode three bytes.
         if (text.len() as u64) / 4 * 3 > most {
             return Err("is too much data".to_owned());
         }
@@ -39,7 +39,7 @@ pub(super) fn source(uri: &str, most: u64) -> Result<BufferSource, String> {
     unescaped(uri).map(BufferSource::File)
 }
 
-/// A name without its percent signs.
+/// A name with percent encoding decoded.
 fn unescaped(uri: &str) -> Result<String, String> {
     let mut bytes = Vec::with_capacity(uri.len());
     let mut rest = uri.as_bytes();

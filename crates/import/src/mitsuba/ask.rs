@@ -1,4 +1,4 @@
-//! Asking objects for their properties, which marks them as read.
+//! Reading of object properties, which marks them as read.
 
 use super::object::{MitsubaObject, ObjectKind, ObjectProperty, Value};
 use super::reader::MitsubaReader;
@@ -7,7 +7,8 @@ use crate::report::quoted;
 use glam::{DAffine3, DVec3};
 
 impl<'a> MitsubaReader<'a> {
-    /// The property of this name. Of objects with one name the last counts, as in Mitsuba.
+    /// The property of this name. If several objects have the name, the last one counts, as in
+    /// Mitsuba.
     pub(super) fn property(
         &self,
         object: &'a MitsubaObject,
@@ -23,7 +24,7 @@ impl<'a> MitsubaReader<'a> {
         object.properties.iter().any(|p| p.name == name)
     }
 
-    /// The value of a property, as `read` takes it; `None` if it is not there, or a cause was given.
+    /// The value of a property, as converted by `read`; `None` if it is missing, or after a cause.
     fn ask<T>(
         &self,
         object: &'a MitsubaObject,
@@ -49,7 +50,7 @@ impl<'a> MitsubaReader<'a> {
         })
     }
 
-    /// A number in a range; else a cause that says the range.
+    /// A number in a range; a number out of range is a cause that states the range.
     pub(super) fn number_within(
         &self,
         object: &'a MitsubaObject,
@@ -103,7 +104,7 @@ impl<'a> MitsubaReader<'a> {
         })
     }
 
-    /// Where a property is, or its object.
+    /// The place of a property, or else of its object.
     pub(super) fn place_of(
         &self,
         object: &'a MitsubaObject,
@@ -114,7 +115,7 @@ impl<'a> MitsubaReader<'a> {
         found.map_or(&object.place, |property| &property.place)
     }
 
-    /// A cause for each reference to no object.
+    /// Adds a cause for each reference to an unknown object.
     pub(super) fn refuse_unknown(&self) {
         for property in self.objects.iter().flat_map(|object| &object.properties) {
             if let Value::Reference(id) = &property.value
@@ -126,13 +127,13 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// The object that a property is, or refers to.
+    /// The object that a property holds or refers to.
     pub(super) fn object_of(&self, property: &'a ObjectProperty) -> Option<&'a MitsubaObject> {
         let at = match &property.value {
             Value::Object(at) => *at,
             Value::Reference(id) => match self.ids.get(id) {
                 Some(at) => *at,
-                // A cause has been given.
+                // A cause was already added.
                 None => return None,
             },
             _ => return None,
@@ -159,7 +160,7 @@ impl<'a> MitsubaReader<'a> {
         found
     }
 
-    /// The one object of a kind, if there is one; more are a cause.
+    /// The only child of a kind, if there is one; more than one is a cause.
     pub(super) fn child(
         &self,
         object: &'a MitsubaObject,

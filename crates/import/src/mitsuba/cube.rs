@@ -1,9 +1,9 @@
-//! Mitsuba's cube from −1 to 1: twelve triangles, flat normals, each side with all of the texture.
+//! Mitsuba's cube from −1 to 1: twelve triangles, flat normals, and the whole texture on each side.
 
 use crate::meshes::MeshParts;
 use glam::{DVec2, DVec3};
 
-/// The normal of each side, and its corners; bit k of a corner says whether coordinate k is 1.
+/// The normal and corners of each side; bit k of a corner is set if coordinate k is 1.
 const SIDES: [([f64; 3], [u32; 4]); 6] = [
     ([0.0, -1.0, 0.0], [1, 5, 4, 0]),
     ([0.0, 1.0, 0.0], [3, 2, 6, 7]),

@@ -1,4 +1,4 @@
-//! Other files of a scene: where they are looked for, and those that are included.
+//! File search and included files of a scene.
 
 use super::source::SourceFile;
 use super::transform::{Attributes, allow, required};
@@ -6,15 +6,15 @@ use super::xml::Tree;
 use crate::report::quoted;
 use std::path::Path;
 
-/// Files included in one another.
+/// Maximum nesting depth of included files.
 const MOST_INCLUDED: usize = 15;
-/// Files that are included, again and again.
+/// Maximum number of includes, counting repeats.
 const MAX_INCLUDES: usize = 1000;
-/// Folders to look for files in.
+/// Maximum number of search folders.
 const MOST_FOLDERS: usize = 64;
 
 impl Tree<'_> {
-    /// Adds a folder to look for files in, before those known.
+    /// Adds a search folder before the others.
     pub(super) fn search(
         &mut self,
         attributes: &Attributes,
@@ -55,7 +55,7 @@ impl Tree<'_> {
         }
         self.includes += 1;
         if self.includes > MAX_INCLUDES {
-            // The first one says it.
+            // Only the first excess file gives a cause.
             return match self.includes == MAX_INCLUDES + 1 {
                 true => Err(format!("more than {MAX_INCLUDES} files are included")),
                 false => Ok(()),

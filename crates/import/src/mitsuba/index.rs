@@ -4,7 +4,7 @@ use super::object::{MitsubaObject, Value};
 use super::reader::MitsubaReader;
 use crate::report::quoted;
 
-/// At about 589 nm (Hecht, Optics, 4th edition), as Mitsuba has them.
+/// Values at about 589 nm (Hecht, Optics, 4th edition), as in Mitsuba.
 const NAMED: [(&str, f64); 23] = [
     ("vacuum", 1.0),
     ("helium", 1.000_036),
@@ -32,7 +32,7 @@ const NAMED: [(&str, f64); 23] = [
 ];
 
 impl<'a> MitsubaReader<'a> {
-    /// The index inside over that outside; `inside` is the name where none is given.
+    /// The ratio of the index inside to that outside; `inside` is the default name.
     pub(super) fn relative_index(&self, object: &'a MitsubaObject, inside: &str) -> Option<f64> {
         let inside = self.one_index(object, "int_ior", inside);
         let outside = self.one_index(object, "ext_ior", "air");

@@ -1,14 +1,14 @@
-//! How far light is followed.
+//! The integrator, which sets the path depth.
 
 use super::object::{MitsubaObject, ObjectKind};
 use super::reader::MitsubaReader;
 use crate::report::quoted;
 
-/// Integrators within one another, such as moment and aov.
+/// Maximum nesting depth of integrators, such as moment and aov.
 const MAX_DEPTH: usize = 8;
 
 impl<'a> MitsubaReader<'a> {
-    /// What the integrator says of the depth; all the rest is how Mitsuba computes.
+    /// Reads the depth from the integrator; its other settings only affect how Mitsuba computes.
     pub(super) fn integrator(&mut self, scene: &'a MitsubaObject) {
         let Some(mut object) = self.child(scene, ObjectKind::Integrator) else {
             return;
@@ -45,11 +45,11 @@ impl<'a> MitsubaReader<'a> {
         self.report.note(&object.place, message);
     }
 
-    /// Mitsuba counts the edges of a path: one shows sources alone, 2 adds direct light.
+    /// The depth. Mitsuba counts the edges of a path: 1 shows only sources, 2 adds direct light.
     fn depth(&self, object: &'a MitsubaObject) -> Option<u32> {
         match self.whole(object, "max_depth")? {
             -1 => None,
-            // Nothing at all is shown with 0; a world has no such depth.
+            // Depth 0 shows nothing at all; a world has no such depth.
             0 => {
                 self.report.cause(
                     self.place_of(object, "max_depth"),

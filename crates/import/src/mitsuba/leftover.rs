@@ -1,15 +1,15 @@
-//! What nothing asked for.
+//! Notes on unused properties and objects.
 
 use super::object::{MitsubaObject, Value};
 use crate::report::{Report, quoted};
 
-/// A note for each property that was not read, and for each object that the world does not have.
+/// Adds a note for each property that was not read, and for each object that is not in the world.
 pub(super) fn tell(objects: &[MitsubaObject], report: &Report) {
     for (at, object) in objects.iter().enumerate() {
         if object.is_used.get() {
             properties(object, report);
         } else if at != object.parent && objects[object.parent].is_used.get() {
-            // What is within an object that is not used needs no word of its own.
+            // Contents of an unused object need no note of their own.
             let (kind, plugin) = (object.kind.name(), quoted(&object.plugin));
             let id = object.id.as_deref().map(|id| format!(" {}", quoted(id)));
             let id = id.unwrap_or_default();

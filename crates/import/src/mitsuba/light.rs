@@ -1,4 +1,4 @@
-//! Emitters that are no surfaces.
+//! Emitters that are not surfaces.
 
 use super::mesh::z_of;
 use super::object::MitsubaObject;
@@ -9,10 +9,10 @@ use etendue_world::{Falloff, Light, SkyMap};
 use glam::{DAffine3, DVec3};
 use std::sync::Arc;
 
-/// Plugins that are lights of a world.
+/// Plugins supported as lights.
 const ALLOWED: &str = "point, spot, directional, constant, envmap; area within a shape";
 
-/// Half the angle of a spot, degrees, if nothing is said.
+/// Default half-angle of a spot, degrees.
 const CUTOFF: f64 = 20.0;
 
 impl<'a> MitsubaReader<'a> {
@@ -64,7 +64,7 @@ impl<'a> MitsubaReader<'a> {
         })
     }
 
-    /// A vector, or what a transform makes of it; not both. The outer `None` is after a cause.
+    /// A vector, given directly or by a transform, but not both. The outer `None` is after a cause.
     #[expect(
         clippy::option_option,
         reason = "neither is there; the outer none is a cause"

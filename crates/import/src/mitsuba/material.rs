@@ -11,17 +11,17 @@ use etendue_world::{
     Conductor, Dielectric, Material, MicrofacetDistribution, Plastic, Roughness, Texture,
 };
 
-/// Materials within one another.
+/// Maximum nesting depth of materials.
 const MAX_DEPTH: usize = 8;
 
-/// Materials of a world, with those within one another.
+/// Maximum number of materials, including nested ones.
 const MAX_MATERIALS: usize = 1 << 20;
 
-/// Plugins that are materials of a world.
+/// Plugins supported as materials.
 const ALLOWED: &str = "diffuse, conductor, roughconductor, dielectric, thindielectric, roughdielectric, plastic, roughplastic, phong, twosided, mask, blendbsdf, null";
 
 impl<'a> MitsubaReader<'a> {
-    /// The number of a material; `None` after a cause.
+    /// The index of a material; `None` after a cause.
     pub(super) fn material(&mut self, object: &'a MitsubaObject) -> Option<usize> {
         let at = object.number;
         if let Some(known) = self.materials.get(&at) {
@@ -33,7 +33,7 @@ impl<'a> MitsubaReader<'a> {
         number
     }
 
-    /// The material of shapes without one: diffuse, and black for those that shine.
+    /// The material of shapes without one: diffuse, or black for emitters.
     pub(super) fn default_material(&mut self, shines: bool) -> usize {
         if let Some(known) = self.defaults[usize::from(shines)] {
             return known;
@@ -57,7 +57,7 @@ impl<'a> MitsubaReader<'a> {
         object.is_used.set(true);
         self.made_materials += 1;
         if self.made_materials > MAX_MATERIALS {
-            // References may repeat what is within one another.
+            // References may duplicate nested materials.
             if self.made_materials == MAX_MATERIALS + 1 {
                 let message =
                     format!("more than {MAX_MATERIALS} bsdfs, with all that are repeated");
@@ -107,7 +107,7 @@ impl<'a> MitsubaReader<'a> {
         }))
     }
 
-    /// n and k, or `None` for what reflects all. The outer `None` is after a cause.
+    /// n and k, or `None` for a perfect reflector. The outer `None` is after a cause.
     fn metal(&mut self, object: &'a MitsubaObject) -> Option<Option<[f64; 2]>> {
         let name = match self.has(object, "material") {
             true => self.text(object, "material")?,
@@ -183,7 +183,7 @@ impl<'a> MitsubaReader<'a> {
         }))
     }
 
-    /// Of Mitsuba 0.6; Mitsuba 3 has none.
+    /// A plugin of Mitsuba 0.6; Mitsuba 3 has none.
     fn phong(&mut self, object: &'a MitsubaObject) -> Option<Material> {
         let diffuse = self.reflectance(object, "diffuse_reflectance", 0.5);
         let specular = self.reflectance(object, "specular_reflectance", 0.2);

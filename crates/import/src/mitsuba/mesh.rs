@@ -12,10 +12,10 @@ use glam::{DAffine3, DMat3, DVec3};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A mesh of a shape.
+/// The mesh of a shape.
 pub(super) struct MitsubaMesh {
     pub(super) triangles: Arc<Triangles>,
-    /// Whether its front is the other side.
+    /// Whether the front is on the opposite side.
     pub(super) is_flipped: bool,
 }
 
@@ -28,7 +28,7 @@ impl<'a> MitsubaReader<'a> {
         })
     }
 
-    /// An OBJ, PLY or serialized mesh.
+    /// Reads an OBJ, PLY or serialized mesh.
     pub(super) fn mesh(
         &mut self,
         object: &'a MitsubaObject,
@@ -39,7 +39,7 @@ impl<'a> MitsubaReader<'a> {
         let is_obj = object.plugin == "obj";
         let flips_uv = match object.plugin.as_str() {
             "serialized" => false,
-            // Mitsuba's default turns textures of OBJ files over.
+            // By default Mitsuba flips texture coordinates of OBJ files.
             _ if !self.has(object, "flip_tex_coords") => is_obj,
             _ => self.truth(object, "flip_tex_coords"),
         };
@@ -61,7 +61,8 @@ impl<'a> MitsubaReader<'a> {
                 return None;
             }
         };
-        // Mitsuba makes normals of placed triangles, which a mirror turns over; normals of the file it maps as normals.
+        // Mitsuba computes normals from placed triangles, which a mirror flips; it transforms
+        // normals of the file as normals.
         let is_mirrored = to_world.matrix3.determinant() < 0.0;
         Some(MitsubaMesh {
             triangles,
@@ -98,7 +99,7 @@ impl<'a> MitsubaReader<'a> {
         Some(path)
     }
 
-    /// The triangles of a mesh, and whether their normals were made of them.
+    /// The triangles of a mesh, and whether their normals were computed.
     fn triangles(
         &mut self,
         object: &'a MitsubaObject,
@@ -106,7 +107,7 @@ impl<'a> MitsubaReader<'a> {
         to_world: DAffine3,
         is_new: bool,
     ) -> (Result<Arc<Triangles>, String>, bool) {
-        // A mesh with normals of its own is one for all places.
+        // A mesh with its own normals can be shared by all placements.
         let everywhere = MitsubaMeshKey {
             linear: None,
             is_flat: false,
@@ -158,7 +159,7 @@ impl<'a> MitsubaReader<'a> {
         key: &MitsubaMeshKey,
         linear: DMat3,
     ) -> Result<Arc<Triangles>, String> {
-        // Shapes that share a file may have meshes of their own.
+        // Shapes that share a file may have different meshes.
         self.files.spend(parts.bytes())?;
         parts.drop_empty();
         if key.is_flipped {
@@ -183,11 +184,11 @@ impl<'a> MitsubaReader<'a> {
 }
 
 fn bits(linear: DMat3) -> [u64; 9] {
-    // −0 is 0.
+    // Turns −0 into 0.
     linear.to_cols_array().map(|v| (v + 0.0).to_bits())
 }
 
-/// The direction that a map takes Z to; `None` for a map without one.
+/// The direction to which a map takes Z; `None` for a singular map.
 pub(super) fn z_of(map: DAffine3) -> Option<DVec3> {
     map.matrix3.z_axis.try_normalize()
 }

@@ -1,7 +1,8 @@
 //! Complex indices of refraction of named conductors, as colours in linear sRGB.
 //!
-//! They are what Mitsuba 3.9.1 makes of its tables of n and k by wavelength (from luxpop.com, Palik and others), by the rule that
-//! [`Color`](crate::Color) states: parts below 0 are brought to 0.
+//! They were converted by Mitsuba 3.9.1 from its tables of n and k by wavelength (from luxpop.com,
+//! Palik and others), by the rule stated at [`Color`](crate::Color): negative components are set to
+//! 0.
 
 /// Red, green and blue.
 type MetalRgb = [f64; 3];

@@ -1,4 +1,4 @@
-//! Materials that hold others.
+//! Materials that contain others.
 
 use super::object::{MitsubaObject, ObjectKind};
 use super::reader::MitsubaReader;
@@ -53,10 +53,10 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// All bsdfs within; `None` after a cause.
+    /// All nested bsdfs; `None` after a cause.
     fn nested(&mut self, object: &'a MitsubaObject, depth: usize) -> Option<Vec<Material>> {
         let within = self.children(object, ObjectKind::Bsdf);
-        // All are read, so that all causes are found.
+        // All bsdfs are read, to find all causes.
         let all: Vec<Option<Material>> = within
             .into_iter()
             .take(3)

@@ -6,38 +6,38 @@ use std::cell::Cell;
 use std::path::PathBuf;
 use std::rc::Rc;
 
-/// An object of the scene: what Mitsuba has a plugin for.
+/// An object of the scene, which is a plugin in Mitsuba.
 #[derive(Debug)]
 pub(super) struct MitsubaObject {
     pub(super) kind: ObjectKind,
-    /// Its number among all objects.
+    /// Its index among all objects.
     pub(super) number: usize,
     /// The name of the plugin.
     pub(super) plugin: String,
     pub(super) id: Option<String>,
     pub(super) place: SourcePlace,
-    /// Where its files are looked for.
+    /// The search folders of the object.
     pub(super) folders: Rc<[PathBuf]>,
-    /// In the order of the file.
+    /// The properties in the order of the file.
     pub(super) properties: Vec<ObjectProperty>,
-    /// The object that it is written in; the scene's is its own.
+    /// The index of the enclosing object; the scene is its own parent.
     pub(super) parent: usize,
-    /// Whether the world has it.
+    /// Whether the world uses the object.
     pub(super) is_used: Cell<bool>,
 }
 
-/// A value or an object within another one.
+/// A value or object within another object.
 #[derive(Debug)]
 pub(super) struct ObjectProperty {
-    /// Empty for objects without a name.
+    /// The name; empty for objects without one.
     pub(super) name: String,
     pub(super) value: Value,
     pub(super) place: SourcePlace,
-    /// Whether anything asked for it.
+    /// Whether the property was read.
     pub(super) is_read: Cell<bool>,
 }
 
-/// What a property is.
+/// The value of a property.
 #[derive(Clone, Debug)]
 pub(super) enum Value {
     Number(f64),
@@ -46,20 +46,20 @@ pub(super) enum Value {
     Text(String),
     Vector(DVec3),
     Color([f64; 3]),
-    /// A spectrum with one number.
+    /// A spectrum given by one number.
     Uniform(f64),
     /// Pairs of a wavelength, nm, and a value.
     Spectrum(Rc<[[f64; 2]]>),
     Transform(DAffine3),
-    /// An object written here, by its number.
+    /// An object defined here, by index.
     Object(usize),
-    /// An object written elsewhere, by its id.
+    /// An object defined elsewhere, by id.
     Reference(String),
-    /// A cause has been given.
+    /// An invalid value, for which a cause was added.
     Broken,
 }
 
-/// Elements that are objects.
+/// Elements that define objects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ObjectKind {
     Scene,
@@ -78,7 +78,7 @@ pub(super) enum ObjectKind {
 }
 
 impl ObjectKind {
-    /// The kind of an element's name. A spectrum with a type is a texture.
+    /// The kind for an element name. A spectrum with a type is a texture.
     pub(super) fn of(name: &str, has_type: bool) -> Option<Self> {
         Some(match name {
             "scene" => Self::Scene,
@@ -99,7 +99,7 @@ impl ObjectKind {
         })
     }
 
-    /// Its name in the file.
+    /// The element name.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Scene => "scene",
@@ -120,7 +120,7 @@ impl ObjectKind {
 }
 
 impl Value {
-    /// What it is, for messages.
+    /// A noun for messages.
     pub(super) fn noun(&self) -> &'static str {
         match self {
             Self::Number(_) => "a number",

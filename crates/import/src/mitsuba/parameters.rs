@@ -3,10 +3,11 @@
 use crate::report::quoted;
 use std::collections::BTreeMap;
 
-/// Most bytes that substitution may make of a file, all values together: a default may hold others, and grow without end.
+/// Maximum number of bytes that substitution may produce for a file, over all values: defaults may
+/// contain others, and grow without limit.
 const MOST_BYTES: usize = 16 << 20;
 
-/// Parameters by their name, set from outside or by `<default>`.
+/// Parameters by name, set by the caller or by `<default>`.
 #[derive(Debug, Default)]
 pub(super) struct Parameters {
     values: BTreeMap<String, MitsubaParameter>,
@@ -16,13 +17,13 @@ pub(super) struct Parameters {
 #[derive(Debug)]
 struct MitsubaParameter {
     value: String,
-    /// Whether it must be met in the file.
+    /// Whether the caller set it, so that the file must use it.
     is_set: bool,
     is_used: bool,
 }
 
 impl Parameters {
-    /// Those set from outside.
+    /// Creates the parameters set by the caller.
     pub(super) fn new(set: &[(String, String)]) -> Self {
         let values = set.iter().map(|(name, value)| {
             let parameter = MitsubaParameter {
@@ -38,7 +39,7 @@ impl Parameters {
         }
     }
 
-    /// A value where there is none yet.
+    /// Sets a value if there is none yet.
     pub(super) fn default(&mut self, name: &str, value: &str) {
         self.values
             .entry(name.to_owned())
@@ -49,14 +50,15 @@ impl Parameters {
             });
     }
 
-    /// Names that were set from outside and stand nowhere in the file.
+    /// Names set by the caller that the file does not use.
     pub(super) fn unused(&self) -> impl Iterator<Item = &str> {
         let all = self.values.iter();
         all.filter(|(_, p)| p.is_set && !p.is_used)
             .map(|(name, _)| name.as_str())
     }
 
-    /// The text with values put in. `\$` is a dollar sign. Of several names that fit, the longest is meant.
+    /// The text with values substituted. `\$` is a dollar sign. If several names match, the longest
+    /// is used.
     pub(super) fn substitute(&mut self, text: &str) -> Result<String, String> {
         let mut made = String::new();
         let mut rest = text;

@@ -1,4 +1,4 @@
-//! Elements that are values of properties.
+//! Elements that hold values of properties.
 
 use super::object::Value;
 use super::source::SourceFile;

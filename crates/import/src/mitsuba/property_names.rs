@@ -1,6 +1,6 @@
 //! Elements that are properties.
 
-/// Their names, in order.
+/// The element names, sorted.
 pub(super) const VALUES: [&str; 9] = [
     "boolean",
     "float",

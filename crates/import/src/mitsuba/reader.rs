@@ -11,10 +11,10 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Most shapes of a world: instances may repeat what a group holds.
+/// Maximum number of shapes of a world: instances may repeat groups.
 pub(super) const MOST_SHAPES: usize = 1 << 20;
 
-/// Makes a world of objects.
+/// Converts objects to a world.
 pub(super) struct MitsubaReader<'a> {
     pub(super) objects: &'a [MitsubaObject],
     pub(super) ids: &'a HashMap<String, usize>,
@@ -26,11 +26,11 @@ pub(super) struct MitsubaReader<'a> {
     /// Bytes of mesh files that hold several meshes.
     pub(super) packed: HashMap<PathBuf, Result<Arc<[u8]>, String>>,
     pub(super) meshes: HashMap<MitsubaMeshKey, Result<Arc<Triangles>, String>>,
-    /// The material of each bsdf; `None` if it is no sound one.
+    /// The material of each bsdf; `None` if it is invalid.
     pub(super) materials: HashMap<usize, Option<usize>>,
-    /// Materials, with those within one another.
+    /// Number of materials, including nested ones.
     pub(super) made_materials: usize,
-    /// The numbers of the two default materials: of surfaces, and of those that shine.
+    /// The indices of the two default materials: of surfaces and of emitters.
     pub(super) defaults: [Option<usize>; 2],
 }
 
@@ -66,7 +66,7 @@ impl<'a> MitsubaReader<'a> {
         self.integrator(scene);
         self.sensors(scene);
         for (_, light) in self.children(scene, ObjectKind::Emitter) {
-            // Shapes refer to area lights.
+            // Area lights are read with their shapes.
             match light.plugin == "area" {
                 true => light.is_used.set(false),
                 false => self.light(light),
@@ -80,7 +80,7 @@ impl<'a> MitsubaReader<'a> {
         self.world
     }
 
-    /// Materials, textures and the like, which others refer to. They are read where they are used.
+    /// Marks materials, textures and similar definitions, which are read where they are used.
     fn definitions(&self, scene: &'a MitsubaObject) {
         for property in &scene.properties {
             if let Some(object) = self.object_of(property)
@@ -94,10 +94,10 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// Light in a scene with media goes other ways than a world knows.
+    /// Refuses media: a world has no volumetric scattering.
     fn refuse_media(&self) {
         for object in self.objects {
-            // What is within a medium goes with it.
+            // Only the outermost medium is reported.
             let is_outermost = self.objects[object.parent].kind != ObjectKind::Medium;
             if matches!(object.kind, ObjectKind::Medium | ObjectKind::Volume) && is_outermost {
                 let (kind, plugin) = (object.kind.name(), quoted(&object.plugin));
@@ -108,7 +108,7 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// The object and all within it are passed over: a message has been given.
+    /// Skips the object and its contents after a message.
     pub(super) fn drop_all(&self, object: &'a MitsubaObject) {
         object.is_used.set(true);
         for property in &object.properties {
@@ -119,7 +119,7 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// An object of which nothing came. A cause has been given already; if not, this is one.
+    /// Reports an object that could not be read, unless a cause was already added.
     pub(super) fn lost(&self, object: &'a MitsubaObject) {
         if !self.report.has_causes() {
             let (kind, plugin) = (object.kind.name(), quoted(&object.plugin));
@@ -128,7 +128,7 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// A plugin that a world has nothing for.
+    /// Reports an unsupported plugin.
     pub(super) fn unsupported(&self, object: &'a MitsubaObject, allowed: &str) {
         let (kind, plugin) = (object.kind.name(), quoted(&object.plugin));
         let message = format!("{kind} {plugin} is not supported; allowed: {allowed}");

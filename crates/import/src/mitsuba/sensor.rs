@@ -6,13 +6,13 @@ use crate::report::quoted;
 use etendue_world::{Camera, Lens, Projection};
 use glam::{DAffine3, DVec3};
 
-/// Plugins that are cameras of a world.
+/// Plugins supported as cameras.
 const ALLOWED: &str = "perspective, thinlens, orthographic";
 
-/// Pixels of a film, if nothing is said.
+/// Default size of a film in pixels.
 const SIZE: [usize; 2] = [768, 576];
 
-/// Most pixels across or down.
+/// Maximum number of pixels across or down.
 const MAX_PIXELS: i64 = 1 << 16;
 
 /// Diagonal of a frame of 35 mm film, mm, to which focal lengths refer.
@@ -49,7 +49,7 @@ impl<'a> MitsubaReader<'a> {
         let (to_world, projection, clip) = match object.plugin.as_str() {
             "orthographic" => {
                 let (to_world, stretch) = self.orthographic(object)?;
-                // Mitsuba stretches where rays begin, not how long they are.
+                // Mitsuba scales the origins of rays, but not their lengths.
                 let [near, far] = clip?;
                 let clip = [near * stretch, near * stretch + far - near];
                 (to_world, Projection::Orthographic, clip)
@@ -91,7 +91,7 @@ impl<'a> MitsubaReader<'a> {
             if is_lens || !self.has(object, name) {
                 return 0.0;
             }
-            // Mitsuba moves the place that is looked up, not the picture.
+            // Mitsuba shifts the lookup position, not the picture.
             -self.number(object, name).unwrap_or_default()
         });
         let lens = if is_lens {
@@ -152,7 +152,7 @@ impl<'a> MitsubaReader<'a> {
         })
     }
 
-    /// In millimetres, of a film of 35 mm.
+    /// The focal length in millimetres, for 35 mm film.
     fn focal_length(&self, object: &'a MitsubaObject) -> Option<f64> {
         if !self.has(object, "focal_length") {
             return Some(50.0);
@@ -170,7 +170,7 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// The placement with Z of unit length, and how long Z was.
+    /// The placement with Z normalised, and the former length of Z.
     fn orthographic(&self, object: &'a MitsubaObject) -> Option<(DAffine3, f64)> {
         if !self.has(object, "to_world") {
             return Some((DAffine3::IDENTITY, 1.0));
@@ -193,7 +193,7 @@ impl<'a> MitsubaReader<'a> {
         Some((map, stretch))
     }
 
-    /// Pixels across and down.
+    /// Width and height in pixels.
     fn film(&self, object: &'a MitsubaObject) -> Option<[usize; 2]> {
         let Some(film) = self.child(object, ObjectKind::Film) else {
             return Some(SIZE);
@@ -244,7 +244,7 @@ impl<'a> MitsubaReader<'a> {
         None
     }
 
-    /// How Mitsuba draws its samples is of no use here.
+    /// Marks the sampler, which is not needed here.
     fn sampler(&self, object: &'a MitsubaObject) {
         let samplers: Vec<(&ObjectProperty, &MitsubaObject)> =
             self.children(object, ObjectKind::Sampler);

@@ -1,4 +1,4 @@
-//! Mitsuba's own mesh files, versions 3 and 4: several meshes, each packed by zlib.
+//! Mitsuba's own mesh files, versions 3 and 4: several meshes, each compressed with zlib.
 
 use crate::files::Files;
 use crate::meshes::MeshParts;
@@ -12,12 +12,13 @@ const HAS_NORMALS: u32 = 0x1;
 const HAS_UVS: u32 = 0x2;
 const HAS_COLORS: u32 = 0x8;
 const IS_DOUBLE: u32 = 0x2000;
-/// Bytes of a name; it is passed over.
+/// Maximum number of bytes of a name, which is skipped.
 const LONGEST_NAME: u64 = 1 << 16;
-/// Bytes that are unpacked of one: zlib makes up to 1032 of zeros, and less than 20 of meshes.
+/// Maximum ratio of unpacked to packed bytes: zlib reaches 1032 for zeros, and less than 20 for
+/// meshes.
 const MAX_PER_BYTE: u64 = 64;
 
-/// The mesh of this number, from 0.
+/// Reads the mesh of this index, from 0.
 pub(super) fn read(bytes: &[u8], number: u32, files: &Files) -> Result<MeshParts, String> {
     let (version, start) = find(bytes, number)?;
     let packed = bytes.get(start..).ok_or("has a mesh beyond its end")?;
@@ -35,7 +36,7 @@ pub(super) fn read(bytes: &[u8], number: u32, files: &Files) -> Result<MeshParts
     Ok(parts)
 }
 
-/// The version of the file, and where the packed mesh begins.
+/// The version of the file, and the offset of the packed mesh.
 fn find(bytes: &[u8], number: u32) -> Result<(u16, usize), String> {
     let version = head(bytes, 0)?;
     if number == 0 {
@@ -63,7 +64,7 @@ fn find(bytes: &[u8], number: u32) -> Result<(u16, usize), String> {
     Ok((version, offset.saturating_add(4)))
 }
 
-/// The version, where a mesh begins.
+/// The version stored at the start of a mesh.
 fn head(bytes: &[u8], at: usize) -> Result<u16, String> {
     let Some([a, b, c, d]) = bytes.get(at..).and_then(|rest| rest.first_chunk::<4>()) else {
         return Err("ends before a mesh".to_owned());
@@ -75,7 +76,7 @@ fn head(bytes: &[u8], at: usize) -> Result<u16, String> {
     }
 }
 
-/// What is unpacked, from the front.
+/// A reader of unpacked data.
 struct UnpackedStream<R> {
     inner: std::io::Take<R>,
     most: u64,
@@ -124,7 +125,7 @@ impl<R: Read> UnpackedStream<R> {
         Err(format!("has a name of more than {LONGEST_NAME} bytes"))
     }
 
-    /// A number of vertices or triangles, of which each takes more than a byte.
+    /// Reads a number of vertices or triangles, each of which takes more than a byte.
     fn count(&mut self) -> Result<u64, String> {
         let count = u64::from_le_bytes(self.some()?);
         if count <= self.most && u32::try_from(count).is_ok() {
@@ -136,7 +137,7 @@ impl<R: Read> UnpackedStream<R> {
         }
     }
 
-    /// Rows of numbers. Memory grows as they are read: the count is not to be trusted.
+    /// Reads rows of numbers. Memory grows as they are read, since the count may be wrong.
     fn rows<const N: usize>(
         &mut self,
         count: u64,

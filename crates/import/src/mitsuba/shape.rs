@@ -9,15 +9,15 @@ use crate::report::quoted;
 use etendue_world::{Geometry, Shape};
 use glam::{DAffine3, DMat3, DVec3};
 
-/// Plugins that are shapes of a world.
+/// Plugins supported as shapes.
 const ALLOWED: &str =
     "rectangle, disk, sphere, cylinder, cube, obj, ply, serialized, shapegroup, instance";
 
 impl<'a> MitsubaReader<'a> {
-    /// A shape of the scene itself.
+    /// Adds a top-level shape of the scene.
     pub(super) fn top_shape(&mut self, object: &'a MitsubaObject) {
         match object.plugin.as_str() {
-            // Instances show what groups hold.
+            // Groups are shown by instances only.
             "shapegroup" => {}
             "instance" => self.instance(object),
             _ => self.shape(object, DAffine3::IDENTITY, false),
@@ -87,7 +87,7 @@ impl<'a> MitsubaReader<'a> {
         found.unwrap_or(DAffine3::IDENTITY)
     }
 
-    /// The geometry, how it is placed, and whether its front is the other side.
+    /// The geometry, its placement, and whether its front is flipped.
     fn geometry(
         &mut self,
         object: &'a MitsubaObject,
@@ -121,7 +121,7 @@ impl<'a> MitsubaReader<'a> {
         let radius = self.radius(object)?;
         let placed =
             own * DAffine3::from_translation(center?) * DAffine3::from_scale(DVec3::splat(radius));
-        // A mirror turns the normals of Mitsuba's spheres inwards, but not those of its cylinders.
+        // In Mitsuba, a mirror turns the normals of spheres inwards, but not those of cylinders.
         let is_mirrored = own.matrix3.determinant() < 0.0;
         Some((Geometry::Sphere, placed, self.flips(object) != is_mirrored))
     }
@@ -159,7 +159,7 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// Whether a shape can be placed like this; else a cause.
+    /// Whether a shape can be placed like this; adds a cause otherwise.
     fn is_sound(&self, object: &'a MitsubaObject, geometry: &Geometry, to_world: DAffine3) -> bool {
         let Some(fault) = fault(geometry, to_world) else {
             return true;

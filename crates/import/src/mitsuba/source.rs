@@ -1,20 +1,20 @@
-//! A file that is being read, with lines and columns.
+//! A file being read, with lines and columns.
 
 use crate::report::SourcePlace;
 use std::path::PathBuf;
 use std::rc::Rc;
 
-/// A file that is being read.
+/// A file being read.
 pub(super) struct SourceFile {
     pub(super) name: Rc<str>,
-    /// Where it looks for files: its own folders, those of the file that includes it.
+    /// The search folders: those added by this file, then those of the including file.
     pub(super) folders: Rc<[PathBuf]>,
-    /// Before version 2.
+    /// Whether the format is older than version 2.
     pub(super) is_old: bool,
     pub(super) cursor: LineCursor,
 }
 
-/// Counts lines and columns of places that follow one another.
+/// Counts lines and columns for increasing offsets.
 pub(super) struct LineCursor {
     text: Rc<str>,
     offset: usize,
@@ -33,7 +33,7 @@ impl LineCursor {
     }
 
     pub(super) fn place(&mut self, offset: usize, file: &Rc<str>) -> SourcePlace {
-        // Elements are met in the order of the text, so all of it is counted once.
+        // Elements are visited in the order of the text, so the text is counted once.
         if let Some(passed) = self.text.get(self.offset..offset) {
             for c in passed.chars() {
                 if c == '\n' {

@@ -9,11 +9,11 @@ use crate::spectrum::{Role, from_xyz, rgb};
 use etendue_world::{Bitmap, Filter, Texture, Wrap};
 use glam::{DAffine2, DAffine3, DMat2, DVec2};
 
-/// Plugins that textures may be.
+/// Plugins supported as textures.
 const ALLOWED: &str = "bitmap, checkerboard, uniform, srgb, rawconstant, d65";
 
 impl<'a> MitsubaReader<'a> {
-    /// The texture of a property, or a constant where it is not there. `None` after a cause.
+    /// The texture of a property, or a constant if it is missing. `None` after a cause.
     pub(super) fn texture_or(
         &mut self,
         object: &'a MitsubaObject,
@@ -27,7 +27,7 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// As [`Self::texture_or`], for shares of light: 0 to 1.
+    /// Like [`Self::texture_or`], for reflectances: 0 to 1.
     pub(super) fn reflectance(
         &mut self,
         object: &'a MitsubaObject,
@@ -45,7 +45,7 @@ impl<'a> MitsubaReader<'a> {
         None
     }
 
-    /// A light's strength, which is one number for all of it.
+    /// The strength of a light, a single number.
     pub(super) fn strength(&mut self, object: &'a MitsubaObject, name: &str) -> Option<f64> {
         let texture = self.emission(object, name)?;
         match texture {
@@ -58,7 +58,7 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// What shines.
+    /// The emission of a surface.
     pub(super) fn emission(&mut self, object: &'a MitsubaObject, name: &str) -> Option<Texture> {
         let texture = self.texture_or(object, name, Role::Emission, 1.0)?;
         self.not_negative(object, name, texture)
@@ -212,7 +212,7 @@ impl<'a> MitsubaReader<'a> {
         }))
     }
 
-    /// The picture that `filename` names.
+    /// The picture given by `filename`.
     pub(super) fn picture(
         &mut self,
         object: &'a MitsubaObject,
@@ -224,7 +224,7 @@ impl<'a> MitsubaReader<'a> {
         read.map_err(|error| self.unread(object, name, &error)).ok()
     }
 
-    /// The name of the file that an object asks for.
+    /// The file name property of an object.
     pub(super) fn file_name(&self, object: &'a MitsubaObject) -> Option<&'a str> {
         if !self.has(object, "filename") {
             let message = format!("{} without filename", quoted(&object.plugin));
@@ -233,14 +233,14 @@ impl<'a> MitsubaReader<'a> {
         self.text(object, "filename")
     }
 
-    /// A file that cannot be used.
+    /// Reports a file that cannot be used.
     pub(super) fn unread(&self, object: &'a MitsubaObject, name: &str, error: &str) {
         let message = format!("file {} {error}", quoted(name));
         self.report
             .cause(self.place_of(object, "filename"), message);
     }
 
-    /// One of several words; the first where none is given. `None` after a cause.
+    /// One of several keywords; the first is the default. `None` after a cause.
     pub(super) fn choice<T: Copy>(
         &self,
         object: &'a MitsubaObject,
@@ -270,7 +270,8 @@ impl<'a> MitsubaReader<'a> {
     }
 }
 
-/// A texture that is asked for a number and not for a colour. Mitsuba 3.9.1 then takes a checkerboard's values the other way round.
+/// A texture used as a number and not as a colour. Mitsuba 3.9.1 then swaps the values of a
+/// checkerboard.
 pub(super) fn as_number(texture: Texture) -> Texture {
     match texture {
         Texture::Checkerboard { to_uv, values } => Texture::Checkerboard {

@@ -6,13 +6,13 @@ use glam::{DAffine3, DMat3, DMat4, DVec3, DVec4};
 /// The attributes of an element, after substitution.
 pub(super) type Attributes = Vec<(String, String)>;
 
-/// How far the length of an axis may be from 1: it is a vector of rounded numbers.
+/// Maximum deviation of the length of an axis from 1: its components are rounded.
 const UNIT: f64 = 1e-3;
 
-/// How far a transform may be from one that keeps lengths and angles: it is a product of rounded numbers.
+/// Maximum deviation of a transform from a rigid one: it is a product of rounded numbers.
 const RIGID: f64 = 1e-3;
 
-/// The map of one element; `Err` is what is wrong.
+/// The map of one element; `Err` is the fault.
 pub(super) fn step(name: &str, attributes: &Attributes) -> Result<DAffine3, String> {
     match name {
         "translate" => {
@@ -51,7 +51,7 @@ pub(super) fn step(name: &str, attributes: &Attributes) -> Result<DAffine3, Stri
     }
 }
 
-/// From coordinates whose Z is the way to `target` and whose Y is up.
+/// The map from coordinates with Z towards `target` and Y up.
 fn look_at(origin: DVec3, target: DVec3, up: DVec3) -> Option<DAffine3> {
     let along = (target - origin).try_normalize()?;
     let up = match up {
@@ -63,7 +63,7 @@ fn look_at(origin: DVec3, target: DVec3, up: DVec3) -> Option<DAffine3> {
     Some(DAffine3::from_mat3_translation(linear, origin))
 }
 
-/// The frame about a unit vector that Mitsuba takes (Duff et al. 2017).
+/// The frame around a unit vector, as in Mitsuba (Duff et al. 2017).
 pub(super) fn frame(z: DVec3) -> DMat3 {
     let sign = 1.0_f64.copysign(z.z);
     let a = -1.0 / (sign + z.z);
@@ -85,13 +85,13 @@ fn rotation(axis: DVec3, angle: f64) -> DAffine3 {
     ))
 }
 
-/// Whether a map keeps lengths and angles, but for what few digits leave.
+/// Whether a map is rigid, within rounding of few digits.
 pub(super) fn is_rigid(map: DAffine3) -> bool {
     let gram = map.matrix3.transpose() * map.matrix3;
     gram.abs_diff_eq(DMat3::IDENTITY, RIGID)
 }
 
-/// 16 numbers, or the 9 of the linear part, row by row.
+/// A map from 16 numbers, or the 9 of the linear part, row by row.
 fn matrix(numbers: &[f64]) -> Result<DAffine3, String> {
     let matrix = if let Ok(all) = <[f64; 16]>::try_from(numbers) {
         DMat4::from_cols_array(&all).transpose()
@@ -128,7 +128,7 @@ pub(super) fn required<'a>(attributes: &'a Attributes, name: &str) -> Result<&'a
     find(attributes, name).ok_or_else(|| format!("no attribute {name}"))
 }
 
-/// Refuses attributes that are not among these.
+/// Refuses other attributes than these.
 pub(super) fn allow(attributes: &Attributes, names: &[&str]) -> Result<(), String> {
     let mut all = attributes.iter();
     match all.find(|(name, _)| !names.contains(&name.as_str())) {

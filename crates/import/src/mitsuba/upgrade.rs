@@ -3,7 +3,7 @@
 use super::object::{MitsubaObject, ObjectProperty, Value};
 use glam::{DAffine3, DVec3};
 
-/// `toWorld` → `to_world`, `intIOR` → `int_ior`.
+/// Converts names: `toWorld` → `to_world`, `intIOR` → `int_ior`.
 pub(super) fn underscored(name: &str) -> String {
     let mut made = String::with_capacity(name.len() + 4);
     let mut before: Option<char> = None;
@@ -24,7 +24,8 @@ pub(super) fn underscored(name: &str) -> String {
     made
 }
 
-/// What changed beside the writing of names: the reflectance of diffuse surfaces, and scales of texture coordinates.
+/// Applies changes beyond spelling: the reflectance of diffuse surfaces, and scales of texture
+/// coordinates.
 pub(super) fn upgrade(object: &mut MitsubaObject) {
     if object.plugin == "diffuse" {
         for property in &mut object.properties {

@@ -1,4 +1,4 @@
-//! Numbers and lists of them, as Mitsuba writes them.
+//! Parsing of numbers and lists in Mitsuba's syntax.
 
 use super::object::Value;
 use crate::range::in_range;
@@ -6,7 +6,7 @@ use crate::report::quoted;
 use glam::DVec3;
 use std::rc::Rc;
 
-/// A number in range. `Err` is what is wrong.
+/// A number in range. `Err` is the fault.
 pub(super) fn number(text: &str) -> Result<f64, String> {
     let parsed: Option<f64> = text.trim().parse().ok();
     match parsed {
@@ -15,7 +15,7 @@ pub(super) fn number(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Numbers between commas and white space.
+/// Numbers separated by commas and white space.
 pub(super) fn numbers(text: &str) -> Result<Vec<f64>, String> {
     words(text).map(number).collect()
 }
@@ -46,7 +46,7 @@ pub(super) fn vector(text: &str) -> Result<DVec3, String> {
     }
 }
 
-/// One number for all three, or three.
+/// Three numbers, or one used for all three.
 pub(super) fn triple(text: &str) -> Result<[f64; 3], String> {
     match numbers(text)?[..] {
         [value] => Ok([value; 3]),
@@ -72,7 +72,7 @@ pub(super) fn spectrum(text: &str) -> Result<Value, String> {
     sampled(pairs.collect::<Result<_, String>>()?)
 }
 
-/// The lines of an .spd file: a wavelength and a value each.
+/// Parses an .spd file: a wavelength and a value per line.
 pub(super) fn spectrum_file(text: &str) -> Result<Value, String> {
     let mut pairs = Vec::new();
     for (i, line) in text.lines().enumerate() {

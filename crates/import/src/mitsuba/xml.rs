@@ -1,4 +1,4 @@
-//! From XML to objects: parameters are put in, files are included, names are upgraded.
+//! Conversion of XML to objects: substitutes parameters, includes files and upgrades names.
 
 use super::object::{MitsubaObject, ObjectKind, ObjectProperty, Value};
 use super::parameters::Parameters;
@@ -13,23 +13,23 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-/// Elements within one another.
+/// Maximum nesting depth of elements.
 const MAX_DEPTH: usize = 64;
-/// Attributes of an element.
+/// Maximum number of attributes of an element.
 const MAX_ATTRIBUTES: usize = 64;
-/// Elements of all files together.
+/// Maximum number of elements in all files.
 const MOST_ELEMENTS: usize = 1 << 21;
 
-/// What the files of a scene hold.
+/// The content of the files of a scene.
 pub(super) struct Tree<'a> {
-    /// The scene is the first.
+    /// The objects; the scene is the first.
     pub(super) objects: Vec<MitsubaObject>,
     /// Objects by their id.
     pub(super) ids: HashMap<String, usize>,
     parameters: Parameters,
     pub(super) files: &'a Files,
     pub(super) report: &'a Report,
-    /// Files that are being read, the innermost last.
+    /// Files being read, the innermost last.
     pub(super) open: Vec<PathBuf>,
     pub(super) elements: usize,
     pub(super) includes: usize,
@@ -61,7 +61,7 @@ impl<'a> Tree<'a> {
         }
     }
 
-    /// Reads a file: the scene, or one that is included in an object, at a depth.
+    /// Reads a file, either the scene or one included in an object, at a depth.
     pub(super) fn file(
         &mut self,
         text: &str,
@@ -71,7 +71,7 @@ impl<'a> Tree<'a> {
     ) {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let name: Rc<str> = name.into();
-        // What parses them compares all of an element with one another.
+        // The XML parser takes quadratic time in the number of attributes.
         if let Some(offset) = crowded(text) {
             let mut cursor = LineCursor::new(text);
             let place = cursor.place(offset, &name);
@@ -104,7 +104,7 @@ impl<'a> Tree<'a> {
             None => self.report.cause(&place, "no attribute version"),
         }
         match parent {
-            // What a scene holds becomes part of what includes it.
+            // The content of an included scene becomes part of the including object.
             Some((parent, depth)) if root.tag_name().name() == "scene" => {
                 self.children(root, parent, &mut source, depth);
             }
@@ -141,7 +141,7 @@ impl<'a> Tree<'a> {
         let place = source.cursor.place(node.range().start, &source.name);
         self.elements += 1;
         if self.elements > MOST_ELEMENTS || depth > MAX_DEPTH {
-            // Said once, not for each that follows.
+            // The cause is added once, not for each further element.
             if self.elements <= MOST_ELEMENTS || self.elements == MOST_ELEMENTS + 1 {
                 let most = format!("at most {MOST_ELEMENTS} elements, {MAX_DEPTH} in one another");
                 self.report
@@ -178,7 +178,7 @@ impl<'a> Tree<'a> {
         }
     }
 
-    /// The attributes with parameters put in.
+    /// The attributes with parameters substituted.
     pub(super) fn attributes(&mut self, node: Node<'_, '_>) -> Result<Attributes, String> {
         let mut made = Vec::new();
         for attribute in node.attributes() {
@@ -265,7 +265,7 @@ impl<'a> Tree<'a> {
         });
     }
 
-    /// An element that is no object.
+    /// Reads an element that is not an object.
     fn other(
         &mut self,
         node: Node<'_, '_>,
@@ -307,7 +307,7 @@ impl<'a> Tree<'a> {
                 required(attributes, "name")?;
                 let value = self.value(node, element, attributes, source);
                 let name = find(attributes, "name").unwrap_or_default().to_owned();
-                // Where the value is unsound the property is there all the same: one cause is enough.
+                // An invalid value still defines the property: one cause is enough.
                 let (value, fault) = match value {
                     Ok(value) => (value, None),
                     Err(fault) => (Value::Broken, Some(fault)),
@@ -319,7 +319,7 @@ impl<'a> Tree<'a> {
     }
 }
 
-/// Where an element begins that has too many attributes.
+/// The offset of an element with too many attributes.
 fn crowded(text: &str) -> Option<usize> {
     let mut at = 0;
     while let Some(start) = text[at..].find('<').map(|i| at + i) {

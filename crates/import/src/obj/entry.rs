@@ -3,10 +3,10 @@
 use super::map::MtlMap;
 use crate::report::SourcePlace;
 
-/// A material of an MTL file, as it is written.
+/// A material of an MTL file, as written.
 #[derive(Clone, Debug)]
 pub(super) struct MtlEntry {
-    /// Where it begins.
+    /// The place where it begins.
     pub(super) place: SourcePlace,
     /// Diffuse reflectance.
     pub(super) kd: Option<[f64; 3]>,
@@ -14,7 +14,7 @@ pub(super) struct MtlEntry {
     pub(super) ks: Option<[f64; 3]>,
     /// Emitted radiance.
     pub(super) ke: Option<[f64; 3]>,
-    /// What is transmitted.
+    /// Transmission filter.
     pub(super) tf: Option<[f64; 3]>,
     /// Exponent of the specular lobe.
     pub(super) ns: Option<f64>,
@@ -22,7 +22,7 @@ pub(super) struct MtlEntry {
     pub(super) ni: Option<f64>,
     /// Opacity.
     pub(super) d: Option<f64>,
-    /// Kind of illumination, 0 to 10.
+    /// Illumination model, 0 to 10.
     pub(super) illum: Option<u32>,
     pub(super) map_kd: Option<MtlMap>,
     pub(super) map_ke: Option<MtlMap>,

@@ -6,19 +6,19 @@ use etendue_world::Wrap;
 use glam::{DAffine2, DVec2};
 use std::path::PathBuf;
 
-/// A picture and how it is placed.
+/// A picture and its placement.
 #[derive(Clone, Debug)]
 pub(super) struct MtlMap {
     pub(super) place: SourcePlace,
     pub(super) file: String,
-    /// Where it is looked for.
+    /// The folder in which it is searched for.
     pub(super) folder: PathBuf,
-    /// From a world's (u, v), v down, to the picture's.
+    /// The map from a world's (u, v), v down, to the picture's.
     pub(super) to_uv: DAffine2,
     pub(super) wrap: Wrap,
 }
 
-/// Options and the most numbers or words after each.
+/// Options and the maximum number of values of each.
 const OPTIONS: [(&str, usize); 13] = [
     ("-o", 3),
     ("-s", 3),
@@ -36,7 +36,7 @@ const OPTIONS: [(&str, usize); 13] = [
 ];
 
 impl MtlMap {
-    /// Reads what follows the word; `None` after a cause.
+    /// Parses the text after the keyword; `None` after a cause.
     pub(super) fn read(
         text: &str,
         place: SourcePlace,
@@ -48,7 +48,7 @@ impl MtlMap {
         while rest.starts_with('-') {
             let (word, after) = cut(rest);
             let Some((option, most)) = OPTIONS.iter().find(|(known, _)| *known == word) else {
-                // A file may be named like this.
+                // A file name may look like this.
                 break;
             };
             let (values, after) = arguments(after, *most, option);
@@ -70,7 +70,7 @@ impl MtlMap {
             report.cause(&place, message);
             return None;
         }
-        // v' = s v + o upwards is 1 − v' = s (1 − v) + 1 − s − o downwards.
+        // With v upwards, v' = s v + o; with v downwards, this is 1 − v' = s (1 − v) + 1 − s − o.
         let moved = DVec2::new(offset.x, 1.0 - scale.y - offset.y);
         Some(Self {
             place,
@@ -81,19 +81,20 @@ impl MtlMap {
         })
     }
 
-    /// A word for messages.
+    /// The keyword, for messages.
     pub(super) fn name(&self) -> String {
         quoted(&self.file)
     }
 }
 
-/// The first word, and what follows it.
+/// The first word, and the rest.
 fn cut(text: &str) -> (&str, &str) {
     let end = text.find(char::is_whitespace).unwrap_or(text.len());
     (&text[..end], text[end..].trim_start())
 }
 
-/// Up to so many values of an option. Options of several take numbers alone: a file follows them.
+/// Up to so many values of an option. Options with several values take only numbers, since a file
+/// name follows.
 fn arguments<'a>(mut rest: &'a str, most: usize, option: &str) -> (Vec<&'a str>, &'a str) {
     let mut values = Vec::new();
     let takes_words = most == 1;

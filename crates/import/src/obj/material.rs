@@ -11,7 +11,7 @@ use etendue_field::Raster;
 use etendue_world::{Bitmap, Conductor, Dielectric, Filter, Material, Texture};
 use std::sync::Arc;
 
-/// Index of refraction, if nothing is said.
+/// Default index of refraction.
 const INDEX: f64 = 1.5;
 
 impl ObjReader<'_> {
@@ -25,7 +25,7 @@ impl ObjReader<'_> {
         }
     }
 
-    /// `None` after a cause.
+    /// The surface of a material; `None` after a cause.
     pub(super) fn surface(&mut self, entry: &MtlEntry) -> Option<ObjSurface> {
         let scatter = self.scatter(entry);
         let emission = self.emission(entry);
@@ -138,7 +138,7 @@ impl ObjReader<'_> {
         })
     }
 
-    /// The outer `None` is after a cause.
+    /// The transparency. The outer `None` is after a cause.
     #[expect(clippy::option_option, reason = "the outer none is a cause")]
     fn emission(&mut self, entry: &MtlEntry) -> Option<Option<Texture>> {
         if let Some(map) = &entry.map_ke {

@@ -1,4 +1,4 @@
-//! MTL files, statement by statement.
+//! Parsing of MTL files, statement by statement.
 
 use super::entry::MtlEntry;
 use super::map::MtlMap;
@@ -9,10 +9,10 @@ use std::collections::HashMap;
 use std::collections::hash_map::Entry as Slot;
 use std::path::Path;
 
-/// The highest kind of illumination.
+/// The highest illumination model.
 const MOST_ILLUM: f64 = 10.0;
 
-/// Reads the materials of a file. Those that are known already stay.
+/// Reads the materials of a file. Materials that are already known are kept.
 pub(super) fn read(
     text: &str,
     name: &str,
@@ -63,7 +63,7 @@ pub(super) fn read(
     }
 }
 
-/// Says that a statement is left out, and how often it is there.
+/// A message that a statement is left out, with its number of occurrences.
 pub(super) fn left_out(word: &str, count: usize) -> String {
     match count {
         1 => format!("{word} left out"),
@@ -101,7 +101,7 @@ struct MtlStatement<'a> {
 }
 
 impl MtlStatement<'_> {
-    /// Whether the statement is known.
+    /// Applies a statement; returns whether it is known.
     fn apply(&self, entry: &mut MtlEntry, folder: &Path) -> bool {
         match self.word.to_ascii_lowercase().as_str() {
             "kd" => entry.kd = self.color(1.0).or(entry.kd),
@@ -120,7 +120,7 @@ impl MtlStatement<'_> {
                 }
                 entry.illum = whole.or(entry.illum);
             }
-            // Pictures that move normals or places of the surface.
+            // Pictures that change normals or displace the surface.
             "bump" | "map_bump" | "norm" | "disp" => {
                 let message = format!("{} is not supported: surfaces are smooth", self.word);
                 self.report.cause(&self.place, message);
@@ -169,7 +169,7 @@ impl MtlStatement<'_> {
         found
     }
 
-    /// One number for all channels, three, or `xyz` and three of CIE.
+    /// A colour: one number for all channels, three numbers, or `xyz` and three CIE values.
     fn color(&self, most: f64) -> Option<[f64; 3]> {
         let is_xyz = self.rest.starts_with("xyz");
         let text = self.rest.strip_prefix("xyz").unwrap_or(self.rest);

@@ -10,7 +10,7 @@ use glam::DAffine3;
 use std::path::Path;
 use std::sync::Arc;
 
-/// One diffuse surface of reflectance 0.5 on both sides.
+/// Imports one diffuse surface of reflectance 0.5 on both sides.
 pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused> {
     let scene = MainFile::open(file, options)?;
     let unsound = |error: String| scene.refused(format!("is no sound mesh: {error}"));
@@ -43,7 +43,7 @@ pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused
     report.finish(world)
 }
 
-/// What surfaces without a material are made of.
+/// The default material.
 pub(super) fn diffuse() -> Material {
     let reflectance = Texture::Constant(0.5);
     let side = Material::Diffuse { reflectance };

@@ -14,7 +14,7 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Makes a world of a file.
+/// Converts a file to a world.
 pub(super) struct ObjReader<'a> {
     pub(super) files: &'a Files,
     pub(super) report: &'a Report,
@@ -23,7 +23,7 @@ pub(super) struct ObjReader<'a> {
     place: SourcePlace,
     folder: PathBuf,
     entries: HashMap<String, MtlEntry>,
-    /// Surfaces by the name of their material; `None` after a cause.
+    /// Surfaces by material name; `None` after a cause.
     surfaces: HashMap<Option<String>, Option<ObjSurface>>,
 }
 
@@ -68,7 +68,7 @@ impl<'a> ObjReader<'a> {
         }
     }
 
-    /// One file with spaces in its name, or several.
+    /// Reads a material library statement: one file with spaces in its name, or several.
     fn library(&mut self, line: usize, names: &str) {
         let folders = [self.folder.clone()];
         if self.files.find(&folders, names).is_ok() {
@@ -151,7 +151,7 @@ impl<'a> ObjReader<'a> {
         made
     }
 
-    /// The triangles of a part with their own vertices, v of pictures downwards.
+    /// The triangles of a part with their own vertices; texture v points downwards.
     fn parts(&self, mesh: &DetailedMesh, part: &MaterialPart) -> Option<MeshParts> {
         let mut known: HashMap<u32, u32> = HashMap::new();
         let mut order: Vec<usize> = Vec::new();
@@ -183,7 +183,7 @@ impl<'a> ObjReader<'a> {
     }
 }
 
-/// What vertices have, unless none has any.
+/// Vertex attributes, unless no vertex has any.
 fn some<T: Copy + Default + PartialEq>(all: &Option<Vec<T>>, order: &[usize]) -> Option<Vec<T>> {
     let found: Vec<T> = order
         .iter()
@@ -199,7 +199,7 @@ struct MaterialPart {
     triangles: Vec<usize>,
 }
 
-/// Parts of the same material as one, in the order of the first.
+/// Joins parts of the same material, in order of first use.
 fn joined(parts: Vec<ObjPart>) -> Vec<MaterialPart> {
     let mut joined: Vec<MaterialPart> = Vec::new();
     let mut known: HashMap<Option<String>, usize> = HashMap::new();

@@ -1,12 +1,12 @@
-//! What a part is made of.
+//! The surface of a part.
 
 use etendue_world::Texture;
 
-/// What a part is made of.
+/// The surface of a part.
 #[derive(Clone, Debug)]
 pub(super) struct ObjSurface {
     pub(super) material: usize,
     pub(super) emission: Option<Texture>,
-    /// A picture that needs texture coordinates.
+    /// Whether it has a picture that needs texture coordinates.
     pub(super) has_picture: bool,
 }

@@ -1,4 +1,4 @@
-//! Surfaces that shine.
+//! Emission of surfaces.
 
 use super::entity::{Entity, Read};
 use super::imagemap::upside_down;
@@ -11,7 +11,7 @@ use etendue_world::{Bitmap, EmittedRadiance, Filter, Texture, Wrap};
 use std::f64::consts::PI;
 
 impl PbrtReader<'_> {
-    /// What a shape emits, but for the power that is wanted.
+    /// The emission of a shape, before it is scaled to a required power.
     pub(super) fn shape_emission(
         &mut self,
         shape: &PbrtShape,
@@ -44,7 +44,7 @@ impl PbrtReader<'_> {
         }
     }
 
-    /// A picture that shines.
+    /// An emitting picture.
     fn shown(&mut self, area: &Entity, uv: Uv) -> Read<EmittedRadiance> {
         for name in ["L", "power"] {
             if area.has(name) {
@@ -70,7 +70,8 @@ impl PbrtReader<'_> {
         }))
     }
 
-    /// What is emitted, with the power that is wanted. pbrt takes the area of a shape before it is scaled, but that of triangles after, each for itself.
+    /// The emission scaled to the required power. pbrt uses the area of a shape before its scale,
+    /// but the area of each triangle after it.
     pub(super) fn powered(
         &self,
         area: Option<&Entity>,

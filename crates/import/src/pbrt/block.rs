@@ -1,14 +1,14 @@
-//! What begins and ends: blocks of attributes, and objects.
+//! Attribute blocks and object definitions.
 
 use super::build::Builder;
 use super::scene::{Instance, PbrtObject};
 use crate::report::{SourcePlace, quoted};
 
-/// Blocks within one another.
+/// Maximum nesting depth of blocks.
 const MAX_DEPTH: usize = 1 << 12;
 
 impl Builder<'_> {
-    /// A cause for each block above a level that has no end.
+    /// Adds a cause for each unclosed block above a level.
     pub(super) fn refuse_open(&mut self, level: usize) {
         while self.stack.len() > level {
             if let Some((state, kind, place)) = self.stack.pop() {

@@ -1,4 +1,4 @@
-//! A scene from directives.
+//! Builds a scene from directives.
 
 use super::entity::Entity;
 use super::parameter::PbrtParameter;
@@ -11,19 +11,19 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-/// Files within one another.
+/// Maximum nesting depth of files.
 pub(super) const DEEPEST_FILES: usize = 64;
 
-/// Files that are included, again and again.
+/// Maximum number of included files, counting repeats.
 pub(super) const MOST_FILES: usize = 1 << 14;
 
-/// Parameters of `Attribute` directives that hold at one place: each is looked through for each shape.
+/// Maximum number of `Attribute` parameters in effect at one place: each is checked for each shape.
 const MOST_DEFAULTS: usize = 256;
 
-/// What `Attribute` may give parameters to.
+/// The targets of `Attribute`.
 const TARGETS: [&str; 5] = ["shape", "light", "material", "medium", "texture"];
 
-/// Directives before `WorldBegin` alone.
+/// Directives allowed only before `WorldBegin`.
 const SETTINGS: [&str; 5] = [
     "Film",
     "Sampler",
@@ -32,21 +32,22 @@ const SETTINGS: [&str; 5] = [
     "Accelerator",
 ];
 
-/// What makes a scene of directives.
+/// Builds a scene from directives.
 pub(super) struct Builder<'a> {
     pub(super) files: &'a Files,
     pub(super) report: &'a Report,
     pub(super) scene: PbrtScene,
     pub(super) state: GraphicsState,
-    /// States to return to, with `a` for attributes and `o` for objects, and where they were left.
+    /// Saved states, with `a` for attributes and `o` for objects, and the places where they were
+    /// saved.
     pub(super) stack: Vec<(GraphicsState, char, SourcePlace)>,
     systems: BTreeMap<String, DAffine3>,
     pub(super) is_world: bool,
-    /// The object that shapes go to.
+    /// The object that shapes are added to.
     pub(super) object: Option<String>,
     /// The folder of the scene.
     pub(super) folder: PathBuf,
-    /// Files that are being read.
+    /// Files being read.
     pub(super) open: Vec<PathBuf>,
     pub(super) included: usize,
 }
@@ -68,7 +69,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// The scene of a text.
+    /// Builds the scene of a text.
     pub(super) fn build(mut self, text: &str, name: &str) -> PbrtScene {
         let mut tokens = Tokens::new(text, name);
         self.follow(&mut tokens);
@@ -86,7 +87,7 @@ impl<'a> Builder<'a> {
     pub(super) fn go_to_system(&mut self, name: &str, place: &SourcePlace) -> Result<(), String> {
         match self.systems.get(name) {
             Some(map) => self.state.to_world = *map,
-            // As pbrt, which only warns.
+            // pbrt also only warns.
             None => {
                 let message = format!("coordinate system {} is not known", quoted(name));
                 self.report.note(place, format!("{message}: left out"));
@@ -121,7 +122,7 @@ impl<'a> Builder<'a> {
         self.state.material = MaterialOf::Named(name.into(), place.clone());
     }
 
-    /// What a directive with a plugin makes.
+    /// Handles a directive with a plugin.
     pub(super) fn make(
         &mut self,
         word: &str,

@@ -1,4 +1,4 @@
-//! The camera, the film and how far light is followed.
+//! The camera, the film and the path depth.
 
 use super::entity::{CauseGiven, Entity, Read};
 use super::parameter::ParameterKind;
@@ -8,19 +8,19 @@ use crate::report::{SourcePlace, quoted};
 use etendue_world::{Camera, Lens, Projection};
 use glam::{DAffine3, DVec3};
 
-/// Plugins that are cameras of a world.
+/// Plugins supported as cameras.
 const ALLOWED: &str = "perspective, orthographic";
 
-/// Pixels of a film, if nothing is said.
+/// Default size of a film in pixels.
 const SIZE: [usize; 2] = [1280, 720];
 
-/// Most pixels across or down.
+/// Maximum number of pixels across or down.
 const MAX_PIXELS: i64 = 1 << 16;
 
-/// What pbrt's depth is, if nothing is said.
+/// pbrt's default depth.
 const DEPTH: i64 = 5;
 
-/// Integrators that sum the light of paths.
+/// Integrators that sum the light of all paths.
 const PATHS: [&str; 8] = [
     "path",
     "volpath",
@@ -32,7 +32,7 @@ const PATHS: [&str; 8] = [
     "randomwalk",
 ];
 
-/// By how much of its size a window may miss square pixels.
+/// Maximum relative deviation of a window from square pixels.
 const SQUARE: f64 = 1e-4;
 
 impl PbrtReader<'_> {
@@ -64,7 +64,8 @@ impl PbrtReader<'_> {
         let size = size?;
         let window = self.window(entity, size)?;
         let (rigid, scale) = placed?;
-        // pbrt's X goes to the right of the picture, a world's to the left: the map mirrors, as the file's coordinates are left-handed.
+        // X points to the right of the picture in pbrt and to the left in a world: the map mirrors,
+        // because the file's coordinates are left-handed.
         let rigid = rigid * DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0));
         let (to_world, projection) = match is_flat {
             true => (
@@ -82,7 +83,7 @@ impl PbrtReader<'_> {
         })
     }
 
-    /// Lowest and highest x, and lowest and highest y, of what is seen; the shorter side goes from −1 to 1.
+    /// The visible range as minimum and maximum x, then y; the shorter side goes from −1 to 1.
     fn window(&self, entity: &Entity, [w, h]: [usize; 2]) -> Read<[f64; 4]> {
         let report = self.report;
         let above: (_, fn(f64) -> bool) = ("above 0", |a| a > 0.0);
@@ -106,7 +107,7 @@ impl PbrtReader<'_> {
         Err(CauseGiven)
     }
 
-    /// `fov` is that of the shorter side, from −1 to 1.
+    /// A perspective camera; `fov` spans the shorter side, from −1 to 1.
     fn perspective(&self, entity: &Entity, scale: f64, window: [f64; 4]) -> Read<Projection> {
         let report = self.report;
         let angle: (_, fn(f64) -> bool) = ("between 0 and 180 degrees", |a| 0.0 < a && a < 180.0);
@@ -129,7 +130,7 @@ impl PbrtReader<'_> {
         })
     }
 
-    /// Where an orthographic camera is, with its width as the scale of X and Y.
+    /// The placement of an orthographic camera, whose width scales X and Y.
     fn flat(
         &self,
         entity: &Entity,
@@ -147,7 +148,7 @@ impl PbrtReader<'_> {
         Ok(rigid * DAffine3::from_translation(middle) * wide)
     }
 
-    /// What multiplies pbrt's numbers after all light is summed.
+    /// The factor that pbrt applies to the sum of all light.
     fn exposure(&self, entity: &Entity) -> Read<()> {
         let open = entity.float_or(self.report, "shutteropen", 0.0)?;
         let close = entity.float_or(self.report, "shutterclose", 1.0)?;
@@ -161,7 +162,7 @@ impl PbrtReader<'_> {
         Ok(())
     }
 
-    /// Pixels across and down.
+    /// Width and height in pixels.
     fn film(&self, whole: &SourcePlace) -> Read<[usize; 2]> {
         let Some(film) = self.scene.settings.get("Film") else {
             return Ok(SIZE);
@@ -201,7 +202,7 @@ impl PbrtReader<'_> {
         Ok([w, h])
     }
 
-    /// What is only how pbrt computes.
+    /// Marks settings that only affect how pbrt computes.
     pub(super) fn settings(&self) {
         for (kind, entity) in &self.scene.settings {
             let plugin = quoted(&entity.plugin);
@@ -219,7 +220,7 @@ impl PbrtReader<'_> {
         }
     }
 
-    /// A box of one pixel is exact.
+    /// Checks the filter: a box of one pixel is exact.
     fn check_box(&self, entity: &Entity) {
         entity.is_used.set(true);
         for name in ["xradius", "yradius"] {
@@ -231,7 +232,7 @@ impl PbrtReader<'_> {
         }
     }
 
-    /// How many bounces there are.
+    /// Reads the number of bounces.
     pub(super) fn integrator(&mut self) {
         let mut depth = DEPTH;
         if let Some(entity) = self.scene.settings.get("Integrator") {
@@ -253,7 +254,7 @@ impl PbrtReader<'_> {
     }
 }
 
-/// Whether a window leaves something out of the whole.
+/// Whether a window is smaller than the whole.
 fn is_part(window: [f64; 4], whole: [f64; 4]) -> bool {
     let inward = [1.0, -1.0, 1.0, -1.0];
     (0..4).any(|i| (window[i] - whole[i]) * inward[i] > 0.0)

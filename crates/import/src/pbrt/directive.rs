@@ -1,4 +1,4 @@
-//! The directives of a file, one after the other.
+//! Parsing of the directives of a file.
 
 use super::build::Builder;
 use super::parameter::parameters;
@@ -10,7 +10,7 @@ use crate::report::{SourcePlace, quoted};
 use glam::{DAffine3, DVec3};
 
 impl Builder<'_> {
-    /// Follows all directives of a text.
+    /// Executes all directives of a text.
     pub(super) fn follow(&mut self, tokens: &mut Tokens<'_>) {
         while let Some((token, at)) = tokens.next() {
             let place = tokens.place(at);
@@ -23,7 +23,7 @@ impl Builder<'_> {
             };
             if let Err(error) = done {
                 self.report.cause(&place, error);
-                // What follows belongs to it.
+                // The tokens that follow belong to the unknown directive.
                 while tokens.peek().is_some_and(
                     |(token, _)| !matches!(token, Token::Word(word) if is_directive(word)),
                 ) {
@@ -82,7 +82,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// A directive with the name of a plugin and parameters.
+    /// Parses a directive with a plugin name and parameters.
     fn plugin(
         &mut self,
         word: &str,
@@ -133,7 +133,7 @@ impl Builder<'_> {
     }
 }
 
-/// Only transforms that stand still.
+/// Allows only transforms without motion.
 fn active_transform(tokens: &mut Tokens<'_>) -> Result<(), String> {
     match tokens.peek() {
         Some((Token::Word("All"), _)) => {

@@ -1,4 +1,4 @@
-//! What a directive makes, and asking it for its parameters, which marks them as read.
+//! Entities made by directives, and reading of their parameters, which marks them as read.
 
 use super::parameter::{ParameterKind, ParameterValues, PbrtParameter};
 use crate::report::{Report, SourcePlace, quoted};
@@ -6,31 +6,31 @@ use glam::{DVec2, DVec3};
 use std::cell::Cell;
 use std::rc::Rc;
 
-/// A cause has been given.
+/// An error for which a cause was already added.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct CauseGiven;
 
-/// What was read, or nothing after a cause.
+/// The value read, or an error after a cause.
 pub(super) type Read<T> = Result<T, CauseGiven>;
 
-/// What pbrt has a plugin for.
+/// An entity that is a plugin in pbrt.
 #[derive(Clone, Debug)]
 pub(super) struct Entity {
-    /// The directive.
+    /// The name of the directive.
     pub(super) kind: &'static str,
     /// The name of the plugin.
     pub(super) plugin: String,
     pub(super) place: SourcePlace,
     /// Its own parameters.
     pub(super) own: Vec<Rc<PbrtParameter>>,
-    /// Those of `Attribute` directives before it.
+    /// The parameters of preceding `Attribute` directives.
     pub(super) defaults: Rc<Vec<Rc<PbrtParameter>>>,
-    /// Whether the world has it.
+    /// Whether the world uses the entity.
     pub(super) is_used: Cell<bool>,
 }
 
 impl Entity {
-    /// What pbrt takes where a file names nothing.
+    /// pbrt's default if a file names no plugin.
     pub(super) fn default(kind: &'static str, plugin: &str, place: SourcePlace) -> Self {
         Self {
             kind,
@@ -42,7 +42,7 @@ impl Entity {
         }
     }
 
-    /// The last parameter of this name, its own before others.
+    /// The last parameter of this name; own parameters come before defaults.
     pub(super) fn find(&self, name: &str) -> Option<&PbrtParameter> {
         let all = self.own.iter().rev().chain(self.defaults.iter().rev());
         let found = all.map(|p| &**p).find(|p| p.name == name)?;
@@ -54,18 +54,18 @@ impl Entity {
         self.find(name).is_some()
     }
 
-    /// Where a parameter is, or the directive.
+    /// The place of a parameter, or else of the directive.
     pub(super) fn place_of(&self, name: &str) -> &SourcePlace {
         self.find(name).map_or(&self.place, |p| &p.place)
     }
 
-    /// A cause at a parameter.
+    /// Adds a cause at a parameter.
     pub(super) fn fault(&self, report: &Report, name: &str, message: String) -> CauseGiven {
         report.cause(self.place_of(name), message);
         CauseGiven
     }
 
-    /// A cause that says what this plugin may be.
+    /// Adds a cause that lists the supported plugins.
     pub(super) fn unsupported(&self, report: &Report, allowed: &str) -> CauseGiven {
         let plugin = quoted(&self.plugin);
         let message = format!(
@@ -77,7 +77,7 @@ impl Entity {
         CauseGiven
     }
 
-    /// It is passed over with all parameters: a message has been given.
+    /// Marks all parameters as read after a message.
     pub(super) fn drop_all(&self) {
         self.is_used.set(true);
         for parameter in &self.own {
@@ -85,7 +85,7 @@ impl Entity {
         }
     }
 
-    /// The values of a parameter of one of these types; `None` if it is not there.
+    /// The values of a parameter of one of these types; `None` if it is missing.
     fn values(
         &self,
         report: &Report,
@@ -120,7 +120,7 @@ impl Entity {
         }
     }
 
-    /// `N` numbers, if they are there.
+    /// `N` numbers, if the parameter exists.
     pub(super) fn exactly<const N: usize>(
         &self,
         report: &Report,
@@ -149,7 +149,7 @@ impl Entity {
         Ok(self.float(report, name)?.unwrap_or(default))
     }
 
-    /// A number in a range; else a cause that says the range.
+    /// A number in a range; a number out of range is a cause that states the range.
     pub(super) fn float_within(
         &self,
         report: &Report,
@@ -181,7 +181,7 @@ impl Entity {
         }
     }
 
-    /// All words of a parameter.
+    /// All strings of a parameter.
     pub(super) fn texts(&self, report: &Report, name: &str) -> Read<&[String]> {
         match self.values(report, name, &[ParameterKind::Text])? {
             Some(ParameterValues::Texts(all)) => Ok(all),
@@ -189,7 +189,7 @@ impl Entity {
         }
     }
 
-    /// The name of the texture that a parameter of that type asks for.
+    /// The texture name in a parameter of type texture.
     pub(super) fn texture_name(&self, report: &Report, name: &str) -> Read<&str> {
         match self.values(report, name, &[ParameterKind::Texture])? {
             Some(ParameterValues::Texts(all)) if all.len() == 1 => Ok(&all[0]),
@@ -197,7 +197,7 @@ impl Entity {
         }
     }
 
-    /// One word, if it is there.
+    /// One string, if the parameter exists.
     pub(super) fn text(&self, report: &Report, name: &str) -> Read<Option<&str>> {
         match self.texts(report, name)? {
             [] if !self.has(name) => Ok(None),
@@ -206,7 +206,7 @@ impl Entity {
         }
     }
 
-    /// One of several words; the first where none is given.
+    /// One of several keywords; the first is the default.
     pub(super) fn choice<T: Copy>(
         &self,
         report: &Report,

@@ -82,7 +82,7 @@ impl PbrtReader<'_> {
         self.picture(entity, curve)
     }
 
-    /// The picture that `filename` names.
+    /// The picture given by `filename`.
     pub(super) fn picture(&mut self, entity: &Entity, curve: TransferCurve) -> Read<Arc<Raster>> {
         let name = self.file_name(entity)?;
         let found = self.find(name);
@@ -92,7 +92,7 @@ impl PbrtReader<'_> {
     }
 }
 
-/// pbrt's v goes up in a picture, a world's down.
+/// pbrt's v points up in a picture, a world's v points down.
 pub(super) fn upside_down() -> DAffine2 {
     let linear = DMat2::from_diagonal(DVec2::new(1.0, -1.0));
     DAffine2::from_mat2_translation(linear, DVec2::Y)

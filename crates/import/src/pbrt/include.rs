@@ -1,4 +1,4 @@
-//! Files within files.
+//! Included and imported files.
 
 use super::build::{Builder, DEEPEST_FILES, MOST_FILES};
 use super::token::Tokens;
@@ -9,7 +9,8 @@ use std::io::Read;
 use std::path::Path;
 
 impl Builder<'_> {
-    /// `Include` reads a file as if it stood here; after `Import` all is as before but for what was made.
+    /// `Include` reads a file as if its text stood here; after `Import`, the graphics state is
+    /// restored and only new objects are kept.
     pub(super) fn include(
         &mut self,
         word: &str,
@@ -28,7 +29,7 @@ impl Builder<'_> {
         if self.included > MOST_FILES {
             return match self.included == MOST_FILES + 1 {
                 true => Err(format!("more than {MOST_FILES} files are included")),
-                // The cause has been given.
+                // A cause was already added.
                 false => Ok(()),
             };
         }

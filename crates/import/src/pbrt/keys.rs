@@ -1,20 +1,20 @@
-//! What tells meshes and textures apart that are made once.
+//! Keys of meshes and textures that are made once.
 
 use std::path::PathBuf;
 
-/// How (u, v) of a world's surface go with those of pbrt.
+/// The relation between (u, v) of a world's surface and of pbrt's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Uv {
-    /// They are the same.
+    /// Both are equal.
     Own,
-    /// On spheres pbrt's v goes up from the lower pole.
+    /// On spheres pbrt's v increases from the lower pole upwards.
     Ball,
-    /// On discs pbrt's u is the azimuth, and v goes in from the edge.
+    /// On discs pbrt's u is the azimuth, and v increases from the edge inwards.
     Disc,
 }
 
-/// The file of a mesh, and whether its texture coordinates are asked for.
+/// The file of a mesh, and whether its texture coordinates are needed.
 pub(super) type PbrtMeshKey = (PathBuf, bool);
 
-/// A texture once read, by its name and what it is asked for.
+/// The key of a texture: its name, and the type and coordinates it is read for.
 pub(super) type TextureKey = (bool, String, u8, Uv);

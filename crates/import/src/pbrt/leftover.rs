@@ -1,4 +1,4 @@
-//! What nothing asked for.
+//! Notes on unused parameters and objects.
 
 use super::entity::Entity;
 use super::parameter::PbrtParameter;
@@ -7,7 +7,7 @@ use crate::report::{Report, quoted};
 use std::collections::BTreeSet;
 use std::rc::Rc;
 
-/// A note for each parameter that was not read, and for each object that the world does not have.
+/// Adds a note for each parameter that was not read, and for each object that is not in the world.
 pub(super) fn tell(scene: &PbrtScene, report: &Report) {
     let camera = scene.camera.iter().map(|(camera, _)| camera);
     let lights = scene.lights.iter().map(|(light, _)| light);

@@ -1,4 +1,4 @@
-//! Lights that are no surfaces.
+//! Lights that are not surfaces.
 
 use super::entity::{CauseGiven, Entity, Read};
 use super::reader::PbrtReader;
@@ -9,7 +9,7 @@ use etendue_world::{Falloff, Light};
 use glam::{DAffine3, DMat3, DVec3};
 use std::f64::consts::PI;
 
-/// Plugins that are lights of a world.
+/// Plugins supported as lights.
 const ALLOWED: &str = "point, spot, distant, infinite";
 
 impl PbrtReader<'_> {
@@ -27,7 +27,7 @@ impl PbrtReader<'_> {
         }
     }
 
-    /// What a light's colour is, times its scale.
+    /// The colour of a light times its scale.
     pub(super) fn strength(&self, entity: &Entity, name: &str) -> Read<f64> {
         let color = self.number_of(entity, name, Role::Emission);
         let scale = self.scale_of(entity)?;
@@ -39,7 +39,8 @@ impl PbrtReader<'_> {
         entity.float_within(self.report, "scale", 1.0, allowed)
     }
 
-    /// What a light is multiplied with for its power or illuminance, where one above 0 is given: pbrt passes over others.
+    /// The factor that gives a light its required power or illuminance, if one above 0 is given:
+    /// pbrt ignores others.
     pub(super) fn wanted(&self, entity: &Entity, name: &str, now: f64) -> Read<f64> {
         let wanted = entity.float(self.report, name)?;
         let factor = wanted.filter(|w| *w > 0.0).map_or(1.0, |w| w / now);
@@ -59,7 +60,7 @@ impl PbrtReader<'_> {
         })
     }
 
-    /// A place out of range is a cause.
+    /// Adds a cause if a position is out of range.
     fn place(&self, entity: &Entity, place: DVec3) -> Read<DVec3> {
         if place.abs().max_element() <= MAX_NUMBER {
             return Ok(place);
@@ -71,7 +72,7 @@ impl PbrtReader<'_> {
         Err(CauseGiven)
     }
 
-    /// The way from `from` to `to` in the world.
+    /// The vector from `from` to `to` in world coordinates.
     fn way(&self, entity: &Entity, to_world: DAffine3) -> Read<DVec3> {
         let from = entity.point_or(self.report, "from", DVec3::ZERO);
         let to = entity.point_or(self.report, "to", DVec3::Z);
@@ -111,7 +112,7 @@ impl PbrtReader<'_> {
         }
         let [cutoff, beam] = [cutoff, cutoff - delta].map(f64::to_radians);
         let [end, start] = [cutoff, beam].map(libm::cos);
-        // As pbrt counts it: the mean of the falloff over its cosines is a half.
+        // pbrt's convention: the mean of the falloff over its cosines is a half.
         let solid = 2.0 * PI * ((1.0 - start) + (start - end) / 2.0);
         let factor = self.wanted(entity, "power", solid)?;
         let along = way?;

@@ -1,4 +1,4 @@
-//! Materials. Those that do not let light through are the same on both sides.
+//! Materials. Opaque materials are the same on both sides.
 
 use super::entity::{CauseGiven, Entity, Read};
 use super::keys::Uv;
@@ -11,26 +11,26 @@ use etendue_world::{
     Conductor, Dielectric, Material, MicrofacetDistribution, Plastic, Roughness, Texture,
 };
 
-/// Materials within one another.
+/// Maximum nesting depth of materials.
 const MAX_DEPTH: usize = 8;
 
-/// Materials of a world, with those within one another.
+/// Maximum number of materials, including nested ones.
 const MAX_MATERIALS: usize = 1 << 20;
 
-/// Below it pbrt takes a surface for smooth.
+/// pbrt treats a surface of smaller roughness as smooth.
 const SMOOTH: f64 = 1e-3;
 
-/// Plugins that are materials of a world.
+/// Plugins supported as materials.
 const ALLOWED: &str =
     "diffuse, coateddiffuse, conductor, dielectric, thindielectric, mix, interface";
 
-/// The number of pbrt's own material, where none is named.
+/// The index of pbrt's default material.
 const DEFAULT: usize = usize::MAX;
 
 const ALBEDO: Ask = Ask::Spectrum(Role::Reflectance);
 
 impl PbrtReader<'_> {
-    /// The number of a material; `None` where there is no surface at all.
+    /// The index of a material; `None` if there is no surface at all.
     pub(super) fn material(&mut self, of: &MaterialOf, uv: Uv) -> Read<Option<usize>> {
         let number = match of {
             MaterialOf::Default => DEFAULT,
@@ -44,7 +44,7 @@ impl PbrtReader<'_> {
                 }
             },
         };
-        // What is unsound on one surface is so on all.
+        // A material that is invalid on one surface is invalid on all.
         let all = [Uv::Own, Uv::Ball, Uv::Disc].map(|uv| self.materials.get(&(number, uv)));
         if all.contains(&Some(&Err(CauseGiven))) {
             return Err(CauseGiven);
@@ -88,7 +88,7 @@ impl PbrtReader<'_> {
                 return Err(entity.fault(self.report, name, message));
             }
         }
-        // Named materials have their type among the parameters.
+        // Named materials have their type as a parameter.
         let plugin = match entity.plugin.as_str() {
             "" => entity.text(self.report, "type")?.unwrap_or_default(),
             plugin => plugin,
@@ -125,7 +125,7 @@ impl PbrtReader<'_> {
         })
     }
 
-    /// n and k; a reflectance is that of a metal with n = 1 seen straight on.
+    /// n and k; a reflectance is that of a metal with n = 1 at normal incidence.
     fn metal(&mut self, entity: &Entity) -> Read<[f64; 2]> {
         let number = Ask::Spectrum(Role::Number);
         if entity.has("reflectance") {
@@ -149,7 +149,7 @@ impl PbrtReader<'_> {
         self.note_once(&entity.place, message);
         let albedo = self.constant_or(entity, "albedo", ALBEDO, 0.0);
         for name in ["thickness", "maxdepth", "nsamples", "g"] {
-            // The note above is on them.
+            // They were already noted above.
             entity.has(name);
         }
         if albedo? > 0.0 {
@@ -183,7 +183,7 @@ impl PbrtReader<'_> {
         })
     }
 
-    /// Of what is behind the normal over what is before it.
+    /// The ratio of the index behind the normal to that in front of it.
     fn index(&mut self, entity: &Entity) -> Read<f64> {
         let is_float =
             |p: &super::parameter::PbrtParameter| p.kind == super::parameter::ParameterKind::Float;
@@ -237,7 +237,7 @@ impl PbrtReader<'_> {
         })
     }
 
-    /// `None` for a smooth surface.
+    /// The roughness; `None` for a smooth surface.
     fn roughness(&mut self, entity: &Entity, uv: Uv) -> Read<Option<Roughness>> {
         let remaps = entity.truth(self.report, "remaproughness", true);
         let names = ["uroughness", "vroughness"];
@@ -275,7 +275,7 @@ fn both_sides(material: Material) -> Material {
     Material::TwoSided(Box::new([material.clone(), material]))
 }
 
-/// Whether texture coordinates matter: something varies, or is rough along u and v in different ways.
+/// Whether a material depends on texture coordinates: it varies, or is anisotropic along u and v.
 pub(super) fn reads_uv(material: &Material) -> bool {
     let varies = |texture: &Texture| !matches!(texture, Texture::Constant(_));
     let rough = |roughness: &Option<Roughness>| {

@@ -13,16 +13,16 @@ use glam::{DAffine3, DVec2, DVec3};
 use std::path::Path;
 use std::sync::Arc;
 
-/// By how much of its size a patch may be off a plane or a parallelogram.
+/// Maximum relative deviation of a patch from a plane or a parallelogram.
 const FLAT: f64 = 1e-5;
 
-/// (u, v) at the corners of triangles without any.
+/// Default (u, v) at the corners of triangles.
 const TRIANGLE: [DVec2; 3] = [DVec2::ZERO, DVec2::X, DVec2::ONE];
 
-/// (u, v) at the corners of patches without any.
+/// Default (u, v) at the corners of patches.
 const PATCH: [DVec2; 4] = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE];
 
-/// Triangles, with their area in the world if they are one triangle or one patch.
+/// Triangles, with their area in the world if they form one triangle or one patch.
 pub(super) struct PbrtMesh {
     pub(super) triangles: Arc<Triangles>,
     pub(super) area: Option<f64>,
@@ -60,7 +60,7 @@ impl PbrtReader<'_> {
         made.map_err(|_| CauseGiven)
     }
 
-    /// The cause is given, and stays.
+    /// The cause is added once, and the failure is cached.
     fn unread_once(&self, entity: &Entity, name: &str, error: String) -> String {
         self.unread(entity, name, &error);
         error
@@ -99,7 +99,7 @@ impl PbrtReader<'_> {
         self.made(entity, parts, needs_uv)
     }
 
-    /// Patches, each of two triangles.
+    /// Bilinear patches, each as two triangles.
     fn bilinear(&mut self, entity: &Entity, needs_uv: bool) -> Read<Arc<Triangles>> {
         let (vertices, patches) = self.indexed::<4>(entity)?;
         let normals = self.beside(entity, "N", &vertices, |e, r| {
@@ -115,7 +115,7 @@ impl PbrtReader<'_> {
         for patch in patches {
             let at = patch.map(|i| i as usize);
             self.check_patch(entity, at.map(|i| vertices[i]), needs_uv)?;
-            // Below 2³² in all: each index of the file makes one vertex.
+            // There are fewer than 2³² vertices: each index of the file makes one.
             let first = u32::try_from(parts.vertices.len()).map_err(|_| CauseGiven)?;
             parts.vertices.extend(at.map(|i| vertices[i]));
             if let (Some(to), Some(of)) = (&mut parts.normals, &normals) {
@@ -134,7 +134,8 @@ impl PbrtReader<'_> {
         self.made(entity, parts, needs_uv)
     }
 
-    /// A patch that is no plane is a cause; one that is no parallelogram has other texture coordinates within.
+    /// Checks a patch: one that is not planar is a cause; one that is no parallelogram has other
+    /// texture coordinates inside.
     fn check_patch(&self, entity: &Entity, [a, b, c, d]: [DVec3; 4], needs_uv: bool) -> Read<()> {
         let (along, across, diagonal) = (b - a, c - a, d - a);
         let size = along.length().max(across.length()).max(diagonal.length());
@@ -150,7 +151,7 @@ impl PbrtReader<'_> {
         Ok(())
     }
 
-    /// Places of vertices, and which of them make each face of `N` corners.
+    /// Vertex positions, and the indices of each face of `N` corners.
     fn indexed<const N: usize>(&self, entity: &Entity) -> Read<(Vec<DVec3>, Vec<[u32; N]>)> {
         let report = self.report;
         let vertices = entity.points(report, "P", ParameterKind::Point3)?;
@@ -179,7 +180,7 @@ impl PbrtReader<'_> {
         Ok((vertices, indices.chunks_exact(N).map(face).collect()))
     }
 
-    /// Something that each vertex has; of another number it is left out, as in pbrt.
+    /// A vertex attribute; with a wrong number of values it is left out, as in pbrt.
     fn beside<T>(
         &self,
         entity: &Entity,
@@ -213,7 +214,7 @@ impl PbrtReader<'_> {
             parts = apart(parts)?;
             self.files.spend(parts.bytes())?;
         }
-        // Normals say where the front is, as in pbrt.
+        // Normals determine the front, as in pbrt.
         parts.face_normals();
         parts.mend_normals();
         let made = parts.finish().map(Arc::new);
@@ -221,7 +222,7 @@ impl PbrtReader<'_> {
     }
 }
 
-/// Triangles that share no vertex, with pbrt's own texture coordinates.
+/// Triangles without shared vertices, with pbrt's default texture coordinates.
 fn apart(parts: MeshParts) -> Result<MeshParts, String> {
     let count = u32::try_from(parts.corners.len()).ok();
     let count = count.filter(|count| count.checked_mul(3).is_some());

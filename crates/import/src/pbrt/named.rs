@@ -1,15 +1,16 @@
-//! Spectra that pbrt-v4 knows by name, as colours in linear sRGB.
+//! Named spectra of pbrt-v4, as colours in linear sRGB.
 //!
-//! They are what its tables of n and k by wavelength become by the rule that [`Color`](crate::Color) states: weighed with D65. Metals are not those of
-//! Mitsuba: it weighs its tables with the white of equal power, and pbrt's own are of other digits.
+//! They are pbrt's tables of n and k by wavelength, converted by the rule stated at
+//! [`Color`](crate::Color) and weighted with D65. Metals differ from those of Mitsuba: it weights
+//! its tables with the equal-energy white, and pbrt's tables have other digits.
 
-/// Red, green and blue of a glass' or a metal's spectrum; `None` for an unknown name.
+/// Red, green and blue of the spectrum of a glass or metal; `None` for an unknown name.
 pub(super) fn index(name: &str) -> Option<[f64; 3]> {
     let found = NAMED.iter().find(|(known, _)| *known == name)?;
     Some(found.1)
 }
 
-/// Whether a name is that of a standard illuminant.
+/// Whether a name denotes a standard illuminant.
 pub(super) fn is_illuminant(name: &str) -> bool {
     let Some(which) = name.strip_prefix("stdillum-") else {
         return false;

@@ -1,4 +1,4 @@
-//! Lists of parameters, such as `"float radius" 2`.
+//! Parsing of parameter lists, such as `"float radius" 2`.
 
 use super::token::{LineColumn, Token, Tokens, number};
 use super::words::is_directive;
@@ -14,21 +14,21 @@ pub(super) struct PbrtParameter {
     pub(super) name: String,
     pub(super) values: ParameterValues,
     pub(super) place: SourcePlace,
-    /// Whether anything asked for it.
+    /// Whether the parameter was read.
     pub(super) is_read: Cell<bool>,
 }
 
-/// What stands behind the name.
+/// The values of a parameter.
 #[derive(Debug)]
 pub(super) enum ParameterValues {
     Numbers(Vec<f64>),
     Texts(Vec<String>),
     Truths(Vec<bool>),
-    /// A cause has been given.
+    /// Invalid values, for which a cause was added.
     Broken,
 }
 
-/// The types of pbrt-v4.
+/// The parameter types of pbrt-v4.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ParameterKind {
     Bool,
@@ -46,7 +46,7 @@ pub(super) enum ParameterKind {
     Spectrum,
 }
 
-/// All types by their names.
+/// All types by name.
 const KINDS: [(&str, ParameterKind); 13] = [
     ("bool", ParameterKind::Bool),
     ("integer", ParameterKind::Integer),
@@ -64,7 +64,7 @@ const KINDS: [(&str, ParameterKind); 13] = [
 ];
 
 impl ParameterKind {
-    /// How many numbers make one value.
+    /// The number of numbers per value.
     fn arity(self) -> usize {
         match self {
             Self::Point2 | Self::Vector2 => 2,
@@ -73,14 +73,14 @@ impl ParameterKind {
         }
     }
 
-    /// Its name in the file.
+    /// The name of the type in the file.
     pub(super) fn name(self) -> &'static str {
         let found = KINDS.iter().find(|(_, kind)| *kind == self);
         found.map_or("", |(name, _)| name)
     }
 }
 
-/// All parameters that follow. Those with a fault are there too, as [`ParameterValues::Broken`].
+/// Parses all parameters that follow. Faulty ones are included, as [`ParameterValues::Broken`].
 pub(super) fn parameters(tokens: &mut Tokens<'_>, report: &Report) -> Vec<Rc<PbrtParameter>> {
     let mut all = Vec::new();
     while let Some((Token::Text(declared), at)) = tokens.peek().cloned() {
@@ -145,7 +145,7 @@ fn values(tokens: &mut Tokens<'_>, place: &SourcePlace, report: &Report) -> Para
     ParameterValues::Broken
 }
 
-/// Values of one sort, as they come.
+/// Values of one type, collected in order.
 #[derive(Default)]
 struct List {
     found: Option<ParameterValues>,
@@ -154,7 +154,7 @@ struct List {
 impl List {
     fn add(&mut self, token: Token<'_>, at: LineColumn, tokens: &Tokens<'_>, report: &Report) {
         let error = match (self.found.as_mut(), token) {
-            // One message is enough.
+            // One message per parameter is enough.
             (Some(ParameterValues::Broken), _) => return,
             (_, Token::Broken(what)) => what.to_owned(),
             (_, Token::Open | Token::Close) => "a bracket where a value should be".to_owned(),
@@ -194,7 +194,7 @@ impl List {
     }
 }
 
-/// The values if they go with the type; else a cause.
+/// The values if they match the type; adds a cause otherwise.
 fn checked(
     values: ParameterValues,
     kind: ParameterKind,

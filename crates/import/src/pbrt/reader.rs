@@ -14,10 +14,10 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Most shapes of a world: instances may repeat what an object holds.
+/// Maximum number of shapes of a world: instances may repeat objects.
 pub(super) const MOST_SHAPES: usize = 1 << 20;
 
-/// Makes a world of a scene.
+/// Converts a scene to a world.
 pub(super) struct PbrtReader<'a> {
     pub(super) scene: &'a PbrtScene,
     pub(super) files: &'a Files,
@@ -28,11 +28,12 @@ pub(super) struct PbrtReader<'a> {
     pub(super) pictures: Pictures,
     pub(super) meshes: HashMap<PbrtMeshKey, Result<Arc<Triangles>, String>>,
     pub(super) textures: BTreeMap<TextureKey, Read<Texture>>,
-    /// Materials that were made, by their number in the scene and what they are on; `None` for no surface at all.
+    /// Finished materials, by index in the scene and texture coordinates; `None` for no surface at
+    /// all.
     pub(super) materials: BTreeMap<(usize, Uv), Read<Option<usize>>>,
-    /// Materials, with those within one another.
+    /// Number of materials, including nested ones.
     pub(super) made_materials: usize,
-    /// Textures or materials within one another, now.
+    /// Current nesting depth of textures or materials.
     pub(super) depth: usize,
     noted: RefCell<BTreeSet<(usize, usize, String)>>,
 }
@@ -73,7 +74,7 @@ impl<'a> PbrtReader<'a> {
         }
     }
 
-    /// The world of the scene.
+    /// Returns the world of the scene.
     pub(super) fn world(mut self, whole: &SourcePlace) -> World {
         self.integrator();
         self.settings();
@@ -86,26 +87,26 @@ impl<'a> PbrtReader<'a> {
         self.world
     }
 
-    /// A note that is given once, however often its object is used.
+    /// Adds a note once, however often its object is used.
     pub(super) fn note_once(&self, place: &SourcePlace, message: &str) {
         if self.is_first(place, message) {
             self.report.note(place, message);
         }
     }
 
-    /// Whether this is said for the first time.
+    /// Whether this message is new.
     pub(super) fn is_first(&self, place: &SourcePlace, message: &str) -> bool {
         let (line, column) = (place.line, place.column);
         let key = (line, column, format!("{}: {message}", place.file));
         self.noted.borrow_mut().insert(key)
     }
 
-    /// The path of a file; names are looked for from the folder of the scene.
+    /// The path of a file; names are relative to the folder of the scene.
     pub(super) fn find(&self, name: &str) -> Result<PathBuf, String> {
         self.files.find(std::slice::from_ref(&self.folder), name)
     }
 
-    /// The name of the file that an entity asks for.
+    /// The file name parameter of an entity.
     pub(super) fn file_name<'b>(&self, entity: &'b Entity) -> Read<&'b str> {
         let name = entity.text(self.report, "filename")?;
         name.ok_or_else(|| {
@@ -118,7 +119,7 @@ impl<'a> PbrtReader<'a> {
         })
     }
 
-    /// A cause for a file that cannot be used.
+    /// Adds a cause for a file that cannot be used.
     pub(super) fn unread(&self, entity: &Entity, name: &str, error: &str) -> CauseGiven {
         let message = format!("file {} {error}", quoted(name));
         entity.fault(self.report, "filename", message)

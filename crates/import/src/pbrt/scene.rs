@@ -1,4 +1,5 @@
-//! A scene as its files have it: what each directive makes, with the transforms and materials that hold for it.
+//! A scene as described by its files: the entity of each directive, with its transform and
+//! material.
 
 use super::entity::Entity;
 use super::parameter::PbrtParameter;
@@ -7,17 +8,17 @@ use glam::DAffine3;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-/// What all files of a scene make together.
+/// The scene described by all files together.
 #[derive(Debug, Default)]
 pub(super) struct PbrtScene {
-    /// The camera, and the map from the world to its coordinates.
+    /// The camera, and the map from world to camera coordinates.
     pub(super) camera: Option<(Entity, DAffine3)>,
-    /// Film, Sampler, Integrator, PixelFilter and Accelerator: the last of each.
+    /// The last Film, Sampler, Integrator, PixelFilter and Accelerator.
     pub(super) settings: BTreeMap<&'static str, Entity>,
     pub(super) materials: Vec<Entity>,
-    /// Materials with a name, by their numbers.
+    /// Named materials, by index.
     pub(super) named: BTreeMap<String, usize>,
-    /// Textures by their name; `true` for those of a spectrum.
+    /// Textures by name; `true` for spectrum textures.
     pub(super) textures: BTreeMap<(bool, String), Entity>,
     pub(super) areas: Vec<Entity>,
     pub(super) lights: Vec<(Entity, DAffine3)>,
@@ -28,7 +29,7 @@ pub(super) struct PbrtScene {
     pub(super) defaults: Vec<Rc<PbrtParameter>>,
 }
 
-/// A shape with all that holds for it.
+/// A shape with its graphics state.
 #[derive(Debug)]
 pub(super) struct PbrtShape {
     pub(super) entity: Entity,
@@ -36,28 +37,28 @@ pub(super) struct PbrtShape {
     /// `ReverseOrientation`
     pub(super) is_reversed: bool,
     pub(super) material: MaterialOf,
-    /// The number of its area light.
+    /// The index of its area light.
     pub(super) area: Option<usize>,
 }
 
 /// The material of a shape.
 #[derive(Clone, Debug)]
 pub(super) enum MaterialOf {
-    /// Where none is named.
+    /// The default material.
     Default,
     Number(usize),
-    /// With the place where it is asked for.
+    /// A named material, with the place of the reference.
     Named(Rc<str>, SourcePlace),
 }
 
-/// What `ObjectBegin` and `ObjectEnd` enclose.
+/// An object defined between `ObjectBegin` and `ObjectEnd`.
 #[derive(Debug)]
 pub(super) struct PbrtObject {
     pub(super) place: SourcePlace,
     pub(super) shapes: Vec<PbrtShape>,
 }
 
-/// An object that is shown.
+/// An instance of an object.
 #[derive(Debug)]
 pub(super) struct Instance {
     pub(super) name: String,
@@ -65,14 +66,14 @@ pub(super) struct Instance {
     pub(super) to_world: DAffine3,
 }
 
-/// What directives leave for those after them.
+/// The graphics state.
 #[derive(Clone, Debug)]
 pub(super) struct GraphicsState {
     pub(super) to_world: DAffine3,
     pub(super) is_reversed: bool,
     pub(super) material: MaterialOf,
     pub(super) area: Option<usize>,
-    /// Parameters for shapes, lights, materials, media and textures.
+    /// Default parameters for shapes, lights, materials, media and textures.
     pub(super) defaults: [Rc<Vec<Rc<PbrtParameter>>>; 5],
 }
 

@@ -14,20 +14,20 @@ use glam::{DAffine3, DVec3};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-/// Plugins that are shapes of a world.
+/// Plugins supported as shapes.
 const ALLOWED: &str = "sphere, disk, cylinder, trianglemesh, plymesh, bilinearmesh";
 
-/// A surface before it has a material.
+/// A surface without its material.
 pub(super) struct PbrtSurface {
     pub(super) geometry: Geometry,
-    /// From the geometry's coordinates to those of the shape.
+    /// The map from the geometry's coordinates to those of the shape.
     pub(super) placement: DAffine3,
-    /// What pbrt takes for its area when it is asked for a power; `None` for many surfaces at once.
+    /// The area that pbrt uses for a given power; `None` for many surfaces at once.
     pub(super) area: Option<f64>,
 }
 
 impl PbrtReader<'_> {
-    /// The shapes that are in no object.
+    /// Adds the shapes outside objects.
     pub(super) fn shapes(&mut self) {
         for shape in &self.scene.shapes {
             if let Some(made) = self.shape(shape, false) {
@@ -36,7 +36,7 @@ impl PbrtReader<'_> {
         }
     }
 
-    /// Objects where they are shown.
+    /// Adds the instances of objects.
     pub(super) fn instances(&mut self) {
         let mut known: BTreeMap<&str, Vec<etendue_world::Shape>> = BTreeMap::new();
         for instance in &self.scene.instances {
@@ -61,7 +61,7 @@ impl PbrtReader<'_> {
         }
     }
 
-    /// Whether there may be more.
+    /// Adds a shape; returns whether there may be more.
     fn add(&mut self, shape: etendue_world::Shape, place: &SourcePlace) -> bool {
         if self.world.shapes.len() >= MOST_SHAPES {
             let message = format!("more than {MOST_SHAPES} shapes, with all instances");
@@ -77,7 +77,7 @@ impl PbrtReader<'_> {
         true
     }
 
-    /// A shape where its own transform places it; `None` after a cause, or if there is no surface.
+    /// A shape placed by its own transform; `None` after a cause, or if there is no surface.
     fn shape(&mut self, shape: &PbrtShape, is_in_object: bool) -> Option<etendue_world::Shape> {
         let entity = &shape.entity;
         entity.is_used.set(true);
@@ -130,10 +130,11 @@ impl PbrtReader<'_> {
         self.add_material(Material::Mask { opacity, of })
     }
 
-    /// Whether the front is another side than a world's geometry says.
+    /// Whether the front is opposite to that of the world's geometry.
     ///
-    /// pbrt makes normals of meshes where they are placed, so that a mirror leaves their front where it is; but it turns those of other shapes over
-    /// below a mirror. Where such a shape shines, it is seen on one side and sends light from the other: it is taken where it sends light.
+    /// pbrt computes normals of meshes after placement, so a mirror keeps their front; but a mirror
+    /// flips the normals of other shapes. If such a shape emits, pbrt shows it on one side and
+    /// emits from the other: the emitting side is used.
     fn is_flipped(&self, shape: &PbrtShape, geometry: &Geometry, shines: bool) -> bool {
         let is_mirrored = shape.to_world.matrix3.determinant() < 0.0;
         let turns = is_mirrored && !matches!(geometry, Geometry::Mesh(_));
@@ -165,7 +166,7 @@ impl PbrtReader<'_> {
         entity.float_within(self.report, "radius", 1.0, above)
     }
 
-    /// A cause for a shape that does not go all around.
+    /// Adds a cause if a shape is not a full revolution.
     fn goes_around(&self, entity: &Entity) -> Read<()> {
         let whole: (_, fn(f64) -> bool) = ("360, all around", |a| a >= 360.0);
         entity.float_within(self.report, "phimax", 360.0, whole)?;

@@ -1,4 +1,5 @@
-//! Pictures of light from far away: squares that keep areas of the sphere (Clarberg 2008, *Fast equal-area mapping of the (hemi)sphere using SIMD*).
+//! Environment pictures in an equal-area map of the sphere to a square (Clarberg 2008, *Fast
+//! equal-area mapping of the (hemi)sphere using SIMD*).
 
 use super::entity::{CauseGiven, Entity, Read};
 use super::reader::PbrtReader;
@@ -10,10 +11,11 @@ use glam::{DAffine3, DVec3};
 use std::f64::consts::{FRAC_2_PI, PI, TAU};
 use std::sync::Arc;
 
-/// Most pixels along a side: the map that is made of them has eight times as many pixels.
+/// Maximum number of pixels along a side: the converted map has eight times as many pixels.
 const MAX_PIXELS: usize = 2048;
 
-/// Places in each pixel of the map, along both sides, of a map of one pixel: the larger it is the fewer, so that none takes long.
+/// Samples along each side of a pixel, for a map of one pixel: larger maps use fewer, to bound the
+/// time.
 const WITHIN: usize = 4096;
 
 impl PbrtReader<'_> {
@@ -61,7 +63,7 @@ impl PbrtReader<'_> {
     }
 }
 
-/// What light from above, Z, adds up to on a surface across it.
+/// The illuminance from above, on a surface with normal Z.
 fn illuminance(square: &Raster) -> f64 {
     let side = square.width();
     let pixel = 4.0 * PI / (side * side) as f64;
@@ -72,7 +74,7 @@ fn illuminance(square: &Raster) -> f64 {
     (0..side * side).map(at).sum::<f64>() * pixel
 }
 
-/// The picture by longitude and latitude, from pole to pole; each pixel is the mean over its area.
+/// The picture in longitude and latitude, from pole to pole; each pixel is the mean over its area.
 fn longitudes(square: &Raster, scale: f64) -> Option<Raster> {
     let side = square.width();
     let (w, h) = (4 * side, 2 * side + 1);
@@ -81,7 +83,7 @@ fn longitudes(square: &Raster, scale: f64) -> Option<Raster> {
     let pixel = |i: usize| {
         let (column, row) = ((i % w) as f64 + 0.5, (i / w) as f64);
         let places = (0..count * count).map(|k| {
-            // Beyond the poles there is nothing.
+            // There is no area beyond the poles.
             let polar = ((row + within(k / count)) * PI / (h - 1) as f64).clamp(0.0, PI);
             let (sin, cos) = libm::sincos(polar);
             let (x, z) = libm::sincos((column + within(k % count)) * TAU / w as f64);
@@ -104,11 +106,11 @@ fn nearest(square: &Raster, toward: DVec3) -> f64 {
     square.values()[y * side + x].max(0.0)
 }
 
-/// The place in the unit square of a direction.
+/// The position in the unit square for a direction.
 fn place(toward: DVec3) -> [f64; 2] {
     let [x, y, z] = toward.abs().to_array();
     let r = (1.0 - z).max(0.0).sqrt();
-    // From 0 to 1 over a quarter turn.
+    // The azimuth, from 0 to 1 over a quarter turn.
     let turn = FRAC_2_PI * libm::atan2(y, x);
     let (u, v) = (r * (1.0 - turn), r * turn);
     let (u, v) = if toward.z < 0.0 {
@@ -119,7 +121,7 @@ fn place(toward: DVec3) -> [f64; 2] {
     [u.copysign(toward.x), v.copysign(toward.y)].map(|v| (v + 1.0) / 2.0)
 }
 
-/// The direction of a place in the unit square.
+/// The direction for a position in the unit square.
 fn direction(place: [f64; 2]) -> DVec3 {
     let [u, v] = place.map(|v| 2.0 * v - 1.0);
     let signed = 1.0 - (u.abs() + v.abs());
@@ -147,13 +149,14 @@ mod tests {
         for i in 0..64 {
             let at = [f64::from(i % 8) / 8.0 + 0.07, f64::from(i / 8) / 8.0 + 0.03];
             let back = place(direction(at));
-            // Rounding.
+            // The difference is rounding.
             assert!(
                 (back[0] - at[0]).abs() + (back[1] - at[1]).abs() < 1e-12,
                 "{at:?}"
             );
         }
-        // By pbrt's math.cpp: the middle is Z, corners are −Z, and the middle of the right edge is X.
+        // According to pbrt's math.cpp the centre is Z, the corners are −Z, and the middle of the
+        // right edge is X.
         assert!(direction([0.5; 2]).abs_diff_eq(DVec3::Z, 1e-12));
         assert!(direction([1.0; 2]).abs_diff_eq(DVec3::NEG_Z, 1e-12));
         assert!(direction([1.0, 0.5]).abs_diff_eq(DVec3::X, 1e-12));
@@ -163,7 +166,7 @@ mod tests {
     #[test]
     fn an_even_sky_has_its_illuminance() {
         let square = Raster::new(64, 64, vec![2.0; 4096]).unwrap();
-        // π times the radiance, but for the size of pixels: some 1/64².
+        // π times the radiance, up to the size of pixels, about 1/64².
         assert!((illuminance(&square) - TAU).abs() < 1e-2);
     }
 }

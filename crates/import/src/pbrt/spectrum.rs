@@ -16,10 +16,10 @@ const PLANCK: f64 = 1.438_776_877e7;
 /// The temperature of the CIE's illuminant A, K.
 const TUNGSTEN: f64 = 2855.5;
 
-/// A spectrum as a file has it.
+/// A spectrum as given in a file.
 enum PbrtSpectrum {
     Rgb([f64; 3]),
-    /// Kelvin.
+    /// Temperature in kelvin.
     Blackbody(f64),
     /// Pairs of a wavelength, nm, and a value.
     Sampled(Vec<[f64; 2]>),
@@ -27,7 +27,7 @@ enum PbrtSpectrum {
 }
 
 impl PbrtReader<'_> {
-    /// The number of a colour or spectrum; `None` if it is not there.
+    /// The number for a colour or spectrum; `None` if it is missing.
     pub(super) fn number_of(&self, entity: &Entity, name: &str, role: Role) -> Read<Option<f64>> {
         let Some(spectrum) = self.spectrum(entity, name)? else {
             return Ok(None);
@@ -49,7 +49,8 @@ impl PbrtReader<'_> {
         Ok(Some(self.color.of(color)))
     }
 
-    /// Spectra of light have luminance 1, whatever they add up to; colours have that of their numbers.
+    /// Spectra of lights are normalised to luminance 1; colours keep the luminance of their
+    /// numbers.
     fn light_color(
         &self,
         spectrum: PbrtSpectrum,
@@ -63,7 +64,7 @@ impl PbrtReader<'_> {
             PbrtSpectrum::Named(name) => match name.as_str() {
                 "stdillum-D65" => return Ok([1.0; 3]),
                 "stdillum-A" => blackbody(TUNGSTEN),
-                // All that is asked for is its luminance.
+                // Only the luminance is needed.
                 _ if named::is_illuminant(&name) && self.color == Color::Luminance => {
                     return Ok([1.0; 3]);
                 }
@@ -112,7 +113,7 @@ impl PbrtReader<'_> {
         Ok(Some(found))
     }
 
-    /// One that pbrt knows, or a file of pairs.
+    /// A spectrum known to pbrt by name, or a file of pairs.
     fn named_spectrum(&self, name: &str) -> Result<PbrtSpectrum, String> {
         if named::index(name).is_some() || named::is_illuminant(name) {
             return Ok(PbrtSpectrum::Named(name.to_owned()));
@@ -141,9 +142,9 @@ fn sampled(numbers: &[f64]) -> Result<Vec<[f64; 2]>, String> {
     }
 }
 
-/// Planck's law, 1 at its largest value.
+/// Planck's law, normalised to a maximum of 1.
 fn blackbody(kelvin: f64) -> Vec<[f64; 2]> {
-    // Relative to 560 nm, so that nothing overflows in the ratio.
+    // Computed relative to 560 nm, to avoid overflow in the ratio.
     let log = |nm: f64| {
         let x = PLANCK / (nm * kelvin);
         -5.0 * libm::log(nm) - x - libm::log1p(-libm::exp(-x))

@@ -12,13 +12,13 @@ use etendue_world::{Bitmap, Texture};
 use glam::{DAffine2, DMat2, DVec2};
 use std::sync::Arc;
 
-/// Textures within one another.
+/// Maximum nesting depth of textures.
 const MAX_DEPTH: usize = 16;
 
-/// Plugins that textures may be.
+/// Plugins supported as textures.
 const ALLOWED: &str = "constant, imagemap, checkerboard, scale, mix";
 
-/// What is asked for: floats are numbers of their own.
+/// The type of a texture: float textures have their own names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ask {
     Float,
@@ -26,7 +26,7 @@ pub(super) enum Ask {
 }
 
 impl PbrtReader<'_> {
-    /// The texture of a parameter, or a constant where it is not there.
+    /// The texture of a parameter, or a constant if it is missing.
     pub(super) fn texture_or(
         &mut self,
         entity: &Entity,
@@ -53,7 +53,7 @@ impl PbrtReader<'_> {
         }
     }
 
-    /// A share of light, 0 to 1.
+    /// Like [`Self::texture_or`], for an albedo from 0 to 1.
     pub(super) fn albedo_or(
         &mut self,
         entity: &Entity,
@@ -71,7 +71,7 @@ impl PbrtReader<'_> {
         Err(entity.fault(self.report, name, message))
     }
 
-    /// One number; a texture that varies is a cause.
+    /// One number; a varying texture is a cause.
     pub(super) fn constant_or(
         &mut self,
         entity: &Entity,
@@ -136,7 +136,8 @@ impl PbrtReader<'_> {
         }
     }
 
-    /// Squares of one unit: the first value where both coordinates, rounded down, are even or both odd.
+    /// A checkerboard with squares of one unit: the first value applies where the coordinates,
+    /// rounded down, are both even or both odd.
     fn checkerboard(&mut self, entity: &Entity, ask: Ask, uv: Uv) -> Read<Texture> {
         if entity.integer_or(self.report, "dimension", 2)? != 2 {
             let message = "a checkerboard in space; allowed: dimension 2".to_owned();
@@ -146,7 +147,7 @@ impl PbrtReader<'_> {
         let second = self.constant_or(entity, "tex2", ask, 0.0);
         let to_uv = self.mapping(entity, uv)?;
         Ok(Texture::Checkerboard {
-            // A world's squares are half a unit wide.
+            // In a world, squares are half a unit wide.
             to_uv: DAffine2::from_scale(DVec2::splat(0.5)) * to_uv,
             values: [first?, second?],
         })
@@ -176,7 +177,7 @@ impl PbrtReader<'_> {
         ))
     }
 
-    /// From (u, v) of a world's surface to those of the texture.
+    /// The map from (u, v) of a world's surface to those of the texture.
     pub(super) fn mapping(&self, entity: &Entity, uv: Uv) -> Read<DAffine2> {
         let report = self.report;
         entity.choice(report, "mapping", &[("uv", ())])?;
@@ -186,7 +187,7 @@ impl PbrtReader<'_> {
         Ok(DAffine2::from_mat2_translation(DMat2::from_diagonal(scale), delta) * uv.to_pbrt())
     }
 
-    /// A texture with a function of its values.
+    /// A texture with a function applied to its values.
     pub(super) fn mapped(
         &self,
         entity: &Entity,

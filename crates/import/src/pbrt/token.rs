@@ -1,21 +1,21 @@
-//! Words, strings and brackets of a pbrt file, with their places.
+//! Tokens of a pbrt file: words, strings and brackets, with their places.
 
 use crate::report::SourcePlace;
 use std::borrow::Cow;
 use std::rc::Rc;
 
-/// A part of the text.
+/// A token.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Token<'a> {
     /// A directive, a number or a truth value.
     Word(&'a str),
-    /// What stands in quotation marks.
+    /// A quoted string.
     Text(Cow<'a, str>),
     /// `[`
     Open,
     /// `]`
     Close,
-    /// What is no part of a scene, and why.
+    /// Invalid text, with the reason.
     Broken(&'static str),
 }
 
@@ -26,7 +26,7 @@ pub(super) struct LineColumn {
     column: usize,
 }
 
-/// The tokens of a file, one after the other; comments are left out.
+/// The tokens of a file in order; comments are skipped.
 #[derive(Debug)]
 pub(super) struct Tokens<'a> {
     file: Rc<str>,
@@ -54,12 +54,12 @@ impl<'a> Tokens<'a> {
         }
     }
 
-    /// Where the next token is looked for.
+    /// The current position.
     pub(super) fn here(&self) -> SourcePlace {
         self.place(self.at)
     }
 
-    /// The next token, which stays.
+    /// Returns the next token without consuming it.
     pub(super) fn peek(&mut self) -> Option<&(Token<'a>, LineColumn)> {
         if self.peeked.is_none() {
             self.peeked = self.read();
@@ -67,7 +67,7 @@ impl<'a> Tokens<'a> {
         self.peeked.as_ref()
     }
 
-    /// The next token; `None` at the end of the file.
+    /// Consumes the next token; `None` at the end of the file.
     pub(super) fn next(&mut self) -> Option<(Token<'a>, LineColumn)> {
         self.peeked.take().or_else(|| self.read())
     }
@@ -90,7 +90,7 @@ impl<'a> Tokens<'a> {
         Some((token, at))
     }
 
-    /// Passes over white space and comments.
+    /// Skips white space and comments.
     fn skip(&mut self) {
         loop {
             if self.rest.starts_with('#') {
@@ -105,7 +105,7 @@ impl<'a> Tokens<'a> {
         }
     }
 
-    /// A string, whose first quotation mark has been read.
+    /// Parses a string after its opening quotation mark.
     fn text(&mut self) -> Token<'a> {
         let start = self.rest;
         let mut escaped: Option<String> = None;
@@ -166,7 +166,7 @@ fn escape(c: char) -> Option<char> {
     })
 }
 
-/// A finite number; `Err` is what is wrong. Integers have a range of their own.
+/// A finite number; `Err` is the fault. Integers have their own range.
 pub(super) fn number(word: &str) -> Result<f64, String> {
     let parsed: Option<f64> = word.parse().ok();
     let finite = parsed.filter(|value| value.is_finite());

@@ -1,8 +1,9 @@
-//! Transforms as pbrt writes them. Each is applied before those that stand before it.
+//! Transforms in pbrt's notation. Each is applied before those that precede it in the file.
 
 use glam::{DAffine3, DMat3, DMat4, DVec3, DVec4};
 
-/// By how much axes may differ from ones at right angles and of one length: transforms are products of rounded numbers.
+/// Maximum relative deviation of axes from orthogonal axes of equal length: transforms are products
+/// of rounded numbers.
 const ALIKE: f64 = 1e-3;
 
 /// A rotation by degrees about an axis of any length.
@@ -18,7 +19,7 @@ pub(super) fn rotation([angle, x, y, z]: [f64; 4]) -> Result<DAffine3, String> {
     )))
 }
 
-/// To coordinates of a camera, whose Z is the way it looks, Y up and X to the right: pbrt's world is left-handed.
+/// The map to camera coordinates with Z forward, Y up and X right: pbrt's world is left-handed.
 pub(super) fn look_at(numbers: [f64; 9]) -> Result<DAffine3, String> {
     let [eye, at, up] = [0, 3, 6].map(|i| DVec3::from_slice(&numbers[i..]));
     let along = (at - eye)
@@ -30,7 +31,7 @@ pub(super) fn look_at(numbers: [f64; 9]) -> Result<DAffine3, String> {
     Ok(DAffine3::from_mat3_translation(linear, eye).inverse())
 }
 
-/// 16 numbers, column by column.
+/// A matrix from 16 numbers, column by column.
 pub(super) fn matrix(numbers: &[f64; 16]) -> Result<DAffine3, String> {
     let matrix = DMat4::from_cols_array(numbers);
     if matrix.row(3) != DVec4::W {
@@ -39,7 +40,7 @@ pub(super) fn matrix(numbers: &[f64; 16]) -> Result<DAffine3, String> {
     Ok(DAffine3::from_mat4(matrix))
 }
 
-/// A map without its scale, and the scale; `None` if it shears or scales axes differently.
+/// A map without its scale, and the scale; `None` if it shears or scales axes unequally.
 pub(super) fn without_scale(map: DAffine3) -> Option<(DAffine3, f64)> {
     let scale = libm::cbrt(map.matrix3.determinant().abs());
     let linear = map.matrix3 * (1.0 / scale);

@@ -1,4 +1,4 @@
-//! Words that begin a directive.
+//! The names of directives.
 
 /// All directives of pbrt-v4.
 const DIRECTIVES: [&str; 38] = [
@@ -42,10 +42,10 @@ const DIRECTIVES: [&str; 38] = [
     "WorldBegin",
 ];
 
-/// Of pbrt-v3, for `AttributeBegin` and `AttributeEnd`.
+/// Directives of pbrt-v3, replaced by `AttributeBegin` and `AttributeEnd`.
 const LEGACY: [&str; 2] = ["TransformBegin", "TransformEnd"];
 
-/// Whether a word begins a directive.
+/// Whether a word is a directive.
 pub(super) fn is_directive(word: &str) -> bool {
     DIRECTIVES.binary_search(&word).is_ok() || LEGACY.contains(&word)
 }

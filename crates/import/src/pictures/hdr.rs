@@ -1,9 +1,10 @@
-//! Radiance pictures (Ward, Real pixels, Graphics Gems II, 1991): red, green and blue with one exponent.
+//! Radiance pictures (Ward, Real pixels, Graphics Gems II, 1991): red, green and blue with a shared
+//! exponent.
 
 use super::size::check_size;
 use etendue_scene::Channels;
 
-/// Most lines of a header.
+/// Maximum number of header lines.
 const MOST_LINES: usize = 1000;
 
 pub(super) fn read(bytes: &[u8]) -> Result<Channels, String> {
@@ -57,7 +58,7 @@ fn size(line: &[u8]) -> Option<(usize, usize)> {
     Some((width.parse().ok()?, height.parse().ok()?))
 }
 
-/// The pixels of a row: in runs by channel, or one after the other.
+/// Reads the pixels of a row, run-length encoded by channel or uncompressed.
 fn row(rest: &mut &[u8], width: usize) -> Option<Vec<[u8; 4]>> {
     let in_runs = rest.len() >= 4
         && rest[..2] == [2, 2]

@@ -1,8 +1,9 @@
-//! How large a picture may be.
+//! Limits on the size of pictures.
 
-/// Most numbers in a byte of a file; a block of 64 numbers takes more than half a bit in any JPEG file that shows something.
+/// Maximum number of values per byte of a file; a block of 64 values takes more than half a bit in
+/// any JPEG file with visible content.
 const MOST_PER_BYTE: usize = 1032;
-/// Most numbers in a picture, as in those of the scene crate.
+/// Maximum number of values in a picture, as in the scene crate.
 const MAX_NUMBERS: usize = 1 << 27;
 
 /// Refuses a picture that is too large, or larger than its file of `length` bytes can hold.

@@ -1,4 +1,4 @@
-//! Scenes of glTF in a few lines, for tests.
+//! Short glTF scenes for tests.
 
 #![allow(
     dead_code,
@@ -12,7 +12,7 @@ use base64::engine::general_purpose::STANDARD;
 use etendue_import::{Imported, Options, import};
 use etendue_world::World;
 
-/// A texture of two rows: white above level 188.
+/// A texture of two rows: white above, level 188 below.
 pub(crate) const BASE: &str =
     r#","textures":[{"source":0}],"images":[{"uri":"data:image/png;base64,PICTURE"}]"#;
 

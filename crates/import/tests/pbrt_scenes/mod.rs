@@ -1,4 +1,4 @@
-//! Scenes of pbrt-v4 in a few lines, for all tests.
+//! Short pbrt-v4 scenes for all tests.
 
 #![allow(
     dead_code,
@@ -10,7 +10,7 @@ use etendue_import::{Color, Imported, Options, import_pbrt};
 use etendue_world::{Light, Material, Shape, World};
 use std::path::Path;
 
-/// A scene with this before `WorldBegin` and this after it, in line 3.
+/// A scene with `before` before `WorldBegin` and `inside` after it, in line 3.
 pub(crate) fn scene(before: &str, inside: &str) -> String {
     format!("PixelFilter \"box\" {before}\nWorldBegin\n{inside}\n")
 }
@@ -37,7 +37,7 @@ pub(crate) fn world(inside: &str) -> World {
         .world
 }
 
-/// The world of settings alone.
+/// The world of a scene with settings only.
 pub(crate) fn set_up(before: &str) -> World {
     read(&scene(before, ""))
         .unwrap_or_else(|causes| panic!("{causes:#?}"))
@@ -68,7 +68,7 @@ pub(crate) fn light(inside: &str) -> Light {
     world(inside).lights.remove(0)
 }
 
-/// The material of a sphere, without its two sides where they are alike.
+/// The material of a sphere, as one side if both are equal.
 pub(crate) fn material(declared: &str) -> Material {
     let mut world = world(&format!("{declared}\nShape \"sphere\""));
     match world.materials.remove(world.shapes[0].material) {

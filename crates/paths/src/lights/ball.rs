@@ -1,4 +1,4 @@
-//! Spheres that shine.
+//! Emitting spheres.
 
 use super::incoming::{Incoming, emitted};
 use crate::space::{Hit, Ray, SceneGeometry};
@@ -7,7 +7,7 @@ use etendue_world::Texture;
 use glam::{DAffine3, DVec3};
 use std::f64::consts::PI;
 
-/// A sphere that shines outwards, looked for within the cone in which it is seen.
+/// A sphere that emits outwards, sampled within the cone that it subtends.
 #[derive(Debug)]
 pub(super) struct ShiningSphere {
     shape: usize,
@@ -26,7 +26,7 @@ impl ShiningSphere {
         }
     }
 
-    /// The cone in which it is seen; `None` from within, where nothing shines.
+    /// The cone that the sphere subtends; `None` from inside, where it does not emit.
     fn cone(&self, at: DVec3) -> Option<Cone> {
         Cone::around_sphere(self.center - at, self.radius)
     }
@@ -54,7 +54,8 @@ impl ShiningSphere {
         })
     }
 
-    /// A place drawn evenly over its area, its normal, and the radiance there over the density of places.
+    /// A point sampled uniformly by area, its normal, and the radiance there divided by the
+    /// density.
     pub(super) fn emit(&self, geometry: &SceneGeometry, [a, b]: [f64; 2]) -> (DVec3, DVec3, f64) {
         let (place, normal, uv) = geometry.placed(self.shape).sample(0, [a, b]);
         let area = 4.0 * PI * self.radius * self.radius;
@@ -63,7 +64,7 @@ impl ShiningSphere {
 
     pub(super) fn of_hit(&self, from: DVec3, along: DVec3, hit: &Hit) -> (f64, f64) {
         let radiance = emitted(&self.emission, hit.uv, hit.normal, -along);
-        // A hit is within the cone, whatever rounding says at its edge.
+        // A hit is within the cone, despite rounding at its edge.
         let density = self.cone(from).map(|cone| 1.0 / cone.solid_angle());
         (radiance, density.unwrap_or(0.0))
     }

@@ -1,4 +1,4 @@
-//! Light as it leaves its sources, for photons: half of them as they come, half of them aimed.
+//! Emission of photons from lights: half of them by the natural distribution, half of them aimed.
 
 use super::{LightSampler, SampledLight};
 use crate::space::{Ray, SceneGeometry};
@@ -6,41 +6,41 @@ use etendue_sampling::{Cone, about, cosine_hemisphere, disc};
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// A photon on its way.
+/// A photon in flight.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Emitted {
     pub(crate) ray: Ray,
     /// Its flux, W, times the number of photons.
     pub(crate) flux: f64,
-    /// The place of a surface that it has left.
+    /// The surface point that it was emitted from.
     pub(crate) flash: Option<EmissionPoint>,
 }
 
-/// A place of a surface that shines.
+/// A point of an emitting surface.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EmissionPoint {
     pub(crate) position: DVec3,
     pub(crate) normal: DVec3,
-    /// Radiance over the density of places, W sr⁻¹.
+    /// Radiance divided by the density of points, W sr⁻¹.
     pub(crate) shine: f64,
 }
 
-/// A sphere that photons are aimed at.
+/// A sphere at which photons are aimed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EmissionTarget {
     pub(crate) center: DVec3,
     pub(crate) radius: f64,
 }
 
-/// What the ways of photons are drawn from.
+/// Random numbers and targets for photon directions.
 struct Draw<'a> {
     targets: &'a [EmissionTarget],
-    /// For the way, and for what it is drawn by.
+    /// For the direction, and for the choice of its distribution.
     random: [f64; 3],
 }
 
 impl LightSampler {
-    /// A photon, from seven numbers; `None` for one that carries nothing.
+    /// Emits a photon from seven numbers; `None` for one without flux.
     pub(crate) fn emit(
         &self,
         geometry: &SceneGeometry,
@@ -99,7 +99,7 @@ impl Draw<'_> {
         mixed(plain, self.targets, aimed)
     }
 
-    /// A photon from a place of a surface: by the cosine, or aimed.
+    /// A photon from a surface point: cosine-distributed, or aimed.
     fn flashed(&self, (position, normal, shine): (DVec3, DVec3, f64)) -> Emitted {
         let [a, b, _] = self.random;
         let along = match self.target() {
@@ -137,12 +137,12 @@ impl Draw<'_> {
         }
     }
 
-    /// A photon from far away: across a disc as wide as all surfaces, or as a target.
+    /// A photon from a distant light: across a disc that covers all surfaces, or a target.
     fn afar(&self, geometry: &SceneGeometry, toward: DVec3, irradiance: f64) -> Emitted {
         let [a, b, _] = self.random;
         let whole = EmissionTarget {
             center: geometry.center,
-            // A little wider, for what touches the sphere.
+            // Slightly wider, for surfaces that touch the sphere.
             radius: 1.001 * geometry.radius,
         };
         let aimed = self.target().unwrap_or(&whole);
@@ -169,7 +169,8 @@ impl Draw<'_> {
     }
 }
 
-/// The target that a photon is aimed at: half of them are, each target by as many.
+/// The target at which a photon is aimed: half of the photons are aimed, equally many at each
+/// target.
 pub(crate) fn chosen(targets: &[EmissionTarget], by: f64) -> Option<&EmissionTarget> {
     let number = (2.0 * by - 1.0) * targets.len() as f64;
     #[expect(
@@ -181,7 +182,8 @@ pub(crate) fn chosen(targets: &[EmissionTarget], by: f64) -> Option<&EmissionTar
     found.and_then(|number| targets.get(number))
 }
 
-/// The density of what is drawn by `plain` for half of the photons, and by `aimed` for each target's share of the rest.
+/// The density of a mixture: half of the samples are drawn by `plain`, and the others by `aimed` in
+/// equal parts for each target.
 pub(crate) fn mixed(
     plain: f64,
     targets: &[EmissionTarget],
@@ -195,7 +197,7 @@ pub(crate) fn mixed(
 }
 
 impl EmissionTarget {
-    /// The cone in which it is seen; all around from within.
+    /// The cone that the sphere subtends; all directions from inside.
     fn cone(&self, from: DVec3) -> Cone {
         Cone::around_sphere(self.center - from, self.radius).unwrap_or(Cone::SPHERE)
     }

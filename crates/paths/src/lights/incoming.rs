@@ -1,29 +1,29 @@
-//! Light that comes to a place.
+//! Incident light at a point.
 
 use etendue_world::Texture;
 use glam::{DVec2, DVec3};
 
-/// Light that comes to a place from one direction.
+/// Incident light at a point from one direction.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Incoming {
-    /// Where it comes from, of unit length.
+    /// The direction towards the light, of unit length.
     pub(crate) toward: DVec3,
-    /// How far the way must be clear; beyond all where light comes from far away.
+    /// The distance that must be free of occluders; beyond everything for distant light.
     pub(crate) distance: f64,
-    /// Radiance over the density; without a density, irradiance across `toward`.
+    /// Radiance divided by the density; without a density, irradiance across `toward`.
     pub(crate) weight: f64,
-    /// Density per solid angle; `None` where only this direction was possible.
+    /// Density per solid angle; `None` if only this direction is possible.
     pub(crate) density: Option<f64>,
 }
 
-/// The direction and the distance from one place to another.
+/// The direction and distance from one point to another.
 pub(super) fn way(from: DVec3, to: DVec3) -> (DVec3, f64) {
     let between = to - from;
     let distance = between.length();
     (between / distance, distance)
 }
 
-/// What a shape emits at texture coordinates to a direction from its surface: the same to all on its front.
+/// The emission of a shape at texture coordinates in a direction: uniform over the front.
 pub(super) fn emitted(emission: &Texture, uv: DVec2, normal: DVec3, away: DVec3) -> f64 {
     if normal.dot(away) > 0.0 {
         emission.value(uv)

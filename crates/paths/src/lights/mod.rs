@@ -1,4 +1,5 @@
-//! Lights as paths look for them: a direction to light, what comes from there, and how densely such directions are drawn.
+//! Light sampling: a direction to a light, the radiance from there, and the density of such
+//! directions.
 
 mod ball;
 mod emit;
@@ -17,11 +18,11 @@ use incoming::way;
 use shape::ShiningShape;
 use sky::SampledSky;
 
-/// All lights of a world, of which each is looked for alike.
+/// All lights of a world, sampled with equal probability.
 #[derive(Debug)]
 pub(crate) struct LightSampler {
     lights: Vec<SampledLight>,
-    /// The light of each shape that shines.
+    /// The light of each emitting shape.
     of_shape: Vec<Option<usize>>,
 }
 
@@ -59,7 +60,7 @@ impl LightSampler {
         Self { lights, of_shape }
     }
 
-    /// Light that comes to a place, from four numbers; `None` where none does.
+    /// Samples incident light at a point, from four numbers; `None` if there is none.
     pub(crate) fn sample(
         &self,
         geometry: &SceneGeometry,
@@ -77,14 +78,15 @@ impl LightSampler {
         })
     }
 
-    /// A light, each with the same chance, and the number in (0, 1) that is left of the one that it is picked by.
+    /// Picks a light uniformly, and returns the remaining number in (0, 1) of the one used.
     fn pick(&self, r: f64) -> Option<(&SampledLight, f64)> {
         let place = r * self.lights.len() as f64;
         let light = self.lights.get(whole(place))?;
         Some((light, place.fract()))
     }
 
-    /// The radiance that a shape emits where a ray along `along` meets it, and the density with which [`Self::sample`] looks there.
+    /// The emission of a shape hit by a ray along `along`, and the density with which
+    /// [`Self::sample`] draws that direction.
     pub(crate) fn of_hit(&self, from: DVec3, along: DVec3, hit: &Hit) -> (f64, f64) {
         let Some(light) = self.of_shape[hit.shape].map(|light| &self.lights[light]) else {
             return (0.0, 0.0);
@@ -97,7 +99,8 @@ impl LightSampler {
         (radiance, density / self.lights.len() as f64)
     }
 
-    /// The radiance that comes from far away along a direction, and the density with which [`Self::sample`] looks there: a sum over lights.
+    /// The distant radiance along a direction, and the density with which [`Self::sample`] draws
+    /// it: a sum over lights.
     pub(crate) fn of_sky(&self, toward: DVec3) -> impl Iterator<Item = (f64, f64)> {
         let count = self.lights.len() as f64;
         let skies = self.lights.iter().filter_map(move |light| match light {
@@ -205,7 +208,7 @@ impl SampledLight {
 }
 
 impl SampledLight {
-    /// What a spot sends along a direction of its own coordinates, W sr⁻¹.
+    /// The intensity of a spot along a direction in its own coordinates, W sr⁻¹.
     fn intensity(&self, local: DVec3) -> f64 {
         let Self::Spot {
             intensity,

@@ -1,4 +1,4 @@
-//! Other shapes that shine.
+//! Other emitting shapes.
 
 use super::incoming::{Incoming, emitted, way};
 use crate::space::{Hit, SceneGeometry};
@@ -6,12 +6,12 @@ use etendue_sampling::DiscreteDistribution;
 use etendue_world::Texture;
 use glam::{DVec2, DVec3};
 
-/// A shape that shines, of which places are drawn evenly over its area.
+/// An emitting shape, sampled uniformly by area.
 #[derive(Debug)]
 pub(super) struct ShiningShape {
     shape: usize,
     emission: Texture,
-    /// Its pieces by their areas.
+    /// The distribution of its pieces by area.
     pieces: DiscreteDistribution,
 }
 
@@ -46,7 +46,7 @@ impl ShiningShape {
         })
     }
 
-    /// A place drawn evenly over its area, its normal and texture coordinates.
+    /// A point sampled uniformly by area, its normal and texture coordinates.
     fn place(
         &self,
         geometry: &SceneGeometry,
@@ -56,7 +56,7 @@ impl ShiningShape {
         (self.area() > 0.0).then(|| placed.sample(self.pieces.sample(c), [a, b]))
     }
 
-    /// A place, its normal, and the radiance there over the density of places.
+    /// A point, its normal, and the radiance there divided by the density.
     pub(super) fn emit(
         &self,
         geometry: &SceneGeometry,
@@ -66,7 +66,7 @@ impl ShiningShape {
         Some((place, normal, self.emission.value(uv) * self.area()))
     }
 
-    /// Per solid angle, of a place at a distance, seen at an angle of this cosine.
+    /// Density per solid angle of a point at a distance, seen at an angle of this cosine.
     fn density(&self, distance: f64, cosine: f64) -> f64 {
         distance * distance / (cosine.abs() * self.area())
     }

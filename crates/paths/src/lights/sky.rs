@@ -1,10 +1,10 @@
-//! Light from far away.
+//! Distant light.
 
 use etendue_sampling::{Cone, LatLongSampler};
 use etendue_world::SkyMap;
 use glam::{DMat3, DVec3};
 
-/// Light from far away, drawn by its radiance.
+/// Distant light, sampled by its radiance.
 #[derive(Debug)]
 pub(super) enum SampledSky {
     Constant(f64),
@@ -24,7 +24,7 @@ impl SampledSky {
         }
     }
 
-    /// A direction that light comes from.
+    /// Samples a direction towards the light.
     pub(super) fn sample(&self, r: [f64; 4]) -> DVec3 {
         match self {
             Self::Constant(_) => Cone::SPHERE.sample([r[0], r[1]]),

@@ -1,23 +1,24 @@
-//! Rays of a probe that are traced back.
+//! Backward rays of a probe.
 
 use super::{Budget, Probe};
 use crate::numbers::PathNumbers;
 use etendue_field::{Crossing, Ledger, PhotonSource, TwoPlane, VirtualPlane};
 
-/// Rays of a [`Probe`] traced back: for each plane on its own, lines drawn evenly over its window, with the radiance that a path finds along each.
+/// Backward rays of a [`Probe`]: for each plane separately, lines drawn uniformly over its window,
+/// with the radiance that a path finds along each.
 #[derive(Debug)]
 pub struct BackwardProbe<'a> {
     probe: &'a Probe<'a>,
     budget: Budget,
-    /// The plane whose rays are traced; all without it.
+    /// The plane to trace; `None` for all.
     only: Option<usize>,
 }
 
-/// Rays between two reports.
+/// Number of rays between two progress reports.
 const BLOCK: u64 = 4096;
 
 impl<'a> BackwardProbe<'a> {
-    /// The rays of a probe.
+    /// Creates the backward rays of a probe.
     #[must_use]
     pub fn new(probe: &'a Probe<'a>, budget: Budget) -> Self {
         Self {
@@ -27,7 +28,7 @@ impl<'a> BackwardProbe<'a> {
         }
     }
 
-    /// The same rays of one plane alone.
+    /// Restricts the same rays to one plane.
     #[must_use]
     pub fn at_plane(self, index: usize) -> Self {
         Self {
@@ -53,7 +54,7 @@ impl<'a> BackwardProbe<'a> {
         let line = legs[plane.leg].line(&paths.geometry, &plane.frame, &ray);
         let before = u32::try_from(plane.leg).unwrap_or(u32::MAX);
         let radiance = paths.radiance(line, [0.0, f64::INFINITY], before, &mut numbers);
-        // The window's volume over the number of rays, as the mean over them has it.
+        // The window's volume; the mean over rays divides by their number.
         let weight = radiance * half.iter().map(|half| 2.0 * half).product::<f64>();
         Crossing { ray, weight }
     }
@@ -77,7 +78,7 @@ impl PhotonSource for BackwardProbe<'_> {
             let count = BLOCK.min(self.budget.each - start);
             let wanted = |i: usize| self.only.is_none_or(|only| only == i);
             for (i, plane) in planes.iter().enumerate().filter(|(i, _)| wanted(*i)) {
-                // Numbers of different planes are apart.
+                // Different planes use different numbers.
                 let of = |ray: u64| (first + start + ray) * planes.len() as u64 + i as u64;
                 let crossings: Vec<Crossing> = (0..count)
                     .map(|ray| self.crossing(plane, of(ray)))

@@ -7,23 +7,25 @@ use glam::DVec3;
 /// A leg of the central ray.
 #[derive(Clone, Debug)]
 pub(super) struct SurfaceLeg {
-    /// At its end, on the side of the camera; D is the way of light.
+    /// The frame at the end of the leg, on the side of the camera; D is the direction of light.
     pub(super) frame: Frame,
-    /// The shape at its end; `None` at the camera.
+    /// The shape at the end of the leg; `None` at the camera.
     pub(super) shape: Option<usize>,
-    /// How far from the plane at its end the shape is looked for.
+    /// The maximum distance from the plane at the end at which the shape is searched for.
     pub(super) reach: f64,
     /// Half-width of the windows in slope.
     pub(super) slope: f64,
 }
 
 impl SurfaceLeg {
-    /// The farthest from the central ray that lines of the windows are, at a distance before the end of the leg.
+    /// The maximum distance of window lines from the central ray, at a distance before the end of
+    /// the leg.
     pub(super) fn wide(&self, distance: f64) -> f64 {
         0.25 * self.reach + self.slope * distance
     }
 
-    /// The line that a plane of this leg has as `seen`, followed back from where the leg ends: at the camera, or on the surface there.
+    /// The line with coordinates `seen` in a plane of this leg, traced back from the end of the
+    /// leg: the camera, or the surface there.
     pub(super) fn line(&self, geometry: &SceneGeometry, plane: &Frame, seen: &TwoPlane) -> Ray {
         let point = plane.to_world(DVec3::new(seen.x, seen.y, 0.0));
         let along = plane
@@ -32,7 +34,7 @@ impl SurfaceLeg {
         self.through(geometry, point, along)
     }
 
-    /// The line through a point along the way of light.
+    /// The line through a point along the direction of light.
     pub(super) fn through(&self, geometry: &SceneGeometry, point: DVec3, along: DVec3) -> Ray {
         let end = &self.frame;
         let left = (end.origin - point).dot(end.d) / along.dot(end.d);

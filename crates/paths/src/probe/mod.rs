@@ -1,4 +1,5 @@
-//! The light field behind a pixel: the ray through its middle, followed back from surface to surface, and virtual planes along it.
+//! The light field behind a pixel: the ray through its centre, traced back from surface to surface,
+//! with virtual planes along it.
 
 mod backward;
 mod lines;
@@ -18,18 +19,18 @@ use etendue_world::{Camera, Projection};
 use glam::DVec3;
 use lines::SurfaceLeg;
 
-/// What is asked of a pixel.
+/// The options of a probe.
 #[derive(Clone, Copy, Debug)]
 pub struct Question {
     /// Column and row, from 0 at the top left.
     pub pixel: [usize; 2],
-    /// Most surfaces along the ray.
+    /// Maximum number of surfaces along the ray.
     pub surfaces: usize,
-    /// Pixels across the window.
+    /// Width of the window in pixels.
     pub across: f64,
-    /// Frequencies on either side of zero, along each axis of the slices.
+    /// Number of frequencies on either side of zero, along each axis of the slices.
     pub frequencies: usize,
-    /// Azimuths of slices.
+    /// Number of azimuths of slices.
     pub azimuths: usize,
 }
 
@@ -37,21 +38,22 @@ pub struct Question {
 #[derive(Debug)]
 pub struct Probe<'a> {
     paths: &'a Paths,
-    /// Surfaces, the first being what the camera sees.
+    /// The surfaces; the first is the one the camera sees.
     pub stops: Vec<Stop>,
-    /// `camera`, and for each surface `leaving_1`, `arriving_1` and so on: light that leaves it towards the camera, and that arrives on the way that
-    /// it mirrors there.
+    /// The planes: `camera`, and for each surface `leaving_1`, `arriving_1` and so on: light that
+    /// leaves it towards the camera, and light that arrives along the mirror direction.
     pub planes: Vec<VirtualPlane>,
     legs: Vec<SurfaceLeg>,
-    /// The slope from one pixel to the next.
+    /// The slope difference between adjacent pixels.
     pub pixel_slope: f64,
 }
 
-/// Slopes of a window never go farther.
+/// Maximum slope of a window.
 const WIDEST: f64 = 1.0;
 
 impl<'a> Probe<'a> {
-    /// The light field behind a pixel of a camera. `None` where the camera is orthographic, or the ray meets nothing.
+    /// The light field behind a pixel of a camera. `None` if the camera is orthographic, or the ray
+    /// hits nothing.
     #[must_use]
     pub fn new(paths: &'a Paths, camera: &Camera, question: &Question) -> Option<Self> {
         let Projection::Perspective { half_width, .. } = camera.projection else {
@@ -106,7 +108,7 @@ impl<'a> Probe<'a> {
         Some(probe)
     }
 
-    /// A leg, by the frame at its end, where light is on its way to the camera.
+    /// Adds a leg given by the frame at its end, whose light goes towards the camera.
     fn add_leg(&mut self, frame: Frame, shape: Option<usize>, [wide, slope]: [f64; 2]) {
         self.legs.push(SurfaceLeg {
             frame,
@@ -116,7 +118,8 @@ impl<'a> Probe<'a> {
         });
     }
 
-    /// A plane on a leg, as far from the leg's end as `distance` says: it falls towards the camera.
+    /// Adds a plane on a leg; `distance` is measured in the direction of light, from the last
+    /// surface to the camera.
     fn add_plane(
         &mut self,
         name: &str,
@@ -156,11 +159,11 @@ impl<'a> Probe<'a> {
     }
 }
 
-/// Rays or photons of each batch, and how batches are keyed.
+/// The number of rays or photons per batch, and the seed.
 #[derive(Clone, Copy, Debug)]
 pub struct Budget {
-    /// In each batch.
+    /// Number in each batch.
     pub each: u64,
-    /// Of all batches.
+    /// Seed of all batches.
     pub seed: u64,
 }

@@ -12,38 +12,39 @@ use glam::DVec3;
 
 /// Photons of a [`Probe`], the independent check of [`BackwardProbe`](super::BackwardProbe).
 ///
-/// They leave the lights, and wherever one meets a surface, or leaves one, a way through the windows is drawn for it. So they find no light that a
-/// mirror or smooth glass sends into a window, nor the sky itself: [`PhotonProbe::misses`] says where.
+/// They leave the lights. Wherever one hits a surface or leaves one, a direction through the
+/// windows is drawn for it. They miss light that a mirror or smooth glass sends into a window, and
+/// the sky itself: [`PhotonProbe::misses`] reports where.
 #[derive(Debug)]
 pub struct PhotonProbe<'a> {
     probe: &'a Probe<'a>,
     budget: Budget,
-    /// What the windows look at, on each surface.
+    /// The regions of each surface that the windows see.
     targets: Vec<EmissionTarget>,
 }
 
-/// Photons between two reports.
+/// Number of photons between two progress reports.
 const BLOCK: u64 = 4096;
-/// Lines that tell what is seen through a window.
+/// Number of lines that determine what is seen through a window.
 const LINES: u64 = 4096;
 
-/// Where light leaves a surface, and how much of it goes which way.
+/// A surface point that light leaves, with its directional intensity.
 struct LightSource<'s> {
     position: DVec3,
     /// Flux per solid angle along a direction, W sr⁻¹.
     intensity: &'s dyn Fn(DVec3) -> f64,
-    /// Surfaces that light has met, this one included.
+    /// Number of surfaces met so far, this one included.
     met: u32,
 }
 
 impl<'a> PhotonProbe<'a> {
-    /// The photons of a probe.
+    /// Creates the photons of a probe.
     #[must_use]
     pub fn new(probe: &'a Probe<'a>, budget: Budget) -> Self {
         let targets = probe.stops.iter().zip(&probe.legs);
         let target = |(stop, leg): (&Stop, &SurfaceLeg)| EmissionTarget {
             center: stop.position,
-            // Of the corners of the window, on a surface at an angle.
+            // Covers the corners of the window, on an inclined surface.
             radius: 2.0 * leg.wide(stop.distance) / stop.cosine().max(0.1),
         };
         Self {
@@ -53,7 +54,7 @@ impl<'a> PhotonProbe<'a> {
         }
     }
 
-    /// Why photons do not find all the light of a plane: what is seen through its window.
+    /// The reason why photons miss light of a plane, found from what is seen through its window.
     #[must_use]
     pub fn misses(&self, plane: usize) -> Option<&'static str> {
         let Probe {
@@ -117,7 +118,7 @@ impl<'a> PhotonProbe<'a> {
                 record,
             );
         }
-        // A photon that carries nothing ends, but what it has left may shine into a window.
+        // A photon without flux ends, but its emission point may still light a window.
         let first = flux;
         if first <= 0.0 {
             return;
@@ -162,7 +163,8 @@ impl<'a> PhotonProbe<'a> {
         }
     }
 
-    /// Where a photon goes on to from a hit, and the share of its flux: half of the time as the material sends it, half aimed at what the windows see.
+    /// The continuation of a photon from a hit, and its share of flux: half of the photons follow
+    /// the material, half are aimed at the regions that the windows see.
     fn onward(
         &self,
         hit: &Hit,
@@ -182,7 +184,8 @@ impl<'a> PhotonProbe<'a> {
                 let bounce = scatter.sample(hit.uv, wi, numbers.draw())?;
                 let along = (hit.frame * bounce.wi).normalize();
                 if bounce.density.is_none() {
-                    // A mirror or smooth glass, for which power is not counted over squared indices. What is aimed never goes this way.
+                    // For mirrors and smooth glass, power is not divided by squared indices. Aimed
+                    // photons never take this path.
                     let half = if scatter.is_smooth() { 1.0 } else { 2.0 };
                     let share = half * bounce.weight * scatter.squared_index(wi, bounce.wi);
                     return Some((along, share));
@@ -199,7 +202,8 @@ impl<'a> PhotonProbe<'a> {
         (share > 0.0).then_some((along, share))
     }
 
-    /// Draws a way from a place through the windows of each leg, and records it where nothing is in between.
+    /// Draws a direction from a point through the windows of each leg, and records it if nothing
+    /// occludes it.
     fn pass(
         &self,
         source: &LightSource<'_>,
@@ -238,7 +242,7 @@ impl<'a> PhotonProbe<'a> {
             if intensity <= 0.0 || !self.is_seen(number, source.position, along) {
                 continue;
             }
-            // Slopes are drawn evenly; dω = du dv / (1 + u² + v²)^(3/2).
+            // Slopes are drawn uniformly; dω = du dv / (1 + u² + v²)^(3/2).
             let weight = intensity * 4.0 * leg.slope * leg.slope * secant_squared.sqrt();
             for (i, ray) in seen {
                 record(i, Crossing { ray, weight });
@@ -246,17 +250,19 @@ impl<'a> PhotonProbe<'a> {
         }
     }
 
-    /// Whether the line through a place, followed back from the end of a leg, meets that place first.
+    /// Whether the line through a point, traced back from the end of a leg, hits that point first.
     fn is_seen(&self, leg: usize, position: DVec3, along: DVec3) -> bool {
         let Probe { paths, legs, .. } = self.probe;
         let line = legs[leg].through(&paths.geometry, position, along);
-        // The line may begin at that very place: then light leaves on the other side of the surface.
+        // The line may begin at the point itself: then light leaves on the other side of the
+        // surface.
         let is_before = (position - line.from).dot(line.along) > 1e-6 * legs[leg].reach;
         is_before && paths.geometry.is_clear(line.from, position)
     }
 }
 
-/// What turns BSDF times cosine to the normal for shading into flux: both cosines are to the surface itself.
+/// The factor from BSDF times the cosine to the shading normal to flux: both cosines refer to the
+/// geometric normal.
 fn tilt(hit: &Hit, arriving: DVec3, leaving: DVec3) -> f64 {
     (leaving.dot(hit.normal) / arriving.dot(hit.normal)).abs()
 }

@@ -9,32 +9,34 @@ use glam::DVec3;
 /// A surface on the central ray of a pixel.
 #[derive(Clone, Debug)]
 pub struct Stop {
-    /// The number of its shape.
+    /// The index of its shape.
     pub shape: usize,
-    /// Where the ray meets it.
+    /// The hit point of the ray.
     pub position: DVec3,
-    /// Its normal for shading, on the side that is seen.
+    /// The shading normal, on the visible side.
     pub normal: DVec3,
-    /// The way light leaves on, towards the camera: of unit length.
+    /// The direction in which light leaves towards the camera: of unit length.
     pub leaving: DVec3,
-    /// The way light arrives on that a mirror would send on: of unit length.
+    /// The direction in which light arrives that a mirror would send to the camera: of unit length.
     pub arriving: DVec3,
-    /// From here to the camera, or to the surface before.
+    /// The distance to the camera, or to the previous surface.
     pub distance: f64,
-    /// Curvatures in the plane of incidence and across it, convex positive, by finite differences over the footprint.
+    /// Curvatures in the plane of incidence and across it, positive if convex, by finite
+    /// differences over the footprint.
     pub curvature: [f64; 2],
-    /// What it does to light.
+    /// The kind of reflection.
     pub reflects: Reflects,
 }
 
 impl Stop {
-    /// The cosine of the angle at which light leaves.
+    /// The cosine of the angle of the leaving light.
     #[must_use]
     pub fn cosine(&self) -> f64 {
         self.normal.dot(self.leaving)
     }
 
-    /// By how much slopes of rays from one point at `travelled` before the surface spread when it mirrors them.
+    /// The factor by which a mirror reflection spreads slopes of rays from one point at `travelled`
+    /// before the surface.
     pub(super) fn spreading(&self, travelled: f64) -> f64 {
         let [along, across] = self.curvature;
         let turned = |k: f64, cosine: f64| (1.0 + 2.0 * k * travelled * cosine).abs();
@@ -45,7 +47,8 @@ impl Stop {
     }
 }
 
-/// The surfaces that a look meets, going on as mirrors would send it. `half` is half of the window's angle.
+/// The surfaces along a camera ray, which continues by mirror reflection. `half` is half of the
+/// window's angle.
 pub(super) fn followed(paths: &Paths, look: &Look, most: usize, half: f64) -> Vec<Stop> {
     let mut stops: Vec<Stop> = Vec::new();
     let mut ray = Ray {
@@ -86,10 +89,11 @@ pub(super) fn followed(paths: &Paths, look: &Look, most: usize, half: f64) -> Ve
     stops
 }
 
-/// Times that the step of a curvature is halved.
+/// Maximum number of halvings of a curvature's step.
 const HALVINGS: i32 = 16;
 
-/// Curvatures by the normals at a step to either side: at the largest step that is still on the surface.
+/// Curvatures from normals one step to either side, with the largest step that stays on the
+/// surface.
 fn curvature(
     geometry: &SceneGeometry,
     hit: &Hit,
@@ -105,7 +109,8 @@ fn curvature(
     })
 }
 
-/// The curvature between the places of a shape a step to either side; `None` where one of them is beside it.
+/// The curvature between points of a shape one step to either side; `None` if one of them misses
+/// the shape.
 fn between(geometry: &SceneGeometry, hit: &Hit, normal: DVec3, step: DVec3) -> Option<f64> {
     let height = 4.0 * step.length();
     let at = |side: f64| {
@@ -121,7 +126,7 @@ fn between(geometry: &SceneGeometry, hit: &Hit, normal: DVec3, step: DVec3) -> O
     Some((m - n).dot(step) / (p - q).dot(step))
 }
 
-/// A normal as far as it is across a direction; `None` where it is along it.
+/// The component of a normal across a direction, normalised; `None` if it is along the direction.
 pub(super) fn across(normal: DVec3, along: DVec3) -> Option<DVec3> {
     let across = normal - normal.dot(along) * along;
     (across.length() > 1e-6).then(|| across.normalize())

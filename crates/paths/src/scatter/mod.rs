@@ -1,7 +1,9 @@
-//! What surfaces do to light, as seen from a camera back: from the direction `wo` that light leaves to, to `wi` that it comes from.
+//! Scattering at surfaces, as traced back from a camera: from the leaving direction `wo` to the
+//! incident direction `wi`.
 //!
-//! Directions are unit vectors away from the surface, in a frame with its normal along Z. Values are BSDFs times |cos| of wi, and carry radiance:
-//! behind an interface it is that of the other side over the squared index.
+//! Directions are unit vectors away from the surface, in a frame with its normal along Z. Values
+//! are BSDFs times |cos| of wi, for radiance: light through an interface is radiance on the other
+//! side over the squared index.
 
 mod place;
 mod reflects;
@@ -50,7 +52,7 @@ impl From<&Material> for Scatter {
 }
 
 impl Scatter {
-    /// The BSDF times |cos| of wi; what goes only one way, as at mirrors, is left out.
+    /// The BSDF times |cos| of wi, without delta components such as mirrors.
     pub(crate) fn value(&self, uv: DVec2, wi: DVec3, wo: DVec3) -> f64 {
         let is_front = wi.z > 0.0 && wo.z > 0.0;
         match self {
@@ -78,7 +80,7 @@ impl Scatter {
         }
     }
 
-    /// The density of [`Self::sample`] per solid angle, but for what goes only one way.
+    /// The density of [`Self::sample`] per solid angle, without delta components.
     pub(crate) fn density(&self, uv: DVec2, wi: DVec3, wo: DVec3) -> f64 {
         let is_front = wi.z > 0.0 && wo.z > 0.0;
         match self {
@@ -105,7 +107,7 @@ impl Scatter {
         }
     }
 
-    /// A direction wi, from three numbers in (0, 1); `None` where light is absorbed.
+    /// Samples a direction wi from three numbers in (0, 1); `None` if light is absorbed.
     pub(crate) fn sample(&self, uv: DVec2, wo: DVec3, random: [f64; 3]) -> Option<BsdfSample> {
         let [a, b, c] = random;
         match self {
@@ -165,7 +167,7 @@ impl Scatter {
         }
     }
 
-    /// One of two, each by its share; the density is that of both.
+    /// Samples one of two materials by weight; the density is that of the mixture.
     fn blended(
         &self,
         share: f64,
@@ -191,7 +193,8 @@ impl Scatter {
         })
     }
 
-    /// The squared index of the side that `to` is on, over that of the side of `from`: 1 unless light is refracted on its way.
+    /// The squared index on the side of `to`, over that on the side of `from`: 1 unless light is
+    /// refracted.
     pub(crate) fn squared_index(&self, from: DVec3, to: DVec3) -> f64 {
         match self {
             Self::Dielectric(of) if !of.is_thin && from.z * to.z < 0.0 => {
@@ -202,19 +205,19 @@ impl Scatter {
                 };
                 index * index
             }
-            // What goes straight on has met nothing.
+            // Light that goes straight on is not scattered.
             Self::Mask(_, of) if (from + to).length_squared() > 1e-24 => of.squared_index(from, to),
             Self::Blend(_, of) => of.iter().map(|of| of.squared_index(from, to)).product(),
             _ => 1.0,
         }
     }
 
-    /// What it does to light on the side that `wo` sees, in a word; of a mixture, by its larger part.
+    /// The kind of reflection on the side of `wo`; for a mixture, that of its larger part.
     pub(crate) fn kind(&self, uv: DVec2, wo: DVec3) -> Reflects {
         let rough = |roughness: Option<&Roughness>| {
             roughness.map_or(Reflects::Mirror, |of| {
                 let [a, b] = [0, 1].map(|axis: usize| of.alpha[axis].value(uv));
-                // Of the same area as the ellipse of both.
+                // The roughness with the same ellipse area.
                 let roughness = (a * b).sqrt();
                 Reflects::Lobe(of.distribution.lobe(roughness))
             })
@@ -236,7 +239,8 @@ impl Scatter {
         }
     }
 
-    /// The factors of its two parts, as textures have them: of the base, and of the lobe or mirror above it. What has one part only has that as its base.
+    /// The texture factors of both parts: of the base, and of the lobe or mirror above it. A
+    /// material with one part has only a base.
     pub(crate) fn factors(&self, uv: DVec2, wo: DVec3) -> [f64; 2] {
         match self {
             Self::TwoSided(sides) => {
@@ -251,7 +255,7 @@ impl Scatter {
         }
     }
 
-    /// The share of the base in what leaves to `wo` of light from `wi`.
+    /// The share of the base in light scattered from `wi` to `wo`.
     pub(crate) fn base_share(&self, uv: DVec2, wi: DVec3, wo: DVec3) -> f64 {
         match self {
             Self::TwoSided(sides) => {
@@ -267,7 +271,7 @@ impl Scatter {
         }
     }
 
-    /// Whether some of what leaves it goes one way only.
+    /// Whether the material has a delta component.
     pub(crate) fn has_mirror(&self) -> bool {
         match self {
             Self::Plastic(of) => of.coat.facets().is_none(),
@@ -277,7 +281,7 @@ impl Scatter {
         }
     }
 
-    /// Whether all that leaves it goes one way, so that no light can be looked for from it.
+    /// Whether the material has only delta components, so that light sampling is impossible.
     pub(crate) fn is_smooth(&self) -> bool {
         match self {
             Self::Conductor(of) => of.roughness.is_none(),
@@ -289,10 +293,10 @@ impl Scatter {
     }
 }
 
-/// Turns directions so that a side is in front.
+/// A flip of directions that puts a side in front.
 type Turn = fn(DVec3) -> DVec3;
 
-/// How directions are turned so that `wo` is in front.
+/// The flip that puts `wo` in front.
 fn to_front(wo: DVec3) -> Turn {
     if wo.z > 0.0 {
         |v| v
@@ -301,7 +305,7 @@ fn to_front(wo: DVec3) -> Turn {
     }
 }
 
-/// The side of a two-sided material that a direction sees, and how directions are turned to its frame.
+/// The side of a two-sided material that faces a direction, and the flip to its frame.
 fn side_of(sides: &[Scatter; 2], wo: DVec3) -> (&Scatter, Turn) {
     (&sides[usize::from(wo.z <= 0.0)], to_front(wo))
 }

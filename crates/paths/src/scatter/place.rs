@@ -1,4 +1,4 @@
-//! Materials at a place of a surface, as BSDFs of `etendue_scatter`.
+//! Materials at a surface point, as BSDFs of `etendue_scatter`.
 
 use etendue_field::Fresnel;
 use etendue_scatter::{
@@ -8,16 +8,16 @@ use etendue_scatter::{
 use etendue_world::{self as world, Roughness, Texture};
 use glam::{DVec2, DVec3};
 
-/// The microfacets at a place; `None` for a smooth surface.
+/// The microfacet distribution at a point; `None` for a smooth surface.
 pub(super) fn facets(roughness: Option<&Roughness>, uv: DVec2) -> Option<Microfacets> {
     roughness.map(|of| Microfacets {
         distribution: of.distribution,
-        // As small as directions in f64 still tell.
+        // The minimum is what directions in f64 still resolve.
         alpha: [0, 1].map(|axis: usize| of.alpha[axis].value(uv).max(1e-4)),
     })
 }
 
-/// A rough metal at a place; `None` for a mirror.
+/// A rough metal at a point; `None` for a mirror.
 pub(super) fn conductor(of: &world::Conductor, uv: DVec2) -> Option<Conductor> {
     facets(of.roughness.as_ref(), uv).map(|facets| Conductor {
         facets,
@@ -25,13 +25,13 @@ pub(super) fn conductor(of: &world::Conductor, uv: DVec2) -> Option<Conductor> {
     })
 }
 
-/// What a metal reflects.
+/// The Fresnel reflectance of a metal.
 pub(super) fn fresnel(of: &world::Conductor) -> Fresnel {
     of.index
         .map_or(Fresnel::White, |[n, k]| Fresnel::Conductor { n, k })
 }
 
-/// The modified Phong BRDF at a place.
+/// The modified Phong BRDF at a point.
 pub(super) fn phong([diffuse, specular, exponent]: &[Texture; 3], uv: DVec2) -> ModifiedPhong {
     ModifiedPhong {
         diffuse: diffuse.value(uv),
@@ -42,7 +42,8 @@ pub(super) fn phong([diffuse, specular, exponent]: &[Texture; 3], uv: DVec2) -> 
     }
 }
 
-/// The index behind an interface over that on the side of `wo`. A thin sheet has the same medium on both sides.
+/// The ratio of the index behind an interface to that on the side of `wo`. A thin sheet has the
+/// same medium on both sides.
 fn index(of: &world::Dielectric, wo: DVec3) -> f64 {
     if of.is_thin || wo.z > 0.0 {
         of.index
@@ -70,7 +71,7 @@ pub(super) fn smooth_dielectric(of: &world::Dielectric, wo: DVec3) -> SmoothDiel
     }
 }
 
-/// The factor on what is reflected or goes through, wo being in front.
+/// The factor on reflected or transmitted light, with wo in front.
 pub(super) fn factor(of: &world::Dielectric, uv: DVec2, wi: DVec3) -> f64 {
     if wi.z > 0.0 {
         of.reflectance.value(uv)
@@ -90,7 +91,7 @@ pub(crate) struct Coated {
 
 impl Coated {
     pub(super) fn new(plastic: &world::Plastic) -> Self {
-        // A table is made for the coat, which has the same roughness everywhere.
+        // A table is made for the coat, whose roughness is constant.
         let facets = facets(plastic.roughness.as_ref(), DVec2::ZERO);
         Self {
             coat: Coat::new(plastic.index, facets),
@@ -100,7 +101,7 @@ impl Coated {
         }
     }
 
-    /// What it is at a place.
+    /// The plastic at a point.
     pub(super) fn at(&self, uv: DVec2) -> Plastic<'_> {
         Plastic {
             coat: &self.coat,
@@ -110,7 +111,8 @@ impl Coated {
         }
     }
 
-    /// The share of the base in what leaves; of light in the mirror direction of a smooth coat none is the base's, but for what has no size.
+    /// The share of the base in scattered light; it is 0 in the mirror direction of a smooth coat,
+    /// which is a delta component.
     pub(super) fn base_share(&self, uv: DVec2, wi: DVec3, wo: DVec3) -> f64 {
         let is_mirrored = (wi + wo).truncate().length_squared() < 1e-24;
         if self.coat.facets().is_none() && is_mirrored {
@@ -121,7 +123,7 @@ impl Coated {
     }
 }
 
-/// A part of a value, as a share of it.
+/// A part of a value, as a fraction of it.
 pub(super) fn share(part: f64, value: f64) -> f64 {
     if value > 0.0 { part / value } else { 0.0 }
 }

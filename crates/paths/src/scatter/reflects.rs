@@ -1,16 +1,16 @@
-//! What a surface does to light, in a word.
+//! The kind of reflection of a surface.
 
 use etendue_field::Lobe;
 
-/// What a surface does to light, in a word.
+/// The kind of reflection of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reflects {
-    /// It is black from here.
+    /// Black on this side.
     Nothing,
-    /// It sends light alike to all directions.
+    /// Diffuse.
     Diffuse,
-    /// It sends light one way.
+    /// A mirror.
     Mirror,
-    /// It has a lobe about the mirror direction, perhaps above a diffuse base.
+    /// A lobe around the mirror direction, possibly above a diffuse base.
     Lobe(Lobe),
 }

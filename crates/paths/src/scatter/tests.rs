@@ -1,5 +1,5 @@
-//! Each material: its value over the density of its samples is their weight, its density has integral one less what is absorbed below, and the
-//! weights' mean is the integral of its value.
+//! Checks for each material: value over density equals the weight of a sample, the density
+//! integrates to one minus the absorbed part, and the mean weight equals the integral of the value.
 
 use super::*;
 use etendue_transform::random::{Stream, unit, words};
@@ -84,7 +84,7 @@ fn materials() -> Vec<(&'static str, Material)> {
                 of: Box::new([diffuse(), glass(1.5, rough(Ggx, [0.4, 0.4]))]),
             },
         ),
-        // What the black one draws carries light of the other.
+        // Directions sampled by the black material carry light of the other one.
         (
             "half black",
             Material::Blend {
@@ -112,7 +112,7 @@ fn directions() -> [DVec3; 3] {
         .map(|(x, y, z)| DVec3::new(x, y, z).normalize())
 }
 
-/// A direction over the whole sphere.
+/// A uniform direction over the whole sphere.
 fn anywhere([a, b, _]: [f64; 3]) -> DVec3 {
     let (z, (sin, cos)) = (2.0 * a - 1.0, libm::sincos(2.0 * PI * b));
     let radius = (1.0 - z * z).sqrt();
@@ -147,12 +147,12 @@ fn samples_follow_value_and_density() {
             let [sampled, plain, density, shining] =
                 [sampled, plain, density, shining].map(|x| x / count);
             assert!(squares / count < 30.0, "{name}: weights are bounded");
-            // Of random numbers, 4·10⁵ of them.
+            // The tolerance for 4·10⁵ random numbers.
             assert!(
                 (sampled - plain).abs() < 0.015 * (1.0 + plain),
                 "{name} {wo}: {sampled} {plain}"
             );
-            // What is drawn below the front, or was the coat's, carries nothing and is part of the density.
+            // Samples below the front, or from the coat, carry nothing but are part of the density.
             assert!(
                 density < 1.015 && density > shining - 0.015,
                 "{name} {wo}: {density} {shining}"

@@ -1,4 +1,4 @@
-//! Geometries in coordinates of their own.
+//! Geometries in local coordinates, with ray intersection and area sampling.
 
 use super::local::Local;
 use super::mesh::WorldMesh;
@@ -7,7 +7,7 @@ use glam::{DAffine3, DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// A geometry, ready to be met.
+/// A geometry prepared for ray intersection.
 #[derive(Debug)]
 pub(crate) enum Form {
     Rectangle,
@@ -18,7 +18,7 @@ pub(crate) enum Form {
 }
 
 impl Form {
-    /// Corners of a box around it.
+    /// Corners of its bounding box.
     pub(crate) fn corners(&self) -> impl Iterator<Item = DVec3> + use<> {
         let [low, high] = match self {
             Self::Rectangle | Self::Disc => {
@@ -38,7 +38,7 @@ impl Form {
         (0..8).map(move |i| DVec3::new(pick(i, 0), pick(i, 1), pick(i, 2)))
     }
 
-    /// The first place on a ray, strictly within bounds. `along` has unit length.
+    /// The first hit on a ray, strictly within bounds. `along` has unit length.
     pub(crate) fn first(
         &self,
         start: DVec3,
@@ -72,7 +72,7 @@ impl Form {
         }
     }
 
-    /// Whether a ray meets it, strictly within bounds. `along` has unit length.
+    /// Whether a ray hits the geometry, strictly within bounds. `along` has unit length.
     pub(crate) fn is_met(&self, start: DVec3, along: DVec3, within: [f64; 2]) -> bool {
         match self {
             Self::Mesh(mesh) => mesh.is_met(start, along, within),
@@ -97,7 +97,8 @@ impl Form {
         }
     }
 
-    /// The areas of its pieces once placed: triangles, or the whole. Spheres and cylinders are scaled as [`etendue_world::Shape`] says.
+    /// The areas of its pieces once placed: triangles, or the whole geometry. Spheres and cylinders
+    /// are scaled as described at [`etendue_world::Shape`].
     pub(crate) fn areas(&self, to_world: &DAffine3) -> Vec<f64> {
         let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| to_world.transform_vector3(axis));
         let whole = match self {
@@ -110,7 +111,7 @@ impl Form {
         vec![whole]
     }
 
-    /// A place drawn evenly over the area of a piece.
+    /// A point sampled uniformly by area on a piece.
     pub(crate) fn sample(&self, piece: usize, [a, b]: [f64; 2]) -> (DVec3, Local) {
         match self {
             Self::Rectangle => {
@@ -135,14 +136,15 @@ impl Form {
     }
 }
 
-/// Where the squares of coordinates, weighted, add up to 1 on a ray.
+/// The ray parameters at which the weighted squares of coordinates add up to 1.
 fn roots(start: DVec3, along: DVec3, weights: DVec3) -> Option<[f64; 2]> {
     let a = (weights * along).dot(along);
-    // From the point of the line that is nearest to the axis or the middle: digits are kept far away.
+    // Measured from the point of the line nearest to the axis or centre, to keep precision far
+    // away.
     let middle = -(weights * start).dot(along) / a;
     let nearest = start + middle * along;
     let left = 1.0 - (weights * nearest).dot(nearest);
-    // Along the axis of a cylinder a is 0, and nothing is met.
+    // Along the axis of a cylinder a is 0, and there is no hit.
     let half = (left / a).sqrt();
     (half.is_finite() && left >= 0.0).then_some([middle - half, middle + half])
 }

@@ -1,15 +1,15 @@
-//! A place of a geometry.
+//! A point of a geometry.
 
 use glam::{DVec2, DVec3};
 
-/// A place of a geometry, in its coordinates.
+/// A point of a geometry, in local coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Local {
-    /// Of any length.
+    /// The geometric normal, of any length.
     pub(crate) normal: DVec3,
-    /// The normal for shading.
+    /// The shading normal.
     pub(crate) shading: DVec3,
     pub(crate) uv: DVec2,
-    /// The way in which u grows.
+    /// The direction in which u increases.
     pub(crate) along_u: DVec3,
 }

@@ -1,4 +1,4 @@
-//! Triangles of a world as rays meet them.
+//! Triangle meshes prepared for ray intersection.
 
 use super::local::Local;
 use super::triangle::TriangleRay;
@@ -8,12 +8,12 @@ use etendue_world::Triangles;
 use glam::{DAffine3, DVec2, DVec3};
 use std::sync::Arc;
 
-/// Triangles with a hierarchy over them.
+/// Triangles with a bounding volume hierarchy.
 #[derive(Debug)]
 pub(crate) struct WorldMesh {
     triangles: Arc<Triangles>,
     hierarchy: WideHierarchy,
-    /// The vertices of triangles, in the order in which the hierarchy names them.
+    /// The vertices of triangles, in the order of the hierarchy.
     ordered: Vec<[u32; 3]>,
     bounds: [DVec3; 2],
 }
@@ -29,7 +29,7 @@ impl WorldMesh {
             .map(bounds)
             .reduce(|[a, b], [low, high]| [a.min(low), b.max(high)]);
         let all = all.unwrap_or_default();
-        // Rays begin some way from it: padding counts that in.
+        // Rays begin at a distance from the mesh, which the padding takes into account.
         let origins = 10.0 * (all[1] - all[0]).length();
         let hierarchy = WideHierarchy::over_triangles(corners.len(), origins, |i| {
             places(&triangles, corners[i])
@@ -59,7 +59,8 @@ impl WorldMesh {
         self.hierarchy.along(start, along, [from, until], |i| {
             if let Some((at, place)) = sight.meets(places(&self.triangles, self.ordered[i]))
                 && at > from
-                // Of two at the same distance the same one, in whatever order they are looked at.
+                // Ties in distance are broken by index, so the result does not depend on the
+                // traversal order.
                 && (at < end || first.is_some_and(|(first, j, _)| (at, i) < (first, j)))
             {
                 first = Some((at, i, place));
@@ -70,7 +71,7 @@ impl WorldMesh {
         first.map(|(at, i, place)| (at, self.local(self.ordered[i], place)))
     }
 
-    /// Whether a ray meets it, strictly within bounds.
+    /// Whether a ray hits the mesh, strictly within bounds.
     pub(super) fn is_met(&self, start: DVec3, along: DVec3, [from, until]: [f64; 2]) -> bool {
         let sight = TriangleRay::new(start, along);
         let mut is_met = false;
@@ -79,13 +80,13 @@ impl WorldMesh {
             is_met |= sight
                 .meets(corners)
                 .is_some_and(|(at, _)| at > from && at < until);
-            // Then nothing matters any more.
+            // After a hit, the traversal ends.
             if is_met { f64::NEG_INFINITY } else { until }
         });
         is_met
     }
 
-    /// At barycentric coordinates of the second and the third corner.
+    /// The point at barycentric coordinates of the second and the third corner.
     fn local(&self, corners: [u32; 3], place: DVec2) -> Local {
         let [a, b, c] = places(&self.triangles, corners);
         let normal = (b - a).cross(c - a);
@@ -124,7 +125,7 @@ impl WorldMesh {
         })
     }
 
-    /// A place drawn evenly over a triangle.
+    /// A point sampled uniformly on a triangle.
     pub(super) fn sample(&self, number: usize, random: [f64; 2]) -> (DVec3, Local) {
         let place = triangle(random);
         let corners = self.triangles.corners()[number];

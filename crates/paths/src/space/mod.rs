@@ -1,4 +1,4 @@
-//! Surfaces in space: what a ray meets first, and whether a way is clear.
+//! Ray intersection with all surfaces: first hits and visibility.
 
 mod form;
 mod local;
@@ -13,10 +13,10 @@ use local::Local;
 use mesh::WorldMesh;
 use std::sync::Arc;
 
-/// A ray; distances along it are in lengths of `along`, which is 1 long.
+/// A ray; distances along it are in units of `along`, which has length 1.
 #[derive(Clone, Copy, Debug)]
 pub struct Ray {
-    /// Where it begins.
+    /// Its origin.
     pub from: DVec3,
     /// Its direction.
     pub along: DVec3,
@@ -28,18 +28,19 @@ impl Ray {
     }
 }
 
-/// What a ray meets.
+/// The hit of a ray.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit {
-    /// Along the ray.
+    /// The distance along the ray.
     pub distance: f64,
-    /// In the world.
+    /// The position in the world.
     pub position: DVec3,
-    /// The number of the shape.
+    /// The index of the shape.
     pub shape: usize,
-    /// Normal of the surface on its front.
+    /// The surface normal on the front.
     pub normal: DVec3,
-    /// The frame that materials scatter in, from its coordinates to those of the world. Its Z is the normal, interpolated on smooth meshes; X is along u.
+    /// The shading frame, from its coordinates to those of the world. Its Z is the normal,
+    /// interpolated on smooth meshes; X is along u.
     pub frame: DMat3,
     /// Texture coordinates.
     pub uv: DVec2,
@@ -50,28 +51,29 @@ pub struct Hit {
 pub struct SceneGeometry {
     placed: Vec<Placed>,
     hierarchy: WideHierarchy,
-    /// No nearer hit counts: it is the surface that the ray begins on.
+    /// Minimum hit distance: nearer hits are the surface at the ray's origin.
     nearest: f64,
-    /// A sphere around all surfaces.
+    /// Centre of a sphere around all surfaces.
     pub(crate) center: DVec3,
     pub(crate) radius: f64,
 }
 
-/// A surface where it is.
+/// A placed surface.
 #[derive(Debug)]
 pub(crate) struct Placed {
     pub(crate) form: Form,
     pub(crate) to_world: DAffine3,
     to_local: DAffine3,
-    /// −1 if the front is turned.
+    /// −1 if the front is flipped.
     side: f64,
 }
 
-/// Hits nearer than this share of the world's size are the surface itself: f64 places points by some 10⁻¹⁵ of it, and roots of quadratics by 10⁻¹².
+/// Minimum hit distance relative to the size of the world: f64 represents points with a relative
+/// error of some 10⁻¹⁵, and roots of quadratics with 10⁻¹².
 const NEAREST: f64 = 1e-9;
 
 impl SceneGeometry {
-    /// The surfaces of a world, with hierarchies over them.
+    /// Builds the surfaces of a world, with hierarchies over them.
     #[must_use]
     pub fn new(world: &World) -> Self {
         let mut meshes: Vec<(*const Triangles, Arc<WorldMesh>)> = Vec::new();
@@ -104,7 +106,7 @@ impl SceneGeometry {
         &self.placed[shape]
     }
 
-    /// What a ray meets first, at distances within bounds.
+    /// The first hit of a ray, at distances within bounds.
     #[must_use]
     pub fn first(&self, ray: &Ray, [from, until]: [f64; 2]) -> Option<Hit> {
         let from = from.max(self.nearest);
@@ -122,13 +124,13 @@ impl SceneGeometry {
         Some(self.placed[shape].hit(ray, distance, shape, &local))
     }
 
-    /// Where a ray meets one shape first, whatever else is in its way.
+    /// The first hit of a ray with one shape, ignoring all others.
     pub(crate) fn meets(&self, shape: usize, ray: &Ray, within: [f64; 2]) -> Option<Hit> {
         let (distance, local) = self.placed[shape].first(ray, within)?;
         Some(self.placed[shape].hit(ray, distance, shape, &local))
     }
 
-    /// Whether nothing is between two places.
+    /// Whether nothing is between two points.
     pub(crate) fn is_clear(&self, from: DVec3, to: DVec3) -> bool {
         let between = to - from;
         let distance = between.length();
@@ -136,7 +138,7 @@ impl SceneGeometry {
         self.is_free(&Ray { from, along }, distance)
     }
 
-    /// Whether a ray meets nothing before a distance.
+    /// Whether a ray hits nothing before a distance.
     #[must_use]
     pub fn is_free(&self, ray: &Ray, distance: f64) -> bool {
         let until = distance - self.nearest;
@@ -145,7 +147,7 @@ impl SceneGeometry {
             .along(ray.from, ray.along, [self.nearest, until], |i| {
                 let shape = self.hierarchy.order()[i] as usize;
                 met |= self.placed[shape].is_met(ray, [self.nearest, until]);
-                // Then nothing matters any more.
+                // After a hit, the traversal ends.
                 if met { f64::NEG_INFINITY } else { until }
             });
         !met
@@ -198,7 +200,7 @@ impl Placed {
         self.form.is_met(start, along, within.map(|at| at * scale))
     }
 
-    /// Where a ray starts and goes in its coordinates, and how much longer distances are there.
+    /// The origin and direction of a ray in local coordinates, and the scale of distances there.
     fn seen(&self, ray: &Ray) -> (DVec3, DVec3, f64) {
         let start = self.to_local.transform_point3(ray.from);
         let along = self.to_local.transform_vector3(ray.along);
@@ -220,20 +222,21 @@ impl Placed {
         }
     }
 
-    /// A place of a piece of the surface, drawn evenly over its area, its normal and texture coordinates.
+    /// A point sampled uniformly by area on a piece of the surface, with its normal and texture
+    /// coordinates.
     pub(crate) fn sample(&self, piece: usize, random: [f64; 2]) -> (DVec3, DVec3, DVec2) {
         let (place, local) = self.form.sample(piece, random);
         let normal = self.side * (self.to_local.matrix3.transpose() * local.normal).normalize();
         (self.to_world.transform_point3(place), normal, local.uv)
     }
 
-    /// The areas of its pieces in the world: triangles, or the whole.
+    /// The areas of its pieces in the world: triangles, or the whole surface.
     pub(crate) fn areas(&self) -> Vec<f64> {
         self.form.areas(&self.to_world)
     }
 }
 
-/// A frame about a normal, with X along a direction as far as it is across.
+/// A frame around a normal, with X along the component of a direction across it.
 fn frame(normal: DVec3, along: DVec3) -> DMat3 {
     let across = along - along.dot(normal) * normal;
     let x = across

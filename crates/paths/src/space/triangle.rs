@@ -1,14 +1,14 @@
-//! Where a ray meets a triangle, without gaps between two that share an edge.
+//! Ray–triangle intersection without gaps at shared edges.
 
 use glam::{DVec2, DVec3};
 
-/// A ray as triangles see it: along its direction, on axes in which that is (x, y, 1).
+/// A ray prepared for triangle tests, on axes in which its direction is (x, y, 1).
 pub(super) struct TriangleRay {
     start: DVec3,
-    /// The largest component of the direction, which is the last one here.
+    /// The largest component of the direction, used as last axis.
     last: usize,
     slopes: DVec2,
-    /// Distances are along the ray, depths along the last axis.
+    /// The ratio of distances along the ray to depths along the last axis.
     per_depth: f64,
 }
 
@@ -24,15 +24,17 @@ impl TriangleRay {
         }
     }
 
-    /// The distance, and barycentric coordinates of the second and the third corner (Woop, Benthin and Wald 2013, *Watertight ray/triangle
-    /// intersection*). An edge gives the same number, with the other sign, to the triangle beyond it: no ray passes between them.
+    /// The distance, and barycentric coordinates of the second and the third corner (Woop, Benthin
+    /// and Wald 2013, *Watertight ray/triangle intersection*). A shared edge gives both triangles
+    /// the same number with opposite sign: no ray passes between them.
     #[inline]
     pub(super) fn meets(&self, corners: [DVec3; 3]) -> Option<(f64, DVec2)> {
         let seen = corners.map(|corner| turned(corner, self.last) - self.start);
         let [a, b, c] = seen.map(|p| p.truncate() - p.z * self.slopes);
         let sides = DVec3::new(b.perp_dot(c), c.perp_dot(a), a.perp_dot(b));
         let volume = sides.element_sum();
-        // A triangle without area, or along whose plane the ray runs, is not met; nor is one that is no number.
+        // There is no hit with a triangle of zero area, parallel to the ray, or with NaN
+        // coordinates.
         let is_met = (sides.min_element() >= 0.0 || sides.max_element() <= 0.0) && volume != 0.0;
         let weights = sides / volume;
         let depths = DVec3::new(seen[0].z, seen[1].z, seen[2].z);
@@ -45,7 +47,7 @@ impl TriangleRay {
     }
 }
 
-/// The same on axes turned so that one of them is last.
+/// Permutes the axes so that the given one is last.
 #[inline]
 fn turned(v: DVec3, last: usize) -> DVec3 {
     match last {
@@ -65,7 +67,7 @@ mod tests {
         2.0 * DVec3::new(x, y, z) - 1.0
     }
 
-    /// Rays at the edge that two triangles share: each meets one of them.
+    /// Rays at the shared edge of two triangles hit one of them.
     #[test]
     fn nothing_passes_between_triangles_that_share_an_edge() {
         let mut on_edge = 0;
@@ -74,7 +76,7 @@ mod tests {
             let place = a.lerp(b, 0.1 + 0.4 * (1.0 + numbers(index, 4).x));
             let (start, aside) = (4.0 * start, aside.cross(b - a));
             let sight = TriangleRay::new(start, (place - start).normalize());
-            // The same edge, gone along both ways.
+            // The same edge, traversed in both directions.
             let [one, other] = [[a, b, place + aside], [b, a, place - aside]];
             let met = [sight.meets(one), sight.meets(other)];
             assert!(met.iter().any(Option::is_some), "{start} to {a}, {b}");
@@ -103,7 +105,7 @@ mod tests {
             let (at, found) = TriangleRay::new(start, along)
                 .meets(corners)
                 .expect("aimed at it");
-            // Rounding, more of it for rays along the triangle.
+            // Rounding errors are larger for grazing rays.
             assert!(
                 (start + at * along - place).length() < 1e-14 / across,
                 "{index}"

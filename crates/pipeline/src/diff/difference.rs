@@ -1,4 +1,4 @@
-//! Two results of one scene held against each other.
+//! Compares two results of one scene.
 
 use super::planes::{self, PlaneDiff, PlaneDifference};
 use super::stored::StoredResult;
@@ -7,21 +7,22 @@ use etendue_store::Failure;
 use etendue_store::fields::{FieldChange, differences};
 use std::path::Path;
 
-/// Two results, and what differs.
+/// Two results and their differences.
 #[derive(Debug)]
 pub struct Diff {
     pub(super) results: [StoredResult; 2],
     pub(super) alpha: f64,
-    /// The fields of the scene in which they differ.
+    /// The fields in which the scenes differ.
     pub(super) scene: Vec<FieldChange>,
     pub(super) planes: Vec<PlaneDiff>,
 }
 
 impl Diff {
-    /// Holds the results in two folders against each other; `alpha` is the probability of finding a difference where there is none.
+    /// Compares the results in two folders; `alpha` is the probability of finding a difference
+    /// where there is none.
     ///
     /// # Errors
-    /// When one of them is no whole result, or they have no plane in common.
+    /// When one of them is not a complete result, or they have no plane in common.
     pub fn read(folders: [&Path; 2], alpha: f64) -> Result<Self, Failure> {
         let [a, b] = folders.map(StoredResult::read);
         Self::of([a?, b?], alpha)
@@ -49,7 +50,7 @@ impl Diff {
         })
     }
 
-    /// Tests of slices and of parameters.
+    /// The numbers of tests of slices and of parameters.
     pub(super) fn tests(&self) -> [usize; 2] {
         let compared = || self.planes.iter().filter_map(PlaneDiff::compared);
         let slices = compared().filter(|plane| plane.test.p_value.is_some());
@@ -57,7 +58,8 @@ impl Diff {
         [slices.count(), parameters.sum()]
     }
 
-    /// The level of each test, so that all of them together find a difference where there is none with probability α.
+    /// The level of each test with which all tests together find a difference where there is none
+    /// with probability α.
     pub(super) fn level(&self) -> f64 {
         let [slices, parameters] = self.tests();
         sidak(self.alpha, (slices + parameters).max(1))
@@ -72,14 +74,14 @@ impl Diff {
     }
 }
 
-/// Whether a field says how a scene is run, not what it is.
+/// Whether a field affects how a scene is run, and not what it is.
 pub(super) fn is_of_run(change: &FieldChange) -> bool {
     change.field.starts_with("run.")
 }
 
-/// Whether scenes that read alike name meshes or pictures that are not.
+/// Whether two scenes with equal files use different meshes or pictures.
 pub(super) fn has_other_inputs(a: &StoredResult, b: &StoredResult, scene: &[FieldChange]) -> bool {
     let [a, b] = [a, b].map(|result| &result.index);
-    // A name counts in no hash; another version may have other defaults.
+    // The name is not part of any hash; another version may have other defaults.
     scene.is_empty() && a.version == b.version && a.scene_hash != b.scene_hash
 }

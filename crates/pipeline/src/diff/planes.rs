@@ -1,4 +1,4 @@
-//! One plane of two results: which tests are made, and what they come to.
+//! The tests of one plane of two results, and their outcome.
 
 use super::stored::{StoredPlane, StoredResult, StoredSlices};
 use etendue_compare::{Class, Estimate, MIN_PHOTONS_PER_BATCH, Sample, TwoSamples, Verdict, pull};
@@ -9,21 +9,22 @@ use ndarray::Array3;
 use serde_json::{Value, json};
 use std::f64::consts::SQRT_2;
 
-/// A plane of either result.
+/// A plane of either or both results.
 #[derive(Debug)]
 pub(super) struct PlaneDiff {
     pub(super) name: String,
     pub(super) found: PlaneDifference,
 }
 
-/// What there is to say of a plane.
+/// The outcome for a plane.
 #[derive(Debug)]
 pub(super) enum PlaneDifference {
-    /// This result does not have it: 0 for the first, 1 for the second.
+    /// One result lacks the plane: 0 for the first, 1 for the second.
     Missing(usize),
-    /// It is measured in other units, on other frequencies or in another window, in words.
+    /// The plane is measured in different units, at different frequencies or in a different window,
+    /// as described.
     Unlike(String),
-    /// It is in both, and both look at the same.
+    /// The plane is in both results and records the same quantity.
     Compared(Box<Compared>),
 }
 
@@ -34,11 +35,11 @@ pub(super) struct Compared {
     pub(super) parameters: Vec<ParameterDiff>,
     pub(super) slopes: [Option<Estimate>; 2],
     pub(super) prediction: PredictionDiff,
-    /// Why the tests leave it undecided although they see no difference.
+    /// Why the plane is undecided although the tests find no difference.
     unresolved: Option<String>,
-    /// Why they say nothing whatever they see.
+    /// Why the tests are invalid whatever they find.
     invalid: Option<String>,
-    /// The same photons came to the same numbers.
+    /// Whether the same photons gave the same numbers.
     pub(super) is_identical: bool,
 }
 
@@ -52,23 +53,24 @@ pub(super) struct ParameterDiff {
     pub(super) pull: (f64, f64),
 }
 
-/// How far two predictions are apart.
+/// The difference of two predictions.
 #[derive(Debug)]
 pub(super) struct PredictionDiff {
     /// ‖F_A − F_B‖ over the larger norm.
     pub(super) difference: f64,
-    /// Both were predicted for one scene, and are farther apart than their errors.
+    /// Whether both were predicted for one scene, and differ by more than their errors.
     pub(super) is_wrong: bool,
 }
 
-/// Numbers that differ by less are equal but for the rounding of sums.
+/// Smaller relative differences count as the rounding of sums.
 pub(super) const ROUNDING: f64 = 1e-12;
-/// Closed forms of two versions may order their sums in other ways: rounding of their largest terms.
+/// The difference of closed forms in two versions, which may order their sums differently: rounding
+/// of the largest terms.
 const CLOSED_FORM: f64 = 1e-9;
-/// Combined standard errors beyond which two predictions are not the same. The error is a norm over
-/// all frequencies, which hardly fluctuates.
+/// The number of combined standard errors beyond which two predictions differ. The error is a norm
+/// over all frequencies, which hardly fluctuates.
 const APART: f64 = 3.0;
-/// Probability, over all planes, that independent noise passes for shared photons.
+/// The probability, over all planes, of taking independent noise for shared photons.
 const SHARED: f64 = 1e-4;
 
 impl PlaneDiff {
@@ -84,7 +86,7 @@ impl PlaneDiff {
             .map_or(Verdict::Undecided, |compared| compared.verdict(level))
     }
 
-    /// Why it is undecided.
+    /// Why the plane is undecided.
     pub(super) fn undecided(&self, level: f64) -> Option<String> {
         match &self.found {
             PlaneDifference::Missing(0) => Some("only the second result has this plane".to_owned()),
@@ -100,12 +102,12 @@ impl PlaneDiff {
 }
 
 impl Compared {
-    /// Parameters with their pulls, those that are tested.
+    /// The tested parameters with their pulls.
     pub(super) fn pulls(&self) -> impl Iterator<Item = &ParameterDiff> {
         self.parameters.iter().filter(|_| self.invalid.is_none())
     }
 
-    /// What differs beyond noise, in words.
+    /// Descriptions of what differs beyond noise.
     pub(super) fn differing(&self, level: f64) -> Vec<String> {
         let mut differing = Vec::new();
         if self.invalid.is_none() && self.test.p_value.is_some_and(|p| p < level) {
@@ -128,7 +130,7 @@ impl Compared {
     }
 }
 
-/// All planes of two results, those of the first in its order.
+/// All planes of two results, in the order of the first.
 pub(super) fn of_results(
     a: &StoredResult,
     b: &StoredResult,
@@ -152,7 +154,7 @@ pub(super) fn of_results(
     Ok(planes)
 }
 
-/// Two results, of one scene or not.
+/// Two results, of the same scene or not.
 struct ResultPair<'a> {
     a: &'a StoredResult,
     b: &'a StoredResult,
@@ -184,7 +186,7 @@ impl ResultPair<'_> {
         Ok(PlaneDifference::Compared(Box::new(compared)))
     }
 
-    /// Whether both have the same photons, as far as the scenes let them.
+    /// Whether both use the same photons, as far as the scenes allow it.
     fn has_one_seed(&self) -> bool {
         let [a, b] = [self.a, self.b].map(|result| {
             let index = &result.index;
@@ -193,7 +195,7 @@ impl ResultPair<'_> {
         a == b
     }
 
-    /// Why slices of both cannot be subtracted.
+    /// Why the slices of the two results cannot be subtracted.
     fn unlike(&self, name: &str, a: &StoredSlices, b: &StoredSlices) -> Option<String> {
         let [left, right] = [self.a, self.b].map(|result| view(&result.index.scene_file, name));
         if let Some(FieldChange { field, values }) = differences(&left, &right).into_iter().next() {
@@ -242,7 +244,7 @@ impl ResultPair<'_> {
         let difference = apart(&a.grid, &a.predicted, &b.predicted);
         let error = |plane: &StoredPlane| plane.quadrature_error.unwrap_or(0.0).powi(2);
         let error: f64 = planes.into_iter().map(error).sum();
-        // What stands in for a prediction there is another measurement.
+        // The prediction of a reference is another measurement.
         let reference = Class::Reference.to_string();
         let is_reference = planes.iter().any(|plane| plane.class == reference);
         let allowed = CLOSED_FORM.max(APART * error.sqrt());
@@ -252,7 +254,7 @@ impl ResultPair<'_> {
         }
     }
 
-    /// Why the tests say nothing of these photons, whatever they see.
+    /// Why the tests are invalid for these photons, whatever they find.
     fn invalid(&self, planes: [&StoredPlane; 2], slices: [&StoredSlices; 2]) -> Option<String> {
         let results = [self.a, self.b];
         for ((plane, slices), result) in planes.into_iter().zip(slices).zip(results) {
@@ -266,7 +268,7 @@ impl ResultPair<'_> {
                 ));
             }
             let each = plane.in_window as f64 / result.index.batches as f64;
-            // The other's light says enough of a plane that is dark here.
+            // For a plane that is dark in one result, the light in the other decides.
             if plane.in_window > 0 && each < MIN_PHOTONS_PER_BATCH {
                 return Some(format!(
                     "{folder} has {} photons in its window, too few for a test",
@@ -282,7 +284,7 @@ impl ResultPair<'_> {
         None
     }
 
-    /// Why a test that sees no difference does not mean that there is none.
+    /// Why a test without a detected difference does not prove that there is none.
     fn unresolved(&self, test: &TwoSamples) -> Option<String> {
         let [a, b] = [self.a, self.b].map(|result| &result.index);
         let [apart, noise] = [test.difference, test.noise].map(|share| percent(share, 3));
@@ -298,7 +300,7 @@ impl ResultPair<'_> {
             ));
         }
         let resolution = [a, b].map(|r| r.scene_file["run"]["resolution"].as_f64());
-        // Two results of this noise each are as far apart as its root mean square sum.
+        // Two results with this noise each differ by its root mean square sum.
         let resolution = SQRT_2 * resolution.into_iter().flatten().fold(0.0, f64::max);
         (test.noise > resolution).then(|| {
             let resolution = percent(resolution, 3);
@@ -307,8 +309,9 @@ impl ResultPair<'_> {
     }
 }
 
-/// Photons of equal weight in a batch that would vary as the light of this sample does, where they
-/// are so few that a batch would hold none: as for a single run (`etendue_compare`).
+/// The number of photons of equal weight per batch that would vary as much as the light of this
+/// sample, where it is so small that some batch would be empty; as for a single run
+/// (`etendue_compare`).
 fn carried_by(sample: &Sample, grid: &SliceGrid) -> Option<f64> {
     let zero = [0, 0, grid.nu.half];
     let batches = sample.batches as f64;
@@ -328,7 +331,7 @@ fn apart(grid: &SliceGrid, a: &Array3<Complex>, b: &Array3<Complex>) -> f64 {
     TwoSamples::new(grid, &sample(a), &sample(b)).difference
 }
 
-/// What the slices of a plane are of: its window, quantity and coordinates.
+/// The definition of a plane's slices: its window, quantity and coordinates.
 fn view(scene_file: &Value, name: &str) -> Value {
     let planes = scene_file["planes"].as_array();
     let mut planes = planes.into_iter().flatten();
@@ -340,7 +343,7 @@ fn view(scene_file: &Value, name: &str) -> Value {
     } else {
         own
     };
-    // Profiles across are those along unless the scene has others.
+    // By default the profiles along y and v are those along x and u.
     let profile = |name: &str, along: &str| {
         let own = &window[name];
         if own.is_null() {

@@ -1,4 +1,4 @@
-//! A result folder as `diff` reads it: every file verified, nothing taken for granted.
+//! A result folder as read by `diff`: every file is verified and nothing is assumed.
 
 use etendue_compare::{Estimate, Sample};
 use etendue_field::{Complex, FrequencyAxis, SliceGrid};
@@ -13,14 +13,14 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// A folder of `run` or `compare`, by any version of this program.
+/// A result folder of `run` or `compare`, by any version of this program.
 #[derive(Debug)]
 pub(super) struct StoredResult {
     pub(super) folder: PathBuf,
     pub(super) index: ResultIndex,
 }
 
-/// What `diff` needs of a `summary.json`.
+/// The part of a `summary.json` that `diff` needs.
 #[derive(Debug, Deserialize)]
 pub(super) struct ResultIndex {
     pub(super) scene: String,
@@ -35,7 +35,7 @@ pub(super) struct ResultIndex {
     files: BTreeMap<String, String>,
 }
 
-/// What it needs of a plane there. Numbers that do not exist are null.
+/// The part of a plane in it that `diff` needs. Numbers that do not exist are null.
 #[derive(Debug, Deserialize)]
 pub(super) struct StoredPlane {
     pub(super) name: String,
@@ -78,7 +78,7 @@ impl StoredNumber {
 }
 
 impl StoredParameter {
-    /// Whether the photons determine it: a change by all of it would be noticed.
+    /// Whether the photons determine the parameter: a change by all of it would be detected.
     pub(super) fn is_determined(&self) -> bool {
         let (Some(scene), Some(detectable)) = (self.scene, self.detectable) else {
             return false;
@@ -183,7 +183,7 @@ fn slices_of(plane: &str) -> String {
     format!("{plane}/slices.npz")
 }
 
-/// An axis of an odd number of frequencies with zero in the middle.
+/// Reads an axis with an odd number of frequencies and zero in the middle.
 fn axis(file: &mut NpzFile, name: &str, values: &Array1<f64>) -> Result<FrequencyAxis, Failure> {
     let half = values.len() / 2;
     if values.len().is_multiple_of(2) || values[half].abs() > 0.0 {

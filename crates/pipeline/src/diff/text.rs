@@ -1,4 +1,4 @@
-//! What `etendue diff` prints.
+//! The output of `etendue diff`.
 
 use super::difference::{Diff, has_other_inputs, is_of_run};
 use super::planes::{Compared, PlaneDiff, PlaneDifference, ROUNDING};
@@ -8,10 +8,10 @@ use etendue_compare::{Estimate, Verdict};
 use etendue_field::{percent as percent_of, tidy, uncertain};
 use etendue_store::fields::FieldChange;
 
-/// Most fields of the scene that are listed.
+/// The largest number of differing fields that are listed.
 const MOST_FIELDS: usize = 20;
 
-/// What `etendue diff` prints.
+/// The output of `etendue diff`.
 #[must_use]
 pub fn text(diff: &Diff) -> String {
     let mut lines = vec![header('A', &diff.results[0]), header('B', &diff.results[1])];
@@ -45,7 +45,7 @@ fn header(letter: char, result: &StoredResult) -> String {
     )
 }
 
-/// How the scenes differ.
+/// The differences of the scenes.
 fn scene(diff: &Diff) -> Vec<String> {
     let [a, b] = &diff.results;
     let changes = &diff.scene;
@@ -70,7 +70,7 @@ fn scene(diff: &Diff) -> Vec<String> {
     lines
 }
 
-/// A field as `--set` takes it: `blockers.0.pitch`, not `blockers.0.JitteredSquares.pitch`.
+/// A field in the notation of `--set`: `blockers.0.pitch`, not `blockers.0.JitteredSquares.pitch`.
 fn without_variants(field: &str) -> String {
     let parts: Vec<&str> = field.split('.').collect();
     let last = parts.len() - 1;

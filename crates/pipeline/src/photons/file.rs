@@ -1,4 +1,4 @@
-//! Photons in the formats that `--save` knows.
+//! Writes photons in the formats of `--save`.
 
 use crate::case::MeasuredScene;
 use etendue_field::{Crossing, VirtualPlane};
@@ -7,17 +7,17 @@ use etendue_rays::{NpyHeader, tm25};
 use etendue_trace::PlaneInWorld;
 use std::io;
 
-/// The photons of a plane as rays of the world.
+/// The photons of a plane as rays in world coordinates.
 pub(super) struct Rays {
     world: PlaneInWorld,
-    /// Photons emitted, those that met nothing included.
+    /// Number of photons emitted, including those that met nothing.
     emitted: u64,
-    /// What the plane is, for people.
+    /// A description of the plane.
     about: String,
 }
 
 impl Rays {
-    /// Those of a plane; `None` if there is no such plane.
+    /// The rays of a plane; `None` if there is no such plane.
     pub(super) fn of(case: &MeasuredScene, plane: usize) -> Option<Self> {
         let VirtualPlane { name, distance, .. } = case.scene.planes.get(plane)?;
         let emitted = case.measurement.batches().map(|batch| batch.emitted).sum();
@@ -46,7 +46,7 @@ impl Rays {
     }
 }
 
-/// What a file begins with, and how a photon stands in it.
+/// The header of a file, and the format of a photon in it.
 pub(super) enum Content<'a> {
     Npy(u64),
     Mcpl(&'a Rays, Box<mcpl::McplHeader>, u64),
@@ -62,7 +62,7 @@ impl<'a> Content<'a> {
     /// Photons of unknown energy, in f64.
     pub(super) fn mcpl(rays: &'a Rays, rows: u64) -> Self {
         let mut comments = vec![WATTS.as_bytes().to_vec(), rays.about.clone().into_bytes()];
-        // A number of photons is a sum as the format has it.
+        // In the format, a number of photons is a sum.
         comments.extend(stat_sum_comment("emitted_photons", rays.emitted as f64));
         let header = mcpl::McplHeader {
             universal_pdg: Some(PHOTON),
@@ -73,7 +73,7 @@ impl<'a> Content<'a> {
         Self::Mcpl(rays, Box::new(header), rows)
     }
 
-    /// Rays of this flux in all, W, without wavelengths.
+    /// Rays with this total flux, W, without wavelengths.
     pub(super) fn tm25(rays: &'a Rays, rows: u64, flux: f64) -> Self {
         let mut header = tm25::Tm25Header {
             radiant_flux: single(flux),

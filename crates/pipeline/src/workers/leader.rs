@@ -1,4 +1,5 @@
-//! The processes that this one leads: it hands out what they ask for, and takes what they have done.
+//! The leading process: hands out pieces to other processes on request, and takes back their
+//! results.
 
 use super::link::{Workers, key};
 use super::message::{Order, Packed, Piece, Task, WorkerMessage, packed, unpack};
@@ -13,33 +14,34 @@ use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::{fmt, thread};
 
-/// What the bytes of the piece of that number say.
+/// Decodes the bytes of the piece with that number.
 type Unpacked<'a, T> = dyn Fn(u32, &[u8]) -> Result<T, Failure> + Sync + 'a;
 
-/// Takes a piece and its bytes.
+/// Receives a piece and its bytes.
 type Taken<'a> = dyn FnMut(&Piece, &[u8]) -> Result<(), Failure> + Send + 'a;
 
-/// The piece of that number, to be handed out.
+/// Returns the piece with that number, to be handed out.
 type Given<'a> = dyn Fn(u32) -> Result<Packed, Failure> + Sync + 'a;
 
-/// The least seconds after which others send back batches that are not done, and seconds more for each process: what they send takes the
-/// one that leads less time than that.
+/// The minimum number of seconds after which others return unfinished batches, and the further
+/// seconds for each process. They are long enough for the leading process to handle the returned
+/// batches.
 const RETURN_SECONDS: [f64; 2] = [5.0, 0.05];
 
-/// The processes that this one leads.
+/// The leading process and those it leads.
 pub struct Leader<'a> {
     workers: &'a dyn Workers,
     others: Mutex<Vec<Other>>,
 }
 
-/// One of them.
+/// One of the processes.
 #[derive(Clone, Copy, Debug)]
 struct Other {
-    /// Parts of batches that it measures at a time.
+    /// Parts of batches that it measures in parallel.
     abreast: usize,
-    /// Pieces that it has now.
+    /// Number of pieces it currently holds.
     has: usize,
-    /// Whether it waits for an answer.
+    /// Whether it is waiting for an answer.
     waits: bool,
 }
 
@@ -56,7 +58,7 @@ impl fmt::Debug for Leader<'_> {
 }
 
 impl<'a> Leader<'a> {
-    /// The processes of a workers; this one is number 0.
+    /// The leader of `workers`; this process is number 0.
     #[must_use]
     pub fn new(workers: &'a dyn Workers) -> Self {
         let other = Other {
@@ -70,7 +72,8 @@ impl<'a> Leader<'a> {
         }
     }
 
-    /// Measures batches of a scene, each from where it was left. Returns those that are done, and those that `watch` has stopped.
+    /// Measures batches of a scene, each from where it stopped. Returns the finished ones, and
+    /// those that `watch` has stopped.
     pub(crate) fn measure(
         &self,
         packing: Packing<'_>,
@@ -120,7 +123,8 @@ impl<'a> Leader<'a> {
         Ok((all, begun.into_values().chain(stopped).collect()))
     }
 
-    /// Predicts planes of a scene: `own` does it here, and `unpacked` has what another process has sent.
+    /// Predicts planes of a scene: `own` computes one here, and `unpacked` decodes what another
+    /// process has sent.
     pub fn predict(
         &self,
         scene: &Scene,
@@ -131,7 +135,8 @@ impl<'a> Leader<'a> {
         self.pieces(&key([scene]), Task::Planes, planes, own, unpacked)
     }
 
-    /// Runs points of a sweep, whose scenes these are: `own` does it here, and `unpacked` keeps what another process has sent.
+    /// Runs the points of a sweep over these scenes: `own` computes one here, and `unpacked` stores
+    /// what another process has sent.
     pub fn run<T: Send>(
         &self,
         scenes: &[Scene],
@@ -142,7 +147,7 @@ impl<'a> Leader<'a> {
         self.pieces(&key(scenes), Task::Points, points, own, unpacked)
     }
 
-    /// Pieces that are done one by one.
+    /// Handles pieces that are processed one by one.
     fn pieces<T: Send>(
         &self,
         key: &str,
@@ -175,7 +180,8 @@ impl<'a> Leader<'a> {
         Ok(all)
     }
 
-    /// Does what is left, here by `own` and wherever somebody asks for some, whose pieces `give` makes and `take` takes back.
+    /// Processes the remaining pieces, here by `own` and in other processes on request; `give`
+    /// makes the pieces to send and `take` receives their results.
     fn share<T>(
         &self,
         key: &str,
@@ -187,7 +193,7 @@ impl<'a> Leader<'a> {
         let (own, others) = thread::scope(|scope| {
             let others = scope.spawn(|| {
                 let served = self.serve(key, task, left, (give, take));
-                // Where others have failed, this process need not go on.
+                // If other processes have failed, this one need not continue.
                 served.inspect_err(|_| left.drop_all())
             });
             let own = own().inspect_err(|_| left.drop_all());
@@ -197,7 +203,7 @@ impl<'a> Leader<'a> {
         own
     }
 
-    /// Answers whoever asks, until nothing is left and nobody has any more of it.
+    /// Answers requests until no pieces remain and none are in progress elsewhere.
     fn serve(
         &self,
         key: &str,
@@ -227,11 +233,11 @@ impl<'a> Leader<'a> {
                     return Err(Failure::cannot_run(format!("process {who}: {message}")));
                 }
                 WorkerMessage::Done { pieces } => {
-                    // It goes on while its pieces are unpacked and kept.
+                    // The other process continues while its pieces are decoded and stored.
                     self.hand(who, task, left, give)?;
                     let mut pieces = unpack(&pieces, &bytes);
                     pieces.try_for_each(|(piece, own)| take(piece, own))?;
-                    // Batches that are not done go on where somebody waits.
+                    // Unfinished batches continue in a process that is waiting.
                     hand_all()?;
                 }
             }
@@ -239,7 +245,7 @@ impl<'a> Leader<'a> {
         Ok(())
     }
 
-    /// Waits for what another process says. It waits for the answer.
+    /// Waits for a message from another process, which then waits for the answer.
     fn heard(&self) -> Result<(usize, WorkerMessage, Vec<u8>), Failure> {
         let (who, bytes) = self.workers.receive().map_err(Failure::cannot_run)?;
         let mut others = held(&self.others);
@@ -250,7 +256,7 @@ impl<'a> Leader<'a> {
         Ok((who, said, bytes.to_vec()))
     }
 
-    /// Gives pieces to a process that waits, if any are left.
+    /// Gives pieces to a waiting process, if any remain.
     fn hand(&self, who: usize, task: Task, left: &Left, give: &Given<'_>) -> Result<(), Failure> {
         let numbers = left.last(held(&self.others)[who].abreast);
         if numbers.is_empty() {
@@ -275,7 +281,7 @@ impl<'a> Leader<'a> {
         sent.map_err(Failure::cannot_run)
     }
 
-    /// Ends the work of all others, as soon as each asks for more.
+    /// Ends the work of all other processes when each next asks for more.
     pub fn dismiss_all(&self) -> Result<(), Failure> {
         for who in 1..self.workers.count() {
             while !held(&self.others)[who].waits {
@@ -287,10 +293,10 @@ impl<'a> Leader<'a> {
     }
 }
 
-/// The pieces that nobody is at.
+/// The pieces that no process is working on.
 struct Left {
     numbers: Mutex<VecDeque<u32>>,
-    /// How many parts a piece has, which one process measures at a time.
+    /// The number of parts of a piece that one process measures in parallel.
     parts: usize,
 }
 
@@ -310,12 +316,13 @@ impl Left {
         held(&self.numbers).clear();
     }
 
-    /// Takes the first one.
+    /// Takes the first piece.
     fn next(&self) -> Option<u32> {
         held(&self.numbers).pop_front()
     }
 
-    /// Takes the last ones, which have so many parts: this process goes through them from the first.
+    /// Takes the last pieces with this many parts, because this process takes pieces from the
+    /// front.
     fn last(&self, parts: usize) -> Vec<u32> {
         let mut numbers = held(&self.numbers);
         let most = parts.div_ceil(self.parts).clamp(1, numbers.len().max(1));
@@ -324,7 +331,7 @@ impl Left {
             .collect()
     }
 
-    /// Has one that was taken and is not done.
+    /// Puts back a piece that was taken and is not finished.
     fn put_back(&self, number: u32) {
         held(&self.numbers).push_back(number);
     }

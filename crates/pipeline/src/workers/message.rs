@@ -1,20 +1,20 @@
-//! What processes say to each other: words, and bytes that they are about.
+//! The messages between processes, with the bytes they refer to.
 
 use etendue_store::framing::joined;
 use serde::{Deserialize, Serialize};
 
-/// What a process says to the one that leads, which answers with an [`Order`].
+/// A message to the leading process, which answers with an [`Order`].
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) enum WorkerMessage {
-    /// It has scenes with this key, and measures so many batches at a time.
+    /// The process has scenes with this key, and measures this many batches in parallel.
     Ready { key: String, abreast: usize },
     /// The bytes of these pieces follow.
     Done { pieces: Vec<Piece> },
-    /// It cannot do what it was told.
+    /// The process cannot carry out its order.
     Failed { message: String },
 }
 
-/// What there is to do.
+/// The kind of work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Task {
     /// Batches to measure.
@@ -25,29 +25,29 @@ pub(crate) enum Task {
     Points,
 }
 
-/// Something to do, or something done.
+/// A piece of work, to do or done.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Piece {
     pub number: u32,
-    /// How many parts of a batch are done, unless it is whole or not begun.
+    /// The number of finished parts of a batch; `None` if it is complete or not begun.
     pub parts: Option<u32>,
-    /// How many bytes it has.
+    /// The number of bytes of the piece.
     pub length: usize,
 }
 
-/// Pieces to do; none ends the work. The bytes of batches that are begun follow.
+/// Pieces to process; an empty list ends the work. The bytes of batches that are begun follow.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct Order {
     pub(crate) task: Task,
     pub(crate) pieces: Vec<Piece>,
-    /// When to send back batches that are not done by then.
+    /// The time after which unfinished batches are returned.
     pub(crate) seconds: f64,
 }
 
 /// A piece with its bytes.
 pub(crate) type Packed = (Piece, Vec<u8>);
 
-/// The message that says `words` about pieces, and has their bytes.
+/// The message `words` about pieces, with their bytes.
 pub(crate) fn packed<T: Serialize>(
     words: impl FnOnce(Vec<Piece>) -> T,
     pieces: Vec<Packed>,
@@ -56,7 +56,7 @@ pub(crate) fn packed<T: Serialize>(
     joined(&words(pieces), &bytes.concat())
 }
 
-/// The bytes of each of some pieces, which follow each other.
+/// The bytes of each piece, which are stored one after the other.
 pub(crate) fn unpack<'a>(
     pieces: &'a [Piece],
     mut bytes: &'a [u8],

@@ -1,4 +1,4 @@
-//! Batches as bytes, for another process.
+//! Encodes batches as bytes, for another process.
 
 use super::message::{Packed, Piece};
 use etendue_field::PhotonSource;
@@ -7,7 +7,7 @@ use etendue_spectrum::{Batch, PartialBatch};
 use etendue_store::batches::Held;
 use etendue_store::{Failure, Method, checkpoints};
 
-/// Turns batches of a scene, measured by a method, into bytes and back.
+/// Encodes batches of a scene, measured by a method, as bytes, and decodes them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Packing<'a> {
     pub(crate) scene: &'a Scene,
@@ -20,7 +20,8 @@ impl Packing<'_> {
         checkpoints::packed(&self.scene.planes, batch)
     }
 
-    /// The batch of that number in bytes of [`Self::packed`], as `source` would have emitted it.
+    /// The batch with that number from the bytes of [`Self::packed`], identical to one emitted by
+    /// `source`.
     pub(crate) fn unpacked(
         &self,
         source: &dyn PhotonSource,

@@ -1,9 +1,10 @@
-//! Unit vectors in two numbers and a sign, as MCPL packs them.
+//! Packs unit vectors into two numbers and a sign, as MCPL does.
 
-/// By how much |d|² of a direction may differ from 1: what the format's own writer accepts.
+/// The tolerance for |d|² of a direction, which should be 1; the same as that of the format's own
+/// writer.
 const SLACK: f64 = 1e-5;
 
-/// Refuses a vector that is not of length 1.
+/// Refuses a vector that is not of unit length.
 pub(super) fn check(d: [f64; 3]) -> Result<(), String> {
     let squared: f64 = d.iter().map(|c| c * c).sum();
     if (squared - 1.0).abs() <= SLACK {
@@ -16,8 +17,9 @@ pub(super) fn check(d: [f64; 3]) -> Result<(), String> {
     }
 }
 
-/// Version 3, adaptive projection (Kittelmann et al. 2017, section 3.2): the component of largest modulus is left out but for its sign. Where it is not z,
-/// 1/z, larger than 1 in modulus, takes its place and says which it was.
+/// Version 3, adaptive projection (Kittelmann et al. 2017, section 3.2): the component of largest
+/// modulus is omitted except for its sign. If it is not z, its place is taken by 1/z, which is
+/// larger than 1 in modulus and so marks which component it was.
 pub(super) fn pack(d: [f64; 3]) -> ([f64; 2], bool) {
     let [x, y, z] = d;
     if z.abs() >= x.abs().max(y.abs()) {
@@ -29,15 +31,15 @@ pub(super) fn pack(d: [f64; 3]) -> ([f64; 2], bool) {
     }
 }
 
-/// 1/z; of either zero it is +∞.
+/// 1/z, and +∞ for either zero.
 fn inverse(z: f64) -> f64 {
     if z == 0.0 { f64::INFINITY } else { 1.0 / z }
 }
 
-/// The vector that [`pack`] made two numbers and a sign of.
+/// The vector that [`pack`] encoded as two numbers and a sign.
 pub(super) fn unpack([a, b]: [f64; 2], negative: bool) -> Result<[f64; 3], String> {
     let signed = |v: f64| if negative { -v } else { v };
-    // The component left out; of a vector as long as it should be, it is none of the smaller ones.
+    // The omitted component; for a valid unit vector it is not smaller than the others.
     let missing = |c: f64, d: f64| {
         let squared = 1.0 - (c * c + d * d);
         if squared >= -SLACK {
@@ -49,7 +51,7 @@ pub(super) fn unpack([a, b]: [f64; 2], negative: bool) -> Result<[f64; 3], Strin
         }
     };
     match [a.abs() > 1.0, b.abs() > 1.0] {
-        // NaN compares as neither, and is caught in `missing`: no comparison with it holds.
+        // NaN satisfies no comparison; it reaches this case and is refused in `missing`.
         [false, false] => Ok([a, b, missing(a, b)?]),
         [true, false] => Ok([missing(b, 1.0 / a)?, b, 1.0 / a]),
         [false, true] => Ok([a, missing(a, 1.0 / b)?, 1.0 / b]),
@@ -57,9 +59,10 @@ pub(super) fn unpack([a, b]: [f64; 2], negative: bool) -> Result<[f64; 3], Strin
     }
 }
 
-/// Version 2: a point of the octahedron |x| + |y| + |z| = 1, its lower half folded out. `flat` says that z is 0.
+/// Version 2: a point of the octahedron |x| + |y| + |z| = 1, with its lower half folded out. `flat`
+/// means that z is 0.
 pub(super) fn unpack_octahedral([a, b]: [f64; 2], flat: bool) -> Result<[f64; 3], String> {
-    // Both are coordinates of a square; rounding to f32 may lead out of it by as much.
+    // Both are coordinates in a square; rounding to f32 may exceed it by this much.
     if !(a.abs() <= 1.0 + 1e-6 && b.abs() <= 1.0 + 1e-6) {
         return Err(format!(
             "packed direction {a}, {b}; allowed: −1 to 1 for both"
@@ -93,7 +96,8 @@ mod tests {
                     let (packed, negative) = pack(d);
                     let again = unpack(packed, negative).unwrap();
                     for (a, b) in again.iter().zip(d) {
-                        // Two roundings of numbers of at most 1; the root of a sum of 1/3 or more doubles them at most.
+                        // Two roundings of numbers up to 1; the root of a sum of at least 1/3 at
+                        // most doubles them.
                         assert!((a - b).abs() < 1e-15, "{d:?} {again:?}");
                     }
                 }

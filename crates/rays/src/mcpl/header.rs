@@ -1,18 +1,18 @@
-//! What a file says of all its particles, once.
+//! The header of a file, which applies to all its particles.
 
 use super::stat::{self, StatSum};
 use crate::Fault;
 use crate::cursor::ByteCursor;
 
-/// A comment by which the weights of a file are W.
+/// The comment that marks the weights of a file as W.
 pub const WATTS: &str = "power: the weight of a particle is its power in W";
 
 /// The header of a file, without the number of its particles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct McplHeader {
-    /// 2 or 3. They differ in how directions are packed.
+    /// Version 2 or 3, which differ in how directions are packed.
     pub version: u32,
-    /// Whether numbers have their lowest byte first.
+    /// Whether numbers are stored with the lowest byte first.
     pub little_endian: bool,
     /// Whether particles have user flags.
     pub user_flags: bool,
@@ -20,13 +20,13 @@ pub struct McplHeader {
     pub polarisation: bool,
     /// Whether numbers of particles are f32; f64 otherwise.
     pub single_precision: bool,
-    /// The PDG code of all particles; none where each has its own.
+    /// The PDG code of all particles; `None` where each has its own.
     pub universal_pdg: Option<i32>,
-    /// The weight of all particles; none where each has its own.
+    /// The weight of all particles; `None` where each has its own.
     pub universal_weight: Option<f64>,
-    /// The program that wrote the file. Bytes, UTF-8 as a rule.
+    /// The program that wrote the file, as bytes, usually UTF-8.
     pub source: Vec<u8>,
-    /// Comments, bytes as above. `stat:sum:` has a meaning, see [`StatSum`].
+    /// Comments, as bytes like `source`. `stat:sum:` has a meaning, see [`StatSum`].
     pub comments: Vec<Vec<u8>>,
     /// Keys and their data.
     pub blobs: Vec<(Vec<u8>, Vec<u8>)>,
@@ -51,7 +51,7 @@ impl Default for McplHeader {
 }
 
 impl McplHeader {
-    /// The header, the number of particles, and where these begin.
+    /// The header, the number of particles, and the offset of the first.
     pub(super) fn read(bytes: &[u8]) -> Result<(Self, u64, usize), Fault> {
         let (version, little_endian) = signature(bytes)?;
         let mut cursor = ByteCursor::new(bytes, 8, little_endian);
@@ -100,7 +100,7 @@ impl McplHeader {
         Ok((header, count, cursor.at()))
     }
 
-    /// Refuses what the format does not allow in the values.
+    /// Refuses values that the format does not allow.
     pub(super) fn check(&self) -> Result<(), Fault> {
         if let Some(weight) = self.universal_weight
             && !(weight.is_finite() && weight > 0.0)
@@ -112,14 +112,14 @@ impl McplHeader {
         stat::sums(&self.comments).map(|_| ())
     }
 
-    /// The sums that comments hold.
+    /// The sums stored in comments.
     #[must_use]
     pub fn stat_sums(&self) -> Vec<StatSum> {
-        // Comments were checked when the header was read, or are when it is written.
+        // Comments are checked when the header is read or written.
         stat::sums(&self.comments).unwrap_or_default()
     }
 
-    /// Bytes of a particle.
+    /// The number of bytes of a particle.
     #[must_use]
     pub fn record_size(&self) -> usize {
         let number = if self.single_precision { 4 } else { 8 };
@@ -129,7 +129,7 @@ impl McplHeader {
         number * numbers + 4 * codes
     }
 
-    /// The bytes before the first particle, for files that are written as they are made.
+    /// The bytes before the first particle, for files that are written incrementally.
     #[must_use]
     pub fn bytes(&self, count: u64) -> Vec<u8> {
         let little = self.little_endian;
@@ -137,7 +137,7 @@ impl McplHeader {
             format!("MCPL{:03}{}", self.version, if little { 'L' } else { 'B' }).into_bytes();
         bytes.extend(ordered(count.to_le_bytes(), little));
         let mut number = |value: u32| bytes.extend(ordered(value.to_le_bytes(), little));
-        // Lengths that do not fit came from no file: none is longer than one.
+        // A length that does not fit cannot come from a file, since no file is longer.
         let short = |length: usize| u32::try_from(length).unwrap_or(u32::MAX);
         number(short(self.comments.len()));
         number(short(self.blobs.len()));
@@ -161,7 +161,7 @@ impl McplHeader {
     }
 }
 
-/// Version and order of bytes.
+/// The version and the byte order.
 fn signature(bytes: &[u8]) -> Result<(u32, bool), Fault> {
     let mut cursor = ByteCursor::new(bytes, 0, true);
     let start = cursor.take(8, "the signature of MCPL")?;
@@ -187,10 +187,11 @@ fn signature(bytes: &[u8]) -> Result<(u32, bool), Fault> {
     }
 }
 
-/// Comments that a file may have, and blobs: an empty one takes more memory than bytes of the file.
+/// The largest number of comments, and of blobs, in a file: an empty one takes more memory than
+/// bytes of the file.
 const MOST_TEXTS: u32 = 65_536;
 
-/// How many comments or blobs there are.
+/// The number of comments or blobs.
 fn texts(cursor: &mut ByteCursor<'_>, what: &str) -> Result<u32, Fault> {
     let at = cursor.at();
     let count = cursor.u32(what)?;
@@ -201,13 +202,13 @@ fn texts(cursor: &mut ByteCursor<'_>, what: &str) -> Result<u32, Fault> {
     Ok(count)
 }
 
-/// Bytes whose number stands before them.
+/// Bytes preceded by their number.
 fn text(cursor: &mut ByteCursor<'_>, what: &str) -> Result<Vec<u8>, Fault> {
     let length = cursor.u32(what)?;
     cursor.take(length as usize, what).map(<[u8]>::to_vec)
 }
 
-/// Bytes of a number, lowest first, in the order of a file.
+/// The bytes of a number, given lowest first, in the byte order of a file.
 pub(super) fn ordered<const N: usize>(mut bytes: [u8; N], little: bool) -> [u8; N] {
     if !little {
         bytes.reverse();

@@ -1,10 +1,12 @@
 //! MCPL, the Monte Carlo Particle List, versions 2 and 3.
 //!
-//! Source: T. Kittelmann et al., "Monte Carlo Particle Lists: MCPL", Comput. Phys. Commun. 218 (2017) 17–42, and <https://mctools.github.io/mcpl>. Units: cm, MeV, ms.
-//! A photon (PDG code 22) of energy E has the wavelength h c / E, see [`PHOTON_ENERGY_LENGTH`]. The weight has no unit of
-//! its own; files of Étendue say in a comment, [`WATTS`], that it is W.
+//! Source: T. Kittelmann et al., "Monte Carlo Particle Lists: MCPL", Comput. Phys. Commun. 218
+//! (2017) 17–42, and <https://mctools.github.io/mcpl>. Units: cm, MeV, ms. A photon (PDG code 22)
+//! of energy E has the wavelength h c / E, see [`PHOTON_ENERGY_LENGTH`]. The format defines no unit
+//! of the weight; files of Étendue state in a comment, [`WATTS`], that it is W.
 //!
-//! A file is read in either order of bytes and keeps its records as they are. Each is checked once.
+//! Files of either byte order are read, and records are kept as they are. Each record is checked
+//! once.
 
 mod direction;
 mod header;
@@ -22,22 +24,23 @@ use crate::{Fault, PowerUnit, RaySet, Wavelengths};
 /// The PDG code of a photon.
 pub const PHOTON: i32 = 22;
 
-/// A file as it stands.
+/// A file with its records unchanged.
 #[derive(Clone, Debug, PartialEq)]
 pub struct McplFile {
     header: McplHeader,
     count: usize,
     records: Vec<u8>,
-    /// Bytes behind the last record, fewer than one takes: a public test file ends with a line feed.
+    /// Bytes after the last record, too few for another; a public test file ends with a line feed.
     rest: Vec<u8>,
 }
 
 impl McplFile {
-    /// Reads a file that is not packed.
+    /// Reads an unpacked file.
     ///
     /// # Errors
-    /// Whatever is not as the format has it, the first such thing. A file that was not closed (no particles by its header, and records
-    /// behind it) is refused too, and so are more bytes after the last record than are too few for another.
+    /// The first violation of the format. A file that was not closed (no particles according to its
+    /// header, and records after it) is refused too, as is one with enough bytes after the last
+    /// record for another.
     pub fn read(bytes: &[u8]) -> Result<Self, Fault> {
         let (header, count, start) = McplHeader::read(bytes)?;
         let size = header.record_size();
@@ -64,10 +67,10 @@ impl McplFile {
         Ok(file)
     }
 
-    /// A file of version 3 with these particles, all of which the header's options must be able to hold.
+    /// A file of version 3 with these particles, all of which must fit the header's options.
     ///
     /// # Errors
-    /// A particle that no file may hold, or that differs from the universal weight or PDG code of the header.
+    /// When a particle is invalid, or differs from the universal weight or PDG code of the header.
     pub fn new(
         header: McplHeader,
         particles: impl IntoIterator<Item = Particle>,
@@ -90,19 +93,19 @@ impl McplFile {
         Ok(file)
     }
 
-    /// What the file says of all its particles.
+    /// The header, which applies to all particles.
     #[must_use]
     pub fn header(&self) -> &McplHeader {
         &self.header
     }
 
-    /// How many particles.
+    /// The number of particles.
     #[must_use]
     pub fn len(&self) -> usize {
         self.count
     }
 
-    /// Whether there is none.
+    /// Whether the file has no particles.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.count == 0
@@ -110,11 +113,11 @@ impl McplFile {
 
     /// All particles, in their order.
     pub fn particles(&self) -> impl Iterator<Item = Particle> {
-        // Each has been decoded before, so none is left out.
+        // Each record has been decoded before, so none is omitted.
         (0..self.count).filter_map(|index| self.decode(index).ok())
     }
 
-    /// The bytes of the file; those it was read from, if it was.
+    /// The bytes of the file; identical to those it was read from, if any.
     #[must_use]
     pub fn write(&self) -> Vec<u8> {
         let mut bytes = self.header.bytes(self.count as u64);
@@ -123,8 +126,9 @@ impl McplFile {
         bytes
     }
 
-    /// Its rays in metres; power is the weight of the particles, W where the comment [`WATTS`] says so.
-    /// Particles that are no photons, and photons of energy 0, have no wavelength.
+    /// The rays of the file in metres. Their power is the weight of the particles, in W where the
+    /// comment [`WATTS`] states this. Particles other than photons, and photons of energy 0, have
+    /// no wavelength.
     #[must_use]
     pub fn rays(&self) -> RaySet {
         let watts = self.header.comments.iter().any(|c| c == WATTS.as_bytes());
@@ -158,7 +162,7 @@ impl McplFile {
         set
     }
 
-    /// A particle, whose place is in the file.
+    /// The particle with an index within the file.
     fn decode(&self, index: usize) -> Result<Particle, String> {
         let size = self.header.record_size();
         let record = self.records.get(index * size..(index + 1) * size);
@@ -167,7 +171,7 @@ impl McplFile {
     }
 }
 
-/// One wavelength where all rays have the same.
+/// A single wavelength where all rays have the same.
 fn shared(each: Vec<f64>) -> Wavelengths {
     let first = each.first().copied().unwrap_or(f64::NAN);
     if each.iter().all(|w| w.is_nan()) {

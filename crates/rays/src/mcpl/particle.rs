@@ -1,4 +1,4 @@
-//! A record of a file: one particle.
+//! The record of a particle in a file.
 
 use super::direction;
 use super::header::{McplHeader, ordered};
@@ -7,21 +7,21 @@ use crate::cursor::ByteCursor;
 /// A particle, in the units of the format.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Particle {
-    /// Where it is, cm.
+    /// Position, cm.
     pub position_cm: [f64; 3],
-    /// Where it goes, a unit vector.
+    /// Direction, a unit vector.
     pub direction: [f64; 3],
     /// Kinetic energy, MeV.
     pub energy_mev: f64,
     /// Time, ms.
     pub time_ms: f64,
-    /// Weight, in whatever unit.
+    /// Weight, in an unspecified unit.
     pub weight: f64,
-    /// A vector that programs use as they like; zero where a file has none.
+    /// A vector whose meaning is up to programs; zero where a file has none.
     pub polarisation: [f64; 3],
-    /// What it is, by the code of the Particle Data Group.
+    /// Kind of particle, as a code of the Particle Data Group.
     pub pdg: i32,
-    /// Bits that programs use as they like.
+    /// Bits whose meaning is up to programs.
     pub user_flags: u32,
 }
 
@@ -69,7 +69,8 @@ impl Particle {
         })
     }
 
-    /// Refuses numbers that are none, negative energies, and directions that are no unit vectors.
+    /// Refuses NaN and infinite numbers, negative energies, and directions that are not unit
+    /// vectors.
     pub(super) fn check(&self) -> Result<(), String> {
         let numbers = [
             ("position, cm", self.position_cm.as_slice()),
@@ -93,8 +94,9 @@ impl Particle {
     /// Appends the record of a file with this header, packed as in version 3.
     ///
     /// # Errors
-    /// Why no such file may hold it: a number that is not finite or not in its precision, a negative energy, a direction that is no unit
-    /// vector, or another weight or PDG code than the universal one.
+    /// When no such file can hold the particle: a number is not finite or not in the file's
+    /// precision, the energy is negative, the direction is not a unit vector, or the weight or PDG
+    /// code differs from the universal one.
     pub fn encode(&self, header: &McplHeader, records: &mut Vec<u8>) -> Result<(), String> {
         self.check()?;
         if header
@@ -130,7 +132,7 @@ impl Particle {
     }
 }
 
-/// Numbers in the precision and order of a file.
+/// Reads numbers in the precision and byte order of a file.
 struct ParticleNumbers<'a> {
     header: &'a McplHeader,
 }

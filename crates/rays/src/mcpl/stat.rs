@@ -1,30 +1,32 @@
-//! Sums that travel as comments, `stat:sum:KEY:VALUE`, and add up where files are merged (MCPL 2.1).
+//! Sums stored as comments, `stat:sum:KEY:VALUE`, which are added when files are merged (MCPL 2.1).
 
 use crate::Fault;
 use std::collections::BTreeSet;
 
 const START: &str = "stat:sum:";
-/// Characters of a value, blanks included.
+/// Number of characters of a value, blanks included.
 const WIDTH: usize = 24;
-/// The most characters of a key.
+/// Largest number of characters of a key.
 const LONGEST: usize = 64;
 
 /// A sum.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StatSum {
-    /// What it counts.
+    /// Name of the counted quantity.
     pub key: String,
-    /// Its value, 0 or more; none where it is marked as not available (−1).
+    /// Value of the sum, 0 or more; `None` where it is marked as not available (−1).
     pub value: Option<f64>,
 }
 
-/// The comment that holds a sum. Its value is the shortest decimal number that reads as the same f64.
+/// The comment that holds a sum. The value is written as the shortest decimal number that reads as
+/// the same f64.
 ///
 /// # Errors
-/// A key that is no identifier of at most 64 characters, or a value that is negative or not finite.
+/// When the key is not an identifier of at most 64 characters, or the value is negative or not
+/// finite.
 pub fn stat_sum_comment(key: &str, value: f64) -> Result<Vec<u8>, Fault> {
     let shown = value.to_string();
-    // The longest in this notation has 23 characters.
+    // In this notation the longest number has 23 characters.
     let shown = if shown.len() > WIDTH {
         format!("{value:e}")
     } else {

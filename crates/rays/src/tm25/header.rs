@@ -4,10 +4,10 @@ use super::text;
 use crate::Fault;
 use crate::cursor::ByteCursor;
 
-/// Where the spectral information of rays is, 4.7.1.9.
+/// Where the spectral information of rays is stored, 4.7.1.9.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SpectrumType {
-    /// 0: nowhere.
+    /// 0: there is none.
     None,
     /// 1: all rays have the wavelength of the header.
     OneWavelength,
@@ -15,11 +15,11 @@ pub enum SpectrumType {
     WavelengthPerRay,
     /// 3: all rays have the spectrum of the first table.
     OneSpectrum,
-    /// 4: each ray names a table.
+    /// 4: each ray refers to a table.
     SpectrumPerRay,
 }
 
-/// Which numbers rays have beside position and direction, 4.7.2.
+/// The numbers that rays have in addition to position and direction, 4.7.2.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Flags {
     /// Radiant flux, W.
@@ -32,12 +32,12 @@ pub struct Flags {
     pub stokes: bool,
     /// Tristimulus values X and Z.
     pub tristimulus: bool,
-    /// The number of a spectral table; the first is 1.
+    /// The number of a spectral table, from 1.
     pub spectrum: bool,
 }
 
 impl Flags {
-    /// The columns of rays in their order.
+    /// The names of the columns of rays, in order.
     fn names(self) -> Vec<&'static str> {
         let groups: [(bool, &[&str]); 7] = [
             (true, &["x", "y", "z", "kx", "ky", "kz"]),
@@ -55,12 +55,12 @@ impl Flags {
         present.flat_map(|(_, names)| names).copied().collect()
     }
 
-    /// Where the power of a ray is: its radiant flux, or its luminous flux if it has no other.
+    /// The column of a ray's power: radiant flux, or luminous flux if there is no radiant flux.
     pub(super) fn power_column(self) -> usize {
         6 + usize::from(!self.radiant_flux && self.wavelength)
     }
 
-    /// Columns that hold no negative numbers.
+    /// The columns that cannot hold negative numbers.
     pub(super) fn not_negative(self) -> impl Iterator<Item = usize> {
         let numbers = [self.radiant_flux, self.wavelength, self.luminous_flux];
         6..6 + numbers.map(usize::from).iter().sum::<usize>()
@@ -71,10 +71,10 @@ impl Flags {
     }
 }
 
-/// All a file says before its rays, without their number.
+/// The content of a file before its rays, except for their number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tm25Header {
-    /// 2013 or 2020.
+    /// Version, 2013 or 2020.
     pub version: i32,
     /// 0: simulated, 1: measured.
     pub creation_method: i32,
@@ -82,19 +82,19 @@ pub struct Tm25Header {
     pub luminous_flux: f32,
     /// Total radiant flux, W; NaN where it is not stated.
     pub radiant_flux: f32,
-    /// Date and time, ISO 8601 in 28 bytes, ended by zeros. All zero where they are not stated.
+    /// Date and time, ISO 8601 in 28 bytes, ended by zeros; all zero where not stated.
     pub date: [u8; 28],
-    /// Where rays begin, by the codes 0 (unknown) to 7 of 4.7.1.8.
+    /// The place where rays begin, by the codes 0 (unknown) to 7 of 4.7.1.8.
     pub start_position: i32,
-    /// Where wavelengths are.
+    /// Where the spectral information is stored.
     pub spectrum_type: SpectrumType,
     /// The wavelength of all rays, nm, for [`SpectrumType::OneWavelength`].
     pub wavelength_nm: f32,
     /// The shortest and the longest wavelength, nm.
     pub range_nm: [f32; 2],
-    /// Bytes for later versions of the standard.
+    /// Bytes reserved for later versions of the standard.
     pub reserved: [u8; 168],
-    /// Which numbers rays have.
+    /// The numbers that rays have.
     pub flags: Flags,
     /// Texts, in the order of [`Tm25Header::TEXTS`].
     pub texts: [String; 9],
@@ -102,14 +102,14 @@ pub struct Tm25Header {
     pub spectra: Vec<Vec<[f32; 2]>>,
     /// Names of columns beyond those of the standard.
     pub extra_columns: Vec<String>,
-    /// More text.
+    /// Additional text.
     pub additional_text: String,
-    /// Characters that [`Tm25Header::additional_text`] has room for, a multiple of 8.
+    /// The number of characters available for [`Tm25Header::additional_text`], a multiple of 8.
     pub text_room: usize,
 }
 
 impl Default for Tm25Header {
-    /// Simulated rays with a radiant flux, and nothing else that is known.
+    /// Simulated rays with a radiant flux, and no further information.
     fn default() -> Self {
         Self {
             version: 2013,
@@ -135,15 +135,15 @@ impl Default for Tm25Header {
     }
 }
 
-/// Characters of a text of 4.7.3.
+/// Number of characters of a text of 4.7.3.
 const TEXT: usize = 1000;
-/// Spectra that a file may have: an empty one takes more memory than bytes of the file.
+/// The largest number of spectra in a file: an empty one takes more memory than bytes of the file.
 const MOST_SPECTRA: u32 = 65_536;
-/// Characters of the name of a column, 4.7.5.
+/// Number of characters of a column name, 4.7.5.
 const NAME: usize = 128;
 
 impl Tm25Header {
-    /// What the texts of 4.7.3 are about.
+    /// The subjects of the texts of 4.7.3.
     pub const TEXTS: [&str; 9] = [
         "light source",
         "manufacturer",
@@ -156,13 +156,13 @@ impl Tm25Header {
         "reference of the data",
     ];
 
-    /// Numbers of a ray.
+    /// The number of columns of a ray.
     #[must_use]
     pub fn columns(&self) -> usize {
         self.flags.names().len() + self.extra_columns.len()
     }
 
-    /// What a number of a ray is.
+    /// The name of a column of rays.
     pub(super) fn column_name(&self, at: usize) -> String {
         let names = self.flags.names();
         let extra = at.checked_sub(names.len());
@@ -174,7 +174,7 @@ impl Tm25Header {
             .unwrap_or_default()
     }
 
-    /// The header, the number of rays, and where these begin.
+    /// The header, the number of rays, and the offset of the first.
     pub(super) fn read(bytes: &[u8], notes: &mut Vec<String>) -> Result<(Self, u64, usize), Fault> {
         let cursor = &mut ByteCursor::new(bytes, 0, true);
         let mut header = Self::default();
@@ -194,7 +194,8 @@ impl Tm25Header {
         Ok((header, rays, cursor.at()))
     }
 
-    /// 4.7.1. Returns the numbers of rays, spectra, additional columns and bytes of additional text.
+    /// Reads 4.7.1. Returns the numbers of rays, spectra, additional columns and bytes of
+    /// additional text.
     fn read_description(
         &mut self,
         cursor: &mut ByteCursor<'_>,
@@ -254,7 +255,7 @@ impl Tm25Header {
         Ok((rays, spectra, extra, text_bytes))
     }
 
-    /// 4.7.2.
+    /// Reads 4.7.2.
     fn read_flags(&mut self, cursor: &mut ByteCursor<'_>) -> Result<(), Fault> {
         for what in ["position", "direction"] {
             let at = cursor.at();
@@ -273,7 +274,7 @@ impl Tm25Header {
         Ok(())
     }
 
-    /// 4.7.4: tables, and zeros up to a multiple of 32 bytes.
+    /// Reads 4.7.4: tables, and zeros up to a multiple of 32 bytes.
     fn read_spectra(
         &mut self,
         cursor: &mut ByteCursor<'_>,
@@ -382,10 +383,10 @@ impl Tm25Header {
         Ok(())
     }
 
-    /// The bytes before the first ray, for files that are written as they are made.
+    /// The bytes before the first ray, for files that are written incrementally.
     #[must_use]
     pub fn bytes(&self, rays: u64) -> Vec<u8> {
-        // Lengths that do not fit came from no file: none is longer than one.
+        // A length that does not fit cannot come from a file, since no file is longer.
         let short = |length: usize| u32::try_from(length).unwrap_or(u32::MAX).to_le_bytes();
         let mut bytes = b"TM25".to_vec();
         bytes.extend(self.version.to_le_bytes());

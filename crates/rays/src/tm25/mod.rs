@@ -1,13 +1,15 @@
-//! IES TM-25-13, the ray file format of the Illuminating Engineering Society; TM-25-20 files, which state the version 2020, are read by the same layout.
+//! IES TM-25-13, the ray file format of the Illuminating Engineering Society. TM-25-20 files, which
+//! state the version 2020, are read with the same layout.
 //!
 //! Source: IES TM-25-13, "Ray File Format for the Description of the Emission Property of Light Sources", section 4.7, and files of LED
 //! makers and of LightTools. Numbers are little-endian, those of rays f32. Units: mm, nm, W, lm. Text is UTF-32.
 //!
-//! A file that is read and written again has the same bytes, except for what stands in a text after its end, and except for
-//! characters that are none. Both have a note.
+//! A file that is read and written again has the same bytes, except for bytes after the end of a
+//! text, and for invalid characters. Both cause a note.
 //!
-//! Quirks that are read, with a note: total flux in the header that is not the sum of the rays' (LightTools writes 1), directions of a length other than 1
-//! (the set has unit vectors), values out of their range in fields that no ray depends on.
+//! Deviations that are accepted with a note: total flux in the header that differs from the sum
+//! over the rays (LightTools writes 1), directions of a length other than 1 (the set has unit
+//! vectors), and values out of range in fields that no ray depends on.
 
 mod header;
 mod text;
@@ -18,25 +20,27 @@ use crate::cursor::ByteCursor;
 use crate::set::{length, unit};
 use crate::{Fault, PowerUnit, RaySet, Wavelengths};
 
-/// A file as it stands.
+/// A file with its numbers unchanged.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tm25File {
     header: Tm25Header,
-    /// Rays, one after the other, each with the numbers that the header names.
+    /// The rays in sequence, each with the numbers listed in the header.
     numbers: Vec<f32>,
     notes: Vec<String>,
 }
 
-/// By how much the length of a direction may differ from 1 without a note: ten roundings of f32.
+/// The tolerance for the length of a direction, which should be 1, without a note: ten roundings of
+/// f32.
 const LENGTH_SLACK: f64 = 1e-6;
-/// By how much the flux of the header may differ from the sum over rays without a note, relative: what f32 and four printed digits make of it.
+/// The relative tolerance for the flux of the header against the sum over rays, without a note: the
+/// error of f32 and four printed digits.
 const FLUX_SLACK: f64 = 1e-3;
 
 impl Tm25File {
     /// Reads a file.
     ///
     /// # Errors
-    /// Whatever is not as the format has it, the first such thing; bytes after the last ray.
+    /// The first violation of the format, including bytes after the last ray.
     pub fn read(bytes: &[u8]) -> Result<Self, Fault> {
         let mut notes = Vec::new();
         let (header, rays, start) = Tm25Header::read(bytes, &mut notes)?;
@@ -66,10 +70,10 @@ impl Tm25File {
         Ok(file)
     }
 
-    /// A file with these rays: `columns` numbers each, as [`Tm25Header::columns`] counts them.
+    /// A file with these rays, each of `columns` numbers, as counted by [`Tm25Header::columns`].
     ///
     /// # Errors
-    /// A header or rays that no file may have.
+    /// When the header or the rays are invalid.
     pub fn new(header: Tm25Header, numbers: Vec<f32>) -> Result<Self, Fault> {
         header.check()?;
         if !numbers.len().is_multiple_of(header.columns()) {
@@ -85,25 +89,25 @@ impl Tm25File {
         Ok(file)
     }
 
-    /// What the file says of all its rays.
+    /// The header, which applies to all rays.
     #[must_use]
     pub fn header(&self) -> &Tm25Header {
         &self.header
     }
 
-    /// What is out of the ordinary in it, in the order of the file.
+    /// Notes on anything unusual, in the order of the file.
     #[must_use]
     pub fn notes(&self) -> &[String] {
         &self.notes
     }
 
-    /// How many rays.
+    /// The number of rays.
     #[must_use]
     pub fn len(&self) -> usize {
         self.numbers.len() / self.header.columns()
     }
 
-    /// Whether there is none.
+    /// Whether the file has no rays.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.numbers.is_empty()
@@ -123,7 +127,8 @@ impl Tm25File {
         bytes
     }
 
-    /// Its rays in metres; power in W where rays state radiant flux, and in lm where they do not. A wavelength of 0 is unknown.
+    /// The rays of the file in metres; power is in W where rays state radiant flux, otherwise in
+    /// lm. A wavelength of 0 is unknown.
     #[must_use]
     pub fn rays(&self) -> RaySet {
         let flags = self.header.flags;
@@ -177,7 +182,7 @@ impl Tm25File {
         stated.then(|| f64::from(radiant_flux) / f64::from(luminous_flux))
     }
 
-    /// The first table, in metres.
+    /// The first spectral table, in metres.
     fn spectrum(&self) -> Vec<[f64; 2]> {
         let table = self.header.spectra.first().into_iter().flatten();
         let row =
@@ -185,7 +190,7 @@ impl Tm25File {
         table.map(row).collect()
     }
 
-    /// Refuses rays that are none; notes what is unusual in all of them together.
+    /// Refuses invalid rays, and adds notes on what is unusual in all of them together.
     fn check(&mut self) -> Result<(), Fault> {
         let flags = self.header.flags;
         let spectrum = flags.spectrum_column();

@@ -1,9 +1,9 @@
-//! Text of a fixed number of UTF-32 characters, ended by zeros.
+//! Text in a fixed number of UTF-32 characters, terminated by zeros.
 
 use crate::Fault;
 use crate::cursor::ByteCursor;
 
-/// Reads a text from its place of `characters` characters; `what` names it in notes.
+/// Reads a text from a field of `characters` characters; `what` names it in notes.
 pub(super) fn read(
     cursor: &mut ByteCursor<'_>,
     characters: usize,
@@ -35,7 +35,7 @@ pub(super) fn read(
     Ok(text)
 }
 
-/// Appends a text, cut to its place and filled with zeros.
+/// Appends a text, cut to the length of its field and padded with zeros.
 pub(super) fn write(text: &str, characters: usize, bytes: &mut Vec<u8>) {
     let codes = text.chars().map(u32::from).chain(std::iter::repeat(0));
     bytes.extend(codes.take(characters).flat_map(u32::to_le_bytes));

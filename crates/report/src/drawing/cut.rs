@@ -1,4 +1,4 @@
-//! A plane that cuts the scene, and what it cuts.
+//! A plane that cuts the scene, and the resulting segments.
 
 use etendue_field::{Light, Mask, Patch, Shape, Specular, VirtualPlane};
 use etendue_figures::{PlaneMark, Section, Segment, SegmentKind};
@@ -11,7 +11,7 @@ use std::collections::HashMap;
 #[derive(Clone, Copy)]
 pub(super) struct CuttingPlane<'a> {
     pub(super) scene: &'a Scene,
-    /// 0: that of X, 1: that of Y.
+    /// 0 for the plane of X, 1 for that of Y.
     pub(super) axis: usize,
 }
 
@@ -43,7 +43,7 @@ impl CuttingPlane<'_> {
         }
     }
 
-    /// All that is cut, each with the leg on which light arrives at it.
+    /// All segments of the cut, each with the leg on which light arrives at it.
     pub(super) fn pieces(&self, planes: &[&VirtualPlane]) -> Vec<(usize, Segment)> {
         let scene = self.scene;
         let half_width = self.half_width(planes);
@@ -92,7 +92,7 @@ impl CuttingPlane<'_> {
         pieces
     }
 
-    /// The coordinates of a point in a leg's frame: along it, in the cut, and across the cut.
+    /// The coordinates of a point in a leg's frame: along the leg, in the cut, and across the cut.
     fn local(&self, leg: &Leg, point: DVec3) -> [f64; 3] {
         let local = leg.frame.to_local(point);
         let [within, off] = if self.axis == 0 {
@@ -103,7 +103,8 @@ impl CuttingPlane<'_> {
         [leg.start + local.z, within, off]
     }
 
-    /// Just beyond the light, the blockers as far as they have an end, and the windows.
+    /// The half-width of the drawing: slightly more than the light, the bounded blockers and the
+    /// windows.
     fn half_width(&self, planes: &[&VirtualPlane]) -> f64 {
         let (scene, axis) = (self.scene, self.axis);
         let light = self.light();
@@ -134,21 +135,23 @@ impl CuttingPlane<'_> {
         1.12 * reach.map(f64::abs).fold(0.0, f64::max)
     }
 
-    /// The leg on which light arrives at something; the first for what the path does not visit.
+    /// The leg on which light arrives at an object; the first leg for objects that the path does
+    /// not visit.
     fn arriving(&self, object: Object) -> usize {
         let path = &self.scene.path;
         let ends = |leg: &usize| path.ends_at(*leg).is_some_and(|hit| hit.object == object);
         (0..path.legs.len()).find(ends).unwrap_or(0)
     }
 
-    /// The piece (z, x) in which the cut of a leg meets a flat outline; z is the distance along the path.
+    /// The segment (z, x) in which the cut of a leg meets a flat outline; z is the distance along
+    /// the path.
     fn cut(&self, corners: &[DVec3], leg: &Leg) -> Option<[[f64; 2]; 2]> {
         let corners: Vec<[f64; 3]> = corners.iter().map(|p| self.local(leg, *p)).collect();
         let mut points = Vec::new();
         for (i, a) in corners.iter().enumerate() {
             let b = corners[(i + 1) % corners.len()];
             if (a[2] < 0.0) != (b[2] < 0.0) {
-                // From below, so that two triangles have the same point on the edge they share.
+                // Ordered from below, so that two triangles get the same point on a shared edge.
                 let (a, b) = if a[2] < 0.0 { (*a, b) } else { (b, *a) };
                 let t = a[2] / (a[2] - b[2]);
                 points.push([0, 1].map(|i| a[i] + t * (b[i] - a[i])));
@@ -197,7 +200,8 @@ impl CuttingPlane<'_> {
         }
     }
 
-    /// Where a layer is opaque, or more opaque than open; gratings a little beyond what is shown.
+    /// The intervals in which a layer is opaque, or more opaque than open; gratings extend a little
+    /// beyond the visible range.
     fn layer_extents(&self, layer: &BlockerLayer, half_width: f64) -> Vec<[f64; 2]> {
         let axis = self.axis;
         match &layer.mask {
@@ -205,7 +209,7 @@ impl CuttingPlane<'_> {
                 shapes,
                 half_planes,
             } => {
-                // Jitter moves a row of blockers off the cut: the row nearest to it is shown.
+                // Jitter moves a row of blockers off the cut, so the nearest row is shown.
                 let off = |shape: &Shape| shape.bounds().center[1 - axis].abs();
                 let nearest = shapes.iter().map(off).fold(f64::INFINITY, f64::min);
                 let row = shapes
@@ -216,7 +220,7 @@ impl CuttingPlane<'_> {
                     match (half.axis == axis, half.above) {
                         (true, true) => Some([half.edge, f64::INFINITY]),
                         (true, false) => Some([f64::NEG_INFINITY, half.edge]),
-                        // The other way it covers the cut, or is beside it.
+                        // Along the other axis it either covers the cut or is beside it.
                         (false, above) => (above == (half.edge < 0.0)).then_some(ENDLESS),
                     }
                 });
@@ -258,7 +262,7 @@ impl CuttingPlane<'_> {
             })
         });
         let mut pieces: Vec<Segment> = cuts.collect();
-        // The name goes to the middle.
+        // The name is placed at the middle one.
         let ends =
             |least: fn(f64, f64) -> f64, from| pieces.iter().map(|p| p.start[0]).fold(from, least);
         let middle = 0.5 * (ends(f64::min, f64::INFINITY) + ends(f64::max, f64::NEG_INFINITY));
@@ -271,7 +275,7 @@ impl CuttingPlane<'_> {
     }
 }
 
-/// Segments across the central ray; the first carries the name.
+/// Segments across the central ray; the first one carries the name.
 fn labelled(
     kind: SegmentKind,
     name: &str,
@@ -287,17 +291,17 @@ fn labelled(
     })
 }
 
-/// Everywhere along X.
+/// The whole X axis.
 const ENDLESS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
-/// Periods of a grating on either side that can still be told apart.
+/// The largest number of periods of a grating on either side that can still be distinguished.
 const MOST_PERIODS: f64 = 40.0;
 
-/// A point, told from others by every bit.
+/// The bits of a point as a key.
 fn key(point: [f64; 2]) -> [u64; 2] {
     point.map(f64::to_bits)
 }
 
-/// The closed lines among pieces that share their ends.
+/// The closed lines formed by segments that share ends.
 fn outlines(pieces: &[Segment]) -> Vec<Vec<[f64; 2]>> {
     let mut at: HashMap<[u64; 2], Vec<usize>> = HashMap::new();
     for (i, piece) in pieces.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! The scene to scale, in the plane of D and X at the light: where its path turns.
+//! Draws the scene to scale where its path turns, in the plane of D and X at the light.
 
 use super::cut::CuttingPlane;
 use etendue_field::VirtualPlane;
@@ -6,12 +6,12 @@ use etendue_figures::{DrawnObject, DrawnWorld, Segment};
 use etendue_scene::{Leg, Scene};
 use glam::DVec3;
 
-/// What has no end goes as far as this, metres: beyond any picture.
+/// The length in metres at which infinite objects are cut off, beyond any picture.
 const ENDLESS_METRES: f64 = 1e4;
-/// A path that turns by less is straight.
+/// A path that turns by less than this is straight.
 const STRAIGHT: f64 = 1e-9;
 
-/// The scene to scale; `None` where the path goes straight on and straight back.
+/// The scene to scale; `None` where the path only goes straight on and straight back.
 pub(super) fn world(scene: &Scene, planes: &[&VirtualPlane]) -> Option<DrawnWorld> {
     let legs = &scene.path.legs;
     let turns = |leg: &Leg| leg.frame.d.dot(legs[0].frame.d).abs() < 1.0 - STRAIGHT;
@@ -37,7 +37,7 @@ pub(super) fn world(scene: &Scene, planes: &[&VirtualPlane]) -> Option<DrawnWorl
         let half = plane.window.x.half_width();
         [-half, half].map(|x| point(&legs[plane.leg], [plane.distance, x]))
     });
-    // Some of the way on from the last surface, whether or not a plane is there.
+    // The path is continued beyond the last surface, whether or not a plane is there.
     let way = scene.path.first_hit().min(last.length);
     let farthest = planes.iter().map(|plane| plane.distance);
     let end = farthest.fold(last.start + 0.3 * way, f64::max);

@@ -1,4 +1,4 @@
-//! What a page shows of a run.
+//! The data of a run that a page shows.
 
 use crate::pictures::{light_field_axes, spectrum_axes, verdict_line};
 use crate::shell_word;
@@ -16,7 +16,8 @@ use etendue_store::arrays::{radial_z, z};
 use ndarray::{Array2, ArrayView2, Axis as Along, Zip};
 use serde::Serialize;
 
-/// Bytes of the slices of all planes, beyond which a page leaves them to `slices.npz`.
+/// The size in bytes of the slices of all planes above which a page omits them and refers to
+/// `slices.npz`.
 const MOST_SLICES: usize = 1_500_000;
 
 #[derive(Serialize)]
@@ -27,29 +28,29 @@ struct RunData<'a> {
     words: String,
     provenance: String,
     scene_file: &'a SceneFile,
-    /// What shows it in the explorer.
+    /// The address that shows the scene in the explorer.
     explorer: Option<&'a str>,
     /// The strip along the path, SVG.
     path: &'a str,
     planes: Vec<PlaneData<'a>>,
-    /// The tables of the terminal, headers first.
+    /// The tables of the terminal, with headers first.
     tables: [Vec<Vec<String>>; 2],
 }
 
 #[derive(Serialize)]
 struct PlaneData<'a> {
     report: &'a PlaneReport,
-    /// Its verdict with p.
+    /// The verdict with its p-value.
     words: String,
-    /// What is to be said of a first-order chain that does not pass.
+    /// The message about a first-order chain that does not pass.
     on_chain: Option<String>,
     axes: PageAxes,
-    /// Radians.
+    /// Azimuths, radians.
     azimuths: Vec<f64>,
     field: Grids,
-    /// ρ ≥ 0, as the slices.
+    /// The radial spectrum for ρ ≥ 0, like the slices.
     radial: Grids,
-    /// One for each azimuth, unless they are too large.
+    /// A slice for each azimuth; `None` if they are too large.
     slices: Option<Vec<Grids>>,
 }
 
@@ -118,8 +119,8 @@ fn encoded(values: ArrayView2<'_, f64>) -> String {
     STANDARD.encode(bytes.collect::<Vec<u8>>())
 }
 
-/// The data of a run as JSON, with the strip along its path as SVG and, where there is one, what shows it in
-/// the explorer beside it.
+/// The data of a run as JSON, with the strip along its path as SVG and, if there is one, the
+/// address that shows the scene in the explorer.
 pub fn data(
     case: &MeasuredScene,
     summary: &Summary,

@@ -1,11 +1,11 @@
-//! The light field over (y, v), from its spectrum.
+//! Computes the light field over (y, v) from its spectrum.
 
 use etendue_compare::PlaneComparison;
 use etendue_field::{Complex, FrequencyAxis, SliceGrid, Slices, cis};
 use ndarray::{Array2, ArrayView1};
 use std::f64::consts::TAU;
 
-/// Whether light is another in (y, v) than in (x, u): the slices at azimuths 0 and 90°.
+/// Whether the light differs between (y, v) and (x, u): compares the slices at azimuths 0 and 90°.
 pub(super) fn differs_across(plane: &PlaneComparison) -> bool {
     const SHARE: f64 = 0.3;
     let slices = plane.predicted.half.view();
@@ -16,8 +16,9 @@ pub(super) fn differs_across(plane: &PlaneComparison) -> bool {
     apart > SHARE * power(&mut one.iter().map(|a| a.norm_sqr()))
 }
 
-/// The light field over (y, v), integrated over x and u with the window, in 64 × 64 cells that fill ± `half_widths`: what
-/// the slice at azimuth 90° is the spectrum of, as far as its frequencies go. `None` where there is no such slice.
+/// The light field over (y, v), integrated over x and u with the window, in 64 × 64 cells that fill
+/// ± `half_widths`. Its spectrum is the slice at azimuth 90°, within the range of the frequencies.
+/// `None` where there is no such slice.
 pub fn across(slices: &Slices, half_widths: [f64; 2]) -> Option<Array2<f64>> {
     const CELLS: usize = 64;
     let SliceGrid { azimuths, rho, nu } = &slices.grid;
@@ -35,7 +36,7 @@ pub fn across(slices: &Slices, half_widths: [f64; 2]) -> Option<Array2<f64>> {
         })
     };
     let [y, v] = [waves(rho, half_widths[0]), waves(nu, half_widths[1])];
-    // Products of the array library do not have the same bits on every processor.
+    // Products of the array library differ in their bits between processors.
     let sum = |a: ArrayView1<'_, Complex>, b: ArrayView1<'_, Complex>| {
         let terms = a.iter().zip(b).map(|(a, b)| a * b);
         terms.fold(Complex::ZERO, |sum, term| sum + term)
@@ -51,7 +52,7 @@ mod tests {
     use super::*;
     use std::f64::consts::PI;
 
-    /// A Gaussian beside the middle, from its transform.
+    /// Reconstructs an off-centre Gaussian from its transform.
     #[test]
     fn the_light_field_over_y_and_v_is_that_of_its_slice() {
         let axis = |half, spacing| FrequencyAxis { half, spacing };

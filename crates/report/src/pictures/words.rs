@@ -1,4 +1,4 @@
-//! What the coordinates of a plane are called, and axes over them.
+//! Names of a plane's coordinates, and axes with them.
 
 use etendue_field::{FrequencyAxis, Orientation, ProjectionGrid, SliceGrid, VirtualPlane};
 use etendue_figures::{Axis, AxisQuantity};
@@ -10,7 +10,7 @@ pub(super) struct CoordinateNames {
     pub(super) across: [&'static str; 2],
     angle: &'static str,
     per_angle: &'static str,
-    /// Of frequencies along both positions, and along both slopes.
+    /// Names of the frequencies along both positions, and along both slopes.
     rings: [&'static str; 2],
 }
 
@@ -65,13 +65,13 @@ pub fn light_field_axes(plane: &VirtualPlane, grid: &ProjectionGrid) -> [Axis; 2
     CoordinateNames::of(plane).projection_axes(grid)
 }
 
-/// The axes of its spectrum, (ρ, ν).
+/// The axes of the spectrum of a plane, (ρ, ν).
 pub fn spectrum_axes(plane: &VirtualPlane) -> [Axis; 2] {
     CoordinateNames::of(plane).frequency_axes(&plane.grid)
 }
 
-/// The axes of its full radial spectrum, (|Ωxy|, |Ωuv|). The first ring of each is that of zero, half as wide as the others; it is
-/// drawn alike.
+/// The axes of the full radial spectrum of a plane, (|Ωxy|, |Ωuv|). The first ring of each axis is
+/// that of zero and half as wide as the others, but is drawn at equal width.
 pub fn full_radial_axes(plane: &VirtualPlane, of: &FullRadial) -> [Axis; 2] {
     let words = CoordinateNames::of(plane);
     let axis = |name, unit, edges: &[f64]| {
@@ -86,7 +86,7 @@ pub fn full_radial_axes(plane: &VirtualPlane, of: &FullRadial) -> [Axis; 2] {
     ]
 }
 
-/// What a full radial spectrum holds.
+/// The quantity of a full radial spectrum.
 pub fn full_radial_quantity() -> AxisQuantity {
     AxisQuantity::new("⟨|*ℓ̂*|^{2}⟩", "")
 }
@@ -101,12 +101,12 @@ pub fn across_axes(plane: &VirtualPlane, grid: &ProjectionGrid) -> [Axis; 2] {
     .projection_axes(grid)
 }
 
-/// What a light field across the ray holds.
+/// The quantity of a light field across the ray.
 pub fn light_field_quantity() -> AxisQuantity {
     CoordinateNames::ACROSS.light_field_quantity()
 }
 
-/// What a radial spectrum holds.
+/// The quantity of a radial spectrum.
 pub fn spectrum_quantity() -> AxisQuantity {
     AxisQuantity::new("⟨|*S*_{φ}|^{2}⟩", "")
 }

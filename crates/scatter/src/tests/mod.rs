@@ -1,4 +1,4 @@
-//! All models: samples against densities, energy, reciprocity, and faults that these tests see.
+//! Tests of all models: samples against densities, energy, reciprocity, and planted faults.
 
 mod models;
 
@@ -18,7 +18,7 @@ fn at(angle: f64) -> DVec3 {
     DVec3::new(sin * 0.8, sin * 0.6, cos)
 }
 
-/// Each model at each angle.
+/// Runs a check for each model at each angle.
 fn each(mut check: impl FnMut(&Model, DVec3, String)) {
     for model in all() {
         for angle in ANGLES {
@@ -46,7 +46,8 @@ fn samples_know_their_density() {
     });
 }
 
-/// Means of samples: of weights with a density, of all flux that leaves, and the standard error of each.
+/// Returns means over samples, with the standard error of each: of the weights of samples with a
+/// density, and of all flux that leaves.
 fn means(model: &Model, wo: DVec3) -> [[f64; 2]; 2] {
     let mut sums = [[0.0; 2]; 2];
     for bounce in numbers().filter_map(|random| model.bsdf.sample(wo, random)) {
@@ -77,7 +78,7 @@ fn white_furnace() {
         let carried = |wi: DVec3| model.bsdf.value(wi, wo) * wi.z.abs();
         let exact: f64 = model.cells(wo).integrals(carried).iter().sum();
         let [[mean, error], [flux, flux_error]] = means(model, wo);
-        // Four and a half standard errors, and the midpoint rule over the cells.
+        // Four and a half standard errors, and the error of the midpoint rule over the cells.
         let bound = 4.5 * error + 2e-3;
         assert!(
             (mean - exact).abs() < bound,
@@ -88,14 +89,14 @@ fn white_furnace() {
     });
 }
 
-/// Surfaces that keep all light, and facets so small that little is lost to shadows.
+/// Surfaces that conserve energy, and facets so smooth that little is lost to shadowing.
 #[test]
 fn nothing_is_lost() {
     for angle in ANGLES {
         let wo = at(angle);
         for is_nonlinear in [false, true] {
             let [_, [flux, error]] = means(&plastic(None, is_nonlinear), wo);
-            // The midpoint rule for what the coat reflects within.
+            // Error of the midpoint rule for the internal reflectance of the coat.
             assert!(
                 (flux - 1.0).abs() < 4.5 * error + 1e-5,
                 "{angle}: {flux} ± {error}"
@@ -103,7 +104,7 @@ fn nothing_is_lost() {
         }
         for facets in [beckmann([0.01; 2]), ggx([0.01; 2])] {
             let [_, [flux, error]] = means(&conductor(facets, Fresnel::White), wo);
-            // What is lost grows with (α tan θ)², here at most 0.02.
+            // The loss grows with (α tan θ)², here at most 0.02.
             assert!(flux > 0.98 - 4.5 * error, "{facets:?} at {angle}: {flux}");
         }
         let mirrored = mirror(&Fresnel::White, wo);
@@ -125,7 +126,7 @@ fn smooth_interfaces_refract_by_snell() {
                 continue;
             }
             let behind = if is_thin { 1.0 } else { index };
-            // Radiance over the squared index, and rounding.
+            // Radiance divided by the squared index, and rounding.
             assert!((far.weight * behind * behind - 1.0).abs() < 1e-12);
             assert!((far.wi.truncate() * behind + wo.truncate()).length() < 1e-12);
             assert!(far.density.is_none() && (far.wi.length() - 1.0).abs() < 1e-12);
@@ -133,7 +134,7 @@ fn smooth_interfaces_refract_by_snell() {
     }
 }
 
-/// Pairs of directions before the surface.
+/// Returns pairs of directions in front of the surface.
 fn pairs() -> impl Iterator<Item = [DVec3; 2]> {
     let direction = |[a, b, _]: [f64; 3]| crate::lambertian::sample([a, b]);
     let first = numbers().step_by(200).map(direction);
@@ -152,7 +153,7 @@ fn light_goes_both_ways() {
             assert!(close, "{}: {there} and {back}", model.name);
         }
     }
-    // Radiance is counted over squared indices.
+    // Radiance is compared after division by the squared indices.
     for facets in [ggx([0.3, 0.1]), beckmann([0.2, 0.4])] {
         for index in [1.5, 0.8] {
             let front = RoughDielectric { facets, index };
@@ -173,7 +174,7 @@ fn light_goes_both_ways() {
     }
 }
 
-/// The comparison of samples with densities sees each of these.
+/// The comparison of samples with densities detects each of these faults.
 #[test]
 fn planted_faults_are_seen() {
     let wo = at(0.6);

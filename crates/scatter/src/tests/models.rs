@@ -1,4 +1,4 @@
-//! Every model of the crate, narrow and wide.
+//! All models of the crate, with narrow and wide lobes, for tests.
 
 use crate::{
     Bsdf, Coat, Conductor, Microfacets, ModifiedPhong, Phong, Plastic, RoughDielectric, lambertian,
@@ -8,13 +8,13 @@ use etendue_sampling::chi_square::{ChiSquare, SphereCells};
 use etendue_transform::random::{self, Stream};
 use glam::DVec3;
 
-/// A model of what a surface does to light.
+/// A model of scattering at a surface.
 pub(super) struct Model {
     pub(super) name: String,
     pub(super) bsdf: Box<dyn Bsdf>,
-    /// The index of what is behind over that of what is in front.
+    /// The index behind the surface over the index in front of it.
     pub(super) index: f64,
-    /// A bound of weights.
+    /// An upper bound of the weights.
     pub(super) max_weight: f64,
 }
 
@@ -37,23 +37,23 @@ pub(super) fn numbers() -> impl Iterator<Item = [f64; 3]> {
 }
 
 impl Model {
-    /// Directions that it draws.
+    /// Returns sampled directions.
     fn drawn(&self, wo: DVec3) -> impl Iterator<Item = Option<DVec3>> {
         numbers().map(move |random| self.bsdf.direction(wo, random))
     }
 
-    /// Cells about the mirror direction of wo.
+    /// Returns cells about the mirror direction of wo.
     pub(super) fn cells(&self, wo: DVec3) -> SphereCells {
         SphereCells::new(DVec3::new(-wo.x, -wo.y, wo.z), self.drawn(wo).flatten())
     }
 
-    /// Its samples against a density.
+    /// Compares the model's samples with a density.
     pub(super) fn compare(&self, wo: DVec3, density: impl Fn(DVec3) -> f64) -> ChiSquare {
         self.cells(wo).compare(self.drawn(wo), density)
     }
 }
 
-/// A lobe by its functions.
+/// A lobe given by its functions.
 struct Lobe<V, S, D>(V, S, D);
 
 impl<V, S, D> Bsdf for Lobe<V, S, D>
@@ -75,8 +75,9 @@ where
     }
 }
 
-/// Largest weight of facets that are drawn as they are seen: for GGX Smith's masking of one direction, and rounding; for Beckmann, which is drawn by
-/// GGX, that times the ratios of D, 4/e, and of G₁, √π.
+/// Returns the largest weight for sampling by visible normals: for GGX, Smith's masking of one
+/// direction, and rounding; for Beckmann, which is sampled by GGX, the same times the ratios of D,
+/// 4/e, and of G₁, √π.
 fn masked(facets: Microfacets) -> f64 {
     match facets.distribution {
         MicrofacetDistribution::Beckmann => 2.61,
@@ -102,12 +103,13 @@ pub(super) fn phong(exponent: f64) -> Model {
     model(format!("{lobe:?}"), 1.0 + 1e-9, Lobe(value, sample, value))
 }
 
-/// Perfect mirrors, drawn whether they are seen or not.
+/// Perfect mirrors, sampled whether they are visible or not.
 fn unmasked(facets: Microfacets) -> Model {
     let value = move |wi, wo| facets.value(wi, wo).0;
     let sample = move |wo, random| facets.sample_unmasked(wo, random);
     let density = move |wi, wo| facets.unmasked_density(wi, wo);
-    // h·ωi/(cos θi cos θh) is left, and G₁ ≤ 2√π/(α tan θi) bounds it by 3.5 tan θh/α; of 32-bit numbers tan θh/α is at most 4.8.
+    // The weight is h·ωi/(cos θi cos θh) times G₁ ≤ 2√π/(α tan θi), at most 3.5 tan θh/α; with
+    // 32-bit random numbers tan θh/α is at most 4.8.
     model(
         format!("{facets:?}, unmasked"),
         17.0,
@@ -148,7 +150,8 @@ pub(super) fn plastic(facets: Option<Microfacets>, is_nonlinear: bool) -> Model 
         is_nonlinear,
     };
     let name = format!("plastic of {facets:?}, nonlinear: {is_nonlinear}");
-    // Of coat or base over its share of samples, which is about its share of the light.
+    // The weight of coat or base over its share of samples, which is approximately its share of the
+    // light.
     model(name, 4.0, plastic)
 }
 
@@ -166,7 +169,7 @@ pub(super) fn ggx(alpha: [f64; 2]) -> Microfacets {
     }
 }
 
-/// Every model.
+/// Returns all models.
 pub(super) fn all() -> Vec<Model> {
     let mut models = vec![
         lambert(),

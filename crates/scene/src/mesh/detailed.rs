@@ -9,17 +9,18 @@ use std::path::Path;
 
 /// A mesh file with what belongs to shading: normals and texture coordinates of its vertices.
 ///
-/// Corners are among the vertices, and there are as many normals and texture coordinates as vertices; all are finite. Triangles of no area are
-/// still there. Corners at one place with another normal or other texture coordinates are vertices of their own.
+/// Corners are valid indices of vertices, and there are as many normals and texture coordinates as
+/// vertices; all are finite. Triangles of zero area are kept. Corners at one place with different
+/// normals or texture coordinates are separate vertices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DetailedMesh {
-    /// Places, within ±10⁹.
+    /// Positions, within ±10⁹.
     pub vertices: Vec<DVec3>,
     /// The vertices of each triangle.
     pub triangles: Vec<[u32; 3]>,
-    /// Normals as the file has them, of any length; zero at vertices where it has none.
+    /// Normals as in the file, of any length; zero at vertices without one.
     pub normals: Option<Vec<DVec3>>,
-    /// Texture coordinates as the file has them; zero at vertices where it has none.
+    /// Texture coordinates as in the file; zero at vertices without them.
     pub uvs: Option<Vec<DVec2>>,
 }
 

@@ -1,10 +1,10 @@
-//! Mesh files told apart by their extension.
+//! Selects the format of a mesh file by its extension.
 
 use super::text;
 use etendue_scenefile::{Fault, fault};
 use std::path::Path;
 
-/// Reads bytes as the extension of `file` says.
+/// Reads bytes in the format of the extension of `file`.
 pub(super) fn by_extension<T>(
     file: &Path,
     bytes: &[u8],

@@ -1,4 +1,4 @@
-//! Meshes from files and to files.
+//! Reads meshes from files and writes them to files.
 
 use super::extension::by_extension;
 use super::shared::Mesh;
@@ -7,17 +7,19 @@ use etendue_scenefile::Fault;
 use std::path::Path;
 
 impl Mesh {
-    /// Reads the bytes of an OBJ or a PLY file, told apart by the extension of `file` in any case.
+    /// Reads the bytes of an OBJ or a PLY file. The extension of `file`, in any case, determines
+    /// the format.
     ///
-    /// OBJ: `v` and `f` make the mesh, all objects and groups together; normals, texture coordinates, colors,
-    /// weights, materials, points and lines are passed over, free-form surfaces are refused. PLY: ASCII and
-    /// binary of either byte order, coordinates and lists of any type; other elements and properties are
-    /// passed over. Faces of more than three corners become fans about their first corner, which is right
-    /// for convex ones, and have at most 4,096. Triangles of zero area are dropped where others remain.
+    /// OBJ: `v` and `f` make the mesh, all objects and groups together; normals, texture
+    /// coordinates, colors, weights, materials, points and lines are ignored, free-form surfaces
+    /// are refused. PLY: ASCII and binary of either byte order, coordinates and lists of any type;
+    /// other elements and properties are ignored. Faces of more than three corners become fans
+    /// about their first corner, which is right for convex faces, and have at most 4,096 corners.
+    /// Triangles of zero area are dropped where others remain.
     ///
     /// # Errors
-    /// The first fault found: the place in the file, the value and what is allowed. Elements are counted
-    /// as the format counts them, OBJ from 1 and PLY from 0; lines and corners from 1.
+    /// The first fault found: the place in the file, the value and what is allowed. Elements are
+    /// counted as in the format, OBJ from 1 and PLY from 0; lines and corners from 1.
     pub fn parse(file: &Path, bytes: &[u8]) -> Result<Self, Fault> {
         by_extension(file, bytes, obj::read, |bytes| {
             let mesh = ply::detailed::read(bytes, false)?;

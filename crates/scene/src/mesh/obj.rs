@@ -9,7 +9,7 @@ use etendue_scenefile::{Fault, fault};
 use glam::DVec3;
 use std::borrow::Cow;
 
-/// Statements that change nothing about the triangles.
+/// Statements that do not affect the triangles.
 const PASSED_OVER: [&[u8]; 19] = [
     b"vt",
     b"vn",
@@ -35,19 +35,19 @@ const PASSED_OVER: [&[u8]; 19] = [
 pub(super) fn read(bytes: &[u8]) -> Result<Mesh, Fault> {
     let bytes = without_mark(bytes);
     let vertices = vertices(bytes)?;
-    // Faces may name vertices that follow them, so they wait for all vertices.
+    // Faces may refer to vertices that follow them, so they are read after all vertices.
     let triangles = triangles(bytes, |word, [before, ..]| {
         corner(word, before, vertices.len())
     })?;
     Mesh::new(vertices, triangles)
 }
 
-/// Windows editors begin UTF-8 files with a mark.
+/// Windows editors begin UTF-8 files with a byte order mark.
 fn without_mark(bytes: &[u8]) -> &[u8] {
     bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
 }
 
-/// Statements with the number of their first line: comments cut, continued lines joined.
+/// Statements with the number of their first line: comments removed, continued lines joined.
 fn statements(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, [u8]>)> {
     let mut lines = Lines::new(bytes).map(|(number, line)| {
         let end = line.iter().position(|b| *b == b'#');
@@ -70,7 +70,8 @@ fn statements(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, [u8]>)> {
     })
 }
 
-/// Points of the `v` lines, at least one; what follows the three coordinates (weight, color) is passed over.
+/// Points of the `v` lines, at least one; values after the three coordinates (weight, color) are
+/// ignored.
 fn vertices(bytes: &[u8]) -> Result<Vec<DVec3>, Fault> {
     let mut vertices = Vec::new();
     for (line, statement) in statements(bytes) {
@@ -104,7 +105,8 @@ fn vertex(line: usize, index: usize, mut words: LineWords<'_>) -> Result<DVec3, 
     Ok(point)
 }
 
-/// Triangles of the `f` lines, at least one. `index` numbers a corner by its word and by how many `v`, `vt` and `vn` lines are above it.
+/// Triangles of the `f` lines, at least one. `index` resolves a corner from its word and the
+/// numbers of `v`, `vt` and `vn` lines above it.
 fn triangles(
     bytes: &[u8],
     mut index: impl FnMut(&[u8], [usize; 3]) -> Result<u32, CornerFault>,
@@ -141,11 +143,11 @@ fn triangles(
     }
 }
 
-/// What is wrong with a corner: its value, and what is allowed.
+/// A fault of a corner: its value, and what is allowed.
 type CornerFault = (String, String);
 
-/// Index of a corner such as `7`, `7/3`, `7//5` or `-1/-1/-1`: from 1 on, or back from the last vertex of the
-/// `before` above this line.
+/// Index of a corner such as `7`, `7/3`, `7//5` or `-1/-1/-1`: counted from 1, or backwards from
+/// the last of the `before` vertices above this line.
 fn corner(word: &[u8], before: usize, count: usize) -> Result<u32, CornerFault> {
     let mut parts = word.split(|b| *b == b'/');
     let vertex: Option<i64> = parts.next().and_then(number);

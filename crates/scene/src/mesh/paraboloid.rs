@@ -7,11 +7,13 @@ use glam::DVec3;
 impl Mesh {
     /// A smooth open surface through the origin, z = −(k₁ x² + k₂ y²)/2 over |x|, |y| ≤ `half`, facing along z.
     ///
-    /// `cells` × `cells` squares of two triangles, all cut along the same diagonal: inside, the triangles around a vertex lie
-    /// point-symmetrically, and its normal by their areas is good to the square of a cell. Vertices lie on the surface.
+    /// `cells` × `cells` squares of two triangles, all cut along the same diagonal. Inside, the
+    /// triangles around a vertex are point-symmetric, and the vertex normal weighted by their areas
+    /// is accurate to the square of a cell. Vertices lie on the surface.
     ///
     /// # Errors
-    /// What [`Self::new`] refuses, such as no cells or vertices that are not finite.
+    /// When [`Self::new`] refuses the mesh, for example without cells or with vertices that are not
+    /// finite.
     pub fn paraboloid(curvatures: [f64; 2], half: f64, cells: u32) -> Result<Self, Fault> {
         let [k, l] = curvatures;
         let along = |i: u32| half * (2.0 * f64::from(i) / f64::from(cells) - 1.0);

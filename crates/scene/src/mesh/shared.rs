@@ -1,4 +1,4 @@
-//! Triangles with shared vertices, and what a mesh may hold.
+//! Triangles with shared vertices, and the limits of a mesh.
 
 use etendue_scenefile::limits::MAX_NUMBER;
 use etendue_scenefile::{Fault, fault};
@@ -6,9 +6,9 @@ use glam::{DAffine3, DVec3};
 
 /// Triangles with shared vertices, in the file's units and frame.
 ///
-/// Valid by construction: at least one triangle, each with an area and with corners among the vertices;
-/// coordinates within ±10⁹. Corners run counterclockwise seen from outside, where the file says so; nothing
-/// here asks for a closed surface. Vertices that no triangle uses may be there.
+/// Valid by construction: at least one triangle, each with an area and with valid vertex indices;
+/// coordinates within ±10⁹. Corners run counterclockwise seen from outside, where the file has them
+/// so; the surface need not be closed. Unused vertices are allowed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     pub(super) vertices: Vec<DVec3>,
@@ -16,13 +16,13 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// The mesh of these triangles, less those of zero area (in f64), of which real files hold a few. What a scene drops or refuses beside
-    /// these depends on where it places them.
+    /// The mesh of these triangles without those of zero area (in f64), which occur in real files.
+    /// A scene may drop or refuse further triangles depending on where it places them.
     ///
     /// # Errors
-    /// A coordinate or an index out of range, or no triangle with an area.
+    /// When a coordinate or an index is out of range, or no triangle has an area.
     pub fn new(vertices: Vec<DVec3>, mut triangles: Vec<[u32; 3]>) -> Result<Self, Fault> {
-        // One index is kept free, so that the number of vertices is a u32 too.
+        // One index is kept free, so that the number of vertices also fits in a u32.
         let count = u32::try_from(vertices.len())
             .map_err(|_| fault("vertices", vertices.len(), format!("at most {}", u32::MAX)))?;
         for (i, vertex) in vertices.iter().enumerate() {
@@ -46,11 +46,11 @@ impl Mesh {
         })
     }
 
-    /// The mesh under an affine map; a map that mirrors also turns the corners' order, so that outside stays
-    /// outside.
+    /// The mesh under an affine map. A map that mirrors also reverses the order of corners, so that
+    /// outside stays outside.
     ///
     /// # Errors
-    /// Coordinates beyond ±10⁹, or a map that leaves no triangle an area.
+    /// When coordinates exceed ±10⁹, or no triangle has an area after the map.
     pub fn transformed(&self, map: DAffine3) -> Result<Self, Fault> {
         let vertices = self.vertices.iter().map(|v| map.transform_point3(*v));
         let mirrored = map.matrix3.determinant() < 0.0;
@@ -59,7 +59,7 @@ impl Mesh {
         Self::new(vertices.collect(), triangles.collect())
     }
 
-    /// Vertices; triangles name them by index.
+    /// Vertices; triangles refer to them by index.
     #[must_use]
     pub fn vertices(&self) -> &[DVec3] {
         &self.vertices
@@ -71,7 +71,7 @@ impl Mesh {
         &self.triangles
     }
 
-    /// Corner points of one triangle after the other.
+    /// Corner points of each triangle in turn.
     pub fn corners(&self) -> impl ExactSizeIterator<Item = [DVec3; 3]> {
         let point = |i: u32| self.vertices[i as usize];
         self.triangles.iter().map(move |corners| corners.map(point))
@@ -93,10 +93,11 @@ fn has_area(vertices: &[DVec3], corners: [u32; 3]) -> bool {
     (b - a).cross(c - a) != DVec3::ZERO
 }
 
-/// Corners of a face. All triangles of a fan have its first corner, so a ray near it meets the boxes of most of them.
+/// The largest number of corners of a face. All triangles of a fan share its first corner, so a ray
+/// near it meets the boxes of most of them.
 const MAX_CORNERS: usize = 4096;
 
-/// Requires a number of corners that a face may have.
+/// Checks the number of corners of a face.
 pub(super) fn check_corners(count: usize, place: impl FnOnce() -> String) -> Result<(), Fault> {
     match (3..=MAX_CORNERS).contains(&count) {
         true => Ok(()),
@@ -104,7 +105,7 @@ pub(super) fn check_corners(count: usize, place: impl FnOnce() -> String) -> Res
     }
 }
 
-/// Requires a coordinate that a scene may hold.
+/// Checks that a coordinate is within the range of a scene.
 pub(super) fn check_coordinate(value: f64, place: impl FnOnce() -> String) -> Result<f64, Fault> {
     if value.abs() <= MAX_NUMBER {
         Ok(value)

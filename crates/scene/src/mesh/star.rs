@@ -9,13 +9,15 @@ impl Mesh {
     /// A smooth closed surface about the origin, star-shaped and with lobes about the z axis:
     /// r(θ, φ) = `radius` · (1 + `relief` · sinˡθ · cos lφ) with l = `lobes`, a sphere plus its sectoral harmonic.
     ///
-    /// θ steps through `rings` bands and φ through 2 `rings` segments; the poles are one vertex each and nothing
-    /// is doubled at φ = 0, so the surface is watertight: 2 `rings`(`rings` − 1) + 2 vertices, 4 `rings`(`rings` − 1)
-    /// triangles (50 624 for 113 rings), facing outward. Vertices lie on the surface; with facets it falls short
-    /// of the volume R³(4π/3 + 2π relief² (2l)!!/(2l+1)!!), l ≥ 1, by a part that goes as rings⁻².
+    /// θ steps through `rings` bands and φ through 2 `rings` segments. The poles are
+    /// one vertex each and no vertex is doubled at φ = 0, so the surface is watertight:
+    /// 2 `rings`(`rings` − 1) + 2 vertices, 4 `rings`(`rings` − 1) triangles (50 624
+    /// for 113 rings), facing outward. Vertices lie on the surface; because of the
+    /// facets the volume falls short of R³(4π/3 + 2π relief² (2l)!!/(2l+1)!!), l ≥ 1,
+    /// by a part proportional to rings⁻².
     ///
     /// # Errors
-    /// Fewer than four segments to a lobe, or what [`Self::new`] refuses.
+    /// When there are fewer than four segments per lobe, or [`Self::new`] refuses the mesh.
     ///
     /// # Panics
     /// With fewer than two rings.
@@ -34,7 +36,8 @@ impl Mesh {
         };
         let segments = 2 * rings;
         let step = PI / f64::from(rings);
-        // sin π is not quite zero in f64, so the poles are written out; on them l = 0 alone adds its relief.
+        // sin π is not exactly zero in f64, so the poles are set explicitly; only l = 0 has a
+        // relief there.
         let pole = point(0.0, 0.0).z;
         let mut vertices = vec![DVec3::new(0.0, 0.0, pole)];
         for ring in 1..rings {

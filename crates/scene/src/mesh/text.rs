@@ -1,11 +1,11 @@
-//! Lines, words and numbers of mesh files, of any bytes.
+//! Splits mesh files of arbitrary bytes into lines, words and numbers.
 
-/// Lines with their number from 1, without the white space around them.
+/// Lines with their number, from 1, without surrounding white space.
 ///
-/// Lines end as the first one does: at a line feed, with or without a carriage return before it, or at a
-/// carriage return alone (old Macintosh files).
+/// All lines end as the first one does: at a line feed, with or without a carriage return before
+/// it, or at a carriage return alone (old Macintosh files).
 pub(super) struct Lines<'a> {
-    /// What follows the last line given.
+    /// The bytes after the last line returned.
     pub(super) rest: &'a [u8],
     end: u8,
     number: usize,
@@ -60,12 +60,12 @@ impl<'a> Iterator for LineWords<'a> {
     }
 }
 
-/// The number a word stands for: decimal, perhaps with an exponent, infinite or NaN.
+/// The number that a word represents: decimal, with an optional exponent, infinite or NaN.
 pub(super) fn number<T: std::str::FromStr>(word: &[u8]) -> Option<T> {
     str::from_utf8(word).ok()?.parse().ok()
 }
 
-/// A few bytes of the file for a message.
+/// The first few bytes of a word, for a message.
 pub(super) fn quoted(bytes: &[u8]) -> String {
     const LONGEST: usize = 40;
     let shown = String::from_utf8_lossy(&bytes[..bytes.len().min(LONGEST)]);

@@ -1,4 +1,4 @@
-//! Blockers: layers of shapes, gratings.
+//! Checks blockers: layers of shapes and gratings.
 
 use super::Resolver;
 use super::jitter::jittered_squares;
@@ -10,7 +10,7 @@ use etendue_scenefile::number;
 use etendue_scenefile::{BlockersFile, HalfName, LightFile, SceneFile, ShapeFile};
 use glam::DVec3;
 
-/// Rectangles a prediction makes of a disc, about.
+/// The approximate number of rectangles that a prediction divides a disc into.
 const STRIPS: f64 = 64.0;
 
 impl Resolver<'_> {
@@ -22,7 +22,7 @@ impl Resolver<'_> {
             .collect()
     }
 
-    /// Blockers stand on the first leg, which has this length.
+    /// Checks that blockers stand on the first leg, which has this length.
     pub(super) fn ends(&mut self, file: &SceneFile, layers: &[BlockerLayer], length: f64) {
         for (i, blockers) in file.blockers.iter().enumerate() {
             let layer = layers.iter().find(|layer| layer.name == blockers.name());
@@ -39,7 +39,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// `None` for a mesh.
+    /// The layer of these blockers; `None` for a mesh.
     fn layer(&mut self, of: &str, blockers: &BlockersFile, frame: &Frame) -> Option<BlockerLayer> {
         let (BlockersFile::JitteredSquares { name, center, .. }
         | BlockersFile::Shapes { name, center, .. }
@@ -58,7 +58,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// What the blockers do to radiance, and the distance between their repetitions.
+    /// The mask of the blockers, and the distance between their repetitions.
     fn mask(
         &mut self,
         of: &str,
@@ -114,8 +114,8 @@ impl Resolver<'_> {
         if !(fill > 0.0 && fill <= 1.0) {
             let allowed = "above 0, at most 1: a share of the pitch";
             self.faults.add(format!("{of}.fill"), number(fill), allowed);
-        // Squares that may overlap would be counted twice by the prediction. Rounding must not
-        // refuse a fill of 0.7 with a jitter of 0.3.
+        // The prediction would count overlapping squares twice. The tolerance prevents rounding
+        // from refusing a fill of 0.7 with a jitter of 0.3.
         } else if !(jitter >= 0.0 && fill + jitter <= 1.0 + 1e-12) {
             let allowed = format!("0 to 1 − fill, which is {}", tidy(1.0 - fill));
             self.faults
@@ -140,7 +140,7 @@ impl Resolver<'_> {
         }
         let moved = |c: [f64; 2]| [center[0] + c[0], center[1] + c[1]];
         let (mut shapes, mut half_planes) = (Vec::new(), Vec::new());
-        // Where each stands in the file.
+        // The position of each shape in the file.
         let (mut of_shapes, mut of_half_planes) = (Vec::new(), Vec::new());
         for (i, file) in files.iter().take(limits::SHAPES).enumerate() {
             match file {
@@ -171,8 +171,8 @@ impl Resolver<'_> {
         opaque(shapes, half_planes)
     }
 
-    /// What overlaps would be counted twice by the prediction. `places` are those of shapes and of
-    /// half-planes in the file.
+    /// Refuses overlaps, which the prediction would count twice. `places` are the positions of
+    /// shapes and of half-planes in the file.
     fn apart(
         &mut self,
         of: &str,
@@ -195,7 +195,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// A prediction multiplies the layers out.
+    /// Limits the product of all layers, which a prediction multiplies out.
     pub(super) fn layers(&mut self, file: &SceneFile) {
         let terms = |b: &BlockersFile| match b {
             BlockersFile::JitteredSquares { count, .. } => {

@@ -1,4 +1,4 @@
-//! The faults of a scene file, as they are found.
+//! Collects the faults of a scene file.
 
 use etendue_scenefile::Fault;
 use etendue_scenefile::limits;
@@ -6,13 +6,13 @@ use etendue_scenefile::{number, shown};
 use std::collections::HashSet;
 use std::fmt::Debug;
 
-/// Faults found so far.
+/// The faults found so far.
 #[derive(Default)]
 pub(super) struct Faults {
     pub(super) all: Vec<Fault>,
-    /// Where the central ray begins and goes is at fault.
+    /// Whether there is a fault in the origin or the direction of the central ray.
     pub(super) astray: bool,
-    /// That, or where something stands.
+    /// Whether there is such a fault, or one in the position of an object.
     displaced: bool,
 }
 
@@ -34,8 +34,8 @@ impl Faults {
         });
     }
 
-    /// A fault of where things are on the path: nothing is known of it when their own places, or
-    /// those of others, are at fault.
+    /// Adds a fault of positions along the path. It is omitted when the positions of this or other
+    /// objects are already at fault, because nothing is known of the path then.
     pub(super) fn add_on_path(
         &mut self,
         field: impl Into<String>,
@@ -47,7 +47,7 @@ impl Faults {
         }
     }
 
-    /// Whether something below a field is at fault.
+    /// Whether there is a fault below a field.
     pub(super) fn has_below(&self, field: &str) -> bool {
         let below = |fault: &Fault| {
             fault
@@ -58,7 +58,7 @@ impl Faults {
         self.all.iter().any(below)
     }
 
-    /// Each fault once: planes share the scene's window and frequencies.
+    /// The faults without duplicates, because planes share the scene's window and frequencies.
     pub(super) fn once(self) -> Vec<Fault> {
         let mut seen = HashSet::new();
         let is_new: Vec<bool> = self.all.iter().map(|fault| seen.insert(fault)).collect();
@@ -68,7 +68,8 @@ impl Faults {
     }
 }
 
-/// Whether a field says where a surface or blockers are, and so what the central ray meets.
+/// Whether a field sets the position of a surface or of blockers, and so what the central ray
+/// meets.
 fn is_of_place(field: &str) -> bool {
     let of_things = |list: &str| {
         field
@@ -88,18 +89,18 @@ fn is_of_place(field: &str) -> bool {
         || starts(of_things("blockers["), &["center", "mesh", "scale"])
 }
 
-/// A vector as it is written.
+/// A vector as it is written in a scene file.
 pub(super) fn vector(values: &[f64]) -> String {
     let values: Vec<String> = values.iter().map(|value| number(*value)).collect();
     format!("({})", values.join(", "))
 }
 
-/// A value as it is written, as far as a message shows it.
+/// A value as it is written, truncated for a message.
 pub(super) fn show(value: impl Debug) -> String {
     shown(format_args!("{value:?}"), limits::VALUE)
 }
 
-/// Names to choose from.
+/// The names to choose from, for a message.
 pub(super) fn names<'a>(mut all: impl Iterator<Item = &'a str>) -> String {
     let first = all.by_ref().take(limits::FAULTS);
     let mut listed: Vec<String> = first.map(|name| shown(name, limits::NAME)).collect();

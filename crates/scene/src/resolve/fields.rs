@@ -1,8 +1,8 @@
-//! Fields of a scene file by the name of what they hold.
+//! Paths of fields in a scene file, found by the name of an object.
 
 use etendue_scenefile::{BlockersFile, SceneFile, SurfaceFile};
 
-/// What has a name: `blockers[0]`, `surfaces[0]`.
+/// The paths of the objects with a name, such as `blockers[0]` or `surfaces[0]`.
 pub(super) fn fields<'a>(file: &'a SceneFile, name: &'a str) -> impl Iterator<Item = String> + 'a {
     let blockers = file.blockers.iter().map(BlockersFile::name).enumerate();
     let surfaces = file.surfaces.iter().map(SurfaceFile::name).enumerate();

@@ -1,4 +1,4 @@
-//! Jittered squares.
+//! Generates jittered squares.
 
 use etendue_field::Rectangle;
 use etendue_transform::random::{self, Stream};

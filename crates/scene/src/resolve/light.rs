@@ -1,4 +1,4 @@
-//! Lights of a scene file, checked.
+//! Checks the light of a scene file.
 
 use super::Resolver;
 use super::reflectance::grating_of;
@@ -6,7 +6,7 @@ use etendue_field::{Disc, Frame, Image, Light, Rectangle, Shape};
 use etendue_scenefile::{BulbFile, ImageFile, LightFile};
 
 impl Resolver<'_> {
-    /// The light, around the origin of the central ray, where its frame is.
+    /// The light around the origin of the central ray, which is the origin of its frame.
     pub(super) fn light(&mut self, light: &LightFile, frame: &Frame) -> Light {
         let area = |shape: Shape, radiance: f64, exponent: f64| Light::Area {
             shape,

@@ -1,4 +1,4 @@
-//! How many things there are, before any of them is looked at.
+//! Checks the numbers of objects before any object itself.
 
 use super::Resolver;
 use etendue_scenefile::limits;
@@ -7,7 +7,7 @@ use etendue_scenefile::{
 };
 
 impl Resolver<'_> {
-    /// Names what there is too much of, and tells whether there is nothing of that.
+    /// Adds a fault for everything that there is too much of, and returns whether there was none.
     pub(super) fn counts(&mut self, file: &SceneFile) -> bool {
         let lobes = match &file.light {
             LightFile::Environment {
@@ -31,7 +31,7 @@ impl Resolver<'_> {
         ] {
             self.at_most(field, count as u64, what, most as u64);
         }
-        // A layer that holds too many by itself is named where it is looked at.
+        // A layer that is too large by itself is reported when it is checked.
         let most = limits::SHAPES as u64;
         let shapes = file.blockers.iter().map(|b| shapes(b).min(most)).sum();
         self.at_most("blockers: shapes of all layers", shapes, "shapes", most);
@@ -69,7 +69,7 @@ fn meshes(file: &SceneFile) -> impl Iterator<Item = &MeshSource> {
     blockers.chain(surfaces)
 }
 
-/// About the triangles of a mesh that is made; one that is refused is not.
+/// The approximate number of triangles of a generated mesh; zero for one that will be refused.
 fn triangles(mesh: &MeshSource) -> u64 {
     let square = |n: u32| u64::from(if n > limits::CELLS { 0 } else { n }).pow(2);
     match mesh {

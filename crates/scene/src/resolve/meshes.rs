@@ -1,4 +1,4 @@
-//! Meshes of a scene file, checked and placed.
+//! Checks and places the meshes of a scene file.
 
 use super::Resolver;
 use super::faults::show;
@@ -12,7 +12,7 @@ use etendue_scenefile::{BlockersFile, EventFile, FormFile, MeshSource, SceneFile
 use glam::DVec3;
 use std::path::Path;
 
-/// A mesh as the file has it.
+/// A mesh of the file, placed in the scene.
 struct PlacedMesh<'a> {
     of: String,
     name: &'a String,
@@ -100,7 +100,7 @@ impl Resolver<'_> {
             Some(event) => Some(self.smooth(&at, event, &mesh, frame)?),
             None => None,
         };
-        // While a hierarchy is built, it is not to be held as well.
+        // Frees the mesh before a hierarchy is built.
         drop(mesh);
         Some(MeshObject {
             name: placed.name.clone(),
@@ -147,7 +147,7 @@ impl Resolver<'_> {
                 };
                 Mesh::parse(Path::new(path), &bytes).map_err(fault).ok()
             }
-            // Of what size it would be is named already.
+            // Its size has been reported as a fault already.
             _ if self.faults.has_below(&format!("{of}.mesh")) => None,
             &MeshSource::Paraboloid {
                 curvatures,
@@ -172,7 +172,8 @@ impl Resolver<'_> {
     }
 }
 
-/// How far from the origin light may begin, and the surfaces on which it goes on are: rays and meshes are computed in coordinates as large.
+/// The largest distance from the origin at which light may begin or leave a surface: the
+/// coordinates of rays and meshes are that large.
 fn reach(file: &SceneFile) -> f64 {
     let centers = file.surfaces.iter().map(|surface| match surface {
         SurfaceFile::Rectangle { center, .. }

@@ -1,4 +1,4 @@
-//! Names: of the scene, of what stands in it, and of planes.
+//! Checks the names of the scene, its objects and its planes.
 
 use super::faults::show;
 use super::fields::fields;
@@ -8,7 +8,7 @@ use etendue_scenefile::limits;
 use etendue_scenefile::{BlockersFile, SceneFile, SurfaceFile};
 
 impl Resolver<'_> {
-    /// The name of the scene is a folder of results.
+    /// Checks the name of the scene, which names a folder of results.
     pub(super) fn name_of_scene(&mut self, name: &str) {
         if !is_name(name) || name == "." || name == ".." || name.contains('/') {
             let field = "the name of the scene file";
@@ -37,7 +37,7 @@ impl Resolver<'_> {
     }
 
     fn names_of_planes(&mut self, file: &SceneFile) {
-        // Some disks hold `Light` and `light` for one folder.
+        // Some file systems treat `Light` and `light` as one folder.
         let folders: Vec<String> = file.planes.iter().map(|p| p.name.to_lowercase()).collect();
         for repeated in repeated(folders.iter().map(String::as_str)) {
             let mut named = (0..folders.len()).filter(|i| folders[*i] == repeated);
@@ -57,7 +57,7 @@ impl Resolver<'_> {
     }
 }
 
-/// Whether a name can stand in messages, files and pictures.
+/// Whether a name can be used in messages, files and pictures.
 fn is_name(name: &str) -> bool {
     let length = name.chars().take(limits::NAME + 1).count();
     (1..=limits::NAME).contains(&length) && name.chars().all(is_printable)

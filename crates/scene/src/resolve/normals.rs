@@ -1,24 +1,25 @@
-//! Normals at the vertices of a smooth mesh.
+//! Computes the normals at the vertices of a smooth mesh.
 
 use super::Resolver;
 use super::triangles::{MeshPlacement, others};
 use crate::Mesh;
 use glam::DVec3;
 
-/// The least cosine between the normal of a vertex and those of its triangles, 89.4°.
+/// The smallest cosine between the normal of a vertex and the normals of its triangles, 89.4°.
 ///
-/// An interpolated normal is a mean, with shares from 0 to 1, of three that each go this far along
-/// the normal of the triangle, and so goes as far itself: it cannot vanish or turn over. The shares
-/// are off by at most 4e-4 each (`triangles.rs`), which leaves it eight tenths of that.
+/// An interpolated normal is a mean, with shares from 0 to 1, of three normals that each have at
+/// least this component along the normal of the triangle, and so has it itself: it cannot vanish or
+/// turn over. The shares are off by at most 4e-4 each (`triangles.rs`), which leaves eight tenths
+/// of this component.
 ///
-/// It is also the least length of a vertex's sum of normals times areas, over the sum of their
-/// lengths. A shorter sum has a triangle whose cosine is less, since the mean cosine, weighted by
-/// area, is that ratio. So no mesh is refused by this that would pass the other.
+/// It is also the smallest length of a vertex's sum of normals times areas, over the sum of their
+/// lengths. With a shorter sum some triangle has a smaller cosine, since the mean cosine, weighted
+/// by area, is that ratio. So this test refuses no mesh that would pass the other.
 const MIN_NORMAL: f64 = 0.01;
 
 impl Resolver<'_> {
-    /// The normals of all vertices, the mean of the triangles around each by area; zero where no
-    /// triangle is.
+    /// The normals of all vertices: the area-weighted mean over the triangles around each; zero at
+    /// vertices without a triangle.
     pub(super) fn normals(&mut self, at: &MeshPlacement<'_>, mesh: &Mesh) -> Option<Vec<DVec3>> {
         let mut sums = vec![(DVec3::ZERO, 0.0); mesh.vertices().len()];
         for (corners, indices) in mesh.corners().zip(mesh.triangles()) {
@@ -59,13 +60,13 @@ impl Resolver<'_> {
         cancel.is_empty().then_some(normals)
     }
 
-    /// Requires the normal of a vertex to be on the side of each triangle around it.
+    /// Checks that the normal of a vertex is on the same side as each triangle around it.
     fn one_side(&mut self, at: &MeshPlacement<'_>, mesh: &Mesh, normals: &[DVec3]) -> Option<()> {
         let mut turned = Vec::new();
         for (corners, indices) in mesh.corners().zip(mesh.triangles()) {
             let normal = across(corners).normalize();
             let cosines = indices.map(|i| (i, normals[i as usize].dot(normal)));
-            // A vertex without a normal has been named already.
+            // A vertex without a normal has been reported already.
             let turned_here = |(i, cosine): &(u32, f64)| {
                 *cosine < MIN_NORMAL && normals[*i as usize] != DVec3::ZERO
             };
@@ -91,7 +92,7 @@ impl Resolver<'_> {
     }
 }
 
-/// A vector along the normal of a triangle, as long as twice its area.
+/// A vector along the normal of a triangle, with the length of twice its area.
 fn across([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }

@@ -1,8 +1,8 @@
-//! What the central ray may meet.
+//! The objects that the central ray may meet.
 
 use crate::scene::{BlockerLayer, MeshObject, PatchObject, Surface};
 
-/// What the central ray may meet.
+/// The objects that the central ray may meet.
 #[derive(Clone, Copy)]
 pub(super) struct Things<'a> {
     pub(super) blockers: &'a [BlockerLayer],

@@ -1,4 +1,4 @@
-//! Whether the shapes of a layer overlap, in n log n.
+//! Detects overlaps of the shapes of a layer in n log n.
 
 use etendue_field::{HalfPlane, Shape};
 use rstar::primitives::{GeomWithData, Rectangle};
@@ -11,9 +11,9 @@ pub(super) enum Thing {
     HalfPlane(usize),
 }
 
-/// The first two things that overlap, of numbers that are finite.
+/// The first two shapes or half-planes that overlap, given finite numbers.
 pub(super) fn overlap(shapes: &[Shape], half_planes: &[HalfPlane]) -> Option<[Thing; 2]> {
-    // Of three half-planes two overlap: more need no look.
+    // Of any three half-planes two overlap, so no more need be tested.
     let first = &half_planes[..half_planes.len().min(3)];
     let two = pairs(first.len()).find(|[i, j]| !facing_away(&first[*i], &first[*j]));
     if let Some(pair) = two {
@@ -32,8 +32,8 @@ fn pairs(count: usize) -> impl Iterator<Item = [usize; 2]> {
 
 /// The first shape that overlaps another, and the first that it overlaps.
 ///
-/// Bounds of shapes that are apart meet only where they touch or in the corners of discs. At any point
-/// these are a few for each order of magnitude of sizes, so few pairs are looked at.
+/// Bounds of disjoint shapes meet only where the shapes touch or in the corners of discs. At any
+/// point there are few of these for each order of magnitude of sizes, so few pairs are tested.
 fn overlap_of_shapes(shapes: &[Shape]) -> Option<[usize; 2]> {
     let indexed = shapes.iter().enumerate().map(|(i, shape)| {
         let [low, high] = corners(shape);
@@ -56,7 +56,7 @@ fn corners(shape: &Shape) -> [[f64; 2]; 2] {
     [[left, bottom], [right, top]]
 }
 
-/// Overlaps by less than this share of the sizes are rounding: shapes may touch.
+/// Overlaps by less than this share of the sizes count as rounding, because shapes may touch.
 const TOUCH: f64 = 1e-9;
 
 fn meet(a: &Shape, b: &Shape) -> bool {
@@ -96,7 +96,7 @@ fn reaches(shape: &Shape, half_plane: &HalfPlane) -> bool {
     }
 }
 
-/// Two half-planes share nothing when they face away from each other.
+/// Whether two half-planes are disjoint because they face away from each other.
 fn facing_away(a: &HalfPlane, b: &HalfPlane) -> bool {
     let (above, below) = if a.above { (a, b) } else { (b, a) };
     a.axis == b.axis && a.above != b.above && below.edge <= above.edge

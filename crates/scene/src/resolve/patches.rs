@@ -1,4 +1,4 @@
-//! Smooth surfaces of a scene file, checked.
+//! Checks the smooth surfaces of a scene file.
 
 use super::Resolver;
 use super::faults::{show, vector};
@@ -40,7 +40,7 @@ impl Resolver<'_> {
             FormFile::Cylinder(k) => [k, 0.0, k],
             FormFile::Paraboloid(k, l) => [k, l, 0.0],
         };
-        // Beyond the half that holds the vertex there is nothing of a sphere or a cylinder.
+        // A sphere or a cylinder has no points beyond the half that holds the vertex.
         if curvature[2] != 0.0 && *aperture > 1.0 / curvature[2].abs() {
             let allowed = format!(
                 "at most the radius of curvature, {} m",
@@ -87,7 +87,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// `None` of a surface that reflects by a BRDF.
+    /// The specular event; `None` for a surface that reflects by a BRDF.
     pub(super) fn specular(
         &mut self,
         of: &str,

@@ -1,4 +1,4 @@
-//! The central ray: straight legs from surface to surface.
+//! Computes the central ray: straight legs from surface to surface.
 
 use super::Resolver;
 use super::faults::{names, show, vector};
@@ -9,14 +9,14 @@ use etendue_scenefile::did_you_mean;
 use etendue_scenefile::{SceneFile, SurfaceFile};
 use glam::DVec3;
 
-/// Share of a leg within which it does not meet again what it has just left.
+/// The share of a leg within which a hit on the surface just left is ignored.
 const MIN_LEG_SHARE: f64 = 1e-9;
 
-/// Cosine of an angle to the normal at which a surface is met edge-on.
+/// The cosine of the angle to the normal below which a surface counts as edge-on.
 const GRAZING: f64 = 1.7e-3;
 
 impl Resolver<'_> {
-    /// The legs as far as they can be followed; the length of one that is at fault is NaN.
+    /// The legs, as far as they can be computed; the length of a faulty leg is NaN.
     pub(super) fn path(
         &mut self,
         file: &SceneFile,
@@ -63,7 +63,7 @@ impl Resolver<'_> {
         CentralRay { frame, legs }
     }
 
-    /// How far visit `i` is along the leg, and where it hits.
+    /// The distance of visit `i` along the leg, and the hit.
     fn visit(
         &mut self,
         i: usize,
@@ -75,7 +75,7 @@ impl Resolver<'_> {
         let visit = &file.path.visits[i];
         let known = things.objects();
         let Some(&(object, _)) = known.iter().find(|(_, name)| name == visit) else {
-            // What is at fault itself has been named already.
+            // A faulty surface has been reported already.
             let mut written = file.surfaces.iter().map(SurfaceFile::name);
             if !written.clone().any(|name| name == visit) {
                 let value = show(visit) + &did_you_mean(visit, written.clone());
@@ -156,7 +156,7 @@ impl Resolver<'_> {
         let (of, value, d) = if let Some(next) = path.visits.get(i + 1) {
             let known = things.objects();
             let Some((object, _)) = known.iter().find(|(_, name)| name == next) else {
-                // Its own visit says so.
+                // The fault is reported for the visit itself.
                 return Some(hit.normal);
             };
             let towards = things.center(*object) - hit.point;
@@ -179,11 +179,12 @@ impl Resolver<'_> {
     }
 }
 
-/// The frame in which light leaves a hit along `d`: that of a mirror, (−X, Y) reflected, turned by the smallest
-/// angle until it looks along `d`. Straight back at normal incidence it is (−X, Y, −D) (Durand et al. 2005,
-/// section 4.1, steps 1 and 7, at θ = 0); in the plane of incidence it is that of docs/conventions.md.
+/// The frame in which light leaves a hit along `d`: the frame of a mirror, (−X, Y) reflected,
+/// rotated by the smallest angle until it faces along `d`. Straight back at normal incidence it is
+/// (−X, Y, −D) (Durand et al. 2005, section 4.1, steps 1 and 7, at θ = 0); in the plane of
+/// incidence it is that of docs/conventions.md.
 ///
-/// Light that goes through has the frame in which it arrived, turned in the same way.
+/// Light that is transmitted keeps the frame in which it arrived, rotated in the same way.
 fn leaving(arriving: &Frame, hit: &Hit, d: DVec3, through: bool) -> Frame {
     let n = hit.normal;
     if through {
@@ -213,7 +214,7 @@ fn leaving(arriving: &Frame, hit: &Hit, d: DVec3, through: bool) -> Frame {
 }
 
 impl Things<'_> {
-    /// Everything that reflects, with its name.
+    /// All reflecting objects, with their names.
     fn objects(&self) -> Vec<(Object, &str)> {
         let surfaces = self.surfaces.iter().enumerate();
         let surfaces = surfaces.map(|(i, s)| (Object::Surface(i), s.name.as_str()));
@@ -225,7 +226,8 @@ impl Things<'_> {
         surfaces.chain(meshes).chain(patches).collect()
     }
 
-    /// What a smooth surface does at a hit that ends a leg, its frame as a lens, and its normal there on the side it faces.
+    /// The event of a smooth surface at a hit that ends a leg, its frame as a lens, and its normal
+    /// there on the side it faces.
     fn specular(&self, hit: &Hit, leg: &Frame) -> Option<(Specular, Frame, DVec3)> {
         match hit.object {
             Object::Surface(_) => None,
@@ -245,7 +247,7 @@ impl Things<'_> {
         }
     }
 
-    /// Whether light leaves it as it leaves a mirror, or more or less so.
+    /// Whether light leaves an object in or near the mirror direction.
     fn mirrors(&self, object: Object) -> bool {
         match object {
             Object::Surface(_) | Object::Mesh(_) => false,
@@ -253,12 +255,13 @@ impl Things<'_> {
         }
     }
 
-    /// Whether light that leaves a hit along `d` has gone through.
+    /// Whether light that leaves a hit along `d` is transmitted.
     fn is_left_behind(&self, hit: &Hit, d: DVec3, leg: &Frame) -> bool {
         self.specular(hit, leg).is_some() && d.dot(hit.normal) < 0.0
     }
 
-    /// Where the axis of a frame meets an object first: distance, point and the normal on this side.
+    /// The first hit of the axis of a frame with an object: distance, point and the normal on this
+    /// side.
     fn hit(&self, object: Object, frame: &Frame) -> Option<(f64, DVec3, DVec3)> {
         let found = match object {
             Object::Surface(i) => {
@@ -299,7 +302,7 @@ impl Things<'_> {
         }
     }
 
-    /// How far the axis of a frame goes until it meets an object, blockers or the light.
+    /// The distance along the axis of a frame to the first object, blocker or light.
     fn clear(&self, frame: &Frame, light: &Light) -> f64 {
         let objects = self.objects();
         let objects = objects
@@ -326,7 +329,8 @@ impl Things<'_> {
 }
 
 impl MeshObject {
-    /// Where the axis of a frame meets it first, and the normal there: of the triangle, or interpolated.
+    /// The first hit of the axis of a frame with the mesh, and the normal there: that of the
+    /// triangle, or interpolated.
     pub(crate) fn first_on(&self, frame: &Frame) -> Option<(f64, DVec3)> {
         let central = TwoPlane::default();
         let hits = self
@@ -341,7 +345,7 @@ impl MeshObject {
         Some((t, self.normal(i, frame.origin + t * frame.d)))
     }
 
-    /// The normal at a point of a triangle, outward as it is wound.
+    /// The outward normal at a point of a triangle, by its winding.
     pub(crate) fn normal(&self, triangle: usize, point: DVec3) -> DVec3 {
         let corners = &self.triangles[triangle];
         match &self.smooth {

@@ -1,4 +1,4 @@
-//! Environments, and pictures on surfaces.
+//! Checks environments, and pictures on surfaces.
 
 use super::Resolver;
 use super::faults::{show, vector};
@@ -14,11 +14,12 @@ use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Widths from the middle of a lobe at which next to nothing is left of it.
+/// The distance from the centre of a lobe, in widths, beyond which its light is negligible.
 const REACH: f64 = 6.0;
 
 impl Resolver<'_> {
-    /// Light from far away; the axes are directions of the world, `light` is the frame at the light.
+    /// Light from an environment. The axes are directions of the world; `light` is the frame at the
+    /// light.
     pub(super) fn environment(
         &mut self,
         [up, front]: [&[f64; 3]; 2],
@@ -27,7 +28,7 @@ impl Resolver<'_> {
         light: &Frame,
     ) -> Light {
         let [y, d] = [up, front].map(|v| light.vector_to_local(DVec3::from(*v)));
-        // The poles are where `up` says: it is `front` that gives way.
+        // `up` fixes the poles, and `front` is made orthogonal to it.
         let across = y.try_normalize().map_or(DVec3::NAN, |y| d - y * d.dot(y));
         let frame = Frame::new(DVec3::ZERO, d, y).and(Frame::new(DVec3::ZERO, across, y.cross(d)));
         if frame.is_none() && y.is_finite() && d.is_finite() {
@@ -75,12 +76,12 @@ impl Resolver<'_> {
         }
     }
 
-    /// Lobes of which nothing goes forward.
+    /// Reports lobes that send no light forward.
     fn behind(&mut self, frame: &Frame, lobes: &[SphericalGaussian]) {
         for (i, lobe) in lobes.iter().enumerate() {
             let from = frame.vector_to_world(lobe.from);
             let reach = REACH * lobe.width;
-            // A width at fault has been named already.
+            // A faulty width has been reported already.
             let is_narrow = lobe.width > 0.0 && reach < FRAC_PI_2;
             if is_narrow && from.z > libm::sin(reach) {
                 let allowed = "a direction before the central ray: an environment shines forward, along path.direction";
@@ -112,7 +113,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// The picture in a file, of numbers from 0 to `most`.
+    /// The picture in a file, with values from 0 to `most`.
     fn picture(&mut self, of: &str, path: &str, extensions: &[&str], most: f64) -> Option<Raster> {
         let bytes = self.named_file(of, path)?;
         let raster = picture::parse(Path::new(path), &bytes, extensions).map_err(|fault| {

@@ -1,4 +1,4 @@
-//! Virtual planes: their place on the path, their window and their frequencies.
+//! Checks virtual planes: their place on the path, their window and their frequencies.
 
 use super::faults::{names, show};
 use super::{PathStop, Resolver, SAME_PLANE};
@@ -117,7 +117,8 @@ impl Resolver<'_> {
             Side::Before => (frame, arrives),
             Side::After => {
                 let d = path.legs[place.leg].frame.d;
-                // Light that goes through leaves on the other side: N is there, and T turns with it.
+                // Transmitted light leaves on the other side; N points there, and T is rotated with
+                // it.
                 let frame = if d.dot(frame.d) < 0.0 {
                     Frame {
                         x: -frame.x,
@@ -179,7 +180,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// What a plane's place names.
+    /// The object that the place of a plane names.
     fn stop<'a>(
         &mut self,
         of: &str,
@@ -192,7 +193,7 @@ impl Resolver<'_> {
         let Some(stop) = stops.iter().find(|s| s.name == name) else {
             let surfaces = file.surfaces.iter().map(SurfaceFile::name);
             let mut written = file.blockers.iter().map(BlockersFile::name).chain(surfaces);
-            // What is at fault itself has been named already.
+            // A faulty object has been reported already.
             if !written.clone().any(|written| written == name) {
                 let value = show(place) + &did_you_mean(name, written.clone());
                 let allowed = format!("one of {}", names(&mut written));
@@ -211,7 +212,7 @@ impl Resolver<'_> {
         Some(stop)
     }
 
-    /// A distance of a place beside the path, which must not lie behind the light.
+    /// Checks that the distance of a place beside the path is not behind the light.
     fn beyond_light(&mut self, of: &str, place: &Place, distance: f64) -> f64 {
         if distance < 0.0 {
             let allowed = format!(
@@ -223,7 +224,7 @@ impl Resolver<'_> {
         distance
     }
 
-    /// On the leg that holds this distance along the path.
+    /// The place on the leg that holds this distance along the path.
     fn at_distance(
         &mut self,
         of: &str,
@@ -259,7 +260,8 @@ impl Resolver<'_> {
             .filter(|stop| stop.is_flat() && is_across(&at))
             .find(beside)
         {
-            // Light on its way back would be before or after it by rounding alone.
+            // Rounding alone would decide whether light on its way back is before or after the
+            // plane.
             let name = shown(stop.name, limits::NAME);
             let allowed = format!("a distance at which {name} does not lie in the plane");
             self.faults.add_on_path(of, value(), allowed);
@@ -297,7 +299,7 @@ impl Resolver<'_> {
         match *profile {
             Profile::Hann(_) | Profile::Box(_) => {}
             Profile::Gaussian { width, cut } => {
-                // A series of copies needs as many terms as the cut is wide.
+                // The number of terms in a series of copies grows with the width of the cut.
                 if width.is_finite() && cut.is_finite() && cut > 10.0 * width {
                     let allowed = "at most 10 widths: beyond 3.5 the Gaussian is below 1e-16";
                     self.faults.add(format!("{of}.cut"), number(cut), allowed);
@@ -327,7 +329,7 @@ impl Resolver<'_> {
         let natural = 0.5 / half_width;
         let spacing = axis.spacing.unwrap_or(natural);
         if axis.spacing.is_some() {
-            // A window of no width has been named already.
+            // A window of zero width has been reported already.
             if natural > 0.0 && spacing > natural * (1.0 + SAME_PLANE) {
                 let natural = tidy(natural);
                 let allowed = format!("at most 1/(2 · half-width of the window) = {natural}");
@@ -335,7 +337,7 @@ impl Resolver<'_> {
                     .add(format!("{of}.spacing"), number(spacing), allowed);
             }
         }
-        // Rounding must not add a frequency to a max that is a multiple of the spacing.
+        // Rounding must not add a frequency where max is a multiple of the spacing.
         let half = (axis.max / spacing - 1e-9).ceil();
         if !half.is_finite() || half < 1.0 {
             return None;
@@ -357,12 +359,12 @@ impl Resolver<'_> {
         Some(FrequencyAxis { half, spacing })
     }
 
-    /// The spectra of all batches are held until the errors are known.
+    /// Checks the memory for the spectra of all batches, which are kept until the errors are known.
     pub(super) fn memory(&mut self, planes: &[VirtualPlane], batches: u32, memory: u64) {
         let cells =
             |grid: &SliceGrid| -> f64 { grid.half_shape().iter().map(|n| *n as f64).product() };
-        // Batches and their residuals; beside them prediction, derivatives and errors, and the transform's
-        // fine grids, seven for each thread: 100 cover a dozen threads.
+        // Batches and their residuals, plus prediction, derivatives and errors, and the transform's
+        // fine grids, seven for each thread: 100 copies suffice for a dozen threads.
         let copies = 2.0 * f64::from(batches) + 100.0;
         let bytes: f64 = planes
             .iter()

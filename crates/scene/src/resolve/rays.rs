@@ -1,4 +1,4 @@
-//! Ray files as lights.
+//! Checks ray files as lights.
 
 use super::Resolver;
 use super::faults::{show, vector};
@@ -18,7 +18,7 @@ impl Resolver<'_> {
     ) -> Light {
         let axes = self.axes_of_rays(axes, light);
         let rays = self.ray_light(name, &axes, flux);
-        // After a fault nobody looks at it.
+        // The result is unused after a fault.
         let dark = || RayLight::new(vec![of_flux(1.0)], 0.0);
         match rays.or_else(dark) {
             Some(rays) => Light::Rays {
@@ -34,7 +34,7 @@ impl Resolver<'_> {
             given.map_or(default, |v| light.vector_to_local(DVec3::from(v)))
         };
         let [d, y] = [axis(front, DVec3::Z), axis(up, DVec3::Y)];
-        // X is Y × D, and Y gives way to D.
+        // X is Y × D, and Y is made orthogonal to D.
         let frame = Frame::new(DVec3::ZERO, d, y.cross(d));
         if frame.is_none() && d.is_finite() && y.is_finite() {
             let shown = [d, y].map(|v| vector(&light.vector_to_world(v).to_array()));
@@ -87,7 +87,7 @@ impl Resolver<'_> {
     }
 }
 
-/// Rays that go forward, where they go through the plane of the light.
+/// The rays that go forward, at their intersection with the plane of the light.
 fn through_the_plane(set: &RaySet, axes: &Frame, watts: f64) -> Option<RayLight> {
     let mut rays = Vec::with_capacity(set.len());
     let mut behind = 0.0;
@@ -99,7 +99,7 @@ fn through_the_plane(set: &RaySet, axes: &Frame, watts: f64) -> Option<RayLight>
         let [u, v] = [along.x / along.z, along.y / along.z];
         let [x, y] = [point.x - point.z * u, point.y - point.z * v];
         let ray = TwoPlane { x, y, u, v };
-        // Nothing is seen of what goes along the plane: its slopes have no end.
+        // Light that travels along the plane is not recorded, because its slopes are infinite.
         if along.z > LEVEL {
             rays.push(FluxRay { ray, flux });
         } else {
@@ -109,7 +109,7 @@ fn through_the_plane(set: &RaySet, axes: &Frame, watts: f64) -> Option<RayLight>
     RayLight::new(rays, behind)
 }
 
-/// The cosine to the central ray below which a ray goes along the plane.
+/// The cosine to the central ray below which a ray counts as parallel to the plane.
 const LEVEL: f64 = 1e-6;
 
 fn of_flux(flux: f64) -> FluxRay {

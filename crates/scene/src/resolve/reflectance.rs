@@ -1,4 +1,4 @@
-//! BRDFs and what varies them over a surface.
+//! Checks BRDFs and the factors that vary them over a surface.
 
 use super::Resolver;
 use etendue_field::{
@@ -8,11 +8,11 @@ use etendue_scenefile::{
     BrdfFile, EventFile, FresnelFile, GratingFile, LobeFile, PatternFile, TermFile,
 };
 
-/// Most values of a factor of an angle: one for each tenth of a degree.
+/// The largest number of values of a factor of an angle: one for each tenth of a degree.
 const FINEST: usize = 901;
 
 impl Resolver<'_> {
-    /// How a surface reflects; `None` of one that sends each ray on in one direction.
+    /// The reflectance of a surface; `None` for one that sends each ray in one direction.
     pub(super) fn reflectance(&mut self, of: &str, event: &EventFile) -> Option<Reflectance> {
         let (mut resolved, texture) = match event {
             EventFile::Reflects {
@@ -57,7 +57,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// `None` where there is nothing to add up, or too much.
+    /// The sum of BRDFs; `None` where there are no terms, or too many.
     fn sum(&mut self, of: &str, terms: &[TermFile]) -> Option<Reflectance> {
         let count = terms.len();
         if !(1..=MOST_TERMS).contains(&count) {

@@ -1,4 +1,4 @@
-//! Flat surfaces of a scene file, checked.
+//! Checks the flat surfaces of a scene file.
 
 use super::Resolver;
 use super::faults::vector;
@@ -65,8 +65,8 @@ impl Resolver<'_> {
         frame
     }
 
-    /// A finite distance must be in front of the light; an infinite one is a fault of its center.
-    /// Without a sound path nothing is known of it.
+    /// Checks that a finite distance is in front of the light; an infinite one is a fault of the
+    /// center. Without a valid path no distance is known.
     pub(super) fn ahead(&mut self, of: &str, distance: f64) {
         if distance <= 0.0 && !self.faults.astray {
             let allowed = "a place in front of the light, along path.direction";

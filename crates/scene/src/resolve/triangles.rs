@@ -1,5 +1,5 @@
-//! Triangles of a mesh where it is placed: within the coordinates of a scene, and thick enough to
-//! be told from lines.
+//! Checks the triangles of a placed mesh: within the coordinates of a scene, and thick enough to be
+//! distinguished from lines.
 
 use super::Resolver;
 use crate::Mesh;
@@ -8,26 +8,27 @@ use etendue_scenefile::limits::MAX_NUMBER;
 use glam::DVec3;
 use std::path::Path;
 
-/// Height of a triangle over the largest coordinate below which it cannot be told from a line.
+/// The height of a triangle over the largest coordinate below which it cannot be distinguished from
+/// a line.
 ///
 /// A coordinate in the frame of a leg is rounded by up to 4e-16 of the largest. At this height a
-/// normal leans by 4e-4 of a radian, and the shares of its corners in a point are off by as much;
-/// what is lower is noise.
+/// normal is tilted by 4e-4 of a radian, and the barycentric shares of a point are off by as much;
+/// below it rounding dominates.
 const THIN: f64 = 1e-12;
-/// The least height in metres: the smallest size of a scene times the smallest scale. Products of
-/// six lengths as small stay inside f64.
+/// The smallest height in metres: the smallest size of a scene times the smallest scale. Products
+/// of six such lengths stay within f64.
 const LEAST_HEIGHT: f64 = 1e-18;
-/// Share of a mesh's area that thin triangles may hold and be dropped: what is missing then is
-/// beneath all noise.
+/// The share of a mesh's area that thin triangles may hold and be dropped; the missing light is far
+/// below the noise.
 const MAX_DROPPED_SHARE: f64 = 1e-6;
-/// Where a mesh is, and how its faults are told.
+/// The placement of a mesh, and how its faults are reported.
 pub(super) struct MeshPlacement<'a> {
     /// The field of the blocker or the surface.
     pub(super) of: String,
     pub(super) source: &'a MeshSource,
     pub(super) center: DVec3,
     pub(super) scale: f64,
-    /// The largest distance from the origin of anything that light begins or goes on at.
+    /// The largest distance from the origin of any point where light begins or leaves a surface.
     pub(super) reach: f64,
 }
 
@@ -37,8 +38,8 @@ impl MeshPlacement<'_> {
         self.center + vertex * self.scale
     }
 
-    /// The number of a vertex, counted as its format does: OBJ from 1, PLY and meshes that are made
-    /// from 0.
+    /// The number of a vertex, counted as in its format: OBJ from 1, PLY and generated meshes from
+    /// 0.
     pub(super) fn number(&self, vertex: u32) -> u64 {
         let extension = match self.source {
             MeshSource::File(path) => Path::new(path).extension(),
@@ -47,7 +48,7 @@ impl MeshPlacement<'_> {
         u64::from(vertex) + u64::from(extension.is_some_and(|e| e.eq_ignore_ascii_case("obj")))
     }
 
-    /// The field of something about its mesh.
+    /// The path of a field of the mesh.
     pub(super) fn field(&self, what: &str) -> String {
         match self.source {
             MeshSource::File(path) => format!("{}.mesh, {path:?}: {what}", self.of),
@@ -63,7 +64,7 @@ impl MeshPlacement<'_> {
 }
 
 impl Resolver<'_> {
-    /// The mesh without triangles too thin for f64, if they are next to nothing of it.
+    /// The mesh without triangles too thin for f64, if they are a negligible part of it.
     pub(super) fn distinct_triangles(
         &mut self,
         at: &MeshPlacement<'_>,
@@ -131,7 +132,7 @@ fn height([a, b, c]: [DVec3; 3]) -> [f64; 2] {
     [twice / longest, twice]
 }
 
-/// Words for those beside the first.
+/// The words that count the others after the first.
 pub(super) fn others(count: usize) -> String {
     match count {
         0 | 1 => String::new(),

@@ -1,12 +1,12 @@
-//! What a field of a scene file is, one way to write it, and the numbers it may hold: attributes of its type. The schema,
-//! the hints of messages and the check of all numbers come from them.
+//! Attributes of types: what a field of a scene file is, an example, and the numbers it may hold.
+//! The schema, the hints of messages and the check of all numbers are derived from them.
 
 use crate::display::number;
 use crate::limits::MAX_NUMBER;
 use schemars::Schema;
 use serde_json::Value;
 
-/// What it is, and one way to write it.
+/// The description of the field, and an example.
 pub(super) fn told(what: &'static str, example: &'static str) -> impl FnMut(&mut Schema) {
     move |schema| {
         schema.insert("title".into(), what.into());
@@ -19,12 +19,12 @@ pub(super) fn within(least: f64, most: f64) -> impl FnMut(&mut Schema) {
     move |schema| numbers(schema, |node| bound(node, least, most))
 }
 
-/// The numbers in words, where they depend on other fields: the resolver checks them.
+/// The range in words, where it depends on other fields and is checked by the resolver.
 pub(super) fn depends(words: &'static str) -> impl FnMut(&mut Schema) {
     move |schema| numbers(schema, |node| node["x-range"] = words.into())
 }
 
-/// Why there are no others.
+/// The reason why other numbers are not allowed.
 pub(super) fn since(reason: &'static str) -> impl FnMut(&mut Schema) {
     move |schema| {
         numbers(schema, |node| {
@@ -34,12 +34,12 @@ pub(super) fn since(reason: &'static str) -> impl FnMut(&mut Schema) {
     }
 }
 
-/// Any number of a scene.
+/// Any number allowed in a scene.
 pub(super) fn any(schema: &mut Schema) {
     within(-MAX_NUMBER, MAX_NUMBER)(schema);
 }
 
-/// Sizes, widths, frequencies and strengths: every number of which nothing else is said.
+/// Sizes, widths, frequencies and strengths: the default for every number.
 pub(crate) fn positive(node: &mut Value) {
     bound(node, 1.0 / MAX_NUMBER, MAX_NUMBER);
 }
@@ -52,7 +52,7 @@ pub(super) fn direction(example: &'static str) -> impl FnMut(&mut Schema) {
     }
 }
 
-/// What several fields are: in words, by an example and perhaps in numbers.
+/// Attributes that several fields share: a description, an example and optionally a range.
 macro_rules! shared {
     ($($name:ident: $what:literal, $example:literal $(, $numbers:expr)?;)*) => {$(
         pub(super) fn $name(schema: &mut Schema) {
@@ -87,7 +87,7 @@ fn bound(node: &mut Value, least: f64, most: f64) {
     node["maximum"] = most.into();
 }
 
-/// Tells something of a number, or of each in a list.
+/// Adds an attribute to a number, or to each number in a list.
 fn numbers(schema: &mut Schema, tell: impl FnOnce(&mut Value)) {
     let each = if schema.get("items").is_some() {
         "/items"

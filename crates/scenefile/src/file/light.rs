@@ -1,4 +1,4 @@
-//! Lights, as written.
+//! The light of a scene file.
 
 use super::allowed::{
     cycles, direction, factor, intensity, length, modulation, phase, place, radiance, sides, told,
@@ -8,7 +8,7 @@ use super::{AxisName, along_y, along_z, one};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The light. The central ray leaves its centre.
+/// The light; the central ray starts at its centre.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Light", deny_unknown_fields)]
 #[schemars(transform = told("a light", "Rectangle(center: (0, 0, 0), size: (0.2, 0.2))"))]
@@ -39,9 +39,9 @@ pub enum LightFile {
         #[schemars(transform = radiance)]
         radiance: f64,
     },
-    /// A point that shines alike in all directions.
+    /// A point that emits uniformly in all directions.
     Point {
-        /// Where it is, world coordinates.
+        /// Position, world coordinates.
         #[schemars(transform = place)]
         center: [f64; 3],
         /// Intensity, W sr⁻¹.
@@ -54,7 +54,7 @@ pub enum LightFile {
         /// Centre, world coordinates.
         #[schemars(transform = place)]
         center: [f64; 3],
-        /// Its shape.
+        /// Shape of the bulb.
         bulb: BulbFile,
         /// Radiance along the central ray, W m⁻² sr⁻¹.
         #[serde(default = "one")]
@@ -66,7 +66,7 @@ pub enum LightFile {
     },
     /// A slide projector: a point whose intensity is a picture over slopes.
     Projector {
-        /// Where it is, world coordinates.
+        /// Position, world coordinates.
         #[schemars(transform = place)]
         center: [f64; 3],
         /// Intensity where the picture is 1, W sr⁻¹.
@@ -78,7 +78,7 @@ pub enum LightFile {
     },
     /// A collimated beam along the central ray whose irradiance is a picture.
     Beam {
-        /// Where the central ray begins, world coordinates.
+        /// Start of the central ray, world coordinates.
         #[schemars(transform = place)]
         center: [f64; 3],
         /// Irradiance where the picture is 1, W m⁻².
@@ -88,43 +88,49 @@ pub enum LightFile {
         /// The picture, in metres along X and along Y.
         image: ImageFile,
     },
-    /// Light from far away; that alone shines which comes from before the plane across `path.direction` at the centre.
+    /// Light from an environment; only directions in front of the plane across `path.direction` at
+    /// the centre emit light.
     Environment {
-        /// Where the central ray begins, world coordinates.
+        /// Start of the central ray, world coordinates.
         #[schemars(transform = place)]
         center: [f64; 3],
         /// Direction of the map's top, any length.
         #[serde(default = "along_y")]
         #[schemars(transform = direction("(0, 1, 0)"))]
         up: [f64; 3],
-        /// Direction of the middle of the map, any length: its part orthogonal to `up` is used.
+        /// Direction of the middle of the map, any length; only the part orthogonal to `up` is
+        /// used.
         #[serde(default = "along_z")]
         #[schemars(transform = direction("(0, 0, 1)"))]
         front: [f64; 3],
-        /// Factor on the map.
+        /// Scale factor of the map's radiance.
         #[serde(default = "one")]
         #[schemars(transform = factor)]
         scale: f64,
-        /// How much comes from where.
+        /// Radiance by direction.
         map: EnvironmentFile,
     },
-    /// The rays of a file, as they go through the plane across `path.direction` at the centre; those that go back from it are left out.
+    /// The rays of a file, where they cross the plane across `path.direction` at the centre; rays
+    /// that go backwards are omitted.
     Rays {
-        /// Where the origin of the file is, and where the central ray begins, world coordinates.
+        /// Position of the file's origin and start of the central ray, world coordinates.
         #[schemars(transform = place)]
         center: [f64; 3],
-        /// IES TM-25, MCPL or NPY; the path is relative to the scene file, and stays inside its folder.
+        /// IES TM-25, MCPL or NPY file; the path is relative to the scene file, and must stay
+        /// inside its folder.
         #[schemars(transform = told("a ray file in quotes", r#""led.tm25ray""#))]
         file: String,
-        /// Direction of the file's Z axis, any length. Left out: `path.direction`.
+        /// Direction of the file's Z axis, any length; `path.direction` by default.
         #[serde(default)]
         #[schemars(transform = direction("(0, 0, 1)"))]
         front: Option<[f64; 3]>,
-        /// Direction of the file's Y axis, any length: its part orthogonal to `front` is used. Left out: that of the central ray's frame.
+        /// Direction of the file's Y axis, any length; only the part orthogonal to `front` is used.
+        /// By default the Y axis of the central ray's frame.
         #[serde(default)]
         #[schemars(transform = direction("(0, 1, 0)"))]
         up: Option<[f64; 3]>,
-        /// Flux of all rays of the file, W. Left out: what the file says; it must say so in W, or in lm with its total in W and lm.
+        /// Flux of all rays of the file, W. By default the flux stated in the file, which must be
+        /// in W, or in lm with its total in W and lm.
         #[serde(default)]
         #[schemars(transform = told("a flux in watts", "0.5"))]
         flux: Option<f64>,
@@ -132,7 +138,7 @@ pub enum LightFile {
 }
 
 impl LightFile {
-    /// Where the central ray leaves it, world coordinates.
+    /// The point where the central ray leaves the light, world coordinates.
     #[must_use]
     pub fn center(&self) -> [f64; 3] {
         match self {
@@ -148,26 +154,28 @@ impl LightFile {
     }
 }
 
-/// Radiance by the direction light comes from; in coordinates whose second axis is `up` and whose third is `front`.
+/// Radiance by the direction from which light comes, in coordinates whose second axis is `up` and
+/// whose third is `front`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Environment")]
 #[schemars(transform = told("what comes from where", "Lobes([(from: (0, 0, -1), width: 0.3)])"))]
 pub enum EnvironmentFile {
     /// A sum of lobes.
     Lobes(Vec<SphericalGaussianFile>),
-    /// An OpenEXR picture over latitude and longitude, W m⁻² sr⁻¹; the path is relative to the scene file, and stays inside its folder.
+    /// An OpenEXR picture over latitude and longitude, W m⁻² sr⁻¹; the path is relative to the
+    /// scene file, and must stay inside its folder.
     File(String),
 }
 
-/// A lobe of light, radiance · exp((cos γ − 1)/width²), γ being the angle to `from`.
+/// A lobe of light, radiance · exp((cos γ − 1)/width²), with the angle γ to `from`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "LightLobe", deny_unknown_fields)]
 #[schemars(transform = told("a lobe", "(from: (0, 0, -1), width: 0.3)"))]
 pub struct SphericalGaussianFile {
-    /// The direction most of it comes from, any length.
+    /// Direction from which most of the light comes, any length.
     #[schemars(transform = direction("(0, 0, -1)"))]
     pub from: [f64; 3],
-    /// Its width, radians.
+    /// Width of the lobe, radians.
     #[schemars(transform = told("an angle in radians", "0.3"), transform = within(1e-4, 1e3))]
     pub width: f64,
     /// Radiance from that direction, W m⁻² sr⁻¹.
@@ -176,15 +184,16 @@ pub struct SphericalGaussianFile {
     pub radiance: f64,
 }
 
-/// A smooth picture: exp(−π (a²/w₁² + b²/w₂²)), times a grating ½ (1 + m cos(2π f t + p)) if it has one.
+/// A smooth picture: exp(−π (a²/w₁² + b²/w₂²)), optionally times a grating ½ (1 + m cos(2π f t +
+/// p)).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Image", deny_unknown_fields)]
 #[schemars(transform = told("a picture", "(width: (0.2, 0.2))"))]
 pub struct ImageFile {
-    /// w₁ and w₂ along X and along Y.
+    /// Widths w₁ and w₂ along X and along Y.
     #[schemars(transform = told("two numbers, along X and along Y", "(0.2, 0.2)"))]
     pub width: [f64; 2],
-    /// Its grating.
+    /// Grating of the picture.
     #[serde(default)]
     pub grating: Option<GratingFile>,
 }
@@ -194,16 +203,16 @@ pub struct ImageFile {
 #[serde(rename = "Grating", deny_unknown_fields)]
 #[schemars(transform = told("a grating", "(axis: X, frequency: 5)"))]
 pub struct GratingFile {
-    /// The axis along which it varies.
+    /// The axis along which the grating varies.
     pub axis: AxisName,
-    /// f, cycles per unit of the picture, or per metre of a surface.
+    /// Frequency f, cycles per unit of the picture, or per metre of a surface.
     #[schemars(transform = cycles)]
     pub frequency: f64,
-    /// m.
+    /// Modulation m.
     #[serde(default = "one")]
     #[schemars(transform = modulation)]
     pub modulation: f64,
-    /// p, radians.
+    /// Phase p, radians.
     #[serde(default)]
     #[schemars(transform = phase)]
     pub phase: f64,

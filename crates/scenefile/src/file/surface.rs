@@ -1,4 +1,4 @@
-//! Surfaces and what they do to light, as written.
+//! The surfaces of a scene file and their interaction with light.
 
 use super::allowed::{
     albedo, cycles, depends, direction, factor, factors_by_angle, length, modulation, name, phase,
@@ -9,22 +9,22 @@ use crate::limits::CELLS;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Where a mesh comes from.
+/// The source of a mesh.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(transform = told("a mesh", r#"File("mesh.obj")"#))]
 pub enum MeshSource {
-    /// An OBJ or PLY file; the path is relative to the scene file, and stays inside its folder.
+    /// An OBJ or PLY file; the path is relative to the scene file, and must stay inside its folder.
     File(String),
     /// A generated piece of the paraboloid z = −(k₁ x² + k₂ y²)/2 around the origin, facing along z.
     Paraboloid {
-        /// k₁ and k₂, per metre: positive if it is convex.
+        /// Curvatures k₁ and k₂, per metre; positive if convex.
         #[schemars(transform = told("curvatures along X and Y, per metre", "(1, 0.5)"), transform = within(-1e6, 1e6))]
         curvatures: [f64; 2],
-        /// It reaches to ± this along x and along y.
+        /// Half-width: the piece extends to ± this along x and along y.
         #[schemars(transform = length, transform = within(1e-9, 1e8))]
         half: f64,
-        /// Cells along a side, of two triangles each.
+        /// Number of cells along a side, of two triangles each.
         #[serde(deserialize_with = "count")]
         #[schemars(transform = told("a whole number", "16"), transform = within(1.0, f64::from(CELLS)))]
         cells: u32,
@@ -41,19 +41,19 @@ pub enum MeshSource {
         #[serde(deserialize_with = "count")]
         #[schemars(transform = told("a whole number", "5"), transform = depends("0 to half the rings"))]
         lobes: u32,
-        /// Rings from pole to pole.
+        /// Number of rings from pole to pole.
         #[serde(deserialize_with = "count")]
         #[schemars(transform = told("a whole number", "32"), transform = within(2.0, f64::from(CELLS)))]
         rings: u32,
     },
 }
 
-/// What light falls on.
+/// A surface that light falls on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Surface", deny_unknown_fields)]
 #[schemars(transform = told("a surface", r#"Rectangle(name: "floor", center: (0, 0, 2), size: (6, 6))"#))]
 pub enum SurfaceFile {
-    /// A Lambertian rectangle, edges along X and Y unless it faces elsewhere.
+    /// A Lambertian rectangle, with edges along X and Y by default.
     Rectangle {
         /// Name, for the path and the planes to refer to.
         #[schemars(transform = name)]
@@ -64,12 +64,13 @@ pub enum SurfaceFile {
         /// Side lengths along X and Y.
         #[schemars(transform = sides)]
         size: [f64; 2],
-        /// Its normal, any length: back along `path.direction` unless stated. Its edges are then along the part of the path's
-        /// X axis that is orthogonal to it (of Y, if X is along it), and across.
+        /// Normal of the rectangle, any length; by default back along `path.direction`. One pair of
+        /// edges is along the part of the path's X axis that is orthogonal to the normal (of Y, if
+        /// X is along it), the other across.
         #[serde(default)]
         #[schemars(transform = direction("(0, 0, -1)"))]
         facing: Option<[f64; 3]>,
-        /// Reflected over incident flux.
+        /// Albedo: reflected over incident flux.
         #[serde(default = "half")]
         #[schemars(transform = albedo)]
         albedo: f64,
@@ -79,20 +80,20 @@ pub enum SurfaceFile {
         /// Name.
         #[schemars(transform = name)]
         name: String,
-        /// Where the mesh's origin is put, world coordinates.
+        /// Position of the mesh's origin, world coordinates.
         #[schemars(transform = place)]
         center: [f64; 3],
         /// The triangles.
         mesh: MeshSource,
-        /// Factor on the mesh's coordinates.
+        /// Scale factor of the mesh's coordinates.
         #[serde(default = "one")]
         #[schemars(transform = factor)]
         scale: f64,
-        /// Reflected over incident flux, if it is Lambertian.
+        /// Albedo, reflected over incident flux, if the mesh is Lambertian.
         #[serde(default = "half")]
         #[schemars(transform = albedo)]
         albedo: f64,
-        /// What it does to light as a smooth surface, with normals interpolated between its vertices.
+        /// Interaction with light as a smooth surface, with normals interpolated between vertices.
         #[serde(default)]
         event: Option<EventFile>,
     },
@@ -101,29 +102,29 @@ pub enum SurfaceFile {
         /// Name.
         #[schemars(transform = name)]
         name: String,
-        /// Its vertex, world coordinates.
+        /// Vertex of the surface, world coordinates.
         #[schemars(transform = place)]
         center: [f64; 3],
-        /// Its normal at the vertex, any length.
+        /// Normal at the vertex, any length.
         #[schemars(transform = direction("(0, 0, -1)"))]
         facing: [f64; 3],
-        /// Its form.
+        /// Shape of the surface.
         form: FormFile,
-        /// Direction of the first curvature, any length: the path's X axis unless stated (Y, if it faces along X); its part
-        /// orthogonal to the normal is used.
+        /// Direction of the first curvature, any length; by default the path's X axis (Y, if the
+        /// surface faces along X). Only the part orthogonal to the normal is used.
         #[serde(default)]
         #[schemars(transform = direction("(1, 0, 0)"))]
         along: Option<[f64; 3]>,
-        /// Its radius, seen along the normal.
+        /// Radius of the surface, seen along the normal.
         #[schemars(transform = length)]
         aperture: f64,
-        /// What it does.
+        /// Interaction with light.
         event: EventFile,
     },
 }
 
 impl SurfaceFile {
-    /// Its name.
+    /// The name of the surface.
     #[must_use]
     pub fn name(&self) -> &str {
         match self {
@@ -134,7 +135,8 @@ impl SurfaceFile {
     }
 }
 
-/// The form of a smooth surface around its vertex; curvatures per metre, positive if it is convex seen from where it faces.
+/// The shape of a smooth surface around its vertex; curvatures per metre, positive if convex as
+/// seen from the side it faces.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Form")]
 #[schemars(transform = told("a form with its curvature", "Sphere(0.5)"))]
@@ -143,7 +145,7 @@ pub enum FormFile {
     Plane,
     /// A sphere with this curvature, 1/R.
     Sphere(#[schemars(transform = within(-1e6, 1e6))] f64),
-    /// A circular cylinder with this curvature; its axis is across `along`.
+    /// A circular cylinder with this curvature and its axis across `along`.
     Cylinder(#[schemars(transform = within(-1e6, 1e6))] f64),
     /// A paraboloid with these curvatures at its vertex, the first along `along`.
     Paraboloid(
@@ -152,19 +154,19 @@ pub enum FormFile {
     ),
 }
 
-/// What a smooth surface does to light.
+/// The interaction of a smooth surface with light.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Event", deny_unknown_fields)]
 #[schemars(transform = told("what happens to light", "Refraction(front: 1, back: 1.5)"))]
 pub enum EventFile {
-    /// Reflects it all.
+    /// Reflects all light.
     Mirror,
-    /// Lets it through by Snell's law; nothing is reflected.
+    /// Transmits light by Snell's law; nothing is reflected.
     Refraction {
-        /// Index of refraction on the side it faces.
+        /// Index of refraction on the side that the surface faces.
         #[schemars(transform = told("an index of refraction", "1"), transform = within(0.1, 10.0))]
         front: f64,
-        /// Index on the other side.
+        /// Index of refraction on the other side.
         #[schemars(transform = told("an index of refraction", "1.5"), transform = within(0.1, 10.0))]
         back: f64,
     },
@@ -173,39 +175,41 @@ pub enum EventFile {
         #[schemars(transform = depends("a focal length in metres, negative if the lens spreads light, not 0"))]
          f64,
     ),
-    /// Reflects by a BRDF, on the side it faces; black on the other.
+    /// Reflects by a BRDF on the side that the surface faces; the other side is black.
     Reflects {
         /// The BRDF.
         brdf: BrdfFile,
-        /// Another BRDF that is added to it, weighted by 1 − `blend`.
+        /// A second BRDF that is added, weighted by 1 − `blend`.
         #[serde(default)]
         other: Option<Box<BrdfFile>>,
-        /// What weights the BRDF where there is another.
+        /// Weight of the first BRDF where there is a second.
         #[serde(default)]
         blend: Option<PatternFile>,
-        /// What multiplies the BRDF.
+        /// Factor that multiplies the BRDF.
         #[serde(default)]
         texture: Option<PatternFile>,
     },
-    /// Reflects by a weighted sum of BRDFs, on the side it faces; black on the other.
+    /// Reflects by a weighted sum of BRDFs on the side that the surface faces; the other side is
+    /// black.
     Sum {
-        /// The BRDFs with their weights, 1 to 8 of them. The first says where the central ray goes on, as far as the path does not.
+        /// The BRDFs with their weights, 1 to 8 of them. Where the path does not set the direction
+        /// of the central ray, the first one does.
         #[schemars(transform = told("a list of BRDFs with weights", "[(brdf: (lobe: Phong(100)), weight: Checkerboard(0.1))]"))]
         terms: Vec<TermFile>,
-        /// What multiplies their sum.
+        /// Factor that multiplies the sum.
         #[serde(default)]
         texture: Option<PatternFile>,
     },
 }
 
-/// A BRDF of a sum.
+/// A term in a sum of BRDFs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Term", deny_unknown_fields)]
 #[schemars(transform = told("a BRDF with its weight", "(brdf: (lobe: Phong(100)), weight: Checkerboard(0.1))"))]
 pub struct TermFile {
     /// The BRDF.
     pub brdf: BrdfFile,
-    /// How much of it there is at each place: 1 unless stated.
+    /// Weight of the BRDF at each place; 1 by default.
     #[serde(default)]
     pub weight: Option<PatternFile>,
 }
@@ -215,20 +219,21 @@ pub struct TermFile {
 #[serde(rename = "Brdf", deny_unknown_fields)]
 #[schemars(transform = told("a BRDF", "(lobe: Phong(100))"))]
 pub struct BrdfFile {
-    /// Its lobe.
+    /// Lobe of the BRDF.
     pub lobe: LobeFile,
-    /// Factor on it, 0 to 1.
+    /// Factor on the lobe, 0 to 1.
     #[serde(default = "one")]
     #[schemars(transform = albedo)]
     pub albedo: f64,
-    /// Its Fresnel factor.
+    /// Fresnel factor.
     #[serde(default)]
     pub fresnel: FresnelFile,
-    /// A factor of the angle at which light comes: values at equal steps from the normal to 90 degrees, linear in between; 1 unless stated.
+    /// Factor by the angle of incidence: values at equal steps from the normal to 90 degrees,
+    /// linear in between; 1 by default.
     #[serde(default)]
     #[schemars(transform = factors_by_angle)]
     pub incoming: Option<Vec<f64>>,
-    /// The same of the angle at which light leaves.
+    /// Factor by the angle of the outgoing light, in the same form.
     #[serde(default)]
     #[schemars(transform = factors_by_angle)]
     pub outgoing: Option<Vec<f64>>,
@@ -239,9 +244,9 @@ pub struct BrdfFile {
 #[serde(rename = "Lobe")]
 #[schemars(transform = told("a lobe", "Phong(100)"))]
 pub enum LobeFile {
-    /// Alike in all directions.
+    /// Uniform in all directions.
     Lambertian,
-    /// cosⁿ of the angle to the mirror direction, with this n.
+    /// Phong lobe: cosⁿ of the angle to the mirror direction, with this n.
     Phong(#[schemars(transform = within(0.0, 1e4))] f64),
     /// Microfacets with Beckmann's distribution of normals, with this roughness α.
     Beckmann(#[schemars(transform = within(1e-3, 1.0))] f64),
@@ -249,22 +254,22 @@ pub enum LobeFile {
     Ggx(#[schemars(transform = within(1e-3, 1.0))] f64),
 }
 
-/// The share of light that is reflected, by the angle of incidence.
+/// The share of light that is reflected, as a function of the angle of incidence.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Fresnel", deny_unknown_fields)]
 #[schemars(transform = told("a Fresnel factor", "Dielectric(1.5)"))]
 pub enum FresnelFile {
-    /// All of it.
+    /// All light is reflected.
     #[default]
     White,
     /// At a dielectric with this index of refraction.
     Dielectric(#[schemars(transform = within(0.05, 20.0))] f64),
     /// At a conductor with index n + i k.
     Conductor {
-        /// n.
+        /// Index of refraction n.
         #[schemars(transform = told("an index of refraction", "1.5"), transform = within(0.05, 20.0))]
         n: f64,
-        /// k.
+        /// Index of absorption k.
         #[schemars(transform = told("an index of absorption", "3"), transform = within(0.0, 20.0))]
         k: f64,
     },
@@ -275,27 +280,29 @@ pub enum FresnelFile {
 #[serde(rename = "Pattern", deny_unknown_fields)]
 #[schemars(transform = told("a pattern", "Checkerboard(0.1)"))]
 pub enum PatternFile {
-    /// ½ (1 + m cos(2π f t + p)), t along `along` or across it.
+    /// ½ (1 + m cos(2π f t + p)), with t along `along` or across it.
     Cosine {
-        /// The axis along which it varies: X is `along`.
+        /// The axis along which the pattern varies; X is `along`.
         axis: AxisName,
-        /// f, cycles per metre.
+        /// Frequency f, cycles per metre.
         #[schemars(transform = cycles)]
         frequency: f64,
-        /// m.
+        /// Modulation m.
         #[serde(default = "one")]
         #[schemars(transform = modulation)]
         modulation: f64,
-        /// p, radians.
+        /// Phase p, radians.
         #[serde(default)]
         #[schemars(transform = phase)]
         phase: f64,
     },
-    /// 1 and 0 by turns on squares; two of their sides make this period.
+    /// A checkerboard of 1 and 0 with this period, two sides of a square.
     Checkerboard(f64),
-    /// A picture around the vertex, 0 beyond its edge: X to its right, Y to its top, seen from where the surface faces.
+    /// A picture around the vertex, 0 outside: X to its right, Y to its top, as seen from the side
+    /// that the surface faces.
     Picture {
-        /// An OpenEXR or PNG file of numbers from 0 to 1; the path is relative to the scene file, and stays inside its folder.
+        /// An OpenEXR or PNG file of numbers from 0 to 1; the path is relative to the scene file,
+        /// and must stay inside its folder.
         #[schemars(transform = told("a file in quotes", r#""picture.exr""#))]
         file: String,
         /// Width along X and height along Y, metres.

@@ -1,22 +1,25 @@
-//! How far a 4D spectrum is from alias-free slices.
+//! The difference of a 4D spectrum from alias-free slices.
 
 use super::spectrum::FieldSpectrum;
 use super::spline::mean_square_alias;
 use etendue_field::{Complex, FrequencyAxis, Slices};
 
-/// How far a 4D spectrum is from the alias-free slices of the same photons, where they share frequencies.
+/// The difference of a 4D spectrum from the alias-free slices of the same photons, at shared
+/// frequencies.
 ///
-/// All relative: ‖·‖ over the shared frequencies, divided by that of the slices.
+/// All values are relative: ‖·‖ over the shared frequencies, divided by that of the slices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aliasing {
-    /// Frequencies compared, one of each conjugate pair.
+    /// Number of frequencies compared, one of each conjugate pair.
     pub compared: usize,
-    /// The difference. The slices' own error is part of it: below 2·10⁻⁷ Σw at each frequency.
+    /// The difference. It includes the slices' own error: below 2·10⁻⁷ Σw at each frequency.
     pub difference: f64,
-    /// What aliasing makes of it if the spectrum beyond Nyquist is as strong as in the outermost quarter inside. No bound: right
-    /// for white noise, too much where the spectrum falls off, too little where it comes back.
+    /// The expected difference from aliasing if the spectrum beyond Nyquist is as strong as in the
+    /// outermost quarter inside. It is not a bound: correct for white noise, too large if the
+    /// spectrum falls off, too small if it rises again.
     pub expected: f64,
-    /// The bound of [`FieldSpectrum::alias_bound`]: holds for any photons, and is far away from most.
+    /// The bound of [`FieldSpectrum::alias_bound`]: it holds for any photons, and is far above the
+    /// difference for most.
     pub bound: f64,
 }
 
@@ -29,12 +32,14 @@ struct SharedFrequency {
 }
 
 impl FieldSpectrum {
-    /// Compares with the slices of the same photons at all shared frequencies up to `share` of Nyquist (excluded).
+    /// Compares with the slices of the same photons at all shared frequencies below `share` of
+    /// Nyquist.
     ///
-    /// Ωy = Ωv = 0 is azimuth 0, and Ωx = Ωu = 0 azimuth π/2 when the number of azimuths is even; slices finer than
-    /// the natural spacing share every so many frequencies. `None` when nothing is shared or no light is there.
+    /// Ωy = Ωv = 0 is azimuth 0, and Ωx = Ωu = 0 is azimuth π/2 if the number of azimuths is even;
+    /// if the slices are finer than the natural spacing, only every n-th frequency is shared.
+    /// `None` if nothing is shared or there is no light.
     ///
-    /// On these lines only the two axes that a line runs along alias; elsewhere all four do.
+    /// On these lines only the two axes along the line have aliasing; elsewhere all four do.
     #[must_use]
     pub fn aliasing(&self, slices: &Slices, share: f64) -> Option<Aliasing> {
         let all = self.shared(slices);
@@ -67,7 +72,7 @@ impl FieldSpectrum {
         })
     }
 
-    /// The shared frequencies of each line, up to and with Nyquist.
+    /// Returns the shared frequencies of each line, up to and including Nyquist.
     fn shared(&self, slices: &Slices) -> Vec<Vec<SharedFrequency>> {
         let grid = &slices.grid;
         let mut lines = vec![(0, [0, 2])];
@@ -102,7 +107,8 @@ impl FieldSpectrum {
         lines.into_iter().map(line).collect()
     }
 
-    /// Which multiple of the spacing along `axis` the frequency at `index` of `frequencies` is, if it is one up to Nyquist.
+    /// Returns which multiple of the spacing along `axis` the frequency at `index` of `frequencies`
+    /// is, if it is a multiple up to Nyquist.
     #[expect(clippy::cast_possible_truncation, reason = "below the number of cells")]
     fn harmonic_at(&self, axis: usize, frequencies: &FrequencyAxis, index: usize) -> Option<isize> {
         let exact = frequencies.value(index) / self.grid.spacing(axis);
@@ -113,7 +119,8 @@ impl FieldSpectrum {
     }
 }
 
-/// The mean power of a line in the outermost quarter along each of its axes: a stand-in for that beyond Nyquist.
+/// Returns the mean power of a line in the outermost quarter along each of its axes, as an estimate
+/// of the power beyond Nyquist.
 fn edge_powers(line: &[SharedFrequency]) -> [f64; 2] {
     [0, 1].map(|axis| {
         let outer = line.iter().filter(|s| s.f[axis] >= 0.375);

@@ -7,15 +7,16 @@ use rayon::prelude::*;
 
 /// The bins of a full radial spectrum: rings in |Ωxy| times rings in |Ωuv|, over the frequencies of a 4D grid.
 ///
-/// Width Δ: the natural spacing 1/(2·half-width), the larger one where x and y (or u and v) differ. Edges 0, Δ/2,
-/// 3Δ/2, …: the first ring holds the zero alone, ring j is centred at jΔ. The last edge is the last not above the
-/// lower of the two Nyquist frequencies, so every ring is whole and no frequency at Nyquist is in one.
+/// The width Δ is the natural spacing 1/(2·half-width), the larger one if x and y (or u and v)
+/// differ. Edges are 0, Δ/2, 3Δ/2, …: the first ring contains only zero, ring j is centred at jΔ.
+/// The last edge is the largest one not above the lower of the two Nyquist frequencies, so every
+/// ring is complete and contains no frequency at Nyquist.
 #[derive(Clone, Debug)]
 pub struct RadialBins {
     grid: FieldGrid,
     /// Edges in |Ωxy|, cycles per metre, and in |Ωuv|, cycles per unit slope: one more than rings.
     pub edges: [Vec<f64>; 2],
-    /// How many frequencies, of both halves of the spectrum, are in each bin, [|Ωxy|, |Ωuv|].
+    /// Number of frequencies, of both halves of the spectrum, in each bin, [|Ωxy|, |Ωuv|].
     pub counts: Array2<u64>,
     /// The ring of each (Ωx, Ωy), [x, y].
     xy: Vec<Option<usize>>,
@@ -29,12 +30,12 @@ struct Angular {
     /// Index of Ωu and Ωv in the spectrum.
     index: [usize; 2],
     ring: usize,
-    /// Frequencies it stands for: with 0 < Ωv its conjugate, too.
+    /// Number of frequencies it represents: for Ωv > 0 also its conjugate.
     weight: u64,
 }
 
 impl RadialBins {
-    /// The bins over the frequencies of `grid`.
+    /// Returns the bins over the frequencies of `grid`.
     #[must_use]
     pub fn new(grid: &FieldGrid) -> Self {
         let [nx, ny, nu, nv] = grid.cells;
@@ -73,7 +74,7 @@ impl RadialBins {
         }
     }
 
-    /// Indices of Ωx and Ωy of a ring.
+    /// Returns the indices of Ωx and Ωy of a ring.
     pub(super) fn of_ring(&self, ring: usize) -> impl Iterator<Item = [usize; 2]> {
         let ny = self.grid.cells[1];
         let all = self.xy.iter().enumerate();
@@ -81,16 +82,17 @@ impl RadialBins {
         own.map(move |(i, _)| [i / ny, i % ny])
     }
 
-    /// Indices of Ωu and Ωv ≥ 0 with their rings, and how many frequencies each stands for.
+    /// Returns the indices of Ωu and Ωv ≥ 0 with their rings, and the number of frequencies each
+    /// represents.
     pub(super) fn angular(&self) -> impl Iterator<Item = ([usize; 2], usize, f64)> {
         let all = self.uv.iter();
         all.map(|angular| (angular.index, angular.ring, angular.weight as f64))
     }
 
-    /// Means over the bins of numbers that are even in Ω, such as powers. `of` is asked at indices
-    /// [x, y, u, v] of the spectrum.
+    /// Returns means over the bins of numbers that are even in Ω, such as powers. `of` is called
+    /// with indices [x, y, u, v] of the spectrum.
     ///
-    /// Summed by Ωx, and the sums in order: the same bits on any number of threads.
+    /// Sums are over each Ωx, then over these in order: bitwise identical on any number of threads.
     #[must_use]
     pub fn means<const N: usize>(
         &self,
@@ -121,7 +123,7 @@ impl RadialBins {
         means.map(|sum| sum / self.counts.mapv(|count| count as f64))
     }
 
-    /// The mean of |ℓ̂|² over the bins, noise and all.
+    /// Returns the mean of |ℓ̂|² over the bins, including noise.
     #[must_use]
     pub fn power(&self, spectrum: &FieldSpectrum) -> Array2<f64> {
         let [power] = self.means(|index| [spectrum.values[index].norm_sqr()]);
@@ -129,7 +131,7 @@ impl RadialBins {
     }
 }
 
-/// The edges of the rings over the axes `a` and `b`.
+/// Returns the edges of the rings over the axes `a` and `b`.
 fn edges(grid: &FieldGrid, [a, b]: [usize; 2]) -> Vec<f64> {
     let width = grid.spacing(a).max(grid.spacing(b));
     let last = grid.nyquist(a).min(grid.nyquist(b));
@@ -142,7 +144,7 @@ fn edges(grid: &FieldGrid, [a, b]: [usize; 2]) -> Vec<f64> {
 /// |F|² of a prediction as a full radial spectrum: its mean over the frequencies that a measurement on `grid`
 /// has in each bin of [`RadialBins`], [|Ωxy|, |Ωuv|].
 ///
-/// `of` is the spectrum of a real field at (Ωx, Ωy, Ωu, Ωv): it is asked at Ωv ≥ 0 only.
+/// `of` is the spectrum of a real field at (Ωx, Ωy, Ωu, Ωv); it is called for Ωv ≥ 0 only.
 #[must_use]
 pub fn full_radial_of(grid: &FieldGrid, of: impl Fn([f64; 4]) -> Complex + Sync) -> Array2<f64> {
     let [power] = RadialBins::new(grid).means(|index| [of(grid.frequency(index)).norm_sqr()]);
@@ -165,7 +167,7 @@ mod tests {
         ] {
             let bins = RadialBins::new(&grid);
             let mut counts = Array2::<u64>::zeros(bins.counts.raw_dim());
-            // The plain way: far more harmonics than the grid has.
+            // The direct way, with far more harmonics than the grid has.
             let around =
                 |axis: usize| (-20_i32..=20).map(move |m| f64::from(m) * grid.spacing(axis));
             let rings = |a: usize, b: usize| {
@@ -196,7 +198,8 @@ mod tests {
         assert_eq!(bins.counts[[1, 0]], 8); // |(m, n)| = 1 and √2
     }
 
-    /// Means of known numbers: 1, and a number that a wrong weight of conjugates would shift.
+    /// Means of known numbers: 1, and a number whose mean a wrong weight of conjugates would
+    /// change.
     #[test]
     fn means_count_conjugates() {
         let grid = grid([8, 8, 8, 8], [0.5; 4]);
@@ -206,7 +209,8 @@ mod tests {
             [1.0, v * v]
         });
         assert!(one.iter().all(|mean| (mean - 1.0).abs() < 1e-14)); // rounding of sums of ones
-        // u and v are alike, so the mean of Ωv² is half of that of |Ωuv|²: in ring 1 four at 1, four at 2.
+        // By symmetry of u and v the mean of Ωv² is half of that of |Ωuv|²: ring 1 has four at 1,
+        // four at 2.
         assert!((square[[2, 1]] - 0.75).abs() < 1e-14); // rounding
         let by_frequency = full_radial_of(&grid, |[_, _, u, _]| Complex::new(0.0, u));
         assert!((by_frequency[[3, 1]] - 0.75).abs() < 1e-14);

@@ -7,23 +7,24 @@ use etendue_transform::{RealFft4, real, real_mut};
 use ndarray::Array4;
 use rayon::prelude::*;
 
-/// The plan that takes weighted rays to a 4D grid and the grid to its spectrum.
+/// The plan for summing weighted rays on a 4D grid and transforming the grid to its spectrum.
 #[derive(Debug)]
 pub struct FieldTransform {
     grid: FieldGrid,
     assignment: Assignment,
     fft: RealFft4,
-    /// What each axis is multiplied by, at each index of the transform.
+    /// The factors along each axis, at each index of the transform.
     factors: [Vec<f64>; 4],
 }
 
 impl FieldTransform {
-    /// The plan for `grid`.
+    /// Returns the plan for `grid`.
     #[must_use]
     pub fn new(grid: FieldGrid, assignment: Assignment) -> Self {
         let factor = |axis: usize, i: usize| {
             let harmonic = grid.harmonic(axis, i);
-            // The origin is cell n/2, half a period from cell 0, to which the transform refers its phases.
+            // The origin is cell n/2, half a period from cell 0, which is the phase reference of
+            // the transform.
             let sign = if harmonic % 2 == 0 { 1.0 } else { -1.0 };
             sign / transform(assignment, harmonic as f64 / grid.cells[axis] as f64)
         };
@@ -36,7 +37,7 @@ impl FieldTransform {
         }
     }
 
-    /// An empty grid.
+    /// Returns an empty grid.
     #[must_use]
     pub fn cells(&self) -> FieldCells {
         FieldCells {
@@ -47,11 +48,11 @@ impl FieldTransform {
         }
     }
 
-    /// The spectrum of what is on the grid, in its memory.
+    /// Returns the spectrum of the grid, reusing its memory.
     ///
     /// # Panics
     ///
-    /// When `cells` is of another plan.
+    /// If `cells` belongs to another plan.
     #[must_use]
     pub fn spectrum(&self, cells: FieldCells) -> FieldSpectrum {
         assert_eq!((cells.grid, cells.assignment), (self.grid, self.assignment));
@@ -87,12 +88,13 @@ impl FieldTransform {
 
 /// A sum of weighted rays on a 4D grid.
 ///
-/// Window and radiance weight are the caller's. Cells hold Σ w · share, f64, added in the order of the rays.
+/// The caller applies window and radiance weight. Cells contain Σ w · share, f64, added in the
+/// order of the rays.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldCells {
     grid: FieldGrid,
     assignment: Assignment,
-    /// Complex numbers of a row.
+    /// Number of complex numbers of a row.
     row: usize,
     /// Laid out for [`RealFft4`].
     data: Vec<Complex>,
@@ -140,7 +142,8 @@ impl FieldCells {
             .for_each(|(a, b)| *a += b);
     }
 
-    /// The light field: Σ w · share / (volume of a cell), [x, y, u, v], all ascending, at the cells' centres.
+    /// Returns the light field: Σ w · share / (volume of a cell), [x, y, u, v], all ascending, at
+    /// the cells' centres.
     #[must_use]
     pub fn field(&self) -> Array4<f64> {
         let volume = self.grid.cell_volume();

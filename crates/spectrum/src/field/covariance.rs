@@ -9,17 +9,18 @@ use rayon::prelude::*;
 /// A matrix over (ρx, ρy, νu, νv).
 type FrequencyMatrix = [[f64; 4]; 4];
 
-/// Entries of a symmetric matrix, and the power.
+/// Number of entries of a symmetric matrix, plus the power.
 const COUNT: usize = 11;
 
 /// ∫ P and ∫ P Ωᵢ Ωⱼ over a band of frequencies, for a power P = |ℓ̂|².
 ///
-/// The covariance of the spectrum, ∫ P Ω Ωᵀ/∫ P, is also ∫ ∇ℓ ∇ℓᵀ/(4π² ∫ ℓ²) of the windowed light field if the
-/// band holds all of it. Where the field has an edge neither exists: P falls as Ω⁻² there, and the sum grows with
-/// the band. So a band is part of each number, and only numbers over the same band can be compared.
+/// The covariance of the spectrum, ∫ P Ω Ωᵀ/∫ P, equals ∫ ∇ℓ ∇ℓᵀ/(4π² ∫ ℓ²) of the windowed light
+/// field if the band contains the whole spectrum. If the field has an edge neither exists: P falls
+/// as Ω⁻² there, and the sum grows with the band. So each result belongs to a band, and only
+/// results over the same band can be compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PowerMoments {
-    /// ∫ P, up to a factor that all moments have.
+    /// ∫ P, up to a factor common to all moments.
     pub power: f64,
     /// ∫ P Ωᵢ Ωⱼ, cycles² per unit of the coordinates, squared.
     pub second: FrequencyMatrix,
@@ -35,7 +36,7 @@ impl PowerMoments {
         Self { power, second }
     }
 
-    /// ∫ P Ω Ωᵀ/∫ P; `None` where there is no power, or noise has it below zero.
+    /// Returns ∫ P Ω Ωᵀ/∫ P; `None` if there is no power, or if noise makes it negative.
     #[must_use]
     pub fn covariance(&self) -> Option<FrequencyMatrix> {
         let of = |row: [f64; 4]| row.map(|sum| sum / self.power);
@@ -43,7 +44,7 @@ impl PowerMoments {
     }
 }
 
-/// (i, j) with i ≤ j, in order.
+/// Returns (i, j) with i ≤ j, in order.
 fn pairs() -> impl Iterator<Item = (usize, usize)> {
     (0..4).flat_map(|i| (i..4).map(move |j| (i, j)))
 }
@@ -58,7 +59,7 @@ pub struct Moments {
 }
 
 impl Moments {
-    /// Over the frequencies of `slices`.
+    /// Returns the band of the frequencies of `slices`.
     #[must_use]
     pub fn new(grid: FieldGrid, slices: &SliceGrid) -> Self {
         let [rho, nu] = [slices.rho.max(), slices.nu.max()];
@@ -68,7 +69,7 @@ impl Moments {
         }
     }
 
-    /// Over frequencies half as far.
+    /// Returns the band with half the largest frequencies.
     fn halved(&self) -> Self {
         Self {
             grid: self.grid,
@@ -76,9 +77,10 @@ impl Moments {
         }
     }
 
-    /// The moments of a power that is even in Ω, which is asked at indices of a transform, those along v from zero on.
+    /// Returns the moments of a power that is even in Ω, given at indices of a transform, with
+    /// those along v from zero on.
     ///
-    /// Summed by Ωx, and the sums in order: the same bits on any number of threads.
+    /// Sums are over each Ωx, then over these in order: bitwise identical on any number of threads.
     #[must_use]
     pub fn of(&self, power: impl Fn([usize; 4]) -> f64 + Sync) -> PowerMoments {
         let [xs, ys, us, vs] = [0, 1, 2, 3].map(|axis| self.along(axis));
@@ -87,7 +89,7 @@ impl Moments {
             for y in &ys {
                 for u in &us {
                     for v in vs.iter().filter(|(_, omega)| *omega >= 0.0) {
-                        // With 0 < Ωv its conjugate, too.
+                        // For Ωv > 0 the conjugate counts too.
                         let weight = if v.0 == 0 { 1.0 } else { 2.0 };
                         let p = weight * power([x.0, y.0, u.0, v.0]);
                         add(&mut sums, p, [x.1, y.1, u.1, v.1]);
@@ -104,16 +106,16 @@ impl Moments {
         PowerMoments::new(all)
     }
 
-    /// Those of a power at frequencies.
+    /// Returns the moments of a power given at frequencies.
     #[must_use]
     pub fn at_frequencies(&self, power: impl Fn([f64; 4]) -> f64 + Sync) -> PowerMoments {
         self.of(|index| power(self.grid.frequency(index)))
     }
 
-    /// Indices and frequencies of the band along an axis.
+    /// Returns indices and frequencies of the band along an axis.
     fn along(&self, axis: usize) -> Vec<(usize, f64)> {
         let (n, spacing) = (self.grid.cells[axis], self.grid.spacing(axis));
-        // The largest frequency may be a multiple of the spacing, but for rounding.
+        // The largest frequency may be a multiple of the spacing up to rounding.
         let most = self.band[axis] * (1.0 + 1e-9);
         let all = (0..n).map(|i| (i, self.grid.harmonic(axis, i)));
         let inside = all.filter(|(_, harmonic)| 2 * harmonic.unsigned_abs() < n);
@@ -129,12 +131,13 @@ fn add(sums: &mut [f64; COUNT], p: f64, omega: [f64; 4]) {
     }
 }
 
-/// What a group of batches says of the moments: Re(G_r conj(G − G_r)), as [`GroupPower`](super::cross::GroupPower) does.
+/// The contribution of a group of batches to the moments: Re(G_r conj(G − G_r)), as in
+/// [`GroupPower`](super::cross::GroupPower).
 #[derive(Clone, Debug)]
 pub(crate) struct GroupMoments {
     share: f64,
     row: PowerMoments,
-    /// Over half of the band.
+    /// The moments over half of the band.
     half: PowerMoments,
 }
 
@@ -157,29 +160,30 @@ impl GroupMoments {
     }
 }
 
-/// The covariance of a spectrum, measured without the bias of noise.
+/// The covariance of a spectrum, measured without bias from noise.
 ///
-/// Noise is a floor of power under all frequencies, and second moments are mostly of that floor. So groups of
-/// batches are crossed: with Re(G_r conj G_s) over all pairs r ≠ s in place of |G|², both ∫ P and ∫ P Ω Ωᵀ are
-/// unbiased, however few photons there are (docs/theory.md (13)). Their ratio is off by the square of the noise.
+/// Noise is a floor of power at all frequencies, and it dominates second moments. So products of
+/// different groups of batches are used: with Re(G_r conj G_s) over all pairs r ≠ s in place of
+/// |G|², both ∫ P and ∫ P Ω Ωᵀ are unbiased, however few photons there are (docs/theory.md (13)).
+/// The error of their ratio is of second order in the noise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldCovariance {
     /// The largest frequency along each axis, cycles per unit.
     pub band: [f64; 4],
     /// The moments.
     pub moments: PowerMoments,
-    /// Those over half of the band.
+    /// The moments over half of the band.
     half: PowerMoments,
-    /// Those without each of the groups, up to a factor.
+    /// The moments without each of the groups, up to a factor.
     without: Vec<PowerMoments>,
 }
 
 /// A matrix with the standard error of each entry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MatrixEstimate {
-    /// [ρx, ρy, νu, νv], cycles² per unit of the coordinates, squared.
+    /// The matrix over [ρx, ρy, νu, νv], cycles² per unit of the coordinates, squared.
     pub value: FrequencyMatrix,
-    /// Its standard errors, by the delete-one jackknife over groups of batches.
+    /// The standard errors, by the delete-one jackknife over groups of batches.
     pub error: FrequencyMatrix,
 }
 
@@ -215,23 +219,23 @@ impl FieldCovariance {
         }
     }
 
-    /// The covariance; `None` where there is no light beyond noise.
+    /// Returns the covariance; `None` if there is no light beyond noise.
     #[must_use]
     pub fn estimate(&self) -> Option<MatrixEstimate> {
         self.estimate_of(|matrix| Some(*matrix))
     }
 
-    /// How much each variance grows from half of the band to all of it: 1 where the band holds the spectrum, about 2
-    /// where the field has an edge, whose spectrum has no second moment, and more where replicas lie in between. `None`
-    /// where there is no light beyond noise.
+    /// Returns the factor by which each variance grows from half of the band to all of it: 1 if the
+    /// band contains the spectrum, about 2 if the field has an edge, whose spectrum has no second
+    /// moment, and more if replicas lie in between. `None` if there is no light beyond noise.
     #[must_use]
     pub fn growth(&self) -> Option<[f64; 4]> {
         let [all, half] = [self.moments.covariance()?, self.half.covariance()?];
         Some([0, 1, 2, 3].map(|i: usize| all[i][i] / half[i][i]))
     }
 
-    /// Of a matrix that is made of it, such as what a map makes of it. `None` where there is none of all groups, or
-    /// of all but one.
+    /// Returns the estimate of a matrix that is a function of the covariance, such as its image
+    /// under a map. `None` if that does not exist for all groups, or for all but one.
     pub fn estimate_of(
         &self,
         of: impl Fn(&FrequencyMatrix) -> Option<FrequencyMatrix>,

@@ -1,12 +1,12 @@
-//! The full radial spectrum from products of groups.
+//! The full radial spectrum from products of independent groups.
 
 use super::bins::RadialBins;
 use super::spectrum::FieldSpectrum;
 use crate::jackknife::Jackknife;
 use ndarray::Array2;
 
-/// The full radial spectrum of a plane: the mean of |ℓ̂|² over both azimuths, the one of (Ωx, Ωy) and the one of
-/// (Ωu, Ωv), each by itself.
+/// The full radial spectrum of a plane: the mean of |ℓ̂|² over both azimuths, that of (Ωx, Ωy) and
+/// that of (Ωu, Ωv), independently.
 ///
 /// Arrays are [|Ωxy|, |Ωuv|]; the bins are those of [`RadialBins`]. Unit: that of ℓ̂, squared. The sign of a shear
 /// is lost; the slices keep it.
@@ -16,34 +16,39 @@ pub struct FullRadial {
     pub rho_edges: Vec<f64>,
     /// Edges of the bins in |Ωuv|, cycles per unit slope.
     pub nu_edges: Vec<f64>,
-    /// Frequencies in each bin, those and their conjugates.
+    /// Number of frequencies in each bin, including conjugates.
     pub counts: Array2<u64>,
-    /// The power without the noise of the photons: unbiased but for aliasing, and negative where noise has it so.
+    /// The power without the noise of the photons: unbiased except for aliasing, and possibly
+    /// negative due to noise.
     pub power: Array2<f64>,
-    /// What the photons' noise added to the power of the mean spectrum, and was left out.
+    /// The contribution of the photons' noise to the power of the mean spectrum, which `power`
+    /// leaves out.
     pub shot_noise: Array2<f64>,
-    /// The standard error of `power` by the delete-one jackknife over groups of batches: √2 too large, about, where
-    /// there is nothing but noise.
+    /// The standard error of `power` by the delete-one jackknife over groups of batches: about √2
+    /// too large where there is only noise.
     pub sigma: Array2<f64>,
 }
 
-/// The power of a spectrum by crossing the independent groups it is the sum of (docs/theory.md (13)), bin by bin.
+/// The power of a spectrum from products of the independent groups that add up to it
+/// (docs/theory.md (13)), bin by bin.
 ///
-/// Group r holds the share a_r of the batches and G_r of the spectrum, G = Σ G_r. E G_r = a_r F, so
+/// Group r contains the share a_r of the batches, and its part of the spectrum is G_r, G = Σ G_r. E
+/// G_r = a_r F, so
 ///
 /// U = Σ_(r≠s) Re(G_r conj G_s)/(1 − Σ a²)
 ///
-/// is an unbiased estimate of |F|². Each group is met once, with G known: it leaves row_r = Re(G_r conj(G − G_r)), whose
-/// sum is the numerator T. Without group r the estimate is (T − 2 row_r)/((1 − a_r)² − Σ_(s≠r) a_s²).
+/// is an unbiased estimate of |F|². Each group is processed once, with G known: the result is row_r
+/// = Re(G_r conj(G − G_r)), and the sum of these is the numerator T. Without group r the estimate
+/// is (T − 2 row_r)/((1 − a_r)² − Σ_(s≠r) a_s²).
 pub(crate) struct GroupPower {
-    /// a_r.
+    /// The share a_r.
     pub(crate) share: f64,
     row: Array2<f64>,
     own: Array2<f64>,
 }
 
 impl GroupPower {
-    /// What a group leaves behind.
+    /// Computes the contribution of a group.
     pub(crate) fn new(
         bins: &RadialBins,
         share: f64,
@@ -62,7 +67,7 @@ impl GroupPower {
     }
 }
 
-/// The full radial spectrum of all groups.
+/// Returns the full radial spectrum of all groups.
 pub(crate) fn full_radial(bins: &RadialBins, groups: &[&GroupPower]) -> FullRadial {
     let shape = bins.counts.raw_dim();
     let sum = |of: fn(&GroupPower) -> &Array2<f64>| {

@@ -11,23 +11,24 @@ use ndarray::Array4;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// The least groups a jackknife can do with.
+/// The fewest groups for a jackknife.
 const MIN_GROUPS: usize = 3;
 
-/// How a light field is put on a 4D grid.
+/// Options for measuring a light field on a 4D grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FieldOptions {
-    /// How a ray is shared among cells.
+    /// The assignment of a ray to cells.
     pub assignment: Assignment,
     /// Independent groups of batches for the errors: at least 3, at most as many as there are batches.
     pub groups: usize,
-    /// Keep the grids of all groups. Else photons are traced twice: once for the sum, once for the groups.
-    /// The result is the same to the bit.
+    /// Whether to keep the grids of all groups. Otherwise photons are traced twice: once for the
+    /// sum, once for the groups. The result is bitwise the same.
     pub keep: bool,
-    /// Return the spectra of all groups, which are then in memory together.
+    /// Whether to return the spectra of all groups, which are then in memory together.
     pub spectra: bool,
-    /// Take the covariance of the spectrum too, over the frequencies of the plane, on a grid that reaches half as
-    /// far again: what aliases into the highest frequencies is then an eighth of the spectrum at twice theirs.
+    /// Whether to compute the covariance of the spectrum too, over the frequencies of the plane, on
+    /// a grid that extends to 1.5 times these: the alias at the highest frequencies is then an
+    /// eighth of the spectrum at twice those frequencies.
     pub covariance: bool,
 }
 
@@ -44,11 +45,11 @@ impl Default for FieldOptions {
     }
 }
 
-/// How much farther than the frequencies of a covariance its grid reaches.
+/// The range of the grid for a covariance, relative to the covariance's largest frequencies.
 const MARGIN: f64 = 1.5;
 
 impl FieldOptions {
-    /// The grid of a plane.
+    /// Returns the grid of a plane.
     #[must_use]
     pub fn grid(&self, plane: &VirtualPlane) -> FieldGrid {
         let mut slices = plane.grid;
@@ -59,8 +60,9 @@ impl FieldOptions {
         FieldGrid::new(&plane.window, &slices)
     }
 
-    /// Bytes that [`measure_field`] needs on `threads` threads: the field, its spectrum, and a grid for each group
-    /// at work or kept. The caller's to compare with the memory there is, before measuring.
+    /// Returns the number of bytes that [`measure_field`] needs on `threads` threads: the field,
+    /// its spectrum, and a grid for each group at work or kept. The caller should compare it with
+    /// the available memory before measuring.
     #[must_use]
     pub fn bytes(&self, grid: &FieldGrid, threads: usize) -> u64 {
         let groups = self.groups.max(MIN_GROUPS);
@@ -73,48 +75,49 @@ impl FieldOptions {
     }
 }
 
-/// The light field of a plane on its 4D grid, and what was read off it.
+/// The light field of a plane on its 4D grid, and the results derived from it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldMeasurement {
     /// The grid.
     pub grid: FieldGrid,
-    /// Photons that crossed the plane.
+    /// Number of photons that crossed the plane.
     pub tally: PlaneTally,
     /// The mean windowed light field, [x, y, u, v] ascending, at the cells' centres, smoothed by the assignment's
     /// spline. Unit: that of L W, W m⁻² sr⁻¹.
     pub field: Array4<f64>,
-    /// Its spectrum, the spline divided out.
+    /// The spectrum of the field, divided by the transform of the spline.
     pub spectrum: FieldSpectrum,
-    /// Its full radial spectrum.
+    /// The full radial spectrum of the field.
     pub full_radial: FullRadial,
-    /// The groups of batches it is the sum of, if their spectra were asked for.
+    /// The groups of batches that add up to the field, if their spectra were requested.
     pub groups: Vec<FieldGroup>,
-    /// The covariance of its spectrum, if it was asked for.
+    /// The covariance of the spectrum, if it was requested.
     pub covariance: Option<FieldCovariance>,
 }
 
-/// What a group of batches adds to the spectrum of a light field.
+/// The contribution of a group of batches to the spectrum of a light field.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldGroup {
-    /// The share of the batches that it holds.
+    /// The share of the batches in this group.
     pub share: f64,
-    /// Its share of the spectrum, whose expectation is `share` times the spectrum's.
+    /// The group's part of the spectrum, whose expectation is `share` times that of the spectrum.
     pub spectrum: FieldSpectrum,
 }
 
-/// Measures the light field of plane number `index` of `source` on the grid [`FieldOptions::grid`] asks for.
+/// Measures the light field at plane number `index` of `source` on the grid from
+/// [`FieldOptions::grid`].
 ///
-/// The batches are those [`measure`](crate::measure) takes, and so are the photons: field and spectrum are plain
-/// means over batches, as [`estimate::slices`](crate::estimate::slices) are. The i-th batch that emits anything
-/// belongs to group i mod R. A group is the sequential work of one thread and groups are summed in order, so the
-/// result is the same to the bit on any number of threads.
+/// The batches and photons are those of [`measure`](crate::measure): field and spectrum are
+/// unweighted means over batches, as in [`estimate::slices`](crate::estimate::slices). The i-th
+/// non-empty batch belongs to group i mod R. A group is the sequential work of one thread and
+/// groups are summed in order, so the result is bitwise identical on any number of threads.
 ///
-/// One plane at a time: see [`FieldOptions::bytes`]. `progress` is told the photons as they are traced, twice unless
-/// groups are kept.
+/// Measures one plane at a time: see [`FieldOptions::bytes`]. `progress` is called with the number
+/// of photons as they are traced, twice unless groups are kept.
 ///
 /// # Errors
 ///
-/// With fewer than three batches that emit anything.
+/// With fewer than three non-empty batches.
 pub fn measure_field(
     source: &dyn PhotonSource,
     index: usize,
@@ -162,15 +165,15 @@ pub fn measure_field(
     })
 }
 
-/// What a group leaves behind.
+/// The result of a group.
 struct OfGroup {
     power: GroupPower,
     moments: Option<GroupMoments>,
-    /// Where it is kept.
+    /// The group's spectrum, if it is kept.
     spectrum: Option<FieldGroup>,
 }
 
-/// What all groups need to know.
+/// The data that all groups share.
 struct GroupContext<'a> {
     source: &'a dyn PhotonSource,
     index: usize,
@@ -183,7 +186,7 @@ struct GroupContext<'a> {
 }
 
 impl GroupContext<'_> {
-    /// The sum of all groups, and the groups if they are to be kept.
+    /// Returns the sum of all groups, and the groups if they are kept.
     fn sum(&self, keep: bool) -> (FieldCells, PlaneTally, Vec<FieldCells>) {
         let mut sum = self.transform.cells();
         let mut tally = PlaneTally::default();
@@ -204,7 +207,8 @@ impl GroupContext<'_> {
         (sum, tally, kept)
     }
 
-    /// What each group says of the power, `all` being the spectrum of their sum.
+    /// Returns the contribution of each group to the power, where `all` is the spectrum of their
+    /// sum.
     fn powers(
         &self,
         bins: &RadialBins,
@@ -231,14 +235,15 @@ impl GroupContext<'_> {
         powers
     }
 
-    /// Groups at work at the same time, as many as threads: no more grids than that are in memory.
+    /// Returns the groups processed at the same time, as many as threads, which limits the number
+    /// of grids in memory.
     fn waves(&self) -> impl Iterator<Item = Range<usize>> {
         let threads = rayon::current_num_threads();
         let starts = (0..self.groups).step_by(threads);
         starts.map(move |start| start..(start + threads).min(self.groups))
     }
 
-    /// The batches of a group.
+    /// Returns the batches of a group.
     fn members(&self, group: usize) -> impl ExactSizeIterator<Item = u32> {
         self.batches
             .iter()
@@ -247,7 +252,7 @@ impl GroupContext<'_> {
             .copied()
     }
 
-    /// The share of a group in the field.
+    /// Traces the photons of a group.
     fn trace(&self, group: usize) -> (FieldCells, PlaneTally) {
         let mut cells = self.transform.cells();
         let mut tally = PlaneTally::default();

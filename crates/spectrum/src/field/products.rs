@@ -6,14 +6,14 @@ use ndarray::{Array2, Array3};
 use rayon::prelude::*;
 
 impl RadialBins {
-    /// The means of Re(Fᵢ conj Fⱼ) over the frequencies of each bin, [bin, i, j], the bins as in a
-    /// row-major [|Ωxy|, |Ωuv|].
+    /// Returns the means of Re(Fᵢ conj Fⱼ) over the frequencies of each bin, [bin, i, j], with the
+    /// bins of a row-major [|Ωxy|, |Ωuv|].
     ///
-    /// All pairs at once, so that each spectrum is read once. Each ring of (Ωx, Ωy) is summed by itself, in order: the
-    /// same bits on any number of threads.
+    /// All pairs are computed together to read each spectrum once. Each ring of (Ωx, Ωy) is summed
+    /// separately, in order: bitwise identical on any number of threads.
     ///
     /// # Panics
-    /// When a spectrum is on another grid.
+    /// If a spectrum is on another grid.
     #[must_use]
     pub fn products(&self, spectra: &[&FieldSpectrum]) -> Array3<f64> {
         let (rings, columns) = self.counts.dim();
@@ -26,7 +26,7 @@ impl RadialBins {
         products.expect("as many products as bins and pairs")
     }
 
-    /// The products of a ring of (Ωx, Ωy), [|Ωuv|, i, j].
+    /// Returns the products of a ring of (Ωx, Ωy), [|Ωuv|, i, j].
     fn ring_products(&self, ring: usize, spectra: &[&FieldSpectrum]) -> Vec<f64> {
         let n = spectra.len();
         let columns = self.counts.ncols();
@@ -92,7 +92,7 @@ mod tests {
                 [(a * b.conj()).re]
             });
             for ((r, c), mean) in mean.indexed_iter() {
-                // Rounding of sums of some hundred numbers about 1.
+                // Rounding of sums of about a hundred numbers around 1.
                 assert!((products[[r * bins.counts.ncols() + c, i, j]] - mean).abs() < 1e-13);
             }
         }

@@ -4,28 +4,33 @@ use super::spline::worst_alias;
 use etendue_field::{Assignment, Complex, FieldGrid};
 use ndarray::Array4;
 
-/// The spectrum of a windowed light field from its 4D grid: Σ w e^(−2πi Ω·z) over the rays, to aliasing.
+/// The spectrum of a windowed light field from its 4D grid: Σ w e^(−2πi Ω·z) over the rays, up to
+/// aliasing.
 ///
-/// Phases refer to the plane's origin and the spline is divided out, so at each frequency a ray contributes
-/// w e^(−2πi Ω·z) (1 + ε). Unit: that of ∫ L W dx dy du dv, as for [`Slices`](etendue_field::Slices).
+/// Phases refer to the plane's origin and the transform of the spline is divided out, so at each
+/// frequency a ray contributes w e^(−2πi Ω·z) (1 + ε). Unit: that of ∫ L W dx dy du dv, as for
+/// [`Slices`](etendue_field::Slices).
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldSpectrum {
-    /// The grid, which tells the frequencies.
+    /// The grid, which determines the frequencies.
     pub grid: FieldGrid,
-    /// How the rays were put on it.
+    /// The assignment of rays to its cells.
     pub assignment: Assignment,
-    /// [x, y, u, v], frequencies in the order of [`FieldGrid::harmonic`], those of v from zero to Nyquist only: the field is real.
+    /// The values [x, y, u, v], with frequencies in the order of [`FieldGrid::harmonic`], those
+    /// along v from zero to Nyquist only, since the field is real.
     pub values: Array4<Complex>,
 }
 
 impl FieldSpectrum {
-    /// The value at the given multiples of the frequency spacings, each up to n/2 in modulus.
+    /// Returns the value at the given multiples of the frequency spacings, each up to n/2 in
+    /// modulus.
     ///
-    /// At a Nyquist frequency ±n/2 both signs are one number, and the value is no estimate of the spectrum.
+    /// At a Nyquist frequency ±n/2 both signs have the same value, which is not an estimate of the
+    /// spectrum.
     ///
     /// # Panics
     ///
-    /// Beyond Nyquist.
+    /// If a multiple is beyond Nyquist.
     #[must_use]
     pub fn at(&self, harmonics: [isize; 4]) -> Complex {
         if harmonics[3] < 0 {
@@ -44,24 +49,26 @@ impl FieldSpectrum {
         self.values[[index(0), index(1), index(2), index(3)]]
     }
 
-    /// ℓ̂(0) = ∫ L W.
+    /// Returns ℓ̂(0) = ∫ L W.
     #[must_use]
     pub fn at_zero(&self) -> f64 {
         self.values[[0; 4]].re
     }
 
-    /// How far [`at`](Self::at) may be from the exact sum over the same rays, none of them of negative weight:
-    /// Σw (Π(1 + ε_d) − 1), ε_d being the largest alias of a ray along axis d.
+    /// Returns a bound on the error of [`at`](Self::at) relative to the exact sum over the same
+    /// rays, if no weight is negative: Σw (Π(1 + ε_d) − 1), where ε_d is the largest alias of a ray
+    /// along axis d.
     ///
-    /// Rigorous, whatever the field: it is reached (orders 1 and 2) when all light is in one ray at the worst
-    /// place. Grows as the frequency to the power p: near Nyquist it says next to nothing.
+    /// The bound is rigorous for any field: it is reached (orders 1 and 2) if all light is in one
+    /// ray at the worst position. It grows as the frequency to the power p: near Nyquist it is
+    /// almost useless.
     #[must_use]
     pub fn alias_bound(&self, harmonics: [isize; 4]) -> f64 {
         let worst = |axis: usize| {
             let f = harmonics[axis] as f64 / self.grid.cells[axis] as f64;
             worst_alias(self.assignment, f)
         };
-        // Π(1 + ε) − 1 without losing small ε.
+        // Π(1 + ε) − 1 without losing small ε to rounding.
         let sum = (0..4).fold(0.0, |sum, axis| sum + worst(axis) * (1.0 + sum));
         self.at_zero() * sum
     }

@@ -1,7 +1,8 @@
-//! B-splines: shares, transforms, and what sampling them on a grid costs.
+//! B-splines: shares, transforms, and the aliasing from sampling them on a grid.
 //!
-//! A ray at t (in cells) shares itself among the cells j by B(j − t), B being the B-spline of order p, of transform
-//! sinc^p. By Poisson's summation the transform of the shares at f cycles per cell, |f| ≤ ½, divided by sinc^p(f), is
+//! A ray at t (in cells) is distributed over the cells j by B(j − t), where B is the B-spline of
+//! order p with the transform sinc^p. By Poisson's summation the transform of the shares at f
+//! cycles per cell, |f| ≤ ½, divided by sinc^p(f), is
 //!
 //! e^(−2πift) (1 + ε),   ε = Σ_(n≠0) (sinc^p(f + n)/sinc^p(f)) e^(−2πint),   sinc(f + n)/sinc(f) = (−1)ⁿ f/(f + n).
 //!
@@ -10,7 +11,7 @@
 use etendue_field::Assignment;
 use std::f64::consts::PI;
 
-/// sin(πf)/(πf).
+/// Returns sin(πf)/(πf).
 fn sinc(f: f64) -> f64 {
     let t = PI * f;
     if t.abs() < 1e-9 {
@@ -20,12 +21,13 @@ fn sinc(f: f64) -> f64 {
     }
 }
 
-/// sinc^p(f): the transform of the spline.
+/// Returns sinc^p(f): the transform of the spline.
 pub(crate) fn transform(assignment: Assignment, f: f64) -> f64 {
     (0..assignment.order()).map(|_| sinc(f)).product()
 }
 
-/// The cells among 0..`n`, a period, on which a ray at `t` ≥ 0 falls along one axis, with its shares, which add up to 1.
+/// Returns the cells among 0..`n`, a period, that a ray at `t` ≥ 0 contributes to along one axis,
+/// with its shares, which add up to 1.
 #[inline]
 #[expect(
     clippy::cast_possible_truncation,
@@ -50,14 +52,16 @@ pub(crate) fn taps<const P: usize>(t: f64, n: usize) -> ([usize; P], [f64; P]) {
     (cells, std::array::from_fn(|i| shares[i]))
 }
 
-/// The largest |ε| a ray can have at `f`, wherever it lies.
+/// Returns the largest |ε| of a ray at `f`, over all positions of the ray.
 ///
-/// Exact for orders 1 and 2. For order 3 it is the sum of the moduli, up to a fifth above what a ray reaches.
+/// Exact for orders 1 and 2. For order 3 it is the sum of the moduli, up to a fifth above the
+/// actual maximum.
 pub(crate) fn worst_alias(assignment: Assignment, f: f64) -> f64 {
     let f = f.abs();
     let one = sinc(f);
     match assignment {
-        // The ray lies up to half a cell from where it is counted: |e^(iθ)/sinc f − 1| with |θ| ≤ πf.
+        // The ray lies up to half a cell from the position it is assigned to: |e^(iθ)/sinc f − 1|
+        // with |θ| ≤ πf.
         Assignment::Nearest => {
             let square = 1.0 / (one * one) - 2.0 * libm::cos(PI * f) / one + 1.0;
             square.max(0.0).sqrt()
@@ -69,13 +73,14 @@ pub(crate) fn worst_alias(assignment: Assignment, f: f64) -> f64 {
             let cube = |t: f64| t * t * t;
             let term = |n: u32| cube(f / (f64::from(n) - f)) + cube(f / (f64::from(n) + f));
             let sum: f64 = (1..=last).map(term).sum();
-            // Each of the rest is below the integral of f³/(t − f)³ over a step.
+            // Each remaining term is below the integral of f³/(t − f)³ over a step.
             sum + cube(f) / (f64::from(last) - f).powi(2)
         }
     }
 }
 
-/// The mean of |ε|² over the place of the ray: Σ_(n≠0) (f/(f + n))^2p, from the sums of Jing (2005), Eq. 20.
+/// Returns the mean of |ε|² over the position of the ray: Σ_(n≠0) (f/(f + n))^2p, from the sums of
+/// Jing (2005), Eq. 20.
 pub(crate) fn mean_square_alias(assignment: Assignment, f: f64) -> f64 {
     let s = libm::sin(PI * f).powi(2);
     let all = match assignment {
@@ -140,7 +145,7 @@ mod tests {
         assert_eq!(cells(Assignment::Tsc, 8.0), [7, 0, 1]); // what rounding makes of a ray just inside
     }
 
-    /// ε from its definition, over many places of a ray.
+    /// ε from its definition, over many positions of a ray.
     #[test]
     fn aliases_are_what_is_said_of_them() {
         for assignment in ALL {
@@ -161,7 +166,8 @@ mod tests {
                     largest <= worst + 1e-14,
                     "{assignment:?} {f}: {largest} {worst}"
                 ); // rounding
-                // The worst place is met to half of 1/1000 of a cell; order 3 stays below its sum of moduli.
+                // The worst position is sampled to half of 1/1000 of a cell; order 3 stays below
+                // its sum of moduli.
                 let tsc = assignment == Assignment::Tsc;
                 let least = if tsc { 0.8 } else { 0.99 };
                 assert!(

@@ -16,7 +16,7 @@ use glam::DVec3;
 pub struct Random(pub u64);
 
 impl Random {
-    /// Uniform in [0, 1).
+    /// Returns a number uniform in [0, 1).
     pub fn unit(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
@@ -25,12 +25,13 @@ impl Random {
         ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Uniform in (−half, half).
+    /// Returns a number uniform in (−half, half).
     pub fn within(&mut self, half: f64) -> f64 {
         half * (2.0 * self.unit() - 1.0)
     }
 
-    /// A crossing up to `reach` half-widths of `window` from its centre, of weight in [0, 2).
+    /// Returns a crossing up to `reach` half-widths of `window` from its centre, with a weight in
+    /// [0, 2).
     pub fn crossing(&mut self, window: &Window, reach: f64) -> Crossing {
         let mut along = |profile: Profile| self.within(reach * profile.half_width());
         let ray = TwoPlane {
@@ -64,7 +65,8 @@ pub fn boxed() -> Window {
     }
 }
 
-/// `azimuths` slices with `half` of ρ and ν on either side of zero, `fineness` samples to 1/(2 half-width).
+/// Returns `azimuths` slices with `half` values of ρ and of ν on either side of zero, `fineness`
+/// samples to 1/(2 half-width).
 pub fn grid(window: &Window, azimuths: usize, half: [usize; 2], fineness: f64) -> SliceGrid {
     let axis = |half, profile: Profile| FrequencyAxis {
         half,
@@ -92,7 +94,8 @@ pub fn plane(name: &str, window: Window, grid: SliceGrid) -> VirtualPlane {
     }
 }
 
-/// Photons that cross every plane at random, a tenth of them outside the window.
+/// Photons that cross every plane at random positions and slopes, a tenth of them outside the
+/// window.
 pub struct Shower {
     pub seed: u64,
     pub photons: u64,
@@ -121,7 +124,7 @@ impl PhotonSource for Shower {
         while left > 0 {
             let count = left.min(100);
             for (index, plane) in self.planes.iter().enumerate() {
-                // 0.9^(-1/4): four coordinates inside nine times in ten.
+                // 0.9^(-1/4): all four coordinates are inside nine times in ten.
                 let block: Vec<_> = (0..count)
                     .map(|_| random.crossing(&plane.window, 1.0267))
                     .collect();

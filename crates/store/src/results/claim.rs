@@ -1,4 +1,4 @@
-//! What stands in a results folder before anything is written there.
+//! Checks what is in a results folder before anything is written there.
 
 use super::{LINKED, Results, TIMING, UNFINISHED, has_hash, inside, listed, sealed_bytes};
 use crate::Failure;
@@ -6,11 +6,11 @@ use std::collections::{BTreeMap, HashSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Names told in a message.
+/// The largest number of names in a message.
 const MAX_NAMES: usize = 10;
 
 impl Results {
-    /// The files of the earlier result, as its index lists them.
+    /// The files of the earlier result, as listed in its index.
     pub(super) fn earlier(&self) -> BTreeMap<String, String> {
         listed(&self.folder.join(self.plan.index)).unwrap_or_default()
     }
@@ -20,7 +20,7 @@ impl Results {
         inside(&self.folder, name)
     }
 
-    /// Inputs are never among results.
+    /// Refuses results in the place of inputs.
     pub(super) fn refuse_inputs(&self) -> Result<(), Failure> {
         let earlier = self.earlier();
         let earlier = earlier.keys().map(String::as_str);
@@ -45,7 +45,8 @@ impl Results {
         Ok(())
     }
 
-    /// Refuses where something of somebody else stands in the way; with `force`, only what is no file.
+    /// Refuses where a file of somebody else is in the way; with `force`, only where it is not a
+    /// regular file.
     pub(super) fn refuse_foreign(&self) -> Result<(), Failure> {
         let earlier = self.earlier();
         let mut foreign = Vec::new();
@@ -80,7 +81,7 @@ impl Results {
         )))
     }
 
-    /// Whether a file is of an earlier result, and unchanged.
+    /// Whether a file belongs to an earlier result, and is unchanged.
     fn is_own(&self, name: &str, path: &Path, earlier: &BTreeMap<String, String>) -> bool {
         match earlier.get(name) {
             Some(hash) => has_hash(path, hash),

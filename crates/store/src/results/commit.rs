@@ -1,8 +1,9 @@
-//! New files take the place of earlier ones.
+//! Replaces earlier files by new ones.
 //!
-//! Before the first one moves, all are whole and synced and their index is ready beside them: so whatever ends
-//! this process, the next one into the folder can go on. Each step may have been done already. Earlier files
-//! move aside and are removed last: where a move fails, all that were made are undone.
+//! Before the first file moves, all are complete and synced and their index is ready beside them.
+//! So if this process is ended, the next one that writes to the folder can continue; any step may
+//! have been done already. Earlier files move aside and are removed last: where a move fails, all
+//! previous moves are undone.
 
 use super::{
     LINKED, Results, TIMING, UNFINISHED, has_hash, is_regular, listed, parents, sealed_bytes,
@@ -13,21 +14,21 @@ use std::io;
 use std::path::{Path, PathBuf};
 use tempfile::TempPath;
 
-/// Files that were there and are no more.
+/// Files that no longer exist.
 #[derive(Debug, Default)]
 pub(super) struct MovedFiles {
     /// Files of the earlier result.
     pub(super) gone: Vec<String>,
     /// Files of somebody else.
     pub(super) replaced: Vec<String>,
-    /// Each move, to undo it.
+    /// All moves so far, to be undone on failure.
     done: Vec<[PathBuf; 2]>,
-    /// How messages name arguments.
+    /// The style in which messages name arguments.
     arguments: ArgumentStyle,
 }
 
 impl MovedFiles {
-    /// Moves a file to where nothing is.
+    /// Moves a file to an unused path.
     fn file(&mut self, from: PathBuf, to: PathBuf) -> Result<(), Failure> {
         let moved = || {
             if let Some(folder) = to.parent() {
@@ -57,14 +58,14 @@ impl MovedFiles {
     /// Moves everything back.
     fn undo(&self) {
         for [from, to] in self.done.iter().rev() {
-            // What cannot be moved back now, the next process moves on.
+            // A file that cannot be moved back now is moved on by the next process.
             let _ = fs::rename(to, from);
         }
     }
 }
 
 impl Results {
-    /// Puts everything in its place.
+    /// Puts all files in place.
     pub(super) fn commit(&self) -> Result<MovedFiles, Failure> {
         let index = self.plan.index;
         let ready = self.ready(index);
@@ -73,13 +74,13 @@ impl Results {
         fs::rename(self.staged(index), &ready).map_err(failure)?;
         self.move_all(index).inspect_err(|_| {
             if !self.aside("").exists() {
-                // All is as it was, and nothing waits for the next process.
+                // Everything is as before, and nothing is left for the next process.
                 let _ = fs::remove_file(&ready);
             }
         })
     }
 
-    /// Ends what a dead process began to move, and removes what it left.
+    /// Completes the moves that a dead process began, and removes what it left.
     pub(super) fn recover(&self) -> Result<MovedFiles, Failure> {
         let moved = match self.ready_index() {
             Some(index) => self.move_all(index)?,
@@ -100,13 +101,13 @@ impl Results {
         let result = self.moves(index, &mut moved);
         if let Err(error) = result {
             moved.undo();
-            // Empty now, unless something could not be moved back or was aside before.
+            // The folder is empty now, unless a file could not be moved back or was aside before.
             remove_empty(&self.aside(""));
             return Err(error);
         }
         let earlier = listed(&self.aside(index)).unwrap_or_default();
         for folder in parents(earlier.keys()).into_iter().rev() {
-            // One that still holds something stays.
+            // A folder that is not empty stays.
             let _ = fs::remove_dir(self.folder.join(folder));
         }
         let finished = || {
@@ -120,7 +121,7 @@ impl Results {
     fn moves(&self, index: &str, moved: &mut MovedFiles) -> Result<(), Failure> {
         let ready = self.ready(index);
         let new = listed(&ready).unwrap_or_default();
-        // From here on the folder is no result, until the new index comes.
+        // From here on the folder holds no valid result, until the new index comes.
         let place = self.folder.join(index);
         if listed(&place).is_some() {
             moved.file(place, self.aside(index))?;
@@ -153,7 +154,7 @@ impl Results {
         self.place(ready, index, moved)
     }
 
-    /// Moves a new file to its name; with `force`, a file of somebody else goes aside.
+    /// Moves a new file to its name; with `force`, a file of somebody else is moved aside.
     fn place(&self, from: PathBuf, name: &str, moved: &mut MovedFiles) -> Result<(), Failure> {
         let to = self.inside(name).ok_or_else(|| {
             let shown = self.shown.join(name);
@@ -167,13 +168,13 @@ impl Results {
         moved.file(from, to)
     }
 
-    /// Where an earlier file waits for its end.
+    /// The path to which an earlier file is moved before it is removed.
     fn aside(&self, name: &str) -> PathBuf {
         self.folder.join(UNFINISHED).join("old").join(name)
     }
 }
 
-/// Removes a folder of folders that hold no file.
+/// Removes a tree of folders without files.
 fn remove_empty(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         remove_empty(&entry.path());
@@ -181,7 +182,7 @@ fn remove_empty(folder: &Path) {
     let _ = fs::remove_dir(folder);
 }
 
-/// Makes the names in a folder as lasting as its files, where folders can be synced.
+/// Makes the names in a folder durable, where folders can be synced.
 fn sync(folder: &Path) -> io::Result<()> {
     if cfg!(unix) {
         File::open(folder)?.sync_all()?;

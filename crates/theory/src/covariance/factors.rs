@@ -1,24 +1,24 @@
-//! Covariances of what multiplies a light field, and of what it is convolved with.
+//! Covariances of the factors and lobes that a light field is multiplied by or convolved with.
 //!
-//! That of a factor f is its own second moment of power, ∫ f'²/(4π² ∫ f²), where that exists. A
-//! factor with edges has none: for it stands the Gaussian of the same variance, which is a choice.
+//! The covariance of a factor f is its second moment of power, ∫ f'²/(4π² ∫ f²), where that exists.
+//! A factor with edges has none; the Gaussian of the same variance replaces it by choice.
 
 use crate::geometry::{Matrix, diagonal};
 use etendue_field::{Grating, Lobe, Mask, Profile, Shape, Window};
 use std::f64::consts::PI;
 
-/// Of a Gaussian exp(−t²/2s), in cycles per unit, squared.
+/// Returns the covariance of a Gaussian exp(−t²/2s), in cycles per unit, squared.
 fn gaussian(variance: f64) -> f64 {
     1.0 / (8.0 * PI * PI * variance)
 }
 
-/// Of an opening of half-width r: the Gaussian of its variance, r²/3.
+/// Returns the covariance of an opening of half-width r: the Gaussian of its variance, r²/3.
 fn opening(half_width: f64) -> f64 {
     gaussian(half_width * half_width / 3.0)
 }
 
-/// Of one profile of a window, cycles per unit, squared: 1/12h² of Hann's, 1/4πw² of exp(−πt²/w²),
-/// whose cut is left out. A box has edges.
+/// Returns the covariance of one profile of a window, in cycles per unit, squared: 1/12h² for Hann,
+/// 1/4πw² for exp(−πt²/w²), ignoring its truncation. A box has edges.
 #[must_use]
 pub fn profile(profile: &Profile) -> f64 {
     match *profile {
@@ -28,25 +28,26 @@ pub fn profile(profile: &Profile) -> f64 {
     }
 }
 
-/// Of the window of a plane.
+/// Returns the covariance of the window of a plane.
 #[must_use]
 pub fn window(window: &Window) -> Matrix<4> {
     let Window { x, y, u, v } = window;
     diagonal([x, y, u, v].map(profile))
 }
 
-/// Of a cosine grating ½(1 + m cos(2πft + p)), cycles per unit, squared: the variance f² m²/(2 + m²)
-/// of its three lines, weighted by their power. It adds up where replicas do not overlap.
+/// Returns the covariance of a cosine grating ½(1 + m cos(2πft + p)), in cycles per unit, squared:
+/// the variance f² m²/(2 + m²) of its three lines, weighted by their power. It is additive where
+/// replicas do not overlap.
 #[must_use]
 pub fn grating(grating: &Grating) -> f64 {
     let square = grating.modulation * grating.modulation;
     grating.frequency * grating.frequency * square / (2.0 + square)
 }
 
-/// Of a mask in the plane where light is now. An opaque one is an opening about the central ray: the
-/// largest disc that is free of shapes, narrowed along an axis by half-planes (the course notes of
-/// Belcour 2016 take the largest unoccluded disc). `None` if the central ray is blocked, or touches
-/// an edge.
+/// Returns the covariance of a mask in the plane where light is now. An opaque mask is an opening
+/// about the central ray: the largest disc that is free of shapes, narrowed along an axis by
+/// half-planes (the course notes of Belcour 2016 take the largest unoccluded disc). `None` if the
+/// central ray is blocked, or touches an edge.
 #[must_use]
 pub fn mask(mask: &Mask) -> Option<Matrix<4>> {
     let mut factor = [[0.0; 4]; 4];
@@ -72,7 +73,8 @@ pub fn mask(mask: &Mask) -> Option<Matrix<4>> {
     Some(factor)
 }
 
-/// From the central ray to the nearest point of a shape that does not hold it.
+/// Returns the distance from the central ray to the nearest point of a shape that does not contain
+/// it.
 fn distance(shape: &Shape) -> f64 {
     match shape {
         Shape::Rectangle(rectangle) => {
@@ -83,27 +85,28 @@ fn distance(shape: &Shape) -> f64 {
     }
 }
 
-/// Of the cosine on a surface, cos⁺θ cos²φ over longitude and latitude: 1/4π² and 1/3π² cycles².
+/// Returns the covariance of the cosine on a surface, cos⁺θ cos²φ over longitude and latitude:
+/// 1/4π² and 1/3π² cycles².
 #[must_use]
 pub fn cosine() -> Matrix<4> {
     let square = PI * PI;
     diagonal([0.0, 0.0, 0.25 / square, 1.0 / (3.0 * square)])
 }
 
-/// Of the factor G = (1 + u² + v²)⁻² over slopes: 0.3/π² cycles² along both.
+/// Returns the covariance of the factor G = (1 + u² + v²)⁻² over slopes: 0.3/π² cycles² along both.
 #[must_use]
 pub fn slope_cosine() -> Matrix<4> {
     let along = 0.3 / (PI * PI);
     diagonal([0.0, 0.0, along, along])
 }
 
-/// The covariance of a lobe over (θ, φ), in radians squared, for light met at the angle θ₀ to the
-/// normal. `None` of Lambert's, which is even over all directions.
+/// Returns the covariance of a lobe over (θ, φ), in radians squared, for light that arrives at the
+/// angle θ₀ to the normal. `None` for Lambert's, which is uniform over all directions.
 ///
 /// Phong's cosⁿ is a Gaussian of variance 1/n, to first order in 1/n. Microfacets that tilt by τ
-/// turn light by 2τ in the plane of incidence, and by 2τ cos θ₀ out of it, so Beckmann's is 2α² and
-/// 2α² cos² θ₀. GGX has no variance; that of its power spectrum makes it 5α²/3. Shadowing, the
-/// Fresnel factor and 1/(4 cos cos) are left out.
+/// turn light by 2τ in the plane of incidence, and by 2τ cos θ₀ out of it, so Beckmann's variances
+/// are 2α² and 2α² cos² θ₀. GGX has no variance; the variance of its power spectrum gives 5α²/3.
+/// Shadowing, the Fresnel factor and 1/(4 cos cos) are left out.
 #[must_use]
 pub fn lobe(lobe: &Lobe, theta0: f64) -> Option<Matrix<4>> {
     let microfacets = |variance: f64| {

@@ -14,10 +14,9 @@
 //! | lobe of a BRDF | [`convolved`](SpectralCovariance::convolved) | (C⁻¹ + B⁻¹)⁻¹ |
 //! | diffuse reflection | [`diffused`](SpectralCovariance::diffused) | the same with B = 0 along both angles |
 //!
-//! [`window`], [`mask`], [`grating`], [`cosine`] and [`lobe`] are W and B of what a scene may hold;
-//! [`Traced`] follows a whole chain.
-//! Moments of a field with edges do not exist, and it is taken for a Gaussian all the same: that is
-//! what covariance tracing does. docs/covariance.md shows where it holds.
+//! [`window`], [`mask`], [`grating`], [`cosine`] and [`lobe`] are W and B of the elements of a
+//! scene; [`Traced`] follows a whole chain. A field with edges has no moments, and covariance
+//! tracing treats it as a Gaussian all the same. docs/covariance.md shows where that holds.
 
 mod factors;
 mod pair;

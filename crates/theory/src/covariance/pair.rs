@@ -1,19 +1,20 @@
-//! Pairs of matrices whose quotient is a covariance.
+//! Spectral covariances, stored as pairs of matrices whose quotient is the covariance.
 
 use crate::geometry::{
     AffineMap, Matrix, diagonal, from_fn, inverse, product, sum, times, transpose,
 };
 use std::f64::consts::PI;
 
-/// S⁻¹ = 8π² C, of the power; of |L| it would be 4π² C.
+/// S⁻¹ = 8π² C for the power spectrum; for |L| it would be 4π² C.
 const POWER: f64 = 8.0 * PI * PI;
 
 /// The covariance C of the power spectrum of a Gaussian light field, [ρx, ρy, νu, νv], cycles² per
 /// unit of the coordinates, squared.
 ///
-/// Kept as C = P Q⁻¹. Light without end along a coordinate has a P without rank there, light of a
-/// point or of one direction a Q without rank. Both are as good as any other matrix, so no operator
-/// needs a smallest or a largest number. This is how rays stand for a Gaussian beam.
+/// Stored as C = P Q⁻¹. Light that is unbounded along a coordinate has a rank-deficient P there;
+/// light from a point or in one direction has a rank-deficient Q. Both are handled like any other
+/// matrix, so no operator needs a smallest or a largest number. Rays represent a Gaussian beam in
+/// the same way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpectralCovariance {
     p: Matrix<4>,
@@ -21,8 +22,9 @@ pub struct SpectralCovariance {
 }
 
 impl SpectralCovariance {
-    /// Light with the variances S of a Gaussian over (x, y, u, v), in squares of metres and slopes.
-    /// Zero is a point, or one direction; infinite is light without end.
+    /// Returns the covariance of light with the variances S of a Gaussian over (x, y, u, v), in
+    /// squares of metres and slopes. Zero is a point or a single direction; infinite is unbounded
+    /// light.
     #[must_use]
     pub fn new(variance: [f64; 4]) -> Self {
         let is_flat = |s: f64| s == f64::INFINITY;
@@ -32,7 +34,7 @@ impl SpectralCovariance {
         }
     }
 
-    /// That of a matrix C.
+    /// Returns the spectral covariance for a matrix C.
     #[must_use]
     pub fn of(matrix: &Matrix<4>) -> Self {
         Self {
@@ -41,8 +43,8 @@ impl SpectralCovariance {
         }
     }
 
-    /// After a change z' = A z + t of ray coordinates: A⁻ᵀ C A⁻¹. Where light is does not matter to
-    /// its power. `None` if A has no inverse.
+    /// Returns the covariance after a change z' = A z + t of ray coordinates: A⁻ᵀ C A⁻¹. The offset
+    /// does not affect the power spectrum. `None` if A has no inverse.
     #[must_use]
     pub fn mapped(&self, map: &AffineMap<4>) -> Option<Self> {
         let back = transpose(&inverse(&map.matrix)?);
@@ -52,7 +54,8 @@ impl SpectralCovariance {
         })
     }
 
-    /// After a product with something whose power spectrum has the covariance W: C + W.
+    /// Returns the covariance after a product with a factor whose power spectrum has the covariance
+    /// W: C + W.
     #[must_use]
     pub fn multiplied(&self, factor: &Matrix<4>) -> Self {
         Self {
@@ -61,8 +64,9 @@ impl SpectralCovariance {
         }
     }
 
-    /// After a convolution with a Gaussian of covariance s in the light field, in squares of metres
-    /// and radians: C⁻¹ grows by 8π² s. Zero, as of a mirror, changes nothing.
+    /// Returns the covariance after a convolution with a Gaussian of covariance s in the light
+    /// field, in squares of metres and radians: C⁻¹ grows by 8π² s. Zero, as for a mirror, changes
+    /// nothing.
     #[must_use]
     pub fn convolved(&self, kernel: &Matrix<4>) -> Self {
         let grown = product(kernel, &self.p).map(|row| row.map(|entry| POWER * entry));
@@ -72,11 +76,12 @@ impl SpectralCovariance {
         }
     }
 
-    /// After an integral over all directions, spread evenly over directions again: the spectrum at
-    /// ν = 0 alone. C⁻¹ keeps its block of positions, and is infinite along both angles.
+    /// Returns the covariance after an integral over all directions that is spread uniformly over
+    /// directions again: the spectrum at ν = 0 alone. C⁻¹ keeps its block of positions, and is
+    /// infinite along both angles.
     #[must_use]
     pub fn diffused(&self) -> Self {
-        // Columns of P and Q span the pairs (C w, w). Those without angular frequency stay.
+        // The columns of P and Q span the pairs (C w, w). Columns without angular frequency stay.
         let mut columns = [0, 1, 2, 3].map(|j| [&self.q, &self.p].map(|m| m.map(|row| row[j])));
         let mut goes = [false; 4];
         for row in [2, 3] {
@@ -86,7 +91,7 @@ impl SpectralCovariance {
                 break;
             };
             if size(pivot) <= 0.0 {
-                // It is even along this angle already.
+                // The light is uniform along this angle already.
                 continue;
             }
             goes[pivot] = true;
@@ -112,14 +117,14 @@ impl SpectralCovariance {
         }
     }
 
-    /// C. `None` where a spectrum has no end, as that of light from a point.
+    /// Returns C. `None` if the spectrum is unbounded, as for light from a point.
     #[must_use]
     pub fn matrix(&self) -> Option<Matrix<4>> {
         Some(symmetric(&product(&self.p, &inverse(&self.q)?)))
     }
 
-    /// S, the covariance of the Gaussian light field, in squares of metres and slopes. `None` where
-    /// the field has no end.
+    /// Returns S, the covariance of the Gaussian light field, in squares of metres and slopes.
+    /// `None` if the field is unbounded.
     #[must_use]
     pub fn field(&self) -> Option<Matrix<4>> {
         let field = symmetric(&product(&self.q, &inverse(&self.p)?));
@@ -127,7 +132,7 @@ impl SpectralCovariance {
     }
 }
 
-/// Without what rounding leaves of an asymmetry.
+/// Removes the asymmetry that rounding leaves.
 fn symmetric(a: &Matrix<4>) -> Matrix<4> {
     from_fn(|i, j| 0.5 * (a[i][j] + a[j][i]))
 }

@@ -1,4 +1,4 @@
-//! Covariance tracing along the chains of this crate, step by step in the order of light.
+//! Covariance tracing along the chains of this crate, step by step in the order light meets them.
 
 use super::factors;
 use super::pair::SpectralCovariance;
@@ -12,18 +12,18 @@ use etendue_field::{
 use std::f64::consts::TAU;
 use std::fmt::{self, Display};
 
-/// Why there is no covariance to trace.
+/// The reason why covariance cannot be traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Untraced {
-    /// A mask stops the central ray, or has an edge on it: it is no window about the ray.
+    /// A mask stops the central ray, or has an edge on it, so it is not a window about the ray.
     Blocked,
-    /// An obstacle stands around the path: it is no window about the ray.
+    /// An obstacle stands around the path, so it is not a window about the ray.
     Obstacles,
-    /// The light is a map, or several lobes: no Gaussian stands for it.
+    /// The light is a map or several lobes, which no Gaussian represents.
     Light,
-    /// The reflectance varies by a picture, squares or another BRDF: no Gaussian stands for it.
+    /// The reflectance varies by a picture, squares or another BRDF, which no Gaussian represents.
     Reflectance,
-    /// The central ray does not get there, or a map on its way has no inverse.
+    /// The central ray does not arrive, or a map on its path has no inverse.
     Lost,
 }
 
@@ -39,12 +39,12 @@ impl Display for Untraced {
     }
 }
 
-/// Whatever has a light path along which covariance is traced.
+/// A model with a light path along which covariance is traced.
 pub trait Traced {
-    /// The covariance of the spectrum before the window of the plane.
+    /// Returns the covariance of the spectrum before the window of the plane.
     ///
     /// # Errors
-    /// Where covariance tracing has nothing to say, with the reason.
+    /// The reason why covariance tracing does not apply.
     fn spectral_covariance(&self) -> Result<SpectralCovariance, Untraced>;
 }
 
@@ -113,7 +113,8 @@ impl Traced for Observed<scattering::ScatteringSystem> {
     }
 }
 
-/// Of light where it begins: a Gaussian of its variances over positions and slopes.
+/// Returns the covariance of light at the source: a Gaussian of its variances over positions and
+/// slopes.
 fn of_light(light: &Light) -> Result<SpectralCovariance, Untraced> {
     let endless = f64::INFINITY;
     let of_image = |image: &Image| image.width.map(|width| width * width / TAU);
@@ -134,12 +135,12 @@ fn of_light(light: &Light) -> Result<SpectralCovariance, Untraced> {
         Light::Environment { environment } => {
             light_of([endless; 2], [sky_variance(environment)?; 2])
         }
-        // No Gaussian: each of its rays is as narrow as can be.
+        // Not a Gaussian: each ray is infinitely narrow.
         Light::Rays { .. } => return Err(Untraced::Light),
     })
 }
 
-/// The second central moments of a uniform shape along x and y.
+/// Returns the second central moments of a uniform shape along x and y.
 fn variances(shape: &Shape) -> [f64; 2] {
     match shape {
         Shape::Rectangle(rectangle) => rectangle.size.map(|side| side * side / 12.0),
@@ -147,7 +148,8 @@ fn variances(shape: &Shape) -> [f64; 2] {
     }
 }
 
-/// A picture's grating, over positions or, from the coordinate `first` on, over slopes.
+/// Multiplies light by the grating of a picture, over positions or, if `first` is the first slope
+/// coordinate, over slopes.
 fn lined(light: &SpectralCovariance, image: &Image, first: usize) -> SpectralCovariance {
     image.grating.map_or(*light, |lines| {
         let mut factor = [[0.0; 4]; 4];
@@ -157,7 +159,7 @@ fn lined(light: &SpectralCovariance, image: &Image, first: usize) -> SpectralCov
     })
 }
 
-/// Of a single lobe of light, in radians squared.
+/// Returns the variance of an environment with a single lobe, in radians squared.
 fn sky_variance(environment: &Environment) -> Result<f64, Untraced> {
     match &environment.map {
         EnvironmentMap::Lobes(lobes) if lobes.len() == 1 => Ok(lobes[0].width * lobes[0].width),
@@ -165,7 +167,7 @@ fn sky_variance(environment: &Environment) -> Result<f64, Untraced> {
     }
 }
 
-/// Light after the masks of the first leg, and how far it has come.
+/// Returns the light after the masks of the first leg, and the distance it has travelled.
 fn past_masks(
     light: &Light,
     layers: &[(f64, Mask)],
@@ -188,7 +190,7 @@ fn moved(light: &SpectralCovariance, map: &AffineMap<4>) -> Result<SpectralCovar
     light.mapped(map).ok_or(Untraced::Lost)
 }
 
-/// With the cosine of a plane that counts differential irradiance.
+/// Multiplies by the cosine if the plane records differential irradiance.
 fn counted(
     light: &SpectralCovariance,
     quantity: Quantity,
@@ -203,7 +205,7 @@ fn counted(
     }
 }
 
-/// A covariance along one direction of positions.
+/// Returns a covariance along one direction of positions.
 fn along_line([a, b]: [f64; 2], variance: f64) -> Matrix<4> {
     let entry = |p: f64, q: f64| p * q * variance;
     let none = [0.0; 4];

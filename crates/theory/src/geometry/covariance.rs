@@ -1,19 +1,18 @@
-//! Covariances of Gaussian light fields: what is left of a chain when only second moments are
-//! followed.
+//! Covariances of Gaussian light fields, for chains of which only second moments are followed.
 //!
-//! A field exp(−½ zᵀ S⁻¹ z) has the covariance S, and every step keeps it Gaussian: a
-//! [`AffineMap`](super::AffineMap) by [`covariance`](super::AffineMap::covariance), a product by [`gaussian_window`],
-//! a convolution over angle by [`gaussian_lobe`].
+//! A field exp(−½ zᵀ S⁻¹ z) has the covariance S, and every step keeps it Gaussian: an
+//! [`AffineMap`](super::AffineMap) by [`covariance`](super::AffineMap::covariance), a product by
+//! [`gaussian_window`], a convolution over angle by [`gaussian_lobe`].
 
 use super::matrix::{self, Matrix, congruent, diagonal, dot, product, sum, times};
 use std::array;
 use std::f64::consts::{PI, TAU};
 
-/// The covariance after a product with a Gaussian window of standard deviations `std`, one for each
-/// coordinate: S⁻¹ becomes S⁻¹ + diag(1/std²). Infinite ones do nothing.
+/// Returns the covariance after a product with a Gaussian window of standard deviations `std`, one
+/// for each coordinate: S⁻¹ becomes S⁻¹ + diag(1/std²). Infinite ones have no effect.
 ///
-/// Written S (1 + diag(1/std²) S)⁻¹, which stands a singular S, such as light from a point. `None`
-/// if that inverse is not there, which no covariance brings about.
+/// Computed as S (1 + diag(1/std²) S)⁻¹, which allows a singular S, such as light from a point.
+/// `None` if that inverse does not exist, which no covariance causes.
 #[must_use]
 pub fn gaussian_window<const N: usize>(before: &Matrix<N>, std: [f64; N]) -> Option<Matrix<N>> {
     let narrowing = product(&diagonal(std.map(|s| 1.0 / (s * s))), before);
@@ -21,26 +20,26 @@ pub fn gaussian_window<const N: usize>(before: &Matrix<N>, std: [f64; N]) -> Opt
     Some(product(before, &kept))
 }
 
-/// The covariance after a convolution over directions with a Gaussian of standard deviation `std`,
-/// in radians, the same along both angles in 4D: S_θθ, and S_φφ, grow by std². A glossy lobe of
-/// unit integral (Durand et al. 2005, Eq. 16).
+/// Returns the covariance after a convolution over directions with a Gaussian of standard deviation
+/// `std`, in radians, the same along both angles in 4D: S_θθ and S_φφ grow by std². This is a
+/// glossy lobe of unit integral (Durand et al. 2005, Eq. 16).
 #[must_use]
 pub fn gaussian_lobe<const N: usize>(before: &Matrix<N>, std: f64) -> Matrix<N> {
     let blur = array::from_fn(|i| if i < N / 2 { 0.0 } else { std * std });
     sum(before, &diagonal(blur))
 }
 
-/// The covariance of |L|² for a Gaussian field of covariance S: S⁻¹/8π². That of |L| is twice as
-/// large.
+/// Returns the covariance of |L|² for a Gaussian field of covariance S: S⁻¹/8π². The covariance of
+/// |L| is twice as large.
 ///
-/// In cycles per unit, squared. `None` for a singular S, whose spectrum does not end.
+/// In cycles per unit, squared. `None` for a singular S, whose spectrum is unbounded.
 #[must_use]
 pub fn power_spectrum<const N: usize>(field: &Matrix<N>) -> Option<Matrix<N>> {
     let inverse = matrix::inverse(field)?;
     Some(inverse.map(|row| row.map(|entry| entry / (8.0 * PI * PI))))
 }
 
-/// The spectrum of exp(−½ zᵀ S⁻¹ z): (2π)^(N/2) √det S exp(−2π² Ωᵀ S Ω).
+/// Returns the spectrum of exp(−½ zᵀ S⁻¹ z): (2π)^(N/2) √det S exp(−2π² Ωᵀ S Ω).
 #[must_use]
 pub fn gaussian_spectrum<const N: usize>(field: &Matrix<N>, omega: [f64; N]) -> f64 {
     let volume = congruent(&diagonal([TAU.sqrt(); N]), field);

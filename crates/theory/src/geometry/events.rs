@@ -1,13 +1,13 @@
-//! What happens at a surface from light frame to light frame, made of the steps.
+//! Complete events at a surface, from light frame to light frame, composed of the single steps.
 
 use super::{AffineMap, Matrix, Media};
 
 impl AffineMap<2> {
     /// Reflection by a mirror of curvature k, in 1/m (convex positive), met at the angle θ₀.
     ///
-    /// Incidence, curvature, mirror, back, outgoing at −θ₀. The product is x' = −x, θ' = −θ −
-    /// (2k/cos θ₀) x (docs/theory.md (26)): both shears of a curved surface add up (Durand et
-    /// al. 2005, step 6).
+    /// Composed of incidence, curvature, mirror, back, and outgoing at −θ₀. The product is x' = −x,
+    /// θ' = −θ − (2k/cos θ₀) x (docs/theory.md (26)): both shears of a curved surface add up
+    /// (Durand et al. 2005, step 6).
     #[must_use]
     pub fn mirror_reflection(theta0: f64, k: f64) -> Self {
         Self::incidence(theta0)
@@ -17,11 +17,12 @@ impl AffineMap<2> {
             .then(&Self::outgoing(-theta0))
     }
 
-    /// Refraction at a surface of curvature k, in 1/m (convex positive, seen from where light
-    /// comes), met at the angle θ₀.
+    /// Refraction at a surface of curvature k, in 1/m (convex positive, seen from the side of the
+    /// incident light), met at the angle θ₀.
     ///
-    /// Incidence, curvature, refraction, back, and off the surface on its other side, where the
-    /// central ray goes on at θ₂. `None` as for [`refraction`](Self::refraction).
+    /// Composed of incidence, curvature, refraction, back, and outgoing on the other side of the
+    /// surface, where the central ray continues at θ₂. `None` as for
+    /// [`refraction`](Self::refraction).
     #[must_use]
     pub fn refracting_surface(theta0: f64, k: f64, media: &Media) -> Option<Self> {
         let theta2 = media.refracted(theta0)?;
@@ -35,7 +36,7 @@ impl AffineMap<2> {
     /// 11).
     ///
     /// At the [focus](Self::focus) of the reflection, −cos θ₀/2k, positions depend on directions
-    /// alone: parallel light is a point.
+    /// alone: parallel light meets in a point.
     #[must_use]
     pub fn caustic(theta0: f64, k: f64, distance: f64) -> Self {
         Self::mirror_reflection(theta0, k).then(&Self::travel(distance))

@@ -1,24 +1,25 @@
-//! The kernel that takes spectra from slopes to angles.
+//! The kernel that converts spectra from slopes to angles.
 
 use crate::numerics::sinc::sinc;
 use std::f64::consts::{PI, TAU};
 
-/// Step of the trapezoid rule in ln t. Twice this step gives the same values to rounding, from
-/// frequencies of 10⁻¹² to 160.
+/// The step of the trapezoid rule in ln t. Twice this step gives the same values up to rounding,
+/// for frequencies from 10⁻¹² to 160.
 const STEP: f64 = 1.0 / 32.0;
-/// Frequencies beyond this are not evaluated: the recurrence takes a step for each third of a cycle
-/// per radian.
+/// Frequencies beyond this are not evaluated: the recurrence takes one step for each third of a
+/// cycle per radian.
 const MAX_FREQUENCY: f64 = 1e5;
 
-/// The kernel K(Ωv, Ωθ) = ∫ e^(2πi(Ωv tan t − Ωθ t)) dt over |t| < π/2, real, of the change from
-/// slopes to angles: L_angle(Ωx, Ωθ) = ∫ L_slope(Ωx, Ωv) K(Ωv, Ωθ) dΩv (Durand et al. 2005, section
-/// 4, who show it in Fig. 8 and do not print it).
+/// The kernel K(Ωv, Ωθ) = ∫ e^(2πi(Ωv tan t − Ωθ t)) dt over |t| < π/2 of the change from slopes to
+/// angles, which is real: L_angle(Ωx, Ωθ) = ∫ L_slope(Ωx, Ωv) K(Ωv, Ωθ) dΩv (Durand et al. 2005,
+/// section 4, who plot it in Fig. 8 but give no formula).
 ///
-/// Frequencies in cycles per unit slope and per radian. Absolute error below 10⁻¹³, K being π at
-/// most, for frequencies up to 160; not a number beyond 10⁵. It takes a time proportional to Ωθ.
+/// Frequencies are in cycles per unit slope and per radian. The absolute error is below 10⁻¹³ (K is
+/// at most π) for frequencies up to 160; the result is NaN beyond 10⁵. The time is proportional to
+/// Ωθ.
 ///
-/// π times Bateman's function k_b(a) with a = 2πΩv, b = 2πΩθ (docs/theory.md (30)). K(−Ωv, −Ωθ)
-/// = K(Ωv, Ωθ), K(0, Ωθ) = π sinc(b/2).
+/// K is π times Bateman's function k_b(a) with a = 2πΩv, b = 2πΩθ (docs/theory.md (30)). K(−Ωv,
+/// −Ωθ) = K(Ωv, Ωθ), K(0, Ωθ) = π sinc(b/2).
 #[must_use]
 pub fn plane_sphere_kernel(omega_v: f64, omega_theta: f64) -> f64 {
     let sign = if omega_v < 0.0 { -1.0 } else { 1.0 };
@@ -35,30 +36,30 @@ pub fn plane_sphere_kernel(omega_v: f64, omega_theta: f64) -> f64 {
     }
 }
 
-/// e^a K for b < 1: the path from −π/2 to π/2 moved up to −π/2 + i∞ and down again, where tan(±π/2
-/// + it) = i coth t.
+/// Returns e^a K for b < 1: the path from −π/2 to π/2 is moved up to −π/2 + i∞ and down again,
+/// where tan(±π/2 + it) = i coth t.
 fn scaled(a: f64, b: f64) -> f64 {
     let twice_sine = 2.0 * libm::sin(0.5 * PI * b);
     let damping = |t: f64| -2.0 * a / libm::expm1(2.0 * t); // −a (coth t − 1)
     if b < -1.0 {
         -twice_sine * integral(|t| libm::exp(damping(t) + b * t))
     } else {
-        // The integral of e^(bt), which ends only for b < 0, by itself.
+        // The integral of e^(bt), which converges only for b < 0, is separated.
         PI * sinc(0.5 * b) - twice_sine * integral(|t| libm::expm1(damping(t)) * libm::exp(b * t))
     }
 }
 
-/// ∫ f(t) dt over t > 0, of integrands that fall as e^(−t) or faster and have no scale but those of
-/// ln t.
+/// Integrates f(t) over t > 0, for integrands that fall as e^(−t) or faster and vary on no other
+/// scale than ln t.
 fn integral(f: impl Fn(f64) -> f64) -> f64 {
-    // From e^−40 to e^4.2 = 67; beyond both there is less than 1e-17.
+    // From e^−40 to e^4.2 = 67; the rest is less than 1e-17.
     let nodes = (-1280..=134).map(|i| libm::exp(f64::from(i) * STEP));
     nodes.map(|t| t * f(t)).sum::<f64>() * STEP
 }
 
-/// K for b ≥ 1 from two values below: with m = b/2, (m + 1) K(m + 1) = 2(a − m) K(m) − (m − 1) K(m
-/// − 1), the recurrence of Tricomi's U (DLMF 13.3.7). Both its solutions oscillate where b > a, and
-/// K is the one that grows where b < a.
+/// Returns K for b ≥ 1 from two values below: with m = b/2, (m + 1) K(m + 1) = 2(a − m)
+/// K(m) − (m − 1) K(m − 1), the recurrence of Tricomi's U (DLMF 13.3.7). Both its
+/// solutions oscillate where b > a, and K is the one that grows where b < a.
 fn climbed(a: f64, b: f64) -> f64 {
     const HUGE: f64 = 1e100;
     let steps = (0.5 * (b + 1.0)).floor();

@@ -4,29 +4,30 @@ use super::SpectrumMap;
 use super::matrix::{self, Matrix, congruent, diagonal, plus, times, transpose};
 use etendue_field::Complex;
 
-/// An affine map of rays, z' = A z + t, that keeps radiance (docs/theory.md (1)).
+/// An affine map of rays, z' = A z + t, that preserves radiance (docs/theory.md (1)).
 ///
 /// Coordinates are positions, then slopes or angles: (x, u) for N = 2, (x, y, u, v) for N = 4. No
 /// other N has constructors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AffineMap<const N: usize> {
-    /// A, as rows.
+    /// The matrix A, as rows.
     pub matrix: Matrix<N>,
-    /// t.
+    /// The offset t.
     pub offset: [f64; N],
 }
 
-/// Step of the differences that a map is read off with, metres and radians.
+/// Step of the finite differences that estimate a map, metres and radians.
 const STEP: f64 = 1e-5;
 
 impl<const N: usize> AffineMap<N> {
-    /// The affine map that touches another map of rays at zero, by differences of fourth order:
-    /// good to some 10⁻¹⁰ per metre and radian. `None` where a ray near zero does not arrive.
+    /// Returns the affine map tangent to another map of rays at zero, by differences of fourth
+    /// order: accurate to some 10⁻¹⁰ per metre and radian. `None` if a ray near zero does not
+    /// arrive.
     pub(crate) fn touching(map: impl Fn([f64; N]) -> Option<[f64; N]>) -> Option<Self> {
         Self::touching_by(STEP, map)
     }
 
-    /// By differences of this step.
+    /// Returns the tangent map by differences of this step.
     fn touching_by(step: f64, map: impl Fn([f64; N]) -> Option<[f64; N]>) -> Option<Self> {
         let offset = map([0.0; N])?;
         let mut matrix: Matrix<N> = [[0.0; N]; N];
@@ -45,8 +46,8 @@ impl<const N: usize> AffineMap<N> {
         Some(Self { matrix, offset })
     }
 
-    /// How far this map is from the one that touches another map of rays at zero, as
-    /// [`apart`](Self::apart) has it, beyond what differences leave open where that map bends fast.
+    /// Returns the distance of this map from the tangent at zero of another map of rays, measured
+    /// as by [`apart`](Self::apart), beyond the error of the differences where that map bends fast.
     pub(crate) fn off_touching(
         &self,
         map: impl Fn([f64; N]) -> Option<[f64; N]>,
@@ -57,8 +58,9 @@ impl<const N: usize> AffineMap<N> {
         Some((self.apart(&fine, half) - open).max(0.0))
     }
 
-    /// How far this map is from another, in the half-widths of a window: the largest difference of
-    /// where rays go that either keeps within the window.
+    /// Returns the distance of this map from another, in half-widths of a window: the largest
+    /// difference between the two images of a ray, over rays that either map keeps within the
+    /// window.
     pub(crate) fn apart(&self, other: &Self, half: &[f64; N]) -> f64 {
         let mut most = 0.0_f64;
         for (row, half) in half.iter().enumerate() {
@@ -77,20 +79,21 @@ impl<const N: usize> AffineMap<N> {
         }
         most
     }
-    /// The map z' = A z.
+    /// Returns the map z' = A z.
     #[must_use]
     pub const fn linear(matrix: Matrix<N>) -> Self {
         let offset = [0.0; N];
         Self { matrix, offset }
     }
 
-    /// The map that changes nothing.
+    /// Returns the identity map.
     #[must_use]
     pub fn identity() -> Self {
         Self::linear(diagonal([1.0; N]))
     }
 
-    /// This map, then `next`: steps are written in the order in which light meets them.
+    /// Returns this map followed by `next`: steps are written in the order in which light meets
+    /// them.
     #[must_use]
     pub fn then(&self, next: &Self) -> Self {
         Self {
@@ -99,8 +102,8 @@ impl<const N: usize> AffineMap<N> {
         }
     }
 
-    /// The map that takes rays back; `None` if an elimination of A meets a pivot that is zero or
-    /// not finite.
+    /// Returns the inverse map; `None` if an elimination of A meets a pivot that is zero or not
+    /// finite.
     #[must_use]
     pub fn inverse(&self) -> Option<Self> {
         let inverse = matrix::inverse(&self.matrix)?;
@@ -110,33 +113,33 @@ impl<const N: usize> AffineMap<N> {
         })
     }
 
-    /// det A: how areas of ray space grow. Negative where orientation turns over, as on the way
-    /// onto a surface.
+    /// Returns det A, the factor by which volumes of ray space grow. It is negative where
+    /// orientation flips, as on the path onto a surface.
     #[must_use]
     pub fn det(&self) -> f64 {
         matrix::determinant(&self.matrix)
     }
 
-    /// Where a ray goes: A z + t.
+    /// Returns the image of a ray: A z + t.
     #[must_use]
     pub fn apply(&self, ray: [f64; N]) -> [f64; N] {
         plus(&times(&self.matrix, &ray), &self.offset)
     }
 
-    /// Aᵀ Ω: where the spectrum before is looked at for the frequency Ω after.
+    /// Returns Aᵀ Ω: the frequency before the map for the frequency Ω after it.
     #[must_use]
     pub fn transpose_apply(&self, omega: [f64; N]) -> [f64; N] {
         times(&transpose(&self.matrix), &omega)
     }
 
-    /// Where spectral content at Ω goes: A⁻ᵀ Ω, the inverse of
+    /// Returns the frequency that spectral content at Ω moves to: A⁻ᵀ Ω, the inverse of
     /// [`transpose_apply`](Self::transpose_apply). `None` as for [`inverse`](Self::inverse).
     #[must_use]
     pub fn content(&self, omega: [f64; N]) -> Option<[f64; N]> {
         Some(times(&transpose(&matrix::inverse(&self.matrix)?), &omega))
     }
 
-    /// What the map does to spectra: factor |det A|, matrix Aᵀ, phase vector t.
+    /// Returns the effect of the map on spectra: factor |det A|, matrix Aᵀ, phase vector t.
     #[must_use]
     pub fn spectrum_map(&self) -> SpectrumMap<N> {
         SpectrumMap {
@@ -146,35 +149,36 @@ impl<const N: usize> AffineMap<N> {
         }
     }
 
-    /// The spectrum after the map at Ω, |det A| e^(−2πi Ω·t) L(Aᵀ Ω), of a field with the spectrum
-    /// L before.
+    /// Returns the spectrum at Ω after the map, |det A| e^(−2πi Ω·t) L(Aᵀ Ω), for a field with the
+    /// spectrum L before it.
     ///
-    /// Frequencies in cycles per unit of each coordinate.
+    /// Frequencies are in cycles per unit of each coordinate.
     #[must_use]
     pub fn spectrum(&self, omega: [f64; N], before: &dyn Fn([f64; N]) -> Complex) -> Complex {
         self.spectrum_map().spectrum(omega, before)
     }
 
-    /// The covariance of rays after the map, A S Aᵀ, of rays with the covariance S before.
+    /// Returns the covariance of rays after the map, A S Aᵀ, for rays with the covariance S before
+    /// it.
     #[must_use]
     pub fn covariance(&self, before: &Matrix<N>) -> Matrix<N> {
         congruent(&self.matrix, before)
     }
 
-    /// The covariance of |L| or |L|² after the map, A⁻ᵀ S A⁻¹, of S before. `None` as for
-    /// [`inverse`](Self::inverse).
+    /// Returns the covariance of |L| or |L|² after the map, A⁻ᵀ S A⁻¹, for S before it. `None` as
+    /// for [`inverse`](Self::inverse).
     #[must_use]
     pub fn spectral_covariance(&self, before: &Matrix<N>) -> Option<Matrix<N>> {
         let inverse = matrix::inverse(&self.matrix)?;
         Some(congruent(&transpose(&inverse), before))
     }
 
-    /// How far the map is from keeping étendue: the largest entry of |Aᵀ J A − r J|, J = [[0, 1],
-    /// [−1, 0]] in blocks, where r is the index of refraction before over that after.
+    /// Returns how far the map is from conserving étendue: the largest entry of |Aᵀ J A − r J|, J =
+    /// [[0, 1], [−1, 0]] in blocks, where r is the index of refraction before over the index after.
     ///
-    /// Zero between two planes across the light, whatever stands between: n dx du is conserved in
-    /// 2D (J then gives |det A − r|), and the Lagrange invariant of every pair of rays in 4D. Maps
-    /// onto or off a surface have a cosine too much or too little.
+    /// The result is zero between two planes perpendicular to the light, whatever is between them:
+    /// n dx du is conserved in 2D (J then gives |det A − r|), and the Lagrange invariant of every
+    /// pair of rays in 4D. Maps onto or off a surface have one cosine too many or too few.
     #[must_use]
     pub fn symplectic_defect(&self, index_ratio: f64) -> f64 {
         let half = N / 2;
@@ -185,14 +189,14 @@ impl<const N: usize> AffineMap<N> {
         let entries = (0..N).flat_map(|i| (0..N).map(move |k| (i, k)));
         entries
             .map(|(i, k)| (kept[i][k] - index_ratio * j(i, k)).abs())
-            // A maximum that does not lose what is not a number.
+            // A maximum that propagates NaN.
             .fold(0.0, |most, x| if most >= x { most } else { x })
     }
 }
 
 impl AffineMap<2> {
-    /// The distance after which rays that were parallel before the map meet, −A₀₀/A₁₀ metres;
-    /// negative if behind. `None` if they stay parallel.
+    /// Returns the distance after which rays that were parallel before the map meet, −A₀₀/A₁₀
+    /// metres; negative if behind. `None` if they stay parallel.
     #[must_use]
     pub fn focus(&self) -> Option<f64> {
         let [[x, _], [slope, _]] = self.matrix;
@@ -202,7 +206,7 @@ impl AffineMap<2> {
 }
 
 impl AffineMap<4> {
-    /// The map that takes (x, u) by one map and (y, v) by another.
+    /// Returns the map that applies one map to (x, u) and another to (y, v).
     #[must_use]
     pub fn sections(x: &AffineMap<2>, y: &AffineMap<2>) -> Self {
         let [[x0, u0], [y0, v0]] = [x.offset, y.offset];

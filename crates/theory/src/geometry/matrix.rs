@@ -3,7 +3,7 @@
 use std::array;
 use std::cmp::Ordering;
 
-/// A square matrix, as rows.
+/// A square matrix, stored as rows.
 pub type Matrix<const N: usize> = [[f64; N]; N];
 
 pub(crate) fn from_fn<const N: usize>(entry: impl Fn(usize, usize) -> f64) -> Matrix<N> {
@@ -30,7 +30,7 @@ pub(crate) fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
     (0..N).map(|i| a[i] * b[i]).sum()
 }
 
-/// A z.
+/// Returns A z.
 pub(crate) fn times<const N: usize>(a: &Matrix<N>, z: &[f64; N]) -> [f64; N] {
     a.map(|row| dot(&row, z))
 }
@@ -39,12 +39,13 @@ pub(crate) fn plus<const N: usize>(a: &[f64; N], b: &[f64; N]) -> [f64; N] {
     array::from_fn(|i| a[i] + b[i])
 }
 
-/// A S Aᵀ.
+/// Returns A S Aᵀ.
 pub(crate) fn congruent<const N: usize>(a: &Matrix<N>, s: &Matrix<N>) -> Matrix<N> {
     product(&product(a, s), &transpose(a))
 }
 
-/// The block-diagonal matrix that treats (0, 2) by one matrix and (1, 3) by the other.
+/// Returns the block-diagonal matrix that applies one matrix to the coordinates (0, 2) and the
+/// other to (1, 3).
 pub(crate) fn sections(x: &Matrix<2>, y: &Matrix<2>) -> Matrix<4> {
     let parts = [x, y];
     from_fn(|i, j| {
@@ -56,18 +57,18 @@ pub(crate) fn sections(x: &Matrix<2>, y: &Matrix<2>) -> Matrix<4> {
     })
 }
 
-/// The determinant.
+/// Returns the determinant.
 pub(crate) fn determinant<const N: usize>(a: &Matrix<N>) -> f64 {
     eliminate(*a).map_or_else(|zero| zero, |(determinant, _)| determinant)
 }
 
-/// The inverse; `None` when a pivot is zero or not finite.
+/// Returns the inverse; `None` if a pivot is zero or not finite.
 pub(crate) fn inverse<const N: usize>(a: &Matrix<N>) -> Option<Matrix<N>> {
     eliminate(*a).ok().map(|(_, inverse)| inverse)
 }
 
-/// Determinant and inverse, by elimination with row pivoting; the determinant alone when there is
-/// no inverse.
+/// Returns determinant and inverse, by elimination with row pivoting; the determinant alone if
+/// there is no inverse.
 fn eliminate<const N: usize>(mut a: Matrix<N>) -> Result<(f64, Matrix<N>), f64> {
     let mut inverse = diagonal([1.0; N]);
     let mut determinant = 1.0;
@@ -110,7 +111,7 @@ mod tests {
             [0.0, 1.0, 0.0, -1.0],
             [2.0, 0.0, -1.0, 0.5],
         ];
-        // Rows swapped by hand: det = 21 on the blocks (0, 2) and (1, 3).
+        // Rows swapped by hand: det = 21 from the blocks (0, 2) and (1, 3).
         assert!((determinant(&a) - 21.0).abs() < 1e-13); // rounding of 21
         let unit = product(&a, &inverse(&a).unwrap());
         let one = diagonal([1.0; 4]);

@@ -1,10 +1,10 @@
-//! What happens to rays near a central ray: every geometric step of a light path as one affine map.
+//! The geometry of rays near a central ray: every geometric step of a light path as one affine map.
 //!
-//! A ray is a point z of 2 or 4 coordinates, positions first: (x, u) or (x, y, u, v). A step turns
-//! it into z' = A z + t and keeps its radiance, and so turns the spectrum L into L'(Ω) = |det A|
-//! e^(−2πi Ω·t) L(Aᵀ Ω) (docs/theory.md (1)). That is a [`AffineMap`]; everything else here makes one,
-//! or says what one does to rays, spectra and covariances. Steps are chained by [`AffineMap::then`] in
-//! the order in which light meets them:
+//! A ray is a point z of 2 or 4 coordinates, positions first: (x, u) or (x, y, u, v). A step maps
+//! it to z' = A z + t and preserves its radiance, and so maps the spectrum L to L'(Ω) = |det A|
+//! e^(−2πi Ω·t) L(Aᵀ Ω) (docs/theory.md (1)). An [`AffineMap`] is such a step; everything else here
+//! constructs one, or gives its effect on rays, spectra and covariances. Steps are chained by
+//! [`AffineMap::then`] in the order in which light meets them:
 //!
 //! | step | constructor | in Durand et al. 2005 |
 //! |---|---|---|
@@ -18,8 +18,8 @@
 //! | outgoing angle: off the surface | [`outgoing`](AffineMap::<2>::outgoing) | Eq. 10 |
 //! | turning the axes | [`AffineMap::rotation`] | section 5.2 |
 //!
-//! In the frame of a light ray the last coordinates are slopes or angles to the central ray; to the
-//! order at which these maps hold, both are the same ([`plane_sphere`] has the exact change).
+//! In the frame of a light ray the last coordinates are slopes or angles to the central ray; both
+//! are the same to the order at which these maps hold ([`plane_sphere`] has the exact change).
 //! Lengths are in metres, angles in radians.
 //!
 //! **Surface frame.** N is the normal where the central ray hits, on the side the light comes from;
@@ -33,7 +33,8 @@
 //! is linear in the size e of the neighbourhood, with a relative error that falls as e, and as e²
 //! at normal incidence.
 //!
-//! **The print.** What the paper prints differs in places; [`Edition`] has both.
+//! **The printed equations.** Some equations in the paper differ from these; [`Edition`] has both
+//! versions.
 //!
 //! ```
 //! use etendue_theory::geometry::AffineMap;

@@ -1,45 +1,45 @@
-//! Two-plane and plane-sphere coordinates: slopes and angles, exactly.
+//! The exact conversion between two-plane and plane-sphere coordinates, slopes and angles.
 //!
-//! Positions stay. In 2D the slope is v = tan θ. In 4D the direction is D + u X + v Y, or longitude
-//! θ and latitude φ, cos φ (cos θ D + sin θ X) + sin φ Y, so u = tan θ and v = tan φ / cos θ
-//! (Durand et al. 2005, section 5.2, whose "co-latitude" φ is a latitude). Radiance is carried
-//! along; a density also needs the Jacobian. Angles in radians, within ± π/2.
+//! Positions stay. In 2D the slope is v = tan θ. In 4D the direction is D + u X + v Y, or with
+//! longitude θ and latitude φ, cos φ (cos θ D + sin θ X) + sin φ Y, so u = tan θ and v = tan φ /
+//! cos θ (Durand et al. 2005, section 5.2, whose "co-latitude" φ is a latitude). Radiance keeps its
+//! value; a density also needs the Jacobian. Angles are in radians, within ± π/2.
 //!
-//! What this does to a spectrum is no map but, in 2D, the kernel
-//! [`plane_sphere_kernel`](super::plane_sphere_kernel). To take slopes for angles is right to
+//! The effect on a spectrum is not an affine map; in 2D it is the kernel
+//! [`plane_sphere_kernel`](super::plane_sphere_kernel). Treating slopes as angles is right to
 //! second order: frequencies are stretched by 1 + v² at the slope v.
 
-/// (x, v) to (x, θ).
+/// Converts (x, v) to (x, θ).
 #[must_use]
 pub fn to_angles_2d([x, v]: [f64; 2]) -> [f64; 2] {
     [x, libm::atan(v)]
 }
 
-/// (x, θ) to (x, v).
+/// Converts (x, θ) to (x, v).
 #[must_use]
 pub fn to_slopes_2d([x, theta]: [f64; 2]) -> [f64; 2] {
     [x, libm::tan(theta)]
 }
 
-/// dv/dθ = 1/cos² θ.
+/// Returns dv/dθ = 1/cos² θ.
 #[must_use]
 pub fn jacobian_2d(theta: f64) -> f64 {
     libm::cos(theta).powi(-2)
 }
 
-/// (x, y, u, v) to (x, y, θ, φ).
+/// Converts (x, y, u, v) to (x, y, θ, φ).
 #[must_use]
 pub fn to_angles([x, y, u, v]: [f64; 4]) -> [f64; 4] {
     [x, y, libm::atan(u), libm::atan2(v, libm::hypot(1.0_f64, u))]
 }
 
-/// (x, y, θ, φ) to (x, y, u, v).
+/// Converts (x, y, θ, φ) to (x, y, u, v).
 #[must_use]
 pub fn to_slopes([x, y, theta, phi]: [f64; 4]) -> [f64; 4] {
     [x, y, libm::tan(theta), libm::tan(phi) / libm::cos(theta)]
 }
 
-/// du dv / dθ dφ = 1/(cos³ θ cos² φ), at (θ, φ).
+/// Returns du dv / dθ dφ = 1/(cos³ θ cos² φ), at (θ, φ).
 #[must_use]
 pub fn jacobian([theta, phi]: [f64; 2]) -> f64 {
     libm::cos(theta).powi(-3) * libm::cos(phi).powi(-2)

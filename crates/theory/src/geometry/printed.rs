@@ -3,18 +3,18 @@
 use super::{AffineMap, Matrix, SpectrumMap};
 use std::f64::consts::TAU;
 
-/// Which print of the geometric operators is asked for (docs/theory.md, section 7).
+/// The version of the geometric operators (docs/theory.md, section 7).
 ///
-/// What Durand et al. 2005 print for the steps on and off a surface differs from ray geometry, and
-/// between their text and their table. Mirror and travel are printed right.
+/// The steps onto and off a surface that Durand et al. 2005 print differ from ray geometry, and
+/// between their text and their table. Mirror and travel are printed correctly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edition {
-    /// As ray geometry has it: the maps of this module.
+    /// According to ray geometry: the maps of this module.
     Corrected,
     /// The numbered equations: 9, 11, 10, and for a surface in 3D the shear by M in the text after 19.
     Equations,
-    /// Table 1: its light incidence, curvature and outgoing angle. It has no line for 3D;
-    /// there the shear by M with the table's sign.
+    /// Table 1: its light incidence, curvature and outgoing angle. It has no row for 3D, where the
+    /// shear by M takes the table's sign.
     Table,
 }
 
@@ -63,7 +63,7 @@ impl Edition {
         }
     }
 
-    /// Incidence, curvature, mirror, back, outgoing at −θ₀.
+    /// Mirror reflection: incidence, curvature, mirror, back, outgoing at −θ₀.
     #[must_use]
     pub fn mirror_reflection(self, theta0: f64, k: f64) -> SpectrumMap<2> {
         self.incidence(theta0)
@@ -73,8 +73,8 @@ impl Edition {
             .then(&self.outgoing(-theta0))
     }
 
-    /// Light incidence in 4D: (x, θ) as in 2D; the paper leaves out that the latitude turns over,
-    /// which no print gets wrong.
+    /// Light incidence in 4D: (x, θ) as in 2D. The paper does not mention that the latitude flips;
+    /// both versions here include it.
     #[must_use]
     pub fn incidence_4d(self, theta0: f64) -> SpectrumMap<4> {
         SpectrumMap::sections(&self.incidence(theta0), &AffineMap::mirror().spectrum_map())
@@ -101,7 +101,7 @@ impl Edition {
         )
     }
 
-    /// Incidence, curvature, mirror, back, outgoing at −θ₀ in 4D.
+    /// Mirror reflection in 4D: incidence, curvature, mirror, back, outgoing at −θ₀.
     #[must_use]
     pub fn mirror_reflection_4d(self, theta0: f64, shape: Matrix<2>) -> SpectrumMap<4> {
         self.incidence_4d(theta0)
@@ -123,8 +123,8 @@ impl Edition {
         shape.map(|row| row.map(|entry| self.sign() * entry))
     }
 
-    /// The longitude whose cosine is beside M: the text after Eq. 19 leaves it out, as if the
-    /// longitude were 0.
+    /// The longitude whose cosine multiplies M: the text after Eq. 19 leaves the cosine out, as if
+    /// the longitude were 0.
     fn longitude(self, theta: f64) -> f64 {
         match self {
             Self::Corrected => theta,
@@ -133,7 +133,7 @@ impl Edition {
     }
 }
 
-/// The phase vector that makes e^(−2πi Ω·t) what the paper prints, e^(−iΩ·t).
+/// Returns the phase vector for which e^(−2πi Ω·t) equals the printed e^(−iΩ·t).
 fn without_two_pi(phase: [f64; 2]) -> [f64; 2] {
     phase.map(|t| t / TAU)
 }

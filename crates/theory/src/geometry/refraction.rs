@@ -7,19 +7,19 @@ use super::AffineMap;
 pub struct Media {
     /// Index n₁ of the medium in which light arrives.
     pub before: f64,
-    /// Index n₂ of the medium in which it goes on.
+    /// Index n₂ of the medium into which it continues.
     pub after: f64,
 }
 
 impl Media {
-    /// n₁/n₂: what [`AffineMap::symplectic_defect`] asks for, and how étendue in (x, u) changes along
-    /// each axis.
+    /// Returns n₁/n₂: the ratio that [`AffineMap::symplectic_defect`] takes, and the change of
+    /// étendue in (x, u) along each axis.
     #[must_use]
     pub fn index_ratio(&self) -> f64 {
         self.before / self.after
     }
 
-    /// The same interface met from the other side.
+    /// Returns the same interface met from the other side.
     #[must_use]
     pub fn reversed(&self) -> Self {
         Self {
@@ -28,11 +28,11 @@ impl Media {
         }
     }
 
-    /// The angle θ₂ of the refracted ray, n₁ sin θ₁ = n₂ sin θ₂ (Snell's law). `None` where all
-    /// light is reflected.
+    /// Returns the angle θ₂ of the refracted ray, n₁ sin θ₁ = n₂ sin θ₂ (Snell's law). `None` under
+    /// total internal reflection.
     ///
-    /// As every angle on a surface it says where light seems to come from: the refracted central
-    /// ray runs along −(sin θ₂ T + cos θ₂ N).
+    /// Like every angle on a surface, it is the direction from which light seems to come: the
+    /// refracted central ray runs along −(sin θ₂ T + cos θ₂ N).
     #[must_use]
     pub fn refracted(&self, theta1: f64) -> Option<f64> {
         let sine = self.index_ratio() * libm::sin(theta1);
@@ -41,13 +41,13 @@ impl Media {
 }
 
 impl AffineMap<2> {
-    /// Refraction of local directions, Snell's law made linear at θ₀: θ' = θ₂ + (θ − θ₀) n₁ cos
+    /// Refraction of local directions, Snell's law linearised at θ₀: θ' = θ₂ + (θ − θ₀) n₁ cos
     /// θ₀/(n₂ cos θ₂).
     ///
-    /// By differentiating n₁ sin θ = n₂ sin θ' (docs/theory.md (27)); the paper has no
-    /// refraction. Directions stay flipped, and light goes on through the surface: the next step
-    /// back into a light frame is the inverse of the incidence at θ₂. `None` where all light is
-    /// reflected, and at the critical angle, where there is no derivative.
+    /// Derived by differentiating n₁ sin θ = n₂ sin θ' (docs/theory.md (27)); the paper has no
+    /// refraction. Directions stay flipped, and light continues through the surface: the next step
+    /// back into a light frame is the inverse of the incidence at θ₂. `None` under total internal
+    /// reflection, and at the critical angle, where there is no derivative.
     #[must_use]
     pub fn refraction(theta0: f64, media: &Media) -> Option<Self> {
         let theta2 = media.refracted(theta0)?;
@@ -63,8 +63,8 @@ impl AffineMap<4> {
     /// Refraction of local directions: the longitude as in 2D, and n₁ φ = n₂ φ' out of the plane of
     /// incidence.
     ///
-    /// The tangential part of n ω is the same on both sides; along B that is n sin φ, along T it is
-    /// n cos φ sin θ, where cos φ is 1 to first order (docs/theory.md (27)).
+    /// The tangential part of n ω is the same on both sides: along B it is n sin φ, along T it is n
+    /// cos φ sin θ, where cos φ is 1 to first order (docs/theory.md (27)).
     #[must_use]
     pub fn refraction(theta0: f64, media: &Media) -> Option<Self> {
         let in_plane = AffineMap::<2>::refraction(theta0, media)?;

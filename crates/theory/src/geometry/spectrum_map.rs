@@ -1,26 +1,26 @@
-//! What an affine step does to spectra.
+//! The effect of an affine step on spectra.
 
 use super::AffineMap;
 use super::matrix::{Matrix, dot, plus, product, sections, times, transpose};
 use etendue_field::{Complex, cis};
 use std::f64::consts::TAU;
 
-/// What a step does to spectra: L'(Ω) = factor · e^(−2πi Ω·phase) L(matrix · Ω).
+/// The effect of a step on spectra: L'(Ω) = factor · e^(−2πi Ω·phase) L(matrix · Ω).
 ///
-/// A [`AffineMap`] has one, with factor |det A|, matrix Aᵀ and phase t. One that was printed
-/// wrong need not be that of any map of rays, which is why it has a type of its own.
+/// Every [`AffineMap`] has one, with factor |det A|, matrix Aᵀ and phase t. It has a type of its
+/// own because a misprinted step need not correspond to any map of rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpectrumMap<const N: usize> {
-    /// What the spectrum is multiplied by.
+    /// The factor that multiplies the spectrum.
     pub factor: f64,
-    /// From the frequency after to the frequency before, as rows.
+    /// The matrix, as rows, from the frequency after the step to the frequency before it.
     pub matrix: Matrix<N>,
     /// The phase vector, in the units of the ray coordinates.
     pub phase: [f64; N],
 }
 
 impl<const N: usize> SpectrumMap<N> {
-    /// This step, then `next`.
+    /// Returns this step followed by `next`.
     #[must_use]
     pub fn then(&self, next: &Self) -> Self {
         Self {
@@ -30,7 +30,7 @@ impl<const N: usize> SpectrumMap<N> {
         }
     }
 
-    /// What it does to rays, z' = A z + t: A is the transpose of its matrix, t its phase.
+    /// Returns the effect on rays, z' = A z + t: A is the transpose of the matrix, t the phase.
     #[must_use]
     pub fn rays(&self) -> AffineMap<N> {
         AffineMap {
@@ -39,7 +39,7 @@ impl<const N: usize> SpectrumMap<N> {
         }
     }
 
-    /// The spectrum after the step at Ω of a field with the spectrum L before.
+    /// Returns the spectrum at Ω after the step, for a field with the spectrum L before it.
     #[must_use]
     pub fn spectrum(&self, omega: [f64; N], before: &dyn Fn([f64; N]) -> Complex) -> Complex {
         let turn = cis(-TAU * dot(&omega, &self.phase)) * self.factor;
@@ -48,7 +48,7 @@ impl<const N: usize> SpectrumMap<N> {
 }
 
 impl SpectrumMap<4> {
-    /// The step that takes (Ωx, Ωu) by one step and (Ωy, Ωv) by another.
+    /// Returns the step that applies one step to (Ωx, Ωu) and another to (Ωy, Ωv).
     #[must_use]
     pub fn sections(x: &SpectrumMap<2>, y: &SpectrumMap<2>) -> Self {
         let [[x0, u0], [y0, v0]] = [x.phase, y.phase];

@@ -2,8 +2,8 @@
 //! local normals.
 //!
 //! Angles of incidence θ₀ and outgoing angles θ₁ lie within ± π/2; at grazing incidence a scale is
-//! infinite. Signs are those of the [module](super): with N up, positive angles lie to the right,
-//! and a mirror has θ₁ = −θ₀.
+//! infinite. Signs follow the [module](super): with N up, positive angles lie to the right, and a
+//! mirror has θ₁ = −θ₀.
 
 use super::AffineMap;
 
@@ -11,9 +11,9 @@ impl AffineMap<2> {
     /// Light incidence: s = −x/cos θ₀, θᵢ = θ + θ₀. Light comes from the direction θ₀ and its
     /// directions are flipped.
     ///
-    /// L'(Ωx, Ωθ) = e^(−2πi Ωθ θ₀)/cos θ₀ · L(−Ωx/cos θ₀, Ωθ). Eq. 9 of Durand et al. 2005
-    /// has cos θ₀ where 1/cos θ₀ belongs, in the factor and in the argument; Table 1 has it in the
-    /// argument. Both leave 2π out of the phase ([`Edition`](super::Edition)).
+    /// L'(Ωx, Ωθ) = e^(−2πi Ωθ θ₀)/cos θ₀ · L(−Ωx/cos θ₀, Ωθ). Eq. 9 of Durand et al. 2005 has cos
+    /// θ₀ instead of 1/cos θ₀, in the factor and in the argument; Table 1 has it in the argument.
+    /// Both omit 2π from the phase ([`Edition`](super::Edition)).
     #[must_use]
     pub fn incidence(theta0: f64) -> Self {
         Self {
@@ -25,8 +25,8 @@ impl AffineMap<2> {
     /// Curvature, into the frames of the local normals: θ' = θ − k s. k > 0 is convex, |k| = 1/R in
     /// 1/m.
     ///
-    /// L'(Ωx, Ωθ) = L(Ωx − k Ωθ, Ωθ) (Durand et al. 2005, Table 1; its Eq. 11 prints
-    /// + k Ωθ, which belongs to the way back, [`back`](Self::back)).
+    /// L'(Ωx, Ωθ) = L(Ωx − k Ωθ, Ωθ) (Durand et al. 2005, Table 1; its Eq. 11 prints + k Ωθ, which
+    /// belongs to the inverse, [`back`](Self::back)).
     #[must_use]
     pub fn curvature(k: f64) -> Self {
         Self::linear([[1.0, 0.0], [-k, 1.0]])
@@ -42,7 +42,7 @@ impl AffineMap<2> {
     /// Outgoing angle: x = s cos θ₁, θ = θₒ − θ₁. Light leaves in the direction θ₁.
     ///
     /// L'(Ωx, Ωθ) = e^(2πi Ωθ θ₁) cos θ₁ · L(cos θ₁ Ωx, Ωθ). Eq. 10 and Table 1 of Durand et al.
-    /// 2005 divide Ωx by the cosine and leave 2π out of the phase.
+    /// 2005 divide Ωx by the cosine and omit 2π from the phase.
     #[must_use]
     pub fn outgoing(theta1: f64) -> Self {
         Self {
@@ -55,8 +55,8 @@ impl AffineMap<2> {
 impl AffineMap<4> {
     /// Light incidence in the plane of (X, D): s_x = −x/cos θ₀, s_y = y, θᵢ = θ + θ₀, φᵢ = −φ.
     ///
-    /// Flipping directions turns the latitude over, which section 5.2 of Durand et al. 2005 does
-    /// not say. In 2D this is its Eq. 9.
+    /// Flipping directions also flips the latitude, which section 5.2 of Durand et al. 2005 does
+    /// not mention. In 2D this is its Eq. 9.
     #[must_use]
     pub fn incidence(theta0: f64) -> Self {
         Self::sections(&AffineMap::<2>::incidence(theta0), &AffineMap::mirror())
@@ -66,9 +66,9 @@ impl AffineMap<4> {
     /// directions about the longitude θ₀.
     ///
     /// `shape` is M, the derivative of the normal along (T, B), symmetric, in 1/m, convex positive:
-    /// diag(k₁, k₂) in principal axes. Eq. 19 of Durand et al. 2005 is this M. Their text takes
-    /// the step for a shear by M, without cos θ₀; but tilting the normal about T moves a direction at
-    /// longitude θ₀ by that much less.
+    /// diag(k₁, k₂) in principal axes. Eq. 19 of Durand et al. 2005 is this M. Their text describes
+    /// the step as a shear by M, without cos θ₀; but tilting the normal about T moves a direction
+    /// at longitude θ₀ by a factor cos θ₀ less.
     #[must_use]
     pub fn curvature(shape: Matrix2, theta0: f64) -> Self {
         Self::tilt(shape, -1.0, theta0)

@@ -7,8 +7,8 @@ use std::array;
 impl<const N: usize> AffineMap<N> {
     /// Travel by a distance d, in metres: x' = x + d u, y' = y + d v.
     ///
-    /// Exact where (u, v) are slopes; where they are angles it holds to first order. L'(Ωx, Ωu) =
-    /// L(Ωx, Ωu + d Ωx) (Durand et al. 2005, Eq. 3, with the slips of Eq. 2 mended: docs/theory.md,
+    /// Exact if (u, v) are slopes; if they are angles it holds to first order. L'(Ωx, Ωu) = L(Ωx,
+    /// Ωu + d Ωx) (Durand et al. 2005, Eq. 3, with the errors of Eq. 2 corrected: docs/theory.md,
     /// section 1).
     #[must_use]
     pub fn travel(distance: f64) -> Self {
@@ -22,8 +22,8 @@ impl<const N: usize> AffineMap<N> {
 
     /// A thin lens of focal length f, in metres: u' = u − x/f, v' = v − y/f. Positive f converges.
     ///
-    /// The ideal lens: it images planes onto planes exactly in slopes (docs/theory.md (24)). The
-    /// paper has no lens.
+    /// This is the ideal lens: it images planes onto planes exactly in slopes (docs/theory.md
+    /// (24)). The paper has no lens.
     #[must_use]
     pub fn thin_lens(focal_length: f64) -> Self {
         let (one, half) = (diagonal::<N>([1.0; N]), N / 2);
@@ -40,7 +40,7 @@ impl<const N: usize> AffineMap<N> {
     /// normals.
     ///
     /// L'(Ωx, Ωθ) = L(Ωx, −Ωθ) (Durand et al. 2005, Eq. 14). An ideal mirror has the BRDF δ/cos θ,
-    /// so no cosine goes with it; the paper's bare Dirac (section 4.2) would leave a factor cos θ₀.
+    /// so no cosine appears; the paper's bare Dirac (section 4.2) would leave a factor cos θ₀.
     #[must_use]
     pub fn mirror() -> Self {
         let signs = array::from_fn(|i| if i < N / 2 { 1.0 } else { -1.0 });
@@ -49,12 +49,12 @@ impl<const N: usize> AffineMap<N> {
 }
 
 impl AffineMap<4> {
-    /// The axes turned by an angle, in radians, from the first to the second: x' = x cos + y sin,
-    /// y' = −x sin + y cos, and alike for directions. A is orthogonal.
+    /// A rotation of the axes by an angle, in radians, from the first to the second: x' = x cos + y
+    /// sin, y' = −x sin + y cos, and likewise for directions. A is orthogonal.
     ///
-    /// Exact for two-plane coordinates turned about the central ray: so the plane of incidence is
-    /// brought onto X. About a normal it turns (s_x, s_y) exactly and (θ, φ) to first order in the
-    /// angle to the normal (Durand et al. 2005, section 5.2).
+    /// Exact for two-plane coordinates turned about the central ray, e.g. to bring the plane of
+    /// incidence onto X. About a normal it turns (s_x, s_y) exactly and (θ, φ) to first order in
+    /// the angle to the normal (Durand et al. 2005, section 5.2).
     #[must_use]
     pub fn rotation(angle: f64) -> Self {
         let (sin, cos) = libm::sincos(angle);

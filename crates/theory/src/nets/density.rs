@@ -1,27 +1,27 @@
-//! A density of one coordinate, drawn by its quantiles.
+//! A density of one coordinate, sampled by its quantiles.
 
 use etendue_field::Profile;
 
-/// Cells in which the density is linear.
+/// Number of cells in which the density is linear.
 const CELLS: usize = 512;
-/// Shares for each of them: with more of them the cell that is looked for is mostly the first.
+/// Lookup shares per cell: with more shares, the first cell tried is more often the right one.
 const SHARES: usize = 4;
 
-/// A density on an interval: linear between values at equal steps.
+/// A density on an interval, linear between values at equal steps.
 #[derive(Clone, Debug)]
 pub(crate) struct LinearDensity {
     low: f64,
     step: f64,
-    /// At the ends of the cells.
+    /// Values at the ends of the cells.
     values: Vec<f64>,
-    /// Its integral up to there, from 0 to 1.
+    /// The cumulative density at each of those points, from 0 to 1.
     below: Vec<f64>,
-    /// The cell in which each of as many equal shares begins: where to look first.
+    /// The cell in which each of many equal shares begins, where the search starts.
     first: Vec<usize>,
 }
 
 impl LinearDensity {
-    /// The density in proportion to a function, none of whose values is negative; `None` where it
+    /// Returns the density proportional to a non-negative function; `None` if the function
     /// vanishes.
     pub(crate) fn new([low, high]: [f64; 2], function: impl Fn(f64) -> f64) -> Option<Self> {
         let step = (high - low) / CELLS as f64;
@@ -60,8 +60,8 @@ impl LinearDensity {
         }
     }
 
-    /// That of a window's profile. Next to the border it is a little larger than the profile, so
-    /// that no ray stands for much more than its share.
+    /// Returns the density of a window's profile. Next to the border it is slightly larger than the
+    /// profile, which bounds the weight of rays there.
     pub(crate) fn of(profile: &Profile) -> Self {
         let half = profile.half_width();
         let inside = |t: f64| profile.value(t * (1.0 - 1e-9)) + 1e-3;
@@ -69,12 +69,12 @@ impl LinearDensity {
         Self::new([-half, half], inside).unwrap_or_else(even)
     }
 
-    /// The coordinate below which a share of the density lies.
+    /// Returns the coordinate below which a share of the density lies.
     pub(crate) fn quantile(&self, share: f64) -> f64 {
         self.draw(share)[0]
     }
 
-    /// The same, and the density there.
+    /// Returns the coordinate below which a share of the density lies, and the density there.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -87,7 +87,7 @@ impl LinearDensity {
             cell += 1;
         }
         let [a, b] = [self.values[cell], self.values[cell + 1]];
-        // a t + (b − a) t²/2 = what is left, over the step.
+        // Solves a t + (b − a) t²/2 = remaining share / step.
         let left = (share - self.below[cell]) / self.step;
         let root = (a * a + 2.0 * (b - a) * left).max(0.0).sqrt();
         let t = if a + root > 0.0 {
@@ -101,7 +101,7 @@ impl LinearDensity {
         ]
     }
 
-    /// Its value; zero outside.
+    /// Returns the value of the density; zero outside the interval.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -119,21 +119,21 @@ impl LinearDensity {
     }
 }
 
-/// A density over where rays are aimed at, one coordinate of a plane. They land a little beside it,
-/// so it is wider than the window, and it ends nowhere.
+/// A density of the points at which rays are aimed, along one coordinate of a plane. Rays land
+/// slightly beside these points, so the density is wider than the window, and unbounded.
 #[derive(Clone, Debug)]
 pub(crate) struct Target {
     near: LinearDensity,
     half: f64,
 }
 
-/// The share of rays that are aimed anywhere.
+/// The share of rays that are aimed without regard to the window.
 const ANYWHERE_SHARE: f64 = 0.04;
-/// How much wider than the window the rest is.
+/// How much wider than the window the density of the other rays is.
 const WIDER: f64 = 1.2;
 
 impl Target {
-    /// Around the window of a coordinate.
+    /// Returns the density around the window of a coordinate.
     pub(crate) fn new(profile: &Profile) -> Self {
         let half = profile.half_width();
         let reach = 1.2 * WIDER * half;
@@ -145,7 +145,7 @@ impl Target {
         }
     }
 
-    /// The coordinate below which a share lies, the near ones and the far ones apart.
+    /// Returns the coordinate below which a share lies, separately for near and far points.
     pub(crate) fn quantile(&self, share: f64) -> f64 {
         if share >= ANYWHERE_SHARE {
             return self
@@ -156,7 +156,7 @@ impl Target {
         self.half * to_side / (1.0 - to_side.abs())
     }
 
-    /// Its value.
+    /// Returns the value of the density.
     pub(crate) fn value(&self, t: f64) -> f64 {
         let far = 0.5 / (self.half * (1.0 + t.abs() / self.half).powi(2));
         (1.0 - ANYWHERE_SHARE) * self.near.value(t) + ANYWHERE_SHARE * far
@@ -167,7 +167,7 @@ impl Target {
 mod tests {
     use super::*;
 
-    /// The mean of f/density over quantiles is the integral of f, wherever f is.
+    /// The mean of f/density over quantiles is the integral of f, wherever f lies.
     #[test]
     fn targets_reach_everywhere() {
         let target = Target::new(&Profile::Hann(0.5));
@@ -180,7 +180,7 @@ mod tests {
                     libm::exp(-std::f64::consts::PI * apart * apart) / target.value(t)
                 })
                 .sum();
-            // Midpoints in quantiles; where the density has a step, one of 1/n.
+            // Midpoints in quantiles; a step in the density causes an error of 1/n.
             assert!((sum / f64::from(n) - 1.0).abs() < 1e-4, "{center}");
         }
     }

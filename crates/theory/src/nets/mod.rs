@@ -1,10 +1,10 @@
-//! Sums over rays that stand for a light field, by randomised quasi-Monte Carlo.
+//! Sums over rays that represent a light field, by randomised quasi-Monte Carlo.
 //!
-//! Whatever has no closed form is an integral over rays: positions and slopes at the plane, and
-//! points of the light. Its nodes are those of scrambled nets ([`sobol`]). Each of [`REPLICATES`]
-//! independent nets is a prediction of its own, without bias, and their spread is the error of
-//! their mean: a rule that is too coarse says so, because the nets disagree. Nodes are added until
-//! the error is below what is asked, or a budget is spent.
+//! Light fields without a closed form are integrals over rays: positions and slopes at the plane,
+//! and points of the light. The nodes are those of scrambled nets ([`sobol`]). Each of
+//! [`REPLICATES`] independent nets is an unbiased prediction of its own, and their spread is the
+//! error of their mean: if the rule is too coarse, the nets disagree. Nodes are added until the
+//! error is below the requested one, or a budget is spent.
 
 mod density;
 mod rays;
@@ -23,44 +23,46 @@ use etendue_transform::SliceTransform;
 use ndarray::{Array2, Array3};
 use rayon::prelude::*;
 
-/// Independent nets of a prediction.
+/// Number of independent nets of a prediction.
 pub const REPLICATES: usize = 32;
-/// Independent nets of a derivative, of which the mean alone is needed.
+/// Number of independent nets of a derivative, for which only the mean is needed.
 const OF_DERIVATIVES: usize = 8;
-/// Independent nets by which ways of drawing rays are told apart.
+/// Number of independent nets for choosing a sampling strategy.
 const OF_TRIALS: usize = 16;
 /// Fewest and most nodes of each net of a derivative.
 const DERIVATIVE_NODES: [u32; 2] = [1 << 12, 1 << 15];
-/// ‖error‖/‖D‖ at which a derivative is good enough. A measured parameter is off by the square of
-/// it, as a share of its distance from the scene's.
+/// The relative error ‖error‖/‖D‖ at which a derivative is accurate enough. It causes an error of
+/// its square in a measured parameter, relative to the parameter's distance from the scene's value.
 const DERIVATIVE_ERROR: f64 = 0.03;
-/// Nodes of a net before its error is first looked at.
+/// Nodes of a net before its error is first estimated.
 const FIRST_NODES: u32 = 1 << 11;
 
-/// Fewest nodes of a net that a prediction stops with because its error is small: nets that have
-/// not met their heavy rays yet agree too well.
+/// The fewest nodes of a net before a prediction may stop because its error is small: nets that
+/// have not sampled their heavy rays yet agree too well.
 const MIN_NODES: u32 = 1 << 14;
 
-/// When to stop adding nodes.
+/// Criterion for when to stop adding nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayBudget {
-    /// Most nodes in all; between half of them and all are used.
+    /// The most nodes in total; if the budget ends the prediction, between half of them and all are
+    /// used.
     pub nodes: f64,
-    /// ‖error‖/‖F‖ that is good enough.
+    /// The relative error ‖error‖/‖F‖ that is small enough.
     pub error: f64,
 }
 
 /// A ray at a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct RayNode {
-    /// (x, y, u, v), or what stands for them.
+    /// (x, y, u, v), or the corresponding coordinates on a surface.
     pub(crate) z: [f64; 4],
-    /// What it adds to the windowed radiance space, over the density with which it was drawn.
+    /// The ray's contribution to the windowed radiance space, divided by the density with which the
+    /// ray was sampled.
     pub(crate) weight: f64,
 }
 
 impl RayNode {
-    /// A ray that adds nothing.
+    /// A ray without a contribution.
     pub(crate) const DARK: Self = Self {
         z: [0.0; 4],
         weight: 0.0,
@@ -69,22 +71,23 @@ impl RayNode {
 
 /// Light fields as functions of a point of the unit cube.
 pub(crate) trait Integrand: Sync {
-    /// How many there are.
+    /// Returns the number of fields.
     fn fields(&self) -> usize;
-    /// How many coordinates of a point they depend on, at most [`DIMENSIONS`].
+    /// Returns the number of coordinates of a point that the fields depend on, at most
+    /// [`DIMENSIONS`].
     fn dimensions(&self) -> usize {
         6
     }
-    /// Rays that a point stands for in each.
+    /// Returns the number of rays per point in each field.
     fn rays(&self) -> usize {
         1
     }
-    /// The rays of each at a point, field by field. All are dark before the call.
+    /// Computes the rays of each field at a point, field by field. All are dark before the call.
     fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [RayNode]);
 }
 
 impl Predicted {
-    /// Of light of which no ray was found, in any of the nets.
+    /// The prediction if no ray in any net carries light.
     pub(crate) fn dark(grid: &SliceGrid, picture: &ProjectionGrid) -> Self {
         Self {
             slices: Slices::zeros(*grid),
@@ -102,19 +105,19 @@ impl Predicted {
     }
 }
 
-/// One net on its way.
+/// A net in progress.
 struct Running {
     net: NetPoints,
-    /// Sums of each field so far.
+    /// The sums of each field so far.
     slices: Vec<Slices>,
     projection: Array2<f64>,
     moments: WeightedMoments,
-    /// Nodes so far.
+    /// The number of nodes so far.
     count: f64,
 }
 
-/// The first field, summed over the nodes of independent nets, which are doubled until the budget
-/// says to stop. The same bytes on any number of threads.
+/// Sums the first field over the nodes of independent nets, doubling the number of nodes until the
+/// budget is reached. The result is bitwise identical on any number of threads.
 pub(crate) fn sums(
     integrand: &(impl Integrand + ?Sized),
     (window, grid): (&Window, &SliceGrid),
@@ -126,9 +129,9 @@ pub(crate) fn sums(
     finished(nets, ProjectionGrid::new(window, bins), error)
 }
 
-/// ‖error‖/‖F‖ of a few rays, by which ways of drawing rays are told apart. With fewer, those that
-/// are best with few rays win. Its nets are no part of a prediction: else the way would win whose
-/// heavy rays these nets happen to miss.
+/// Returns ‖error‖/‖F‖ of a small number of rays, for choosing a sampling strategy. With too few
+/// rays, strategies that are best only with few rays would win. The nets differ from those of
+/// predictions: otherwise the strategy whose heavy rays these nets happen to miss would win.
 pub(crate) fn trial(
     integrand: &(impl Integrand + ?Sized),
     (window, grid): (&Window, &SliceGrid),
@@ -141,7 +144,7 @@ pub(crate) fn trial(
     doubled(integrand, (window, grid), nets, TRIED).1
 }
 
-/// Nets with the error of their mean.
+/// Doubles nets until the budget is reached; returns them with the error of their mean.
 fn doubled(
     integrand: &(impl Integrand + ?Sized),
     (window, grid): (&Window, &SliceGrid),
@@ -175,10 +178,11 @@ fn doubled(
     }
 }
 
-/// The mean of each field, to [`DERIVATIVE_ERROR`] of it or over the most nodes.
+/// Returns the mean of each field, to a relative error of [`DERIVATIVE_ERROR`] or over the most
+/// nodes.
 ///
-/// Its nets are others than those of [`sums`]: a derivative that shares its noise with the
-/// prediction moves every measured parameter to one side.
+/// The nets differ from those of [`sums`]: a derivative that shares its noise with the prediction
+/// biases every measured parameter.
 pub(crate) fn means(
     integrand: &(impl Integrand + ?Sized),
     window: &Window,
@@ -211,15 +215,16 @@ pub(crate) fn means(
     }
 }
 
-/// Steps of a ray, and those of spreading it on an azimuth.
+/// Steps of a ray, and of spreading it over an azimuth.
 const RAY: f64 = 400.0;
 const SPREAD: f64 = 15.0;
-/// Fields of a pass over derivatives, about.
+/// Approximate number of fields of a pass over derivatives.
 const FIELDS: f64 = 12.0;
-/// Steps of a transform for each frequency.
+/// Steps of a transform per frequency.
 const TRANSFORM: f64 = 300.0;
 
-/// What a prediction by nets takes that ends with its budget: rays, and the transforms of all nets.
+/// Estimates the work of a prediction by nets that uses all of its budget: rays, and the transforms
+/// of all nets.
 #[must_use]
 pub(crate) fn work_of_nets(grid: &SliceGrid, budget: RayBudget) -> PredictionWork {
     let cells: f64 = grid.half_shape().iter().map(|n| *n as f64).product();
@@ -234,7 +239,7 @@ pub(crate) fn work_of_nets(grid: &SliceGrid, budget: RayBudget) -> PredictionWor
     let slice = 16.0 * cells;
     PredictionWork {
         steps: rays + transforms,
-        // Sums of all nets, means of those that end, and the fine grids of a thread.
+        // The sums of all nets, the means of finished nets, and the fine grids of a thread.
         bytes: slice * (2.0 * replicates).max(derivatives),
         bytes_each: SliceTransform::new(grid).bytes() * FIELDS,
         drivers: format!(
@@ -286,7 +291,7 @@ impl Running {
                     sum.deposit(&TwoPlane { x, y, u, v }, *weight);
                 }
             }
-            // There may be no field: no derivative was asked for.
+            // There may be no field if no derivative was requested.
             let RayNode { z, weight } = nodes.first().copied().unwrap_or(RayNode::DARK);
             if let Some(cell) = picture.cell(z[0], z[2]).filter(|_| weight != 0.0) {
                 self.projection[cell] += weight;
@@ -324,10 +329,10 @@ fn finished(running: Vec<Running>, grid: ProjectionGrid, error: f64) -> Predicte
     }
 }
 
-/// The mean of slices on one grid.
+/// Returns the mean of slices on one grid.
 ///
 /// # Panics
-/// When there are none.
+/// If there are no slices.
 pub(crate) fn mean<'a>(slices: impl ExactSizeIterator<Item = &'a Slices>) -> Slices {
     let count = slices.len() as f64;
     let mut slices = slices;
@@ -339,7 +344,7 @@ pub(crate) fn mean<'a>(slices: impl ExactSizeIterator<Item = &'a Slices>) -> Sli
     sum
 }
 
-/// ‖σ‖/‖F‖, σ being the standard error of the mean (docs/theory.md (12)).
+/// Returns ‖σ‖/‖F‖, σ being the standard error of the mean (docs/theory.md (12)).
 fn relative_error<'a>(slices: impl ExactSizeIterator<Item = &'a Slices> + Clone) -> f64 {
     let r = slices.len() as f64;
     let mean = mean(slices.clone());
@@ -397,7 +402,7 @@ mod tests {
     use etendue_field::{FrequencyAxis, Profile};
     use std::f64::consts::TAU;
 
-    /// Rays all over a window, with weights of both signs.
+    /// Rays across a window, with weights of both signs.
     struct Waves;
 
     impl Integrand for Waves {
@@ -447,12 +452,12 @@ mod tests {
                 Complex::from_polar(node.weight, -TAU * phase)
             };
             let plain = rays.iter().map(term).sum::<Complex>() / f64::from(FIRST_NODES);
-            // The bound of the transform, 2·10⁻⁷ of the mean weight.
+            // The error bound of the transform, 2·10⁻⁷ of the mean weight.
             assert!((value - plain).norm() < 4e-7, "{k} {m} {n}");
         }
     }
 
-    /// Noise that derivatives have in common with the prediction biases what is measured by them.
+    /// Noise shared by derivatives and prediction biases what is measured with them.
     #[test]
     fn derivatives_have_nets_of_their_own() {
         let (window, grid) = (window(Profile::Box(0.5), Profile::Box(0.5)), grid());

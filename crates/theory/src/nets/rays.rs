@@ -1,18 +1,19 @@
-//! The rays of nets one by one, for sums other than slices.
+//! Access to the rays of nets one by one, for sums other than slices.
 
 use super::{DIMENSIONS, Integrand, NetPoints, REPLICATES, RayBudget, RayNode};
 use etendue_field::TwoPlane;
 
-/// A light field at a plane as weighted rays, in independent nets that each stand for all of it.
+/// A light field at a plane as weighted rays, in independent nets that each represent all of it.
 pub trait RayNets: Sync {
-    /// The number of nets. A single one has no statistical error.
+    /// Returns the number of nets. A single net has no statistical error.
     fn count(&self) -> usize;
 
-    /// Gives `each` the rays of a net and what they add to the windowed radiance space.
+    /// Calls `each` with the rays of a net and their contributions to the windowed radiance space.
     fn emit(&self, net: usize, each: &mut dyn FnMut(&TwoPlane, f64));
 }
 
-/// The nets over which [`sums`](super::sums) adds the first field, all of the same number of nodes.
+/// The nets over which [`sums`](super::sums) sums the first field, all with the same number of
+/// nodes.
 pub(crate) struct SampledNets<'a, I> {
     integrand: &'a I,
     nodes: u32,
@@ -22,7 +23,7 @@ pub(crate) struct SampledNets<'a, I> {
 const MAX_NODES: f64 = (1_u32 << 29) as f64;
 
 impl<'a, I: Integrand> SampledNets<'a, I> {
-    /// The largest power of two of nodes that a budget allows.
+    /// Returns the largest power of two of nodes that a budget allows.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,

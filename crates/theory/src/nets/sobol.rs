@@ -1,16 +1,17 @@
-//! Points of Sobol' nets, scrambled independently.
+//! Points of Sobol' nets that are scrambled independently.
 //!
-//! A net of 2ᵐ points has one in each of the boxes into which halving the sides of the unit cube in
-//! turn divides it. Scrambling moves each point at random and keeps that, so that the mean over a
-//! net is an unbiased estimate, and nets scrambled with different keys are independent (Owen 1997).
+//! A net of 2ᵐ points has one point in each of the boxes formed by halving the sides of the unit
+//! cube in turn. Scrambling moves each point at random and preserves this property, so the mean
+//! over a net is an unbiased estimate, and nets scrambled with different keys are independent (Owen
+//! 1997).
 
 use etendue_transform::random::unit;
 use etendue_transform::sobol_directions;
 
-/// The most coordinates of a point.
+/// The largest number of coordinates of a point.
 pub(crate) const DIMENSIONS: usize = 10;
 
-/// What a bit of a point's number adds to its coordinates, bit by bit without carry.
+/// The contribution of each bit of a point's index to its coordinates, combined without carry.
 static DIRECTIONS: [[u32; 32]; DIMENSIONS] = {
     let mut all = [[0; 32]; DIMENSIONS];
     let mut dimension = 0;
@@ -31,7 +32,8 @@ pub(crate) struct NetPoints {
 }
 
 impl NetPoints {
-    /// The net scrambled with key `replicate`, with so many coordinates; the rest are 0.
+    /// Returns the net scrambled with key `replicate`, with the given number of coordinates; the
+    /// others are 0.
     pub(crate) fn new(replicate: u32, dimensions: usize) -> Self {
         let key = |dimension: u32| {
             let mixed = replicate.wrapping_mul(0x9E37_79B9) ^ dimension.wrapping_mul(0x85EB_CA6B);
@@ -45,13 +47,13 @@ impl NetPoints {
         }
     }
 
-    /// The next point. Any 2ᵐ points from a multiple of 2ᵐ on are a net.
+    /// Returns the next point. Any 2ᵐ points that start at a multiple of 2ᵐ are a net.
     pub(crate) fn point(&mut self) -> [f64; DIMENSIONS] {
         let mut point = [0.0; DIMENSIONS];
         for (k, x) in point[..self.dimensions].iter_mut().enumerate() {
             *x = unit(scrambled(self.unscrambled[k], self.keys[k]));
         }
-        // In the order of Gray codes one bit changes at a time.
+        // In Gray-code order one bit changes at a time.
         self.next = self.next.wrapping_add(1);
         let bit = self.next.trailing_zeros() as usize & 31;
         for (value, directions) in self.unscrambled.iter_mut().zip(&DIRECTIONS) {
@@ -61,7 +63,7 @@ impl NetPoints {
     }
 }
 
-/// Owen's scrambling by a hash in which each bit depends on those above it alone (Laine and Karras
+/// Owen scrambling by a hash in which each bit depends only on the bits above it (Laine and Karras
 /// 2011; constants of Burley 2020, *Practical hash-based Owen scrambling*).
 fn scrambled(value: u32, key: u32) -> u32 {
     let mut x = value.reverse_bits();
@@ -72,8 +74,8 @@ fn scrambled(value: u32, key: u32) -> u32 {
     x.reverse_bits()
 }
 
-/// A hash of 32 bits, each of which every bit of the result depends on (the finaliser of
-/// `MurmurHash3`).
+/// A hash of 32 bits in which every bit of the result depends on every bit of the input (the
+/// finaliser of `MurmurHash3`).
 fn mixed_bits(mut x: u32) -> u32 {
     x = (x ^ (x >> 16)).wrapping_mul(0x85EB_CA6B);
     x = (x ^ (x >> 13)).wrapping_mul(0xC2B2_AE35);
@@ -84,12 +86,12 @@ fn mixed_bits(mut x: u32) -> u32 {
 mod tests {
     use super::*;
 
-    /// The cell of n in which a number of (0, 1) lies.
+    /// Returns which of n cells a number in (0, 1) lies in.
     fn cell(x: f64, n: usize) -> usize {
         (1..n).take_while(|i| *i as f64 <= x * n as f64).count()
     }
 
-    /// Each box of volume 2⁻ᵐ that halves pairs of sides holds one of 2ᵐ points.
+    /// Each box of volume 2⁻ᵐ from halving pairs of sides holds one of 2ᵐ points.
     #[test]
     fn pairs_of_first_coordinates_are_nets() {
         for replicate in 0..3 {
@@ -115,8 +117,7 @@ mod tests {
         }
     }
 
-    /// The error of a smooth mean over all coordinates falls much faster than that of random
-    /// points.
+    /// The error of a smooth mean over all coordinates falls much faster than with random points.
     #[test]
     fn nets_beat_random_points() {
         let f = |p: &[f64; DIMENSIONS]| p.iter().map(|x| 1.0 + 0.5 * (x - 0.5)).product::<f64>();
@@ -131,7 +132,7 @@ mod tests {
         let variance = (1.0_f64 + 0.25 / 12.0).powi(10) - 1.0;
         let random = variance / f64::from(n);
         assert!(power < 1e-3 * random, "{:e}", power / random); // Sobol' at 2¹² of 10: 10⁻⁴
-        // Unbiased: the mean of 32 independent nets is within four of its own errors.
+        // Unbiased: the mean of 32 independent nets is within four of its standard errors.
         let mean = errors.iter().sum::<f64>() / 32.0;
         assert!(mean.abs() < 4.0 * (power / 32.0).sqrt());
     }

@@ -1,4 +1,4 @@
-//! Numbers: Gauss–Legendre rules and sin(πx)/(πx).
+//! Numerical helpers: Gauss–Legendre rules and sin(πx)/(πx).
 
 pub(crate) mod quadrature;
 pub(crate) mod sinc;

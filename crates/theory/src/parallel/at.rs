@@ -8,10 +8,11 @@ use etendue_field::{Complex, Window};
 
 /// The spectrum ℓ̂(Ωx, Ωy, Ωu, Ωv) of the windowed light field at one frequency.
 ///
-/// brightness · Σ terms ± F(Ωx, Ωu) F(Ωy, Ωv), the factors being transforms of convex polygons,
-/// evaluated one by one; exact for uniform rectangles, half-planes and gratings, 10⁻⁸ for factors
-/// of slope, by a quadrature for discs (see [`quadrature_error`](crate::quadrature_error)) and for
-/// diffuse reflection. It is the truth for [`slices`](crate::slices). Unit: W m⁻² sr⁻¹ · m².
+/// Computes brightness · Σ terms ± F(Ωx, Ωu) F(Ωy, Ωv), where the factors are transforms of convex
+/// polygons, evaluated one by one. It is exact for uniform rectangles, half-planes and gratings,
+/// accurate to 10⁻⁸ for factors of slope, and a quadrature for discs (see
+/// [`quadrature_error`](crate::quadrature_error)) and for diffuse reflection. It is the reference
+/// for [`slices`](crate::slices). Unit: W m⁻² sr⁻¹ · m².
 #[must_use]
 pub fn at(chain: &Chain, window: &Window, frequency: [f64; 4]) -> Complex {
     let path = chain.path();
@@ -25,7 +26,7 @@ pub fn at(chain: &Chain, window: &Window, frequency: [f64; 4]) -> Complex {
 }
 
 impl Expansion {
-    /// The spectrum at one frequency.
+    /// Returns the spectrum at one frequency.
     pub(crate) fn at(&self, [x, y, u, v]: [f64; 4]) -> Complex {
         let k = [[x, u], [y, v]];
         let products = self.products.iter();
@@ -42,7 +43,7 @@ impl Expansion {
             .sum()
     }
 
-    /// brightness · Σ terms, from the factors of all polygons of section `axis`.
+    /// Returns brightness · Σ terms, from the factors of all polygons of section `axis`.
     fn sum(&self, factors: impl Fn(usize) -> Vec<Complex>) -> Complex {
         let [x, y] = [factors(0), factors(1)];
         let terms = self.terms.iter();

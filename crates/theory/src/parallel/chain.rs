@@ -1,27 +1,26 @@
-//! Chains: a light, and what happens to its light field on the way.
+//! Chains: a light and the operators on its light field along the path.
 
 use etendue_field::{Light, Mask, Shape};
 
-/// The light, in a plane orthogonal to the central ray.
+/// The light, in a plane perpendicular to the central ray.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Source {
-    /// Name, for texts.
+    /// Name, for messages.
     pub name: String,
-    /// What shines; coordinates relative to the central ray.
+    /// The light; coordinates are relative to the central ray.
     pub light: Light,
 }
 
-/// What happens to the light field on its way.
+/// A step that changes the light field along the path.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Operator {
-    /// Free travel (docs/theory.md (2)): ℓ'(x, u) = ℓ(x − d u, u), ℓ̂'(Ωx, Ωu) = ℓ̂(Ωx, Ωu + d
-    /// Ωx) (Durand et al. 2005, Eq. 3). As a map it is
-    /// [`AffineMap::travel`](crate::geometry::AffineMap::travel); here distances add up, and polygons are
-    /// sheared.
+    /// Free travel (docs/theory.md (2)): ℓ'(x, u) = ℓ(x − d u, u), ℓ̂'(Ωx, Ωu) = ℓ̂(Ωx, Ωu + d Ωx)
+    /// (Durand et al. 2005, Eq. 3). [`AffineMap::travel`](crate::geometry::AffineMap::travel) is
+    /// the same as a map; here distances are added, and polygons are sheared.
     Travel {
-        /// Where the light comes from.
+        /// Name of the plane where the light comes from.
         from: String,
-        /// Where it arrives.
+        /// Name of the plane where it arrives.
         to: String,
         /// The distance d, in metres.
         distance: f64,
@@ -31,7 +30,7 @@ pub enum Operator {
     Visibility {
         /// Name of the mask.
         name: String,
-        /// What it lets through; coordinates relative to the central ray.
+        /// What the mask lets through; coordinates are relative to the central ray.
         mask: Mask,
     },
     /// A product with G = (1 + u² + v²)⁻² (docs/theory.md (7)): radiance becomes differential
@@ -40,43 +39,43 @@ pub enum Operator {
         /// Name of the surface.
         name: String,
     },
-    /// Diffuse reflection: the integral over both slopes, times albedo/π. Exitant radiance,
-    /// constant in slope (Durand et al. 2005, section 5.1; the factor G is a
+    /// Diffuse reflection: the integral over both slopes, times albedo/π. The result is exitant
+    /// radiance, constant in slope (Durand et al. 2005, section 5.1; the factor G is a
     /// [`Cosine`](Self::Cosine) before it).
     ///
-    /// The frame turns round: the central ray goes back along −D, x' = −x, y' = y. Only travel may
+    /// The frame turns round: the central ray returns along −D, x' = −x, y' = y. Only travel may
     /// follow.
     Diffuse {
         /// Name of the surface.
         name: String,
-        /// Reflected over incident flux.
+        /// The ratio of reflected to incident flux.
         albedo: f64,
     },
 }
 
 /// A light path: the source and the operators in the order the light meets them.
 ///
-/// The predicted light field is the radiance where the last operator ends, in two-plane coordinates
-/// (with a cosine and nothing after it: the differential irradiance).
+/// The predicted light field is the radiance at the end of the last operator, in two-plane
+/// coordinates (if the last operator is a cosine: the differential irradiance).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chain {
     /// The light.
     pub source: Source,
-    /// What happens to its light, in order. At most one diffuse reflection, after which it only
-    /// travels.
+    /// The operators on the light field, in order. At most one is a diffuse reflection, after which
+    /// only travel is allowed.
     pub operators: Vec<Operator>,
 }
 
-/// A plane with a mask, seen from the end of a [`ChainSegment`].
+/// A plane with a mask, relative to the end of a [`ChainSegment`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MaskLayer<'a> {
-    /// Distance the light has travelled since it, in metres: the ray (x, u) was at x − distance · u
-    /// there.
+    /// The distance the light has travelled since the mask, in metres: the ray (x, u) was at x −
+    /// distance · u there.
     pub(crate) distance: f64,
     pub(crate) mask: &'a Mask,
 }
 
-/// What a diffuse surface at the end of a [`ChainSegment`] does.
+/// The reflection by a diffuse surface at the end of a [`ChainSegment`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DiffuseReflection {
     pub(crate) albedo: f64,
@@ -87,7 +86,7 @@ pub(crate) struct DiffuseReflection {
 /// A light whose field has closed forms between parallel planes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ParallelEmitter {
-    /// What shines; `None` for a point on the central ray.
+    /// The shape of the light; `None` for a point on the central ray.
     pub(crate) shape: Option<Shape>,
     /// Radiance or intensity along the central ray.
     pub(crate) brightness: f64,
@@ -98,7 +97,7 @@ pub(crate) struct ParallelEmitter {
 
 impl ParallelEmitter {
     /// # Panics
-    /// When light goes through a picture or comes from far away: `rays` and `scattering` predict
+    /// If light passes through a picture or comes from infinity: `rays` and `scattering` predict
     /// that.
     pub(crate) fn new(light: &Light) -> Self {
         let (brightness, power) = match *light {
@@ -116,24 +115,24 @@ impl ParallelEmitter {
     }
 }
 
-/// A chain up to its end, or up to its diffuse surface, seen from there.
+/// A chain up to its end, or up to its diffuse surface, relative to that end.
 #[derive(Clone, Debug)]
 pub(crate) struct ChainSegment<'a> {
     pub(crate) light: ParallelEmitter,
     /// Distance from the light, in metres.
     pub(crate) distance: f64,
-    /// The masks on the way, in the order of light.
+    /// The masks along the path, in the order light meets them.
     pub(crate) layers: Vec<MaskLayer<'a>>,
-    /// How many factors G there are.
+    /// Number of factors G.
     pub(crate) cosines: u32,
     pub(crate) reflection: Option<DiffuseReflection>,
 }
 
 impl Chain {
-    /// The chain as its end sees it.
+    /// Returns the chain relative to its end.
     ///
     /// # Panics
-    /// When anything but travel follows a diffuse reflection.
+    /// If anything but travel follows a diffuse reflection.
     pub(crate) fn path(&self) -> ChainSegment<'_> {
         let mut path = ChainSegment {
             light: ParallelEmitter::new(&self.source.light),
@@ -168,17 +167,17 @@ impl Chain {
 }
 
 impl ChainSegment<'_> {
-    /// Shapes of the light: one, or none of a point.
+    /// Returns the shapes of the light: one, or none for a point.
     pub(crate) fn light_shapes(&self) -> &[Shape] {
         self.light.shape.as_slice()
     }
 
-    /// The power p of the factor (1 + u² + v²)^p: the light's, and −2 from each cosine.
+    /// Returns the power p of the factor (1 + u² + v²)^p: the light's, and −2 from each cosine.
     pub(crate) fn slope_power(&self) -> f64 {
         self.light.power - 2.0 * f64::from(self.cosines)
     }
 
-    /// The shapes in each plane with edges: the light's, then those of opaque masks.
+    /// Returns the shapes in each plane with edges: the light's, then those of opaque masks.
     pub(crate) fn planes(&self) -> Vec<&[Shape]> {
         let of_masks = self.layers.iter().filter_map(|layer| match layer.mask {
             Mask::Opaque { shapes, .. } => Some(&shapes[..]),
@@ -189,7 +188,7 @@ impl ChainSegment<'_> {
             .collect()
     }
 
-    /// Whether a disc is among the light and the masks.
+    /// Checks whether any light or mask has a disc.
     pub(crate) fn has_discs(&self) -> bool {
         let planes = self.planes();
         let mut all = planes.into_iter().flatten();

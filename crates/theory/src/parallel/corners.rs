@@ -1,21 +1,20 @@
-//! The transforms of many polygons along a row of frequencies, without an exponential per polygon
+//! The transforms of many polygons along a row of frequencies, without one exponential per polygon
 //! and frequency (docs/theory.md, section 3).
 //!
-//! Eq. 5 there with the field k exp(−2πi k·p) telescopes to the corners p, between edges of
-//! directions d and e:
+//! Eq. 5 there with the field k exp(−2πi k·p) telescopes to the corners p, where edges of
+//! directions d and e meet:
 //!
 //! F(k) = 1/(4π²) Σ (d × e) / ((k·d)(k·e)) · exp(−2πi k·p)
 //!
-//! The quotient depends on the pair of directions alone, and a chain has few; the exponential is a
-//! product of one in the position and one in the slope. Each exponential of the window shifts k by
-//! ± s, so a corner needs, with θ = 2π s·p and c± the quotients at k ± s,
+//! The quotient depends on the pair of directions alone, and a chain has few; the exponential is
+//! the product of one in the position and one in the slope. Each exponential of the window shifts k
+//! by ± s, so a corner needs, with θ = 2π s·p and c± the quotients at k ± s,
 //!
 //! exp(−2πi k·p) Σ_s (c₊ + c₋) cos θ + i (c₋ − c₊) sin θ.
 //!
 //! The end of a segment along d has the quotient ± 1/(2πi k·d).
 //!
-//! Where a (k ± s)·d is nearly zero the corners cancel and [`Polygon::transform`] takes their
-//! place.
+//! If a (k ± s)·d is nearly zero the corners cancel, and [`Polygon::transform`] is used instead.
 
 use crate::parallel::expansion::AxisSection;
 use crate::parallel::polygon::{self, Polygon, cross, dot};
@@ -24,21 +23,21 @@ use crate::parallel::wave::SectionWave;
 use etendue_field::Complex;
 use std::f64::consts::{PI, TAU};
 
-/// Smallest |k·edge|, for the longest edge of a direction, at which corners are used. Two of them
-/// in one quotient cost 1/CANCELLATION² = 1000 roundings.
+/// The smallest |k·edge|, for the longest edge of a direction, at which corners are used. Two such
+/// edges in one quotient amplify rounding by 1/CANCELLATION² = 1000.
 const CANCELLATION: f64 = 0.03;
-/// Waves taken at a time, so that their quotients stay in the cache.
+/// Number of waves processed at a time, chosen to keep their quotients in the cache.
 const WAVES_AT_A_TIME: usize = 32;
 
-/// A corner, ready to be summed.
+/// A corner, prepared for summation.
 #[derive(Debug)]
 struct Corner {
     at: [f64; 2],
-    /// Index of its pair of directions.
+    /// Index of the corner's pair of directions.
     pair: usize,
-    /// The sign of their order; ±i for the ends of a segment.
+    /// The sign of the order of the directions; ±i for the ends of a segment.
     sign: Complex,
-    /// Index of its polygon.
+    /// Index of the corner's polygon.
     polygon: usize,
 }
 
@@ -50,8 +49,8 @@ pub(crate) struct Corners<'a> {
     corners: Vec<Corner>,
     /// (cos θ, sin θ) of each corner and wave, [corner, wave].
     phases: Vec<[f64; 2]>,
-    /// Pairs of directions that meet at a corner, the lower index first; equal at the end of a
-    /// segment.
+    /// Pairs of directions that meet at a corner, the lower index first; the indices are equal at
+    /// the end of a segment.
     pairs: Vec<[usize; 2]>,
     /// Directions of an edge, each with the largest |k·d| at which it is nearly zero.
     edges: Vec<(usize, f64)>,
@@ -59,10 +58,10 @@ pub(crate) struct Corners<'a> {
 
 /// The quotients of some waves along a row.
 struct Quotients {
-    /// weight · (c₊ + c₋) and weight · (c₋ − c₊), [pair, wave, n]; `re` and `im` as they will
-    /// multiply.
+    /// weight · (c₊ + c₋) and weight · (c₋ − c₊), [pair, wave, n]; `re` and `im` in the form in
+    /// which they are multiplied.
     values: ComplexRow,
-    /// Cells left to the plain transform: n, the shifted frequency, its weight.
+    /// Cells that need the plain transform: n, the shifted frequency, the weight.
     left: Vec<(usize, [f64; 2], Complex)>,
 }
 
@@ -92,7 +91,7 @@ impl<'a> Corners<'a> {
         }
     }
 
-    /// The windowed transforms of all polygons along a row, [polygon, n].
+    /// Returns the windowed transforms of all polygons along a row, [polygon, n].
     pub(crate) fn row(&self, row: &FrequencyRow) -> Vec<Complex> {
         let count = row.count();
         let polygons = &self.section.polygons;
@@ -147,15 +146,15 @@ impl<'a> Corners<'a> {
         quotients
     }
 
-    /// Whether an edge is nearly orthogonal to k.
+    /// Checks whether an edge is nearly orthogonal to k.
     fn cancels(&self, k: [f64; 2]) -> bool {
         let directions = &self.section.directions;
         let mut edges = self.edges.iter();
         edges.any(|&(d, smallest)| dot(k, directions[d]).abs() < smallest)
     }
 
-    /// (d × e) / (4π² (k·d)(k·e)) of each pair of directions; 1/(2π k·d) of a direction with
-    /// itself.
+    /// Returns (d × e) / (4π² (k·d)(k·e)) for each pair of directions; 1/(2π k·d) for a direction
+    /// with itself.
     fn pair_quotients(&self, k: [f64; 2]) -> impl Iterator<Item = f64> {
         self.pairs.iter().map(move |pair| {
             let [d, e] = pair.map(|i| self.section.directions[i]);
@@ -166,7 +165,7 @@ impl<'a> Corners<'a> {
         })
     }
 
-    /// Adds the corners, for the waves of `chunk`.
+    /// Adds the contributions of the corners, for the waves of `chunk`.
     fn add(
         &self,
         row: &FrequencyRow,
@@ -197,19 +196,19 @@ impl<'a> Corners<'a> {
 }
 
 impl SectionWave {
-    /// (cos θ, sin θ), θ = 2π s·p + phase.
+    /// Returns (cos θ, sin θ), θ = 2π s·p + phase.
     fn phase(&self, p: [f64; 2]) -> [f64; 2] {
         let (sin, cos) = libm::sincos(self.angle(p));
         [cos, sin]
     }
 }
 
-/// The longest edge that a direction can have in the square, as a multiple of the direction.
+/// Returns the longest edge along a direction within the square, as a multiple of the direction.
 fn longest(direction: [f64; 2]) -> f64 {
     2.0 / direction[0].abs().max(direction[1].abs())
 }
 
-/// The corners of a polygon; new pairs of directions join `pairs`.
+/// Prepares the corners of a polygon; new pairs of directions are added to `pairs`.
 fn prepared(polygon: &Polygon, index: usize, pairs: &mut Vec<[usize; 2]>) -> Vec<Corner> {
     let corners = polygon.corners();
     if polygon.is_segment() {
@@ -219,7 +218,7 @@ fn prepared(polygon: &Polygon, index: usize, pairs: &mut Vec<[usize; 2]>) -> Vec
     let mut result = Vec::with_capacity(corners.len());
     for (corner, before) in corners.iter().zip(before) {
         let (enter, leave) = (before.edge, corner.edge);
-        // Two edges in line: no corner.
+        // Two collinear edges have no corner.
         if enter == leave {
             continue;
         }
@@ -234,7 +233,7 @@ fn prepared(polygon: &Polygon, index: usize, pairs: &mut Vec<[usize; 2]>) -> Vec
     result
 }
 
-/// The ends of a segment: (exp(−2πi k·a) − exp(−2πi k·b)) / (2πi k·d).
+/// Prepares the ends of a segment: (exp(−2πi k·a) − exp(−2πi k·b)) / (2πi k·d).
 fn ends(corners: &[polygon::Vertex], index: usize, pairs: &mut Vec<[usize; 2]>) -> Vec<Corner> {
     let signs = [-1.0, 1.0].into_iter();
     corners
@@ -249,7 +248,7 @@ fn ends(corners: &[polygon::Vertex], index: usize, pairs: &mut Vec<[usize; 2]>) 
         .collect()
 }
 
-/// The index of a pair in the list, where it is put if it is new.
+/// Returns the index of a pair in the list, appending it if it is new.
 fn listed(pair: [usize; 2], pairs: &mut Vec<[usize; 2]>) -> usize {
     let known = pairs.iter().position(|p| *p == pair);
     known.unwrap_or_else(|| {

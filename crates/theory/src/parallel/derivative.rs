@@ -5,20 +5,20 @@ use crate::parallel::slices::{fineness, slices_at_fineness};
 use crate::{Chain, Parameter};
 use etendue_field::{SliceGrid, Slices, Window};
 
-/// Step of the forward difference, relative to the value of the parameter.
+/// The step of the forward difference, relative to the value of the parameter.
 ///
-/// Its error is half the second derivative times the step: a parameter turns phases by up to some
-/// tens of radians, so some 10⁻³ of the derivative. Rounding adds 10⁻¹²/10⁻⁴ = 10⁻⁸ of the
-/// spectrum.
+/// The error of the difference is half the second derivative times the step: a parameter changes
+/// phases by up to some tens of radians, which gives about 10⁻³ of the derivative. Rounding adds
+/// 10⁻¹²/10⁻⁴ = 10⁻⁸ of the spectrum.
 const RELATIVE_STEP: f64 = 1e-4;
 
-/// The derivative of the slices by a parameter, per unit of it: the forward difference with a step
-/// of 10⁻⁴ of the parameter's value (of its unit, where it is zero).
+/// Returns the derivative of the slices by a parameter, per unit of the parameter: the forward
+/// difference with a step of 10⁻⁴ of the parameter's value (of its unit, if the value is zero).
 ///
 /// `prediction` must be the slices of the chain itself, on the same window and grid.
 ///
 /// # Panics
-/// When the parameter is of another chain.
+/// If the parameter belongs to another chain.
 #[must_use]
 pub fn derivative(
     chain: &Chain,
@@ -29,7 +29,7 @@ pub fn derivative(
 ) -> Slices {
     let value = chain.value(parameter).expect("a parameter of the chain");
     let moved = value + RELATIVE_STEP * parameter.scale(value);
-    // The fineness of `prediction`: the errors of the quadrature cancel.
+    // Uses the fineness of `prediction`, so the quadrature errors cancel.
     let fineness = fineness(&chain.path(), window, grid);
     let moved_chain = chain.with(parameter, moved).expect("the same");
     let path = moved_chain.path();
@@ -90,7 +90,7 @@ mod tests {
                     worst = f64::max(worst, (derivative - central).norm());
                     largest = f64::max(largest, central.norm());
                 }
-                // Half a second derivative times the forward step of 1e-4: phases here stay below
+                // Half a second derivative times the forward step of 1e-4; phases here stay below
                 // 20.
                 let close = 2e-3 * largest;
                 assert!(worst < close, "{parameter:?}: {}", worst / largest);

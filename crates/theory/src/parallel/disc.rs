@@ -1,10 +1,10 @@
-//! A disc as a weighted sum of rectangles, so that it can be multiplied out like all the rest.
+//! Discs as weighted sums of rectangles, which can be multiplied out like all other shapes.
 
 use crate::parallel::weighted_rectangle::WeightedRectangle;
 use etendue_field::{Disc, Shape};
 use std::f64::consts::FRAC_PI_2;
 
-/// How a disc is taken apart.
+/// The method for splitting a disc into rectangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Discs {
     /// n × n rectangles about its centre, with weights: for spectra.
@@ -28,13 +28,7 @@ impl Discs {
     }
 }
 
-/// Σ w_jk 1[|x| < R cos t_j] 1[|y| < R sin t_k], t_j = π (2j + 1)/4n (docs/theory.md (5b)).
-///
-/// It stands for the disc under every integral with something smooth: ∫ A(R cos t) dB(R sin t), A
-/// and B being the integrals over the two rectangles' sides, once A and B have been written in the
-/// cosines and sines of odd multiples of t that their oddness leaves. With the sum over multiples m
-/// < 2n in closed form, π/n² Σ m cos(m t_j) sin(m t_k) = π/2n (c(k + j + 1) + c(k − j)), c(i) =
-/// The rectangles that a shape is taken apart into.
+/// Returns the rectangles that a shape is split into.
 pub(crate) fn patches_of(shape: &Shape, discs: Discs) -> Vec<WeightedRectangle> {
     match shape {
         Shape::Rectangle(rectangle) => vec![WeightedRectangle::of_rectangle(rectangle)],
@@ -42,7 +36,13 @@ pub(crate) fn patches_of(shape: &Shape, discs: Discs) -> Vec<WeightedRectangle> 
     }
 }
 
-/// −(−1)^i / sin(π i/2n), c(0) = 0.
+/// Σ w_jk 1[|x| < R cos t_j] 1[|y| < R sin t_k], t_j = π (2j + 1)/4n (docs/theory.md (5b)).
+///
+/// The sum replaces the disc under every integral with a smooth function: ∫ A(R cos t) dB(R sin t),
+/// A and B being the integrals over the two rectangles' sides, once A and B are expanded in the
+/// cosines and sines of odd multiples of t (A and B are odd). With the sum over multiples m < 2n in
+/// closed form, π/n² Σ m cos(m t_j) sin(m t_k) = π/2n (c(k + j + 1) + c(k − j)), with
+/// c(i) = −(−1)^i / sin(π i/2n) and c(0) = 0.
 fn rule(disc: &Disc, n: usize) -> Vec<WeightedRectangle> {
     let angle = FRAC_PI_2 / n as f64;
     let node = |j: usize| angle * (j as f64 + 0.5);
@@ -64,7 +64,7 @@ fn rule(disc: &Disc, n: usize) -> Vec<WeightedRectangle> {
         .collect()
 }
 
-/// Strips between x = R sin t at n + 1 evenly spaced t. Second order in 1/n.
+/// Returns strips between x = R sin t at n + 1 evenly spaced t. Second order in 1/n.
 fn strips(disc: &Disc, n: usize) -> Vec<WeightedRectangle> {
     let angle = |i: usize| FRAC_PI_2 * (2.0 * i as f64 / n as f64 - 1.0);
     // The area below sin t, for a radius of 1.
@@ -108,7 +108,7 @@ mod tests {
     fn transform(patches: &[WeightedRectangle], omega: f64, azimuth: f64) -> f64 {
         let k = [libm::cos(azimuth), libm::sin(azimuth)].map(|c| c * omega);
         let side = |p: &WeightedRectangle, i: usize| p.extent[i][1] - p.extent[i][0];
-        // Symmetrical, so that only the even part is left.
+        // By symmetry only the even part remains.
         let middle = |p: &WeightedRectangle, i: usize| 0.5 * (p.extent[i][1] + p.extent[i][0]);
         let value = |p: &WeightedRectangle| {
             let phase = TAU * (k[0] * middle(p, 0) + k[1] * middle(p, 1));
@@ -134,7 +134,7 @@ mod tests {
 
     #[test]
     fn the_rule_has_the_transform_of_a_disc() {
-        // π R Ω = 15.1 at the last frequency: from there on every node counts.
+        // π R Ω = 15.1 at the last frequency: the error falls with every node from there on.
         let errors = [16, 20, 24].map(|n| worst(Discs::Rule(n)));
         assert!(errors[0] < 1e-8, "{errors:?}");
         assert!(errors[1] < 1e-12, "{errors:?}");
@@ -158,9 +158,9 @@ mod tests {
     #[test]
     fn strips_are_of_second_order() {
         let [coarse, fine] = [64, 128].map(|n| worst(Discs::Strips(n)));
-        // 4, the next order is small.
+        // The ratio is 4; the next order is small.
         assert!((coarse / fine - 4.0).abs() < 0.2, "{}", coarse / fine);
-        // (π Ω R)² / 128² is 0.014, over what is left at such frequencies.
+        // (π Ω R)² / 128² is 0.014, relative to the remainder at such frequencies.
         assert!(fine < 1e-4, "{fine}");
     }
 }

@@ -1,4 +1,4 @@
-//! How finely the discs of a chain are taken apart.
+//! How finely the discs of a chain are split into rectangles.
 
 use crate::parallel::chain::ChainSegment;
 use crate::parallel::disc::Discs;
@@ -7,26 +7,27 @@ use crate::parallel::slope::Slope;
 use etendue_field::{Mask, Profile, Shape, Window, whole};
 use std::f64::consts::PI;
 
-/// Nodes of the rule for discs beyond π R Ω.
+/// Nodes of the rule for discs in excess of π R Ω.
 const SPARE_NODES: f64 = 6.0;
-/// Most nodes: a disc becomes 72² rectangles.
+/// The most nodes: a disc becomes 72² rectangles.
 const MOST_NODES: f64 = 72.0;
-/// How far out, in largest frequencies, edges in other planes are followed.
+/// How far out edges in other planes are followed, in multiples of the largest frequency.
 const MAX_FREQUENCIES: f64 = 4.0;
-/// Share of that which is resolved: the rest is the corners of the grid of frequencies, where there
-/// is little.
+/// The share of that bandwidth that is resolved: the rest lies in the corners of the grid of
+/// frequencies, where there is little content.
 const FAR_SHARE: f64 = 0.7;
-/// Most terms of an expansion that discs may make.
+/// The most terms of an expansion that discs may cause.
 const MOST_TERMS: f64 = 3e5;
 /// Most strips of a disc.
 const MOST_STRIPS: f64 = 64.0;
 
-/// How the discs of a chain are taken apart: those of the light, then those of each opaque mask.
+/// How the discs of a chain are split: those of the light, then those of each opaque mask.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct DiscResolution(pub(crate) Vec<Discs>);
 
 impl DiscResolution {
-    /// For spectra up to `frequency`, along position and slope (docs/theory.md, after Eq. 5b).
+    /// Returns the resolution for spectra up to `frequency`, along position and slope
+    /// (docs/theory.md, after Eq. 5b).
     pub(crate) fn for_spectrum(
         path: &ChainSegment<'_>,
         window: &Window,
@@ -40,8 +41,9 @@ impl DiscResolution {
         }
     }
 
-    /// Whether discs may be taken apart about as finely as spectra up to `frequency` need it. A wide
-    /// one behind a narrow window is not, and finer rules tell nothing of the error then.
+    /// Checks whether the affordable resolution of discs is about fine enough for spectra up to
+    /// `frequency`. It is not for a wide disc behind a narrow window, and a comparison with finer
+    /// rules then does not estimate the error.
     pub(crate) fn is_enough(path: &ChainSegment<'_>, window: &Window, frequency: [f64; 2]) -> bool {
         if !path.has_discs() {
             return true;
@@ -67,12 +69,12 @@ impl DiscResolution {
         })
     }
 
-    /// Discs as one patch each.
+    /// Represents discs by one patch each.
     pub(crate) fn single(path: &ChainSegment<'_>) -> Self {
         Self(vec![Discs::Rule(1); path.planes().len()])
     }
 
-    /// Fewer nodes where discs in several planes would make too many terms.
+    /// Reduces the number of nodes if discs in several planes would make too many terms.
     fn affordable(self, path: &ChainSegment<'_>, window: &Window) -> Self {
         let slope = Slope::new([&window.u, &window.v], 0.0);
         let single = Self::single(path);
@@ -116,7 +118,7 @@ impl DiscResolution {
         )
     }
 
-    /// A quarter finer.
+    /// Returns a resolution finer by a quarter.
     pub(crate) fn finer(&self) -> Self {
         let more = |n: usize| n + n.div_ceil(4);
         Self(
@@ -131,12 +133,12 @@ impl DiscResolution {
     }
 }
 
-/// How fast integrals over the lines x − h u = c may change with c: they are the spectrum of all
-/// the rest of the field along the line of frequencies (Ωx − γ, Ωu + h γ).
+/// How fast integrals over the lines x − h u = c may change with c: the spectrum of the rest of the
+/// field along the line of frequencies (Ωx − γ, Ωu + h γ).
 struct EdgeBandwidth {
-    /// Largest |Ωx| and |Ωu|, shifted by gratings.
+    /// The largest |Ωx| and |Ωu|, shifted by gratings.
     frequency: [f64; 2],
-    /// What the window adds to them.
+    /// The blur that the window adds to these frequencies.
     blur: [f64; 2],
     /// Distances of planes with edges: the light's, then those of opaque masks.
     planes: Vec<f64>,
@@ -145,7 +147,7 @@ struct EdgeBandwidth {
 impl EdgeBandwidth {
     fn new(path: &ChainSegment<'_>, window: &Window, frequency: [f64; 2]) -> Self {
         let [x, y, u, v] = [&window.x, &window.y, &window.u, &window.v].map(Profile::half_width);
-        // A spot is as narrow as 1/√n.
+        // The width of a spot is 1/√n.
         let lobe = 1.0 / (-2.0 * path.slope_power()).max(1e-9).sqrt();
         let mut rates = Self {
             frequency,
@@ -164,23 +166,23 @@ impl EdgeBandwidth {
         rates
     }
 
-    /// Under the window alone the spectrum is near zero, so that γ is both near Ωx and near −Ωu/h.
-    /// Edges in a plane at distance g spread it along Ωu = −g Ωx, which the line meets at γ = (Ωu +
-    /// g Ωx)/(g − h); far out on it there is little.
+    /// With the window alone the spectrum is concentrated near zero, so γ is both near Ωx and near
+    /// −Ωu/h. Edges in a plane at distance g spread it along Ωu = −g Ωx, which the line meets at γ
+    /// = (Ωu + g Ωx)/(g − h); there is little content far out on it.
     fn at(&self, plane: usize) -> f64 {
         let h = self.planes[plane];
         let [x, u] = self.frequency;
         let widest = x + self.blur[0];
         let own = widest.min((u + self.blur[1]) / h.abs());
         let others = self.planes.iter().enumerate().filter(|(j, _)| *j != plane);
-        // Infinite for one at the same distance.
+        // Infinite for a plane at the same distance.
         let meets = others.map(|(_, g)| (u + g.abs() * x) / (g - h).abs());
         let farthest = meets.fold(0.0, f64::max).min(MAX_FREQUENCIES * widest);
         own.max(FAR_SHARE * farthest)
     }
 }
 
-/// The largest radius of a disc; 0 if there is none.
+/// Returns the largest radius of a disc; 0 if there is none.
 fn largest(shapes: &[Shape]) -> f64 {
     let radii = shapes.iter().map(|shape| match shape {
         Shape::Disc(disc) => disc.radius,

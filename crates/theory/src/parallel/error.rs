@@ -1,15 +1,15 @@
-//! How far a prediction in closed form may be off.
+//! Error estimates of predictions in closed form.
 
 use crate::Chain;
 use crate::parallel::slices::{fineness, slices_at_fineness};
 use crate::parallel::slope::Slope;
 use etendue_field::{SliceGrid, Slices, Window};
 
-/// Lowest order to which discs converge.
+/// The lowest order of convergence for discs.
 const ORDER: i32 = 4;
 
-/// How far `slices`, the prediction of the same chain, may be off: ‖error‖/‖F‖ over the grid.
-/// `None` where it is a closed form.
+/// Estimates the error of `slices`, the prediction of the same chain: ‖error‖/‖F‖ over the grid.
+/// `None` if the prediction is a closed form.
 ///
 /// * Discs: the difference to a prediction that takes them apart a quarter finer, over 1 − 0.8⁴.
 ///   Where masks and windows have corners within a disc the error falls as n⁻⁴, elsewhere faster
@@ -65,8 +65,8 @@ mod tests {
         quadrature_error(chain, window, &grid(), &slices)
     }
 
-    /// The error of a disc as a light, and as a blocker before a square light, with travel before
-    /// and after.
+    /// Returns the errors for a disc as a light, and as a blocker before a square light, with
+    /// travel before and after.
     fn errors(profile: fn(f64) -> Profile, radius: f64, distances: [f64; 2]) -> [f64; 2] {
         let round = disc([0.02, 0.01], radius);
         let light = chain_of(spot(round, 0.0), distances.map(|d| (d, None)));
@@ -84,16 +84,15 @@ mod tests {
                 let smooth = errors(Profile::Hann, radius, distances);
                 let hard = errors(Profile::Box, radius, distances);
                 let said = format!("{radius} {distances:?}: {smooth:?} {hard:?}");
-                // Beyond π R Ω nodes: exponential.
+                // Exponential convergence beyond π R Ω nodes.
                 assert!(smooth.iter().all(|e| *e < 1e-7), "{said}");
-                // Corners of the box: n⁻⁴. The largest disc lets a five-hundredth of the light
-                // past.
+                // Corners of the box: n⁻⁴. The largest disc lets 1/500 of the light past.
                 assert!(hard.iter().all(|e| *e < 5e-5), "{said}");
             }
         }
     }
 
-    /// What `quadrature_error` says, against the known transform.
+    /// Tests `quadrature_error` against the known transform.
     #[test]
     fn too_coarse_a_rule_is_told() {
         let chain = chain_of(spot(disc([0.0; 2], 0.3), 0.0), [(0.0, None)]);
@@ -103,7 +102,7 @@ mod tests {
         let coarse = slices_at_fineness(&path, &window, &grid(), &coarse);
         let said = quadrature_error(&chain, &window, &grid(), &coarse).unwrap();
         let true_error = coarse.relative_difference(&slices(&chain, &window, &grid()));
-        // The coarse one is far worse than either; four fifths to the fourth for a lower order.
+        // The coarse rule is far worse than either; four fifths to the fourth for a lower order.
         let most = 1.0 / (1.0 - 0.8_f64.powi(ORDER));
         assert!((said / true_error / most - 1.0).abs() < 1e-3);
         assert!(said > 1e-5, "{said}"); // π R Ω = 15 > 12

@@ -1,4 +1,4 @@
-//! Light fields as sums of polygons times waves.
+//! Light fields as sums of products of polygons and waves.
 
 use crate::parallel::chain::ChainSegment;
 use crate::parallel::disc::{Discs, patches_of};
@@ -9,52 +9,53 @@ use crate::parallel::weighted_rectangle::WeightedRectangle;
 use etendue_field::{Complex, Mask, Profile, Window};
 use std::collections::HashMap;
 
-/// Polygons smaller than this, in units of the window's half-widths, are left out: below rounding.
+/// Polygons with a measure below this, in units of the window's half-widths, are dropped: they are
+/// below rounding.
 const SMALLEST_MEASURE: f64 = 1e-15;
-/// Pairs of a term and a patch that may be looked at for each term allowed.
+/// Pairs of a term and a patch that may be tested for each term allowed.
 const PAIRS_PER_TERM: usize = 8;
-/// A range that every ray passes.
+/// A range without bounds.
 const EVERYWHERE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
-/// The (position, slope) plane of one axis: the polygons that light fills in it, in units of the
-/// half-widths of the window.
+/// The (position, slope) plane of one axis: the polygons that light fills in the plane, in units of
+/// the half-widths of the window.
 #[derive(Debug)]
 pub(crate) struct AxisSection {
-    /// Half-widths in position (metres) and slope.
+    /// Half-widths of the window in position (metres) and slope.
     pub(crate) half: [f64; 2],
-    /// Unit of the polygons' measure: metre · slope, or slope of the segments that a point light
-    /// fills.
+    /// Unit of the polygons' measure: metre · slope, or slope for the segments of a point light.
     pub(crate) unit: f64,
     /// Directions of edges, as vectors: (1, 0), (0, 1), then (shear, 1) for each distance.
     pub(crate) directions: Vec<[f64; 2]>,
     pub(crate) polygons: Vec<Polygon>,
-    /// Whether discs make so many of them that parallelograms are worth a formula of their own.
+    /// Whether discs make so many directions that parallelograms merit a formula of their own.
     pub(crate) has_discs: bool,
-    /// Strips already cut: (polygon, direction, bounds) to the part's index, `None` if empty.
+    /// Cache of strips already cut: (polygon, direction, bounds) to the part's index, `None` if
+    /// empty.
     known: HashMap<(usize, usize, [u64; 2]), Option<usize>>,
 }
 
 /// weight · 1_P(x, u) · 1_Q(y, v), P and Q being polygons of the two sections.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PolygonTerm {
-    /// ±1, times the weights of parts of discs.
+    /// ±1, times the weights of the rectangles of discs.
     pub(crate) weight: f64,
     /// Indices of P and Q.
     pub(crate) polygons: [usize; 2],
-    /// The term it is a part of, and what the patches of one extent along x leave of that one's Q.
-    /// Terms alike in both have the same P.
+    /// The term it is a part of, and an index of the Q that the patches of one extent along x leave
+    /// of that term's Q. Terms with equal values of both have the same P.
     column: [usize; 2],
 }
 
-/// Weights and indices of what is added up.
+/// Weights and indices of the summands.
 pub(crate) type Sum = Vec<(f64, usize)>;
 
-/// Terms added up along y first: Σ 1_P(x, u) · a sum of sums of polygons of (y, v).
+/// Terms summed along y first: Σ 1_P(x, u) · a sum of sums of polygons of (y, v).
 #[derive(Debug)]
 pub(crate) struct SectionColumns {
     /// Sums of polygons of (y, v).
     pub(crate) sums: Vec<Sum>,
-    /// Sums of such sums, one for each polygon of (x, u).
+    /// Sums of those sums, one for each polygon of (x, u).
     pub(crate) beside: Vec<Sum>,
 }
 
@@ -63,19 +64,18 @@ pub(crate) struct SectionColumns {
 ///
 /// A rectangle in a plane at distance h is a strip x − h u ∈ [low, high] times one in (y, v), so
 /// the product source · Π_layers (1 − Σ blockers) is a signed sum of products of convex polygons.
-/// All other factors are products of waves, with a sum outside where the two sections do not
-/// separate.
+/// All other factors are products of waves, with an outer sum if the two sections do not separate.
 #[derive(Debug)]
 pub(crate) struct Expansion {
-    /// (x, u) and (y, v).
+    /// The sections (x, u) and (y, v).
     pub(crate) sections: [AxisSection; 2],
     pub(crate) terms: Vec<PolygonTerm>,
-    /// Products of the waves of both sections, to be added: the window and gratings; more than one
-    /// for a factor of slope.
+    /// The summands of the window and gratings: products of the waves of both sections; more than
+    /// one for a factor of slope.
     pub(crate) products: Vec<[Vec<SectionWave>; 2]>,
-    /// The radiance, or the intensity of a point.
+    /// The radiance, or the intensity of a point light.
     pub(crate) brightness: f64,
-    /// Columns of terms so far.
+    /// Number of columns of terms so far.
     columns: usize,
 }
 
@@ -92,19 +92,19 @@ impl AxisSection {
         }
     }
 
-    /// δ(x − distance · u) in place of the square.
+    /// Replaces the square by δ(x − distance · u).
     fn become_segment(&mut self, distance: f64) {
         let edge = self.direction(self.shear(distance));
         self.polygons = vec![Polygon::segment(self.directions[edge][0], edge)];
         self.unit = self.half[1];
     }
 
-    /// A distance in units of the half-widths.
+    /// Returns a distance in units of the half-widths.
     fn shear(&self, distance: f64) -> f64 {
         distance * self.half[1] / self.half[0]
     }
 
-    /// The index of direction (shear, 1); equal ones share it.
+    /// Returns the index of direction (shear, 1); equal directions share one index.
     fn direction(&mut self, shear: f64) -> usize {
         let same = |d: &[f64; 2]| d[1] > 0.0 && d[0] - shear == 0.0;
         self.directions.iter().position(same).unwrap_or_else(|| {
@@ -113,8 +113,8 @@ impl AxisSection {
         })
     }
 
-    /// The part of a polygon whose rays were in `extent` (metres) a `distance` ago; `None` if
-    /// empty.
+    /// Returns the part of a polygon whose rays were in `extent` (metres) a `distance` ago; `None`
+    /// if it is empty.
     fn strip(&mut self, polygon: usize, distance: f64, extent: [f64; 2]) -> Option<usize> {
         if extent.map(f64::to_bits) == EVERYWHERE.map(f64::to_bits) {
             return Some(polygon);
@@ -134,8 +134,9 @@ impl AxisSection {
         index
     }
 
-    /// ∫∫ Σ waves exp(−2πi k·(position, slope)) over a polygon, k in cycles per metre and per unit
-    /// slope: one polygon transform for each exponential. Unit: metre · slope; for segments, slope.
+    /// Returns ∫∫ Σ waves exp(−2πi k·(position, slope)) over a polygon, k in cycles per metre and
+    /// per unit slope: one polygon transform for each exponential. Unit: metre · slope; slope for
+    /// segments.
     pub(crate) fn value(&self, waves: &[SectionWave], polygon: &Polygon, k: [f64; 2]) -> Complex {
         let k = self.reduced(k);
         let shifts = waves.iter().flat_map(SectionWave::shifts);
@@ -145,7 +146,7 @@ impl AxisSection {
         sum * self.unit
     }
 
-    /// A frequency in cycles per half-width.
+    /// Returns a frequency in cycles per half-width.
     pub(crate) fn reduced(&self, k: [f64; 2]) -> [f64; 2] {
         [k[0] * self.half[0], k[1] * self.half[1]]
     }
@@ -164,7 +165,7 @@ impl Expansion {
         expansion
     }
 
-    /// The polygons and terms alone; `None` if there are more of either than `most`.
+    /// Returns the polygons and terms alone; `None` if either number exceeds `most`.
     pub(crate) fn within(
         path: &ChainSegment<'_>,
         window: &Window,
@@ -176,7 +177,7 @@ impl Expansion {
         fits.then_some(expansion)
     }
 
-    /// The window, in which nothing shines yet.
+    /// Returns the window without any light.
     fn empty(window: &Window) -> Self {
         let sections = [
             AxisSection::new(&window.x, &window.u),
@@ -195,8 +196,8 @@ impl Expansion {
         }
     }
 
-    /// The light and the opaque masks; stops and says no where there are more terms or polygons
-    /// than `most`.
+    /// Multiplies out the light and the opaque masks; stops and returns `false` if there are more
+    /// terms or polygons than `most`.
     fn multiply_out(&mut self, path: &ChainSegment<'_>, fineness: &[Discs], most: usize) -> bool {
         for section in &mut self.sections {
             section.has_discs = path.has_discs();
@@ -206,7 +207,7 @@ impl Expansion {
         let opaque = layers.filter(|layer| matches!(layer.mask, Mask::Opaque { .. }));
         for (layer, &discs) in opaque.zip(&fineness[1..]) {
             let patches = patches(layer.mask, discs);
-            // Each pair is looked at, though few may meet.
+            // Every pair is tested, though few may overlap.
             if self.terms.len().saturating_mul(patches.len()) > most.saturating_mul(PAIRS_PER_TERM)
             {
                 return false;
@@ -221,7 +222,7 @@ impl Expansion {
         true
     }
 
-    /// A chain of rectangles, whose numbers no fineness changes.
+    /// Expands a chain of rectangles, which does not depend on the fineness.
     #[cfg(test)]
     pub(crate) fn of_rectangles(chain: &crate::Chain, window: &Window) -> Self {
         let path = chain.path();
@@ -230,7 +231,7 @@ impl Expansion {
         Self::new(&path, window, &slope, &fineness)
     }
 
-    /// The light itself.
+    /// Adds the light itself.
     fn shine(&mut self, path: &ChainSegment<'_>, discs: Discs) {
         self.brightness = path.light.brightness;
         if let Some(shape) = &path.light.shape {
@@ -242,7 +243,7 @@ impl Expansion {
         }
     }
 
-    /// Times 1 − Σ patches.
+    /// Multiplies by 1 − Σ patches.
     fn block(&mut self, patches: &[WeightedRectangle], distance: f64) {
         let blocked = self.inside(patches, distance);
         self.terms
@@ -252,7 +253,7 @@ impl Expansion {
             }));
     }
 
-    /// The terms times Σ patches in a plane, the empty ones dropped.
+    /// Returns the terms times Σ patches in a plane, without empty terms.
     fn inside(&mut self, patches: &[WeightedRectangle], distance: f64) -> Vec<PolygonTerm> {
         let mut parts = Vec::new();
         let polygons = self.sections[1].polygons.len();
@@ -281,9 +282,9 @@ impl Expansion {
         parts
     }
 
-    /// The terms with sums along y taken first: of n × n patches of a disc behind those of another
-    /// n⁴ terms become n³ and as many summands, since what n² of them sum along y is the same for
-    /// all n polygons of (x, u) that a patch's extent along x cuts.
+    /// Returns the terms with sums along y taken first. The terms of n × n patches of a disc behind
+    /// n × n others are n⁴; they become n³ with as many summands, because the sum along y over n²
+    /// of them is the same for all n polygons of (x, u) that a patch's extent along x cuts.
     pub(crate) fn columns(&self) -> SectionColumns {
         let mut known = HashMap::new();
         let mut sums: Vec<Sum> = Vec::new();
@@ -304,7 +305,7 @@ impl Expansion {
         SectionColumns { sums, beside }
     }
 
-    /// Keeps only the polygons that terms refer to, in the order of the terms.
+    /// Keeps only the polygons that terms use, in the order of the terms.
     fn drop_unused(&mut self) {
         for (axis, section) in self.sections.iter_mut().enumerate() {
             let all = std::mem::take(&mut section.polygons);
@@ -321,7 +322,7 @@ impl Expansion {
     }
 }
 
-/// The window, factors of slope included, times the gratings on the way.
+/// Returns the window, including factors of slope, times the gratings along the path.
 fn products(
     path: &ChainSegment<'_>,
     window: &Window,
@@ -347,7 +348,7 @@ fn products(
     slope.parts.iter().map(product).collect()
 }
 
-/// An opaque mask as patches.
+/// Returns an opaque mask as patches.
 fn patches(mask: &Mask, discs: Discs) -> Vec<WeightedRectangle> {
     let Mask::Opaque {
         shapes,

@@ -1,15 +1,16 @@
-//! A chain after a lobe: its light field convolved over slopes along x (docs/theory.md (36a)).
+//! A chain after a glossy lobe: its light field convolved over slopes along x (docs/theory.md
+//! (36a)).
 //!
-//! In flatland a glossy reflection multiplies the spectrum by that of its lobe, ρ̂'(Ωu), and the
-//! window at the plane comes last:
+//! In flatland a glossy reflection multiplies the spectrum by the spectrum of its lobe, ρ̂'(Ωu),
+//! and the window at the plane is applied last:
 //!
 //! S(ρ, ν) = ∫ Ŵ(ν − q) ρ̂'(q) I(ρ, q) dq,
 //!
-//! I being the spectrum under a window that leaves all slopes in whose lobes reach the plane's. The
-//! integral is a sum over q: the field it comes from ends, so the sum is exact up to the lobe's
-//! tail once the spacing keeps the copies of that field apart. Along y the same takes a share of
-//! all light out of the window, which is exact where the field is a product of one of (x, u) and one
-//! of (y, v), as behind slats along y.
+//! where I is the spectrum under a window that contains all slopes whose lobes reach the plane's
+//! window. The integral is a sum over q: that field is bounded, so the sum is exact up to the
+//! lobe's tail once the spacing separates the copies of the field. Along y the same operation takes
+//! a share of all light out of the window, which is exact if the field is a product of one of (x,
+//! u) and one of (y, v), as behind slats along y.
 
 use super::{projection, slices};
 use crate::Chain;
@@ -21,20 +22,20 @@ use etendue_field::{
 use ndarray::Array2;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// What of a lobe's peak is left out in spectra and in pictures.
+/// The relative tail of a lobe that is neglected in spectra and in pictures.
 const TAIL: f64 = 1e-10;
 const SEEN_TAIL: f64 = 1e-4;
-/// How far apart the copies of the field are kept, in their widths.
+/// Distance between the copies of the field, in field widths.
 const APART: f64 = 1.05;
 /// Lobes of this reach, in radians, count as cut off.
 const BROAD: f64 = 1.5;
-/// Most frequencies to each side that a narrow lobe is followed to.
+/// The most frequencies on each side for a narrow lobe.
 const MAX_FREQUENCIES: usize = 512;
 
-/// The slice at azimuth 0 of the chain's field after a lobe, under a window.
+/// Returns the slice at azimuth 0 of the chain's field after a lobe, under a window.
 ///
 /// # Panics
-/// When the grid has more than the one azimuth.
+/// If the grid has more than one azimuth.
 #[must_use]
 pub fn blurred_slices(
     chain: &Chain,
@@ -70,7 +71,7 @@ pub fn blurred_slices(
     blurred
 }
 
-/// What is left of all light when its slopes along y are blurred.
+/// Returns the share of light that remains in the window when slopes along y are blurred.
 fn share(chain: &Chain, lobe: &PlanarLobe, window: &Window) -> f64 {
     let blur = Blur::new(lobe, &window.v);
     let none = FrequencyAxis {
@@ -107,10 +108,10 @@ fn share(chain: &Chain, lobe: &PlanarLobe, window: &Window) -> f64 {
 
 /// A lobe over one slope, as a sum over frequencies.
 struct Blur {
-    /// All slopes whose lobes reach the window.
+    /// A profile with all slopes whose lobes reach the window.
     wide: Profile,
     lattice: FrequencyAxis,
-    /// ρ̂' on it, times its spacing.
+    /// ρ̂' at the frequencies, times their spacing.
     hats: Vec<f64>,
     window: Profile,
 }
@@ -136,7 +137,7 @@ impl Blur {
         }
     }
 
-    /// What each frequency before the lobe adds to ν after it.
+    /// Returns the weight of each frequency before the lobe in ν after it.
     fn weights(&self, nu: f64) -> Vec<f64> {
         let frequencies = self.lattice.values().into_iter().zip(&self.hats);
         frequencies
@@ -145,8 +146,8 @@ impl Blur {
     }
 }
 
-/// The picture of the chain's field after a lobe, as [`projection`] has it without: to some share
-/// of a cell, over which the lobe is taken to be even.
+/// Returns the picture of the chain's field after a lobe, like [`projection`] without a lobe:
+/// accurate to a fraction of a cell, over which the lobe is taken as constant.
 #[must_use]
 pub fn blurred_projection(
     chain: &Chain,
@@ -171,7 +172,7 @@ pub fn blurred_projection(
     }
 }
 
-/// The angle beyond which a lobe is below a share of its peak.
+/// Returns the angle beyond which a lobe is below a share of its peak.
 fn reach(lobe: &PlanarLobe, share: f64) -> f64 {
     let least = share * lobe.value(0.0);
     let (mut inside, mut outside) = (0.0, FRAC_PI_2);
@@ -186,15 +187,16 @@ fn reach(lobe: &PlanarLobe, share: f64) -> f64 {
     outside
 }
 
-/// A frequency beyond which a lobe leaves nothing: that of a Gaussian with the same reach, and
-/// three times that of lobes that end at a right angle, whose transforms have tails.
+/// Returns a frequency beyond which the spectrum of a lobe is negligible: that of a Gaussian with
+/// the same reach, and three times that for lobes that end at a right angle, whose transforms have
+/// tails.
 fn highest(reach: f64) -> f64 {
     let deviations = (-2.0 * libm::log(TAIL)).sqrt();
     let tail = if reach < BROAD { 1.0 } else { 3.0 };
     tail * deviations * deviations / (TAU * reach)
 }
 
-/// The transform of a profile.
+/// Returns the transform of a profile.
 fn transform(profile: &Profile, frequency: f64) -> f64 {
     let half = profile.half_width();
     let terms = profile.cosine_terms().into_iter();
@@ -260,7 +262,7 @@ mod tests {
         let plain = slices(&chain, &window, &grid).at_zero();
         let left = blurred_slices(&chain, &lobe, &window, &grid).at_zero() / plain;
         let along_y = share(&chain, &lobe, &window);
-        // Rounding of some hundred terms.
+        // Rounding of about a hundred terms.
         assert!(along_y < 0.9 && (left / along_y.powi(2) - 1.0).abs() < 1e-12);
     }
 
@@ -283,7 +285,7 @@ mod tests {
                     })
                     .sum();
                 let off = (sum * cells.cell_area() - spectrum.half[[0, m, n]]).norm();
-                // Cells of 1/128 of the half-width, and the tail of pictures.
+                // Cells of 1/128 of the half-width, and the neglected tail of pictures.
                 assert!(
                     off < 1e-3 * spectrum.at_zero(),
                     "{exponent} {m} {n}: {off:e}"

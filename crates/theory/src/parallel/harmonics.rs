@@ -13,33 +13,33 @@ use rayon::prelude::*;
 
 /// The spectrum of a chain on a 4D grid of frequencies: multiples of a spacing along each axis.
 ///
-/// It is a sum of products of a factor over (Ωx, Ωu) and one over (Ωy, Ωv), so tables of the
-/// factors are all that is kept, and a frequency is read off them as it is asked for.
+/// The spectrum is a sum of products of a factor over (Ωx, Ωu) and one over (Ωy, Ωv), so only
+/// tables of the factors are stored, and frequencies are computed from the tables on demand.
 #[derive(Debug)]
 pub struct Harmonics {
     expansion: Expansion,
-    /// For each product of waves, the tables of both sections.
+    /// The tables of both sections, for each product of waves.
     tables: Vec<[HarmonicTable; 2]>,
 }
 
 /// The factors of all polygons of a section, [position, slope, polygon].
 #[derive(Debug)]
 struct HarmonicTable {
-    /// Harmonics on either side of zero, along position and slope.
+    /// Number of harmonics on either side of zero, along position and slope.
     half: [usize; 2],
     polygons: usize,
     values: Vec<Complex>,
 }
 
-/// Most numbers kept: 1.6 GB.
+/// The most numbers stored: 1.6 GB.
 const MAX_NUMBERS: usize = 100_000_000;
 
 impl Harmonics {
-    /// Tables for frequencies (Ωx, Ωy, Ωu, Ωv) of up to `half` multiples of `spacing` along each
-    /// axis.
+    /// Builds tables for frequencies (Ωx, Ωy, Ωu, Ωv) of up to `half` multiples of `spacing` along
+    /// each axis.
     ///
-    /// `None` behind a diffuse reflection, which is no such product, and where the tables would be
-    /// larger than 1.6 GB.
+    /// Returns `None` after a diffuse reflection, which is not such a product, and if the tables
+    /// would be larger than 1.6 GB.
     #[must_use]
     pub fn new(
         chain: &Chain,
@@ -50,11 +50,13 @@ impl Harmonics {
         Self::built(chain, window, (spacing, half), None)
     }
 
-    /// What rays shared among the cells of a grid have for their spectrum in the mean, the spline of the
-    /// assignment divided out: the spectrum of the chain and, folded onto it, what lies beyond Nyquist.
+    /// Builds the tables of the expected spectrum of rays that are splatted onto the cells of a
+    /// grid, after division by the assignment spline: the spectrum of the chain, with aliases from
+    /// beyond Nyquist added.
     ///
-    /// Σₙ ℓ̂(Ω + n/Δ) Πᵢ ((−1)^nᵢ fᵢ/(fᵢ + nᵢ))^p, f = ΔΩ being cycles per cell and p the order of the
-    /// spline (docs/theory.md (44); Hockney and Eastwood 1981, chapter 5). Summed to |nᵢ| ≤ `FOLDS`; `None` as of [`new`](Self::new).
+    /// Σₙ ℓ̂(Ω + n/Δ) Πᵢ ((−1)^nᵢ fᵢ/(fᵢ + nᵢ))^p, where f = ΔΩ is in cycles per cell and p is the
+    /// order of the spline (docs/theory.md (44); Hockney and Eastwood 1981, chapter 5). Summed to
+    /// |nᵢ| ≤ `FOLDS`; `None` as for [`new`](Self::new).
     #[must_use]
     pub fn on_grid(
         chain: &Chain,
@@ -78,7 +80,7 @@ impl Harmonics {
         if path.receiver().is_some() {
             return None;
         }
-        // Of what lies beyond twice Nyquist an order 3 spline leaves less than 1/27.
+        // An order 3 spline reduces content beyond twice Nyquist to less than 1/27.
         let reach = if folded.is_some() { 2.0 } else { 1.0 };
         let max = |axis: usize| reach * spacing[axis] * half[axis] as f64;
         let highest = [max(0).max(max(1)), max(2).max(max(3))];
@@ -109,17 +111,17 @@ impl Harmonics {
         Some(Self { expansion, tables })
     }
 
-    /// Products that are summed for each frequency.
+    /// Returns the number of products that are summed for each frequency.
     #[must_use]
     pub fn terms(&self) -> usize {
         self.expansion.terms.len() * self.tables.len()
     }
 
-    /// ℓ̂ at the harmonics (i, j, k, l) of the spacings; the same as [`at`](crate::at) there.
+    /// Returns ℓ̂ at the harmonics (i, j, k, l) of the spacings; equal to [`at`](crate::at) there.
     /// Unit: W m⁻² sr⁻¹ · m².
     ///
     /// # Panics
-    /// Beyond the harmonics it was made for.
+    /// If a harmonic is beyond the range of the tables.
     #[must_use]
     pub fn at(&self, [x, y, u, v]: [isize; 4]) -> Complex {
         let of = |[first, second]: &[HarmonicTable; 2]| {
@@ -160,7 +162,7 @@ impl HarmonicTable {
                         step,
                         half,
                     });
-                    // From [polygon, slope] to [slope, polygon].
+                    // Transposes [polygon, slope] to [slope, polygon].
                     for (n, sum) in sum.chunks_exact_mut(polygons).enumerate() {
                         for (at, share_of_slope) in along[1].indices(n) {
                             for (p, sum) in sum.iter_mut().enumerate() {
@@ -179,7 +181,7 @@ impl HarmonicTable {
         }
     }
 
-    /// The factors of all polygons at a harmonic.
+    /// Returns the factors of all polygons at a harmonic.
     fn at(&self, harmonic: [isize; 2]) -> &[Complex] {
         let [i, n] = [0, 1].map(|axis| {
             let index = self.half[axis].checked_add_signed(harmonic[axis]);
@@ -193,19 +195,19 @@ impl HarmonicTable {
     }
 }
 
-/// Spectra beyond Nyquist that are folded onto a grid, on either side.
+/// Number of aliases on either side that are folded onto a grid.
 const FOLDS: u32 = 4;
 
-/// Which frequencies of an axis of a table are one on its grid.
+/// The frequencies along an axis of a table, with the aliases that coincide on its grid.
 #[derive(Clone, Copy)]
 struct Folds {
-    /// Harmonics on either side of zero, half a period of the spectrum on the grid.
+    /// Number of harmonics on either side of zero; half a period of the spectrum on the grid.
     half: usize,
     folded: Option<Assignment>,
 }
 
 impl Folds {
-    /// Harmonics on either side of zero that take part.
+    /// Returns the number of harmonics on either side of zero that contribute.
     fn reach(self) -> usize {
         match self.folded {
             Some(_) => self.half * (2 * FOLDS as usize + 1),
@@ -213,7 +215,7 @@ impl Folds {
         }
     }
 
-    /// Harmonics that come to that at `index`, and their shares.
+    /// Returns the harmonics that alias to the one at `index`, and their shares.
     fn of(self, index: usize) -> impl Iterator<Item = (f64, f64)> {
         let (half, folds) = (self.half as f64, f64::from(FOLDS));
         let own = index as f64 - half;
@@ -231,7 +233,7 @@ impl Folds {
         })
     }
 
-    /// The same with the indices of the harmonics among all within [`reach`](Self::reach).
+    /// Returns the harmonics as `of` does, as indices among all within [`reach`](Self::reach).
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,

@@ -1,19 +1,21 @@
-//! What a curved mirror or a thin lens shows of a chain: its images (docs/theory.md, section 9).
+//! The images of a chain in a curved mirror or a thin lens (docs/theory.md, section 9).
 
 use crate::{Chain, Operator, Source};
 use etendue_field::{Disc, Grating, HalfPlane, Light, Mask, Rectangle, Shape};
 
-/// How near to its focal plane a plane may stand, as a share of its distance. Its image is at
-/// infinity there, and positions on the image lose as many digits.
+/// The smallest distance of a plane from the focal plane, relative to the plane's distance. The
+/// image of the focal plane is at infinity, and positions on an image near there lose digits
+/// accordingly.
 const NEAREST: f64 = 1e-6;
 
 impl Chain {
-    /// The chain that ends in the same light field after u' = u + `power` x at its end, as a
-    /// thin lens of focal length −1/power does it, and to first order a curved mirror met head on.
+    /// Returns the chain that ends in the same light field as this one after u' = u + `power` x at
+    /// its end. A thin lens of focal length −1/power has this effect, and to first order a curved
+    /// mirror at normal incidence.
     ///
-    /// A ray that arrives at (x, u') was at x − h u = m (x − h/m u') in a plane at distance h,
-    /// m = 1 + power · h: what stands there is seen at the distance h/m, 1/m times as large.
-    /// `None` where light varies with slope or leaves a surface: that has no image.
+    /// A ray that arrives at (x, u') was at x − h u = m (x − h/m u') in a plane at distance h, m =
+    /// 1 + power · h: the plane is seen at the distance h/m, 1/m times as large. `None` if light
+    /// varies with slope or leaves a surface: there is no image then.
     #[must_use]
     pub fn imaged(&self, power: f64) -> Option<Self> {
         let Light::Area {
@@ -57,7 +59,7 @@ impl Chain {
     }
 }
 
-/// Between images, either way along the axis.
+/// Returns travel between images, in either direction along the axis.
 fn travel(distance: f64) -> Operator {
     Operator::Travel {
         from: "image".to_owned(),
@@ -66,7 +68,7 @@ fn travel(distance: f64) -> Operator {
     }
 }
 
-/// Where the image of a plane is, and how large things are on it.
+/// The position of the image of a plane, and its magnification.
 struct PlaneImage {
     distance: f64,
     scale: f64,
@@ -131,7 +133,7 @@ mod tests {
     use crate::testing::*;
     use etendue_field::{Profile, Window};
 
-    /// All light of the chain in slope, a part of it in position.
+    /// Returns a window that contains all slopes of the chain and some of its positions.
     fn open(half: f64) -> Window {
         Window {
             u: Profile::Box(3.0),
@@ -155,7 +157,7 @@ mod tests {
             let window = open(0.3);
             let sheared = AffineMap::<2>::back(power);
             for [rho, nu] in [[0.0, 0.0], [1.3, 0.8], [2.0, -1.7]] {
-                // In both sections at once, as the image is.
+                // Applied in both sections, as an image is.
                 let [x, u] = sheared.transpose_apply([rho, nu]);
                 let before = at(&chain, &window, [x, 0.5 * x, u, 0.5 * u]);
                 let after = at(&imaged, &window, [rho, 0.5 * rho, nu, 0.5 * nu]);

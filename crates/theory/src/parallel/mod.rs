@@ -1,7 +1,7 @@
-//! Light between parallel planes, in closed form (docs/theory.md, sections 1 to 4).
+//! The closed form of light between parallel planes (docs/theory.md, sections 1 to 4).
 //!
-//! A [`Chain`] is what light meets: travel (Eq. 3 of Durand et al. 2005), masks (their Eq. 4), the
-//! cosine and diffuse reflection of a receiver (their Eqs. 6 and 7). Travel is a shear of
+//! A [`Chain`] lists the steps of light: travel (Eq. 3 of Durand et al. 2005), masks (their Eq. 4),
+//! the cosine and diffuse reflection of a receiver (their Eqs. 6 and 7). Travel is a shear of
 //! (position, slope), so every edge stays a straight line and every field is a signed sum of
 //! products of convex polygons.
 //!

@@ -1,4 +1,4 @@
-//! A chain as a model: its parameters and its prediction.
+//! Implements [`Model`] for chains: their parameters and their prediction.
 
 use crate::model::{Model, Over};
 use crate::nets::{RayBudget, RayNets, work_of_nets};
@@ -16,12 +16,12 @@ impl Model for Chain {
     }
 
     fn parameters(&self) -> Vec<Parameter> {
-        // What an edge lets through of finitely many rays has no derivative.
+        // With finitely many rays, the light that passes an edge has no derivative.
         if self.given().is_some() {
             return Vec::new();
         }
         let mut all = Parameter::of_light(&self.source.light);
-        // Closed forms have no pictures.
+        // Closed forms do not include pictures.
         all.retain(|parameter| *parameter != Parameter::ImageWidth);
         for (i, operator) in self.operators.iter().enumerate() {
             match operator {
@@ -34,7 +34,7 @@ impl Model for Chain {
     }
 
     /// # Panics
-    /// When the parameter is of another chain.
+    /// If the parameter belongs to another chain.
     fn name(&self, parameter: Parameter) -> String {
         let Source { name, light } = &self.source;
         let operator = parameter.operator().and_then(|i| self.operators.get(i));
@@ -83,7 +83,8 @@ impl Model for Chain {
         Some(())
     }
 
-    /// By closed forms, or by nets of rays where these take too long or do not resolve the scene. Rays of a file are summed.
+    /// Predicts by closed forms, or by nets of rays if closed forms take too long or do not resolve
+    /// the scene. Rays of a file are summed.
     fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: RayBudget) -> Predicted {
         if let Some(rays) = self.given() {
             return ray_list::predicted(self, rays, over);
@@ -126,19 +127,19 @@ impl Model for Chain {
     }
 }
 
-/// Steps of a closed form or a quadrature that are accepted: about ten seconds of one core. Nets of
-/// rays that take less have more noise than the photons, so a closed form is worth some time.
+/// The most steps of a closed form or a quadrature: about ten seconds of one core. Nets of rays of
+/// the same cost have more noise than the photons, so a closed form is worth some time.
 const MAX_STEPS: f64 = 1e10;
-/// Those that are accepted for each ray of the budget, about as long as its four photons take.
+/// The most steps for each ray of the budget, about as long as its four photons take.
 const MAX_STEPS_PER_RAY: f64 = 2e3;
-/// Steps of a closed form or a quadrature that are accepted where nets do not fit into memory.
+/// The most steps of a closed form or a quadrature if nets do not fit into memory.
 const MAX_STEPS_WITHOUT_NETS: f64 = 1e11;
-/// Bytes of a prediction on one core that are accepted.
+/// The most bytes of a prediction on one core.
 const MAX_BYTES: f64 = 1e9;
 
 impl Chain {
-    /// Whether nets of rays take the place of its closed form or quadrature: where that takes longer
-    /// than the photons, or does not resolve a pattern.
+    /// Checks whether nets of rays replace the chain's closed form or quadrature, because that
+    /// takes longer than the photons or does not resolve a pattern.
     #[must_use]
     pub fn is_sampled(&self, (window, grid, picture): Over<'_>, budget: RayBudget) -> bool {
         if self.given().is_some() {
@@ -164,7 +165,7 @@ impl Chain {
         }
     }
 
-    /// ∫ L W without what stands in the way.
+    /// Returns ∫ L W without occluders.
     fn unblocked(&self, window: &Window) -> f64 {
         let mut open = self.clone();
         let is_mask = |operator: &Operator| matches!(operator, Operator::Visibility { .. });
@@ -174,7 +175,7 @@ impl Chain {
 }
 
 impl Parameter {
-    /// Index of its operator; `None` for those of the source.
+    /// Returns the index of the parameter's operator; `None` for parameters of the source.
     fn operator(self) -> Option<usize> {
         match self {
             Self::Travel(i)
@@ -227,7 +228,7 @@ mod tests {
         );
     }
 
-    /// A quarter finer rule of a wide disc behind a narrow window tells nothing of its error.
+    /// For a wide disc behind a narrow window, a quarter finer rule does not reveal the error.
     #[test]
     fn wide_discs_behind_narrow_windows_are_sampled() {
         let sampled = |radius: f64| {
@@ -250,7 +251,7 @@ mod tests {
         assert!(sampled(20.0));
     }
 
-    /// A narrow spot has a long series of cosines, and a product of it with each blocker.
+    /// A narrow spot has a long series of cosines, multiplied by each blocker.
     #[test]
     fn closed_forms_that_take_longer_than_photons_are_sampled() {
         let window = window(Profile::Hann(0.5), Profile::Hann(0.5));
@@ -313,7 +314,7 @@ mod tests {
         assert_eq!(wider.operators[1], Operator::Visibility { name, mask });
     }
 
-    /// Every kind of parameter.
+    /// Builds a chain with every kind of parameter.
     fn rich() -> Chain {
         let mixed = Mask::Opaque {
             shapes: vec![disc([0.0, 0.1], 0.2)],

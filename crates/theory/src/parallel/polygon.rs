@@ -1,31 +1,32 @@
 //! Convex polygons in the (position, slope) plane of one axis, and their exact Fourier transforms
 //! (docs/theory.md (5)).
 //!
-//! Lengths are in units of the half-widths of the window, so that 1 is the size of everything.
+//! Lengths are in units of the half-widths of the window, so everything is of size 1.
 
 use crate::numerics::sinc::sinc;
 use etendue_field::{Complex, cis};
 use std::f64::consts::TAU;
 
-/// Below this largest phase, in radians, the series is used; above it the edge form keeps 14
+/// The largest phase, in radians, for which the series is used; above it the edge form keeps 14
 /// digits.
 const SERIES_PHASE: f64 = 0.2;
-/// Terms of the series: the next is SERIES_PHASE¹¹ · 12/13! = 4e-17 of the area.
+/// Number of terms of the series: the next is SERIES_PHASE¹¹ · 12/13! = 4e-17 of the area.
 const SERIES_TERMS: u32 = 11;
 
 /// A corner of a polygon.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Vertex {
-    /// (position, slope).
+    /// The coordinates (position, slope).
     pub(crate) at: [f64; 2],
-    /// The direction of the edge that leaves it: an index into a list shared by many polygons.
+    /// The direction of the edge that leaves the corner: an index into a list shared by many
+    /// polygons.
     pub(crate) edge: usize,
 }
 
-/// A convex polygon, corners counter-clockwise; or a segment, which has two corners, the lower
+/// A convex polygon with corners counter-clockwise; or a segment, which has two corners, the lower
 /// slope first.
 ///
-/// A segment along (shear, 1) stands for δ(position − shear · slope): its integrals are over the
+/// A segment along (shear, 1) represents δ(position − shear · slope): its integrals are over the
 /// slope.
 #[derive(Clone, Debug)]
 pub(crate) struct Polygon(Vec<Vertex>);
@@ -43,8 +44,8 @@ fn minus(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
 }
 
 impl Polygon {
-    /// The square |position| < 1, |slope| < 1; `edges` are the directions of its sides of constant
-    /// slope and of constant position.
+    /// Returns the square |position| < 1, |slope| < 1; `edges` are the directions of its sides of
+    /// constant slope and of constant position.
     pub(crate) fn square(edges: [usize; 2]) -> Self {
         let corner = |x, u, side: usize| Vertex {
             at: [x, u],
@@ -58,8 +59,8 @@ impl Polygon {
         ])
     }
 
-    /// The segment position = `shear` · slope inside the square; `edge` is the direction (shear,
-    /// 1).
+    /// Returns the segment position = `shear` · slope inside the square; `edge` is the direction
+    /// (shear, 1).
     pub(crate) fn segment(shear: f64, edge: usize) -> Self {
         let end = 1.0 / shear.abs().max(1.0);
         let corner = |u: f64| Vertex {
@@ -77,14 +78,14 @@ impl Polygon {
         &self.0
     }
 
-    /// Corners with those that follow them.
+    /// Returns each corner with its successor.
     fn sides(&self) -> impl Iterator<Item = (Vertex, Vertex)> {
         let next = self.0.iter().cycle().skip(1);
         self.0.iter().copied().zip(next.copied())
     }
 
-    /// The part where `normal`·p ≤ `bound`; `edge` is the direction of the cut
-    /// (Sutherland and Hodgman 1974).
+    /// Returns the part where `normal`·p ≤ `bound`; `edge` is the direction of the cut (Sutherland
+    /// and Hodgman 1974).
     pub(crate) fn clipped(&self, normal: [f64; 2], bound: f64, edge: usize) -> Self {
         if self.is_segment() {
             return self.shortened(normal, bound);
@@ -109,7 +110,7 @@ impl Polygon {
         Self(kept)
     }
 
-    /// The part of a segment where `normal`·p ≤ `bound`.
+    /// Returns the part of a segment where `normal`·p ≤ `bound`.
     fn shortened(&self, normal: [f64; 2], bound: f64) -> Self {
         let [a, b] = [self.0[0], self.0[1]];
         let inside = [a, b].map(|corner| bound - dot(normal, corner.at));
@@ -133,14 +134,14 @@ impl Polygon {
         })
     }
 
-    /// The part where `low` ≤ position − `shear` · slope ≤ `high`; `edge` is the direction (shear,
-    /// 1).
+    /// Returns the part where `low` ≤ position − `shear` · slope ≤ `high`; `edge` is the direction
+    /// (shear, 1).
     pub(crate) fn strip(&self, shear: f64, [low, high]: [f64; 2], edge: usize) -> Self {
         self.clipped([1.0, -shear], high, edge)
             .clipped([-1.0, shear], -low, edge)
     }
 
-    /// Triangles (first corner, b, c) that make it up: the vectors to b and c.
+    /// Returns the triangles (first corner, b, c) of the polygon, as the vectors to b and c.
     pub(crate) fn triangles(&self) -> impl Iterator<Item = [[f64; 2]; 2]> {
         self.0
             .windows(2)
@@ -148,7 +149,7 @@ impl Polygon {
             .map(|pair| [pair[0], pair[1]].map(|corner| minus(corner.at, self.0[0].at)))
     }
 
-    /// The area; of a segment, the slopes it spans.
+    /// Returns the area; for a segment, the range of slopes.
     pub(crate) fn measure(&self) -> f64 {
         if self.is_segment() {
             return minus(self.0[1].at, self.0[0].at)[1];
@@ -156,7 +157,7 @@ impl Polygon {
         self.triangles().map(|[b, c]| 0.5 * cross(b, c)).sum()
     }
 
-    /// F(k) = ∫∫ exp(−2πi k·p) over the polygon; F(0) is the measure. Exact to about 1e-14.
+    /// Returns F(k) = ∫∫ exp(−2πi k·p) over the polygon; F(0) is the measure. Exact to about 1e-14.
     pub(crate) fn transform(&self, k: [f64; 2]) -> Complex {
         let Some(first) = self.0.first() else {
             return Complex::ZERO;
@@ -172,8 +173,8 @@ impl Polygon {
         }
     }
 
-    /// The same from half as many exponentials where opposite sides are parallel: exp(−2πi k·c)
-    /// sinc(k·a) sinc(k·b) times the area, for sides a and b about a centre c.
+    /// Returns the transform from half as many exponentials if opposite sides are parallel:
+    /// exp(−2πi k·c) sinc(k·a) sinc(k·b) times the area, for sides a and b about a centre c.
     pub(crate) fn transform_by_sides(&self, k: [f64; 2]) -> Complex {
         let [p, q, r, s] = &self.0[..] else {
             return self.transform(k);
@@ -187,7 +188,7 @@ impl Polygon {
         cis(-TAU * dot(k, center)) * size
     }
 
-    /// exp(−2πi k·c) sinc(k·e) times the slopes spanned, for a segment e with midpoint c.
+    /// Returns exp(−2πi k·c) sinc(k·e) times the range of slopes, for a segment e with midpoint c.
     fn segment_transform(&self, k: [f64; 2]) -> Complex {
         let [a, b] = [self.0[0].at, self.0[1].at];
         let e = minus(b, a);
@@ -241,7 +242,7 @@ mod tests {
         [7.0, -0.5],
     ];
 
-    /// The transform of the square |p| < 1.
+    /// Returns the transform of the square |p| < 1.
     fn square_transform(k: [f64; 2]) -> f64 {
         4.0 * sinc(2.0 * k[0]) * sinc(2.0 * k[1])
     }
@@ -275,7 +276,8 @@ mod tests {
             let k = [direction.re, direction.im].map(|c| c * SERIES_PHASE / (TAU * 3.0));
             let corner = triangle.0[0].at;
             let series = triangle.series(k) * cis(-TAU * dot(k, corner));
-            // The edge form cancels to a phase of 0.1: some ten roundings of its terms, about 1.
+            // At a phase of 0.1 the edge form cancels to about ten roundings of its terms, which
+            // are about 1.
             assert!((series - triangle.edge_form(k)).norm() < 1e-14);
         }
     }
@@ -287,8 +289,8 @@ mod tests {
         let strip = Polygon::square([0, 1]).strip(shear, [-0.5 * width, 0.5 * width], 2);
         let cuts = |p: Polygon| p.clipped(cut[0], 0.3, 3).clipped(cut[1], 0.2, 4);
         let (strip, segment) = (cuts(strip), cuts(Polygon::segment(shear, 2)));
-        // Ends of the strip are slanted: second order in the width, some 1e-10; 1e-16/width of
-        // rounding.
+        // The ends of the strip are slanted: an error of second order in the width, about 1e-10,
+        // and 1e-16/width of rounding.
         assert!((strip.measure() / width - segment.measure()).abs() < 1e-9);
         for k in FREQUENCIES {
             let difference = strip.transform(k) / width - segment.transform(k);

@@ -13,20 +13,20 @@ use ndarray::Array2;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Nodes along each direction of a triangle. The window is smooth inside a cell: with Hann profiles
-/// the error is below 1e-11 for 8 bins and below rounding for 32. Each cycle of a grating in a cell
-/// takes more.
+/// Number of nodes along each direction of a triangle. The window is smooth inside a cell: with
+/// Hann profiles the error is below 1e-11 for 8 bins and below rounding for 32. Each cycle of a
+/// grating in a cell adds nodes.
 const NODES: usize = 5;
-/// Nodes for each cycle.
+/// Number of nodes for each cycle.
 const NODES_PER_CYCLE: f64 = 5.0;
-/// Nodes beyond which bars so fine that a cell of a picture holds dozens are only sampled.
+/// The most nodes; bars so fine that a cell of a picture holds dozens are undersampled.
 const MOST_NODES: f64 = 200.0;
 
-/// The windowed light field integrated over y and v, as means over cells of (x, u).
+/// Returns the windowed light field integrated over y and v, as means over cells of (x, u).
 ///
-/// Exact in y and v (the factor at frequency zero). Each polygon is cut to each cell, where the
-/// window is integrated by a Gauss rule: no aliasing at edges. Discs are strips, a twentieth of a
-/// cell and more. Unit: W m⁻² sr⁻¹ · m.
+/// Exact in y and v (the factor at frequency zero). Each polygon is clipped to each cell, where the
+/// window is integrated by a Gauss rule: no aliasing at edges. Discs are split into strips of a
+/// twentieth of a cell or wider. Unit: W m⁻² sr⁻¹ · m.
 #[must_use]
 pub fn projection(chain: &Chain, window: &Window, grid: &ProjectionGrid) -> Projection {
     let path = chain.path();
@@ -51,7 +51,7 @@ pub fn projection(chain: &Chain, window: &Window, grid: &ProjectionGrid) -> Proj
     }
 }
 
-/// What multiplies a polygon of (x, u), once y and v are integrated over.
+/// The factor that multiplies a polygon of (x, u) after integration over y and v.
 #[derive(Clone, Debug)]
 enum CellDensity {
     /// A constant, times the slope profile of the window.
@@ -84,7 +84,8 @@ fn densities(expansion: &Expansion, slope: &Slope) -> Vec<CellDensity> {
         .collect()
 }
 
-/// What the integral over y and v multiplies each polygon of (x, u) by, under some waves in (y, v).
+/// Returns the factor of each polygon of (x, u) from the integral over y and v, under some waves in
+/// (y, v).
 fn weights(expansion: &Expansion, waves: &[SectionWave]) -> Vec<f64> {
     let [x, y] = &expansion.sections;
     let polygons = y.polygons.iter();
@@ -100,18 +101,18 @@ fn weights(expansion: &Expansion, waves: &[SectionWave]) -> Vec<f64> {
 /// Cells of (x, u) in units of the half-widths of the window.
 struct Cells<'a> {
     window: &'a Window,
-    /// Gratings along x, and their distances.
+    /// Gratings along x, with their distances.
     gratings: Vec<(&'a Grating, f64)>,
     /// The lowest frequency of the series in u, cycles per unit slope.
     series: f64,
     bins: usize,
-    /// Half-widths of the grid in those units: 1 when it is over the support.
+    /// Half-widths of the grid in those units: 1 if the grid covers the support.
     half: [f64; 2],
     /// Gauss rule on (0, 1).
     nodes: Vec<(f64, f64)>,
 }
 
-/// Gratings along x, and their distances.
+/// Returns the gratings along x, with their distances.
 fn gratings<'a>(path: &ChainSegment<'a>) -> Vec<(&'a Grating, f64)> {
     let layers = path.layers.iter();
     let along_x = layers.filter_map(|layer| match layer.mask {
@@ -121,7 +122,7 @@ fn gratings<'a>(path: &ChainSegment<'a>) -> Vec<(&'a Grating, f64)> {
     along_x.collect()
 }
 
-/// Nodes along each direction of a piece of a cell.
+/// Returns the number of nodes along each direction of a piece of a cell.
 fn nodes(gratings: &[(&Grating, f64)], grid: &ProjectionGrid) -> usize {
     let cell = [grid.half_x, grid.half_u].map(|half| 2.0 * half / grid.bins as f64);
     let cycles = gratings
@@ -130,7 +131,7 @@ fn nodes(gratings: &[(&Grating, f64)], grid: &ProjectionGrid) -> usize {
     NODES + whole((cycles.sum::<f64>() * NODES_PER_CYCLE).min(MOST_NODES))
 }
 
-/// The same for a path: how fine its picture is made.
+/// Returns the number of nodes for the picture of a path.
 pub(crate) fn nodes_of_cells(path: &ChainSegment<'_>, grid: &ProjectionGrid) -> usize {
     nodes(&gratings(path), grid)
 }
@@ -157,12 +158,12 @@ impl<'a> Cells<'a> {
         }
     }
 
-    /// Lower edge of cell `i` along an axis.
+    /// Returns the lower edge of cell `i` along an axis.
     fn edge(&self, i: usize, axis: usize) -> f64 {
         (2.0 * i as f64 / self.bins as f64 - 1.0) * self.half[axis]
     }
 
-    /// Σ ∫∫ density · W over the cells of slope bin `j`, for each position bin.
+    /// Returns Σ ∫∫ density · W over the cells of slope bin `j`, for each position bin.
     fn column(&self, j: usize, polygons: &[(&Polygon, CellDensity)]) -> Vec<f64> {
         let mut sums = vec![0.0; self.bins];
         let [low, high] = [self.edge(j, 1), self.edge(j + 1, 1)];
@@ -183,7 +184,7 @@ impl<'a> Cells<'a> {
         sums
     }
 
-    /// Position bins that a polygon reaches into.
+    /// Returns the position bins that a polygon overlaps.
     fn touched(&self, polygon: &Polygon) -> std::ops::Range<usize> {
         let n = self.bins as f64;
         if polygon.corners().is_empty() {
@@ -200,7 +201,7 @@ impl<'a> Cells<'a> {
         first..whole(high.ceil()).max((first + 1).min(self.bins))
     }
 
-    /// ∫∫ W over a polygon smaller than a cell, with `slope` for its factor in u.
+    /// Returns ∫∫ W over a polygon smaller than a cell, with `slope` as its factor in u.
     fn integral(&self, polygon: &Polygon, slope: impl Fn(f64) -> f64) -> f64 {
         let Some(first) = polygon.corners().first() else {
             return 0.0;
@@ -214,7 +215,7 @@ impl<'a> Cells<'a> {
             .sum()
     }
 
-    /// ∫ W along a segment, over its length.
+    /// Returns ∫ W along a segment, divided by its length.
     fn mean_along(&self, segment: &Polygon, slope: impl Fn(f64) -> f64) -> f64 {
         let [a, b] = [0, 1].map(|end| segment.corners()[end].at);
         let nodes = self.nodes.iter();
@@ -226,7 +227,8 @@ impl<'a> Cells<'a> {
             .sum()
     }
 
-    /// ∫∫ s W(p + s((1 − t) b + t c)) ds dt over the unit square: a triangle, seen from p.
+    /// Returns ∫∫ s W(p + s((1 − t) b + t c)) ds dt over the unit square: the mean over a triangle
+    /// with the vertex p.
     fn mean(&self, p: [f64; 2], b: [f64; 2], c: [f64; 2], slope: impl Fn(f64) -> f64) -> f64 {
         let mut sum = 0.0;
         for &(t, weight) in &self.nodes {
@@ -249,7 +251,7 @@ impl<'a> Cells<'a> {
         along.value(x) * slope(u) * seen.product::<f64>()
     }
 
-    /// Σ terms cos(2π n f u), by Clenshaw's recurrence.
+    /// Returns Σ terms cos(2π n f u), by Clenshaw's recurrence.
     fn sum(&self, terms: &[f64], u: f64) -> f64 {
         let cos = libm::cos(TAU * self.series * u);
         let (mut next, mut last) = (0.0, 0.0);
@@ -337,7 +339,7 @@ mod tests {
             let center = [0, 1].map(|k| grid.center(index[k], [grid.half_x, grid.half_u][k]));
             let half = [grid.half_x, grid.half_u].map(|half| half / 16.0);
             let expected = mean(100, center, half, |x, u| {
-                // cos⁶θ, integrated over v; the whole window sees the light.
+                // cos⁶θ, integrated over v; the whole light is within the window.
                 let lobe = integrate(40, [-0.3, 0.3], |v| {
                     window.v.value(v) * (1.0 + u * u + v * v).powi(-3)
                 });
@@ -350,7 +352,7 @@ mod tests {
         }
     }
 
-    /// The mean of f over n × n points in the box around a center.
+    /// Returns the mean of f over n × n points in the box around a center.
     fn mean(n: u32, center: [f64; 2], half: [f64; 2], f: impl Fn(f64, f64) -> f64) -> f64 {
         let place = |i: u32, k: usize| {
             center[k] + half[k] * ((f64::from(i) + 0.5) / f64::from(n) * 2.0 - 1.0)
@@ -367,7 +369,7 @@ mod tests {
         let window = window(Profile::Hann(0.5), Profile::Hann(0.3));
         let grid = ProjectionGrid::new(&window, 16);
         let projection = projection(&chain, &window, &grid);
-        // Whether a ray comes from the light, and whether it meets the strip of the blocker.
+        // Tests whether a ray comes from the light, and whether it meets the strip of the blocker.
         let lit = |x: f64, u: f64| f64::from(u8::from((x - 2.0 * u).abs() < 0.2));
         let met = |x: f64, u: f64| f64::from(u8::from((x - u).abs() < 0.15));
         let weight = |x: f64, u: f64| lit(x, u) * window.x.value(x) * window.u.value(u);
@@ -381,7 +383,8 @@ mod tests {
             let expected = mean(200, center, cell, |x, u| {
                 weight(x, u) * (all - met(x, u) * behind)
             });
-            // An edge that crosses a square of n × n points errs by less than 1/n of the integral.
+            // An edge that crosses a square of n × n points causes an error of less than 1/n of the
+            // integral.
             assert!((projection.values[index] - expected).abs() < all / 200.0);
         }
         // The cells above are partly lit, partly blocked, and differ by far more than that.

@@ -1,7 +1,9 @@
-//! Light of finitely many rays: its windowed spectrum is a sum over them (docs/theory.md, section 2).
+//! Lights that are finite lists of rays: their windowed spectrum is a sum over the rays
+//! (docs/theory.md, section 2).
 //!
-//! Each ray goes through the chain by itself: travel moves it, a mask takes its share, the window weighs it. So the
-//! prediction has no error but that of the transform, and shares neither random numbers nor the tracer's hits with the photons.
+//! Each ray is followed through the chain separately: travel moves it, masks attenuate it, the
+//! window weights it. So the only error of the prediction is that of the transform, and the
+//! prediction shares neither random numbers nor the tracer's intersections with the photons.
 
 use crate::barrier::Barrier;
 use crate::model::Over;
@@ -16,7 +18,7 @@ use etendue_transform::SliceTransform;
 use ndarray::Array2;
 
 impl Chain {
-    /// The rays that shine, if the light is made of such.
+    /// Returns the rays of the light, if the light is a list of rays.
     pub(crate) fn given(&self) -> Option<&RayLight> {
         match &self.source.light {
             Light::Rays { rays } => Some(rays),
@@ -25,17 +27,17 @@ impl Chain {
     }
 }
 
-/// A step of a chain, ready for many rays.
+/// A step of a chain, prepared for many rays.
 enum RayStep<'a> {
     Travel(f64),
     Mask(Barrier<'a>),
     Cosine,
 }
 
-/// The slices of rays that go through a chain, and their picture.
+/// Returns the slices of rays that pass through a chain, and their picture.
 ///
 /// # Panics
-/// When the chain has a diffuse reflection.
+/// If the chain has a diffuse reflection.
 pub(super) fn predicted(
     chain: &Chain,
     rays: &RayLight,
@@ -66,7 +68,7 @@ pub(super) fn predicted(
     }
 }
 
-/// The rays of a file at the end of a chain: one net, which is all of them.
+/// The rays of a file at the end of a chain, as a single net.
 pub(super) struct GivenRays<'a> {
     rays: &'a RayLight,
     steps: Vec<RayStep<'a>>,
@@ -98,7 +100,8 @@ impl RayNets for GivenRays<'_> {
     }
 }
 
-/// What [`predicted`] takes: spreading a ray over 8 × 8 cells of each azimuth, and the transform.
+/// Estimates the work of [`predicted`]: spreading a ray over 8 × 8 cells of each azimuth, and the
+/// transform.
 pub(super) fn work(rays: &RayLight, grid: &SliceGrid) -> PredictionWork {
     let [azimuths, rows, columns] = grid.half_shape().map(|n| n as f64);
     let spread = 100.0 * azimuths * rays.rays().len() as f64;
@@ -119,7 +122,8 @@ fn step(operator: &Operator) -> RayStep<'_> {
     }
 }
 
-/// A ray at the end of a chain with what it adds to the windowed light field; `None` where that is nothing.
+/// Returns a ray at the end of a chain with its contribution to the windowed light field; `None` if
+/// that is zero.
 fn arrives(
     FluxRay { ray, flux }: &FluxRay,
     steps: &[RayStep<'_>],
@@ -172,7 +176,8 @@ mod tests {
     use std::f64::consts::TAU;
     use std::sync::Arc;
 
-    /// Rays that fill a square of a Lambertian light evenly make its field: the sum goes to the closed form, by a midpoint rule.
+    /// Rays that fill a square of a Lambertian light evenly approximate its field: the sum
+    /// converges to the closed form, by a midpoint rule.
     #[test]
     fn many_rays_of_a_square_light_are_its_closed_form() {
         let n = 24;
@@ -212,13 +217,13 @@ mod tests {
             let worst = pairs.map(|(a, b)| (a - b).norm_sqr().sqrt());
             worst.fold(0.0, f64::max) / expected.at_zero()
         };
-        // A midpoint rule of 24 cells on an edge of light: of the order of 1/24², the square of a cell.
+        // A midpoint rule of 24 cells at an edge of light: of order 1/24², the square of a cell.
         assert!(off(&found.slices) < 4e-3, "{}", off(&found.slices));
-        // A fault is seen: travel left out.
+        // A planted fault is detected: travel left out.
         let mut wrong = given;
         wrong.operators.remove(0);
         assert!(off(&predicted(&wrong, &rays, over).slices) > 0.1);
-        // Against the plain sum at one frequency.
+        // Compares with the plain sum at one frequency.
         let (rho, nu) = (1.5, -1.0);
         let mut plain = Complex::ZERO;
         for FluxRay { ray, flux } in rays.rays() {

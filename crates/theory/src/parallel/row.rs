@@ -3,7 +3,7 @@
 use etendue_field::{Complex, cis};
 use std::f64::consts::TAU;
 
-/// Frequencies with a common position frequency, in cycles per half-width.
+/// A row of frequencies with a common position frequency, in cycles per half-width.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FrequencyRow {
     /// Frequency along the position.
@@ -13,7 +13,8 @@ pub(crate) struct FrequencyRow {
     pub(crate) half: usize,
 }
 
-/// Real and imaginary parts apart, so that loops over a row become vector instructions.
+/// A row of complex numbers with real and imaginary parts stored separately, which lets loops over
+/// a row be vectorised.
 #[derive(Clone, Debug)]
 pub(crate) struct ComplexRow {
     pub(crate) re: Vec<f64>,
@@ -38,7 +39,7 @@ impl FrequencyRow {
         [self.position, (n as f64 - self.half as f64) * self.step]
     }
 
-    /// scale · exp(−2πi k·p) along the row, by powers outwards from the middle.
+    /// Returns scale · exp(−2πi k·p) along the row, by powers outwards from the middle.
     pub(crate) fn exponentials(&self, p: [f64; 2], scale: impl Into<Complex>, to: &mut ComplexRow) {
         let middle = cis(-TAU * self.position * p[0]) * scale.into();
         let up = cis(-TAU * self.step * p[1]);
@@ -59,7 +60,7 @@ pub(crate) fn add_scaled(to: &mut [f64], values: &[f64], factor: f64) {
     }
 }
 
-/// to[range] += a · b.
+/// Adds a · b to a range: to[range] += a · b.
 pub(crate) fn add_product(
     to: &mut ComplexRow,
     range: std::ops::Range<usize>,

@@ -1,5 +1,5 @@
-//! A chain whose closed form takes too long, or does not resolve a pattern: the same light by nets
-//! of rays.
+//! Predictions by nets of rays for chains whose closed form takes too long, or does not resolve a
+//! pattern.
 
 use crate::model::{Model, Observed, Over, ShiftedModels};
 use crate::nets::{RayBudget, RayNets};
@@ -9,14 +9,14 @@ use crate::{Chain, Parameter, rays, scattering};
 use etendue_field::{Brdf, Frame, Fresnel, Lobe, Patch, Quantity, Reflectance, Window};
 use glam::DVec3;
 
-/// What nets sum over.
+/// The domain that nets sum over.
 enum NetDomain {
     Rays(Box<Observed<rays::SpecularSystem>>),
     Scattering(Box<Observed<scattering::ScatteringSystem>>),
 }
 
 impl Chain {
-    /// The prediction by nets of rays, with derivatives by some parameters.
+    /// Returns the prediction by nets of rays, with derivatives by some parameters.
     #[must_use]
     pub fn sampled(
         &self,
@@ -44,7 +44,7 @@ impl Chain {
         }
     }
 
-    /// The rays that [`sampled`](Self::sampled) sums.
+    /// Calls a function with the rays that [`sampled`](Self::sampled) sums.
     pub(super) fn with_sampled(
         &self,
         over: Over<'_>,
@@ -57,15 +57,15 @@ impl Chain {
         }
     }
 
-    /// The systems with a little more and a little less of each parameter.
+    /// Returns the systems with each parameter slightly increased and slightly decreased.
     fn moved<V>(
         &self,
         parameters: &[Parameter],
         over: Over<'_>,
         into: impl Fn(Self) -> V,
     ) -> Vec<ShiftedModels<V>> {
-        // Shadows move with masks: wide enough apart that some rays see it, and so near that phases
-        // turn by a third of a radian at most.
+        // Step of derivatives by masks, whose shadows move: large enough that some rays cross the
+        // shadow's edge, and small enough that phases turn by a third of a radian at most.
         const STEP: f64 = 1e-2;
         const PHASE: f64 = 0.05;
         let moved = |parameter: &Parameter| {
@@ -81,7 +81,7 @@ impl Chain {
         moved.expect("parameters of the chain")
     }
 
-    /// The chain as a system of rays, or as a flat surface that scatters.
+    /// Returns the chain as a system of rays, or as a flat surface that scatters.
     fn followed(&self, window: &Window) -> NetDomain {
         let path = self.path();
         let layers = path.layers.iter();
@@ -124,7 +124,7 @@ impl Chain {
     }
 }
 
-/// A width on the receiver beyond what a window sees of it from so far.
+/// Returns a width on the receiver larger than the part that a window sees from this distance.
 fn seen(window: &Window, distance: f64) -> f64 {
     let [x, y, u, v] = [window.x, window.y, window.u, window.v].map(|p| p.half_width());
     2.0 * libm::hypot(x + distance * u, y + distance * v)

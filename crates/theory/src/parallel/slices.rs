@@ -1,4 +1,4 @@
-//! Slices of a chain.
+//! Slices of the spectrum of a chain.
 
 use super::expansion::{Expansion, SectionColumns, Sum};
 use crate::Chain;
@@ -11,21 +11,23 @@ use crate::parallel::wave::SectionWave;
 use etendue_field::{Complex, SliceGrid, Slices, Window};
 use rayon::prelude::*;
 
-/// Cosines and sines of an azimuth smaller than this are those of π/2 and 0, up to rounding.
+/// Below this, the cosine or sine of an azimuth is treated as exactly zero (azimuths of π/2 and 0
+/// up to rounding).
 const ORTHOGONAL: f64 = 1e-15;
 
-/// The slices of the spectrum on a grid: the values of [`at`](crate::at), from sums over corners.
+/// Returns the slices of the spectrum on a grid: the values of [`at`](crate::at), from sums over
+/// corners.
 ///
 /// Rows of constant (azimuth, ρ) are computed in parallel, each by one thread, so the result is the
-/// same for any number of threads. Differs from [`at`](crate::at) by less than 1e-10 of the largest
-/// value (with discs, by the error of their quadrature). Unit: W m⁻² sr⁻¹ · m².
+/// same for any number of threads. The slices differ from [`at`](crate::at) by less than 1e-10 of
+/// the largest value (with discs, by the error of their quadrature). Unit: W m⁻² sr⁻¹ · m².
 #[must_use]
 pub fn slices(chain: &Chain, window: &Window, grid: &SliceGrid) -> Slices {
     let path = chain.path();
     slices_at_fineness(&path, window, grid, &fineness(&path, window, grid))
 }
 
-/// How discs are taken apart for a grid.
+/// Returns how finely discs are split for a grid.
 pub(crate) fn fineness(
     path: &ChainSegment<'_>,
     window: &Window,
@@ -34,7 +36,7 @@ pub(crate) fn fineness(
     DiscResolution::for_spectrum(path, window, [grid.rho.max(), grid.nu.max()])
 }
 
-/// The slices with discs taken apart as told.
+/// Returns the slices with discs split at a given fineness.
 pub(crate) fn slices_at_fineness(
     path: &ChainSegment<'_>,
     window: &Window,
@@ -93,12 +95,12 @@ impl<'a> Product<'a> {
         }
     }
 
-    /// The factors of all polygons of section `axis` in the row at ρ, [polygon, ν]; `along` is the
-    /// cosine of the angle between the azimuth and the axis.
+    /// Returns the factors of all polygons of section `axis` in the row at ρ, [polygon, ν]; `along`
+    /// is the cosine of the angle between the azimuth and the axis.
     fn factors(&self, axis: usize, rho: f64, along: f64, grid: &SliceGrid) -> Vec<Complex> {
         let section = &self.expansion.sections[axis];
         if along.abs() < ORTHOGONAL {
-            // The row never leaves frequency zero of this section.
+            // All frequencies of the row are zero in this section.
             let value = |p| section.value(&self.waves[axis], p, [0.0, 0.0]);
             let polygons = section.polygons.iter();
             return polygons
@@ -129,7 +131,7 @@ impl Expansion {
 }
 
 impl SectionColumns {
-    /// The same for terms added up along y first.
+    /// Adds brightness · Σ terms along a row, for terms summed along y first.
     fn add(&self, brightness: f64, x: &[Complex], y: &[Complex], row: &mut [Complex]) {
         let along_y = added(&self.sums, y, row.len());
         let beside = added(&self.beside, &along_y, row.len());
@@ -142,7 +144,7 @@ impl SectionColumns {
     }
 }
 
-/// Weighted sums of factors, [sum, n], from factors [index, n] of `count` frequencies.
+/// Returns weighted sums of factors, [sum, n], from factors [index, n] of `count` frequencies.
 fn added(sums: &[Sum], factors: &[Complex], count: usize) -> Vec<Complex> {
     let mut added = vec![Complex::ZERO; sums.len() * count];
     for (to, sum) in added.chunks_exact_mut(count).zip(sums) {
@@ -162,8 +164,8 @@ mod tests {
     use crate::testing::*;
     use etendue_field::{FrequencyAxis, Light, Profile, Rectangle};
 
-    /// A grid whose frequencies fall on the shifts of Hann profiles of half-width 1/2 and on the
-    /// lines k·d = 0 of distances 1 and 2: wherever the corners cancel.
+    /// Returns a grid whose frequencies fall on the shifts of Hann profiles of half-width 1/2 and
+    /// on the lines k·d = 0 of distances 1 and 2, where the corners cancel.
     fn singular_grid(azimuths: usize, half: usize) -> SliceGrid {
         let axis = FrequencyAxis { half, spacing: 0.5 };
         SliceGrid {
@@ -173,7 +175,7 @@ mod tests {
         }
     }
 
-    /// Light, path and blockers of several kinds.
+    /// Chains with lights, paths and blockers of several kinds.
     fn chains() -> Vec<Chain> {
         let mut off_center = chain(0.3, &[(1.0, blockers(3, 0.2, 0.1)), (1.0, vec![])]);
         off_center.source.light = lambertian(Rectangle {
@@ -214,7 +216,7 @@ mod tests {
         ]
     }
 
-    /// The largest difference of the two paths, relative to the largest value.
+    /// Returns the largest difference between the two methods, relative to the largest value.
     fn difference(chain: &Chain, window: &Window, grid: &SliceGrid) -> f64 {
         let path = chain.path();
         let fast = slices(chain, window, grid);
@@ -242,8 +244,8 @@ mod tests {
         for chain in chains() {
             for window in [window(hann, hann), window(Profile::Box(half), hann), mixed] {
                 let worst = difference(&chain, &window, &singular_grid(4, 6));
-                // A thousand roundings where two directions nearly cancel, over a lit part of about
-                // 1/20.
+                // A thousand roundings where two directions nearly cancel, divided by a lit part of
+                // about 1/20.
                 assert!(worst < 1e-12, "{worst:e} {:?}", chain.describe());
             }
         }
@@ -260,7 +262,7 @@ mod tests {
 
     #[test]
     fn agrees_far_from_unit_scales() {
-        // A millimetre window a kilometre away from a light of 10 m: shears of 10⁶ half-widths.
+        // A millimetre window 1 km from a light of 10 m: shears of 10⁶ half-widths.
         let chain = chain(10.0, &[(999.0, blockers(2, 2e-3, 1e-3)), (1.0, vec![])]);
         let window = window(Profile::Hann(1e-3), Profile::Hann(0.02));
         let grid = SliceGrid {
@@ -275,7 +277,7 @@ mod tests {
             },
         };
         let worst = difference(&chain, &window, &grid);
-        // Positions of 20 m in a window of 1 mm lose digits in both.
+        // Positions of 20 m in a window of 1 mm lose digits in both methods.
         assert!(worst < 1e-11, "{worst:e}");
     }
 
@@ -301,7 +303,7 @@ mod tests {
         let slices = slices(&chain, &window, &singular_grid(5, 3));
         for slice in slices.half.outer_iter() {
             let difference = slice[[0, 3]] - slices.at_zero();
-            // Rounding of one sum in two orders.
+            // Rounding of one sum in two different orders.
             assert!(difference.norm() < 1e-13 * slices.at_zero());
         }
     }

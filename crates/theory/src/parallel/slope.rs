@@ -1,9 +1,10 @@
-//! Factors of slope alone: (1 + u² + v²)^p times the slope profiles of a window, as a short sum of
-//! products of cosine series (docs/theory.md (5d)).
+//! Factors that depend on slope alone: (1 + u² + v²)^p times the slope profiles of a window, as a
+//! short sum of products of cosine series (docs/theory.md (5d)).
 //!
-//! The product is taken apart by elimination with complete pivoting, a(u) b(v) at a time (Townsend
-//! and Trefethen 2013), and each factor is fitted by cosines of a period longer than the window,
-//! where it is smooth (a Fourier extension, Huybrechs 2010). Both stop at a measured residual.
+//! The function is decomposed by elimination with complete pivoting, one product a(u) b(v) at a
+//! time (Townsend and Trefethen 2013), and each factor is fitted by cosines of a period longer than
+//! the window, where it is smooth (a Fourier extension, Huybrechs 2010). Both stop at a measured
+//! residual.
 
 use crate::numerics::quadrature::gauss_legendre;
 use etendue_field::{CosineTerm, Profile};
@@ -13,16 +14,16 @@ use std::f64::consts::{PI, TAU};
 const RANK_RESIDUAL: f64 = 6e-9;
 /// Residual of the fits of a(u) and of b(v), relative to the largest value.
 const FIT_RESIDUAL: f64 = 2e-9;
-/// Nodes along half of a window.
+/// Number of nodes along half of a window.
 const NODES: usize = 192;
-/// Most terms of a series.
+/// The most terms of a series.
 const MOST_TERMS: usize = 120;
-/// Half periods tried, in half-widths: longer ones need fewer terms where the factor is wide.
+/// Half periods to try, in half-widths: longer ones need fewer terms if the factor is wide.
 const EXTENSIONS: [f64; 3] = [2.0, 1.5, 1.15];
-/// Largest coefficient that a series may have: its digits are lost.
+/// The largest coefficient allowed in a series, because cancellation loses that many digits.
 const LARGEST_COEFFICIENT: f64 = 30.0;
 
-/// W(u) W(v) (1 + u² + v²)^p inside a window.
+/// The function W(u) W(v) (1 + u² + v²)^p inside a window.
 #[derive(Clone, Debug)]
 pub(crate) struct Slope {
     /// The sum of products: cosine terms along u and along v, frequencies in cycles per unit slope.
@@ -63,7 +64,7 @@ impl Slope {
     }
 }
 
-/// Σ of cosine terms at `t`, inside their window.
+/// Returns the sum of cosine terms at `t`, inside their window.
 fn sum(terms: &[CosineTerm], t: f64) -> f64 {
     let values = terms
         .iter()
@@ -71,13 +72,13 @@ fn sum(terms: &[CosineTerm], t: f64) -> f64 {
     values.sum()
 }
 
-/// Gauss nodes on (0, half).
+/// Returns Gauss nodes on (0, half).
 fn nodes(half: f64) -> Vec<f64> {
     let rule = gauss_legendre(NODES).into_iter();
     rule.map(|(x, _)| 0.5 * half * (x + 1.0)).collect()
 }
 
-/// The function at nodes as Σ a b.
+/// Decomposes the function at nodes as Σ a b.
 fn eliminate(nodes: &[Vec<f64>; 2], value: impl Fn(f64, f64) -> f64) -> Vec<[Vec<f64>; 2]> {
     let [u, v] = nodes;
     let mut rest: Vec<Vec<f64>> = u
@@ -91,7 +92,7 @@ fn eliminate(nodes: &[Vec<f64>; 2], value: impl Fn(f64, f64) -> f64) -> Vec<[Vec
         if largest <= RANK_RESIDUAL * first || factors.len() == NODES {
             return factors;
         }
-        // Shared out evenly, so that a fit of either is as good.
+        // Splits the magnitude evenly between a and b, which makes fits of both equally accurate.
         let root = largest.sqrt();
         let a: Vec<f64> = rest.iter().map(|row| row[j] / root).collect();
         let b: Vec<f64> = rest[i]
@@ -107,7 +108,7 @@ fn eliminate(nodes: &[Vec<f64>; 2], value: impl Fn(f64, f64) -> f64) -> Vec<[Vec
     }
 }
 
-/// Row, column and absolute value of the largest element.
+/// Returns row, column and absolute value of the largest element.
 fn pivot(matrix: &[Vec<f64>]) -> (usize, usize, f64) {
     let mut best = (0, 0, 0.0);
     for (i, row) in matrix.iter().enumerate() {
@@ -120,7 +121,8 @@ fn pivot(matrix: &[Vec<f64>]) -> (usize, usize, f64) {
     best
 }
 
-/// Cosine series of some functions of one variable, given at nodes: the shortest of a few periods.
+/// Fits cosine series to functions of one variable, given at nodes, and returns the shortest over a
+/// few periods.
 fn fit(half: f64, nodes: &[f64], functions: &[Vec<f64>]) -> Vec<Vec<CosineTerm>> {
     let mut best: Option<CosineFit> = None;
     for extension in EXTENSIONS {
@@ -136,7 +138,7 @@ fn fit(half: f64, nodes: &[f64], functions: &[Vec<f64>]) -> Vec<Vec<CosineTerm>>
     best.map(|fit| fit.series()).unwrap_or_default()
 }
 
-/// A least-squares fit by cosines, by modified Gram-Schmidt with the functions as further columns
+/// A least-squares fit by cosines, by modified Gram–Schmidt with the functions as further columns
 /// (Björck 1967).
 struct CosineFit {
     half_period: f64,
@@ -151,7 +153,7 @@ impl CosineFit {
         let largest = functions.iter().map(|f| peak(f)).fold(0.0, f64::max);
         let mut rests = functions.to_vec();
         let mut basis: Vec<Vec<f64>> = Vec::new();
-        // Upper triangle of the basis, column by column, and the projections of the functions.
+        // The upper triangle of the basis, column by column, and the projections of the functions.
         let mut triangle: Vec<Vec<f64>> = Vec::new();
         let mut projections = vec![Vec::new(); functions.len()];
         for n in 0..most {
@@ -217,14 +219,14 @@ impl CosineFit {
     }
 }
 
-/// Takes the part along the unit vector `q` out of `column`; returns its length.
+/// Removes the component along the unit vector `q` from `column`; returns its length.
 fn remove(q: &[f64], column: &mut [f64]) -> f64 {
     let along = dot(q, column);
     column.iter_mut().zip(q).for_each(|(c, q)| *c -= along * q);
     along
 }
 
-/// The solution of an upper triangular system, given by columns.
+/// Returns the solution of an upper triangular system, given by columns.
 fn solve(triangle: &[Vec<f64>], mut right: Vec<f64>) -> Vec<f64> {
     for n in (0..right.len()).rev() {
         right[n] /= triangle[n][n];
@@ -240,12 +242,12 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Largest absolute value.
+/// Returns the largest absolute value.
 fn peak(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |m, v| m.max(v.abs()))
 }
 
-/// Root mean square of what the parts leave, relative to the function.
+/// Returns the root mean square of the function minus the sum of parts, relative to the function.
 fn residual(
     nodes: &[Vec<f64>; 2],
     value: impl Fn(f64, f64) -> f64,
@@ -270,7 +272,7 @@ fn residual(
 mod tests {
     use super::*;
 
-    /// The largest error between the nodes, and how many products and terms there are.
+    /// Returns the largest error between the nodes, and the number of products and of terms.
     fn check(profiles: [Profile; 2], power: f64) -> (f64, usize, usize) {
         let slope = Slope::new([&profiles[0], &profiles[1]], power);
         let mut worst = 0.0;
@@ -306,7 +308,7 @@ mod tests {
                 for power in [0.5, -1.5, -2.0, -10.0, -50.0] {
                     let (worst, rank, terms) = check([profile, profile], power);
                     let scale = libm::pow(1.0 + 2.0 * half * half, f64::max(power, 0.0));
-                    // A few residuals of 6e-9 and 2e-9.
+                    // A few times the residuals of 6e-9 and 2e-9.
                     assert!(worst < 2e-8 * scale, "{profile:?} {power}: {worst:e}");
                     assert!(half > 0.5 || rank <= 5 && terms <= 24, "{rank} {terms}");
                 }

@@ -2,14 +2,14 @@
 
 use etendue_field::{Complex, CosineTerm, Grating, cis};
 
-/// One term amplitude · cos(2π s·p + phase) of what multiplies a section inside its box,
-/// p = (position, slope) in units of the half-widths.
+/// One term amplitude · cos(2π s·p + phase) of a factor of a section inside its box, p = (position,
+/// slope) in units of the half-widths.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SectionWave {
     /// The frequency s, cycles per half-width.
     pub(crate) frequency: [f64; 2],
     pub(crate) amplitude: f64,
-    /// In radians; zero where the frequency is.
+    /// The phase in radians; zero if the frequency is zero.
     pub(crate) phase: f64,
 }
 
@@ -19,7 +19,7 @@ pub(crate) struct Shift {
     pub(crate) frequency: [f64; 2],
     /// The weight without the phase of the wave.
     pub(crate) amplitude: f64,
-    /// +1 or −1: this exponential is exp(−i sign (2π s·p + phase)), s being the frequency of its
+    /// +1 or −1: this exponential is exp(−i sign (2π s·p + phase)), where s is the frequency of its
     /// wave.
     pub(crate) sign: f64,
     pub(crate) weight: Complex,
@@ -41,8 +41,8 @@ impl SectionWave {
         }
     }
 
-    /// A product of cosine terms along the position and along the slope, frequencies in cycles per
-    /// unit.
+    /// Returns the product of cosine terms along the position and along the slope, with frequencies
+    /// in cycles per unit.
     pub(crate) fn of_terms(terms: [&[CosineTerm]; 2], half: [f64; 2]) -> Vec<Self> {
         let along = |axis: usize| -> Vec<Self> {
             let waves = terms[axis].iter().map(|term| {
@@ -55,8 +55,8 @@ impl SectionWave {
         Self::products(&along(0), &along(1))
     }
 
-    /// ½ (1 + m cos(2π f t + p)), t = x − `distance` · u: a grating as the plane sees it
-    /// (docs/theory.md (5c)).
+    /// Returns ½ (1 + m cos(2π f t + p)), t = x − `distance` · u: a grating in coordinates of the
+    /// plane (docs/theory.md (5c)).
     pub(crate) fn of_grating(grating: &Grating, distance: f64, half: [f64; 2]) -> [Self; 2] {
         let f = grating.frequency;
         let frequency = [f * half[0], -f * distance * half[1]];
@@ -66,7 +66,7 @@ impl SectionWave {
         ]
     }
 
-    /// The product of two sums of waves.
+    /// Returns the product of two sums of waves.
     pub(crate) fn products(a: &[Self], b: &[Self]) -> Vec<Self> {
         let pairs = a.iter().flat_map(|a| b.iter().map(move |b| (a, b)));
         pairs.flat_map(|(a, b)| a.times(b)).collect()
@@ -105,7 +105,7 @@ impl SectionWave {
         })
     }
 
-    /// The argument of the cosine at p.
+    /// Returns the argument of the cosine at p.
     pub(crate) fn angle(&self, p: [f64; 2]) -> f64 {
         std::f64::consts::TAU * crate::parallel::polygon::dot(self.frequency, p) + self.phase
     }
@@ -145,7 +145,7 @@ mod tests {
             modulation: 0.8,
             phase,
         };
-        // Two of one kind in one plane leave a constant with a phase.
+        // Two equal gratings in one plane leave a constant with a phase.
         let gratings = [
             (grating(2.0, 0.3), 0.0),
             (grating(3.0, -0.9), 1.3),

@@ -1,4 +1,4 @@
-//! Rectangles with weights, as which discs are summed.
+//! Rectangles with weights, whose sums represent discs.
 
 use etendue_field::{HalfPlane, Rectangle};
 

@@ -1,8 +1,8 @@
-//! What a prediction takes, told before it is made.
+//! Estimates of the work of a prediction before it is made.
 //!
-//! Counted from the rules that the prediction itself follows: corners, nodes, shapes, frequencies.
-//! A guard, so that a scene that would run for days is refused at once. Each kind of prediction
-//! counts its own, this file the closed form.
+//! The estimate counts what the prediction itself uses: corners, nodes, shapes, frequencies. It
+//! serves to refuse a scene that would run for days at once. Each kind of prediction has its own
+//! estimate; this file has that of the closed form.
 
 use crate::Chain;
 use crate::Model;
@@ -15,10 +15,11 @@ use crate::parallel::slope::Slope;
 use crate::work::PredictionWork;
 use etendue_field::{CosineTerm, Mask, Profile, ProjectionGrid, SliceGrid, Window};
 
-/// Products of shapes in different planes that are counted; of more the prediction would not end.
+/// The most products of shapes in different planes that are counted; with more the prediction would
+/// take far too long.
 pub(crate) const MOST_PARTS: usize = 500_000;
 
-/// What the slices, their derivatives and the projection of a chain take.
+/// Estimates the work of the slices, their derivatives and the projection of a chain.
 pub(crate) fn work(
     chain: &Chain,
     window: &Window,
@@ -30,7 +31,7 @@ pub(crate) fn work(
     if let Some(receiver) = path.receiver() {
         return receiver.work(window, grid, picture, derivatives);
     }
-    // The series of slopes are short, their products with gratings may not be.
+    // The series of slopes are short, but their products with gratings may not be.
     let slope = Slope::new([&window.u, &window.v], path.slope_power());
     let of = |fineness: &DiscResolution| Expansion::within(&path, window, &fineness.0, MOST_PARTS);
     let Some(single) = of(&DiscResolution::single(&path)) else {
@@ -59,7 +60,7 @@ fn too_many() -> PredictionWork {
     ))
 }
 
-/// Waves that multiply the polygons of a section, in one product.
+/// Returns the number of waves that multiply the polygons of a section, in one product.
 fn waves(path: &ChainSegment<'_>, window: &Window, slope: &Slope, axis: usize) -> f64 {
     let position: &Profile = [&window.x, &window.y][axis];
     let position = position.cosine_terms().len() as f64;
@@ -69,18 +70,19 @@ fn waves(path: &ChainSegment<'_>, window: &Window, slope: &Slope, axis: usize) -
         .layers
         .iter()
         .filter(|layer| matches!(layer.mask, Mask::Grating(grating) if grating.axis == axis));
-    // Two cosines make two waves, and a grating is a constant and a cosine.
+    // Two cosines make two waves; a grating is a constant and a cosine.
     2.0 * position * slopes * 3.0_f64.powi(i32::try_from(gratings.count()).unwrap_or(i32::MAX))
 }
 
-/// Steps at a frequency for a wave and two directions of edges; for a wave and a polygon, whose
-/// corners cancel at some; for a wave at a corner; for a corner; for a product of shapes.
+/// Steps at a frequency: for a wave and two directions of edges; for a wave and a polygon, whose
+/// corners cancel at some frequencies; for a wave at a corner; for a corner; for a product of
+/// shapes.
 const WAVE: f64 = 13.0;
 const CANCELLED: f64 = 2.3;
 const AT_CORNER: f64 = 0.4;
 const CORNER: f64 = 1.9;
 const TERM: f64 = 0.6;
-/// Frequencies that take as long as the beginning of a row.
+/// Cost of the beginning of a row, in frequencies.
 const ROW: f64 = 40.0;
 
 fn of_slices(
@@ -119,7 +121,7 @@ fn of_slices(
         bytes: products * (16.0 * phases + 64.0 * (waves[0] + waves[1]))
             + 48.0 * expansion.terms.len() as f64
             + 400.0 * (p + q),
-        // Factors of all polygons, and quotients of some waves at a time.
+        // Factors of all polygons, and quotients of several waves at a time.
         bytes_each: count * (64.0 * (p + q) + 16.0 * 32.0 * pairs[0].max(pairs[1])),
         drivers: format!(
             "{azimuths} x {rows} x {count} frequencies x ({terms} products of shapes + {} corners of polygons x {} waves x {products} products of series)",
@@ -129,7 +131,7 @@ fn of_slices(
     }
 }
 
-/// Steps for the window at a node.
+/// Steps to evaluate the window at a node.
 const NODE: f64 = 12.0;
 
 fn of_projection(
@@ -159,7 +161,7 @@ fn of_projection(
     };
     let polygons = &expansion.sections[0].polygons;
     let touched: f64 = polygons.iter().map(touched).sum();
-    // A cell is two triangles or a few.
+    // A cell has two or a few triangles.
     let each = 3.0 * nodes * nodes * (NODE + 2.0 * series + 10.0 * gratings);
     PredictionWork {
         steps: touched * each + expansion.terms.len() as f64 * 20.0 * slope.parts.len() as f64,

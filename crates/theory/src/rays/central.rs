@@ -1,4 +1,4 @@
-//! The central ray, and how it meets each surface.
+//! The central ray and its intersections with the surfaces.
 
 use super::trace::LegRay;
 use super::{SpecularSurface, SpecularSystem};
@@ -6,27 +6,27 @@ use crate::geometry::{Matrix, Media};
 use etendue_field::{Frame, Patch, Specular};
 use glam::DVec3;
 
-/// Below this sine light comes along the normal and any plane is one of incidence.
+/// Below this sine light arrives along the normal, and any plane is a plane of incidence.
 const NORMAL: f64 = 1e-9;
 
-/// How the central ray meets a surface (docs/theory.md, section 7).
+/// The incidence of the central ray on a surface (docs/theory.md, section 7).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Incidence {
-    /// The normal on the side light comes from.
+    /// The normal on the side of the incident light.
     pub(crate) n: DVec3,
     pub(crate) t: DVec3,
     pub(crate) b: DVec3,
     pub(crate) theta0: f64,
-    /// The angle about D by which the leg's frame is turned so that X lies in the plane of
-    /// incidence, within ± π/2.
+    /// The angle, within ± π/2, by which the leg's frame is turned about D to bring X into the
+    /// plane of incidence.
     pub(super) turn: f64,
 }
 
 impl Incidence {
-    /// `frame` is that of the leg, `normal` on either side.
+    /// `frame` is the frame of the leg; `normal` may be on either side.
     pub(crate) fn new(frame: &Frame, normal: DVec3) -> Self {
         let n = normal * -normal.dot(frame.d).signum();
-        // With X and Y = B turned into place, N + c₀ D = sin θ₀ X.
+        // With X and Y = B turned, N + c₀ D = sin θ₀ X.
         let across = n + frame.d * -n.dot(frame.d);
         let (x, theta0) = if across.length() < NORMAL {
             (frame.x, 0.0)
@@ -47,8 +47,8 @@ impl Incidence {
         }
     }
 
-    /// The derivative of the normal along (T, B) at a point of a patch: its shape operator, per
-    /// metre, convex positive as seen along N.
+    /// Returns the derivative of the normal along (T, B) at a point of a patch: its shape operator,
+    /// per metre, convex positive as seen along N.
     pub(crate) fn shape(&self, patch: &Patch, point: DVec3) -> Matrix<2> {
         let gradient = patch.gradient(patch.frame.to_local(point));
         let side = patch.frame.vector_to_world(gradient).dot(self.n).signum();
@@ -61,17 +61,18 @@ impl Incidence {
 /// The central ray at an element.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CentralHit {
-    /// The frame of the leg before, at the point hit.
+    /// The frame of the previous leg, at the point hit.
     pub(super) arriving: Frame,
-    /// The frame of the leg after it.
+    /// The frame of the next leg.
     pub(super) leaving: Frame,
-    /// Length of the leg before, metres.
+    /// Length of the previous leg, metres.
     pub(super) distance: f64,
     pub(super) incidence: Incidence,
 }
 
 impl SpecularSystem {
-    /// What the central ray meets. `None` where it misses an element or does not go on from it.
+    /// Returns the hits of the central ray. `None` if the ray misses an element or does not
+    /// continue from it.
     pub(super) fn hits(&self) -> Option<Vec<CentralHit>> {
         let mut frame = Frame::IDENTITY;
         let mut hits = Vec::new();
@@ -96,8 +97,8 @@ impl SpecularSystem {
 }
 
 impl SpecularSurface {
-    /// The frame of the next leg: mirrored, (−X, Y, D), at a mirror; else turned to the new
-    /// direction by the smallest angle.
+    /// Returns the frame of the next leg: mirrored, (−X, Y, D), at a mirror; otherwise turned to
+    /// the new direction by the smallest angle.
     fn leaving(&self, arriving: &Frame, normal: DVec3, direction: DVec3) -> Frame {
         if !matches!(self.event, Specular::Mirror) {
             return arriving.turned_to(direction);
@@ -112,7 +113,7 @@ impl SpecularSurface {
         }
     }
 
-    /// The indices before and after a refraction, for light along D of a frame.
+    /// Returns the indices before and after a refraction, for light along D of a frame.
     pub(super) fn media(&self, incidence: &Incidence) -> Option<Media> {
         let Specular::Refraction { front, back } = self.event else {
             return None;

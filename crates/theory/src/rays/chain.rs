@@ -11,26 +11,26 @@ use glam::DVec3;
 /// The chain of first-order maps from the light to a plane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AffineChain {
-    /// What it does to spectra of radiance. Beside the |det A| of its maps its factor has (n₂/n₁)²
-    /// of each refraction, by which radiance grows.
+    /// The effect of the chain on spectra of radiance. Its factor is the product of |det A| of its
+    /// maps and of (n₂/n₁)² for each refraction, by which radiance grows.
     pub map: SpectrumMap<4>,
-    /// The maps of which it is made, in the order of light.
+    /// The maps of the chain, in the order light meets them.
     pub maps: Vec<SpectrumMap<4>>,
-    /// The steps in words, in the order of light; what is within the plane's surface or the light
-    /// is not among them.
+    /// The steps in words, in the order light meets them, without steps inside the plane's surface
+    /// or the light.
     pub steps: Vec<String>,
     /// Distances on the last leg, in metres from the last surface, at which rays meet that left the
-    /// light parallel; ascending, negative if behind. At most two: in the plane of incidence and
-    /// across it, where these are its principal planes.
+    /// light parallel; ascending, negative if behind. There are at most two: in the plane of
+    /// incidence and across it, if these are its principal planes.
     pub foci: Vec<f64>,
 }
 
-/// The chain read off the geometry: distances, angles and curvatures where the central ray goes.
-/// `None` where it misses an element or is totally reflected, and on a lens itself, which has no
-/// side to count angles from.
+/// Derives the chain from the geometry: distances, angles and curvatures along the central ray.
+/// `None` if the ray misses an element or is totally reflected, and on a lens itself, which has no
+/// side from which to count angles.
 ///
-/// The paper's prints differ in incidence, curvature and outgoing angle; it has no refraction and
-/// no lens.
+/// The printed versions differ in incidence, curvature and outgoing angle; the paper has no
+/// refraction and no lens.
 #[must_use]
 pub fn chain(view: &Observed<SpecularSystem>, print: Edition) -> Option<AffineChain> {
     let Observed { system, plane } = view;
@@ -95,15 +95,15 @@ pub fn chain(view: &Observed<SpecularSystem>, print: Edition) -> Option<AffineCh
     })
 }
 
-/// A chain on its way.
+/// A chain under construction.
 #[derive(Clone)]
 struct Walk {
     print: Edition,
     maps: Vec<SpectrumMap<4>>,
     steps: Vec<String>,
-    /// Of the leg, at its start, or where light is.
+    /// The frame of the leg, at its start or at the current position.
     frame: Frame,
-    /// What light left last.
+    /// Name of the element that light left last.
     at: String,
 }
 
@@ -127,7 +127,7 @@ impl Walk {
     }
 
     fn turn(&mut self, angle: f64, into: &str) {
-        // Rounding of a frame is no turn.
+        // A rotation by rounding errors alone is skipped.
         if angle.abs() > 1e-12 {
             self.step(
                 &AffineMap::rotation(angle).spectrum_map(),
@@ -136,14 +136,15 @@ impl Walk {
         }
     }
 
-    /// Up to the light frame after a surface.
+    /// Appends the steps up to the light frame after a surface.
     fn after(mut self, element: &SpecularSurface, hit: &CentralHit) -> Option<Self> {
         if let Specular::ThinLens { focal_length } = element.event {
             let map = lens(&element.patch.frame, hit, focal_length)?;
             let name = &element.name;
             let f = number(focal_length);
             let words = format!("map  lens {name}, focal length {f} m: ℓ̂(Ωx − Ωu/f, Ωu)");
-            // Flux is kept. Aslant an ideal thin lens changes radiance: its map has no unit area.
+            // Flux is conserved. An ideal thin lens at oblique incidence changes radiance, since
+            // the determinant of its map is not 1.
             let map = SpectrumMap {
                 factor: 1.0,
                 ..map.spectrum_map()
@@ -172,8 +173,9 @@ impl Walk {
         Some(self)
     }
 
-    /// Onto a surface, into its local normals, and the event there. The shape operator, and the
-    /// longitude of the central ray afterwards (directions of refracted light stay flipped).
+    /// Appends the steps onto a surface, into its local normals, and the event there. Returns the
+    /// shape operator, and the longitude of the central ray afterwards (directions of refracted
+    /// light stay flipped).
     fn event(&mut self, element: &SpecularSurface, hit: &CentralHit) -> Option<(Matrix<2>, f64)> {
         let incidence = &hit.incidence;
         let theta0 = incidence.theta0;
@@ -183,7 +185,7 @@ impl Walk {
         self.curvature(shape, theta0);
         if let Some(media) = element.media(incidence) {
             let mut map = AffineMap::<4>::refraction(theta0, &media)?.spectrum_map();
-            // Étendue keeps flux; radiance grows as the square of the index (Nicodemus 1963).
+            // Étendue conserves flux; radiance grows as the square of the index (Nicodemus 1963).
             map.factor /= media.index_ratio().powi(2);
             let theta2 = media.refracted(theta0)?;
             let (before, after) = (number(media.before), number(media.after));
@@ -219,7 +221,7 @@ impl Walk {
         self.step(&self.print.back_4d(shape, theta1), words);
     }
 
-    /// On the surface of the last element, light leaving it.
+    /// Appends the steps to light leaving the last element, on its surface.
     fn leaving_surface(
         &mut self,
         element: &SpecularSurface,
@@ -238,7 +240,7 @@ impl Walk {
             ..hit.arriving
         };
         if plane.frame.d.dot(n) < 0.0 {
-            // Seen from the other side: −T, B and −N, and directions are not flipped any more.
+            // As seen from the other side: −T, B and −N, and directions are no longer flipped.
             (at.x, at.d) = (-t, -n);
             let other = crate::geometry::diagonal([-1.0, 1.0, 1.0, -1.0]);
             self.step(
@@ -249,7 +251,8 @@ impl Walk {
         let beside = plane.frame.to_local(at.origin).abs().max_element();
         let lean = plane.frame.vector_to_local(at.d).truncate().length();
         if plane.orientation == Orientation::Tangent && beside.max(lean) > 1e-9 {
-            // A mesh: the plane touches it, and the patch that stands for it passes a little beside.
+            // For a mesh, the plane touches it, and the smooth patch that replaces the mesh is
+            // slightly off the plane.
             let map = onto_leaning(plane, &at, theta1);
             self.step(&map.spectrum_map(), "map  frame of the plane".into());
         } else {
@@ -258,7 +261,7 @@ impl Walk {
         Some(())
     }
 
-    /// On the surface where the leg ends.
+    /// Appends the steps onto the surface where the leg ends.
     fn arriving_surface(&mut self, plane: &Plane) {
         let incidence = Incidence::new(&self.frame, plane.frame.d);
         self.turn(incidence.turn, "the plane of incidence");
@@ -280,7 +283,8 @@ impl Walk {
         self.onto_surface(incidence.t, incidence.b, plane);
     }
 
-    /// From axes (T, B) to those of the plane, angles counted from its longitude.
+    /// Appends the steps from axes (T, B) to those of the plane, with angles counted from its
+    /// longitude.
     fn onto_surface(&mut self, t: DVec3, b: DVec3, plane: &Plane) {
         let axis = plane.frame.x;
         let turn = libm::atan2(axis.dot(b), axis.dot(t));
@@ -293,9 +297,9 @@ impl Walk {
         }
     }
 
-    /// From the leg's frame to that of a plane across it, which may be turned about D and moved
-    /// across. Behind a mesh it leans a little: normals between vertices are not those of the patch
-    /// that stands for it.
+    /// Appends the steps from the leg's frame to the frame of a plane across it, which may be
+    /// rotated about D and displaced. Behind a mesh the plane is slightly tilted: interpolated
+    /// normals between vertices differ from those of the smooth patch that replaces the mesh.
     fn reach_frame(&mut self, plane: &Frame) {
         let towards = plane.vector_to_local(self.frame.d);
         if libm::hypot(towards.x, towards.y) > 1e-9 {
@@ -316,7 +320,7 @@ impl Walk {
         }
     }
 
-    /// d with det(P + d Q) = 0, x = P x₀ and u = Q x₀ being a parallel bundle.
+    /// Returns d with det(P + d Q) = 0, where x = P x₀ and u = Q x₀ is a parallel bundle.
     fn foci(&self) -> Vec<f64> {
         let map = self.map();
         let at = |i: usize, j: usize| map.matrix[j][i];
@@ -339,11 +343,11 @@ impl Walk {
     }
 }
 
-/// A thin lens, from the frame of one leg to that of the next, to first order about a central ray
-/// that may cross it anywhere at any slope.
+/// Returns the map of a thin lens, from the frame of one leg to that of the next, to first order
+/// about a central ray that may cross the lens at any point and slope.
 ///
-/// In the lens's own frame positions stay and slopes fall by position over focal length; at its
-/// centre along its axis that is [`AffineMap::thin_lens`].
+/// In the lens's own frame positions stay and slopes decrease by position over focal length; at the
+/// centre and along the axis that is [`AffineMap::thin_lens`].
 fn lens(frame: &Frame, hit: &CentralHit, focal_length: f64) -> Option<AffineMap<4>> {
     let [before, after] = [&hit.arriving, &hit.leaving].map(|leg| seen_across(frame, leg));
     let power = AffineMap::<4>::thin_lens(focal_length);
@@ -351,8 +355,8 @@ fn lens(frame: &Frame, hit: &CentralHit, focal_length: f64) -> Option<AffineMap<
     Some(map.then(&AffineMap::linear(after).inverse()?))
 }
 
-/// How positions and slopes in a plane change with those in the frame of a leg that meets it
-/// aslant.
+/// Returns the derivative of positions and slopes in a plane by those in the frame of a leg that
+/// meets it obliquely.
 fn seen_across(plane: &Frame, leg: &Frame) -> Matrix<4> {
     let towards = plane.vector_to_local(leg.d);
     let axes = [leg.x, leg.y].map(|axis| plane.vector_to_local(axis));
@@ -360,7 +364,7 @@ fn seen_across(plane: &Frame, leg: &Frame) -> Matrix<4> {
     let mut matrix = [[0.0; 4]; 4];
     for (column, axis) in axes.iter().enumerate() {
         for (row, (across, slope)) in [axis.x, axis.y].into_iter().zip(slopes).enumerate() {
-            // To the plane along the ray; the slope of D + u X.
+            // Along the ray to the plane; the slope of D + u X.
             let moved = across - slope * axis.z;
             matrix[row][column] = moved;
             matrix[row + 2][column + 2] = moved / towards.z.abs();
@@ -369,14 +373,15 @@ fn seen_across(plane: &Frame, leg: &Frame) -> Matrix<4> {
     matrix
 }
 
-/// From positions and angles in the plane of a frame, `theta` being the longitude of the central ray there, to those of a plane on a
-/// surface that leans or lies beside it.
+/// Returns the map from positions and angles in the plane of a frame, where `theta` is the
+/// longitude of the central ray, to those of a plane on a surface that is tilted or displaced
+/// relative to it.
 fn onto_leaning(plane: &Plane, at: &Frame, theta: f64) -> AffineMap<4> {
     let local = |v: DVec3| plane.frame.vector_to_local(v);
     let (sin, cos) = libm::sincos(theta);
     let start = plane.frame.to_local(at.origin);
     let away = local(sin * at.x + cos * at.d);
-    // By longitude and latitude.
+    // In longitude and latitude.
     let turned = [cos * at.x - sin * at.d, at.y].map(local);
     let slope = [away.x, away.y].map(|w| w / away.z);
     let (flat, up) = (

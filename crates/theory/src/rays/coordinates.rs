@@ -1,4 +1,4 @@
-//! A ray in the coordinates of a plane.
+//! Conversion between rays and the coordinates of a plane.
 
 use super::Plane;
 use super::trace::LegRay;
@@ -7,8 +7,8 @@ use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
 impl Plane {
-    /// The coordinates of a ray that is on its last leg, and the quantity in ray space per flux.
-    /// `None` if it does not pass.
+    /// Returns the coordinates of a ray on its last leg, and the quantity in ray space per flux.
+    /// `None` if the ray misses.
     pub(crate) fn coordinates(&self, ray: &LegRay) -> Option<([f64; 4], f64)> {
         match self.orientation {
             Orientation::Orthogonal => self.across(ray),
@@ -24,8 +24,8 @@ impl Plane {
         }
     }
 
-    /// How far along a ray of the last leg the plane is, or the surface it is on; zero where light
-    /// leaves that. `None` if the ray misses it.
+    /// Returns the distance along a ray of the last leg to the plane, or to the surface it is on;
+    /// zero for a plane on a surface that light leaves. `None` if the ray misses it.
     pub(crate) fn along(&self, ray: &LegRay) -> Option<f64> {
         if self.orientation != Orientation::Orthogonal && !self.arriving {
             return Some(0.0);
@@ -37,8 +37,9 @@ impl Plane {
         t.is_finite().then_some(t)
     }
 
-    /// The inverse of [`Self::coordinates`]: a ray, light going along it, from a point of the plane,
-    /// or of the surface it is on; and étendue over dx dy du dv there. `None` where there is none.
+    /// The inverse of [`Self::coordinates`]: returns a ray, in the direction of light, from a point
+    /// of the plane or of the surface it is on; and étendue over dx dy du dv there. `None` if there
+    /// is none.
     pub(crate) fn ray(&self, [x, y, u, v]: [f64; 4]) -> Option<(LegRay, f64)> {
         let foot = self.frame.to_world(DVec3::new(x, y, 0.0));
         if self.orientation == Orientation::Orthogonal {
@@ -53,13 +54,13 @@ impl Plane {
         let away = self.away([u, v])?;
         let towards = self.frame.turned_to(normal).vector_to_world(away);
         let direction = if self.arriving { -towards } else { towards };
-        // Of a curved surface an area is seen of which dx dy is what lies below it.
+        // On a curved surface, dx dy is the area projected onto the tangent plane.
         let etendue = away.z * libm::cos(v) / normal.dot(self.frame.d);
         Some((LegRay { point, direction }, etendue))
     }
 
-    /// The point at two coordinates, of the plane or of the surface it is on, and the normal there on
-    /// the side of D. `None` where the surface has none.
+    /// Returns the point at two coordinates, of the plane or of the surface it is on, and the
+    /// normal there on the side of D. `None` if the surface has no such point.
     pub(crate) fn point(&self, [x, y]: [f64; 2]) -> Option<(DVec3, DVec3)> {
         let foot = self.frame.to_world(DVec3::new(x, y, 0.0));
         match &self.patch {
@@ -68,8 +69,8 @@ impl Plane {
         }
     }
 
-    /// The direction with two angles of a plane on a surface, seen from the normal. `None` beyond a
-    /// right angle: a turn further the same direction has no other coordinates.
+    /// Returns the direction with two angles of a plane on a surface, relative to the normal.
+    /// `None` beyond a right angle, where the same direction would have two sets of coordinates.
     pub(crate) fn away(&self, [u, v]: [f64; 2]) -> Option<DVec3> {
         let turned = if self.orientation == Orientation::Mirrored {
             -1.0
@@ -82,7 +83,8 @@ impl Plane {
         is_in_front.then(|| DVec3::new(across * sin, up, across * cos))
     }
 
-    /// The point of a patch over one of the tangent plane, and its normal on the side of D.
+    /// Returns the point of a patch above a point of the tangent plane, and its normal on the side
+    /// of D.
     fn above(&self, foot: DVec3, patch: &Patch) -> Option<(DVec3, DVec3)> {
         let d = self.frame.d;
         let down = LegRay::back(patch, foot, d);
@@ -91,7 +93,8 @@ impl Plane {
         Some((down.point - distance * d, normal * side))
     }
 
-    /// What the quantity multiplies radiance by at a ray in the plane's coordinates.
+    /// Returns the factor from radiance to the recorded quantity at a ray in the plane's
+    /// coordinates.
     pub(crate) fn factor(&self, [.., u, v]: [f64; 4]) -> f64 {
         match (self.orientation, self.quantity) {
             (_, Quantity::Radiance) => 1.0,
@@ -111,8 +114,8 @@ impl Plane {
         Some((z, secant_squared * secant_squared * self.factor(z)))
     }
 
-    /// Where light leaves the surface it met last, or meets this one; and the unit normal there, on
-    /// the side of the plane's D.
+    /// Returns the point where light leaves the surface it met last, or meets this one; and the
+    /// unit normal there, on the side of the plane's D.
     fn hit(&self, ray: &LegRay) -> Option<(DVec3, DVec3)> {
         let Some(patch) = &self.patch else {
             let (s, t) = crossing(&self.frame, ray)?;
@@ -131,12 +134,12 @@ impl Plane {
         Some((point, normal * side))
     }
 
-    /// Where a ray meets the surface that the plane is on from the side of the plane's D.
+    /// Returns the point where a ray meets the surface of the plane from the side of the plane's D.
     fn arrives_on(&self, patch: &Patch, ray: &LegRay) -> Option<(f64, DVec3)> {
         ray.met_from(patch, patch.frame.d.dot(self.frame.d).signum())
     }
 
-    /// Angles to the D of `local`; `None` if the direction points into the surface.
+    /// Returns the angles to the D of `local`; `None` if the direction points into the surface.
     fn on_surface(
         &self,
         [s, t]: [f64; 2],
@@ -156,7 +159,8 @@ impl Plane {
 }
 
 impl LegRay {
-    /// Its place and slopes across the D of a frame; `None` if it does not go forward.
+    /// Returns the ray's position and slopes across the D of a frame; `None` if it does not go
+    /// forward.
     pub(super) fn across(&self, frame: &Frame) -> Option<[f64; 4]> {
         let (x, y) = crossing(frame, self)?;
         let towards = frame.vector_to_local(self.direction);
@@ -165,7 +169,7 @@ impl LegRay {
     }
 }
 
-/// Where the line of a ray crosses the plane (X, Y) of a frame.
+/// Returns the point where the line of a ray crosses the plane (X, Y) of a frame.
 fn crossing(frame: &Frame, ray: &LegRay) -> Option<(f64, f64)> {
     let (at, towards) = (
         frame.to_local(ray.point),

@@ -1,20 +1,20 @@
-//! Whether the maps of a first-order chain are those of the real geometry.
+//! Checks whether the maps of a first-order chain match the real geometry.
 
 use super::SpecularSystem;
 use crate::geometry::SpectrumMap;
 use crate::model::Observed;
 use etendue_field::Window;
 
-/// What stays of the error of a chain of affine maps, such as that of [`chain`](super::chain()), as
-/// the neighbourhood of the central ray shrinks.
+/// Returns the error of a chain of affine maps, such as that of [`chain`](super::chain()), in the
+/// limit of a small neighbourhood of the central ray.
 ///
-/// The maps of a chain must be the derivatives of where rays go through the real geometry. Then its
-/// error falls with the size of the neighbourhood, or with its square, and this is zero but for
-/// 10⁻⁹ of differences and rounding. With a wrong sign, cosine or factor in any map the error falls
-/// to this number instead: rays that are wrong, in half-widths of the window, or a wrong share of
-/// radiance.
+/// The maps of a chain must be the derivatives of the paths of rays through the real geometry. Then
+/// its error falls with the size of the neighbourhood, or with its square, and this limit is zero
+/// up to 10⁻⁹ from differences and rounding. With a wrong sign, cosine or factor in any map the
+/// error converges to this number instead: the error of rays, in half-widths of the window, or the
+/// relative error of radiance.
 ///
-/// `None` where the central ray does not arrive.
+/// `None` if the central ray does not arrive.
 #[must_use]
 pub fn defect(
     view: &Observed<SpecularSystem>,
@@ -28,12 +28,12 @@ pub fn defect(
     Some(off.max(radiance_defect(view, map)?.abs()))
 }
 
-/// The part of [`defect`] that is in the factor of the chain: the radiance that it gives the central
-/// ray over the radiance that the ray has, less 1.
+/// Returns the part of [`defect`] due to the factor of the chain: the radiance that the chain gives
+/// the central ray over the ray's actual radiance, minus 1.
 #[must_use]
 pub fn radiance_defect(view: &Observed<SpecularSystem>, map: &SpectrumMap<4>) -> Option<f64> {
     let Observed { system, plane } = view;
-    // What becomes of flux along the central ray; at the light it stands for radiance.
+    // The change of flux along the central ray; at the light flux represents radiance.
     let (center, per_flux) = plane.coordinates(&system.follow([0.0; 4])?)?;
     Some(map.factor * plane.factor(center) / per_flux - 1.0)
 }

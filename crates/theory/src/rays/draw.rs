@@ -1,10 +1,11 @@
-//! How rays of the light are drawn: by the light, or by where they are aimed at.
+//! Sampling of the light's rays, by the light or by target points at the plane.
 //!
-//! To first order a ray of the light lands where the central ray's neighbourhood maps it. So a
-//! place in the window, or slopes there, tell which ray of the light to follow; where that ray
-//! really lands is found by following it. The density of what is drawn is known exactly, whatever
-//! the rays do. A window that is narrow beside what the first order leaves out is met by few of
-//! them: rays of all four coordinates are followed back from it as they go.
+//! To first order a ray of the light lands where the linearisation about the central ray maps it.
+//! So a target position or slope in the window determines which ray of the light to follow; the
+//! actual landing point is found by following the ray. The sampling density is known exactly,
+//! whatever the rays do. Few of these rays meet a window that is narrow compared with the error of
+//! the first order; in that case rays of all four coordinates are followed back from the window
+//! through the exact geometry.
 
 use super::backward::Back;
 use super::emission::{EmissionMeasure, point_of};
@@ -15,17 +16,18 @@ use crate::sky::SkyDensity;
 use etendue_field::{Environment, Light, Shape, Window};
 use glam::DVec3;
 
-/// What rays are drawn by. No choice is best everywhere: they are tried on the scene.
+/// The strategy for sampling rays. No strategy is best for every scene; they are tried on the
+/// scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RayStrategy {
-    /// The picture of the light.
+    /// By the picture of the light.
     Picture,
-    /// Positions at the plane; of an area light, also points of it, and of an environment
-    /// directions.
+    /// By positions at the plane; for an area light also by points of the light, and for an
+    /// environment by directions.
     Positions,
-    /// Slopes at the plane, and the same.
+    /// By slopes at the plane, with the same additions.
     Slopes,
-    /// Positions and slopes at the plane, of a light with extent.
+    /// By positions and slopes at the plane, for a light with extent.
     Plane,
 }
 
@@ -33,7 +35,7 @@ impl RayStrategy {
     pub(super) const ALL: [Self; 4] = [Self::Positions, Self::Slopes, Self::Picture, Self::Plane];
 }
 
-/// Draws rays (x, y, u, v) of the light.
+/// Samples rays (x, y, u, v) of the light.
 #[derive(Clone, Debug)]
 pub(super) struct RaySampler<'a> {
     emission: EmissionMeasure,
@@ -41,41 +43,43 @@ pub(super) struct RaySampler<'a> {
     by: By,
 }
 
-/// What a light with extent draws of a ray: the two coordinates that its emission is not counted by.
+/// The sampling of the two coordinates that the emission of a light with extent is not parametrised
+/// by.
 #[derive(Clone, Debug)]
 enum Outer<'a> {
-    /// Nothing: all rays have the same.
+    /// Not sampled: all rays have the same values.
     Center,
     /// Positions on an area light.
     Shape(Shape),
-    /// Slopes of an environment.
+    /// Slopes towards an environment.
     Sky(&'a Environment, Box<SkyDensity<'a>>),
 }
 
 #[derive(Clone, Debug)]
 enum By {
     Picture([LinearDensity; 2]),
-    /// Positions at a plane that light reaches straight from the light.
+    /// Positions at a plane that light reaches directly from the source.
     Straight {
         positions: Box<[LinearDensity; 2]>,
         plane: Plane,
     },
-    /// Two coordinates at the plane.
+    /// Two target coordinates at the plane.
     Aim {
         targets: [Target; 2],
-        /// Where rays of the central point land: those coordinates of the central ray.
+        /// The target coordinates at which the central ray lands.
         center: [f64; 2],
-        /// How they change with what the light draws, and with the other two coordinates.
+        /// Derivatives of the target coordinates by those that the light samples, and by the other
+        /// two.
         outer: Matrix<2>,
         inverse: Matrix<2>,
         determinant: f64,
     },
-    /// All four, as rays go.
+    /// All four coordinates, by exact backward rays.
     Back {
         window: Box<[LinearDensity; 4]>,
         back: Back,
     },
-    /// All four, to first order.
+    /// All four coordinates, to first order.
     Map {
         targets: Box<[Target; 4]>,
         map: AffineMap<4>,
@@ -84,7 +88,7 @@ enum By {
 }
 
 impl<'a> Outer<'a> {
-    /// `None` where nothing shines.
+    /// Returns `None` if nothing emits light.
     fn new(system: &'a SpecularSystem, plane: Option<&Plane>) -> Option<Self> {
         Some(match &system.light {
             Light::Area { shape, .. } => Self::Shape(*shape),
@@ -97,7 +101,7 @@ impl<'a> Outer<'a> {
         })
     }
 
-    /// Two coordinates and their density; `None` for light that does not go forward.
+    /// Returns two coordinates and their density; `None` for light that does not go forward.
     fn draw(&self, at: [f64; 2]) -> Option<([f64; 2], f64)> {
         match self {
             Self::Center => Some(([0.0; 2], 1.0)),
@@ -116,7 +120,7 @@ impl<'a> Outer<'a> {
 
 impl<'a> RaySampler<'a> {
     /// `center` is where the central ray lands and `jacobian` how that changes with the ray; `None`
-    /// where they do not tell rays apart. Without a plane all rays land as they tell.
+    /// if they do not determine the ray. Without a plane all rays land as targeted.
     #[expect(
         clippy::too_many_lines,
         reason = "the coordinates by which each kind of light is aimed, side by side"
@@ -193,8 +197,8 @@ impl<'a> RaySampler<'a> {
         })
     }
 
-    /// A ray and its density in the emission's coordinates; `None` for one that the light does not
-    /// emit.
+    /// Returns a ray and its density in the emission's coordinates; `None` for a ray that the light
+    /// does not emit.
     pub(super) fn draw(&self, at: &[f64; DIMENSIONS]) -> Option<([f64; 4], f64)> {
         let [a, b, c, d, ..] = *at;
         let placed = |outer: [f64; 2], inner: [f64; 2]| {
@@ -216,10 +220,10 @@ impl<'a> RaySampler<'a> {
                 let (point, normal) = plane.point([x, y])?;
                 let along = DVec3::new(slopes[0], slopes[1], 1.0);
                 let start = point - point.z * along;
-                // dx dy of the light over that of the plane, by the area of the surface.
+                // dx dy of the light over dx dy of the plane, from the area of the surface.
                 let spread = (normal.dot(along) / normal.dot(plane.frame.d)).abs();
                 let density = of_x * of_y * of_light / spread;
-                // Light from behind has met the front of the surface at another point.
+                // Light from behind meets the front of the surface at another point first.
                 let is_hidden = plane.arriving && normal.dot(along) >= 0.0;
                 let arrives = point.z > -AT_LIGHT && !is_hidden;
                 arrives.then(|| (placed(slopes, [start.x, start.y]), density))
@@ -259,7 +263,7 @@ impl<'a> RaySampler<'a> {
         }
     }
 
-    /// Whether a ray begins in the light.
+    /// Checks whether a ray begins in the light.
     fn emits(&self, [x, y, ..]: &[f64; 4]) -> bool {
         match &self.outer {
             Outer::Shape(shape) => shape.contains(*x, *y),
@@ -268,7 +272,8 @@ impl<'a> RaySampler<'a> {
     }
 }
 
-/// Whether a map takes no direction of rays nearly to nothing, as it does at a focus.
+/// Checks whether a map is well conditioned: at a focus it is not, because it maps some direction
+/// of rays nearly to zero.
 fn tells_apart<const N: usize>(map: &AffineMap<N>) -> bool {
     let size = |row: &[f64; N]| row.iter().map(|x| x * x).sum::<f64>().sqrt();
     let most: f64 = map.matrix.iter().map(size).product();

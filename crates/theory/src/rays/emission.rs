@@ -1,4 +1,4 @@
-//! What a light emits.
+//! The emission of a light.
 
 use super::SpecularSystem;
 use crate::nets::LinearDensity;
@@ -6,25 +6,25 @@ use etendue_field::{Light, Shape};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// What the light's rays are counted by: two of the coordinates x, y, u, v, and for a light with
+/// The parametrisation of a light's rays: two of the coordinates x, y, u, v, and for a light with
 /// extent the other two as well.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct EmissionMeasure {
     /// Indices of those two coordinates.
     pub(super) inner: [usize; 2],
-    /// Where to stop looking for rays, in those coordinates.
+    /// The range within which rays are sought, in those coordinates.
     pub(super) reach: [f64; 2],
     /// Cycles per unit of those coordinates in the light's picture.
     pub(super) cycles: [f64; 2],
 }
 
-/// Half-width of a Gaussian picture, in its widths: exp(−π 3.6²) = 2·10⁻¹⁸.
+/// Half-width of a Gaussian picture, in units of its width: exp(−π 3.6²) = 2·10⁻¹⁸.
 const GAUSSIAN: f64 = 3.6;
-/// Slopes beyond which no ray is looked for, where the light has no picture.
+/// The largest slope for which rays are sought, if the light has no picture.
 const STEEPEST: f64 = 30.0;
 
 impl EmissionMeasure {
-    /// The other two coordinates.
+    /// Returns the other two coordinates.
     pub(super) fn outer(&self) -> [usize; 2] {
         self.inner.map(|inner| (inner + 2) % 4)
     }
@@ -59,8 +59,8 @@ impl SpecularSystem {
         }
     }
 
-    /// The densities of the two coordinates of a picture, in proportion to it; `None` where there
-    /// is none.
+    /// Returns the densities of the two coordinates of a picture, proportional to the picture;
+    /// `None` if there is none.
     pub(super) fn picture_densities(&self) -> Option<[LinearDensity; 2]> {
         let image = self.light.image()?;
         let along = |axis: usize| {
@@ -70,7 +70,8 @@ impl SpecularSystem {
             LinearDensity::new([-reach, reach], |t| {
                 let [a, b] = if axis == 0 { [t, 0.0] } else { [0.0, t] };
                 let passes = grating.map_or(1.0, |g| g.transmittance(a, b));
-                // Between the values of the table no part of a grating is missed.
+                // The constant ensures that no part of a grating is missed between the values of
+                // the table.
                 libm::exp(-PI * (t / width).powi(2)) * (passes + 0.1)
             })
         };
@@ -78,7 +79,8 @@ impl SpecularSystem {
     }
 }
 
-/// Flux per unit of the emission's coordinates of the ray (x, y, u, v), as it leaves a light:
+/// Returns the flux per unit of the emission's coordinates of the ray (x, y, u, v) as it leaves a
+/// light:
 ///
 /// | light | flux |
 /// |---|---|
@@ -104,8 +106,7 @@ pub(crate) fn emitted(light: &Light, ray: [f64; 4]) -> f64 {
     }
 }
 
-/// The point of a shape at (a, b) of the unit square; equal areas of one are equal shares of the
-/// other.
+/// Returns the point of a shape at (a, b) of the unit square; the mapping preserves relative area.
 pub(crate) fn point_of(shape: &Shape, [a, b]: [f64; 2]) -> [f64; 2] {
     match shape {
         Shape::Rectangle(rectangle) => {

@@ -1,22 +1,23 @@
 //! Windowed spectra behind specular surfaces, by following rays (docs/theory.md, section 8).
 //!
-//! In goes a [`SpecularSystem`]: a light, masks across its first leg, obstacles in the way of any, and the
-//! mirrors, refracting surfaces and lenses that the central ray visits. In goes a [`Plane`]. The [`Observed`](crate::Observed)
-//! of both is a [`Model`](crate::Model): it follows rays through the real geometry and sums them,
-//! by a rule where that converges and over scrambled nets elsewhere. Beside it are the
-//! [`chain`](chain()) of first-order maps ([`geometry`](crate::geometry)) read off the same system,
-//! and the [`linear()`] prediction that it makes. So a measured difference from the first-order
-//! chain splits into noise, linearisation and faults.
+//! The inputs are a [`SpecularSystem`] and a [`Plane`]. The system has a light, masks across its
+//! first leg, obstacles on any leg, and the mirrors, refracting surfaces and lenses that the
+//! central ray visits. The [`Observed`](crate::Observed) of both is a [`Model`](crate::Model): it
+//! follows rays through the real geometry and sums them, by a quadrature rule if that converges and
+//! over scrambled nets otherwise. In addition there are the [`chain`](chain()) of first-order maps
+//! ([`geometry`](crate::geometry)) derived from the same system, and the [`linear()`] prediction of
+//! that chain. So a measured difference from the first-order chain splits into noise, linearisation
+//! and faults.
 //!
 //! All coordinates are in the frame at the light: the central ray starts at the origin along Z, and
-//! (x, y) are along X and Y. A ray carries flux, that of each light in `emission.rs`. Flux is kept
-//! at every surface. A ray that misses a patch, is totally reflected, or would have to go back is
-//! lost. At a plane across the central ray flux Φ stands for Φ (1 + u² + v²)² in radiance space, on
-//! a surface for Φ/(cos θ cos² φ): docs/theory.md, section 8.
+//! (x, y) are along X and Y. A ray carries flux; `emission.rs` has the flux of each light. Flux is
+//! conserved at every surface. A ray that misses a patch, is totally reflected, or would have to go
+//! back is lost. At a plane across the central ray flux Φ corresponds to Φ (1 + u² + v²)² in
+//! radiance space, on a surface to Φ/(cos θ cos² φ): docs/theory.md, section 8.
 //!
-//! On a surface itself (`LocalNormals`) the integral is over its area.
+//! On a surface itself (`LocalNormals`) the integral is over the surface's area.
 //!
-//! This module shares no intersection and no sampling with the tracers.
+//! This module shares no intersection or sampling code with the tracers.
 //!
 //! ```
 //! use etendue_field::{FrequencyAxis, Frame, Image, Light, Patch, Profile,
@@ -89,28 +90,28 @@ use etendue_field::{Light, Mask, Patch, Specular};
 /// metres: the rounding of a tilted plane at the light itself. No object is this close.
 const AT_LIGHT: f64 = 1e-9;
 
-/// A light and the specular surfaces its central ray visits, in the frame at the light.
+/// A light and the specular surfaces that its central ray visits, in the frame at the light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpecularSystem {
-    /// What shines from the plane z = 0, along Z.
+    /// The light, which emits from the plane z = 0, along Z.
     pub light: Light,
-    /// Masks across the first leg and their distances from the light, metres. Where one is
-    /// opaque, rays are summed over nets and by no rule.
+    /// Masks across the first leg and their distances from the light, metres. If one is opaque,
+    /// rays are summed over nets and not by a rule.
     pub layers: Vec<(f64, Mask)>,
-    /// What else stops rays, on any leg.
+    /// Other occluders, on any leg.
     pub obstacles: Vec<Obstacle>,
-    /// The surfaces, in the order of light.
+    /// The surfaces, in the order light meets them.
     pub elements: Vec<SpecularSurface>,
 }
 
 /// A specular surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpecularSurface {
-    /// Name, for texts.
+    /// Name, for messages.
     pub name: String,
-    /// Where it is.
+    /// The geometry of the surface.
     pub patch: Patch,
-    /// What it does. Refraction goes from the side the ray comes from. A thin lens is flat; its
-    /// slopes are those in the patch's frame (X, Y and the side light goes to).
+    /// The event at the surface. Refraction goes from the side the ray comes from. A thin lens is
+    /// flat; its slopes are those in the patch's frame (X, Y and the side light goes to).
     pub event: Specular,
 }

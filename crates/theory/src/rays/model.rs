@@ -1,5 +1,5 @@
-//! A system of specular surfaces and a plane behind it as a model: its parameters and its
-//! prediction.
+//! Implements the model of a system of specular surfaces and a plane behind it: its parameters and
+//! its prediction.
 
 use super::central::CentralHit;
 use super::{SpecularSystem, predict, with_rays};
@@ -11,7 +11,7 @@ use crate::work::PredictionWork;
 use etendue_field::{Disc, Frame, Light, Orientation, Rectangle, Shape, Specular};
 use glam::{DQuat, DVec3};
 
-/// Metres, and whatever else parameters are in, that rounding leaves of zero.
+/// Values below this, in metres or in the unit of a parameter, are zero up to rounding.
 const ROUNDING_OF_ZERO: f64 = 1e-9;
 
 impl Model for Observed<SpecularSystem> {
@@ -19,8 +19,9 @@ impl Model for Observed<SpecularSystem> {
         &self.system.light
     }
 
-    /// Those that are not zero: a plane at its surface has no travel to it. Nor has one under an
-    /// environment that nothing stands in the way of, where light is alike everywhere.
+    /// Distances that are zero are not parameters: a plane on its surface has no travel to it.
+    /// Neither is the distance of a plane under an unobstructed environment, where light is the
+    /// same everywhere.
     fn parameters(&self) -> Vec<Parameter> {
         let Self { system, plane } = self;
         let mut all = Parameter::of_light(&system.light);
@@ -118,7 +119,7 @@ impl Model for Observed<SpecularSystem> {
 }
 
 impl Observed<SpecularSystem> {
-    /// Gives a leg a new length: all that comes later moves.
+    /// Changes the length of a leg; everything later moves.
     fn travel(&mut self, leg: usize, new: New<'_>) -> Option<()> {
         let (from, along) = self.system.leg(leg)?;
         let to = match self.system.hits()?.get(leg) {
@@ -137,12 +138,12 @@ impl Observed<SpecularSystem> {
         Some(())
     }
 
-    /// Gives a patch a new curvature.
+    /// Changes a curvature of a patch.
     fn curve(&mut self, i: usize, axis: usize, new: New<'_>) -> Option<()> {
         let is_last = i + 1 == self.system.elements.len();
         let patch = &mut self.system.elements.get_mut(i)?.patch;
         change_curvature(patch, axis, new)?;
-        // A leaving plane with local normals is on the surface itself.
+        // A plane with local normals that light leaves is on the surface itself.
         if is_last && !self.plane.arriving && self.plane.patch.is_some() {
             self.plane.patch = Some(*patch);
         }
@@ -151,11 +152,11 @@ impl Observed<SpecularSystem> {
 }
 
 impl SpecularSystem {
-    /// The same system with a light `factor` times as large: the picture's widths over slopes or
+    /// Returns the system with a light `factor` times as large: the picture's widths over slopes or
     /// positions, or the shape about the central ray.
     ///
-    /// With windows as much narrower and frequencies as much higher, what first-order maps leave
-    /// out falls with the factor (docs/theory.md, section 7).
+    /// With narrower windows and higher frequencies by the same factor, the error of first-order
+    /// maps falls with the factor (docs/theory.md, section 7).
     #[must_use]
     pub fn shrunk(&self, factor: f64) -> Self {
         Self {
@@ -164,13 +165,13 @@ impl SpecularSystem {
         }
     }
 
-    /// Whether light is the same at all distances from where it begins.
+    /// Checks whether light is the same at all distances from its source.
     fn is_alike_everywhere(&self) -> bool {
         let is_environment = matches!(self.light, Light::Environment { .. });
         is_environment && self.layers.is_empty() && self.obstacles.is_empty()
     }
 
-    /// Where a leg starts, and along what.
+    /// Returns the start and direction of a leg.
     fn leg(&self, leg: usize) -> Option<(DVec3, DVec3)> {
         if leg == 0 {
             return Some((DVec3::ZERO, DVec3::Z));
@@ -180,7 +181,7 @@ impl SpecularSystem {
     }
 }
 
-/// A light `factor` times as large, about the central ray.
+/// Returns a light `factor` times as large, about the central ray.
 pub(crate) fn shrunk_light(light: &Light, factor: f64) -> Light {
     let mut light = light.clone();
     match &mut light {
@@ -201,7 +202,7 @@ pub(crate) fn shrunk_light(light: &Light, factor: f64) -> Light {
     light
 }
 
-/// A patch's frame turned about B at the central hit until θ₀ has grown by an angle.
+/// Returns a patch's frame turned about B at the central hit by the angle by which θ₀ grows.
 fn tilted(frame: &Frame, hit: &CentralHit, by: f64) -> Frame {
     let turn = DQuat::from_axis_angle(hit.incidence.b, -by);
     let center = hit.arriving.origin;

@@ -1,4 +1,4 @@
-//! Slices behind specular surfaces.
+//! Predicted slices behind specular surfaces.
 
 use super::draw::{RaySampler, RayStrategy};
 use super::emission::emitted;
@@ -13,22 +13,24 @@ use crate::predicted::Predicted;
 use etendue_field::{Frame, FrequencyAxis, Light, Mask, SliceGrid, Slices, TwoPlane, Window};
 use glam::DVec3;
 
-/// Of a prediction that needs neither picture nor moments.
+/// The budget for pictures if neither picture nor moments are needed.
 const NO_PICTURES: RayBudget = RayBudget {
     nodes: 0.0,
     error: f64::INFINITY,
 };
-/// Rays of a picture and of moments, where slices are by a rule.
+/// The budget for a picture and moments if slices are computed by a rule.
 const FOR_PICTURES: RayBudget = RayBudget {
     nodes: 1e6,
     error: 0.0,
 };
 
-/// What rays followed through the geometry as it is say, with the derivatives by what was moved.
+/// Returns the prediction from rays followed through the exact geometry, with the derivatives by
+/// given parameters.
 ///
-/// Of a projector, point or beam by a midpoint rule, where nothing cuts its light with a sharp edge
-/// and the rule converges; else over nets of rays. Derivatives are central differences, the rays of
-/// both sides drawn alike: good to about a per cent. The same bytes on any number of threads.
+/// For a projector, point or beam this uses a midpoint rule, if no sharp edge cuts its light and
+/// the rule converges; otherwise nets of rays. Derivatives are central differences whose two sides
+/// sample the same rays: accurate to about a per cent. The result is bitwise identical on any
+/// number of threads.
 pub(crate) fn predict(
     view: &Observed<SpecularSystem>,
     moved: &[ShiftedModels<Observed<SpecularSystem>>],
@@ -73,13 +75,14 @@ pub(crate) fn with_rays(
     }
 }
 
-/// What a first-order chain predicts, such as that of [`chain`](super::chain()), over the same
-/// rays.
+/// Returns the prediction of a first-order chain, such as that of [`chain`](super::chain()), over
+/// the same rays.
 ///
-/// The radiance of ray z at the light goes to A z + t, A being the transpose of the map's matrix
-/// and t its phase, and its spectrum is multiplied by the map's factor: F = factor · ∫ ℓ(z) W(A z +
-/// t) e^(−2πi Ω·(A z + t)) dz. Masks of the first leg are exact; obstacles are met by the rays of
-/// each leg to first order. On a surface that an environment shines on, z has angles for slopes.
+/// The map takes the radiance of ray z at the light to A z + t, A being the transpose of the map's
+/// matrix and t its phase, and multiplies its spectrum by the map's factor: F = factor · ∫ ℓ(z) W(A
+/// z + t) e^(−2πi Ω·(A z + t)) dz. Masks of the first leg are exact; obstacles are tested with the
+/// first-order rays of each leg. On a surface lit by an environment, z has angles instead of
+/// slopes.
 #[must_use]
 pub fn linear(
     view: &Observed<SpecularSystem>,
@@ -88,7 +91,7 @@ pub fn linear(
     budget: RayBudget,
 ) -> Predicted {
     let system = &view.system;
-    // Rays land as the map has them.
+    // Rays land where the map takes them.
     let mapped = (system, None);
     let masks = Masks::new(&system.layers, &system.obstacles);
     let rays = map.rays();
@@ -135,8 +138,8 @@ fn derivatives(
 
 fn exact_field<'a>(view: &'a Observed<SpecularSystem>, masks: &'a Masks<'a>) -> impl RayField + 'a {
     let Observed { system, plane } = view;
-    // Light begins in the plane z = 0: a surface that reaches back beside it is dark there. Points
-    // of a curved one are ahead that a ray meets.
+    // Light begins in the plane z = 0: parts of a surface behind this plane are dark. Points of a
+    // curved surface that a ray meets are ahead of it.
     let on_first_leg = plane.arriving && system.elements.is_empty() && plane.patch.is_none();
     move |ray| {
         let flux = flux(system, masks, ray);
@@ -184,9 +187,9 @@ fn linear_field<'a>(
     }
 }
 
-/// A ray by its angles: the light of an environment that arrives on a surface is a function of
-/// these, and no slope is small. Travel over a distance takes it to where the ray goes. With dθ dφ
-/// over du dv.
+/// Converts a ray to angles: the light of an environment that arrives on a surface is a function of
+/// angles, and slopes are not small there. Travel over a distance moves the ray to its landing
+/// point. Also returns dθ dφ over du dv.
 fn angles([x, y, u, v]: [f64; 4], distance: f64) -> ([f64; 4], f64) {
     let across = (1.0 + u * u).sqrt();
     let (longitude, latitude) = (libm::atan(u), libm::atan(v / across));
@@ -199,17 +202,17 @@ fn angles([x, y, u, v]: [f64; 4], distance: f64) -> ([f64; 4], f64) {
     ([start[0], start[1], longitude, latitude], per_slope)
 }
 
-/// Where rays of the light are on a leg, to first order about the central ray.
+/// The positions of the light's rays on a leg, to first order about the central ray.
 struct AffineLeg {
-    /// From (x, y, u, v) at the light to those across the leg where it begins.
+    /// The map from (x, y, u, v) at the light to the coordinates across the leg at its start.
     map: AffineMap<4>,
     frame: Frame,
-    /// Along the central ray, metres.
+    /// Length along the central ray, metres.
     length: f64,
 }
 
 impl AffineLeg {
-    /// Those on which obstacles may stand; none where there are no obstacles.
+    /// Returns the legs on which obstacles may stand; none if there are no obstacles.
     fn all(view: &Observed<SpecularSystem>) -> Vec<Self> {
         let Observed { system, plane } = view;
         let Some(hits) = system.hits().filter(|_| !system.obstacles.is_empty()) else {
@@ -238,7 +241,7 @@ impl AffineLeg {
         starts.enumerate().filter_map(leg).collect()
     }
 
-    /// The share of a ray of the light that passes obstacles on this leg, by number.
+    /// Returns the share of a ray's light that passes obstacles on this leg, given by its index.
     fn passes(&self, obstacles: &PreparedObstacles<'_>, number: usize, ray: [f64; 4]) -> f64 {
         let [x, y, u, v] = self.map.apply(ray);
         let along = DVec3::new(u, v, 1.0);
@@ -250,13 +253,13 @@ impl AffineLeg {
     }
 }
 
-/// Flux per unit of the emission's coordinates of a ray that has passed the masks.
+/// Returns the flux per unit of the emission's coordinates of a ray that has passed the masks.
 fn flux(system: &SpecularSystem, masks: &Masks<'_>, ray: [f64; 4]) -> f64 {
     let [x, y, u, v] = ray;
     emitted(&system.light, ray) * masks.transmittance(DVec3::new(x, y, 0.0), [u, v])
 }
 
-/// Where slices are by a rule, nets make pictures and moments alone.
+/// If slices are computed by a rule, nets provide only pictures and moments.
 const NO_FREQUENCIES: SliceGrid = SliceGrid {
     azimuths: 1,
     rho: NO_FREQUENCY,
@@ -298,7 +301,7 @@ fn summed(
     let by_rule = is_smooth
         .then(|| finder.slices(grid, nets::work_of_nets(grid, of_slices).steps))
         .flatten();
-    // A rule that meets no light is no proof that there is none.
+    // A rule that finds no light does not prove that there is none.
     let by_rule = by_rule.filter(|(slices, _)| !slices.is_dark());
     let by_nets = |grid, budget| nets::sums(&drawn, (window, grid), picture.bins, budget);
     match by_rule {
@@ -312,7 +315,7 @@ fn summed(
     }
 }
 
-/// What draws rays with the least error.
+/// Returns the sampling strategy with the least error.
 fn best(
     field: &impl RayField,
     observed: (&SpecularSystem, Option<&Plane>),
@@ -332,7 +335,7 @@ fn best(
     best.map(|(_, strategy)| strategy)
 }
 
-/// A light field and how its rays are drawn.
+/// A light field with the sampling strategy for its rays.
 struct SampledField<'a> {
     field: Box<dyn RayField + 'a>,
     draw: &'a RaySampler<'a>,
@@ -362,11 +365,11 @@ impl Integrand for SampledField<'_> {
     }
 }
 
-/// Derivatives: light fields with more and with less of each parameter.
+/// Derivatives by finite differences: light fields with each parameter increased and decreased.
 struct Differences<'a> {
-    /// How far apart the two values of each parameter are.
+    /// The difference between the two values of each parameter.
     apart: Vec<f64>,
-    /// With more and with less of each.
+    /// The fields with each parameter increased and decreased.
     sides: Vec<SampledField<'a>>,
 }
 

@@ -1,10 +1,10 @@
 //! A midpoint rule over the rays of a light that has two coordinates: a projector, a point or a
 //! beam.
 //!
-//! Where nothing is left at the border of the region that lands in the window the error is
-//! aliasing: it vanishes when there are more nodes than cycles. An edge that cuts light there, of a
-//! window or of a surface, is misplaced by up to half a node, so that light with one is left to
-//! nets: two rules may agree on it by chance.
+//! If no light reaches the border of the region that lands in the window, the only error is
+//! aliasing, which vanishes once there are more nodes than cycles. An edge that cuts light, of a
+//! window or of a surface, is misplaced by up to half a node. Light with such an edge is left to
+//! nets, because two rules may agree on it by chance.
 
 use super::region::{Finder, RayField};
 use super::sums::sums;
@@ -12,26 +12,26 @@ use crate::nets::RayNode;
 use etendue_field::{SliceGrid, Slices};
 use rayon::prelude::*;
 
-/// Most nodes along each coordinate of a rule that is accepted.
+/// The most nodes along each coordinate of an acceptable rule.
 const MAX_NODES: usize = 1500;
-/// Fewest nodes along a coordinate.
+/// The fewest nodes along a coordinate.
 const MIN_NODES: f64 = 16.0;
-/// The largest relative error of a rule that is accepted.
+/// The largest relative error of an acceptable rule.
 const MAX_ERROR: f64 = 1e-4;
-/// Steps of a ray, and of its share in the sum at a frequency.
+/// Steps of a ray, and of its contribution to the sum at a frequency.
 const RAY: f64 = 300.0;
 const FREQUENCY: f64 = 0.5;
-/// The relative error at which a rule is not refined further: below what the transform of photons
-/// leaves, 2·10⁻⁷, so that no number of photons sees it.
+/// The relative error at which a rule is not refined further: below the error of the transform of
+/// photons, 2·10⁻⁷, so it is invisible for any number of photons.
 const TARGET_ERROR: f64 = 1e-7;
-/// The error of the finer of two rules over their difference: a Hann window's falls as n⁻³ beyond
-/// its frequencies, and (5/4)³ is 2.
+/// The error of the finer of two rules over their difference: with a Hann window it falls as n⁻³
+/// beyond the window's frequencies, and (5/4)³ is 2.
 const FINER_ERROR: f64 = 1.0;
 
 impl<F: RayField> Finder<'_, F> {
-    /// The slices, and ‖error‖/‖F‖: what the last refinement changes on slices at right angles, and
-    /// what edges may add. Rules are refined to 10⁻⁷, or until the next takes more than `max_steps`.
-    /// `None` if the error does not come below 10⁻⁴.
+    /// Returns the slices and ‖error‖/‖F‖: the change by the last refinement on slices at right
+    /// angles, and the possible error from edges. Rules are refined to 10⁻⁷, or until the next
+    /// takes more than `max_steps`. `None` if the error stays above 10⁻⁴.
     pub(super) fn slices(&self, grid: &SliceGrid, max_steps: f64) -> Option<(Slices, f64)> {
         let trial = SliceGrid {
             azimuths: grid.azimuths.min(2),
@@ -62,7 +62,7 @@ impl<F: RayField> Finder<'_, F> {
         }
     }
 
-    /// All rays that land in the window. Always in the same order.
+    /// Returns all rays that land in the window, always in the same order.
     pub(super) fn nodes(&self, count: usize) -> Vec<RayNode> {
         let Some([a, b]) = self.region() else {
             return Vec::new();
@@ -77,8 +77,8 @@ impl<F: RayField> Finder<'_, F> {
         (0..count).into_par_iter().flat_map_iter(row).collect()
     }
 
-    /// Nodes along each coordinate that should do: a midpoint rule integrates exactly what has
-    /// fewer cycles than nodes.
+    /// Returns the number of nodes along each coordinate that should suffice: a midpoint rule
+    /// integrates functions with fewer cycles than nodes exactly.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -87,7 +87,7 @@ impl<F: RayField> Finder<'_, F> {
     fn count(&self, grid: &SliceGrid) -> usize {
         let [rho, nu] = [grid.rho.max(), grid.nu.max()];
         let window = [self.window.x, self.window.y, self.window.u, self.window.v];
-        // Cycles per unit of a coordinate at the light, in phases and in the window.
+        // Cycles per unit of a coordinate at the light, from phases and from the window.
         let cycles = |k: usize| {
             let column = self.neighbourhood.1.map(|row| row[k]);
             let phase =

@@ -1,4 +1,4 @@
-//! Where in the emission's inner coordinates the rays are that land in a window.
+//! The region of the emission's inner coordinates whose rays land in a window.
 
 use super::emission::EmissionMeasure;
 use super::{Plane, SpecularSystem};
@@ -6,27 +6,27 @@ use crate::geometry::Matrix;
 use crate::nets::RayNode;
 use etendue_field::{TwoPlane, Window};
 
-/// A box in two coordinates: lowest and highest along each.
+/// A box in two coordinates: the lowest and highest value along each.
 pub(super) type Region = [[f64; 2]; 2];
 
-/// A light field as its rays: from a ray at the light (x, y, u, v) to its coordinates at the plane
-/// and what it adds to ray space there per unit of the emission's coordinates. `None` if it does
-/// not arrive.
+/// A light field as a function of rays: from a ray at the light (x, y, u, v) to its coordinates at
+/// the plane and its contribution to ray space there per unit of the emission's coordinates. `None`
+/// if it does not arrive.
 pub(super) trait RayField: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync {}
 impl<F: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync> RayField for F {}
 
-/// Cells along each side of the box in which rays are looked for.
+/// Number of cells along each side of the box in which rays are sought.
 const CELLS: usize = 32;
-/// Rays below this share of the strongest carry nothing.
+/// Rays below this share of the strongest are ignored.
 const MIN_SHARE: f64 = 1e-13;
-/// Halvings of a cell that find an edge to rounding.
+/// Number of bisections of a cell that locate an edge to rounding.
 const HALVINGS: usize = 40;
-/// Boxes tried before the last is taken.
+/// Number of boxes tried before the last is taken.
 const ROUNDS: usize = 24;
-/// How much wider than the window the first box is.
+/// Width of the first box relative to the window.
 const MARGIN: f64 = 1.5;
 
-/// Finds regions.
+/// Finds the region of rays that land in a window.
 pub(super) struct Finder<'a, F> {
     pub(super) field: &'a F,
     pub(super) window: &'a Window,
@@ -34,11 +34,11 @@ pub(super) struct Finder<'a, F> {
     pub(super) neighbourhood: Neighbourhood,
 }
 
-/// Where the central ray lands, and how that changes with the ray, [at plane, at light].
+/// The landing point of the central ray, and its derivative by the ray, [at plane, at light].
 pub(super) type Neighbourhood = ([f64; 4], Matrix<4>);
 
-/// That of rays as they are, whatever masks stop; `None` if the central ray, or one beside it, does
-/// not arrive.
+/// Returns the neighbourhood for exact rays, ignoring masks; `None` if the central ray, or a
+/// neighbour, does not arrive.
 pub(super) fn neighbourhood(system: &SpecularSystem, plane: &Plane) -> Option<Neighbourhood> {
     const STEP: f64 = 1e-6;
     let lands = |ray| Some(plane.coordinates(&system.follow(ray)?)?.0);
@@ -58,7 +58,7 @@ pub(super) fn neighbourhood(system: &SpecularSystem, plane: &Plane) -> Option<Ne
 }
 
 impl<F: RayField> Finder<'_, F> {
-    /// The ray at coordinates (a, b) of the emission.
+    /// Returns the ray at coordinates (a, b) of the emission.
     pub(super) fn ray(&self, inner: [f64; 2]) -> [f64; 4] {
         let mut ray = [0.0; 4];
         ray[self.emission.inner[0]] = inner[0];
@@ -66,7 +66,7 @@ impl<F: RayField> Finder<'_, F> {
         ray
     }
 
-    /// A ray at the plane, the window and all, times its share of emission coordinates.
+    /// Returns a ray at the plane, weighted by the window and by its share of emission coordinates.
     pub(super) fn node(&self, ray: [f64; 4], share: f64) -> RayNode {
         let (z, weight) = (self.field)(ray).unwrap_or(([0.0; 4], 0.0));
         let [x, y, u, v] = z;
@@ -74,9 +74,9 @@ impl<F: RayField> Finder<'_, F> {
         RayNode { z, weight }
     }
 
-    /// The region of rays that land in the window: the box about the parallelogram that a linear
-    /// map gives, then moved, widened and narrowed until all that arrives lies within it. `None` if
-    /// nothing arrives.
+    /// Returns the region of rays that land in the window: starting from the bounding box of the
+    /// parallelogram that a linear map gives, the box is moved, widened and narrowed until it
+    /// contains all arriving light. `None` if nothing arrives.
     pub(super) fn region(&self) -> Option<Region> {
         let mut region = self.linear_region()?;
         let reach = self.emission.reach;
@@ -115,13 +115,14 @@ impl<F: RayField> Finder<'_, F> {
         Some(region)
     }
 
-    /// How much light a ray at coordinates of the emission brings into the window.
+    /// Returns the amount of light that a ray at coordinates of the emission brings into the
+    /// window.
     fn strength(&self, inner: [f64; 2]) -> f64 {
         self.node(self.ray(inner), 1.0).weight.abs()
     }
 
-    /// What light is next to edges that cut it, as a share of all of it in a row of cells: that
-    /// over the number of nodes along a coordinate is an upper estimate of what a rule is off by.
+    /// Returns the strength of light next to edges that cut it, relative to all light in a row of
+    /// cells: divided by the number of nodes along a coordinate, it bounds the error of a rule.
     pub(super) fn edges(&self) -> f64 {
         let Some(region) = self.region() else {
             return 0.0;
@@ -143,7 +144,7 @@ impl<F: RayField> Finder<'_, F> {
         next_to_edges / strengths.iter().sum::<f64>() * CELLS as f64
     }
 
-    /// How strong light is where it ends between a lit place and a dark one.
+    /// Returns the strength of light at its edge between a lit and a dark point.
     fn last_lit(&self, mut lit: [f64; 2], mut unlit: [f64; 2], dark: f64) -> f64 {
         for _ in 0..HALVINGS {
             let between = [0, 1].map(|axis| 0.5 * (lit[axis] + unlit[axis]));
@@ -156,7 +157,7 @@ impl<F: RayField> Finder<'_, F> {
         self.strength(lit)
     }
 
-    /// First and last cell along each axis with light in them.
+    /// Returns the first and last lit cell along each axis.
     fn lit(&self, region: &Region) -> Option<[[usize; 2]; 2]> {
         let strengths: Vec<f64> = cells()
             .map(|cell| self.strength(middle(region, cell)))
@@ -172,7 +173,7 @@ impl<F: RayField> Finder<'_, F> {
         found
     }
 
-    /// The box about what the linear map takes into a somewhat wider window.
+    /// Returns the bounding box of the rays that the linear map takes into a slightly wider window.
     fn linear_region(&self) -> Option<Region> {
         let [a, b] = self.emission.reach;
         let mut corners = vec![[-a, -b], [a, -b], [a, b], [-a, b]];
@@ -196,12 +197,12 @@ impl<F: RayField> Finder<'_, F> {
     }
 }
 
-/// The cells of a region, row by row.
+/// Iterates over the cells of a region, row by row.
 fn cells() -> impl Iterator<Item = (usize, usize)> {
     (0..CELLS * CELLS).map(|i| (i / CELLS, i % CELLS))
 }
 
-/// The middle of a cell.
+/// Returns the centre of a cell.
 fn middle(region: &Region, (i, j): (usize, usize)) -> [f64; 2] {
     let at = |axis: usize, i: usize| {
         let [low, high] = region[axis];
@@ -210,7 +211,7 @@ fn middle(region: &Region, (i, j): (usize, usize)) -> [f64; 2] {
     [at(0, i), at(1, j)]
 }
 
-/// The part of a convex polygon with n·p ≤ c.
+/// Returns the part of a convex polygon with n·p ≤ c.
 fn clipped(corners: &[[f64; 2]], n: [f64; 2], c: f64) -> Vec<[f64; 2]> {
     let height = |p: [f64; 2]| n[0] * p[0] + n[1] * p[1] - c;
     let mut kept = Vec::new();
@@ -228,7 +229,7 @@ fn clipped(corners: &[[f64; 2]], n: [f64; 2], c: f64) -> Vec<[f64; 2]> {
     kept
 }
 
-/// Sides moved out by shares of the box's width, within reach.
+/// Returns a region with its sides moved out by shares of the box's width, within reach.
 fn widened(region: &Region, growth: [[f64; 2]; 2], reach: [f64; 2]) -> Region {
     std::array::from_fn(|axis| {
         let [low, high] = region[axis];
@@ -240,7 +241,7 @@ fn widened(region: &Region, growth: [[f64; 2]; 2], reach: [f64; 2]) -> Region {
     })
 }
 
-/// The lit cells and one more around them.
+/// Returns the lit cells with a margin of one cell.
 fn narrowed(region: &Region, lit: &[[usize; 2]; 2]) -> Region {
     std::array::from_fn(|axis| {
         let [low, high] = region[axis];

@@ -1,8 +1,8 @@
 //! Σ w e^(−2πi Ω·z) over rays, at all frequencies of a grid of slices.
 //!
-//! On one azimuth a ray is a point (a, b), and its exponential at (m Δρ, n Δν) a product of one
-//! factor along ρ and one along ν. Summed over rays that is a matrix product of their real and
-//! imaginary parts; ± ν share it.
+//! On one azimuth a ray is a point (a, b), and its exponential at (m Δρ, n Δν) is the product of
+//! one factor along ρ and one along ν. Summed over rays this is a matrix product of the factors'
+//! real and imaginary parts, shared by ± ν.
 
 use crate::nets::RayNode;
 use etendue_field::{Complex, SliceGrid, Slices, cis};
@@ -11,17 +11,18 @@ use ndarray::{Array2, Axis};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Rays of one matrix product.
+/// Number of rays of one matrix product.
 const BLOCK: usize = 256;
-/// Most parts of a sum over rays that are made in parallel and added in order.
+/// The most partial sums over rays, computed in parallel and added in order.
 const PARTS: usize = 16;
-/// Powers of a factor before it is computed anew: each step adds a rounding.
+/// Number of powers of a factor before it is recomputed: each step adds a rounding.
 const POWERS: usize = 32;
-/// Powers that are computed side by side, each the last but `LANES` times e^(i angle) to the
-/// `LANES`.
+/// Number of powers computed side by side; each is the one `LANES` before times e^(i angle) to the
+/// power `LANES`.
 const LANES: usize = 8;
 
-/// The sums on all slices. The same bytes on any number of threads; rounding below 10⁻¹² of Σ |w|.
+/// Returns the sums on all slices. Bitwise identical on any number of threads; rounding is below
+/// 10⁻¹² of Σ |w|.
 pub(super) fn sums(nodes: &[RayNode], grid: &SliceGrid) -> Slices {
     let part = nodes.len().div_ceil(PARTS).max(BLOCK);
     let parts: Vec<_> = nodes.chunks(part).collect();
@@ -48,7 +49,8 @@ pub(super) fn sums(nodes: &[RayNode], grid: &SliceGrid) -> Slices {
     slices
 }
 
-/// Sums of the products of the parts of both factors over some rays, [2m + part, 2n + part].
+/// Returns sums of the products of the parts of both factors over some rays, [2m + part, 2n +
+/// part].
 fn product(nodes: &[RayNode], grid: &SliceGrid, azimuth: usize) -> Array2<f64> {
     let (sin, cos) = libm::sincos(grid.azimuth(azimuth));
     let [along_rho, along_nu] = [grid.rho.half, grid.nu.half].map(|half| 2 * (half + 1));
@@ -70,14 +72,14 @@ fn product(nodes: &[RayNode], grid: &SliceGrid, azimuth: usize) -> Array2<f64> {
     sum
 }
 
-/// scale · e^(i n angle) for n = 0, 1, …, real and imaginary parts by turns.
+/// Returns scale · e^(i n angle) for n = 0, 1, …, with real and imaginary parts alternating.
 fn powers(angle: f64, scale: f64, row: Option<&mut [f64]>) {
     let step = cis(angle);
     let squared = step * step;
     let stride = squared * squared * squared * squared;
     let parts = row.into_iter().flat_map(|row| row.chunks_mut(2 * POWERS));
     for (part, to) in parts.enumerate() {
-        // Lanes side by side do not wait for each other.
+        // Adjacent lanes do not depend on each other.
         let mut lanes = [cis(angle * (part * POWERS) as f64) * scale; LANES];
         for i in 1..LANES {
             lanes[i] = lanes[i - 1] * step;

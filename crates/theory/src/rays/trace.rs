@@ -1,4 +1,4 @@
-//! One ray through the system.
+//! Follows one ray through the system.
 
 use super::{SpecularSurface, SpecularSystem};
 use crate::obstacle::PreparedObstacles;
@@ -8,14 +8,14 @@ use glam::DVec3;
 /// A straight leg of a ray.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LegRay {
-    /// Where it starts.
+    /// The start of the leg.
     pub(crate) point: DVec3,
-    /// A unit vector.
+    /// The direction, a unit vector.
     pub(crate) direction: DVec3,
 }
 
 impl LegRay {
-    /// The ray (x, y, u, v) of the light's plane.
+    /// Returns the ray (x, y, u, v) of the light's plane.
     pub(crate) fn new([x, y, u, v]: [f64; 4]) -> Self {
         Self {
             point: DVec3::new(x, y, 0.0),
@@ -23,8 +23,8 @@ impl LegRay {
         }
     }
 
-    /// The line through a point along a unit vector, gone back from beyond all that it can meet of
-    /// a patch.
+    /// Returns the line through a point along a unit vector, started from beyond all its
+    /// intersections with a patch.
     pub(crate) fn back(patch: &Patch, through: DVec3, along: DVec3) -> Self {
         let far = 4.0 * patch.aperture + (through - patch.frame.origin).length();
         Self {
@@ -33,20 +33,20 @@ impl LegRay {
         }
     }
 
-    /// The distance to a patch, and the unit normal there on the side of the patch's D. `None` if
-    /// the patch is missed or behind.
+    /// Returns the distance to a patch, and the unit normal there on the side of the patch's D.
+    /// `None` if the patch is missed or behind.
     ///
-    /// By Newton's method from the tangent plane at the vertex. Along a ray the quadric is a
-    /// polynomial of degree two, so there is one root on either side of its extremum, and the
+    /// Uses Newton's method from the tangent plane at the vertex. Along a ray the quadric is a
+    /// polynomial of degree two, so there is one root on either side of its extremum, and the root
     /// nearer to the tangent plane is found.
     pub(crate) fn met(&self, patch: &Patch) -> Option<(f64, DVec3)> {
         self.met_facing(patch, None)
     }
 
-    /// The same where the ray comes to a patch from one side, whatever is nearer: that of D, or the
-    /// other for −1.
+    /// Returns the intersection at which the ray meets a patch from one side, even if another is
+    /// nearer: the side of D, or the opposite one for −1.
     ///
-    /// It comes to a quadric once from either side, so that there is one such point at most.
+    /// A ray meets a quadric once from either side, so there is at most one such point.
     pub(crate) fn met_from(&self, patch: &Patch, side: f64) -> Option<(f64, DVec3)> {
         self.met_facing(patch, Some(side))
     }
@@ -59,18 +59,19 @@ impl LegRay {
         } else {
             -point.dot(direction)
         };
-        // Along the ray the patch's value is a s² + 2 b s + c, from a point near it.
+        // Along the ray the patch's function is a s² + 2 b s + c, from a point near it.
         let near = point + direction * t;
         let a = (DVec3::from(patch.curvature) * direction).dot(direction);
         let b = patch.gradient(near).dot(direction);
         let c = patch.value(near);
-        // As far beyond the extremum lies as good a start for the root on its other side.
+        // The mirror image about the extremum is an equally good start for the root on its other
+        // side.
         let leaves = side.is_some_and(|side| side * b > 0.0);
         let mut s = if leaves { -2.0 * b / a } else { 0.0 };
         for _ in 0..MOST_STEPS {
             let step = ((a * s + 2.0 * b) * s + c) / (2.0 * (a * s + b));
             s -= step;
-            // Its error squares with each step, so the next would be below rounding.
+            // The error is squared with each step, so the next would be below rounding.
             if step.abs() <= 1e-8 * ((t + s).abs() + point.length()) {
                 t += s;
                 let here = point + direction * t;
@@ -83,27 +84,27 @@ impl LegRay {
     }
 }
 
-/// Newton steps before a ray counts as a miss. Near misses of a surface wander.
+/// Newton steps before a ray counts as a miss. Rays that narrowly miss a surface do not converge.
 const MOST_STEPS: u32 = 40;
 
 impl SpecularSurface {
-    /// The ray that goes on.
+    /// Returns the continued ray.
     pub(super) fn follow(&self, ray: &LegRay) -> Option<LegRay> {
         let (distance, normal) = ray.met(&self.patch)?;
         let point = ray.point + ray.direction * distance;
         self.turned(ray.direction, point, normal)
     }
 
-    /// The ray that goes on where one along `direction` hits `point`; `normal` is on the side of
-    /// the patch's D.
+    /// Returns the continuation of a ray along `direction` that hits `point`; `normal` is on the
+    /// side of the patch's D.
     pub(super) fn turned(&self, direction: DVec3, point: DVec3, normal: DVec3) -> Option<LegRay> {
         let direction = bent(self.event, &self.patch.frame, [direction, point, normal])?;
         Some(LegRay { point, direction })
     }
 }
 
-/// The direction after an event on a patch with this frame, for light along `direction` that hits
-/// `point`; `normal` is on the side of the patch's D.
+/// Returns the direction after an event on a patch with this frame, for light along `direction`
+/// that hits `point`; `normal` is on the side of the patch's D.
 pub(crate) fn bent(
     event: Specular,
     frame: &Frame,
@@ -113,7 +114,7 @@ pub(crate) fn bent(
         Specular::Mirror => Some(direction - normal * (2.0 * direction.dot(normal))),
         Specular::Refraction { front, back } => {
             let cos = -direction.dot(normal);
-            // Seen from where light comes.
+            // As seen from the incident side.
             let (normal, cos, ratio) = if cos > 0.0 {
                 (normal, cos, front / back)
             } else {
@@ -137,7 +138,8 @@ pub(crate) fn bent(
 }
 
 impl SpecularSystem {
-    /// The last leg of the same ray, and the share of it that passes obstacles before that.
+    /// Returns the last leg of the same ray, and the share of it that passes obstacles before that
+    /// leg.
     pub(super) fn follow_past(
         &self,
         obstacles: &PreparedObstacles<'_>,
@@ -154,7 +156,7 @@ impl SpecularSystem {
         Some((ray, passes))
     }
 
-    /// The last leg of the ray (x, y, u, v) of the light's plane; masks are not looked at.
+    /// Returns the last leg of the ray (x, y, u, v) of the light's plane, ignoring masks.
     pub(super) fn follow(&self, emission: [f64; 4]) -> Option<LegRay> {
         let start = LegRay::new(emission);
         self.elements

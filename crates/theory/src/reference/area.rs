@@ -1,4 +1,4 @@
-//! Area lights, alone and behind opaque blockers.
+//! Checks of area lights, alone and behind opaque blockers.
 
 use super::gaussian;
 use super::*;
@@ -43,7 +43,7 @@ fn square_light_in_4d() {
     assert_close("closed form", deviation(4, pairs));
 }
 
-/// Centres and width of the strips of a block.
+/// Returns the centres and the width of the strips of a block.
 fn strips(block: &Value) -> (Vec<f64>, f64) {
     let strips = &block["strips"];
     let centers = samples(&strips["centres"]).iter().map(number).collect();

@@ -1,8 +1,8 @@
-//! Closed forms under a Gaussian window that is not cut: for checks only.
+//! Closed forms under an untruncated Gaussian window, for checks only.
 //!
-//! A [`Window`](etendue_field::Window) has a finite support, so this one exists nowhere else. All
-//! but the disc are in 2D; frequencies are (Ωx, Ωv), in cycles per metre and per unit slope; the
-//! slope is called v, as in the paper.
+//! A [`Window`](etendue_field::Window) has a finite support, so this window exists nowhere else.
+//! All but the disc are in 2D; frequencies are (Ωx, Ωv), in cycles per metre and per unit slope;
+//! the slope is called v, as in the paper.
 
 use crate::numerics::quadrature::integrate;
 use crate::numerics::sinc::sinc;
@@ -19,7 +19,7 @@ pub(crate) struct GaussianWindow {
     pub(crate) b: f64,
 }
 
-/// What light has become after a distance under the window (docs/theory.md (9)).
+/// Light after travel over a distance, under the window (docs/theory.md (9)).
 struct Travelled {
     distance: f64,
     /// 1/a².
@@ -42,7 +42,7 @@ impl Travelled {
         }
     }
 
-    /// ω and Q at the frequencies of one axis.
+    /// Returns ω and Q at the frequencies of one axis.
     fn frequencies(&self, [x, v]: [f64; 2]) -> [f64; 2] {
         let omega = v + self.distance * x;
         let big_q = x - self.distance * omega * self.inverse_a2 / self.q;
@@ -57,7 +57,7 @@ pub(crate) struct GaussianBlock {
     pub(crate) light: f64,
     /// Distance from the light to the blockers, in metres.
     pub(crate) to_blockers: f64,
-    /// Distance from the blockers to where the light field is looked at, in metres.
+    /// Distance from the blockers to the plane where the light field is observed, in metres.
     pub(crate) below: f64,
 }
 
@@ -73,7 +73,7 @@ pub(crate) struct CosineGrating {
 }
 
 impl CosineGrating {
-    /// Its Fourier series: (frequency, coefficient).
+    /// Returns the Fourier series: (frequency, coefficient).
     #[must_use]
     pub(crate) fn lines(&self) -> [(f64, Complex); 3] {
         let side = Complex::from_polar(0.25 * self.modulation, self.phase);
@@ -85,9 +85,9 @@ impl CosineGrating {
     }
 }
 
-/// The field |x − D v| < w/2 of an area light of width w at distance D under the window: q^(−1/2)
-/// exp(−πω²/q) ∫ exp(−πPy² − 2πiQy) dy over the light, with ω = Ωv + DΩx, q = D²/a² + 1/b², P =
-/// 1/(a²b²q), Q = Ωx − Dω/(a²q) (docs/theory.md (9)).
+/// Returns the field |x − D v| < w/2 of an area light of width w at distance D under the window:
+/// q^(−1/2) exp(−πω²/q) ∫ exp(−πPy² − 2πiQy) dy over the light, with ω = Ωv + DΩx, q = D²/a² +
+/// 1/b², P = 1/(a²b²q), Q = Ωx − Dω/(a²q) (docs/theory.md (9)).
 ///
 /// `distance` must not be zero when b is infinite.
 #[must_use]
@@ -101,7 +101,7 @@ pub(crate) fn area_light(
     let [omega, big_q] = travelled.frequencies(k);
     let Travelled { p, q, .. } = travelled;
     let half = 0.5 * width;
-    // Enough for the oscillation, and for the Gaussian where it is narrower than the light.
+    // Enough nodes for the oscillation, and for the Gaussian if it is narrower than the light.
     let nodes = 16 + whole((2.0 * width * (big_q.abs() + p.sqrt())).ceil());
     let integral = integrate(nodes, [-half, half], |y| {
         Complex::from_polar(libm::exp(-PI * p * y * y), -TAU * big_q * y)
@@ -109,8 +109,8 @@ pub(crate) fn area_light(
     integral * (libm::exp(-PI * omega * omega / q) / q.sqrt())
 }
 
-/// The field δ(x − D v) of a point light at distance D under the window: q^(−1/2) exp(−πω²/q), the
-/// area light's factor (docs/theory.md (20)).
+/// Returns the field δ(x − D v) of a point light at distance D under the window: q^(−1/2)
+/// exp(−πω²/q), the area light's factor (docs/theory.md (20)).
 #[must_use]
 pub(crate) fn point_light(distance: f64, window: &GaussianWindow, k: [f64; 2]) -> f64 {
     let travelled = Travelled::new(distance, window);
@@ -118,8 +118,8 @@ pub(crate) fn point_light(distance: f64, window: &GaussianWindow, k: [f64; 2]) -
     libm::exp(-PI * omega * omega / travelled.q) / travelled.q.sqrt()
 }
 
-/// The field of a bulb of width w with the lobe exp(−πv²/c²) at distance D: the area light under a
-/// window narrowed by the lobe, 1/b² + 1/c².
+/// Returns the field of a bulb of width w with the lobe exp(−πv²/c²) at distance D: the area light
+/// under a window narrowed by the lobe, 1/b² + 1/c².
 #[must_use]
 pub(crate) fn spot(
     width: f64,
@@ -132,8 +132,8 @@ pub(crate) fn spot(
     area_light(width, distance, &GaussianWindow { a: window.a, b }, k)
 }
 
-/// The field of a disc of radius R at distance D, in 4D under the window of a and b along both
-/// axes: q⁻¹ exp(−π|ω|²/q) 2π ∫₀ᴿ r exp(−πPr²) J₀(2π|Q|r) dr, ω and Q being vectors
+/// Returns the field of a disc of radius R at distance D, in 4D under the window of a and b along
+/// both axes: q⁻¹ exp(−π|ω|²/q) 2π ∫₀ᴿ r exp(−πPr²) J₀(2π|Q|r) dr, where ω and Q are vectors
 /// (docs/theory.md (21)).
 ///
 /// Frequencies (Ωx, Ωy, Ωu, Ωv). The disc is centred, so the spectrum is real.
@@ -155,7 +155,7 @@ pub(crate) fn disc_light(
     TAU * integral * libm::exp(-PI * omega * omega / q) / q
 }
 
-/// The field exp(−π(α x² + 2β x v + γ v²)): a Gaussian window after travel, for one.
+/// The field exp(−π(α x² + 2β x v + γ v²)), for example a Gaussian window after travel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Tilted {
     /// α, per square metre.
@@ -166,8 +166,8 @@ pub(crate) struct Tilted {
     pub(crate) gamma: f64,
 }
 
-/// The spectra of a field alone, with x < 0 blocked and with x > 0 blocked: F₀ = γ^(−1/2)
-/// exp(−πΩv²/γ) a exp(−πa²Ω'²), and F₀/2 ∓ i/√π times the same without its last exponential times
+/// Returns the spectra of a field alone, with x < 0 blocked and with x > 0 blocked: F₀ = γ^(−1/2)
+/// exp(−πΩv²/γ) a exp(−πa²Ω'²), and F₀/2 ∓ i/√π times F₀ without its last exponential times
 /// Dawson(√π a Ω'), with 1/a² = α − β²/γ and Ω' = Ωx − βΩv/γ (docs/theory.md (22)).
 #[must_use]
 pub(crate) fn half_planes(field: &Tilted, [x, v]: [f64; 2]) -> [Complex; 3] {
@@ -181,14 +181,14 @@ pub(crate) fn half_planes(field: &Tilted, [x, v]: [f64; 2]) -> [Complex; 3] {
     [even.into(), half, half.conj()]
 }
 
-/// Dawson's integral exp(−x²) ∫₀ˣ exp(t²) dt, by a Gauss rule: the integrand is entire.
+/// Returns Dawson's integral exp(−x²) ∫₀ˣ exp(t²) dt, by a Gauss rule: the integrand is entire.
 fn dawson(x: f64) -> f64 {
     integrate(24 + whole((x * x).ceil()), [0.0, x], |t| {
         libm::exp(t * t - x * x)
     })
 }
 
-/// The same light seen through a grating: Σ cₙ I(D; Ωx − n f, Ωv + n f d) a distance d below it.
+/// Returns the same light after a grating: Σ cₙ I(D; Ωx − n f, Ωv + n f d) a distance d below it.
 #[must_use]
 pub(crate) fn through_grating(
     bench: &GaussianBlock,
@@ -203,8 +203,8 @@ pub(crate) fn through_grating(
         .sum()
 }
 
-/// The part of the light that a strip, (lowest, highest) in metres, blocks: a double integral over
-/// strip and light, v = (y − y₀)/d₁ and x = y + d₂ v.
+/// Returns the part of the light that a strip, (lowest, highest) in metres, blocks: a double
+/// integral over strip and light, v = (y − y₀)/d₁ and x = y + d₂ v.
 #[must_use]
 pub(crate) fn blocked_by_strip(
     bench: &GaussianBlock,
@@ -229,9 +229,8 @@ pub(crate) fn blocked_by_strip(
     sum / bench.to_blockers
 }
 
-/// A field times g(v) = (1 + v²)^(−3/2), from the same field under other Gaussian windows:
-/// g(v) = 4/√π ∫₀^∞ s² exp(−s²) exp(−s²v²) ds adds s²/π to 1/b²
-/// (docs/theory.md (8)).
+/// Returns a field times g(v) = (1 + v²)^(−3/2), from the same field under other Gaussian windows:
+/// g(v) = 4/√π ∫₀^∞ s² exp(−s²) exp(−s²v²) ds adds s²/π to 1/b² (docs/theory.md (8)).
 ///
 /// The integrand is even and analytic in s: the trapezoid rule converges exponentially.
 #[must_use]
@@ -239,7 +238,8 @@ pub(crate) fn shaded(
     window: &GaussianWindow,
     field: impl Fn(&GaussianWindow) -> Complex,
 ) -> Complex {
-    // Step 0.25 errs by exp(−π²/0.25²) = 1e-69, the end at 6.5 by exp(−6.5²) = 5e-19.
+    // The error from the step 0.25 is exp(−π²/0.25²) = 1e-69, from the end at 6.5 exp(−6.5²) =
+    // 5e-19.
     const STEP: f64 = 0.25;
     let nodes = (1..=26).map(|j| STEP * f64::from(j));
     let sum: Complex = nodes
@@ -252,8 +252,8 @@ pub(crate) fn shaded(
     sum * (4.0 * STEP / PI.sqrt())
 }
 
-/// The spectrum of the irradiance below a grating, no window:
-/// Σ cₙ w sinc(w(Ωx − n f)) ĝ(DΩx − d₁ n f) (Durand et al. 2005, Eq. 7 without the albedo).
+/// Returns the spectrum of the irradiance below a grating, without a window: Σ cₙ w sinc(w(Ωx − n
+/// f)) ĝ(DΩx − d₁ n f) (Durand et al. 2005, Eq. 7 without the albedo).
 #[must_use]
 pub(crate) fn irradiance(bench: &GaussianBlock, grating: &CosineGrating, x: f64) -> Complex {
     let w = bench.light;

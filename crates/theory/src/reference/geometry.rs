@@ -1,4 +1,4 @@
-//! Mirrors, Gaussian fields along a path, and the kernel from slopes to angles.
+//! Checks of mirrors, Gaussian fields along a path, and the kernel from slopes to angles.
 
 use super::*;
 use crate::geometry::covariance::{gaussian_lobe, gaussian_window, power_spectrum};
@@ -26,7 +26,7 @@ fn caustic_of_a_hollow_mirror() {
         .unwrap();
     let expected = number(&block["focal_distance"]);
     assert_close("focus", deviation(1, [(focus.into(), expected.into())]));
-    // The sign of the curvature, which Eq. 11 turns over, is seen.
+    // The sign error of the curvature in Eq. 11 is detected.
     let wrong = all.map(|sample| {
         let map = AffineMap::<2>::caustic(p("th0"), -p("k"), number(&sample["d"]));
         (map.spectrum(frequency(sample), &beam), complex(sample))
@@ -50,14 +50,14 @@ fn matrix<const N: usize>(value: &Value) -> Matrix<N> {
     std::array::from_fn(|i| std::array::from_fn(|j| number(&rows[i][j])))
 }
 
-/// What a row of a chain does.
+/// The operation of a row of a chain.
 enum BlockStep<const N: usize> {
     Map(AffineMap<N>),
     Window([f64; N]),
     Lobe(f64),
 }
 
-/// Follows a chain row by row and compares all it tells: matrices, covariances, determinants,
+/// Follows a chain row by row and compares all its values: matrices, covariances, determinants,
 /// spectral covariances.
 fn assert_chain<const N: usize>(block: &Value, steps: &[BlockStep<N>]) {
     let rows = samples(&block["rows"]);
@@ -96,7 +96,7 @@ fn assert_chain<const N: usize>(block: &Value, steps: &[BlockStep<N>]) {
     }
     assert_close("matrices", deviation(N * N * 7, matrices));
     assert_close("covariances", deviation(N * N * 8, fields));
-    // What is left of terms a hundred times larger.
+    // The rounding of terms a hundred times larger.
     let off = deviation(8, volumes);
     assert!(off < 1e-12, "determinants: {off:e}");
     if N == 2 {

@@ -1,5 +1,5 @@
-//! A light, a cosine grating and a receiver: the walk along a light path of Durand et al. 2005,
-//! Fig. 6.
+//! Checks of a light, a cosine grating and a receiver: the light path of Durand et al. 2005, Fig.
+//! 6.
 
 use super::*;
 use crate::reference::gaussian::{self, CosineGrating};
@@ -23,7 +23,7 @@ impl GratingScene {
         }
     }
 
-    /// Steps 1 to 6, in closed form.
+    /// Returns steps 1 to 6, in closed form.
     fn closed(&self, step: usize, k: [f64; 2]) -> Complex {
         let ReferenceScene {
             bench, gaussian, ..
@@ -46,7 +46,8 @@ impl GratingScene {
         }
     }
 
-    /// Steps 1 to 4 from the polygon of the light: a line of the grating is one more shift.
+    /// Returns steps 1 to 4 from the polygon of the light: each line of the grating is one more
+    /// shift.
     fn polygons(&self, step: usize, [x, v]: [f64; 2]) -> Complex {
         let ReferenceScene {
             bench, profiles, ..

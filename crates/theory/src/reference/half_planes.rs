@@ -1,5 +1,5 @@
-//! Two half-planes that meet: each lets half of the light pass, both none (Durand et al. 2005, Fig.
-//! 7).
+//! Checks of two half-planes that meet: each lets half of the light pass, both together none
+//! (Durand et al. 2005, Fig. 7).
 
 use super::*;
 use crate::at;
@@ -33,11 +33,12 @@ fn phases_make_both_halves_dark() {
     let largest = gaussian::half_planes(&field, [0.0, 0.0])[0].norm();
     for sample in samples(&block["samples"]) {
         let [open, a, b] = gaussian::half_planes(&field, frequency(sample));
-        // What passes both is what passes neither's blocked part: F₀ − (F₀ − F_A) − (F₀ − F_B).
+        // The light that passes both is all light minus the parts that each blocks: F₀ − (F₀ − F_A)
+        // − (F₀ − F_B).
         let both = a + b - open;
         // The sum of a number and its conjugate.
         assert!((both - complex(&sample["both"])).norm() < 1e-16);
-        // Magnitudes alone would leave light.
+        // The moduli alone would leave some light.
         let blind = a.norm() + b.norm() - open.norm();
         let zero = frequency(sample).iter().all(|k| k.abs() < 1e-9);
         assert!(zero || blind > 0.02 * largest, "{blind}");

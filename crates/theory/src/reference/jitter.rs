@@ -1,25 +1,25 @@
-//! The expected power of jittered strips.
+//! Checks of the expected power of jittered strips.
 
 use crate::numerics::sinc::sinc;
 
-/// Opaque strips in a row, each moved by an offset of its own, uniform in ± half the jitter.
+/// Opaque strips in a row, each displaced by an independent offset, uniform in ± half the jitter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct JitteredArray {
     /// Number N of strips.
     pub(crate) count: usize,
     /// Width s of a strip, in metres.
     pub(crate) size: f64,
-    /// Distance p of neighbours before jitter, in metres.
+    /// Distance p between neighbours before jitter, in metres.
     pub(crate) pitch: f64,
     /// Full width j of the offsets' distribution, in metres.
     pub(crate) jitter: f64,
 }
 
-/// The expected power E|B̂(Ω)|² of the blocked part B = Σ rect((x − xₙ)/s) of a jittered array, in
-/// m²: s² sinc²(sΩ) [N (1 − sinc²(jΩ)) + D² sinc²(jΩ)], D = sin(πNpΩ)/sin(πpΩ) (docs/theory.md
-/// (10)).
+/// Returns the expected power E|B̂(Ω)|² of the blocked part B = Σ rect((x − xₙ)/s) of a jittered
+/// array, in m²: s² sinc²(sΩ) [N (1 − sinc²(jΩ)) + D² sinc²(jΩ)], D = sin(πNpΩ)/sin(πpΩ)
+/// (docs/theory.md (10)).
 ///
-/// The first term is the noise of the offsets, the second what is left of the lines of a regular
+/// The first term is the noise of the offsets, the second the remainder of the lines of a regular
 /// array.
 #[must_use]
 pub(crate) fn jittered_array_power(array: &JitteredArray, omega: f64) -> f64 {

@@ -1,4 +1,4 @@
-//! Lights that are no rectangles.
+//! Checks of lights that are not rectangles.
 
 use super::*;
 use crate::reference::gaussian;

@@ -1,9 +1,9 @@
-//! Checks against `tests/reference.json`: numbers computed with mpmath at 25 digits, apart from
-//! this crate.
+//! Checks against `tests/reference.json`: numbers computed with mpmath at 25 digits, independently
+//! of this crate.
 //!
-//! Where a block uses the Gaussian window that is not cut, its closed form is checked, and wherever
-//! the field is made of polygons also the polygon path with a cut at 3.4 widths, where the window
-//! is 2e-16.
+//! If a block uses the untruncated Gaussian window, its closed form is checked, and if the field is
+//! made of polygons, the polygon code is checked too, truncated at 3.4 widths, where the window is
+//! 2e-16.
 
 mod area;
 pub(crate) mod gaussian;
@@ -22,9 +22,10 @@ use gaussian::{GaussianBlock, GaussianWindow};
 use jitter::{JitteredArray, jittered_array_power};
 use serde_json::Value;
 
-/// Relative to the largest value of a block: the file promises 14 digits, rounding takes one more.
+/// Relative to the largest value of a block: the file is accurate to 14 digits, of which rounding
+/// takes one.
 const CLOSE: f64 = 1e-13;
-/// Side of rectangles that stand for strips: wider than any window.
+/// Side of rectangles that represent strips: wider than any window.
 const ENDLESS: f64 = 1e3;
 
 fn block(name: &str) -> Value {
@@ -44,18 +45,18 @@ fn samples(value: &Value) -> &[Value] {
     value.as_array().unwrap()
 }
 
-/// (Ωx, Ωv) of a sample.
+/// Returns (Ωx, Ωv) of a sample.
 fn frequency(sample: &Value) -> [f64; 2] {
     [number(&sample["ox"]), number(&sample["ov"])]
 }
 
-/// (Ωx, Ωy, Ωu, Ωv) of a sample.
+/// Returns (Ωx, Ωy, Ωu, Ωv) of a sample.
 fn frequency_4d(sample: &Value) -> [f64; 4] {
     ["ox", "oy", "ou", "ov"].map(|name| number(&sample[name]))
 }
 
-/// The largest deviation relative to the largest expected value; at least `count` samples are
-/// required.
+/// Returns the largest deviation relative to the largest expected value; requires at least `count`
+/// samples.
 fn deviation(count: usize, pairs: impl IntoIterator<Item = (Complex, Complex)>) -> f64 {
     let pairs: Vec<_> = pairs.into_iter().collect();
     assert!(pairs.len() >= count);
@@ -75,7 +76,7 @@ fn cut(width: f64) -> Profile {
     }
 }
 
-/// The factor of (x, u) of a chain whose rectangles are endless along y.
+/// Returns the factor of (x, u) of a chain whose rectangles are unbounded along y.
 fn factor(chain: &Chain, [x, u]: [Profile; 2], k: [f64; 2]) -> Complex {
     let expansion = Expansion::of_rectangles(chain, &window(x, u));
     let section = &expansion.sections[0];
@@ -93,7 +94,7 @@ fn strip(center: f64, width: f64) -> Rectangle {
     }
 }
 
-/// A light of that width at that distance, nothing between.
+/// Returns a light of that width at that distance, without occluders.
 fn light(width: f64, distance: f64) -> Chain {
     let mut chain = chain(width, &[(distance, vec![])]);
     chain.source.light = lambertian(strip(0.0, width));
@@ -106,7 +107,7 @@ struct ReferenceScene {
     profiles: [Profile; 2],
 }
 
-/// Light, distances and Gaussian window of a block.
+/// Returns the light, distances and Gaussian window of a block.
 fn scene(parameters: &Value) -> ReferenceScene {
     let p = |name: &str| number(&parameters[name]);
     ReferenceScene {

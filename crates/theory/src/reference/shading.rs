@@ -1,4 +1,4 @@
-//! Cosines, lobes, Fresnel factors, reflection step by step, environments and bandwidths.
+//! Checks of cosines, lobes, Fresnel factors, reflection step by step, environments and bandwidths.
 
 #![expect(
     clippy::print_stdout,
@@ -13,9 +13,10 @@ use crate::shading::{
 };
 use std::f64::consts::{PI, TAU};
 
-/// Relative to the largest value of a block: ours are closed forms, or good to 10⁻¹² by quadrature.
+/// Relative to the largest value of a block: the values here are closed forms, or quadratures
+/// accurate to 10⁻¹².
 const NEAR: f64 = 1e-9;
-/// What a planted fault must be off by, and is by far.
+/// The smallest error of a planted fault that must be detected; actual errors are much larger.
 const FAULT: f64 = 1e-3;
 
 fn assert_near(what: &str, off: f64) {
@@ -28,7 +29,7 @@ fn assert_seen(what: &str, off: f64) {
     println!("  {what}: {off:.2e}");
 }
 
-/// Deviation of a real function of Ω from a block's samples.
+/// Returns the deviation of a real function of Ω from a block's samples.
 fn curve(block: &Value, count: usize, f: impl Fn(f64) -> f64) -> f64 {
     let pairs = samples(&block["samples"]).iter().map(|sample| {
         let got = f(number(&sample["omega"]));
@@ -81,7 +82,7 @@ fn fresnel_and_cosine() {
         assert_near("reflectance", deviation(5, pairs));
         let hat = |omega| fresnel.cosine_hat(omega);
         assert_near("Fresnel · cos⁺", curve(material, 15, hat));
-        // One polarisation instead of the mean of both.
+        // A planted fault: one polarisation instead of the mean of both.
         let square = Complex::new(index, extinction) * Complex::new(index, extinction);
         let across = |omega: f64| {
             let kernel = |theta: f64| {
@@ -148,7 +149,7 @@ impl GaussianField {
     }
 }
 
-/// The block's reflection with some factor before and lobe.
+/// Returns the block's reflection with a given factor before it and a given lobe.
 fn reflection<'a>(
     parameters: &Value,
     before: Factor<'a>,
@@ -165,8 +166,8 @@ fn reflection<'a>(
             after: Factor::One,
             weight: None,
         }],
-        // Content of angles 0.04 wide reaches ± 30, moved by what positions and angles have in
-        // common.
+        // Content of angles 0.04 wide reaches ± 30, shifted by the correlation of positions and
+        // angles.
         lattice: Lattice::circle(60.0),
     }
 }
@@ -192,7 +193,7 @@ fn every_step_of_a_reflection() {
         let name = format!("step{}", i + 1);
         assert_near(&format!("{step:?}"), off(&gloss, step, &name));
     }
-    // The block's mirror keeps the cosine: a Dirac that is not divided by it.
+    // The block's mirror keeps the cosine: a Dirac that is not divided by the cosine.
     let dirac = reflection(parameters, Factor::Cosine, None);
     let mirror =
         |chain: &PlanarReflection<'_>| off(chain, ReflectionStep::Outgoing, "step7_mirror_brdf");
@@ -217,11 +218,11 @@ fn every_step_of_a_reflection() {
     assert_seen("a lobe 5 % wider", last(&wider));
 }
 
-/// Where a ray that leaves the circle at arc length s with the local direction θ is seen in the
-/// frame of central rays at an angle: (x, θ) and ∂x/∂s at a fixed direction.
+/// Returns the coordinates (x, θ), in the frame of central rays at an angle, of a ray that leaves
+/// the circle at arc length s with the local direction θ, and ∂x/∂s at a fixed direction.
 ///
-/// The frame is that after the reflection: X = c T − sin N. Before it, rays run against their
-/// direction and X points the other way.
+/// The frame is the one after the reflection: X = c T − sin N. Before it, rays are reversed and X
+/// points the other way.
 fn seen(k: f64, central: f64, s: f64, local: f64) -> ([f64; 2], f64) {
     let turn = k * s;
     let point = [libm::sin(turn) / k, (libm::cos(turn) - 1.0) / k];
@@ -235,8 +236,8 @@ fn seen(k: f64, central: f64, s: f64, local: f64) -> ([f64; 2], f64) {
     )
 }
 
-/// Step 7 by trapezoids over arc length, local incident and local outgoing angle, of rays off the
-/// circle as it is.
+/// Computes step 7 by the trapezoid rule over arc length, local incident and local outgoing angle,
+/// with rays that leave the exact circle.
 fn traced(
     parameters: &Value,
     bells: &[GaussianField],
@@ -254,9 +255,9 @@ fn traced(
         Complex::from_polar(scale, -TAU * (omega[0] * x + omega[1] * theta))
     };
     let mut sum = Complex::from(0.0);
-    // 0.55 is eight deviations of the light on the surface.
+    // 0.55 is eight standard deviations of the light on the surface.
     for (s, ds) in lattice(0.0, 0.55, 60) {
-        // Light of deviation 0.05, seen from the normal there.
+        // Light of standard deviation 0.05, relative to the normal there.
         for (incident, di) in lattice(theta0 - k * s, 0.45, 60) {
             let ([x, theta], _) = seen(k, theta0, s, incident);
             let light: f64 = bells.iter().map(|bell| bell.value([-x, theta])).sum();
@@ -268,7 +269,8 @@ fn traced(
                 sum += wave(s, -incident) * share;
                 continue;
             };
-            // A normal distribution by trapezoids 0.4 deviations long: beyond rounding.
+            // A normal distribution by trapezoids 0.4 standard deviations long: accurate to
+            // rounding.
             for (z, dz) in lattice(0.0, 8.0, 20) {
                 let density = libm::exp(-0.5 * z * z) / TAU.sqrt() * dz;
                 sum += wave(s, deviation * z - incident) * (share * density);
@@ -294,10 +296,10 @@ fn rays_off_the_circle() {
             deviation(5, pairs)
         };
         let off = off(&bells);
-        // Both are quadratures, the file's said to be good to 1e-6.
+        // Both are quadratures; the file's accuracy is 1e-6.
         assert!(off < 1e-6, "{name}: {off:e}");
         println!("{name}, traced: {off:.1e} of the largest value");
-        // The chain is of first order: a few per cent at this size, and it is seen.
+        // The chain is of first order: its error is a few per cent at this size, and is detected.
         let light = |w: [f64; 2]| -> Complex { bells.iter().map(|b| b.spectrum(w)).sum() };
         let lobe = lobe.map(|deviation| PlanarLobe::Gaussian { deviation });
         let chain = reflection(parameters, Factor::Cosine, lobe);

@@ -1,8 +1,8 @@
-//! What a leg is aimed at: directions away from a point, told apart by two coordinates.
+//! The coordinates that aim a leg: directions away from a point, parametrised by two coordinates.
 //!
-//! Where a leg runs straight to the next scattering surface, or to a plane across it, these are a
-//! place there, so that a narrow window is met from anywhere on a wide surface. Elsewhere they are
-//! angles, and where light goes by them is known to first order alone.
+//! If a leg runs straight to the next scattering surface, or to a plane across it, the coordinates
+//! are a position there, which lets rays from anywhere on a wide surface meet a narrow window.
+//! Otherwise they are angles, and the landing point is known only to first order.
 
 use super::chain::{ScatteringSurface, towards};
 use super::guide::Gaussian;
@@ -14,29 +14,30 @@ use etendue_field::{Frame, Orientation, Patch};
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
-/// What directions of a leg are told apart by.
+/// The coordinates that parametrise directions of a leg.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum DirectionCoordinates {
-    /// Longitude and latitude at the surface that the leg begins on, less those of the central ray.
+    /// Longitude and latitude at the surface that the leg begins on, minus those of the central
+    /// ray.
     Angles,
-    /// A place on the next scattering surface, along X and Y of its patch.
+    /// A position on the next scattering surface, along X and Y of its patch.
     Patch {
         patch: Patch,
-        /// Of the central hit there.
+        /// The position of the central hit there.
         hit: [f64; 2],
-        /// From the local coordinates there.
+        /// The rotation from the local coordinates there.
         turn: Matrix<2>,
     },
-    /// A place on the plane.
+    /// A position on the plane.
     Plane(Frame),
 }
 
-/// How much farther than a surface is wide a plane must be to be aimed at: none of the surface lies
-/// beyond it.
+/// The smallest distance of a plane that rays may be aimed at, in widths of the surface: none of
+/// the surface then lies beyond the plane.
 const MIN_DISTANCE: f64 = 2.0;
 
 impl DirectionCoordinates {
-    /// Of the leg that begins at the light (0) or at a scatterer.
+    /// Builds the coordinates of the leg that begins at the light (0) or at a scatterer.
     pub(super) fn new(
         view: &Observed<ReflectionSystem>,
         scatterers: &[ScatteringSurface],
@@ -76,8 +77,8 @@ impl DirectionCoordinates {
         }
     }
 
-    /// What a Gaussian of angles becomes at a point of the surface, `map` leading to the end of the
-    /// leg.
+    /// Converts a Gaussian of angles to these coordinates at a point of the surface; `map` leads to
+    /// the end of the leg.
     pub(super) fn seen(
         &self,
         angles: &Gaussian<2>,
@@ -96,7 +97,7 @@ impl DirectionCoordinates {
         })
     }
 
-    /// A Gaussian of the positions at the end of the leg, in the coordinates of this aim.
+    /// Converts a Gaussian of the positions at the end of the leg to these coordinates.
     fn counted(&self, positions: &Gaussian<2>) -> Gaussian<2> {
         match self {
             Self::Angles | Self::Plane(_) => *positions,
@@ -110,7 +111,7 @@ impl DirectionCoordinates {
         }
     }
 
-    /// Where a ray ends, if it does.
+    /// Returns the end point of a ray, if there is one.
     pub(super) fn end(&self, point: DVec3, direction: DVec3) -> Option<[f64; 2]> {
         let (frame, t) = match self {
             Self::Angles => return None,
@@ -127,7 +128,7 @@ impl DirectionCoordinates {
         (t > 0.0 && t.is_finite()).then_some([at.x, at.y])
     }
 
-    /// The point of the next surface with these coordinates.
+    /// Returns the point of the next surface with these coordinates.
     pub(super) fn target(&self, [a, b]: [f64; 2]) -> Option<DVec3> {
         match self {
             Self::Patch { patch, .. } => Some(patch.point(a, b)),
@@ -135,8 +136,8 @@ impl DirectionCoordinates {
         }
     }
 
-    /// The direction with these coordinates from a point, and steradians per unit of them. Angles
-    /// are about a normal, in the axes of a scatterer.
+    /// Returns the direction with these coordinates from a point, and steradians per unit of the
+    /// coordinates. Angles are about a normal, in the axes of a scatterer.
     pub(super) fn direction(
         &self,
         point: DVec3,

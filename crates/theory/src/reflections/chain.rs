@@ -9,40 +9,40 @@ use crate::words::{self, degrees};
 use etendue_field::{Frame, Specular};
 use glam::DVec3;
 
-/// What the central ray does, to first order in the neighbourhood.
+/// The path of the central ray, and its neighbourhood to first order.
 ///
 /// Local coordinates at a scattering surface are (s, t, θ, φ): positions along T and B in metres,
-/// and the longitude and latitude of a direction away from the surface about the local normal, T
-/// lying in the plane of incidence.
+/// and the longitude and latitude of a direction away from the surface about the local normal. T
+/// lies in the plane of incidence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReflectionChain {
-    /// The scattering surfaces, in the order of light.
+    /// The scattering surfaces, in the order light meets them.
     pub scatterers: Vec<ScatteringSurface>,
-    /// One more than there are scatterers. The first leads from (x, y, u, v) at the light to local
-    /// coordinates of where light comes from at the first scatterer. Each other leads from those of
-    /// where light goes at a scatterer, less those of the central ray, to the next scatterer, and the
-    /// last to the coordinates of the plane.
+    /// The affine maps, one more than there are scatterers. The first maps (x, y, u, v) at the
+    /// light to local coordinates of the direction of incidence at the first scatterer. Each other
+    /// maps local coordinates of the outgoing direction at a scatterer, minus those of the central
+    /// ray, to the next scatterer, and the last to the coordinates of the plane.
     pub maps: Vec<AffineMap<4>>,
-    /// The steps in words, in the order of light.
+    /// The steps in words, in the order light meets them.
     pub steps: Vec<String>,
 }
 
-/// A scattering surface where the central ray meets it.
+/// A scattering surface at the central hit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScatteringSurface {
-    /// Its number among the surfaces of the path.
+    /// Index among the surfaces of the path.
     pub number: usize,
     /// (T, B, N) at the central hit, N on the side from which light is scattered.
     pub frame: Frame,
-    /// Longitude of where the central ray comes from.
+    /// Longitude of the direction the central ray comes from.
     pub incidence: f64,
-    /// Longitude and latitude of where the central ray goes.
+    /// Longitude and latitude of the direction the central ray leaves in.
     pub outgoing: [f64; 2],
 }
 
-/// The chain of a system up to a plane; `None` where the central ray does not get there.
+/// Returns the chain of a system up to a plane; `None` if the central ray does not arrive there.
 ///
-/// Its maps are the derivatives of where rays go.
+/// Its maps are the derivatives of the exact rays.
 #[must_use]
 pub fn chain(view: &Observed<ReflectionSystem>) -> Option<ReflectionChain> {
     let scatterers = scatterers(view)?;
@@ -54,8 +54,8 @@ pub fn chain(view: &Observed<ReflectionSystem>) -> Option<ReflectionChain> {
     })
 }
 
-/// How far the maps of a chain are from those of where rays go, in radians, metres, or shares of
-/// them: zero for that of [`chain`].
+/// Returns how far the maps of a chain are from those of the exact rays, in radians, metres, or
+/// relative to these: zero for the chain of [`chain`].
 #[must_use]
 pub fn defect(view: &Observed<ReflectionSystem>, tried: &ReflectionChain) -> Option<f64> {
     let traced = chain(view)?;
@@ -64,7 +64,7 @@ pub fn defect(view: &Observed<ReflectionSystem>, tried: &ReflectionChain) -> Opt
 }
 
 impl ReflectionChain {
-    /// A of the rays from the light to the plane by way of the mirror directions, z' = A z.
+    /// Returns A of the rays from the light to the plane in the mirror directions, z' = A z.
     #[must_use]
     pub fn rays(&self) -> AffineMap<4> {
         let mut maps = self.maps.iter();
@@ -112,7 +112,7 @@ fn scatterers(view: &Observed<ReflectionSystem>) -> Option<Vec<ScatteringSurface
     Some(found)
 }
 
-/// The map from a scatterer, or the light, to the next, or the plane.
+/// Returns the map from a scatterer, or the light, to the next, or the plane.
 fn map(
     view: &Observed<ReflectionSystem>,
     scatterers: &[ScatteringSurface],
@@ -144,7 +144,7 @@ fn map(
     })
 }
 
-/// Where a ray meets a surface first.
+/// Returns the first point where a ray meets a surface.
 fn met(surface: &PathSurface, ray: &LegRay) -> Option<DVec3> {
     let start = crate::obstacle::ROUNDING * ray.point.length();
     let t = surface.first(ray, start)?;
@@ -152,7 +152,8 @@ fn met(surface: &PathSurface, ray: &LegRay) -> Option<DVec3> {
 }
 
 impl ScatteringSurface {
-    /// The ray that leaves a surface at local coordinates, less those of the central ray.
+    /// Returns the ray that leaves a surface at local coordinates relative to those of the central
+    /// ray.
     fn ray(&self, surface: &PathSurface, [s, t, theta, phi]: [f64; 4]) -> Option<LegRay> {
         let foot = self.frame.to_world(DVec3::new(s, t, 0.0));
         let down = LegRay::back(&surface.patch, foot, self.frame.d);
@@ -166,7 +167,8 @@ impl ScatteringSurface {
     }
 }
 
-/// The direction at a longitude and a latitude about a normal, in the axes of a frame turned to it.
+/// Returns the direction at a longitude and a latitude about a normal, in the axes of a frame
+/// turned to the normal.
 pub(super) fn towards(frame: &Frame, normal: DVec3, [theta, phi]: [f64; 2]) -> DVec3 {
     let [(sin, cos), (up, across)] = [theta, phi].map(libm::sincos);
     let away = DVec3::new(across * sin, up, across * cos);

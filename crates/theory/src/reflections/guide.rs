@@ -1,8 +1,9 @@
-//! Gaussians that say where light must go to come into the window, and draws by them.
+//! Gaussians that guide light into the window, and sampling by them.
 //!
-//! The window is taken for a Gaussian of its variances. An affine map takes that back to the leg
-//! before; a lobe blurs its angles there; the edge of a surface narrows its positions. What is left
-//! at a surface tells which directions matter at each of its points, and at the light which rays.
+//! The window is approximated by a Gaussian with the same variances. An affine map takes that back
+//! to the previous leg; a lobe blurs its angles there; the edge of a surface narrows its positions.
+//! The resulting Gaussian at a surface gives the relevant directions at each of its points, and at
+//! the light the relevant rays.
 
 use crate::geometry::{
     AffineMap, Matrix, congruent, diagonal, from_fn, inverse, product, sum, times,
@@ -18,7 +19,7 @@ pub(super) struct Gaussian<const N: usize> {
     pub(super) covariance: Matrix<N>,
 }
 
-/// Standard deviation of the angles of diffuse light, radians.
+/// Standard deviation of the angles of diffuse light, in radians.
 const DIFFUSE: f64 = 0.6;
 
 impl Gaussian<4> {
@@ -30,7 +31,7 @@ impl Gaussian<4> {
         }
     }
 
-    /// Of what a map takes to this one.
+    /// Returns the Gaussian that a map takes to this one.
     pub(super) fn before(&self, map: &AffineMap<4>) -> Option<Self> {
         let back = map.inverse()?;
         Some(Self {
@@ -39,8 +40,9 @@ impl Gaussian<4> {
         })
     }
 
-    /// Of where light comes from that a lobe sends to this one, whose angles are those less the
-    /// central ray's: blurred about the mirror direction; of diffuse light they are any.
+    /// Returns the Gaussian of incident light that a lobe scatters into this one, whose angles are
+    /// relative to the central ray: blurred about the mirror direction; for diffuse light the
+    /// angles are arbitrary.
     pub(super) fn before_lobe(&self, width: Option<f64>, outgoing: [f64; 2]) -> Self {
         let [s, t, theta, phi] = self.mean;
         let Some(width) = width else {
@@ -62,7 +64,8 @@ impl Gaussian<4> {
         }
     }
 
-    /// Its product with a Gaussian of its own along each axis, given by means and inverse variances.
+    /// Returns the product with an independent Gaussian along each axis, given by means and inverse
+    /// variances.
     pub(super) fn narrowed(&self, means: [f64; 4], precisions: [f64; 4]) -> Option<Self> {
         let own = inverse(&self.covariance)?;
         let covariance = inverse(&sum(&own, &diagonal(precisions)))?;
@@ -74,8 +77,8 @@ impl Gaussian<4> {
         })
     }
 
-    /// Of two coordinates, positions or slopes, the other two being known; `None` where these have no
-    /// width.
+    /// Returns the Gaussian of two coordinates, positions or slopes, conditional on the other two;
+    /// `None` if these have zero width.
     pub(super) fn given(&self, [a, b]: [usize; 2]) -> Option<Conditional> {
         let others = match a {
             0 => [2, 3],
@@ -97,13 +100,13 @@ impl Gaussian<4> {
     }
 }
 
-/// A Gaussian of two coordinates, whose mean moves with two others.
+/// A Gaussian of two coordinates, whose mean depends linearly on two others.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Conditional {
-    /// Where the others have the mean here.
+    /// The value of the other two coordinates at which the mean is `mean`.
     known: [f64; 2],
     mean: [f64; 2],
-    /// How far it moves with them.
+    /// The derivative of the mean by the other two coordinates.
     gain: Matrix<2>,
     covariance: Matrix<2>,
 }
@@ -120,7 +123,7 @@ impl Conditional {
 }
 
 impl Gaussian<2> {
-    /// About a mean, with one standard deviation along both axes.
+    /// Returns a Gaussian about a mean, with one standard deviation along both axes.
     pub(super) fn round(mean: [f64; 2], width: Option<f64>) -> Self {
         let width = width.unwrap_or(DIFFUSE);
         Self {
@@ -129,7 +132,7 @@ impl Gaussian<2> {
         }
     }
 
-    /// The product of two.
+    /// Returns the product of two Gaussians.
     pub(super) fn product(&self, other: &Self) -> Option<Self> {
         let [a, b] = [inverse(&self.covariance)?, inverse(&other.covariance)?];
         let covariance = inverse(&sum(&a, &b))?;
@@ -142,16 +145,16 @@ impl Gaussian<2> {
     }
 }
 
-/// A density of two coordinates as wide as a Gaussian, with tails so long that no ray stands for
-/// much more than its share.
+/// A density of two coordinates as wide as a Gaussian, with tails long enough to bound the weights
+/// of rays.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HeavyTailedGaussian {
     mean: [f64; 2],
-    /// Lower triangle R: points are mean + R q.
+    /// Lower triangular matrix R: points are mean + R q.
     root: [f64; 3],
 }
 
-/// Width of a bell over the standard deviation of its Gaussian.
+/// Width of a density over the standard deviation of its Gaussian.
 const BROADENED: f64 = 1.8;
 
 impl HeavyTailedGaussian {
@@ -185,12 +188,13 @@ impl HeavyTailedGaussian {
     }
 }
 
-/// Bells of which one is drawn from in turn, each with its share.
+/// A mixture of such densities, each with its share.
 #[derive(Clone, Debug)]
 pub(super) struct GuideMixture(Vec<(f64, HeavyTailedGaussian)>);
 
 impl GuideMixture {
-    /// Of Gaussians with their shares, which add up to 1; those that are no density are left out.
+    /// Builds the mixture from Gaussians with shares that add up to 1; degenerate Gaussians are
+    /// left out.
     pub(super) fn new(parts: impl IntoIterator<Item = (f64, Option<Gaussian<2>>)>) -> Option<Self> {
         let bells = parts.into_iter();
         let bells =
@@ -211,7 +215,7 @@ impl GuideMixture {
             }
             left -= share;
         }
-        // Rounding has left a little beyond the last.
+        // Rounding may leave a remainder beyond the last.
         let (_, last) = self.0[self.0.len() - 1];
         last.draw([0.5, b])
     }
@@ -222,7 +226,7 @@ impl GuideMixture {
     }
 }
 
-/// The variance of a window's profile.
+/// Returns the variance of a window's profile.
 fn variance(profile: &Profile) -> f64 {
     match *profile {
         Profile::Hann(half) => half * half * (1.0 / 3.0 - 2.0 / (PI * PI)),

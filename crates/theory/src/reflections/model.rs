@@ -1,4 +1,5 @@
-//! Surfaces in a row and a plane behind them as a model: its parameters and its prediction.
+//! Implements the model of several surfaces in sequence and a plane behind them: its parameters and
+//! its prediction.
 
 use super::{Interaction, PathSurface, ReflectionSystem, predict};
 use crate::model::{Model, Observed, Over, ShiftedModels};
@@ -14,11 +15,11 @@ impl ReflectionSystem {
         &self.surfaces[..self.visited]
     }
 
-    /// The same system with a light and lobes `factor` times as wide. `None` where a surface reflects
-    /// diffusely, in a lobe of no width.
+    /// Returns the system with a light and lobes `factor` times as wide. `None` if a surface
+    /// reflects diffusely, since its lobe has no width.
     ///
-    /// With windows as much narrower and frequencies as much higher, what first-order maps leave
-    /// out falls with the factor.
+    /// With narrower windows and higher frequencies by the same factor, the error of first-order
+    /// maps falls with the factor.
     #[must_use]
     pub fn shrunk(&self, factor: f64) -> Option<Self> {
         let mut system = self.clone();
@@ -34,14 +35,15 @@ impl ReflectionSystem {
         Some(system)
     }
 
-    /// The last surface that scatters light before the plane.
+    /// Returns the last surface that scatters light before the plane.
     fn last_scatterer(&self) -> Option<usize> {
         self.before_plane().iter().rposition(PathSurface::scatters)
     }
 }
 
 impl PathSurface {
-    /// The factor of its BRDF, if it scatters; where BRDFs add up, of the first alone.
+    /// Returns the factor of the surface's BRDF, if it scatters; for a sum of BRDFs, of the first
+    /// alone.
     fn albedo_mut(&mut self) -> Option<&mut f64> {
         match &mut self.interaction {
             Interaction::Specular(_) => None,
@@ -50,7 +52,8 @@ impl PathSurface {
         }
     }
 
-    /// The exponent or the roughness of its lobe, and what that is called.
+    /// Returns the exponent or the roughness of the surface's lobe, with the name of that
+    /// parameter.
     fn lobe_mut(&mut self) -> Option<(&'static str, &mut f64)> {
         match &mut self.interaction {
             Interaction::Reflects(reflectance) => reflectance.first_mut().lobe.number_mut(),
@@ -58,7 +61,7 @@ impl PathSurface {
         }
     }
 
-    /// Whether all light that it scatters is in proportion to its albedo.
+    /// Checks whether all light that the surface scatters is proportional to its albedo.
     fn is_in_proportion(&self) -> bool {
         match &self.interaction {
             Interaction::Reflects(reflectance) => reflectance.only().is_some(),
@@ -67,8 +70,8 @@ impl PathSurface {
     }
 }
 
-/// The albedo and the lobe are those of the last surface that scatters: of albedos the light tells
-/// the product alone.
+/// The albedo and the lobe are those of the last surface that scatters: the light determines only
+/// the product of all albedos.
 impl Model for Observed<ReflectionSystem> {
     fn light(&self) -> &Light {
         &self.system.light
@@ -134,7 +137,7 @@ impl Model for Observed<ReflectionSystem> {
         Some(())
     }
 
-    /// With the difference to the first-order chain.
+    /// Includes the difference to the first-order chain.
     fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: RayBudget) -> Predicted {
         let last = self.system.last_scatterer();
         let surface = last.map(|last| self.system.surfaces[last].clone());

@@ -1,4 +1,4 @@
-//! One path from the light to the plane, drawn at a point of the unit cube.
+//! One path from the light to the plane, sampled from a point of the unit cube.
 
 use super::aim::DirectionCoordinates;
 use super::chain::{ReflectionChain, ScatteringSurface, chain};
@@ -20,33 +20,34 @@ pub(super) struct FieldPaths<'a> {
     window: &'a Window,
     obstacles: PreparedObstacles<'a>,
     chain: ReflectionChain,
-    /// Rays of the light, and directions away from each scatterer, that come into the window.
+    /// Gaussians of the light's rays, and of directions away from each scatterer, that reach the
+    /// window.
     guides: Vec<Conditional>,
-    /// Of the leg from the light, and from each scatterer.
+    /// The aims of the leg from the light, and from each scatterer.
     aims: Vec<DirectionCoordinates>,
 }
 
-/// A path as it goes, and as the chain has it.
+/// A path through the exact geometry, and its counterpart in the chain.
 pub(super) struct DrawnPath {
     pub(super) exact: RayNode,
     pub(super) first_order: RayNode,
 }
 
-/// A path on its way.
+/// A path under construction.
 struct Going {
     ray: LegRay,
-    /// Flux over the density of what was drawn.
+    /// Flux divided by the sampling density.
     flux: f64,
-    /// The same by the chain: radiance times the volume that the path stands for.
+    /// The weight in the chain: radiance times the volume that the path represents.
     radiance: f64,
-    /// Coordinates by the chain.
+    /// Coordinates in the chain.
     at: [f64; 4],
-    /// The point of the next surface that the leg is aimed at.
+    /// The point of the next surface at which the leg is aimed.
     target: Option<DVec3>,
 }
 
 impl<'a> FieldPaths<'a> {
-    /// `None` where the chain does not tell where light must go.
+    /// Returns `None` if the chain does not determine a guide.
     pub(super) fn new(view: &'a Observed<ReflectionSystem>, window: &'a Window) -> Option<Self> {
         let chain = chain(view)?;
         let mut guides = Vec::new();
@@ -74,12 +75,12 @@ impl<'a> FieldPaths<'a> {
         })
     }
 
-    /// Coordinates of the unit cube that a path takes.
+    /// Returns the number of coordinates of the unit cube that a path uses.
     pub(super) fn dimensions(&self) -> usize {
         4 + 2 * self.chain.scatterers.len()
     }
 
-    /// The path at a point of the unit cube; `None` if it brings no light.
+    /// Returns the path for a point of the unit cube; `None` if it carries no light.
     pub(super) fn draw(&self, at: &[f64; DIMENSIONS]) -> Option<DrawnPath> {
         let system = &self.view.system;
         let mut going = self.begin([at[0], at[1], at[2], at[3]])?;
@@ -97,7 +98,7 @@ impl<'a> FieldPaths<'a> {
         self.end(&going)
     }
 
-    /// A ray of the light.
+    /// Samples a ray of the light.
     fn begin(&self, [a, b, c, d]: [f64; 4]) -> Option<Going> {
         let light = &self.view.system.light;
         let (outer, per_area) = match light.shape() {
@@ -137,7 +138,7 @@ impl<'a> FieldPaths<'a> {
         })
     }
 
-    /// Where light meets the surface at the end of a leg; `None` if it does not.
+    /// Returns the point where light meets the surface at the end of a leg; `None` if it does not.
     fn arrive(&self, leg: usize, going: &mut Going) -> Option<DVec3> {
         let Going { ray, .. } = going;
         let surfaces = &self.view.system.surfaces;
@@ -150,14 +151,14 @@ impl<'a> FieldPaths<'a> {
         going.flux *= passes;
         going.radiance *= passes;
         let point = ray.point + end * ray.direction;
-        // A ray through two points of a surface is drawn by the first alone.
+        // If a ray meets a surface at two points, only the first generates it.
         let beside = |target: DVec3| target.distance(point) > SAME_DISTANCE * end;
         let is_second = going.target.take().is_some_and(beside);
         (passes > 0.0 && !is_second).then_some(point)
     }
 
-    /// Whether a surface of the path stands in the way of a ray of a leg, other than that which ends
-    /// the leg.
+    /// Checks whether a surface of the path, other than the one that ends the leg, occludes a ray
+    /// of a leg.
     fn is_hidden(&self, leg: usize, ray: &LegRay, [start, end]: [f64; 2]) -> bool {
         let surfaces = &self.view.system.surfaces;
         let ends = surfaces.get(leg).map(|surface| surface.patch);
@@ -166,7 +167,7 @@ impl<'a> FieldPaths<'a> {
         met.any(|t| t < end)
     }
 
-    /// A direction away from a scatterer, and what it carries.
+    /// Samples a direction away from a scatterer, and updates the weight.
     fn scatter(&self, number: usize, point: DVec3, r: [f64; 2], going: &mut Going) -> Option<()> {
         let scatterer = &self.chain.scatterers[number];
         let surface = &self.view.system.surfaces[scatterer.number];
@@ -215,7 +216,7 @@ impl<'a> FieldPaths<'a> {
         (going.flux > 0.0 || going.radiance > 0.0).then_some(())
     }
 
-    /// The last leg, to the plane.
+    /// Follows the last leg, to the plane.
     fn end(&self, going: &Going) -> Option<DrawnPath> {
         let Going {
             ray,
@@ -252,19 +253,19 @@ impl<'a> FieldPaths<'a> {
     }
 }
 
-/// Share of a distance within which two points are one.
+/// Points closer than this share of their distance are treated as equal.
 const SAME_DISTANCE: f64 = 1e-6;
-/// Standard deviation of angles of incidence, radians, where nothing else narrows them.
+/// Standard deviation of angles of incidence, in radians, if nothing else narrows them.
 const FRONT: f64 = 0.6;
 
-/// Where light must come from at a surface, by where it must go.
+/// Returns the guide for incident light at a surface, given the guide for outgoing light.
 fn on_surface(
     guide: &Gaussian<4>,
     surface: &PathSurface,
     scatterer: &ScatteringSurface,
 ) -> Option<Gaussian<4>> {
     let width = surface.width(surface.hit);
-    // The mean square along an axis, of a disc or a rectangle.
+    // The variance along an axis, for a disc or a rectangle.
     let variance = match surface.outline {
         Some([x, y]) => (x * x + y * y) / 24.0,
         None => 0.25 * surface.patch.aperture * surface.patch.aperture,
@@ -277,7 +278,7 @@ fn on_surface(
         .narrowed([middle.x, middle.y, 0.0, 0.0], [edge, edge, front, front])
 }
 
-/// What of the rays that come into the window the light has.
+/// Restricts the guide of rays that reach the window to the rays that the light emits.
 fn of_light(guide: &Gaussian<4>, light: &Light) -> Option<Gaussian<4>> {
     let Some(image) = light.image() else {
         return Some(*guide);

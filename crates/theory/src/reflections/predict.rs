@@ -1,4 +1,4 @@
-//! Slices of light that several surfaces send on, over scrambled nets of paths.
+//! Predicted slices of light that several surfaces reflect in turn, over scrambled nets of paths.
 
 use super::ReflectionSystem;
 use super::path::FieldPaths;
@@ -7,11 +7,11 @@ use crate::nets::{self, DIMENSIONS, Integrand, RayBudget, RayNets, RayNode};
 use crate::predicted::Predicted;
 use etendue_field::Slices;
 
-/// The windowed spectrum, with the derivatives by what was moved. The same bytes on any number of
-/// threads.
+/// Returns the windowed spectrum, with the derivatives by given parameters. The result is bitwise
+/// identical on any number of threads.
 ///
-/// What the chain predicts, and the derivatives, are differences over the same paths: good to about
-/// a per cent of what they are.
+/// The prediction of the chain, and the derivatives, are differences over the same paths: accurate
+/// to about a per cent of their values.
 pub(crate) fn predict(
     view: &Observed<ReflectionSystem>,
     moved: &[ShiftedModels<Observed<ReflectionSystem>>],
@@ -51,7 +51,7 @@ pub(crate) fn with_rays(
     }
 }
 
-/// Of light that the chain does not lead to the plane.
+/// The prediction if the chain does not lead light to the plane.
 fn dark(
     moved: &[ShiftedModels<Observed<ReflectionSystem>>],
     (_, grid, picture): Over<'_>,
@@ -78,8 +78,8 @@ impl Integrand for FieldPaths<'_> {
     }
 }
 
-/// The difference of the chain from a light field, and that of light fields with more and with less
-/// of each parameter.
+/// The difference of the chain from a light field, and the differences between light fields with
+/// each parameter increased and decreased.
 struct ChainDifferences<'a> {
     paths: &'a FieldPaths<'a>,
     moved: Vec<(f64, [Option<FieldPaths<'a>>; 2])>,

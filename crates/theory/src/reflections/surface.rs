@@ -1,4 +1,4 @@
-//! One surface of the path: where rays meet it, and how it reflects.
+//! One surface of the path: intersection and reflection.
 
 use super::{Interaction, PathSurface};
 use crate::obstacle::on_patch;
@@ -9,25 +9,25 @@ use glam::DVec3;
 use std::f64::consts::FRAC_1_SQRT_2;
 
 impl PathSurface {
-    /// Whether it draws a new direction for light.
+    /// Checks whether the surface scatters light in a sampled direction.
     #[must_use]
     pub fn scatters(&self) -> bool {
         !matches!(self.interaction, Interaction::Specular(_))
     }
 
-    /// Distances beyond `start` at which a ray meets it.
+    /// Returns the distances beyond `start` at which a ray meets the surface.
     pub(super) fn distances(&self, ray: &LegRay, start: f64) -> impl Iterator<Item = f64> {
         let distances = on_patch(&self.patch, ray).into_iter().flatten();
         let inside = move |t: &f64| *t > start && self.holds(ray.point + *t * ray.direction);
         distances.filter(inside)
     }
 
-    /// The first of these.
+    /// Returns the first of these distances.
     pub(super) fn first(&self, ray: &LegRay, start: f64) -> Option<f64> {
         self.distances(ray, start).min_by(f64::total_cmp)
     }
 
-    /// Whether a point of the patch lies in the outline.
+    /// Checks whether a point of the patch lies in the outline.
     fn holds(&self, point: DVec3) -> bool {
         self.outline.is_none_or(|size| {
             let at = self.patch.frame.to_local(point);
@@ -35,15 +35,15 @@ impl PathSurface {
         })
     }
 
-    /// The unit normal at a point, on the side that the patch faces.
+    /// Returns the unit normal at a point, on the side that the patch faces.
     pub(super) fn normal(&self, point: DVec3) -> Option<DVec3> {
         let frame = &self.patch.frame;
         let gradient = self.patch.gradient(frame.to_local(point)).try_normalize()?;
         Some(frame.vector_to_world(gradient))
     }
 
-    /// Where a ray goes on that meets a specular surface at a point; `None` at a scattering one, and
-    /// where all light is reflected that should pass.
+    /// Returns the continuation of a ray that meets a specular surface at a point; `None` at a
+    /// scattering one, and under total internal reflection at a refracting one.
     pub(super) fn turned(&self, ray: &LegRay, point: DVec3) -> Option<LegRay> {
         let Interaction::Specular(event) = self.interaction else {
             return None;
@@ -53,8 +53,8 @@ impl PathSurface {
         Some(LegRay { point, direction })
     }
 
-    /// The normal on the side from which light is scattered that arrives along a direction; `None`
-    /// on a black side.
+    /// Returns the normal on the side from which light arriving along a direction is scattered;
+    /// `None` on a black side.
     pub(super) fn lit_side(&self, point: DVec3, direction: DVec3) -> Option<DVec3> {
         let normal = self.normal(point)?;
         let faces = normal.dot(direction) < 0.0;
@@ -64,7 +64,7 @@ impl PathSurface {
         }
     }
 
-    /// A sum over the BRDFs at a point of a scattering surface, with their weights.
+    /// Returns a sum over the BRDFs at a point of a scattering surface, with their weights.
     fn sum(&self, point: DVec3, of: impl Fn(&Brdf) -> f64) -> f64 {
         match &self.interaction {
             Interaction::Specular(_) => 0.0,
@@ -78,18 +78,19 @@ impl PathSurface {
         }
     }
 
-    /// The BRDF of light from `from` to `to`, unit vectors away from the surface; sr⁻¹.
+    /// Returns the BRDF of light from `from` to `to`, unit vectors away from the surface; sr⁻¹.
     pub(super) fn value(&self, point: DVec3, normal: DVec3, [from, to]: [DVec3; 2]) -> f64 {
         self.sum(point, |brdf| brdf::value(brdf, normal, from, to))
     }
 
-    /// The same by the chain, for light from and to a longitude and a latitude.
+    /// Returns the BRDF in the chain, for light from and to a longitude and a latitude.
     pub(super) fn kernel(&self, point: DVec3, incidence: f64, angles: [[f64; 2]; 2]) -> f64 {
         let [from, to] = angles;
         self.sum(point, |brdf| kernel(brdf, incidence, from, to))
     }
 
-    /// Standard deviation of the narrowest lobe at a point, radians; `None` of diffuse light.
+    /// Returns the standard deviation of the narrowest lobe at a point, in radians; `None` for
+    /// diffuse light.
     pub(super) fn width(&self, point: DVec3) -> Option<f64> {
         let Interaction::Reflects(reflectance) = &self.interaction else {
             return None;

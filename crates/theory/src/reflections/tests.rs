@@ -1,4 +1,4 @@
-//! Light that several surfaces send on, held against theories and sums of its own.
+//! Tests of light that several surfaces reflect in turn, against other theories and separate sums.
 
 use super::*;
 use crate::obstacle::ObstacleForm;
@@ -54,7 +54,7 @@ fn reflectance(lobe: Lobe) -> Reflectance {
     Brdf::new(lobe, 0.7, Fresnel::White).into()
 }
 
-/// A patch around a point, facing along a direction in the plane of X and Z.
+/// Returns a patch around a point that faces a direction in the plane of X and Z.
 fn patch(at: DVec3, facing: DVec3, curvature: f64) -> Patch {
     Patch {
         frame: Frame::new(at, facing.normalize(), DVec3::Y).unwrap(),
@@ -82,22 +82,22 @@ fn system(light: Light, surfaces: Vec<PathSurface>) -> ReflectionSystem {
     }
 }
 
-/// Across a ray through a point.
+/// Returns a plane across a ray through a point.
 fn across(origin: DVec3, d: DVec3, x: DVec3) -> Plane {
     Plane::orthogonal(Frame::new(origin, d, x).unwrap())
 }
 
-/// How far two predictions are apart in their errors.
+/// Returns the difference of two predictions in units of their errors.
 fn apart(a: &Predicted, b: &Predicted) -> f64 {
     let error = libm::hypot(a.error.unwrap(), b.error.unwrap());
     a.slices.relative_difference(&b.slices) / error
 }
 
-/// Differences of two predictions in their errors: the mean over as many frequencies as there are
-/// here exceeds 1.3 once in a thousand.
+/// Largest difference of two predictions in units of their errors: the mean over this many
+/// frequencies exceeds 1.3 once in a thousand.
 const CLOSE: f64 = 1.3;
 
-/// One surface, against rays drawn from the plane back to the light.
+/// One surface, against rays sampled from the plane back to the light.
 #[test]
 fn one_surface_is_that_of_scattering() {
     let normal = DVec3::new(FRAC_1_SQRT_2, 0.0, -FRAC_1_SQRT_2);
@@ -142,7 +142,7 @@ fn one_surface_is_that_of_scattering() {
         assert!(other.error.unwrap() < 0.02, "{lobe:?} {:?}", other.error); // 2·10⁶ paths
         let off = apart(&one, &other);
         assert!(off < CLOSE, "{lobe:?} {off}");
-        // The chains differ by where they meet the mask alone.
+        // The chains differ only in where rays meet the mask.
         let [one, other] = [one, other].map(|found| {
             let size = found.slices.at_zero();
             found.to_first_order.unwrap().at_zero() / size
@@ -151,8 +151,8 @@ fn one_surface_is_that_of_scattering() {
     }
 }
 
-/// A flat mirror before and a flat mirror behind a surface, against the light and the plane where
-/// they are seen in these.
+/// A flat mirror before and a flat mirror behind a surface, against the light and the plane at
+/// their mirror images.
 #[test]
 fn flat_mirrors_unfold() {
     let mirror = || Interaction::Specular(Specular::Mirror);
@@ -170,7 +170,7 @@ fn flat_mirrors_unfold() {
         lamp(0.2),
         vec![surface(patch(2.0 * z, -x - z, 0.0), gloss())],
     );
-    // Seen in the mirror, Z is X and X is Z.
+    // In the mirror, Z and X are exchanged.
     let plane = across(2.0 * z - 0.5 * x, -x, z);
     let wanted = predicted(&straight, &plane, &window);
     let off = apart(&found, &wanted);
@@ -188,8 +188,8 @@ fn flat_mirrors_unfold() {
     assert!(off < CLOSE, "behind: {off}");
 }
 
-/// The radiance of a floor that a diffuse wall lights, and the wall a projector, against a sum over
-/// the wall.
+/// The radiance of a floor lit by a diffuse wall that a projector lights, against a sum over the
+/// wall.
 #[test]
 fn two_diffuse_surfaces_are_a_sum_over_the_first() {
     let (x, z) = (DVec3::X, DVec3::Z);
@@ -231,11 +231,11 @@ fn two_diffuse_surfaces_are_a_sum_over_the_first() {
     }
     let wanted = 0.5 / PI * irradiance * (2.0 * small).powi(4);
     let off = found.slices.at_zero() / wanted - 1.0;
-    // The rule meets the round edge of the wall with squares of 3 mm.
+    // The rule approximates the round edge of the wall by squares of 3 mm.
     assert!(off.abs() < 3e-3, "{off:e} {:?}", found.error);
 }
 
-/// What stands between two surfaces, a surface of the path among it, hides light.
+/// Occluders between two surfaces block light, including surfaces of the path.
 #[test]
 fn surfaces_and_masks_hide_later_legs() {
     let (x, z) = (DVec3::X, DVec3::Z);
@@ -258,11 +258,11 @@ fn surfaces_and_masks_hide_later_legs() {
         form: ObstacleForm::Patch(card),
     });
     let stopped = predicted(&open, &plane, &window).slices.at_zero();
-    // The card is 0.4 m wide, half-way from the wall, which is lit for a metre and more.
+    // The card is 0.4 m wide, half-way from the wall, which is lit over more than a metre.
     assert!(hidden < 0.9 * whole && (hidden / stopped - 1.0).abs() < 0.02); // errors of both nets
 }
 
-/// A chain with a wrong map is told from that of the surfaces.
+/// A chain with a wrong map is distinguished from the correct chain.
 #[test]
 fn a_wrong_map_is_a_defect() {
     let (x, z) = (DVec3::X, DVec3::Z);

@@ -1,12 +1,12 @@
-//! The BRDFs of `etendue_field::Brdf`, by formulas of theory's own.
+//! The BRDFs of `etendue_field::Brdf`, implemented independently for theory.
 
 use crate::shading::unpolarised_reflectance;
 use etendue_field::{AngleTable, Brdf, Complex, Fresnel, Lobe, Mixture};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// The sum of BRDFs for light that comes from `from` and leaves along `to`, unit vectors away from
-/// the surface with this unit normal; sr⁻¹.
+/// Returns the sum of BRDFs for light from `from` to `to`, unit vectors away from the surface with
+/// this unit normal; sr⁻¹.
 #[must_use]
 pub fn sum(mixture: &Mixture<'_>, normal: DVec3, from: DVec3, to: DVec3) -> f64 {
     let each = mixture.weighted();
@@ -14,13 +14,13 @@ pub fn sum(mixture: &Mixture<'_>, normal: DVec3, from: DVec3, to: DVec3) -> f64 
         .sum()
 }
 
-/// One BRDF, as [`sum`] has it.
+/// Returns one BRDF, with the arguments of [`sum`].
 #[must_use]
 pub fn value(brdf: &Brdf, normal: DVec3, from: DVec3, to: DVec3) -> f64 {
     factors(brdf, normal.dot(from), normal.dot(to)) * lobe(brdf, normal, from, to)
 }
 
-/// f(θi) h(θo), by the cosines of both angles.
+/// Returns f(θi) h(θo), from the cosines of both angles.
 pub(super) fn factors(brdf: &Brdf, cos_from: f64, cos_to: f64) -> f64 {
     let factor = |table: &Option<AngleTable>, cos: f64| {
         table.as_ref().map_or(1.0, |table| between(table, cos))
@@ -28,7 +28,8 @@ pub(super) fn factors(brdf: &Brdf, cos_from: f64, cos_to: f64) -> f64 {
     factor(&brdf.incoming, cos_from) * factor(&brdf.outgoing, cos_to)
 }
 
-/// The value of a table at an angle with this cosine, as a sum of hats about its nodes.
+/// Returns the value of a table at an angle with this cosine, as a sum of hat functions about its
+/// nodes.
 fn between(table: &AngleTable, cos: f64) -> f64 {
     let steps = (table.values.len() - 1) as f64;
     let at = libm::acos(cos.clamp(0.0, 1.0)) * steps / FRAC_PI_2;
@@ -38,7 +39,7 @@ fn between(table: &AngleTable, cos: f64) -> f64 {
         .sum()
 }
 
-/// A BRDF without its factors f and h.
+/// Returns a BRDF without its factors f and h.
 pub(super) fn lobe(brdf: &Brdf, normal: DVec3, from: DVec3, to: DVec3) -> f64 {
     let (cos_from, cos_to) = (normal.dot(from), normal.dot(to));
     if cos_from <= 0.0 || cos_to <= 0.0 {
@@ -88,12 +89,13 @@ pub(super) fn lobe(brdf: &Brdf, normal: DVec3, from: DVec3, to: DVec3) -> f64 {
     brdf.albedo * lobe
 }
 
-/// The smallest [`angular_width`] of several lobes that has one.
+/// Returns the smallest [`angular_width`] of several lobes, among those that have one.
 pub(crate) fn narrowest<'a>(brdfs: impl Iterator<Item = &'a Brdf>) -> Option<f64> {
     brdfs.filter_map(angular_width).min_by(f64::total_cmp)
 }
 
-/// Radians from the mirror direction within which most of a lobe lies; `None` where that is all.
+/// Returns the angle in radians from the mirror direction within which most of a lobe lies; `None`
+/// if it covers all directions.
 fn angular_width(brdf: &Brdf) -> Option<f64> {
     match brdf.lobe {
         Lobe::Lambertian => None,
@@ -102,8 +104,8 @@ fn angular_width(brdf: &Brdf) -> Option<f64> {
     }
 }
 
-/// tan² of the tilt of the microfacet that reflects one direction into the other, and the cosine at
-/// which it is met.
+/// Returns tan² of the tilt of the microfacet that reflects one direction into the other, and the
+/// cosine of incidence on it.
 fn half_way(normal: DVec3, from: DVec3, to: DVec3) -> [f64; 2] {
     let half = (from + to).normalize();
     let cos = half.dot(normal);
@@ -136,7 +138,7 @@ fn beckmann_shadow(cos: f64, roughness: f64) -> f64 {
     2.0 / (1.0 + libm::erf(a) + libm::exp(-a * a) / (a * PI.sqrt()))
 }
 
-/// The share of unpolarised light reflected at an angle with this cosine.
+/// Returns the share of unpolarised light reflected at an angle with this cosine.
 pub(super) fn reflectance(fresnel: Fresnel, cos: f64) -> f64 {
     let index = match fresnel {
         Fresnel::White => return 1.0,
@@ -163,7 +165,7 @@ mod tests {
             assert!((reflectance(glass, cos) - a).abs() < 1e-14); // rounding
             assert!((reflectance(aluminium, cos) - b).abs() < 1e-14); // rounding
         }
-        // From the denser side beyond the critical angle everything is reflected.
+        // From the denser side all light is reflected beyond the critical angle.
         let inside = reflectance(Fresnel::Dielectric { index: 1.0 / 1.5 }, 0.3);
         assert!((inside - 1.0).abs() < 1e-14); // rounding
     }
@@ -190,7 +192,7 @@ mod tests {
             Lobe::Ggx { roughness: 0.02 },
         ] {
             let albedo = total(lobe, true);
-            // Of light that meets smooth microfacets head-on, next to nothing is shadowed.
+            // Almost no light is shadowed on smooth microfacets at normal incidence.
             assert!((0.99..=1.0 + 1e-9).contains(&albedo), "{lobe:?} {albedo}");
         }
     }

@@ -10,21 +10,21 @@ use etendue_field::{
 };
 use glam::DVec3;
 
-/// What the central ray does, to first order in the neighbourhood.
+/// The path of the central ray, and its neighbourhood to first order.
 ///
-/// Local coordinates are (s, t, θ, φ): positions along T and B, angles to the local normals, T
-/// lying in the plane of incidence.
+/// Local coordinates are (s, t, θ, φ): positions along T and B, angles to the local normals. T lies
+/// in the plane of incidence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScatteringChain {
-    /// From (x, y, u, v) at the light to local coordinates of where light comes from: travel,
+    /// From (x, y, u, v) at the light to local coordinates of the direction of incidence: travel,
     /// incidence, curvature.
     pub onto: AffineMap<4>,
-    /// From local coordinates of where light goes to those of the plane: back, outgoing angle,
-    /// travel.
+    /// From local coordinates of the outgoing direction to those of the plane: back, outgoing
+    /// angle, travel.
     pub off: AffineMap<4>,
-    /// Longitude θ₀ of where the central ray comes from.
+    /// Longitude θ₀ of the direction the central ray comes from.
     pub incidence: f64,
-    /// Longitude θ₁ and latitude of where the central ray goes.
+    /// Longitude θ₁ and latitude of the direction the central ray leaves in.
     pub outgoing: [f64; 2],
     /// The shape operator at the central hit along (T, B), per metre, convex positive.
     pub curvature: Matrix<2>,
@@ -32,16 +32,15 @@ pub struct ScatteringChain {
     pub distance: f64,
     /// (T, B, N) at the central hit.
     pub frame: Frame,
-    /// The steps in words, in the order of light.
+    /// The steps in words, in the order light meets them.
     pub steps: Vec<String>,
 }
 
-/// The chain of a system up to a plane on its surface or beyond; `None` where the central ray does
-/// not get there.
+/// Returns the chain of a system up to a plane on its surface or beyond; `None` if the central ray
+/// does not arrive there.
 ///
-/// Its maps are the derivatives of where rays go; without twist they are those of Durand et al.
-/// 2005, Eqs. 9–11 and 19, corrected (docs/theory.md, section 7), which its tests hold them
-/// against.
+/// Its maps are the derivatives of the exact rays; without twist they are those of Durand et al.
+/// 2005, Eqs. 9–11 and 19, corrected (docs/theory.md, section 7), as the tests verify.
 #[must_use]
 pub fn chain(view: &Observed<ScatteringSystem>) -> Option<ScatteringChain> {
     let Observed { system, plane } = view;
@@ -98,8 +97,8 @@ pub fn chain(view: &Observed<ScatteringSystem>) -> Option<ScatteringChain> {
     })
 }
 
-/// How far the maps of a chain are from those of where rays go, in radians, metres, or shares of
-/// them: zero for that of [`chain`].
+/// Returns how far the maps of a chain are from those of the exact rays, in radians, metres, or
+/// relative to these: zero for the chain of [`chain`].
 #[must_use]
 pub fn defect(view: &Observed<ScatteringSystem>, tried: &ScatteringChain) -> Option<f64> {
     let traced = chain(view)?;
@@ -108,14 +107,14 @@ pub fn defect(view: &Observed<ScatteringSystem>, tried: &ScatteringChain) -> Opt
 }
 
 impl ScatteringChain {
-    /// A of the rays from the light to the plane by way of the mirror direction, z' = A z.
+    /// Returns A of the rays from the light to the plane in the mirror direction, z' = A z.
     #[must_use]
     pub fn rays(&self) -> AffineMap<4> {
         self.onto.then(&AffineMap::<4>::mirror()).then(&self.off)
     }
 }
 
-/// Coordinates at a point of the surface, of a direction away from it.
+/// Returns the local coordinates, at a point of the surface, of a direction away from it.
 pub(crate) fn local(frame: &Frame, point: DVec3, normal: DVec3, away: DVec3) -> [f64; 4] {
     let at = frame.to_local(point);
     let away = frame.turned_to(normal).vector_to_local(away);
@@ -180,7 +179,7 @@ fn steps(
     steps
 }
 
-/// The BRDFs in words: a line for each step of one alone, or for each term of a sum.
+/// Describes the BRDFs in words: a line for each step of a single BRDF, or for each term of a sum.
 pub(crate) fn reflection(reflectance: &Reflectance) -> Vec<String> {
     let terms = &reflectance.terms;
     let sum = terms.iter().enumerate().map(|(i, term)| {
@@ -202,7 +201,8 @@ pub(crate) fn reflection(reflectance: &Reflectance) -> Vec<String> {
     words
 }
 
-/// The factors of angles before and after a lobe, with the lobe between them; verbs first.
+/// Describes the factors of angles before and after a lobe, with the lobe between them; verbs
+/// first.
 fn term_in_words(term: &Term) -> impl Iterator<Item = [String; 2]> {
     let brdf = &term.brdf;
     let lobe = match brdf.lobe {

@@ -1,8 +1,9 @@
-//! How rays at a plane, and what shines on where they come from, are drawn: importance sampling.
+//! Importance sampling of rays at a plane, and of the light that shines on their starting points.
 //!
-//! Any density that vanishes nowhere where there is light gives the same integral. These follow the
-//! window, the lobe of the BRDF and the light, and where two of them compete, half of the rays are
-//! drawn by each and all are weighed by the mixture (the balance heuristic, Veach and Guibas 1995).
+//! Any density that is non-zero wherever there is light gives the same integral. These densities
+//! follow the window, the lobe of the BRDF and the light; if two of them compete, half of the rays
+//! are sampled from each and all are weighted by the mixture (the balance heuristic, Veach and
+//! Guibas 1995).
 
 use super::brdf::narrowest;
 use super::exact::Leaving;
@@ -16,19 +17,19 @@ use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// What is drawn how. No choice is best everywhere: they are tried on the scene.
+/// A sampling strategy. No strategy is best for every scene; they are tried on the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct LightStrategy {
-    /// Half of the slopes about the mirrored light.
+    /// Samples half of the slopes about the mirrored light.
     pub(super) mirrored: bool,
-    /// Half of the parts of the light by the lobe.
+    /// Samples half of the parts of the light by the lobe.
     pub(super) by_lobe: bool,
-    /// Four parts of the light for each point of the surface.
+    /// Samples four parts of the light for each point of the surface.
     pub(super) quarters: bool,
 }
 
 impl LightStrategy {
-    /// This one, changed in one way.
+    /// Returns the strategies that differ from this one in one choice.
     pub(super) fn neighbours(self) -> [Self; 3] {
         [
             Self {
@@ -46,7 +47,7 @@ impl LightStrategy {
         ]
     }
 
-    /// This one without what makes no difference to a system.
+    /// Returns this strategy without the choices that make no difference to a system.
     pub(super) fn in_effect(self, system: &ScatteringSystem) -> Self {
         let has_extent = system.light.has_extent();
         let has_lobe = narrowest_of(system).is_some();
@@ -58,22 +59,23 @@ impl LightStrategy {
         }
     }
 
-    /// About how long a ray takes, one drawn by the window and one part of the light being 1.
+    /// Returns the approximate time of a ray, in units of a ray sampled by the window with one part
+    /// of the light.
     pub(super) fn time(self) -> f64 {
         if self.quarters { 1.7 } else { 1.0 }
     }
 }
 
-/// Draws rays at a plane.
+/// Samples rays at a plane.
 #[derive(Clone, Debug)]
 pub(super) struct PlaneRaySampler {
-    /// Over x, y, u and v, by the window.
+    /// Densities over x, y, u and v, from the window.
     window: [LinearDensity; 4],
-    /// Slopes towards where the central light is mirrored.
+    /// Slopes towards the mirror image of the light's centre.
     mirrored: Option<Mirrored>,
 }
 
-/// Slopes near those of the mirrored light, which are an affine function of the position.
+/// Slopes near those of the mirrored light, which depend affinely on the position.
 #[derive(Clone, Copy, Debug)]
 struct Mirrored {
     /// Angles between a ray and the mirror direction: first + at (x, y) + by (u, v).
@@ -82,11 +84,11 @@ struct Mirrored {
     by: Matrix<2>,
     inverse: Matrix<2>,
     determinant: f64,
-    /// Radians about the mirror direction.
+    /// Width about the mirror direction, radians.
     width: f64,
 }
 
-/// Widths of the lobe over which slopes are drawn about the mirror direction.
+/// Width of the density of slopes about the mirror direction, in widths of the lobe.
 const BROADENED: f64 = 1.5;
 
 impl PlaneRaySampler {
@@ -104,7 +106,7 @@ impl PlaneRaySampler {
         }
     }
 
-    /// A ray (x, y, u, v) and its density.
+    /// Returns a ray (x, y, u, v) and its density.
     pub(super) fn draw(&self, [a, b, c, d]: [f64; 4]) -> ([f64; 4], f64) {
         let [along_x, along_y, along_u, along_v] = &self.window;
         let [[x, of_x], [y, of_y]] = [along_x.draw(a), along_y.draw(b)];
@@ -125,13 +127,14 @@ impl PlaneRaySampler {
 }
 
 impl Mirrored {
-    /// `None` where light comes from everywhere, or slopes do not tell angles apart.
+    /// Returns `None` if light comes from all directions, or if slopes do not determine the angles.
     fn new(system: &ScatteringSystem, chain: &ScatteringChain) -> Option<Self> {
         let off = chain.off.inverse()?;
         let block = |map: &AffineMap<4>, row: usize, column: usize| -> Matrix<2> {
             crate::geometry::from_fn(|i, j| map.matrix[row + i][column + j])
         };
-        // What the central point of the light, or the axis of a beam, shines along.
+        // The coordinates in which rays of the light's central point, or of the axis of a beam,
+        // vary.
         let free = match system.light {
             Light::Environment { .. } => return None,
             Light::Beam { .. } => 0,
@@ -139,11 +142,11 @@ impl Mirrored {
         };
         let onto = &chain.onto;
         let (places, _) = inverted(&block(onto, 0, free))?;
-        // Angles of incidence per place on the surface.
+        // Change of the angles of incidence per position on the surface.
         let per_place = product(&block(onto, 2, free), &places);
         let [s, t, theta, phi] = onto.offset;
         let arrives = times(&per_place, &[s, t]);
-        // Where light goes plus where it comes from: the angles from the mirror direction.
+        // The sum of the outgoing and incident angles: the angles from the mirror direction.
         let by = |column: usize| {
             let angles = block(&off, 2, column);
             let through = product(&per_place, &block(&off, 0, column));
@@ -182,19 +185,19 @@ impl Mirrored {
     }
 }
 
-/// Draws parts of the light.
+/// Samples parts of the light.
 #[derive(Clone, Debug)]
 pub(super) struct Lights<'a> {
     system: &'a ScatteringSystem,
     sky: Option<Arc<SkyDensity<'a>>>,
-    /// Whether half of them are drawn by the lobe.
+    /// Whether half of them are sampled by the lobe.
     by_lobe: bool,
-    /// Of how many along each side of the square one is drawn at a time.
+    /// The number of cells along each side of the square, one sample being drawn in each.
     side: usize,
 }
 
 impl<'a> Lights<'a> {
-    /// For a surface whose normal is this where the central ray meets it.
+    /// Builds the sampler for a surface with this normal at the central hit.
     pub(super) fn new(
         system: &'a ScatteringSystem,
         normal: DVec3,
@@ -209,7 +212,7 @@ impl<'a> Lights<'a> {
         Self::under(system, sky, strategy)
     }
 
-    /// The same for a changed system in the same environment.
+    /// Builds the sampler for a changed system in the same environment.
     pub(super) fn of<'b>(
         &'b self,
         system: &'b ScatteringSystem,
@@ -232,13 +235,13 @@ impl<'a> Lights<'a> {
         }
     }
 
-    /// Whether parts depend on where a ray leaves the surface.
+    /// Checks whether parts depend on where a ray leaves the surface.
     pub(super) fn is_by_lobe(&self) -> bool {
         self.by_lobe
     }
 
-    /// The parts of the light that a point of the surface asks for, with their densities over their
-    /// share of the mean: one, or one in each quarter of what may be drawn.
+    /// Returns the sampled parts of the light for a point of the surface, with their densities over
+    /// their share of the mean: one part, or one in each quarter of the unit square.
     pub(super) fn each<'b>(
         &'b self,
         leaving: &'b Leaving,
@@ -253,7 +256,7 @@ impl<'a> Lights<'a> {
         })
     }
 
-    /// A part of the light, and its density in the part's measure.
+    /// Returns a part of the light, and its density in the part's measure.
     pub(super) fn draw(&self, leaving: &Leaving, [a, b]: [f64; 2]) -> Option<(LightPart, f64)> {
         let light = &self.system.light;
         if !light.has_extent() {
@@ -272,7 +275,7 @@ impl<'a> Lights<'a> {
         Some((part, 0.5 * (by_light + by_lobe)))
     }
 
-    /// A part, and its density among those drawn by the light alone.
+    /// Returns a part, and its density under sampling by the light alone.
     fn by_light(&self, at: [f64; 2]) -> Option<(LightPart, f64)> {
         match &self.system.light {
             Light::Area { shape, .. } => {
@@ -287,8 +290,8 @@ impl<'a> Lights<'a> {
         }
     }
 
-    /// Light of an environment along a direction, from one in the axes of its map; with its
-    /// density.
+    /// Returns the light of an environment along a direction, given a direction in the axes of its
+    /// map; with its density.
     fn of_sky(&self, along: DVec3, from: DVec3) -> Option<(LightPart, f64)> {
         let (Light::Environment { environment }, Some(sky)) = (&self.system.light, &self.sky)
         else {
@@ -300,8 +303,8 @@ impl<'a> Lights<'a> {
         Some((LightPart::Sky { slopes, radiance }, density))
     }
 
-    /// The part of the light in a direction, away from the surface, and its density among those
-    /// drawn by the light alone.
+    /// Returns the part of the light in a direction away from the surface, and its density under
+    /// sampling by the light alone.
     fn towards(&self, leaving: &Leaving, wi: DVec3) -> Option<(LightPart, f64)> {
         match &self.system.light {
             Light::Area { shape, .. } => {
@@ -316,7 +319,7 @@ impl<'a> Lights<'a> {
         }
     }
 
-    /// Where a part of the light is seen, a unit vector away from the surface.
+    /// Returns the direction towards a part of the light, a unit vector away from the surface.
     fn direction(&self, leaving: &Leaving, part: LightPart) -> DVec3 {
         match part {
             LightPart::Point([a, b]) => (DVec3::new(a, b, 0.0) - leaving.point).normalize(),
@@ -325,7 +328,7 @@ impl<'a> Lights<'a> {
         }
     }
 
-    /// Steradians per unit of the part's measure.
+    /// Returns steradians per unit of the part's measure.
     fn steradians(&self, leaving: &Leaving, part: LightPart) -> f64 {
         let DVec3 { x, y, z } = leaving.point;
         match part {
@@ -335,16 +338,17 @@ impl<'a> Lights<'a> {
     }
 }
 
-/// The slopes of light along a direction, if it goes forward.
+/// Returns the slopes of light along a direction, if it goes forward.
 fn forward(along: DVec3) -> Option<[f64; 2]> {
     (along.z > 0.0).then(|| [along.x / along.z, along.y / along.z])
 }
 
-/// Draws where light comes from by where it goes: normals of microfacets about that of the surface.
+/// Samples incident directions given the outgoing one: normals of microfacets about the surface
+/// normal.
 struct LobeDensity {
     local: Frame,
     wo: DVec3,
-    /// Slopes of the normals.
+    /// Width of the slopes of the normals.
     width: f64,
 }
 
@@ -367,28 +371,29 @@ impl LobeDensity {
         (wi.z > 0.0).then(|| self.local.vector_to_world(wi))
     }
 
-    /// Per steradian of where light comes from.
+    /// Returns the density per steradian of incident directions.
     fn density(&self, wi: DVec3) -> f64 {
         let wi = self.local.vector_to_local(wi);
         let half = (wi + self.wo).normalize();
-        // Of opposite directions there is none.
+        // Opposite directions have no half vector.
         if half.z <= 0.0 || half.is_nan() {
             return 0.0;
         }
         let slopes = [half.x / half.z, half.y / half.z];
-        // Per steradian of normals, and four times their cosine of those of light.
+        // Density per steradian of normals; four times their cosine converts to incident
+        // directions.
         let per_normal = bell_density(self.width, slopes) / half.z.powi(3);
         per_normal / (4.0 * half.dot(self.wo).abs())
     }
 }
 
-/// The width of the narrowest lobe of a surface. What wider ones send on beyond it is drawn by the
-/// window or the light.
+/// Returns the width of the narrowest lobe of a surface. Light that wider lobes scatter beyond it
+/// is sampled by the window or the light.
 fn narrowest_of(system: &ScatteringSystem) -> Option<f64> {
     narrowest(system.reflectance.terms.iter().map(|term| &term.brdf))
 }
 
-/// Distance of a shape's farthest point from the axis.
+/// Returns the distance of a shape's farthest point from the axis.
 fn radius(shape: &Shape) -> f64 {
     let [x, y] = [0, 1].map(|axis| {
         let [low, high] = shape.bounds().extent(axis);
@@ -397,20 +402,20 @@ fn radius(shape: &Shape) -> f64 {
     libm::hypot(x, y)
 }
 
-/// A point of the plane with the density of `bell_density`.
+/// Returns a point of the plane with the density of `bell_density`.
 pub(crate) fn bell(width: f64, [a, b]: [f64; 2]) -> [f64; 2] {
     let r = width * (a / (1.0 - a)).sqrt();
     let (sin, cos) = libm::sincos(TAU * b);
     [r * cos, r * sin]
 }
 
-/// 1/(π w² (1 + r²/w²)²): as wide as a lobe, with tails so long that no lobe leaves them.
+/// Returns 1/(π w² (1 + r²/w²)²): as wide as a lobe, with tails longer than those of any lobe.
 pub(crate) fn bell_density(width: f64, [p, q]: [f64; 2]) -> f64 {
     let squared = width * width;
     1.0 / (PI * squared * (1.0 + (p * p + q * q) / squared).powi(2))
 }
 
-/// The inverse and the determinant.
+/// Returns the inverse and the determinant.
 fn inverted([[a, b], [c, d]]: &Matrix<2>) -> Option<(Matrix<2>, f64)> {
     let determinant = a * d - b * c;
     let scale = (a * a + b * b + c * c + d * d) * 1e-9;

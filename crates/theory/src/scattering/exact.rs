@@ -1,4 +1,4 @@
-//! The radiance of a ray at a plane, as it is.
+//! The exact radiance of a ray at a plane.
 
 use super::ScatteringSystem;
 use super::brdf;
@@ -8,18 +8,19 @@ use crate::rays::{LegRay, Plane};
 use etendue_field::Orientation;
 use glam::DVec3;
 
-/// Where a ray leaves the surface.
+/// The point where a ray leaves the surface, with its normal and direction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Leaving {
     pub(super) point: DVec3,
-    /// On the side the surface faces.
+    /// The normal on the side that the surface faces.
     pub(super) normal: DVec3,
-    /// A unit vector.
+    /// The direction, a unit vector.
     pub(super) direction: DVec3,
 }
 
 impl ScatteringSystem {
-    /// The ray at (x, y, u, v) of a plane, where it leaves the surface; `None` if it does not.
+    /// Returns the point of the surface that the ray at (x, y, u, v) of a plane leaves; `None` if
+    /// it does not come from the surface.
     pub(super) fn leaving(&self, plane: &Plane, [x, y, u, v]: [f64; 4]) -> Option<Leaving> {
         let frame = &plane.frame;
         let foot = frame.to_world(DVec3::new(x, y, 0.0));
@@ -44,14 +45,14 @@ impl ScatteringSystem {
         })
     }
 
-    /// Where a line goes out through the surface: point, normal and the line's direction.
+    /// Returns where a line exits through the surface: point, normal and the line's direction.
     fn on_line(&self, at: DVec3, direction: DVec3) -> Option<(DVec3, DVec3, DVec3)> {
         let ray = LegRay::back(&self.patch, at, direction);
         let (distance, normal) = ray.met(&self.patch)?;
         Some((ray.point - direction * distance, normal, direction))
     }
 
-    /// The radiance that leaves, of what a part of the light shines there, per unit of its measure.
+    /// Returns the radiance that leaves due to a part of the light, per unit of the part's measure.
     pub(super) fn radiance(&self, masks: &Masks<'_>, leaving: &Leaving, part: LightPart) -> f64 {
         let Leaving {
             point,

@@ -1,23 +1,23 @@
-//! What shines on a point from one part of the light.
+//! Light incident on a point from one part of the light.
 
 use crate::mask::Masks;
 use crate::rays::{LegRay, emitted};
 use etendue_field::Light;
 use glam::DVec3;
 
-/// A part of the light that is drawn.
+/// A sampled part of the light.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum LightPart {
-    /// All of it: a point of the surface sees it from one direction alone.
+    /// All of the light, which a point of the surface sees from one direction alone.
     Whole,
-    /// A point of an area light. Densities of such are per square metre.
+    /// A point of an area light. Its densities are per square metre.
     Point([f64; 2]),
-    /// A direction of an environment, as the slopes of its rays, and the radiance from there.
-    /// Densities of such are per steradian.
+    /// A direction of an environment, as the slopes of its rays, and the radiance from there. Its
+    /// densities are per steradian.
     Sky {
-        /// Forward.
+        /// Forward slopes.
         slopes: [f64; 2],
-        /// W m⁻² sr⁻¹.
+        /// Radiance, W m⁻² sr⁻¹.
         radiance: f64,
     },
 }
@@ -26,15 +26,17 @@ pub(super) enum LightPart {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct IncomingLight {
     pub(super) slopes: [f64; 2],
-    /// Radiance times du dv per unit of the part's measure; of the whole light, their product.
+    /// Radiance times du dv per unit of the part's measure; for the whole light, the product of
+    /// radiance and du dv.
     pub(super) weight: f64,
 }
 
 impl Masks<'_> {
-    /// What a part of a light shines on a point in the frame at the light.
+    /// Returns the light from a part of a light that is incident on a point, in the frame at the
+    /// light.
     pub(super) fn incoming(&self, light: &Light, point: DVec3, part: LightPart) -> IncomingLight {
         let DVec3 { x, y, z } = point;
-        // Where the ray leaves the plane at the light, and with what slopes.
+        // The point where the ray leaves the light's plane, and its slopes.
         let ([a, b], [u, v]) = match part {
             LightPart::Sky { slopes, .. } => ([0.0; 2], slopes),
             LightPart::Whole if light.is_distant() => ([x, y], [0.0; 2]),
@@ -46,10 +48,10 @@ impl Masks<'_> {
             // du dv = dω / cos³.
             LightPart::Sky { radiance, .. } => radiance * secant(slopes).powi(3),
             LightPart::Whole if light.is_distant() => emitted(light, [a, b, u, v]),
-            // From flux per du dv to radiance, and du dv = dx dy / z².
+            // Converts flux per du dv to radiance, with du dv = dx dy / z².
             _ => emitted(light, [a, b, u, v]) * secant(slopes).powi(4) / (z * z),
         };
-        // Light begins in its plane, also that from far away.
+        // Light begins in its plane, even light from an environment.
         let passes = if weight > 0.0 && z > 0.0 {
             self.transmittance(point, slopes) * self.past_obstacles(point, slopes)
         } else {
@@ -63,7 +65,7 @@ impl Masks<'_> {
 }
 
 impl Masks<'_> {
-    /// The share of light with these slopes that passes obstacles on its way to a point.
+    /// Returns the share of light with these slopes that passes obstacles before a point.
     fn past_obstacles(&self, point: DVec3, [u, v]: [f64; 2]) -> f64 {
         let along = DVec3::new(u, v, 1.0);
         let ray = LegRay {
@@ -75,10 +77,11 @@ impl Masks<'_> {
     }
 }
 
-/// What stands at the point itself is no obstacle: share of a distance that rounding may make.
+/// Relative error of a distance by rounding, within which an occluder at the point itself is
+/// ignored.
 const ROUNDING: f64 = 1e-9;
 
-/// 1/cos of the angle to the central ray.
+/// Returns 1/cos of the angle to the central ray.
 pub(super) fn secant([u, v]: [f64; 2]) -> f64 {
     (1.0 + u * u + v * v).sqrt()
 }

@@ -1,4 +1,4 @@
-//! The radiance of a ray at a plane by the first-order chain.
+//! The radiance of a ray at a plane according to the first-order chain.
 
 use super::ScatteringSystem;
 use super::brdf;
@@ -10,18 +10,20 @@ use etendue_field::{Brdf, Frame, Lobe};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// The chain, ready to be evaluated.
+/// The chain, prepared for evaluation.
 #[derive(Clone, Debug)]
 pub(super) struct Linear<'a> {
     pub(super) system: &'a ScatteringSystem,
     chain: &'a ScatteringChain,
-    /// From the plane to local coordinates of where light goes.
+    /// The map from the plane to local coordinates of the outgoing direction.
     off: AffineMap<4>,
-    /// Positions on the surface to those at its distance across the light's axis, as a matrix.
+    /// The matrix from positions on the surface to those across the light's axis, at the distance
+    /// of the surface.
     across: [[f64; 2]; 2],
-    /// Angles on the surface of those from the light's axis, at a point of the surface.
+    /// The matrix from angles to the light's axis to angles on the surface, at a point of the
+    /// surface.
     angles: Matrix<2>,
-    /// From the frame (T, B, N) to that of the patch: where the BRDF is looked up.
+    /// The frame (T, B, N) in the frame of the patch, for BRDF lookups.
     frame: Frame,
 }
 
@@ -31,8 +33,8 @@ impl<'a> Linear<'a> {
         let [[a, b], [c, d]] = [[m[0][0], m[0][1]], [m[1][0], m[1][1]]];
         let det = a * d - b * c;
         let across = [[d / det, -b / det], [-c / det, a / det]];
-        // u at a point whose place across the axis stays: the light's place moves back by the
-        // distance.
+        // u at a point with a fixed position across the axis: the position at the light moves back
+        // by the distance.
         let slope =
             |row: usize, column: usize| m[row][2 + column] - chain.distance * m[row][column];
         Some(Self {
@@ -45,7 +47,7 @@ impl<'a> Linear<'a> {
         })
     }
 
-    /// The point across the light's axis that stands for a place (s, t).
+    /// Returns the point across the light's axis that represents a position (s, t).
     fn point(&self, [s, t, ..]: [f64; 4]) -> DVec3 {
         let [offset_s, offset_t, ..] = self.chain.onto.offset;
         let (s, t) = (s - offset_s, t - offset_t);
@@ -53,8 +55,8 @@ impl<'a> Linear<'a> {
         DVec3::new(a * s + b * t, c * s + d * t, self.chain.distance)
     }
 
-    /// The radiance that leaves along the ray at z of the plane, of what a part of the light shines
-    /// there, per unit of its measure: ℓ cos⁺ θ cos² φ ρ(θo − θr, φo − φr), r being the mirror
+    /// Returns the radiance that leaves along the ray at z of the plane due to a part of the light,
+    /// per unit of the part's measure: ℓ cos⁺ θ cos² φ ρ(θo − θr, φo − φr), where r is the mirror
     /// direction about the normal (docs/theory.md (41)).
     pub(super) fn radiance(&self, masks: &Masks<'_>, z: [f64; 4], part: LightPart) -> f64 {
         let local = self.off.apply(z);
@@ -64,11 +66,12 @@ impl<'a> Linear<'a> {
             return 0.0;
         }
         let [u, v] = slopes;
-        // From slopes to angles as they are: dω = cos φ dθ dφ = du dv cos³, and tan φ = v cos θ.
+        // The exact conversion from slopes to angles: dω = cos φ dθ dφ = du dv cos³, and tan φ = v
+        // cos θ.
         let across = (1.0 + u * u).sqrt();
         let (longitude, latitude) = (libm::atan(u), libm::atan(v / across));
         let per_angle = 1.0 / ((1.0 + u * u + v * v) * across);
-        // Of the ray along the axis that meets the place.
+        // The angles of the ray along the axis through the position.
         let [_, _, theta, phi] = self.chain.onto.apply([point.x, point.y, 0.0, 0.0]);
         let [[a, b], [c, d]] = self.angles;
         let (theta, phi) = (
@@ -88,9 +91,9 @@ impl<'a> Linear<'a> {
     }
 }
 
-/// A BRDF as it meets the central ray, which comes at the angle `incidence`, for light from and to a
-/// longitude and a latitude: of their angles from the mirror direction, but for factors of the angles
-/// of incidence and departure, which stay those.
+/// Returns a BRDF as at the central ray, which arrives at the angle `incidence`, for light from and
+/// to a longitude and a latitude: a function of the angles from the mirror direction. Factors of
+/// the angles of incidence and departure still depend on those angles.
 pub(crate) fn kernel(
     brdf: &Brdf,
     incidence: f64,
@@ -103,7 +106,7 @@ pub(crate) fn kernel(
     let reflected = || brdf.albedo * brdf::reflectance(brdf.fresnel, libm::cos(from_theta));
     let lobe = match brdf.lobe {
         Lobe::Lambertian => reflected() / PI,
-        // Its cosine is that of the angle from the mirror direction, wherever that is.
+        // The cosine is that of the angle from the mirror direction, for every direction.
         Lobe::Phong { exponent } => {
             let cos = (libm::cos(theta) * libm::cos(phi)).max(0.0);
             reflected() * (exponent + 1.0) / TAU * libm::pow(cos, exponent)
@@ -116,7 +119,7 @@ pub(crate) fn kernel(
     factors * lobe
 }
 
-/// The direction at a longitude and a latitude, from the normal.
+/// Returns the direction at a longitude and a latitude, relative to the normal.
 fn away(theta: f64, phi: f64) -> DVec3 {
     let ((sin, cos), (up, across)) = (libm::sincos(theta), libm::sincos(phi));
     DVec3::new(across * sin, up, across * cos)

@@ -1,20 +1,20 @@
 //! Windowed spectra behind a surface that reflects by a BRDF (docs/theory.md, section 10).
 //!
-//! In goes a [`ScatteringSystem`]: a light, masks across its way, obstacles, and a curved surface with a BRDF that may
-//! vary over it. In goes a [`Plane`](crate::rays::Plane) on the surface, light leaving it, or
-//! across its way onwards. The [`Observed`](crate::Observed) of both is a [`Model`](crate::Model):
-//! it sums rays of the plane over scrambled nets, and for each of them a part of the light that
-//! shines on the point it leaves,
+//! The inputs are a [`ScatteringSystem`] and a [`Plane`](crate::rays::Plane). The system has a
+//! light, masks across its path, obstacles, and a curved surface with a BRDF that may vary over it;
+//! the plane is on the surface, with light leaving it, or across the light's path onwards. The
+//! [`Observed`](crate::Observed) of both is a [`Model`](crate::Model): it sums rays of the plane
+//! over scrambled nets, and for each ray a part of the light that shines on its starting point,
 //!
 //! L(p, ωo) = ∫ L(p, ωi) f(p, ωi, ωo) cos θi dωi.
 //!
-//! Beside it is the chain of first-order operators (Durand et al. 2005, section 4): affine maps
-//! onto the surface and off it, a product with the clamped cosine, and a convolution with the lobe
-//! of the BRDF that the central ray meets. What it is off, and derivatives, are sums over the same
-//! rays.
+//! In addition there is the chain of first-order operators (Durand et al. 2005, section 4): affine
+//! maps onto the surface and off it, a product with the clamped cosine, and a convolution with the
+//! lobe of the BRDF at the central ray. The error of the chain, and derivatives, are sums over the
+//! same rays.
 //!
-//! This module shares no intersection, no value of a BRDF and no sampling with the tracers; how a
-//! BRDF varies over a surface is in `etendue_field`, for both.
+//! This module shares no intersection, BRDF evaluation or sampling code with the tracers; only the
+//! variation of a BRDF over a surface is shared, in `etendue_field`.
 
 pub mod brdf;
 mod chain;
@@ -44,16 +44,16 @@ use etendue_field::{Light, Mask, Patch, Reflectance};
 /// A light and the surface its central ray meets, in the frame at the light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScatteringSystem {
-    /// What shines from the plane z = 0, along Z.
+    /// The light, which emits from the plane z = 0, along Z.
     pub light: Light,
-    /// Masks between them and their distances from the light, metres.
+    /// Masks between the light and the surface, with their distances from the light, metres.
     pub layers: Vec<(f64, Mask)>,
-    /// What else stops rays, before and behind the surface.
+    /// Other occluders, before and behind the surface.
     pub obstacles: Vec<Obstacle>,
-    /// The name of the surface, for texts.
+    /// Name of the surface, for messages.
     pub name: String,
     /// The surface; it faces along D of its frame, and is black on the other side.
     pub patch: Patch,
-    /// How it reflects.
+    /// The reflectance of the surface.
     pub reflectance: Reflectance,
 }

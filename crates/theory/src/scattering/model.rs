@@ -1,4 +1,5 @@
-//! A surface with a BRDF and a plane behind it as a model: its parameters and its prediction.
+//! Implements the model of a surface with a BRDF and a plane behind it: its parameters and its
+//! prediction.
 
 use super::{ScatteringSystem, chain, predict, with_rays};
 use crate::model::{Model, Observed, Over, ShiftedModels};
@@ -48,7 +49,7 @@ impl Model for Observed<ScatteringSystem> {
         }
     }
 
-    /// Where BRDFs add up, of the first alone.
+    /// For a sum of BRDFs, of the first alone.
     fn change(&mut self, parameter: Parameter, new: New<'_>) -> Option<()> {
         let ScatteringSystem {
             light,
@@ -71,8 +72,8 @@ impl Model for Observed<ScatteringSystem> {
         Some(())
     }
 
-    /// With the difference to the first-order chain. All light is in proportion to an albedo where
-    /// no other BRDF is added to it.
+    /// Includes the difference to the first-order chain. All light is proportional to an albedo if
+    /// no other BRDF is added.
     fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: RayBudget) -> Predicted {
         let only = self.system.reflectance.only().map(|brdf| brdf.albedo);
         let factor = only.filter(|albedo| *albedo > 0.0);

@@ -1,17 +1,19 @@
-//! What a weighted sum of BRDFs does to spectra, as one operator.
+//! The effect of a weighted sum of BRDFs on spectra, as one operator.
 
 use crate::shading::cosine_power_hat;
 use etendue_field::{Brdf, Complex, Fresnel, Lobe, Pattern, Reflectance, Weight};
 use std::f64::consts::TAU;
 
-/// The spectrum at Ω = (Ωx, Ωy, Ωθ, Ωφ) of the light that leaves a surface in the frames of its
-/// local normals, from the spectrum `before` of the differential irradiance turned about them: for
-/// each BRDF the product with the transform of its lobe over (Ωθ, Ωφ), convolved over (Ωx, Ωy) alone
-/// with the transform of its weight (Durand et al. 2005, section 4.5, the "semi-convolution" in 4D).
+/// Returns the spectrum at Ω = (Ωx, Ωy, Ωθ, Ωφ) of the light that leaves a surface in the frames of
+/// its local normals, from the spectrum `before` of the differential irradiance rotated about the
+/// normals. For each BRDF it is the product with the transform of its lobe over (Ωθ, Ωφ), convolved
+/// over (Ωx, Ωy) alone with the transform of its weight (Durand et al. 2005, section 4.5, the
+/// "semi-convolution" in 4D).
 ///
-/// To first order, as the chain is; all angles are in it, and any window over places is in `before`.
-/// `axes` are X and Y of the surface's patch in the coordinates (x, y). `None` where a lobe is not
-/// Phong's, has a factor of an angle of its own, or where a weight or a texture is no cosine.
+/// Holds to first order, like the chain; it includes all angles, and any window over positions is
+/// in `before`. `axes` are X and Y of the surface's patch in the coordinates (x, y). `None` if a
+/// lobe is not Phong's or has a factor of an angle of its own, or if a weight or a texture is not a
+/// cosine.
 #[must_use]
 pub fn semi_convolution(
     reflectance: &Reflectance,
@@ -87,7 +89,8 @@ fn cosine_waves(pattern: &Pattern) -> Option<Vec<WeightWave>> {
     Some(vec![mean, side(1.0), side(-1.0)])
 }
 
-/// The transform of albedo (n + 1)/2π (cos θ cos φ)ⁿ over both angles from the mirror direction.
+/// Returns the transform of albedo (n + 1)/2π (cos θ cos φ)ⁿ over both angles from the mirror
+/// direction.
 fn lobe_hat(brdf: &Brdf, [theta, phi]: [f64; 2]) -> Option<Complex> {
     let is_plain =
         brdf.fresnel == Fresnel::White && brdf.incoming.is_none() && brdf.outgoing.is_none();

@@ -1,4 +1,4 @@
-//! Slices of scattered light, over scrambled nets of rays.
+//! Predicted slices of scattered light, over scrambled nets of rays.
 
 use super::draw::{LightStrategy, Lights, PlaneRaySampler};
 use super::exact::Leaving;
@@ -13,16 +13,17 @@ use crate::rays::{LegRay, Plane};
 use etendue_field::{EnvironmentMap, Light, SliceGrid, TwoPlane, Window};
 use glam::DVec3;
 
-/// The windowed spectrum of what a surface scatters, with the derivatives by what was moved.
+/// Returns the windowed spectrum of the light that a surface scatters, with the derivatives by
+/// given parameters.
 ///
-/// Rays are drawn at the plane, and for each one part or four of the light that shines on the point
-/// it leaves (docs/theory.md (40)). `chain` is that of [`chain`](super::chain()); it tells where
-/// rays are worth drawing. The same bytes on any number of threads.
+/// Rays are sampled at the plane, and for each ray one or four parts of the light that shines on
+/// its starting point (docs/theory.md (40)). `chain` is that of [`chain`](super::chain()); it
+/// guides the sampling. The result is bitwise identical on any number of threads.
 ///
-/// What the chain predicts, and the derivatives, are differences of the radiance of the same rays:
-/// good to about a per cent of what they are. Parts of the light move with the light, so that its
-/// edges are no edges of a difference. Shadows do not move with masks: what is lit on one side
-/// alone adds noise, the less the farther the sides are apart.
+/// The prediction of the chain, and the derivatives, are differences of the radiance of the same
+/// rays: accurate to about a per cent of their values. Parts of the light move with the light, so
+/// its edges cause no edges in a difference. Shadows do not move with masks: points lit on one side
+/// of a difference alone add noise, which decreases with the distance between the sides.
 pub(crate) fn predict(
     view: &Observed<ScatteringSystem>,
     chain: Option<&ScatteringChain>,
@@ -58,7 +59,7 @@ pub(crate) fn with_rays(
     ));
 }
 
-/// The strategy with the least error in the same time.
+/// Returns the strategy with the least error in the same time.
 fn fastest(
     view: &Observed<ScatteringSystem>,
     chain: Option<&ScatteringChain>,
@@ -70,7 +71,7 @@ fn fastest(
     })
 }
 
-/// The nodes that take as long as those of a budget do with few lobes of light.
+/// Returns the number of nodes that take as long as a full budget does with few lobes of light.
 fn affordable(system: &ScatteringSystem, budget: RayBudget) -> RayBudget {
     RayBudget {
         nodes: budget.nodes / cost(system),
@@ -78,8 +79,8 @@ fn affordable(system: &ScatteringSystem, budget: RayBudget) -> RayBudget {
     }
 }
 
-/// What a chain that may be another than that of [`chain`](super::chain()) predicts: the surface as
-/// it is, and its difference to the chain.
+/// Returns the prediction of a chain that may differ from that of [`chain`](super::chain()): the
+/// exact field of the surface, and its difference to the chain.
 #[must_use]
 pub fn beside(
     view: &Observed<ScatteringSystem>,
@@ -90,7 +91,7 @@ pub fn beside(
     predict(view, Some(chain), &[], over, budget)
 }
 
-/// How many times as long a ray takes as one of few lobes of light.
+/// Returns the time of a ray relative to one with few lobes of light.
 fn cost(system: &ScatteringSystem) -> f64 {
     const FEW_LOBES: f64 = 16.0;
     match &system.light {
@@ -102,7 +103,7 @@ fn cost(system: &ScatteringSystem) -> f64 {
     }
 }
 
-/// The strategy that costs least, each choice being tried once.
+/// Returns the strategy with the least cost, trying each choice once.
 fn best(system: &ScatteringSystem, cost: impl Fn(LightStrategy) -> f64) -> LightStrategy {
     let mut best = LightStrategy::default();
     let mut least = cost(best);
@@ -119,7 +120,7 @@ fn best(system: &ScatteringSystem, cost: impl Fn(LightStrategy) -> f64) -> Light
     best
 }
 
-/// A light field as it is.
+/// The exact light field.
 struct ScatteredField<'a> {
     view: &'a Observed<ScatteringSystem>,
     window: &'a Window,
@@ -146,7 +147,7 @@ impl<'a> ScatteredField<'a> {
         }
     }
 
-    /// A ray, what its radiance is multiplied by, and where it leaves the surface.
+    /// Returns a ray, the factor of its radiance, and the point where it leaves the surface.
     fn draw(&self, [a, b, c, d, ..]: &[f64; DIMENSIONS]) -> Option<([f64; 4], f64, Leaving)> {
         let (z, density) = self.rays.draw([*a, *b, *c, *d]);
         let [x, y, u, v] = z;
@@ -158,13 +159,13 @@ impl<'a> ScatteredField<'a> {
         Some((z, factor, self.view.system.leaving(&self.view.plane, z)?))
     }
 
-    /// The radiance of a ray, of what a part of the light shines.
+    /// Returns the radiance of a ray due to a part of the light.
     fn radiance(&self, leaving: &Leaving, part: LightPart) -> f64 {
         radiance(self.view, &self.masks, leaving, part)
     }
 }
 
-/// What a ray adds over the density with which it was drawn; 0/0 counts as 0.
+/// Returns the contribution of a ray divided by its sampling density; 0/0 counts as 0.
 fn over(radiance: f64, density: f64) -> f64 {
     if radiance == 0.0 {
         0.0
@@ -173,7 +174,8 @@ fn over(radiance: f64, density: f64) -> f64 {
     }
 }
 
-/// The radiance of a ray at a plane, of what a part of the light shines, per unit of its measure.
+/// Returns the radiance of a ray at a plane due to a part of the light, per unit of the part's
+/// measure.
 fn radiance(
     view: &Observed<ScatteringSystem>,
     masks: &Masks<'_>,
@@ -188,14 +190,15 @@ fn radiance(
         0.0
     };
     if plane.orientation.is_local() {
-        // On the surface itself the integral is over its area, larger than the tangent plane's.
+        // On the surface itself the integral is over the surface's area, which is larger than that
+        // of the tangent plane.
         radiance / leaving.normal.dot(plane.frame.d).abs()
     } else {
         radiance
     }
 }
 
-/// The share of a ray that passes obstacles between the surface and the plane.
+/// Returns the share of a ray that passes obstacles between the surface and the plane.
 fn past_obstacles(plane: &Plane, masks: &Masks<'_>, leaving: &Leaving) -> f64 {
     let ray = LegRay {
         point: leaving.point,
@@ -223,12 +226,12 @@ impl Integrand for ScatteredField<'_> {
     }
 }
 
-/// A part of the light, if there is one, and the density with which it was drawn.
+/// A part of the light, if there is one, and the density with which it was sampled.
 type DrawnPart = Option<(LightPart, f64)>;
 
 /// A light field with a parameter changed.
 ///
-/// Where it leaves a ray or the light as they are, it takes them from the light field itself.
+/// If the change does not affect a ray or the light, they are taken from the original light field.
 struct VariedField<'a> {
     view: &'a Observed<ScatteringSystem>,
     moves_surface: bool,
@@ -255,8 +258,8 @@ impl<'a> VariedField<'a> {
         }
     }
 
-    /// The radiance of a ray, over the density with which a part of the light was drawn. Beside it
-    /// is what the light field itself has.
+    /// Returns the radiance of a ray divided by the density with which a part of the light was
+    /// sampled. `own` has the values of the original light field.
     fn radiance(&self, z: [f64; 4], at: [f64; 2], own: &(Leaving, DrawnPart)) -> Option<f64> {
         let Observed { system, plane } = self.view;
         let (mut leaving, mut drawn) = *own;
@@ -272,7 +275,7 @@ impl<'a> VariedField<'a> {
     }
 }
 
-/// What is around a light field: it to first order, and with parameters changed.
+/// Variants of a light field: to first order, and with parameters changed.
 struct VariedFields<'a> {
     field: &'a ScatteredField<'a>,
     linear: Option<Linear<'a>>,
@@ -324,7 +327,7 @@ impl Integrand for VariedFields<'_> {
         if let Some(linear) = linear {
             put(own.1.map_or(0.0, |(part, density)| {
                 let exact = field.radiance(&leaving, part);
-                // Across a straight leg the chain is exact.
+                // The chain is exact across a straight leg.
                 let passes = past_obstacles(&field.view.plane, &field.masks, &leaving);
                 let first_order = passes * linear.radiance(&field.masks, z, part);
                 over(first_order - exact, density)

@@ -8,10 +8,10 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// The transform of the clamped cosine, cos θ where |θ| < π/2 and 0 elsewhere: 2 cos(π²Ω)/(1 −
 /// (2πΩ)²), with Ω in cycles per radian (Durand et al. 2005, Eq. 13).
 ///
-/// Written π/2 [sinc((1 − w)/2) + sinc((1 + w)/2)], w = 2πΩ, which does not cancel where the
-/// quotient is 0/0: cos⁺(1/2π) = π/2. It is 2 at zero and falls as 1/Ω², because the cosine has a
-/// corner at π/2. 99 % of its energy lies below 0.376. As the coefficients of a Fourier series it
-/// has another scale: [`cosine_series`].
+/// Computed as π/2 [sinc((1 − w)/2) + sinc((1 + w)/2)], w = 2πΩ, which does not cancel where the
+/// quotient is 0/0: cos⁺(1/2π) = π/2. The transform is 2 at zero and falls as 1/Ω², because the
+/// cosine has a corner at π/2. 99 % of its energy lies below 0.376. The coefficients of a Fourier
+/// series have another scale: [`cosine_series`].
 #[must_use]
 pub fn cosine_hat(omega: f64) -> f64 {
     let w = TAU * omega;
@@ -21,17 +21,18 @@ pub fn cosine_hat(omega: f64) -> f64 {
 /// The coefficient of e^(inθ) in the Fourier series of the clamped cosine on the full circle:
 /// [`cosine_hat`](n/2π)/2π.
 ///
-/// Durand et al. 2005 print the transform alone (Eq. 13); its values at n/2π over 2π are these.
+/// Durand et al. 2005 print only the transform (Eq. 13); its values at n/2π divided by 2π are
+/// these.
 #[must_use]
 pub fn cosine_series(n: i32) -> f64 {
     cosine_hat(f64::from(n) / TAU) / TAU
 }
 
-/// The transform of cos² φ on |φ| < π/2: how the cosine acts along latitudes in 4D, dE = ℓ cos θ
-/// cos² φ dθ dφ.
+/// The transform of cos² φ on |φ| < π/2: the effect of the cosine along latitudes in 4D, dE = ℓ cos
+/// θ cos² φ dθ dφ.
 ///
 /// π/2 sinc(w/2) + π/4 [sinc((w − 2)/2) + sinc((w + 2)/2)], w = 2πΩ. Durand et al. 2005, section
-/// 5.2, has no formula for it.
+/// 5.2, give no formula for it.
 #[must_use]
 pub fn cosine_squared_hat(omega: f64) -> f64 {
     let w = TAU * omega;
@@ -43,7 +44,7 @@ pub fn cosine_squared_hat(omega: f64) -> f64 {
 /// (Gradshteyn and Ryzhik, 3.631.9).
 ///
 /// The second gamma function has poles where 1 + n/2 − πΩ is 0, −1, …; there the transform is zero.
-/// Relative error about 10⁻¹⁵ (n + Ω) ln(n + Ω) where it is not near one of its zeros.
+/// The relative error is about 10⁻¹⁵ (n + Ω) ln(n + Ω) away from zeros.
 #[must_use]
 pub fn cosine_power_hat(exponent: f64, omega: f64) -> f64 {
     let (middle, side) = (1.0 + 0.5 * exponent, PI * omega.abs());
@@ -67,12 +68,12 @@ mod tests {
                 let ends = [0.0, 0.2, 0.5, 1.0, 1.4, 1.5, FRAC_PI_2];
                 let plain = even_transform(&ends, omega, |t| libm::pow(libm::cos(t), n));
                 let got = cosine_power_hat(n, omega);
-                // Rounding of ln Γ; 1e-8 because Gauss rules do not like the end of cos^2.5.
+                // Rounding of ln Γ; 1e-8 because Gauss rules converge slowly at the end of cos^2.5.
                 let close = if n % 1.0 > 0.0 { 1e-8 } else { 1e-13 };
                 assert!((got - plain).abs() < close, "{n} {omega}: {got} {plain}");
             }
             let [one, two] = [1.0, 2.0].map(|n| cosine_power_hat(n, omega));
-            // Rounding of ln Γ up to 25, three times.
+            // Three times the rounding of ln Γ up to 25.
             assert!((cosine_hat(omega) - one).abs() < 1e-13);
             assert!((cosine_squared_hat(omega) - two).abs() < 1e-13); // likewise
         }
@@ -85,7 +86,7 @@ mod tests {
             let sum = wave(0) + 2.0 * (1..4000).map(wave).sum::<f64>();
             // The tail of 1/n² beyond 4000 is below 2/π/4000.
             assert!((sum - theta.cos().max(0.0)).abs() < 2e-4, "{theta}");
-            // The transform itself is 2π too large, which is seen.
+            // The transform itself is 2π too large, which the test detects.
             assert!((TAU * sum - theta.cos().max(0.0)).abs() > 2e-4 || sum < 1e-4);
         }
     }

@@ -1,9 +1,9 @@
-//! Environment maps: light that depends on direction alone, on a surface that turns under it.
+//! Environment maps: light that depends on direction alone, on a curved surface.
 //!
 //! ℓ(s, θ) = env(θ) has the spectrum env^(Ωθ) δ(Ωx), and after the curvature step a spectrum on the
 //! line Ωx = kΩθ. Each Ωx then has one value, and the convolution with the cosine becomes a product
 //! (Durand et al. 2005, section 6.1 and Fig. 14). k ≠ 0 is the curvature in 1/m, convex positive;
-//! angles are on the surface, those of light that has been flipped. `environment` is env^.
+//! angles are on the surface, those of flipped light. `environment` is env^.
 
 use super::cosine_hat;
 use etendue_field::{Complex, cis};
@@ -38,8 +38,8 @@ pub fn mirrored_differential_irradiance(
 /// The irradiance along the surface: 1/|k| env^(Ωx/k) cos⁺^(Ωx/k), which is E(s) = ∫ env(θ) cos⁺(θ
 /// − k s) dθ.
 ///
-/// A product of spectra, and so a convolution in the primal (Ramamoorthi and Hanrahan 2001).
-/// Section 6.1 of Durand et al. 2005 leaves 1/|k| out.
+/// This is a product of spectra, and so a convolution in the primal domain (Ramamoorthi and
+/// Hanrahan 2001). Section 6.1 of Durand et al. 2005 omits 1/|k|.
 #[must_use]
 pub fn irradiance(k: f64, omega_x: f64, environment: &dyn Fn(f64) -> Complex) -> Complex {
     differential_irradiance(k, [omega_x, 0.0], environment)
@@ -48,23 +48,23 @@ pub fn irradiance(k: f64, omega_x: f64, environment: &dyn Fn(f64) -> Complex) ->
 /// A Gaussian light in an environment, A exp(−(θ − μ)²/2σ²).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Glow {
-    /// A, radiance.
+    /// Amplitude A, radiance.
     pub amplitude: f64,
-    /// μ, radians.
+    /// Mean μ, radians.
     pub mean: f64,
-    /// σ, radians.
+    /// Standard deviation σ, radians.
     pub deviation: f64,
 }
 
 impl Glow {
-    /// env(θ).
+    /// Returns env(θ).
     #[must_use]
     pub fn value(&self, theta: f64) -> f64 {
         let z = (theta - self.mean) / self.deviation;
         self.amplitude * libm::exp(-0.5 * z * z)
     }
 
-    /// env^(Ω) = A σ √(2π) exp(−2π²σ²Ω²) e^(−2πi Ωμ).
+    /// Returns env^(Ω) = A σ √(2π) exp(−2π²σ²Ω²) e^(−2πi Ωμ).
     #[must_use]
     pub fn spectrum(&self, omega: f64) -> Complex {
         let z = PI * self.deviation * omega;

@@ -1,11 +1,13 @@
-//! Diffuse shading in flatland: a light, strips and a receiver on parallel lines, as the paper's Fig. 6 has them.
+//! Diffuse shading in flatland: a light, strips and a receiver on parallel lines, as in the paper's
+//! Fig. 6.
 
 use crate::numerics::sinc::sinc;
 use etendue_field::{Complex, FrequencyAxis, Profile, cis};
 use ndarray::Array2;
 use std::f64::consts::TAU;
 
-/// A light of radiance 1, opaque strips and a white diffuse receiver on parallel lines of the plane. Lengths in metres.
+/// A light of radiance 1, opaque strips and a white diffuse receiver on parallel lines in 2D.
+/// Lengths are in metres.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flatland {
     /// Half the width of the light, which is centred at 0.
@@ -21,27 +23,30 @@ pub struct Flatland {
 /// Steps of diffuse shading (Durand et al. 2005, Fig. 6).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DiffuseStep {
-    /// 1: at the light.
+    /// Step 1: at the light.
     Emission,
-    /// 2: after travel, before the strips.
+    /// Step 2: after travel, before the strips.
     Travel,
-    /// 3: after the strips.
+    /// Step 3: after the strips.
     Visibility,
-    /// 4: after travel to the receiver.
+    /// Step 4: after travel to the receiver.
     SecondTravel,
-    /// 5: differential irradiance, the light field times g(v) = (1 + v²)^(−3/2).
+    /// Step 5: differential irradiance, the light field times g(v) = (1 + v²)^(−3/2).
     Cosine,
-    /// 6: the light that leaves the receiver, ½ ∫ ℓ g dv.
+    /// Step 6: the light that leaves the receiver, ½ ∫ ℓ g dv.
     Reflection,
 }
 
-/// Nodes of the midpoint rule over slopes, or over positions on the receiver. Edges are kinks of the integrand, which leave 10⁻⁵ of it.
+/// Number of nodes of the midpoint rule over slopes, or over positions on the receiver. Edges are
+/// kinks of the integrand, which cause a relative error of 10⁻⁵.
 const NODES: usize = 1024;
 
 impl Flatland {
-    /// The spectrum of the windowed light field at a step, [ρ, ν], ρ and ν ascending; profiles and axes are those of (x, v).
+    /// Returns the spectrum of the windowed light field at a step, [ρ, ν], with ρ and ν ascending;
+    /// profiles and axes are those of (x, v).
     ///
-    /// Positions are integrated in closed form, slopes by a midpoint rule, to 10⁻⁵ of the value at zero.
+    /// Positions are integrated in closed form, slopes by a midpoint rule, accurate to 10⁻⁵ of the
+    /// value at zero.
     #[must_use]
     pub fn spectrum(
         &self,
@@ -69,7 +74,7 @@ impl Flatland {
         product(rows, [rho, nu])
     }
 
-    /// Intervals of positions from which light of slope v passes.
+    /// Returns the intervals of positions from which light of slope v passes.
     fn seen(&self, step: DiffuseStep, v: f64) -> Vec<[f64; 2]> {
         let distance = match step {
             DiffuseStep::Emission => 0.0,
@@ -85,7 +90,8 @@ impl Flatland {
         open(beam, strips.map(|strip| strip.map(|edge| edge + moved)))
     }
 
-    /// ½ ∫ ℓ g dv at a position of the receiver: half the sines of the angles between which light comes.
+    /// Returns ½ ∫ ℓ g dv at a position of the receiver: half the difference between the sines of
+    /// the bounding angles of the light.
     fn radiosity(&self, x: f64) -> f64 {
         let below = self.to_receiver - self.to_strips;
         let light = [self.half_light, -self.half_light];
@@ -102,7 +108,7 @@ impl Flatland {
         [along_x, along_v]: [&Profile; 2],
         [rho, nu]: [&FrequencyAxis; 2],
     ) -> Array2<Complex> {
-        // What leaves is alike in all directions: the spectrum is a product.
+        // The light that leaves is the same in all directions, so the spectrum is a product.
         let half = along_v.half_width();
         let angular = nu.values().into_iter();
         let angular: Vec<Complex> = angular
@@ -121,7 +127,7 @@ impl Flatland {
     }
 }
 
-/// What intervals, ascending, leave of an interval.
+/// Returns the parts of an interval that other intervals, in ascending order, leave open.
 fn open([from, to]: [f64; 2], intervals: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
     let mut parts = Vec::new();
     let mut low = from;
@@ -137,14 +143,15 @@ fn open([from, to]: [f64; 2], intervals: impl Iterator<Item = [f64; 2]>) -> Vec<
     parts
 }
 
-/// Nodes and weights of the midpoint rule within a profile.
+/// Returns nodes and weights of the midpoint rule within a profile.
 fn midpoints(profile: &Profile) -> impl Iterator<Item = (f64, f64)> {
     let half = profile.half_width();
     let step = 2.0 * half / NODES as f64;
     (0..NODES).map(move |i| ((i as f64 + 0.5) * step - half, step))
 }
 
-/// ∫ W(t) e^(−2πi Ω t) dt over an interval, in closed form: the profile is a sum of cosines.
+/// Returns ∫ W(t) e^(−2πi Ω t) dt over an interval, in closed form: the profile is a sum of
+/// cosines.
 fn windowed(profile: &Profile, [from, to]: [f64; 2], omega: f64) -> Complex {
     let half = profile.half_width();
     let (from, to) = (from.max(-half), to.min(half));
@@ -162,7 +169,7 @@ fn windowed(profile: &Profile, [from, to]: [f64; 2], omega: f64) -> Complex {
         .sum()
 }
 
-/// Σ over slopes v of a row over ρ times e^(−2πi ν v).
+/// Returns Σ over slopes v of a row over ρ times e^(−2πi ν v).
 fn product(
     rows: impl Iterator<Item = (f64, Vec<Complex>)>,
     [rho, nu]: [&FrequencyAxis; 2],
@@ -253,7 +260,7 @@ mod tests {
 
     #[test]
     fn reflection_is_half_the_line_of_space() {
-        // A window that holds all light.
+        // A window that contains all light.
         let [x, u] = [Profile::Hann(0.5), Profile::Box(0.5)];
         let (rho, nu) = (axis(5, 1.7), axis(1, 0.7));
         let cosine = flatland().spectrum(DiffuseStep::Cosine, [&x, &u], [&rho, &nu]);

@@ -1,42 +1,43 @@
-//! How much a smooth interface reflects, and the transform of that with the cosine.
+//! The reflectance of a smooth interface, and the transform of its product with the cosine.
 
 use super::cosine::{cosine_hat, cosine_power_hat};
 use super::panels::even_transform;
 use etendue_field::{Complex, square_root};
 use std::f64::consts::FRAC_PI_2;
 
-/// Halvings of the panels towards grazing angles, where the reflectance of what has an index of N
-/// changes over 1/N; good beyond 1000.
+/// Number of halvings of the panels towards grazing angles, where the reflectance for an index N
+/// changes over 1/N; enough for indices beyond 1000.
 const GRAZING: i32 = 12;
-/// Halvings towards the critical angle, where it has a root.
+/// Number of halvings towards the critical angle, where the reflectance has a square root.
 const CRITICAL: i32 = 40;
 
-/// An interface that reflects unpolarised light by its angle of incidence alone: the factor f(θ) of
-/// a separable BRDF.
+/// An interface whose reflectance of unpolarised light depends on the angle of incidence alone: the
+/// factor f(θ) of a separable BRDF.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FresnelFactor {
-    /// A transparent medium. An index below 1 is that of light inside a denser one, all of which is
-    /// reflected beyond asin(index).
+    /// A transparent medium. An index below 1 describes light inside a denser medium, all of which
+    /// is reflected beyond asin(index).
     Dielectric {
-        /// Refractive index of the medium beyond over that before.
+        /// Refractive index of the medium beyond the interface, divided by that of the medium
+        /// before it.
         index: f64,
     },
     /// A metal, with the complex index n + ik.
     Conductor {
-        /// n, over the index before.
+        /// n, relative to the index of the medium before.
         index: f64,
-        /// k, likewise.
+        /// k, relative to the same index.
         extinction: f64,
     },
     /// Schlick 1994, Eq. 24: F₀ + (1 − F₀)(1 − cos θ)⁵.
     Schlick {
-        /// F₀, the reflectance along the normal.
+        /// F₀, the reflectance at normal incidence.
         normal_reflectance: f64,
     },
 }
 
 impl FresnelFactor {
-    /// The share of unpolarised radiance that is reflected. θ from the normal, in radians,
+    /// Returns the share of unpolarised radiance that is reflected. θ from the normal, in radians,
     /// |θ| ≤ π/2.
     #[must_use]
     pub fn reflectance(&self, theta: f64) -> f64 {
@@ -51,11 +52,11 @@ impl FresnelFactor {
         unpolarised_reflectance(index, cosine, sine * sine)
     }
 
-    /// The transform of F(θ) cos⁺(θ), Ω in cycles per radian: the kernel that Fresnel reflection
-    /// and cosine make together (Durand et al. 2005, Fig. 12-b, who give no formula). Real and
+    /// Returns the transform of F(θ) cos⁺(θ), Ω in cycles per radian: the combined kernel of
+    /// Fresnel reflection and cosine (Durand et al. 2005, Fig. 12-b, who give no formula). Real and
     /// even.
     ///
-    /// By quadrature to 10⁻¹²; Schlick's in closed form, F₀ C₁ + (1 − F₀) Σ (−1)ⁱ (5 over i) Cᵢ₊₁
+    /// By quadrature to 10⁻¹²; for Schlick in closed form, F₀ C₁ + (1 − F₀) Σ (−1)ⁱ (5 over i) Cᵢ₊₁
     /// with the transforms Cₙ of cosⁿ.
     #[must_use]
     pub fn cosine_hat(&self, omega: f64) -> f64 {
@@ -70,8 +71,8 @@ impl FresnelFactor {
         })
     }
 
-    /// Panels that shorten towards grazing angles, and towards the critical angle, where there is a
-    /// root.
+    /// Returns panels that shorten towards grazing angles, and towards the critical angle, where
+    /// there is a square root.
     fn ends(&self) -> Vec<f64> {
         let halved = |most: i32| (1..=most).map(|n| 0.5_f64.powi(n));
         let mut ends: Vec<f64> = halved(GRAZING).map(|h| FRAC_PI_2 * (1.0 - h)).collect();
@@ -91,11 +92,12 @@ impl FresnelFactor {
     }
 }
 
-/// The share of unpolarised radiance that an interface of complex index reflects at an angle with
-/// this cosine and squared sine: the mean of both polarisations (Born and Wolf 1999, section 1.5).
+/// Returns the share of unpolarised radiance that an interface of complex index reflects at an
+/// angle with this cosine and squared sine: the mean of both polarisations (Born and Wolf 1999,
+/// section 1.5).
 pub(crate) fn unpolarised_reflectance(index: Complex, cosine: f64, squared_sine: f64) -> f64 {
     let square = index * index;
-    // The index times the cosine beyond.
+    // The index times the cosine on the far side.
     let beyond = square_root(square - squared_sine);
     let across = (cosine - beyond) / (cosine + beyond);
     let along = (square * cosine - beyond) / (square * cosine + beyond);
@@ -122,7 +124,7 @@ mod tests {
     fn from_inside_the_transform_at_zero_is_the_integral() {
         let inside = FresnelFactor::Dielectric { index: 1.0 / 1.5 };
         let critical = libm::asin(1.0_f64 / 1.5);
-        // Substituting a square on both sides of the critical angle takes the root away.
+        // A quadratic substitution on both sides of the critical angle removes the square root.
         let below = crate::numerics::quadrature::integrate(60, [0.0, critical.sqrt()], |t| {
             let theta = critical - t * t;
             2.0 * t * inside.reflectance(theta) * libm::cos(theta)

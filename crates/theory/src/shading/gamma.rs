@@ -3,15 +3,15 @@
 use libm::lgamma as ln_gamma;
 use std::f64::consts::PI;
 
-/// 1/Γ(z) for every real z, as a factor with a sign and the logarithm of another; the factor is 0
-/// at z = 0, −1, −2, …
+/// Returns 1/Γ(z) for every real z, as a signed factor and the logarithm of another factor; the
+/// first factor is 0 at z = 0, −1, −2, …
 ///
-/// Below zero by reflection, 1/Γ(z) = sin(πz)/π · Γ(1 − z).
+/// Uses reflection below zero: 1/Γ(z) = sin(πz)/π · Γ(1 − z).
 pub(super) fn reciprocal_gamma(z: f64) -> (f64, f64) {
     if z > 0.0 {
         return (1.0, -ln_gamma(z));
     }
-    // The nearest whole number first: sin(πz) of a large z would have the rounding of πz.
+    // Subtracts the nearest whole number first: sin(πz) of a large z would have the rounding of πz.
     let whole = z.round();
     let sign = if whole.rem_euclid(2.0) < 0.5 {
         1.0
@@ -48,7 +48,7 @@ mod tests {
         for n in 0..12 {
             let z = -f64::from(n);
             assert!(reciprocal(z).abs() < f64::MIN_POSITIVE, "{z}");
-            // 1/Γ(z) = z/Γ(z + 1) on both sides of each.
+            // 1/Γ(z) = z/Γ(z + 1) on both sides of each pole.
             for z in [z + 0.1, z - 0.1] {
                 let step = z * reciprocal(z + 1.0);
                 // Rounding of ln Γ up to 20.

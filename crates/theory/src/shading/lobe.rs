@@ -10,35 +10,35 @@ use std::f64::consts::{FRAC_PI_2, PI};
 ///
 /// Beckmann and GGX are models of narrow lobes: ρ' ∝ D(δ/2), where D is the distribution of
 /// microfacet normals, whose tilt is half of δ. The factor 1/(4 cos θ_i' cos θ_o') and the
-/// shadowing of a microfacet BRDF are left out, which makes it depend on more than δ, and so is the
-/// Fresnel factor, for which there is [`FresnelFactor`](super::FresnelFactor). The distributions are the slices
-/// through the plane of incidence of those in 3D.
+/// shadowing of a microfacet BRDF are omitted, because they depend on more than δ, and so is the
+/// Fresnel factor ([`FresnelFactor`](super::FresnelFactor)). The distributions are the slices of
+/// the 3D ones through the plane of incidence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlanarLobe {
     /// cosⁿ δ on |δ| < π/2.
     Phong {
-        /// n > 0.
+        /// Exponent n > 0.
         exponent: f64,
     },
     /// exp(−δ²/2σ²).
     Gaussian {
-        /// σ > 0, in radians.
+        /// Standard deviation σ > 0, in radians.
         deviation: f64,
     },
     /// exp(−tan² τ/α²)/cos⁴ τ, τ = δ/2 (Beckmann and Spizzichino 1963).
     Beckmann {
-        /// α > 0, the root mean square slope of microfacets times √2.
+        /// Roughness α > 0, the root mean square slope of microfacets times √2.
         roughness: f64,
     },
     /// 1/(α² cos² τ + sin² τ)², τ = δ/2 (Walter et al. 2007, Eq. 33, who call it GGX).
     Ggx {
-        /// 0 < α ≤ 1.
+        /// Roughness 0 < α ≤ 1.
         roughness: f64,
     },
 }
 
 impl PlanarLobe {
-    /// ρ'(δ), per radian.
+    /// Returns ρ'(δ), per radian.
     #[must_use]
     pub fn value(&self, angle: f64) -> f64 {
         match *self {
@@ -73,7 +73,7 @@ impl PlanarLobe {
         }
     }
 
-    /// ρ̂'(Ω), Ω in cycles per radian: real, even, 1 at zero (Durand et al. 2005, Eq. 16).
+    /// Returns ρ̂'(Ω), Ω in cycles per radian: real, even, 1 at zero (Durand et al. 2005, Eq. 16).
     ///
     /// Phong: Γ(1 + n/2)²/(Γ(1 + n/2 + πΩ) Γ(1 + n/2 − πΩ)); Gaussian: exp(−2π²σ²Ω²); the others by
     /// quadrature, to 10⁻¹².
@@ -90,12 +90,12 @@ impl PlanarLobe {
         }
     }
 
-    /// The frequency below which a share of the energy ∫ |ρ̂'|² dΩ lies, in cycles per radian;
-    /// `fraction` in (0, 1).
+    /// Returns the frequency below which a share of the energy ∫ |ρ̂'|² dΩ lies, in cycles per
+    /// radian; `fraction` in (0, 1).
     ///
-    /// Gaussian: 0.2899/σ for 99 %, 0.2206/σ for 95 %. What Durand et al. 2005, section 6.2, call
-    /// Ω_ρ and choose by hand. By summing to 10⁻⁹; where a lobe has a jump, as GGX has at the end,
-    /// the last part in 10⁶ may lie beyond what is searched, and the answer is not a number.
+    /// Gaussian: 0.2899/σ for 99 %, 0.2206/σ for 95 %. Durand et al. 2005, section 6.2, call this
+    /// Ω_ρ and choose it by hand. Computed by summation to 10⁻⁹; if a lobe has a jump, as GGX has
+    /// at the end, the last part in 10⁶ may lie beyond the range searched, and the result is NaN.
     #[must_use]
     pub fn cutoff(&self, fraction: f64) -> f64 {
         const NODES: usize = 16;
@@ -112,7 +112,7 @@ impl PlanarLobe {
                 missing -= next;
                 continue;
             }
-            // Halving until the interval is rounding.
+            // Bisects until the interval is at rounding.
             let (mut inside, mut outside) = (low, low + step);
             for _ in 0..50 {
                 let middle = 0.5 * (inside + outside);
@@ -127,7 +127,7 @@ impl PlanarLobe {
         f64::NAN
     }
 
-    /// ∫ |ρ̂'|² dΩ = ∫ ρ'² dδ (Parseval).
+    /// Returns ∫ |ρ̂'|² dΩ = ∫ ρ'² dδ (Parseval).
     fn energy(&self) -> f64 {
         match *self {
             Self::Phong { exponent } => {
@@ -140,7 +140,7 @@ impl PlanarLobe {
         }
     }
 
-    /// A width for steps.
+    /// Returns a width from which step sizes are derived.
     fn width(&self) -> f64 {
         match *self {
             Self::Phong { exponent } => exponent.max(1.0).sqrt().recip(),
@@ -149,13 +149,14 @@ impl PlanarLobe {
         }
     }
 
-    /// Panels over half of the lobe: poles of GGX and the scale of Beckmann's are about 2α off.
+    /// Returns panels over half of the lobe: the poles of GGX and the scale of Beckmann are at
+    /// about 2α.
     fn ends(&self) -> Vec<f64> {
         doubling(self.width(), PI)
     }
 }
 
-/// tan(δ/2); `None` where it is so large that no microfacet is so steep.
+/// Returns tan(δ/2); `None` if it is so large that no microfacet is that steep.
 fn slope(angle: f64) -> Option<f64> {
     let t = libm::tan(0.5 * angle);
     (angle.abs() < PI && t.abs() < 1e100).then_some(t)
@@ -181,8 +182,8 @@ mod tests {
         for lobe in LOBES {
             assert!((lobe.spectrum(0.0) - 1.0).abs() < 1e-12, "{lobe:?}"); // as promised
             for omega in [0.0, 0.3, 2.0, 11.0] {
-                // Trapezoids: exponentially good for what vanishes at the ends, or is periodic at
-                // whole 2πΩ.
+                // Trapezoid rule: converges exponentially for functions that vanish at the ends, or
+                // are periodic at whole 2πΩ.
                 if matches!(lobe, PlanarLobe::Ggx { .. } | PlanarLobe::Phong { .. }) && omega != 0.0
                 {
                     continue;
@@ -195,7 +196,7 @@ mod tests {
                         lobe.value(at) * libm::cos(2.0 * PI * omega * at) * step
                     })
                     .sum();
-                // The corner of cos δ leaves step²/6; 3e-8.
+                // The corner of cos δ causes an error of step²/6; 3e-8.
                 let close = if lobe == LOBES[0] { 3e-8 } else { 1e-12 };
                 assert!((sum - lobe.spectrum(omega)).abs() < close, "{lobe:?}");
             }
@@ -222,7 +223,7 @@ mod tests {
     #[test]
     fn cutoffs_of_a_gaussian() {
         let lobe = PlanarLobe::Gaussian { deviation: 0.05 };
-        // The quantiles of the normal distribution at 99 % and 95 %, over 2√2 πσ.
+        // The quantiles of the normal distribution at 99 % and 95 %, divided by 2√2 πσ.
         for (fraction, quantile) in [(0.99, 2.575_829_303_5), (0.95, 1.959_963_984_5)] {
             let expected = quantile / (2.0 * 2.0_f64.sqrt() * PI * 0.05);
             assert!((lobe.cutoff(fraction) / expected - 1.0).abs() < 1e-9); // as promised

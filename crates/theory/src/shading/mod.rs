@@ -1,10 +1,10 @@
-//! Shading in 2D: what the cosine, the BRDF, a texture and an environment do to spectra
+//! Shading in 2D: the effect of the cosine, the BRDF, a texture and an environment on spectra
 //! (docs/theory.md, section 9).
 //!
-//! Angles are those of the [geometry](crate::geometry): on a surface, directions point away from
-//! it, θ is counted from the normal towards T, and a mirror has θ_o = −θ_i. Frequencies are in
-//! cycles per metre and per radian. A product of a light field with a factor convolves its
-//! spectrum, a convolution over angles multiplies it, and no constant goes with either:
+//! Angles follow the [geometry](crate::geometry): on a surface, directions point away from it, θ is
+//! counted from the normal towards T, and a mirror has θ_o = −θ_i. Frequencies are in cycles per
+//! metre and per radian. A product of a light field with a factor convolves its spectrum, a
+//! convolution over angles multiplies it, and neither involves a constant:
 //!
 //! | step | here | in Durand et al. 2005 |
 //! |---|---|---|

@@ -1,16 +1,17 @@
-//! Products in the primal, which are convolutions of spectra: sums on a lattice of frequencies.
+//! Products in the primal domain, computed as convolutions of spectra: sums on a lattice of
+//! frequencies.
 
 use etendue_field::Complex;
 use std::f64::consts::TAU;
 
-/// Frequencies n·`spacing` up to `reach` on both sides, at which spectra are summed.
+/// Frequencies n·`spacing` up to `reach` on both sides, over which spectra are summed.
 ///
-/// Such a sum is not an approximation as long as light and factor end: its error is the product of
-/// the factor with copies of the light moved by 1/`spacing` along the axis (Poisson's formula), and
-/// what the light has beyond `reach`.
+/// The sum is exact if light and factor are bounded: its error is the product of the factor with
+/// copies of the light displaced by 1/`spacing` along the axis (Poisson's formula), and the light's
+/// content beyond `reach`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lattice {
-    /// Cycles per unit of the axis between two frequencies.
+    /// Distance between two frequencies, in cycles per unit of the axis.
     pub spacing: f64,
     /// The largest frequency at which the *light* still has content, in cycles per unit of the
     /// axis.
@@ -18,8 +19,8 @@ pub struct Lattice {
 }
 
 impl Lattice {
-    /// The frequencies of a Fourier series on the full circle, 1/2π apart: exact for factors on the
-    /// half-circle and light that ends before ± 3π/2.
+    /// Returns the frequencies of a Fourier series on the full circle, 1/2π apart: exact for
+    /// factors on the half-circle and light bounded by ± 3π/2.
     #[must_use]
     pub fn circle(reach: f64) -> Self {
         let spacing = 1.0 / TAU;
@@ -38,8 +39,8 @@ impl Lattice {
     }
 }
 
-/// The spectrum at Ω of f(θ) ℓ(x, θ): ∫ L(Ωx, q) f̂(Ωθ − q) dq (Durand et al. 2005, Eq. 12, whose ⊗
-/// with a Dirac this is).
+/// Returns the spectrum at Ω of f(θ) ℓ(x, θ): ∫ L(Ωx, q) f̂(Ωθ − q) dq (Durand et al. 2005, Eq. 12:
+/// their ⊗ with a Dirac).
 ///
 /// `factor` is f̂, in cycles per radian; `before` is L.
 #[must_use]
@@ -53,21 +54,21 @@ pub fn angular_product(
     lattice.sum(|q| before([x, q]) * factor(theta - q))
 }
 
-/// A wave A e^(2πi f s) of a texture along the surface. A real texture has each with its conjugate
-/// at −f.
+/// A wave A e^(2πi f s) of a texture along the surface. In a real texture each wave has its
+/// conjugate at −f.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TextureWave {
-    /// f, in cycles per metre of arc length.
+    /// Frequency f, in cycles per metre of arc length.
     pub frequency: f64,
-    /// A.
+    /// Amplitude A.
     pub amplitude: Complex,
 }
 
-/// The spectrum at Ω of T(s) ℓ(s, θ) for a texture that is a sum of waves: Σ A L(Ωx − f, Ωθ)
-/// (Durand et al. 2005, Eq. 18).
+/// Returns the spectrum at Ω of T(s) ℓ(s, θ) for a texture that is a sum of waves: Σ A L(Ωx − f,
+/// Ωθ) (Durand et al. 2005, Eq. 18).
 ///
-/// Only positions are affected, so it may come before or after the step back from the local
-/// normals, but before the outgoing angle.
+/// A texture affects only positions, so it may be applied before or after the step back from the
+/// local normals, but before the outgoing angle.
 #[must_use]
 pub fn texture(
     waves: &[TextureWave],
@@ -81,8 +82,9 @@ pub fn texture(
         .sum()
 }
 
-/// The spectrum at Ω of the reflection by a BRDF ρ(s, δ) that varies in space: ∫ L(q, Ωθ) ρ̂(Ωx −
-/// q, Ωθ) dq, a convolution along Ωx alone (Durand et al. 2005, section 4.5, "semi-convolution").
+/// Returns the spectrum at Ω of the reflection by a BRDF ρ(s, δ) that varies in space: ∫ L(q, Ωθ)
+/// ρ̂(Ωx − q, Ωθ) dq, a convolution along Ωx alone (Durand et al. 2005, section 4.5,
+/// "semi-convolution").
 ///
 /// `brdf` is the transform of ρ in both variables; `lattice` is along Ωx, in cycles per metre. A
 /// `brdf` that does not depend on Ωθ is a texture.
@@ -126,7 +128,7 @@ mod tests {
             spacing: 0.05,
             reach: 6.0,
         };
-        // A wide Gaussian modulation of frequency 2 against the wave itself.
+        // A wide Gaussian modulation of frequency 2, compared with the wave itself.
         let slow = |[x, _]: [f64; 2]| bell(1e3, x - 2.0);
         let fine = Lattice {
             spacing: 1e-4,

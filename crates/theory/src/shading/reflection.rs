@@ -9,27 +9,29 @@ use std::fmt;
 /// The spectrum of a light field, L(Ωx, Ωθ).
 type PlanarSpectrum<'a> = &'a dyn Fn([f64; 2]) -> Complex;
 
-/// Steps of a reflection in the order of light (Durand et al. 2005, section 4.1 and Fig. 10).
+/// Steps of a reflection in the order light meets them (Durand et al. 2005, section 4.1 and Fig.
+/// 10).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReflectionStep {
-    /// 1, onto the surface: [`AffineMap::incidence`](AffineMap::<2>::incidence).
+    /// Step 1, onto the surface: [`AffineMap::incidence`](AffineMap::<2>::incidence).
     Incidence,
-    /// 2, into the frames of the local normals: [`AffineMap::curvature`](AffineMap::<2>::curvature).
+    /// Step 2, into the frames of the local normals:
+    /// [`AffineMap::curvature`](AffineMap::<2>::curvature).
     Curvature,
-    /// 3, times cosine and other factors of the direction of incidence.
+    /// Step 3, times cosine and other factors of the direction of incidence.
     Cosine,
-    /// 4, mirrored: [`AffineMap::mirror`].
+    /// Step 4, mirrored: [`AffineMap::mirror`].
     Mirror,
-    /// 5, convolved with the lobe, times factors of the outgoing direction.
+    /// Step 5, convolved with the lobe, times factors of the outgoing direction.
     Brdf,
-    /// 6, back from the local normals: [`AffineMap::back`](AffineMap::<2>::back).
+    /// Step 6, back from the local normals: [`AffineMap::back`](AffineMap::<2>::back).
     Back,
-    /// 7, off the surface: [`AffineMap::outgoing`](AffineMap::<2>::outgoing).
+    /// Step 7, off the surface: [`AffineMap::outgoing`](AffineMap::<2>::outgoing).
     Outgoing,
 }
 
 impl ReflectionStep {
-    /// All, in order.
+    /// All steps, in order.
     pub const ALL: [Self; 7] = [
         Self::Incidence,
         Self::Curvature,
@@ -41,13 +43,13 @@ impl ReflectionStep {
     ];
 }
 
-/// A factor of a local direction, as its transform.
+/// A factor of a local direction, given by its transform.
 #[derive(Clone, Copy)]
 pub enum Factor<'a> {
-    /// 1: none. With no [`PlanarLobe`] this is an ideal mirror, whose BRDF δ/cos θ_i' cancels the cosine.
-    /// Nothing ends at the horizon then.
+    /// The constant 1. Without a [`PlanarLobe`] this is an ideal mirror, whose BRDF δ/cos θ_i'
+    /// cancels the cosine. Light is then not cut off at the horizon.
     One,
-    /// cos⁺.
+    /// The clamped cosine cos⁺.
     Cosine,
     /// Fresnel reflectance times cos⁺.
     Fresnel(FresnelFactor),
@@ -55,8 +57,8 @@ pub enum Factor<'a> {
     Table(&'a AngleTable),
     /// The values of a table times cos⁺.
     TableCosine(&'a AngleTable),
-    /// Any other, the cosine included where one is due: f̂(Ω), in cycles per radian. Asymmetric
-    /// ones are complex.
+    /// Any other factor, including the cosine if it applies: f̂(Ω), in cycles per radian; complex
+    /// for asymmetric factors.
     Other(&'a dyn Fn(f64) -> Complex),
 }
 
@@ -74,7 +76,7 @@ impl fmt::Debug for Factor<'_> {
 }
 
 impl Factor<'_> {
-    /// The spectrum of the product at Ω.
+    /// Returns the spectrum of the product at Ω.
     fn times(&self, lattice: &Lattice, omega: [f64; 2], before: PlanarSpectrum<'_>) -> Complex {
         match self {
             Self::One => before(omega),
@@ -98,42 +100,43 @@ use angular_product as product;
 /// One separable term of a BRDF, w(s) f(θ_i') ρ'(θ_o' − θ_r') h(θ_o').
 #[derive(Clone, Copy, Debug)]
 pub struct SeparableTerm<'a> {
-    /// f(θ_i') with the cosine.
+    /// f(θ_i') including the cosine.
     pub before: Factor<'a>,
-    /// ρ'; `None` is a Dirac.
+    /// ρ'; `None` for a Dirac.
     pub lobe: Option<PlanarLobe>,
     /// h(θ_o').
     pub after: Factor<'a>,
-    /// w, how much of it there is at each place, as a sum of waves; `None` is 1.
+    /// w, the weight at each position, as a sum of waves; `None` for 1.
     pub weight: Option<&'a [TextureWave]>,
 }
 
 /// Reflection in 2D, from the light frame before to the light frame after.
 #[derive(Clone, Debug)]
 pub struct PlanarReflection<'a> {
-    /// θ₀, where the central light comes from; radians from the normal.
+    /// θ₀, the direction the central light comes from; radians from the normal.
     pub incidence: f64,
-    /// θ₁, where the central ray leaves; −θ₀ for a mirror.
+    /// θ₁, the direction the central ray leaves in; −θ₀ for a mirror.
     pub outgoing: f64,
     /// k, in 1/m, convex positive.
     pub curvature: f64,
-    /// The BRDF, as a sum.
+    /// The terms of the BRDF.
     pub terms: Vec<SeparableTerm<'a>>,
-    /// Frequencies along Ωθ at which products are summed. Its reach covers the content of the light
-    /// in the frames of the local normals.
+    /// Frequencies along Ωθ over which products are summed. Its reach covers the content of the
+    /// light in the frames of the local normals.
     pub lattice: Lattice,
 }
 
 impl PlanarReflection<'_> {
-    /// The spectrum at Ω after a step, of light with the spectrum `before` in the light frame.
+    /// Returns the spectrum at Ω after a step, for light with the spectrum `before` in the light
+    /// frame.
     ///
-    /// To first order in the size of the neighbourhood, as are the [maps](crate::geometry); cosine,
-    /// lobe and factors are exact. Between the cosine and the BRDF a sum of terms is that of their
-    /// differential irradiances.
+    /// It holds to first order in the size of the neighbourhood, like the [maps](crate::geometry);
+    /// cosine, lobe and factors are exact. Between the cosine and the BRDF, a sum of terms is the
+    /// sum of their differential irradiances.
     ///
     /// L_o(Ω) = ρ̂'(Ωθ) ∫ L_i(Ωx + k Ωθ − k q, q) f̂(−Ωθ − q) dq after step 6 for one term without
-    /// h (docs/theory.md (36)). For an asymmetric f that is f̂(−Ωθ), of which Table 1 of Durand
-    /// et al. 2005 drops the sign, and the hat of ρ̂'; their Eqs. 15 and 17 lack primes.
+    /// h (docs/theory.md (36)). For an asymmetric f that is f̂(−Ωθ); Table 1 of Durand et al. 2005
+    /// drops this sign and the hat of ρ̂', and their Eqs. 15 and 17 lack primes.
     #[must_use]
     pub fn spectrum(
         &self,
@@ -167,7 +170,7 @@ impl PlanarReflection<'_> {
         self.terms.iter().map(of).sum()
     }
 
-    /// Step 3 of a term.
+    /// Returns step 3 of a term.
     fn lit(
         &self,
         term: &SeparableTerm<'_>,
@@ -178,8 +181,8 @@ impl PlanarReflection<'_> {
         term.before.times(&self.lattice, omega, &local)
     }
 
-    /// Steps 3 to 5 of a term. The product with the lobe is Eq. 16 of Durand et al. 2005, the
-    /// weights of a sum are textures (section 4.5).
+    /// Returns steps 3 to 5 of a term. The product with the lobe is Eq. 16 of Durand et al. 2005;
+    /// the weights of a sum are textures (section 4.5).
     fn reflected(
         &self,
         term: &SeparableTerm<'_>,
@@ -209,7 +212,7 @@ mod tests {
         turn * libm::exp(-PI * (0.3 * x * x + 0.1 * x * t + 0.2 * t * t))
     }
 
-    /// (1 + 0.6 sin θ) cos⁺, which tells θ from −θ.
+    /// The transform of (1 + 0.6 sin θ) cos⁺, which distinguishes θ from −θ.
     fn uneven(q: f64) -> Complex {
         let side = cosine_hat(q - 0.5 / PI) - cosine_hat(q + 0.5 / PI);
         Complex::new(cosine_hat(q), -0.3 * side)

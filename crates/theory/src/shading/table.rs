@@ -1,14 +1,14 @@
-//! Factors of an angle that are lists of values.
+//! Factors of an angle that are tables of values.
 
 use super::panels::even_transform;
 use etendue_field::AngleTable;
 use std::f64::consts::FRAC_PI_2;
 
-/// The transform of t(|θ|) g(θ) on |θ| < π/2, of a table t and an even function g, with Ω in cycles
-/// per radian: the factor f(θi) or h(θo) of a separable BRDF (Durand et al. 2005, section 4.3), with
-/// the cosine for g where one is due. Real and even.
+/// Returns the transform of t(|θ|) g(θ) on |θ| < π/2, for a table t and an even function g, with Ω
+/// in cycles per radian: the factor f(θi) or h(θo) of a separable BRDF (Durand et al. 2005, section
+/// 4.3), with the cosine as g if it applies. Real and even.
 ///
-/// By Gauss' rule between the values of the table, to 10⁻¹² for a smooth g.
+/// Computed by Gauss rules between the values of the table, to 10⁻¹² for a smooth g.
 #[must_use]
 pub fn table_hat(table: &AngleTable, g: impl Fn(f64) -> f64, omega: f64) -> f64 {
     let steps = (table.values.len() - 1) as f64;

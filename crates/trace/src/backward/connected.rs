@@ -1,14 +1,15 @@
-//! Light without extent, which no ray finds by chance: points, projectors and beams.
+//! Connects points to light without extent, which no ray hits by chance: point lights, projectors
+//! and beams.
 //!
-//! From a point the way to such a light is known, so it is looked for there and nowhere else.
+//! From a given point the path to such a light is known, so only this path is traced.
 
 use etendue_field::{Light, TwoPlane, VirtualPlane};
 use etendue_scene::{Event, Object, Scene};
 use glam::DVec3;
 
-/// Whether rays that are traced back from a plane find the light: light without extent only where
-/// nothing turns it before the plane, or before the first surface that scatters it, and a point not
-/// from where it is. Rays of a file are never found.
+/// Whether rays traced back from a plane find the light. Light without extent is found only where
+/// nothing deflects it before the plane, or before the first surface that scatters it; a point
+/// light is not found from its own position. Rays of a file are never found.
 #[must_use]
 pub fn finds(scene: &Scene, plane: &VirtualPlane) -> bool {
     let first = scene.path.legs.get(1).and_then(|leg| leg.leaves.as_ref());
@@ -18,7 +19,7 @@ pub fn finds(scene: &Scene, plane: &VirtualPlane) -> bool {
         Object::Patch(i) => matches!(scene.patches[i].event, Event::Specular(_)),
     });
     let light = &scene.light;
-    // A ray that is drawn meets none of a file's.
+    // A randomly drawn ray meets none of a file's.
     if matches!(light, Light::Rays { .. }) {
         return false;
     }
@@ -26,8 +27,8 @@ pub fn finds(scene: &Scene, plane: &VirtualPlane) -> bool {
     light.has_extent() || !is_at_point && (plane.leg == 0 || !turns)
 }
 
-/// The ray, given at the light, that goes from a light without extent to a point in the frame at the
-/// light; and the irradiance there across it, over what the ray carries per du dv or dx dy.
+/// The ray, given at the light, from a light without extent to a point in the frame at the light;
+/// and the irradiance there across the ray, over what the ray carries per du dv or dx dy.
 pub(super) fn connection(light: &Light, point: DVec3) -> Option<(TwoPlane, f64)> {
     let [x, y] = [point.x, point.y];
     if point.z < 0.0 || point.z == 0.0 && !light.is_distant() {
@@ -40,8 +41,8 @@ pub(super) fn connection(light: &Light, point: DVec3) -> Option<(TwoPlane, f64)>
     let [u, v] = [x / point.z, y / point.z];
     let (x, y) = (0.0, 0.0);
     let ray = TwoPlane { x, y, u, v };
-    // dω = du dv / (1 + u² + v²)^(3/2), and r² = z² (1 + u² + v²); what the ray carries has one of
-    // these roots already.
+    // dω = du dv / (1 + u² + v²)^(3/2), and r² = z² (1 + u² + v²); the value the ray carries
+    // already includes one of these roots.
     let secant_squared = ray.secant_squared();
     let spread = point.z * point.z * secant_squared * secant_squared.sqrt();
     Some((ray, 1.0 / spread))

@@ -1,13 +1,14 @@
-//! Where rays traced back begin, and what that says of the surface they come to.
+//! The point where a ray traced back begins, and what this implies about the surface it comes to.
 
 use etendue_field::Side;
 
-/// Where a ray is looked at, along its leg.
+/// The point at which a ray is evaluated, along its leg.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum End {
-    /// At a plane. What would meet again beyond it the surface that it has left does not count.
+    /// At a plane. Light that would meet again, beyond the plane, the surface it has left does not
+    /// count.
     Plane(f64, Side),
-    /// At a surface, beyond which it does not go.
+    /// At a surface that ends the ray.
     Surface(f64),
 }
 
@@ -19,7 +20,7 @@ impl End {
         }
     }
 
-    /// Up to where light may leave the surface at the beginning of the leg.
+    /// The distance up to which light may leave the surface at the beginning of the leg.
     pub(super) fn of_line(self) -> f64 {
         match self {
             Self::Plane(..) => f64::INFINITY,

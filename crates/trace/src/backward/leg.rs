@@ -1,4 +1,4 @@
-//! A leg of the path as a ray that is traced back sees it.
+//! A leg of the path for rays that are traced back.
 
 use crate::area_sampler::AreaSampler;
 use crate::courses::{Both, rounding};
@@ -9,25 +9,25 @@ use crate::primitive_set::{PrimitiveSet, TaggedPrimitive};
 use etendue_field::{Frame, Patch, Reflectance, Specular, TwoPlane};
 use etendue_scene::{Event, Object, PatchObject, Scene};
 
-/// A leg of the path, looked along from its end.
+/// A leg of the path, traced from its end.
 #[derive(Debug)]
 pub(super) struct BackwardLeg {
     pub(super) courses: Both<BackwardCourse>,
-    /// What it ends on.
+    /// The object on which the leg ends.
     pub(super) ends: Option<Object>,
 }
 
-/// What light meets that goes one way on a leg.
+/// What light of one heading can meet on a leg.
 #[derive(Debug)]
 pub(super) struct BackwardCourse {
-    /// In the frame at the light.
+    /// The frame of the heading, in the frame at the light.
     pub(super) frame: Frame,
     pub(super) obstacles: Obstacles,
-    /// The surface at its beginning; `None` for the first.
+    /// The surface at the beginning of the leg; `None` for the first leg.
     pub(super) leaves: Option<LeftSurface>,
 }
 
-/// A ray along which light of a leg may come, in the frame of its way.
+/// A ray along which light of a leg may come, in the frame of its heading.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct IncomingRay {
     pub(super) leg: usize,
@@ -39,23 +39,23 @@ pub(super) struct IncomingRay {
 #[derive(Debug)]
 pub(super) struct LeftSurface {
     pub(super) object: Object,
-    /// In the frame of the course.
+    /// The pieces of the surface, in the frame of the course.
     pub(super) primitives: PrimitiveSet<()>,
     pub(super) how: Scattering,
     pub(super) rounding: f64,
 }
 
-/// Scattering light leaves a surface.
+/// How light leaves a surface.
 #[derive(Debug)]
 pub(super) enum Scattering {
-    /// Diffusely, from pieces of which points can be drawn.
+    /// Diffuse reflection, from pieces whose points can be sampled.
     Diffuse { albedo: f64, pieces: AreaSampler },
-    /// By a BRDF that may vary over a patch, in the frame of the course.
+    /// Reflection by a BRDF that may vary over a patch, in the frame of the course.
     Reflects {
         patch: Patch,
         reflectance: Box<Reflectance>,
     },
-    /// Turned; the lens's frame, in the frame of the course.
+    /// By reflection, refraction or a lens; the lens's frame, in the frame of the course.
     Turned { lens: Frame, event: Specular },
 }
 

@@ -1,4 +1,4 @@
-//! Scattering rays of one plane are drawn.
+//! How rays of one plane are drawn.
 
 use super::end::End;
 use super::leg::IncomingRay;
@@ -10,14 +10,15 @@ use crate::proposal::ProfileDensity;
 use etendue_field::{Orientation, TwoPlane, VirtualPlane};
 use etendue_scene::Scene;
 
-/// Scattering rays of one plane are drawn.
+/// How rays of one plane are drawn.
 #[derive(Debug)]
 pub(super) struct PlaneSampler {
     pub(super) leg: usize,
     pub(super) planes_on_leg: Both<PlaneOnLeg>,
     pub(super) position: [ProfileDensity; 2],
     pub(super) slope: [ProfileDensity; 2],
-    /// Whether slopes are drawn towards points of the light: where they are the narrower choice.
+    /// Whether slopes are drawn towards points of the light, which is done where it restricts them
+    /// more.
     pub(super) to_light: bool,
 }
 
@@ -49,7 +50,8 @@ impl PlaneSampler {
         }
     }
 
-    /// The ray of the leg that the plane has as `seen`, where it is looked at, and dA over dx dy there; `None` if there is none.
+    /// The ray of the leg that has the coordinates `seen` at the plane, its end point, and dA over
+    /// dx dy there; `None` if there is none.
     pub(super) fn leg_ray(&self, seen: &TwoPlane) -> Option<(IncomingRay, End, f64)> {
         let headings = [Heading::Along, Heading::Against];
         headings.into_iter().find_map(|heading| {

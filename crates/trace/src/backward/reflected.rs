@@ -8,8 +8,8 @@ use glam::DVec3;
 pub(super) struct Reflection<'a> {
     pub(super) brdf: Mixture<'a>,
     pub(super) point: DVec3,
-    /// D along the normal.
+    /// The frame with D along the normal.
     pub(super) frame: Frame,
-    /// Where light goes, of unit length, in that frame.
+    /// The unit direction of the reflected light, in `frame`.
     pub(super) to: DVec3,
 }

@@ -1,24 +1,23 @@
-//! What a ray that is traced back can find where the path begins.
+//! What a ray traced back can find at the beginning of the path.
 
 use crate::radiance::radiance;
 use crate::sky::Sky;
 use etendue_field::{Light, Shape, TwoPlane};
 use glam::DVec3;
 
-/// What a ray can find where the path begins.
+/// What a ray can find at the beginning of the path.
 #[derive(Debug)]
 pub(super) enum TracedLight {
-    /// A light that it hits.
+    /// An area light that the ray hits.
     Area { light: Light, shape: Shape },
-    /// Light from far away.
+    /// Light from an environment.
     Sky(Sky),
     /// A point, a projector or a beam, towards which rays are drawn.
     Narrow(Light),
 }
 
 impl TracedLight {
-    /// Radiance along a ray that nothing stands in the way of; of light without extent per du dv or
-    /// dx dy.
+    /// The radiance along an unoccluded ray; for light without extent per du dv or dx dy.
     pub(super) fn radiance(&self, ray: &TwoPlane) -> f64 {
         match self {
             Self::Area { light, .. } | Self::Narrow(light) => radiance(light, ray),

@@ -1,4 +1,4 @@
-//! The backward tracer: rays drawn in the window of each plane, followed to the light.
+//! The backward tracer: draws rays in the window of each plane and traces them to the light.
 
 use super::connected::{connection, finds};
 use super::end::End;
@@ -21,8 +21,9 @@ use glam::DVec3;
 
 /// The backward tracer of a scene, the independent check of [`Tracer`](crate::Tracer).
 ///
-/// For each plane on its own, and for each photon, it draws a ray in the plane's window, follows it back, and finds the
-/// radiance that comes along it. Nothing is emitted, aimed or absorbed, and there is no ledger.
+/// For each plane separately, and for each photon, it draws a ray in the plane's window, traces it
+/// back and finds the radiance that arrives along it. Nothing is emitted, aimed or absorbed, and
+/// there is no ledger.
 #[derive(Debug)]
 pub struct Backward {
     light: TracedLight,
@@ -32,7 +33,8 @@ pub struct Backward {
     seed: u64,
 }
 
-/// A plane to which something turns the light of a point: no backward ray finds it.
+/// The error for a plane at which the light of a point source arrives deflected: no backward ray
+/// finds the source.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "no ray traced back from {plane} finds the light: it is a point there, or a point or a beam that \
@@ -77,9 +79,9 @@ impl Backward {
         })
     }
 
-    /// The ray of one plane with this number, and what it stands for in radiance space.
+    /// The ray of one plane with number `index`, and its weight in radiance space.
     fn sample(&self, sampler: &PlaneSampler, plane: u32, index: u64) -> Crossing {
-        // One block for the ray, one for each surface on its way.
+        // One block for the ray, and one for each surface on its way.
         let blocks = u32::try_from(self.legs.len().max(2)).unwrap_or(u32::MAX);
         let words = |block| {
             let block = blocks * plane + block;
@@ -108,7 +110,8 @@ impl Backward {
                 [(x - x0) / distance, (y - y0) / distance]
             }
             TracedLight::Sky(sky) if sampler.to_light => {
-                // Half of them by the environment; its directions go forward or nowhere.
+                // Half of the rays are drawn by the environment; a direction that does not go
+                // forward is discarded.
                 let drawn = if r[2] < 0.5 {
                     sky.slopes(words(1))
                 } else {
@@ -139,8 +142,8 @@ impl Backward {
         }
     }
 
-    /// The radiance that arrives at the end of a ray; `block` numbers the random
-    /// numbers of the next surface on its way back.
+    /// The radiance that arrives at the end of a ray; `block` selects the random numbers of the
+    /// next surface on the way back.
     #[expect(
         clippy::too_many_lines,
         reason = "a case for each kind of surface that a ray may meet"
@@ -186,7 +189,7 @@ impl Backward {
         let point = start(ray) + begin * along;
         match &leaves.how {
             Scattering::Diffuse { albedo, .. } => {
-                // It was left on the side it goes away from.
+                // Light left the surface on the side that it travels away from.
                 let normal = primitive.normal(point);
                 let normal = frame.vector_to_world(normal.dot(along).signum() * normal);
                 let point = frame.to_world(point);
@@ -242,8 +245,8 @@ impl Backward {
         })
     }
 
-    /// The radiance that arrives along a ray at a point, `end` along the way, of the surface that ends its leg: of a hollow or a bulky one, another part
-    /// may stand in the way.
+    /// The radiance that arrives along a ray at a point, at distance `end`, of the surface that
+    /// ends its leg. Another part of a concave or solid surface may occlude it.
     fn arriving(
         &self,
         incoming: &IncomingRay,
@@ -252,7 +255,7 @@ impl Backward {
         words: &impl Fn(u32) -> [f64; 4],
     ) -> f64 {
         let IncomingRay { leg, heading, ray } = incoming;
-        // Light begins in the plane across the central ray at its centre.
+        // Light begins in the plane across the central ray at the light's centre.
         if *leg == 0 && end <= 0.0 {
             return 0.0;
         }
@@ -272,8 +275,8 @@ impl Backward {
         self.incident(incoming, End::Surface(end), block, words)
     }
 
-    /// The irradiance at a point, with its normal, at the end of a leg, from one point of what light leaves at its beginning;
-    /// in the frame at the light.
+    /// The irradiance at a point with a normal at the end of a leg, from one point of the surface
+    /// or light at the beginning of the leg; in the frame at the light.
     fn irradiance(
         &self,
         leg: usize,
@@ -325,7 +328,7 @@ impl Backward {
             return 0.0;
         };
         let [end, begin] = [end, begin].map(|p| heading.turned(p).z);
-        // What stands nearer on the same line is not the point that was drawn.
+        // A nearer point of the surface on the same line hides the point that was drawn.
         let nearer = |leaves: &LeftSurface| {
             leaves
                 .primitives
@@ -359,8 +362,9 @@ impl Backward {
     }
 }
 
-/// Radiance after over before a turn at a point, light going along `along` and having come against `came`: (n'/n)² at an interface; at
-/// a lens, which is no thing of optics, what keeps flux in two-plane coordinates.
+/// The ratio of the radiance after a deflection at a point to that before, for light that goes
+/// along `along` and arrived against `came`: (n'/n)² at an interface; at an ideal lens, the value
+/// that conserves flux in two-plane coordinates.
 fn radiance_factor(
     lens: &Frame,
     event: Specular,
@@ -382,8 +386,10 @@ fn radiance_factor(
 }
 
 impl Backward {
-    /// The radiance that is reflected at the end of a leg, from one direction: drawn by the lobe, or towards a point of the light where the leg
-    /// begins there, in equal parts; both have the density of the mixture (the balance heuristic of Veach and Guibas 1995 for one sample).
+    /// The radiance reflected at the end of a leg, from one direction. The direction is drawn by
+    /// the lobe or, where the leg begins at the light, towards a point of the light, with equal
+    /// probability; both use the density of the mixture (the balance heuristic of Veach and Guibas
+    /// 1995 for one sample).
     fn reflected(
         &self,
         leg: usize,
@@ -435,8 +441,8 @@ impl Backward {
 }
 
 impl Backward {
-    /// What a plane on the first leg sees of a light without extent: from a point drawn in its
-    /// window, where the light comes from is known.
+    /// The radiance of a light without extent at a plane on the first leg. From a point drawn in
+    /// the plane's window the direction to the light is known.
     fn look_at_light(
         &self,
         sampler: &PlaneSampler,
@@ -456,7 +462,7 @@ impl Backward {
             cosine / (point.z * point.z)
         };
         let nothing = |_| [0.0; 4];
-        // A plane on a surface looks at all that arrives there, as photons are counted.
+        // A plane on a surface records all light that arrives there, as it does for photons.
         let end = End::Plane(plane_on_leg.distance, plane_on_leg.side);
         let found = self.incident(&IncomingRay::from_light(at_light), end, 1, &nothing);
         let weight = found * per_ray * area / density;

@@ -1,10 +1,11 @@
-//! Weighted sums of BRDFs: the value is the sum, and one of them is drawn by its share of albedo.
+//! Weighted sums of BRDFs: the value is the sum, and a direction is drawn by one of them, selected
+//! by its share of the albedo.
 
 use super::{density, sample, value};
 use etendue_field::Mixture;
 use glam::DVec3;
 
-/// The sum, sr⁻¹.
+/// The value of the sum, sr⁻¹.
 #[inline]
 #[must_use]
 pub fn sum(mixture: &Mixture<'_>, wi: DVec3, wo: DVec3) -> f64 {
@@ -12,7 +13,7 @@ pub fn sum(mixture: &Mixture<'_>, wi: DVec3, wo: DVec3) -> f64 {
     values.map(|(weight, of)| weight * value(of, wi, wo)).sum()
 }
 
-/// A direction by one of them, as [`sample`] has it; the first number chooses.
+/// A direction drawn by one of the BRDFs, as by [`sample`]; the first number also selects the BRDF.
 #[inline]
 pub(crate) fn towards(mixture: &Mixture<'_>, wi: DVec3, [a, b]: [f64; 2]) -> DVec3 {
     let total = mixture.albedo();
@@ -21,7 +22,7 @@ pub(crate) fn towards(mixture: &Mixture<'_>, wi: DVec3, [a, b]: [f64; 2]) -> DVe
     for (weight, of) in mixture.weighted() {
         let share = weight * of.albedo / total;
         if share > 0.0 {
-            // Rounding may leave the last of them a number beyond 1.
+            // By rounding the number left for the last BRDF may exceed 1.
             chosen = Some((of, (left / share).min(BELOW_ONE)));
         }
         if left < share {
@@ -32,7 +33,7 @@ pub(crate) fn towards(mixture: &Mixture<'_>, wi: DVec3, [a, b]: [f64; 2]) -> DVe
     chosen.map_or(DVec3::Z, |(of, a)| sample(of, wi, [a, b]))
 }
 
-/// The largest number that is drawn from.
+/// The largest number that a direction is drawn from.
 const BELOW_ONE: f64 = 1.0 - f64::EPSILON;
 
 /// The density of [`towards`] per solid angle.
@@ -71,10 +72,11 @@ mod tests {
         }
     }
 
-    /// How far means of f over the density are from ∫ f, in standard errors, for several f.
+    /// The distance, in standard errors, of means of f over the density from ∫ f, for several f.
     fn deviations(drawn: &Mixture<'_>, claimed: &Mixture<'_>, wi: DVec3) -> Vec<f64> {
         const SAMPLES: u32 = 100_000;
-        // Integrals over the hemisphere; what has no part on one side of a plane sees lobes that lean to one side.
+        // Integrals over the hemisphere; functions of one side of a plane detect lobes that lean to
+        // that side.
         let functions: [(Weighting, f64); 3] = [
             (|v| v.z.powi(2), 2.0 * PI / 3.0),
             (|v| v.z * (1.0 + v.x), PI),

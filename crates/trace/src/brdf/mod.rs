@@ -1,6 +1,7 @@
-//! BRDFs as scenes have them, by the lobes of `etendue_scatter`: light comes from wi and goes to wo.
+//! The BRDFs of scenes, by the lobes of `etendue_scatter`: light comes from wi and goes to wo.
 //!
-//! Directions are unit vectors away from the surface, in a frame with the normal along Z. [`Brdf`] says what each lobe is.
+//! Directions are unit vectors away from the surface, in a frame with the normal along Z. [`Brdf`]
+//! defines the lobes.
 
 mod mixture;
 
@@ -30,15 +31,17 @@ pub fn value(brdf: &Brdf, wi: DVec3, wo: DVec3) -> f64 {
         * factor(brdf.outgoing.as_ref(), wo)
 }
 
-/// What a table says of a direction; 1 where there is none.
+/// The value of a table for a direction; 1 without a table.
 #[inline]
 fn factor(table: Option<&AngleTable>, direction: DVec3) -> f64 {
     table.map_or(1.0, |table| table.value(direction.z))
 }
 
-/// A direction wo for wi in front of the surface, from two numbers in (0, 1). It may lie below the surface: then it carries nothing.
+/// A direction wo for wi in front of the surface, from two numbers in (0, 1). It may lie below the
+/// surface and then carries no light.
 ///
-/// Backward rays draw wi for wo by the same lobes, which are symmetric. Albedo and factors of angles are left to the weight.
+/// Backward rays draw wi for wo by the same lobes, which are symmetric. The albedo and angular
+/// factors are part of the weight.
 #[inline]
 pub(crate) fn sample(brdf: &Brdf, wi: DVec3, random: [f64; 2]) -> DVec3 {
     match brdf.lobe {
@@ -49,7 +52,8 @@ pub(crate) fn sample(brdf: &Brdf, wi: DVec3, random: [f64; 2]) -> DVec3 {
     }
 }
 
-/// The density of [`sample`] per solid angle, over the whole sphere: what falls below the surface is a part of it.
+/// The density of [`sample`] per solid angle over the whole sphere, directions below the surface
+/// included.
 #[inline]
 pub(crate) fn density(brdf: &Brdf, wi: DVec3, wo: DVec3) -> f64 {
     match brdf.lobe {

@@ -1,11 +1,11 @@
-//! Rays drawn as a light shines, wherever planes are.
+//! Draws rays in proportion to the emission of a light, regardless of planes.
 
 use crate::sampling::point;
 use etendue_field::{Image, RayLight, Shape, TwoPlane, power};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// What rays are drawn by.
+/// The distribution that rays are drawn from.
 #[derive(Debug)]
 pub(super) enum Plain {
     /// Points of an area, and directions by cosⁿ⁺¹θ for light of radiance L cosⁿθ: the shape and n.
@@ -20,7 +20,7 @@ pub(super) enum Plain {
     Rays(Arc<RayLight>),
 }
 
-/// The number of values of a word of 32 bits.
+/// The number of values of a 32-bit word.
 const WORD: f64 = 4_294_967_296.0;
 
 impl Plain {
@@ -46,14 +46,16 @@ impl Plain {
             }
             Self::Slopes(image) => [[0.0; 2], normal(image)],
             Self::Positions(image) => [normal(image), [0.0; 2]],
-            // The second number is the finer part of the first: a file may have as many rays as a word has values.
+            // The second number refines the first, because a file may have as many rays as a word
+            // has values.
             Self::Rays(rays) => return rays.at_share(r[0] + (r[1] - 0.5) / WORD).ray,
         };
         TwoPlane { x, y, u, v }
     }
 
     /// The density of [`Self::sample`] with respect to dx dy du dv; to du dv for a point or a
-    /// projector, to dx dy for a beam. Of a file it is 1: each ray is drawn by its share of the flux, and stands for all of it.
+    /// projector, to dx dy for a beam. For a file it is 1: each ray is drawn by its share of the
+    /// flux, and represents the whole flux.
     #[inline]
     pub(super) fn density(&self, ray: &TwoPlane) -> f64 {
         let secant_squared = ray.secant_squared();
@@ -71,7 +73,7 @@ impl Plain {
     }
 }
 
-/// The envelope of a picture, with an integral of 1.
+/// The envelope of a picture, normalised to an integral of 1.
 fn envelope(image: &Image, a: f64, b: f64) -> f64 {
     let grating = None;
     Image { grating, ..*image }.value(a, b) / image.area()

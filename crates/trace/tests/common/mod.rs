@@ -1,4 +1,4 @@
-//! What a source of photons says of each plane of a scene.
+//! Estimates from a source of photons at each plane of a scene.
 
 use etendue_field::{Crossing, Ledger, PhotonSource};
 use etendue_scene::Scene;

@@ -1,17 +1,17 @@
-//! Rays that are spread on the fine grid together.
+//! Blocks of rays that are spread on the fine grid together.
 
 use etendue_field::TwoPlane;
 
-/// Rays that are spread in one go: coordinates and positions are worked out for a group, then
-/// added.
+/// Number of rays that are spread in one go: coordinates and positions are computed for a group,
+/// then added.
 pub(crate) const GROUP: usize = 32;
 
-/// Rays of a full block. The block is read once for each azimuth while the azimuth's fine grid
-/// stays in the cache; with four planes in turn, blocks of 16384 were 8 % faster than blocks of
-/// 4096.
+/// Number of rays of a full block. The block is read once for each azimuth while the azimuth's fine
+/// grid stays in the cache; with four planes in turn, blocks of 16384 were 8 % faster than blocks
+/// of 4096.
 const CAPACITY: usize = 16384;
 
-/// Rays waiting to be spread, one array for each coordinate, in the order in which they came.
+/// Rays waiting to be spread, one array for each coordinate, in order of arrival.
 #[derive(Clone, Debug)]
 pub(crate) struct Block {
     pub(crate) x: Vec<f64>,
@@ -22,7 +22,7 @@ pub(crate) struct Block {
 }
 
 impl Block {
-    /// An empty block with room for all it will hold.
+    /// Returns an empty block with its full capacity allocated.
     pub(crate) fn new() -> Self {
         let column = || Vec::with_capacity(CAPACITY);
         Self {
@@ -44,13 +44,13 @@ impl Block {
         self.weight.push(weight);
     }
 
-    /// Whether it must be spread before another ray is added.
+    /// Checks whether the block must be spread before another ray is added.
     #[inline]
     pub(crate) fn is_full(&self) -> bool {
         self.weight.len() == CAPACITY
     }
 
-    /// Fills the last group up with rays of no weight.
+    /// Pads the last group with rays of zero weight.
     pub(crate) fn pad(&mut self) {
         let length = self.weight.len().next_multiple_of(GROUP);
         for column in self.columns() {
@@ -58,7 +58,7 @@ impl Block {
         }
     }
 
-    /// Empties it.
+    /// Empties the block.
     pub(crate) fn clear(&mut self) {
         for column in self.columns() {
             column.clear();

@@ -1,4 +1,4 @@
-//! From padded fine grids to slices.
+//! The step from padded fine grids to slices.
 
 use super::kernel::{Kernel, WIDTH};
 use super::spread::Placement;
@@ -8,11 +8,12 @@ use realfft::{RealFftPlanner, RealToComplex};
 use rustfft::{Fft, FftPlanner};
 use std::sync::Arc;
 
-/// Rows of the fine grid that are transformed together: one column of them fills a line of the cache.
+/// Number of rows of the fine grid that are transformed together: one column of them fills a cache
+/// line.
 const ROWS: usize = 4;
 
-/// From padded fine grids to slices: wrap, transform, keep the wanted frequencies, divide by the
-/// transform of the spreading kernel.
+/// Turns padded fine grids into slices: wraps, transforms, keeps the wanted frequencies, and
+/// divides by the transform of the spreading kernel.
 pub(crate) struct FineTransform {
     placement: Placement,
     grid: SliceGrid,
@@ -27,9 +28,9 @@ pub(crate) struct FineTransform {
 pub(crate) struct Workspace {
     /// A wrapped row of the fine grid.
     row: Vec<f64>,
-    /// The transforms of some rows, one after another.
+    /// The transforms of several rows, one after another.
     transformed: Vec<Complex>,
-    /// The transform along rows, then along columns too, at the wanted ν ≥ 0: [ν, row].
+    /// The transform along rows, and then along columns, at the wanted ν ≥ 0: [ν, row].
     half: Vec<Complex>,
     /// Scratch memory of the one-dimensional transforms.
     scratch: Vec<Complex>,
@@ -43,7 +44,7 @@ impl Workspace {
 }
 
 impl FineTransform {
-    /// The transform of fine grids laid out as `placement`, at the frequencies of `grid`.
+    /// Plans the transform of fine grids laid out as `placement`, at the frequencies of `grid`.
     pub(crate) fn new(kernel: &Kernel, placement: Placement, grid: SliceGrid) -> Self {
         let correction = |axis: &FrequencyAxis, cells: usize| -> Vec<f64> {
             let value = |i: usize| 1.0 / kernel.transform(i as f64 / cells as f64);
@@ -61,7 +62,7 @@ impl FineTransform {
         }
     }
 
-    /// The memory it works in.
+    /// Returns the working memory.
     pub(crate) fn workspace(&self) -> Workspace {
         let Placement { rows, columns, .. } = self.placement;
         let scratch = [
@@ -76,9 +77,9 @@ impl FineTransform {
         }
     }
 
-    /// The slice [ρ ≥ 0, ν] of one azimuth from its padded fine grid, times `scale`.
+    /// Computes the slice [ρ ≥ 0, ν] of one azimuth from its padded fine grid, times `scale`.
     ///
-    /// The grid is real, so values at ν < 0 are conjugates of those at (−ρ, −ν).
+    /// The grid is real, so values at ν < 0 are conjugates of the values at (−ρ, −ν).
     pub(crate) fn slice(
         &self,
         fine: &[f64],
@@ -130,9 +131,10 @@ impl FineTransform {
         }
     }
 
-    /// Row `index` of the period: the sum of the padded cells that lie on it, some a period away.
+    /// Computes row `index` of the period: the sum of the padded cells that map to it, some from a
+    /// period away.
     fn wrap(&self, fine: &[f64], index: usize, row: &mut [f64]) {
-        /// A point spreads from three cells before its own on.
+        /// The number of cells before a point's own cell over which the point is spread: three.
         const BEFORE: usize = WIDTH / 2 - 1;
         let Placement { rows, columns, .. } = self.placement;
         let [padded, stride] = self.placement.padded();
@@ -148,7 +150,7 @@ impl FineTransform {
     }
 }
 
-/// Adds numbers to the first of a row.
+/// Adds numbers to the beginning of a row.
 fn add(row: &mut [f64], more: &[f64]) {
     for (value, more) in row.iter_mut().zip(more) {
         *value += more;
@@ -163,10 +165,11 @@ mod tests {
     use ndarray::Axis;
     use std::f64::consts::TAU;
 
-    /// The plain sum over the cells of a padded grid at the frequencies m ≥ 0 and `nu` modulo the period, row by row.
+    /// Computes the plain sum over the cells of a padded grid at the frequencies m ≥ 0 and `nu`
+    /// modulo the period, row by row.
     fn plain(fine: &[f64], placement: Placement, [m, nu]: [usize; 2]) -> Complex {
         let Placement { rows, columns, .. } = placement;
-        // The fraction of a cycle is right to one division.
+        // The fraction of a cycle is exact up to one division.
         let phase =
             |k: usize, i: usize, n: usize| cis(-TAU * ((k * (i + n - 3) % n) as f64 / n as f64));
         let along = |row: &[f64]| -> Complex {
@@ -209,7 +212,7 @@ mod tests {
                 let scale = at(m as f64, rows) * at(nu, columns) / 2.0;
                 let period = (n + columns - grid.nu.half) % columns;
                 let off = found * scale - plain(&fine, placement, [m, period]);
-                // Rounding of sums of up to 56 numbers that come to some 4, and of 38 that come to some 13.
+                // Rounding of sums of up to 56 numbers of about 4 in total, and of 38 of about 13.
                 assert!(modulus(off) < 5e-14, "{rows} × {columns}, {m}, {nu}: {off}");
             }
         }

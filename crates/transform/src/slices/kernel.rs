@@ -4,35 +4,35 @@ use crate::gauss_legendre;
 use fearless_simd::{Simd, f64x8, prelude::*};
 use std::f64::consts::{PI, TAU};
 
-/// Cells of the fine grid that a point is spread over, along each axis.
+/// Number of cells of the fine grid that a point is spread over, along each axis.
 pub(crate) const WIDTH: usize = 8;
 
-/// Half of them: the kernel is even, so four taps make eight.
+/// Half the width: the kernel is even, so four taps give all eight.
 const HALF: usize = WIDTH / 2;
 
 /// Cells of a period for each frequency step from zero to the largest: an upsampling of 2.5.
 pub(crate) const UPSAMPLING: usize = 5;
 
-/// β of the kernel: the best of 2.30, 2.35, … per cell of width at this upsampling. Of the
-/// amplitude of a point, 0.8·10⁻⁷ at most goes wrong along each axis; at an upsampling of 2 it
-/// would be 4·10⁻⁷.
+/// β of the kernel: the best of 2.30, 2.35, … per cell of width at this upsampling. The error along
+/// each axis is at most 0.8·10⁻⁷ of the amplitude of a point; at an upsampling of 2 it would be
+/// 4·10⁻⁷.
 const BETA: f64 = 2.35 * WIDTH as f64;
 
-/// Coefficients of each parity: the taps are polynomials of degree 2 · 4 − 1 = 7.
+/// Number of coefficients of each parity: the taps are polynomials of degree 2 · 4 − 1 = 7.
 const TERMS: usize = 4;
 
-/// The spreading kernel "exponential of semicircle", exp(β (√(1 − z²) − 1)) on |z| ≤ 1, z being the
-/// distance in units of four cells (Barnett, Magland and af Klinteberg 2019, SIAM J. Sci. Comput.
-/// 41(5)).
+/// The spreading kernel "exponential of semicircle", exp(β (√(1 − z²) − 1)) on |z| ≤ 1, where z is
+/// the distance in units of four cells (Barnett, Magland and af Klinteberg 2019, SIAM J. Sci.
+/// Comput. 41(5)).
 ///
 /// A point lies a fraction f of a cell beyond a cell of the fine grid and reaches eight cells; tap
-/// j, the weight of cell j, is the kernel at z = (j − 3 − f)/4. Each tap is a polynomial in
-/// t = 2f − 1 that meets the kernel at Chebyshev nodes; its error is below 5·10⁻⁸ of the kernel's
+/// j, the weight of cell j, is the kernel at z = (j − 3 − f)/4. Each tap is a polynomial in t = 2f
+/// − 1 that interpolates the kernel at Chebyshev nodes; its error is below 5·10⁻⁸ of the kernel's
 /// peak. The spectrum is divided by the transform of these polynomials, so only their roughness
-/// counts: a higher degree, or the kernel itself, gives the same error to two digits.
+/// matters: a higher degree, or the kernel itself, gives the same error to two digits.
 ///
 /// Tap 7 − j at t is tap j at −t, so the even and odd parts of four taps give all eight. Products
-/// and sums are rounded one by one, never fused, so that every SIMD level gives the same bits.
+/// and sums are rounded separately, never fused, so every SIMD level gives bitwise the same result.
 #[derive(Clone, Debug)]
 pub(crate) struct Kernel {
     /// Coefficients of t⁰, t², t⁴… of taps 0 to 3.
@@ -58,8 +58,8 @@ impl Kernel {
         kernel
     }
 
-    /// The eight taps of eight points, each a fraction `f` of a cell beyond its cell: lane i of tap
-    /// j belongs to point i.
+    /// Computes the eight taps of eight points, each a fraction `f` of a cell beyond its cell: lane
+    /// i of tap j belongs to point i.
     #[inline(always)]
     pub(crate) fn taps<S: Simd>(&self, simd: S, f: f64x8<S>) -> [f64x8<S>; WIDTH] {
         let t = f * 2.0 - 1.0;
@@ -79,7 +79,7 @@ impl Kernel {
         taps
     }
 
-    /// Tap `tap`, 0 to 3, one number at a time: for the plan and for tests.
+    /// Computes tap `tap`, 0 to 3, for a single number: for the plan and for tests.
     fn tap(&self, tap: usize, f: f64) -> f64 {
         let t = 2.0 * f - 1.0;
         let horner = |terms: &[[f64; HALF]]| {
@@ -89,11 +89,11 @@ impl Kernel {
         horner(&self.even) + horner(&self.odd) * t
     }
 
-    /// The Fourier transform of the kernel, ∫ φ(d) e^(−2πi ξ d) dd, d in cells and ξ in cycles per
-    /// cell.
+    /// Returns the Fourier transform of the kernel, ∫ φ(d) e^(−2πi ξ d) dd, d in cells and ξ in
+    /// cycles per cell.
     ///
-    /// It is the transform of the very polynomials that spread, by a Gauss–Legendre rule on each
-    /// cell, exact to rounding for |ξ| ≤ 1/2.
+    /// It is the transform of the polynomials that are used for spreading, by a Gauss–Legendre rule
+    /// on each cell, exact to rounding for |ξ| ≤ 1/2.
     pub(crate) fn transform(&self, xi: f64) -> f64 {
         let mut sum = 0.0;
         for (x, weight) in gauss_legendre(16) {
@@ -108,8 +108,8 @@ impl Kernel {
     }
 }
 
-/// Eight rows of eight as their columns: three perfect shuffles, each of which moves the last of six
-/// bits of a place to the front.
+/// Transposes eight rows of eight: three perfect shuffles, each of which moves the last of six
+/// index bits to the front.
 #[inline(always)]
 pub(crate) fn transposed<S: Simd>(mut rows: [f64x8<S>; WIDTH]) -> [f64x8<S>; WIDTH] {
     for _ in 0..3 {
@@ -121,14 +121,14 @@ pub(crate) fn transposed<S: Simd>(mut rows: [f64x8<S>; WIDTH]) -> [f64x8<S>; WID
     rows
 }
 
-/// Tap `tap` from the kernel's formula.
+/// Computes tap `tap` from the kernel's formula.
 fn exact(tap: usize, f: f64) -> f64 {
     let z = (tap as f64 - 3.0 - f) / HALF as f64;
     libm::exp(BETA * ((1.0 - z * z).max(0.0).sqrt() - 1.0))
 }
 
-/// Coefficients of t⁰, t¹, … of the polynomial that meets `function` at the Chebyshev nodes of [−1,
-/// 1].
+/// Returns the coefficients of t⁰, t¹, … of the polynomial that interpolates `function` at the
+/// Chebyshev nodes of [−1, 1].
 fn fit(function: impl Fn(f64) -> f64) -> [f64; 2 * TERMS] {
     const N: usize = 2 * TERMS;
     let node = |i: usize| PI * (i as f64 + 0.5) / N as f64;
@@ -172,7 +172,7 @@ mod tests {
                 worst = worst.max((tap - exact(j, f)).abs());
             }
             for (j, tap) in each[0][..HALF].iter().enumerate() {
-                // The same sums, a zero added first.
+                // The same sums, with a zero added first.
                 assert!((kernel.tap(j, f) - tap).abs() <= 1e-16);
             }
             let turned: [[f64; 8]; 8] = std::array::from_fn(|i| all.map(|tap| tap[i]));
@@ -195,7 +195,7 @@ mod tests {
                 })
                 .sum();
             let expected = 8.0 * sum / f64::from(n);
-            // Eight cells times the error of the taps, 5e-8 at most.
+            // Eight cells times the error of the taps, which is at most 5e-8.
             assert!((kernel.transform(xi) - expected).abs() < 4e-7, "{xi}");
         }
     }

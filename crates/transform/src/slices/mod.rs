@@ -1,7 +1,7 @@
 //! The sum of weighted rays on all slices, by a non-uniform fast Fourier transform.
 //!
-//! Photons are summed by it, and so are the nodes of theory's nets. Both hold it against the plain
-//! sum, so that a fault in it cannot hide between them.
+//! It sums both photons and the nodes of theory's nets. Both test it against the plain sum, so an
+//! error in it cannot go unnoticed because both share it.
 
 mod block;
 mod fine_grid;
@@ -23,14 +23,16 @@ use std::fmt;
 ///
 /// by a 2D non-uniform fast Fourier transform of type 1 for each azimuth (Barnett, Magland and af
 /// Klinteberg 2019, SIAM J. Sci. Comput. 41(5)): spread each ray over 8 × 8 cells of a grid 2.5
-/// times as fine as the frequencies ask, transform, divide by the transform of the spreading
+/// times as fine as the frequencies require, transform, divide by the transform of the spreading
 /// kernel.
 ///
-/// Error: below 2·10⁻⁷ Σ|w| at every frequency, reached by a single ray; rays spread out average it
-/// down. Window and radiance weight are the caller's: `w` is taken as it comes.
+/// Error: below 2·10⁻⁷ Σ|w| at every frequency, a bound that a single ray reaches; with many
+/// scattered rays errors average out. The caller applies window and radiance weight: `w` is used as
+/// given.
 ///
 /// The bits of the result depend on the rays, their order, and the kind of processor: the FFTs
-/// (`rustfft`, `realfft`) take the best instructions it has. Spreading gives the same bits on all.
+/// (`rustfft`, `realfft`) use the best instructions available. Spreading gives the same bits on all
+/// processors.
 ///
 /// One plan serves any number of [`Accumulator`]s, on any number of threads.
 pub struct SliceTransform {
@@ -50,17 +52,17 @@ impl fmt::Debug for SliceTransform {
 }
 
 impl SliceTransform {
-    /// The transform at the frequencies of `grid`.
+    /// Plans the transform at the frequencies of `grid`.
     ///
     /// # Panics
     ///
-    /// When `grid` has no azimuth.
+    /// If `grid` has no azimuth.
     #[must_use]
     pub fn new(grid: &SliceGrid) -> Self {
         Self::at_level(grid, Level::new())
     }
 
-    /// The same with the SIMD level given.
+    /// Plans the transform for a given SIMD level.
     fn at_level(grid: &SliceGrid, level: Level) -> Self {
         let kernel = Kernel::new();
         let placements: Vec<_> = (0..grid.azimuths)
@@ -84,7 +86,7 @@ impl SliceTransform {
         }
     }
 
-    /// Bytes of an accumulator.
+    /// Returns the number of bytes of an accumulator.
     #[must_use]
     pub fn bytes(&self) -> f64 {
         let [rows, columns] = self.placements[0].padded();
@@ -92,7 +94,7 @@ impl SliceTransform {
         (fine + self.fine.workspace().bytes()) as f64
     }
 
-    /// An empty sum.
+    /// Returns an empty sum.
     #[must_use]
     pub fn accumulator(&self) -> Accumulator<'_> {
         let [rows, columns] = self.placements[0].padded();
@@ -105,8 +107,8 @@ impl SliceTransform {
     }
 }
 
-/// Cells of a period: 2.5 for each frequency, at least two widths of the kernel, a product of 2, 3
-/// and 5.
+/// Returns the number of cells of a period: 2.5 for each frequency, at least two widths of the
+/// kernel, a product of 2, 3 and 5.
 fn cells(axis: &FrequencyAxis) -> usize {
     let mut count = usize::max(UPSAMPLING * axis.half, 2 * WIDTH);
     while !is_smooth(count) {
@@ -115,7 +117,7 @@ fn cells(axis: &FrequencyAxis) -> usize {
     count
 }
 
-/// Whether `n` > 0 has no prime factor but 2, 3 and 5.
+/// Checks whether `n` > 0 has no prime factors other than 2, 3 and 5.
 fn is_smooth(mut n: usize) -> bool {
     for prime in [2, 3, 5] {
         while n.is_multiple_of(prime) {
@@ -125,9 +127,9 @@ fn is_smooth(mut n: usize) -> bool {
     n == 1
 }
 
-/// A sum of weighted rays on its way to slices: see [`SliceTransform`].
+/// A partial sum of weighted rays, to be turned into slices: see [`SliceTransform`].
 ///
-/// Holds a fine grid for each azimuth; emptied by [`finish`](Self::finish) and used again.
+/// Holds a fine grid for each azimuth; [`finish`](Self::finish) empties it for reuse.
 #[derive(Clone, Debug)]
 pub struct Accumulator<'plan> {
     plan: &'plan SliceTransform,
@@ -147,7 +149,8 @@ impl Accumulator<'_> {
         }
     }
 
-    /// The slices of the rays added since the last call, times `scale`; empties the sum.
+    /// Returns the slices of the rays added since the last call, times `scale`, and empties the
+    /// sum.
     #[must_use]
     pub fn finish(&mut self, scale: f64) -> Slices {
         self.flush();
@@ -161,7 +164,7 @@ impl Accumulator<'_> {
         slices
     }
 
-    /// Spreads the rays that wait. The azimuth is the outer loop: one fine grid at a time in the
+    /// Spreads the waiting rays. The azimuth is the outer loop: one fine grid at a time is in the
     /// cache.
     fn flush(&mut self) {
         self.block.pad();

@@ -1,10 +1,10 @@
-//! Where the rays of an azimuth fall on its fine grid.
+//! The positions of rays on the fine grid of an azimuth, and their spreading.
 
 use super::block::{Block, GROUP};
 use super::kernel::{Kernel, WIDTH, transposed};
 use fearless_simd::{Simd, f64x8, prelude::*};
 
-/// How the rays of one azimuth φ fall on its fine grid, a period of `rows` × `columns` cells.
+/// The mapping of rays to the fine grid of one azimuth φ, a period of `rows` × `columns` cells.
 ///
 /// Rows divide the period 1/spacing of p = x cos φ + y sin φ, the conjugate of ρ; columns that of
 /// q = u cos φ + v sin φ, the conjugate of ν.
@@ -14,31 +14,31 @@ pub(crate) struct Placement {
     pub(crate) rho: [f64; 2],
     /// cos φ and sin φ times the spacing of ν: periods per unit slope.
     pub(crate) nu: [f64; 2],
-    /// Cells of a period of p.
+    /// Number of cells in a period of p.
     pub(crate) rows: usize,
-    /// Cells of a period of q.
+    /// Number of cells in a period of q.
     pub(crate) columns: usize,
 }
 
 impl Placement {
-    /// Rows and columns of the padded fine grid, whose cell [i, j] is the cell [i − 3, j − 3] of
-    /// the period: a ray reaches eight cells, and those outside are wrapped once, after all
-    /// spreading.
+    /// Returns the rows and columns of the padded fine grid, whose cell [i, j] is the cell [i − 3,
+    /// j − 3] of the period: a ray reaches eight cells, and cells outside the period are wrapped
+    /// once, after all spreading.
     pub(crate) fn padded(&self) -> [usize; 2] {
         [self.rows + WIDTH, self.columns + WIDTH]
     }
 }
 
-/// Rays whose taps are worked out side by side.
+/// Number of rays whose taps are computed side by side.
 const EIGHT: usize = 8;
 
 /// A group of rays on the fine grid.
 struct Group {
-    /// The first padded cell of each.
+    /// The first padded cell of each ray.
     start: [usize; GROUP],
-    /// How far beyond its row each lies.
+    /// The fraction of a cell by which each ray lies beyond its row.
     row: [f64; GROUP],
-    /// How far beyond its column each lies.
+    /// The fraction of a cell by which each ray lies beyond its column.
     column: [f64; GROUP],
     /// Weight times the taps of the rows, [tap, ray].
     down: [[f64; GROUP]; WIDTH],
@@ -48,7 +48,7 @@ struct Group {
 
 /// Adds the rays of a padded block to the padded fine grid of one azimuth, row by row.
 ///
-/// Done in three short loops over a group, not in one long one: a processor then has several rays
+/// Uses three short loops over a group instead of one long one: a processor then has several rays
 /// in flight at a time, which is 1.8 times as fast.
 #[inline(always)]
 pub(crate) fn spread<S: Simd>(
@@ -72,7 +72,7 @@ pub(crate) fn spread<S: Simd>(
     }
 }
 
-/// Finds the cells of the rays from `from` on.
+/// Finds the cells of the rays starting at `from`.
 #[inline(always)]
 fn place(group: &mut Group, placement: &Placement, block: &Block, from: usize) {
     let [stride, rays] = [placement.padded()[1], from + GROUP];
@@ -87,14 +87,15 @@ fn place(group: &mut Group, placement: &Placement, block: &Block, from: usize) {
     }
 }
 
-/// The cell of a point among the `count` of a period, and how far beyond it the point lies.
+/// Returns the cell of a point among the `count` of a period, and the fraction of a cell by which
+/// the point lies beyond it.
 ///
-/// A point outside the period is moved into it by whole periods. Nothing is lost: at frequencies m
-/// · spacing e^(−2πi m · spacing · p) has the period 1/spacing in p, so the sum is the same.
+/// A point outside the period is moved into it by whole periods. This is exact: at frequencies m ·
+/// spacing, e^(−2πi m · spacing · p) has the period 1/spacing in p, so the sum is the same.
 #[inline(always)]
 fn cell(a: f64, b: f64, along: [f64; 2], count: usize) -> (usize, f64) {
-    /// 2⁵²: added to a smaller whole number, leaves it in the low bits; quicker than a checked
-    /// cast.
+    /// 2⁵²: adding it to a smaller whole number leaves the number in the low bits; faster than a
+    /// checked cast.
     const WHOLE: f64 = 4_503_599_627_370_496.0;
     let periods = a * along[0] + b * along[1];
     let cells = (periods - periods.floor()) * count as f64;
@@ -107,7 +108,7 @@ fn cell(a: f64, b: f64, along: [f64; 2], count: usize) -> (usize, f64) {
     (cell as usize, cells - whole)
 }
 
-/// Works out the taps.
+/// Computes the taps.
 #[inline(always)]
 fn weigh<S: Simd>(simd: S, group: &mut Group, kernel: &Kernel, weight: &[f64]) {
     for i in (0..GROUP).step_by(EIGHT) {

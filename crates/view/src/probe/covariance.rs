@@ -1,5 +1,5 @@
-//! Covariances of the spectra along the ray of a pixel: as measured, and from the first surface to the camera by
-//! covariance tracing.
+//! Covariances of the spectra along the ray of a pixel: measured, and propagated from the first
+//! surface to the camera by covariance tracing.
 
 use super::scene::{BATCHES, FREQUENCIES};
 use etendue_compare::AXES;
@@ -12,8 +12,9 @@ use etendue_theory::covariance::{SpectralCovariance, window};
 use etendue_theory::geometry::AffineMap;
 use serde_json::{Value, json as tree_of};
 
-/// Frequencies on either side of zero that covariances are over: the noise of a second moment grows as the fourth power
-/// of its band, and half of the plane's own holds the spectra of its windows.
+/// The number of frequencies on either side of zero over which covariances are taken: the noise of
+/// a second moment grows as the fourth power of its band, and half of the plane's own band holds
+/// the spectra of its windows.
 const BAND: usize = FREQUENCIES / 2;
 
 /// The covariance of the spectrum of a plane.
@@ -23,7 +24,8 @@ pub(super) struct FoundCovariance {
     band: [f64; 4],
     pub(super) measured: Option<MatrixEstimate>,
     growth: Option<[f64; 4]>,
-    /// At the camera: what covariance tracing makes of that of light which leaves the first surface.
+    /// At the camera: the covariance that covariance tracing propagates from light that leaves the
+    /// first surface.
     pub(super) propagated: Option<MatrixEstimate>,
 }
 
@@ -51,7 +53,8 @@ impl FoundCovariance {
     }
 }
 
-/// Of all planes, by rays traced back: the camera first, then what leaves the first surface.
+/// The covariances of all planes, by backward rays: the camera first, then light that leaves the
+/// first surface.
 pub(super) fn measured(
     probe: &Probe<'_>,
     budget: Budget,
@@ -83,8 +86,9 @@ pub(super) fn measured(
     Ok(found)
 }
 
-/// At the camera, from light that leaves the first surface: less the window there, which added its own covariance, after
-/// travel, and with the window of the camera.
+/// The covariance at the camera, propagated from light that leaves the first surface: the
+/// covariance added by the window there is subtracted, travel is applied, and the window of the
+/// camera is included.
 fn propagated(probe: &Probe<'_>, leaving: &FieldCovariance) -> Option<MatrixEstimate> {
     let [camera, surface] = [0, 1].map(|i: usize| window(&probe.planes[i].window));
     let less = surface.map(|row| row.map(|entry| -entry));

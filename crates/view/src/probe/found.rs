@@ -1,23 +1,24 @@
-//! What a probe finds at a plane.
+//! The results of a probe at a plane.
 
 use super::covariance::FoundCovariance;
 use etendue_compare::{PlaneComparison, Verdict};
 use etendue_spectrum::Uncertain;
 use etendue_spectrum::bandwidth::Widest;
 
-/// What came of a plane.
+/// The results at a plane.
 #[derive(Debug)]
 pub(super) struct Found {
     pub(super) comparison: PlaneComparison,
     pub(super) nu: Option<Widest<Uncertain>>,
     pub(super) rho: Option<Widest<Uncertain>>,
-    /// Why photons do not find all its light.
+    /// Why photons do not find all light of the plane.
     pub(super) misses: Option<&'static str>,
-    /// The covariance of its spectrum, if it was asked for.
+    /// The covariance of the plane's spectrum, if requested.
     pub(super) covariance: Option<FoundCovariance>,
 }
 
-/// Where photons do not find all light, nothing is judged. Where neither finds any, they agree.
+/// Where photons do not find all light, there is no test. Where neither rays nor photons find
+/// light, they agree.
 pub(super) fn verdict(found: &Found) -> Verdict {
     match found.misses {
         Some(_) => Verdict::Undecided,

@@ -1,4 +1,5 @@
-//! How fast light changes with angle at the camera, over a picture: measured, and by the criterion of Durand et al. 2005.
+//! Maps how fast light changes with angle at the camera, over a picture: measured, and by the
+//! criterion of Durand et al. 2005.
 
 use super::scene::{BATCHES, ProbeRequest, ProbedScene};
 use super::words::{ON_GRID, criterion};
@@ -19,23 +20,24 @@ use serde_json::json as tree_of;
 use std::path::PathBuf;
 
 const FILES: [&str; 5] = ["map.exr", "map.npz", "map.png", "map.svg", "map.csv"];
-/// Nor is one of a spectrum with more noise than this share.
+/// A bandwidth of a spectrum with more noise than this share is not shown.
 const MAX_NOISE: f64 = 0.6;
 
-/// A bandwidth with a larger standard error, as a share of it, is not shown: few rays make its jackknife unsafe.
+/// A bandwidth with a larger relative standard error is not shown, because with few rays its
+/// jackknife is unreliable.
 const MAX_ERROR: f64 = 0.2;
 
-/// What is known of a pixel; NaN where there is nothing, or too much noise.
+/// The results for a pixel; NaN where there is no light, or too much noise.
 #[derive(Clone, Copy, Debug)]
 struct MapPoint {
     /// The frequency below which 95 % of the power in the window lies, in the azimuth where it is largest, cycles per slope, with its standard error.
     measured: f64,
     error: f64,
-    /// Eq. 20, corrected.
+    /// The bandwidth by Eq. 20, corrected.
     criterion: f64,
-    /// What the window has alone: nothing is measured below it.
+    /// The bandwidth of the window alone, a lower bound of the measured one.
     window: f64,
-    /// Shading samples along a direction.
+    /// The number of shading samples along a direction.
     samples: f64,
 }
 
@@ -49,19 +51,19 @@ impl MapPoint {
     };
 }
 
-/// A number of each pixel.
+/// A quantity of each pixel.
 type MapLayer = fn(&MapPoint) -> f64;
 
-/// What a map of bandwidths comes to.
+/// The result of a map of bandwidths.
 #[derive(Debug)]
 pub struct BandwidthMap {
-    /// The folder of its results.
+    /// The results folder.
     pub folder: PathBuf,
-    /// How measured and predicted bandwidths are to each other, in words.
+    /// A comparison of measured and predicted bandwidths, in words.
     pub words: String,
 }
 
-/// Bandwidths at the camera for `w` × `h` pixels, evenly over the picture.
+/// Bandwidths at the camera for `w` × `h` pixels, evenly spaced over the picture.
 pub fn map_bandwidths(
     request: &ProbeRequest,
     [w, h]: [usize; 2],
@@ -159,7 +161,7 @@ fn drawn(
     case: &ProbedScene<'_>,
     map: &Array2<MapPoint>,
 ) -> Result<etendue_figures::Figure, Failure> {
-    // Pictures have y upwards.
+    // In pictures y points upwards.
     let of = |value: MapLayer| {
         let mut rows = map.map(value);
         rows.invert_axis(ArrayAxis(0));
@@ -175,7 +177,7 @@ fn drawn(
         ),
         x: Axis::edges("column", "pixels", [0.0, w]),
         y: Axis::edges("row from below", "pixels", [0.0, h]),
-        // A few pixels at the edges of what is curved would take the whole scale.
+        // On a linear scale a few pixels at the edges of curved objects would take the whole range.
         quantity: AxisQuantity::new("log_{10} *B*", "cycles/slope"),
         scale: Scale::Linear,
         measured: of(|point| libm::log10(point.measured)).view(),
@@ -185,9 +187,9 @@ fn drawn(
     .map_err(Failure::cannot_run)
 }
 
-/// What is to be measured: by the criterion, or by the window where that has more.
+/// The expected measurement: the bandwidth of the criterion, or of the window where that is larger.
 fn expected(point: &MapPoint) -> f64 {
-    // NaN stays.
+    // NaN is kept.
     if point.criterion < point.window {
         point.window
     } else {
@@ -195,7 +197,7 @@ fn expected(point: &MapPoint) -> f64 {
     }
 }
 
-/// How measured and predicted bandwidths are to each other.
+/// A comparison of measured and predicted bandwidths.
 fn words(map: &Array2<MapPoint>) -> String {
     let seen = map
         .iter()

@@ -1,4 +1,4 @@
-//! The light field behind a pixel.
+//! Probes the light field behind a pixel.
 
 use super::covariance;
 use super::found::{Found, verdict};
@@ -16,18 +16,18 @@ use etendue_store::{ArgumentStyle, Failure, Results, arrays};
 use serde_json::json as tree_of;
 use std::path::PathBuf;
 
-/// What a probe of a pixel comes to.
+/// The result of probing a pixel.
 #[derive(Debug)]
 pub struct ProbedPixel {
-    /// The folder of its results.
+    /// The results folder.
     pub folder: PathBuf,
-    /// The verdict of rays and photons against each other.
+    /// The verdict on rays against photons.
     pub verdict: Verdict,
     /// Surfaces, planes and bandwidths, line by line.
     pub lines: Vec<String>,
 }
 
-/// The light field behind one pixel.
+/// Probes the light field behind one pixel.
 pub fn probe_pixel(
     request: &ProbeRequest,
     pixel: [usize; 2],
@@ -67,7 +67,7 @@ pub fn probe_pixel(
     })
 }
 
-/// Writes everything; the verdict.
+/// Writes all files; returns the verdict.
 fn written(
     scene: &ProbedScene<'_>,
     mut results: Results,
@@ -107,7 +107,7 @@ fn files_of(name: &str) -> impl Iterator<Item = String> + use<'_> {
     files.map(move |file| format!("{name}/{file}"))
 }
 
-/// Backward rays and photons of all planes, held against each other.
+/// Compares backward rays and photons at all planes.
 fn measured(
     request: &ProbeRequest,
     probe: &Probe<'_>,

@@ -1,4 +1,4 @@
-//! A scene that is probed, and what is asked of it.
+//! A scene that is probed, and the request.
 
 use crate::world_source::{self, CameraChoice, WorldSource};
 use etendue_import::Imported;
@@ -9,56 +9,56 @@ use etendue_world::Camera;
 use serde_json::{Value, json as tree_of};
 use std::path::{Path, PathBuf};
 
-/// Batches of rays and of photons, from whose differences errors and p are found.
+/// Number of batches of rays and of photons, whose differences give errors and p-values.
 pub(super) const BATCHES: u32 = 64;
-/// Of all planes together.
+/// The level of the test over all planes together.
 pub(super) const ALPHA: f64 = 0.01;
-/// A plane passes when its noise is not above this share of its spectrum.
+/// A plane passes when its noise, as a share of its spectrum, does not exceed this.
 pub(super) const RESOLUTION: f64 = 0.1;
 
-/// Frequencies on either side of zero, half a cycle a window apart.
+/// Number of frequencies on either side of zero, half a cycle per window apart.
 pub(super) const FREQUENCIES: usize = 12;
 
-/// What is asked of which scene.
+/// A request for a probe, with its scene.
 #[derive(Clone, Debug)]
 pub struct ProbeRequest {
     /// The scene.
     pub source: WorldSource,
     /// The camera.
     pub camera: CameraChoice,
-    /// Most surfaces along the ray.
+    /// The largest number of surfaces along the ray.
     pub surfaces: u16,
     /// Pixels across the window.
     pub window: f64,
-    /// Rays traced back for each plane.
+    /// Number of backward rays for each plane.
     pub rays: u64,
-    /// Photons that check them.
+    /// Number of photons that check the rays.
     pub photons: u64,
-    /// Seed of both.
+    /// Seed of rays and photons.
     pub seed: u64,
     /// Whether the covariance of each plane's spectrum is measured too.
     pub covariance: bool,
-    /// Folder for the results; otherwise one below `out`.
+    /// The results folder; by default one below `out`.
     pub out: Option<PathBuf>,
-    /// Whether files that Étendue did not write are replaced.
+    /// Whether files that Étendue did not write may be replaced.
     pub force: bool,
 }
 
 impl ProbeRequest {
-    /// Most surfaces along the ray, unless said.
+    /// Default for the largest number of surfaces along the ray.
     pub const SURFACES: u16 = 1;
-    /// Pixels across the window, unless said.
+    /// Default number of pixels across the window.
     pub const WINDOW: f64 = 16.0;
-    /// Rays traced back for each plane, unless said.
+    /// Default number of backward rays for each plane.
     pub const RAYS: u64 = 1 << 20;
-    /// Rays traced back for each pixel of a map, unless said.
+    /// Default number of backward rays for each pixel of a map.
     pub const RAYS_OF_MAP: u64 = 1 << 15;
-    /// Photons that check them, unless said.
+    /// Default number of photons that check the rays.
     pub const PHOTONS: u64 = 1 << 25;
-    /// The seed, unless said.
+    /// Default seed.
     pub const SEED: u64 = 1;
 
-    /// A probe of the light that the first camera of a scene sees.
+    /// A probe of the light seen by the first camera of a scene.
     #[must_use]
     pub fn new(source: WorldSource) -> Self {
         Self {
@@ -76,7 +76,7 @@ impl ProbeRequest {
     }
 }
 
-/// A scene that is read.
+/// A scene that has been read.
 #[derive(Debug)]
 pub(super) struct ProbedScene<'a> {
     pub(super) request: &'a ProbeRequest,
@@ -103,7 +103,7 @@ impl<'a> ProbedScene<'a> {
         name.to_string_lossy().into_owned()
     }
 
-    /// What results are made from.
+    /// The settings that results are made from.
     pub(super) fn made_from(&self) -> Value {
         let name = self.request.source.path.file_name();
         tree_of!({
@@ -125,7 +125,7 @@ impl<'a> ProbedScene<'a> {
         }
     }
 
-    /// Claims the folder that is asked for, or one of this name.
+    /// Claims the requested folder, or one of this name.
     pub(super) fn claim(
         &self,
         name: String,

@@ -1,4 +1,4 @@
-//! What a probe comes to, in words and in JSON.
+//! The result of a probe, in words and in JSON.
 
 use super::found::{Found, verdict};
 use super::scene::ProbeRequest;
@@ -19,8 +19,8 @@ fn angle(stop: &Stop) -> f64 {
     libm::acos(stop.cosine().clamp(-1.0, 1.0))
 }
 
-/// The paper's criterion for light that leaves a surface, in cycles per radian at the camera (Durand et al. 2005, Eq. 20, corrected); `None` where it has
-/// no lobe.
+/// The paper's criterion for light that leaves a surface, in cycles per radian at the camera
+/// (Durand et al. 2005, Eq. 20, corrected); `None` where the surface has no lobe.
 pub(super) fn criterion(stop: &Stop) -> Option<f64> {
     let Reflects::Lobe(lobe) = stop.reflects else {
         return None;
@@ -81,7 +81,7 @@ fn word(reflects: Reflects) -> String {
     }
 }
 
-/// The surfaces, the planes, and how densely the picture is to be sampled.
+/// The surfaces, the planes, and the sampling density that the picture needs.
 pub(super) fn lines(
     request: &ProbeRequest,
     world: &World,
@@ -120,7 +120,7 @@ pub(super) fn lines(
     lines
 }
 
-/// A table below its head.
+/// A table with a header.
 fn table(head: [&str; 6], rows: impl Iterator<Item = [String; 6]>) -> Vec<String> {
     let head = head.map(str::to_owned);
     aligned(std::iter::once(head).chain(rows).map(Vec::from).collect())
@@ -189,11 +189,12 @@ fn planes(found: &[&Found]) -> Vec<String> {
 /// The bandwidth of a Hann window of half-width 1 along its axes.
 const OF_WINDOW: f64 = 0.557_22;
 
-/// What is measured of a Hann window of half-width 1 alone, on the grid of a probe: its cells are as wide as half of the spectrum's main
-/// lobe, and along the diagonal the product of two windows has a larger bandwidth than along the axes.
+/// The bandwidth measured for a Hann window of half-width 1 alone, on the grid of a probe: cells
+/// are as wide as half of the spectrum's main lobe, and along the diagonal the product of two
+/// windows has a larger bandwidth than along the axes.
 pub(super) const ON_GRID: f64 = 0.681_53;
 
-/// Bandwidths at the camera, and the shading samples that they ask for.
+/// Bandwidths at the camera, and the shading samples that they require.
 fn bandwidths(probe: &Probe<'_>, measured: Uncertain, arguments: ArgumentStyle) -> Vec<String> {
     let samples = |cycles: f64| 2.0 * cycles * probe.pixel_slope;
     let line = |what: &str, cycles: f64| {
@@ -203,7 +204,7 @@ fn bandwidths(probe: &Probe<'_>, measured: Uncertain, arguments: ArgumentStyle) 
         )
     };
     let half_width = probe.planes[0].window.u.half_width();
-    // Noise and the light's own shape move it by some per cent.
+    // Noise and the light's own shape change it by several per cent.
     let is_own = measured.value < 1.15 * ON_GRID / half_width;
     let mut lines = vec!["bandwidth at the camera".to_owned()];
     lines.push(line("measured, 95 % of the power", measured.value));

@@ -1,4 +1,4 @@
-//! OBJ files with their normals and texture coordinates.
+//! Reads OBJ files with their normals and texture coordinates.
 
 use super::super::detailed::{DetailedMesh, check};
 use super::super::text::{LineWords, number, quoted};
@@ -7,7 +7,7 @@ use etendue_scenefile::{Fault, fault};
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 
-/// The place, the texture coordinates and the normal of a corner, by their numbers in the file.
+/// The position, the texture coordinates and the normal of a corner, by their indices in the file.
 type CornerKey = (u32, Option<u32>, Option<u32>);
 
 pub(in super::super) fn read(bytes: &[u8]) -> Result<DetailedMesh, Fault> {
@@ -18,10 +18,10 @@ pub(in super::super) fn read(bytes: &[u8]) -> Result<DetailedMesh, Fault> {
     let counts = [places.len(), uvs.len(), normals.len()];
     let mut known: HashMap<CornerKey, u32> = HashMap::new();
     let mut keys = Vec::new();
-    // Each different corner is a vertex.
+    // Each distinct corner becomes a vertex.
     let triangles = triangles(bytes, |word, before| {
         let key = key(word, before, counts)?;
-        // As many different corners as a u32 counts do not fit into a file that fits into memory.
+        // A file that fits into memory cannot hold more distinct corners than a u32 counts.
         let next = u32::try_from(keys.len()).unwrap_or(u32::MAX);
         let index = *known.entry(key).or_insert(next);
         if index == next {
@@ -42,7 +42,8 @@ pub(in super::super) fn read(bytes: &[u8]) -> Result<DetailedMesh, Fault> {
     })
 }
 
-/// The numbers of all lines that begin with a word. Of texture coordinates the second may be left out.
+/// The numbers of all lines that begin with a given word. The second of two texture coordinates may
+/// be missing.
 fn rows<const N: usize>(bytes: &[u8], word: &[u8]) -> Result<Vec<[f64; N]>, Fault> {
     let mut rows = Vec::new();
     for (line, statement) in statements(bytes) {

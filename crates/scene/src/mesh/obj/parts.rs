@@ -1,4 +1,4 @@
-//! OBJ files as scenes: which triangles have which material.
+//! Reads OBJ files as scenes: triangles with their materials.
 
 use super::super::detailed::DetailedMesh;
 use super::super::text::LineWords;
@@ -6,7 +6,7 @@ use super::{detailed, statements, without_mark};
 use etendue_scenefile::Fault;
 use std::ops::Range;
 
-/// Statements that change what is seen, and are left out.
+/// Statements that affect the appearance and are ignored.
 const LEFT_OUT: [&str; 10] = [
     "p",
     "l",
@@ -23,24 +23,25 @@ const LEFT_OUT: [&str; 10] = [
 /// An OBJ file with the materials of its faces.
 #[derive(Clone, Debug)]
 pub struct ObjFile {
-    /// All of its triangles.
+    /// All triangles of the file.
     pub mesh: DetailedMesh,
-    /// All triangles in their order, cut where `usemtl` stands.
+    /// The parts: all triangles in order, divided at each `usemtl`.
     pub parts: Vec<ObjPart>,
-    /// Lines of `mtllib`, with what they name.
+    /// Lines of `mtllib`, with the files they name.
     pub libraries: Vec<(usize, String)>,
-    /// Statements that were left out: the line of the first, its word, and how many there are. Without normals `s` is among them.
+    /// Ignored statements: the line of the first, its word, and how many there are. In a file
+    /// without normals `s` is among them.
     pub left_out: Vec<(usize, String, usize)>,
 }
 
 /// Triangles of one material.
 #[derive(Clone, Debug)]
 pub struct ObjPart {
-    /// What `usemtl` names; `None` before the first.
+    /// The material that `usemtl` names; `None` before the first.
     pub material: Option<String>,
     /// The line of `usemtl`.
     pub line: usize,
-    /// Numbers of the triangles.
+    /// Indices of the triangles.
     pub triangles: Range<usize>,
 }
 

@@ -1,10 +1,11 @@
-//! The data of a PLY file.
+//! Reads the data of a PLY file.
 
 use super::super::text::{LineWords, Lines, number, quoted};
 use super::header::{Encoding, PlyElement, PlyProperty, Scalar};
 use etendue_scenefile::{Fault, fault};
 
-/// The data behind the header, read from the front. ASCII files hold a row a line; blank lines are passed over.
+/// The data after the header, read in sequence. ASCII files hold one row per line; blank lines are
+/// ignored.
 pub(super) struct Body<'a> {
     data: Data<'a>,
 }
@@ -21,7 +22,7 @@ enum Data<'a> {
     },
 }
 
-/// Where a row is, for messages.
+/// The position of a row, for messages.
 #[derive(Clone, Copy)]
 pub(super) struct PlyRow<'a> {
     element: &'a PlyElement,
@@ -29,7 +30,7 @@ pub(super) struct PlyRow<'a> {
     line: Option<usize>,
 }
 
-/// What is found in place of a value, and what is allowed.
+/// The text found in place of a value, and what is allowed.
 type PlyTrouble = (String, String);
 
 impl<'a> Body<'a> {
@@ -48,7 +49,7 @@ impl<'a> Body<'a> {
         Self { data }
     }
 
-    /// Gives each row of an element: for every property its value, or the values of its list.
+    /// Passes on each row of an element: for every property its value, or the values of its list.
     pub(super) fn rows(
         &mut self,
         element: &PlyElement,
@@ -101,7 +102,7 @@ impl<'a> Body<'a> {
                 })?
             }
         };
-        // The list grows as it is read: its length is not to be trusted.
+        // The list grows as it is read, because the stated length cannot be trusted.
         for _ in 0..count {
             values.push(self.scalar(row, property.scalar)?);
         }
@@ -144,7 +145,8 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Requires the end of the file: what follows would be a mesh that the header does not announce.
+    /// Requires the end of the file, because further data would be a mesh that the header does not
+    /// announce.
     pub(super) fn end(self) -> Result<(), Fault> {
         let rest = match self.data {
             Data::Text { lines, .. } => lines.rest,
@@ -168,7 +170,7 @@ impl PlyRow<'_> {
     }
 }
 
-/// A number's value; f64 holds all eight types exactly.
+/// The value of a number; f64 represents all eight types exactly.
 fn decode(scalar: Scalar, raw: &[u8], big_endian: bool) -> f64 {
     let mut little = [0; 8];
     little[..raw.len()].copy_from_slice(raw);

@@ -1,4 +1,4 @@
-//! PLY files with the normals and texture coordinates of their vertices.
+//! Reads PLY files with the normals and texture coordinates of their vertices.
 
 use super::super::detailed::{DetailedMesh, check};
 use super::super::shared::fan;
@@ -8,7 +8,7 @@ use super::{axes, face, list, vertex};
 use etendue_scenefile::Fault;
 use glam::{DVec2, DVec3};
 
-/// Names of texture coordinates.
+/// Property names of texture coordinates.
 const UVS: [[&str; 2]; 3] = [["u", "v"], ["s", "t"], ["texture_u", "texture_v"]];
 
 /// Vertices and faces, with the normals and texture coordinates if they are asked for.
@@ -59,7 +59,8 @@ pub(in super::super) fn read(bytes: &[u8], has_shading: bool) -> Result<Detailed
     Ok(mesh)
 }
 
-/// Where among the properties these are; `None` unless all are there, as single numbers.
+/// The positions of these names among the properties; `None` unless all are present as single
+/// numbers.
 fn columns<const N: usize>(element: &PlyElement, names: [&str; N]) -> Option<[usize; N]> {
     let found = names.map(|name| {
         let mut properties = element.properties.iter();

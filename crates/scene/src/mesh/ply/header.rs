@@ -1,13 +1,13 @@
-//! The header of a PLY file.
+//! Reads the header of a PLY file.
 
 use super::super::text::{LineWords, Lines, number, quoted};
 use etendue_scenefile::{Fault, fault};
 use std::collections::HashSet;
 
-/// What a PLY file says of its data.
+/// The description of the data in a PLY file.
 pub(super) struct PlyHeader {
     pub(super) encoding: Encoding,
-    /// In the order of the data.
+    /// The elements, in the order of the data.
     pub(super) elements: Vec<PlyElement>,
 }
 
@@ -29,7 +29,7 @@ pub(super) struct PlyElement {
 pub(super) struct PlyProperty {
     pub(super) name: String,
     pub(super) scalar: Scalar,
-    /// For lists, the type of their length.
+    /// For a list, the type of its length.
     pub(super) length: Option<Scalar>,
 }
 
@@ -49,13 +49,13 @@ const FORMATS: &str =
     "format ascii 1.0, format binary_little_endian 1.0, format binary_big_endian 1.0";
 const ELEMENT: &str = "element NAME COUNT, a name of at most 100 bytes";
 const PROPERTIES: &str = "property TYPE NAME, property list TYPE TYPE NAME; char, uchar, short, ushort, int, uint, float, double; a name of at most 100 bytes";
-/// Bytes of a name: messages repeat it.
+/// The largest length of a name in bytes, because messages repeat names.
 const LONGEST_NAME: usize = 100;
-/// Elements that a message lists.
+/// The largest number of elements that a message lists.
 const MOST_LISTED: usize = 4;
 
 impl PlyHeader {
-    /// The header, and the lines behind it.
+    /// The header, and the lines after it.
     pub(super) fn read(bytes: &[u8]) -> Result<(Self, Lines<'_>), Fault> {
         let mut lines = Lines::new(bytes);
         let first = lines.next().map_or(&[][..], |(_, line)| line);
@@ -64,7 +64,8 @@ impl PlyHeader {
         }
         let mut encoding = None;
         let mut elements: Vec<PlyElement> = Vec::new();
-        // Names of all elements, and of the properties of the last: looked up, so that a header of any length takes time in proportion.
+        // Names of all elements, and of the properties of the last one, in hash sets so that
+        // reading takes time linear in the length of the header.
         let (mut known, mut properties) = (HashSet::new(), HashSet::new());
         for (at, line) in lines.by_ref() {
             let refused = |allowed: &str| fault(format!("line {at}"), quoted(line), allowed);
@@ -120,8 +121,8 @@ impl PlyHeader {
         found.ok_or_else(|| fault(place(), "missing", "elements vertex and face"))
     }
 
-    /// Requires data long enough for the counts announced. As each row takes bytes, no count, however large, then
-    /// takes more time or memory than the file is long.
+    /// Checks that the data are long enough for the announced counts. Each row takes bytes, so no
+    /// count, however large, can take more time or memory than the file's length allows.
     fn check_length(&self, length: usize) -> Result<(), Fault> {
         let mut least: u128 = 0;
         for element in self.elements.iter().filter(|e| e.count > 0) {
@@ -149,7 +150,7 @@ impl PlyHeader {
 }
 
 impl PlyProperty {
-    /// The fewest bytes it can take in a row.
+    /// The smallest number of bytes that the property takes in a row.
     fn least(&self, encoding: Encoding) -> usize {
         match encoding {
             Encoding::Ascii => 2, // a digit and what parts it from the next

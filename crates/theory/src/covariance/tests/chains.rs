@@ -1,4 +1,4 @@
-//! Covariance along chains, against quadrature.
+//! Tests of covariance along chains, against quadrature.
 
 use super::apart;
 use crate::covariance::{SpectralCovariance, Traced, Untraced, window};
@@ -28,10 +28,10 @@ fn lamp() -> Light {
     }
 }
 
-/// S of that light.
+/// S of the light used in these tests.
 const LAMP: [f64; 4] = [0.01, 0.01, 1.0 / 30.0, 1.0 / 30.0];
 
-/// What an opaque disc leaves open, as standard deviations.
+/// The opening that an opaque disc leaves, as standard deviations.
 fn open(half: f64) -> [f64; 4] {
     let endless = f64::INFINITY;
     let along = half / 3.0_f64.sqrt();
@@ -48,7 +48,7 @@ fn seen() -> Window {
     }
 }
 
-/// C behind that window of a field of covariance S.
+/// C of a field of covariance S behind that window.
 fn windowed(field: &Matrix<4>) -> Matrix<4> {
     let stds = [0.5, 0.4, 0.3, 0.2].map(|width: f64| width / TAU.sqrt());
     power_spectrum(&gaussian_window(field, stds).unwrap()).unwrap()
@@ -84,7 +84,7 @@ fn a_receiver_leaves_the_irradiance_even_over_slopes() {
     assert_eq!([c[2], c[3]], [[0.0; 4]; 2]);
 }
 
-/// A surface a metre off, met at 0.4 rad, principal axes turned about its normal.
+/// A surface 1 m away, met at 0.4 rad, with principal axes turned about its normal.
 fn patch() -> Patch {
     let leg = Frame::IDENTITY.travelled(1.0);
     let (sin, cos) = libm::sincos(0.4);
@@ -96,7 +96,7 @@ fn patch() -> Patch {
     }
 }
 
-/// 0.7 m on the way that the surface mirrors.
+/// A plane 0.7 m along the path after the mirror.
 fn beyond() -> Plane {
     let leg = Frame::IDENTITY.travelled(1.0);
     let normal = patch().frame.d;
@@ -172,7 +172,7 @@ fn behind_a_textured_lobe() {
     let expected = windowed(&chain.off.covariance(&left));
     let plain = of(&view(None));
     assert!(apart(&plain, &expected) < 1e-10); // rounding; maps are of differences, alike in both
-    // The lines add their variance along the patch's own axis.
+    // The lines of the grating add their variance along the patch's own axis.
     let textured = of(&view(Some(Pattern::Cosine(lines))));
     let mut along = [[0.0; 4]; 4];
     let axis = [chain.frame.x, chain.frame.y].map(|t| t.dot(patch().frame.x));
@@ -199,7 +199,7 @@ fn pictures_of_projectors_and_beams() {
             phase: 0.0,
         }),
     };
-    // Both spectra are endless, but not behind a lobe.
+    // Both spectra are unbounded, but not after a lobe.
     let blurred = |c: SpectralCovariance| c.convolved(&diagonal([0.01; 4])).matrix().unwrap();
     let near = |light: Light| blurred(chain_of(light, []).spectral_covariance().unwrap());
     let [a, b] = [0.09 / TAU, 0.04 / TAU];

@@ -1,10 +1,10 @@
-//! Covariance of single factors, against differences.
+//! Tests of the covariance of single factors, against finite differences.
 
 use crate::covariance::{cosine, grating, lobe, mask, profile, slope_cosine};
 use etendue_field::{Disc, Grating, HalfPlane, Lobe, Mask, Profile, Rectangle, Shape};
 use std::f64::consts::PI;
 
-/// ∫ f'²/(4π² ∫ f²) on (−half, half), by differences.
+/// ∫ f'²/(4π² ∫ f²) on (−half, half), by finite differences.
 fn moment(f: impl Fn(f64) -> f64, half: f64) -> f64 {
     let n = 200_000;
     let step = 2.0 * half / f64::from(n);
@@ -18,7 +18,7 @@ fn moment(f: impl Fn(f64) -> f64, half: f64) -> f64 {
     slopes / (4.0 * PI * PI * squares)
 }
 
-/// The rule of midpoints on 2·10⁵ cells errs by less than 10⁻⁸ on these.
+/// The midpoint rule on 2·10⁵ cells errs by less than 10⁻⁸ on these functions.
 fn is(got: f64, expected: f64) {
     assert!((got / expected - 1.0).abs() < 1e-7, "{got} {expected}");
 }
@@ -32,7 +32,7 @@ fn smooth_windows_have_the_moment_of_their_power() {
         cut: 1.5,
     };
     is(profile(&gaussian), moment(|t| gaussian.value(t), 1.49));
-    // A box has edges: the Gaussian of its variance stands for it.
+    // A box has edges, so the Gaussian of its variance replaces it.
     is(profile(&Profile::Box(0.6)), 1.0 / (8.0 * PI * PI * 0.12));
 }
 
@@ -41,7 +41,8 @@ fn cosines_have_the_moment_of_their_power() {
     let quarter = 0.5 * PI;
     is(cosine()[2][2], moment(libm::cos, quarter));
     is(cosine()[3][3], moment(|t| libm::cos(t).powi(2), quarter));
-    // Of G over both slopes, by rings: ∫ (∂G/∂u)² is half of that of the radial slope.
+    // The moment of G over both slopes, by rings: ∫ (∂G/∂u)² is half of the integral of the squared
+    // radial slope.
     let ring = |r: f64| (1.0 + r * r).powi(-2);
     let [mut slopes, mut squares] = [0.0; 2];
     for i in 0..400_000 {
@@ -57,11 +58,11 @@ fn cosines_have_the_moment_of_their_power() {
 #[test]
 fn lobes_have_the_moment_of_their_power() {
     let variance = |c: f64| 1.0 / (8.0 * PI * PI * c);
-    // cosⁿ by itself: 1/n to first order in 1/n.
+    // cosⁿ itself: 1/n to first order in 1/n.
     let phong = lobe(&Lobe::Phong { exponent: 400.0 }, 0.3).unwrap();
     let traced = variance(moment(|t| libm::pow(libm::cos(t), 400.0), 1.0));
     assert!((phong[2][2] / traced - 1.0).abs() < 2.0 / 400.0);
-    // Distributions of normals over slopes that turn light by twice their tilt, by rings.
+    // Distributions of normals over slopes, integrated by rings; light turns by twice the tilt.
     let of_rings = |f: &dyn Fn(f64) -> f64| {
         let [mut slopes, mut squares] = [0.0; 2];
         let step = 1e-5;
@@ -84,7 +85,7 @@ fn lobes_have_the_moment_of_their_power() {
         ggx[2][2],
         of_rings(&|r| (1.0 + r * r / (4.0 * a * a)).powi(-2)),
     );
-    // Out of the plane of incidence light turns by less.
+    // Light turns by less out of the plane of incidence.
     let oblique = lobe(&Lobe::Beckmann { roughness: a }, 1.0).unwrap();
     is(oblique[3][3] / oblique[2][2], libm::cos(1.0_f64).powi(2));
     assert!(lobe(&Lobe::Lambertian, 0.0).is_none());
@@ -98,7 +99,7 @@ fn a_grating_has_the_variance_of_its_lines() {
         modulation: 0.8,
         phase: 0.3,
     };
-    // Lines at 0 and ±5 with powers ¼ and m²/16.
+    // The grating has lines at 0 and ±5 with powers ¼ and m²/16.
     let side = 0.64 / 16.0;
     is(grating(&lines), 25.0 * 2.0 * side / (0.25 + 2.0 * side));
     let factor = mask(&Mask::Grating(lines)).unwrap();
@@ -121,7 +122,7 @@ fn blockers_are_openings_about_the_central_ray() {
         })
     };
     let of = |half: f64| 3.0 / (8.0 * PI * PI * half * half);
-    // The first begins at 0.4 along x; the second at (0.2, 0.3), which is nearer.
+    // The first shape begins at 0.4 along x; the second at (0.2, 0.3), which is nearer.
     let beside = opaque(vec![wall(-0.5, 0.1), wall(0.3, 0.5)], vec![]).unwrap();
     is(beside[0][0], of(0.13_f64.sqrt()));
     is(beside[1][1], of(0.13_f64.sqrt()));
@@ -141,7 +142,7 @@ fn blockers_are_openings_about_the_central_ray() {
         radius: 0.2,
     });
     is(opaque(vec![disc], vec![]).unwrap()[0][0], of(0.3));
-    // In the central ray, and with an edge on it.
+    // A mask on the central ray, and one with an edge on it.
     assert!(opaque(vec![wall(0.0, 0.1)], vec![]).is_none());
     assert!(opaque(vec![wall(0.1, 0.0)], vec![]).is_none());
 }

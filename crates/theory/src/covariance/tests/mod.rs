@@ -1,4 +1,4 @@
-//! Covariance tracing held against Gaussian fields followed as fields, and against quadrature.
+//! Tests of covariance tracing against Gaussian light fields and against quadrature.
 
 mod chains;
 mod factors;
@@ -6,14 +6,16 @@ mod operators;
 
 use crate::geometry::{AffineMap, Matrix};
 
-/// The largest difference of two matrices, relative to the geometric mean of their diagonals.
+/// Returns the largest difference of two matrices, relative to the geometric mean of their
+/// diagonals.
 fn apart(a: &Matrix<4>, b: &Matrix<4>) -> f64 {
     let entries = (0..4).flat_map(|i| (0..4).map(move |j| (i, j)));
     let off = entries.map(|(i, j)| (a[i][j] - b[i][j]).abs() / (b[i][i] * b[j][j]).sqrt());
     off.fold(0.0, f64::max)
 }
 
-/// Onto a curved surface, off it as a mirror does, and on: twisted, so that no entry is zero.
+/// The map onto a curved surface, off it as a mirror does, and onward: twisted, so no entry is
+/// zero.
 fn bent() -> AffineMap<4> {
     let shape = [[0.7, 0.2], [0.2, -0.4]];
     AffineMap::<4>::rotation(0.4)

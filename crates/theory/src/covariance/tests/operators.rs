@@ -1,4 +1,4 @@
-//! Covariance operators on Gaussian light fields.
+//! Tests of covariance operators on Gaussian light fields.
 
 use super::{apart, bent};
 use crate::covariance::{SpectralCovariance, power};
@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 const LIGHT: [f64; 4] = [0.02, 0.03, 0.05, 0.04];
 const WINDOW: [f64; 4] = [0.2, 0.3, 0.25, 0.15];
 
-/// Of a Gaussian window of these standard deviations.
+/// The covariance of a Gaussian window of these standard deviations.
 fn window() -> Matrix<4> {
     diagonal(WINDOW.map(|s: f64| 1.0 / (8.0 * PI * PI * s * s)))
 }
@@ -18,7 +18,8 @@ fn lobe() -> Matrix<4> {
     diagonal([0.0, 0.0, 0.01, 0.006])
 }
 
-/// C of a Gaussian light field that is followed as a field: S alone is mapped, windowed and blurred.
+/// C of a Gaussian light field that is computed as a field: S alone is mapped, windowed and
+/// blurred.
 fn followed() -> Matrix<4> {
     let travelled = AffineMap::<4>::travel(1.3).covariance(&diagonal(LIGHT));
     let blocked = gaussian_window(
@@ -48,8 +49,8 @@ fn a_gaussian_field_has_what_is_traced() {
     assert!(off < 1e-12, "{off}"); // rounding of inverses of condition 10³
 }
 
-/// The definition, ∫ ∇l ∇lᵀ/(4π² ∫ l²), by differences of the field itself in (x, u): rays are
-/// followed back through travel and windows, and no matrix is used.
+/// Tests the definition, ∫ ∇l ∇lᵀ/(4π² ∫ l²), by finite differences of the field itself in (x, u):
+/// rays are followed back through travel and windows, without matrices.
 #[test]
 fn the_definition_gives_what_is_traced() {
     let [d, e] = [0.7, 0.4];
@@ -90,7 +91,8 @@ fn the_definition_gives_what_is_traced() {
         .multiplied(&window())
         .matrix()
         .unwrap();
-    // Differences err by half² over the width squared, 1e-8/0.01; the sum by far less.
+    // The finite differences err by half² over the width squared, 1e-8/0.01; the sum errs by far
+    // less.
     for (got, expected) in [(c[0][0], xx), (c[0][2], xu), (c[2][2], uu)] {
         assert!((got / expected - 1.0).abs() < 3e-6, "{got} {expected}");
     }
@@ -107,7 +109,7 @@ fn light_without_end_is_what_its_window_is() {
     assert!(apart(&seen.matrix().unwrap(), &window()) < 1e-14); // rounding
 }
 
-/// The light of a point has an endless spectrum, however it is windowed, until a lobe blurs it.
+/// Light from a point has an unbounded spectrum, however it is windowed, until a lobe blurs it.
 #[test]
 fn light_of_a_point_is_finite_behind_a_lobe() {
     let variance = [0.0, 0.0, 0.05, 0.04];
@@ -125,7 +127,8 @@ fn a_lobe_without_width_changes_nothing() {
     assert_eq!(still, traced());
 }
 
-/// Diffuse reflection is the widest lobe: the variance of the irradiance stays, slopes are even.
+/// Diffuse reflection is the widest lobe: the variance of the irradiance stays, and slopes become
+/// uniform.
 #[test]
 fn diffuse_reflection_is_the_limit_of_lobes() {
     let wide = diagonal([0.0, 0.0, 1e7, 2e7]);
@@ -137,7 +140,7 @@ fn diffuse_reflection_is_the_limit_of_lobes() {
         .zip(limit.iter().flatten())
         .enumerate()
     {
-        // What a lobe of 10⁷ leaves is 1/(8π² 10⁷) of angles, and its root of the rest.
+        // A lobe of 10⁷ leaves 1/(8π² 10⁷) along angles, and the square root of that elsewhere.
         assert!((got - near).abs() < 1e-4, "{i}: {got} {near}");
     }
     assert_eq!(diffuse[2..], [[0.0; 4]; 2]);
@@ -146,7 +149,8 @@ fn diffuse_reflection_is_the_limit_of_lobes() {
     let determinant = field[0][0] * field[1][1] - field[0][1] * field[1][0];
     let expected = field[1][1] / determinant / (8.0 * PI * PI);
     assert!((diffuse[0][0] / expected - 1.0).abs() < 1e-12); // rounding of inverses
-    // Light that is even already stays so; of a point what arrives is even over the receiver.
+    // Light that is already uniform stays uniform; light from a point arrives uniform over the
+    // receiver.
     let flat = SpectralCovariance::new([f64::INFINITY; 4]);
     assert_eq!(flat.diffused().matrix(), Some([[0.0; 4]; 4]));
     let lamp = SpectralCovariance::new([0.0, 0.0, f64::INFINITY, f64::INFINITY]);

@@ -1,4 +1,4 @@
-//! Spectra and covariances of mapped fields.
+//! Tests of the spectra and covariances of mapped fields.
 
 use super::*;
 use crate::geometry::Edition;
@@ -16,7 +16,7 @@ const FIELD: Matrix<4> = [
     [0.0, -0.008, 0.0, 0.03],
 ];
 
-/// From a light to a surface and on: with an offset.
+/// A path from a light to a surface and onward, with an offset.
 fn path() -> AffineMap<4> {
     AffineMap::<4>::travel(1.5)
         .then(&AffineMap::<4>::incidence(0.7))
@@ -31,7 +31,7 @@ fn spectrum_of_a_mapped_gaussian() {
     let largest = gaussian_spectrum(&after, [0.0; 4]);
     for i in 0..20 {
         let omega = std::array::from_fn(|k| 1.5 * scatter(i, k));
-        // The Gaussian that has moved by the offset and has the covariance of the moved rays.
+        // The Gaussian displaced by the offset, with the covariance of the mapped rays.
         let phase = -TAU * dot(&omega, &map.offset);
         let expected = Complex::from_polar(gaussian_spectrum(&after, omega), phase);
         let got = map.spectrum(omega, &before);
@@ -41,7 +41,7 @@ fn spectrum_of_a_mapped_gaussian() {
 
 #[test]
 fn spectrum_of_a_map_is_the_transform_of_the_mapped_field() {
-    // A field without symmetry, (1 + x − θ/2) exp(−π(…)), transformed where the map has put it.
+    // An asymmetric field, (1 + x − θ/2) exp(−π(…)), transformed numerically after the map.
     let map = AffineMap::<2>::incidence(0.5).then(&AffineMap::<2>::curvature(0.8));
     let field = |[x, t]: [f64; 2]| {
         let gauss = libm::exp(-std::f64::consts::PI * (4.0 * x * x + 2.0 * x * t + 9.0 * t * t));
@@ -50,7 +50,7 @@ fn spectrum_of_a_map_is_the_transform_of_the_mapped_field() {
     let back = map.inverse().unwrap();
     let after = |z: [f64; 2]| field(back.apply(z));
     // The trapezoid rule on a lattice: both fields are below 1e-20 at its edges and above half of
-    // its frequency.
+    // its sampling frequency.
     let transform = |f: &dyn Fn([f64; 2]) -> f64, [ox, ot]: [f64; 2]| -> Complex {
         let nodes = (-120..=120).map(|i| 0.04 * f64::from(i));
         let rows = nodes.clone().map(|x| -> Complex {
@@ -61,7 +61,7 @@ fn spectrum_of_a_map_is_the_transform_of_the_mapped_field() {
         rows.sum::<Complex>() * (0.04 * 0.04)
     };
     let before = |omega| transform(&field, omega);
-    // What the paper prints is another function.
+    // The printed equations give a different function.
     let printed = Edition::Equations.incidence(0.5);
     let printed = printed.then(&AffineMap::<2>::curvature(0.8).spectrum_map());
     for omega in [[0.0, 0.0], [1.0, -0.7], [-0.5, 1.0]] {
@@ -90,7 +90,7 @@ fn covariance_of_sampled_rays() {
     let (got, expected) = (map.covariance(&covariance(&rays)), covariance(&after));
     let off = |a: &Matrix<4>, b: &Matrix<4>| apart(&AffineMap::linear(*a), &AffineMap::linear(*b));
     assert!(off(&got, &expected) < 1e-14); // rounding of sums of 200 numbers below one
-    // The spectrum's covariance follows its content.
+    // The spectrum's covariance moves with its content.
     let power = power_spectrum(&got).unwrap();
     let moved = power_spectrum(&covariance(&rays)).unwrap();
     let moved = map.spectral_covariance(&moved).unwrap();
@@ -101,8 +101,8 @@ fn covariance_of_sampled_rays() {
 fn windows_and_lobes() {
     let wide = gaussian_window(&FIELD, [f64::INFINITY; 4]).unwrap();
     assert!(apart(&AffineMap::linear(wide), &AffineMap::linear(FIELD)) < 1e-16); // rounding
-    // The light of a point is singular, its window is not: on x = D u, 1/σ² adds up to 1/σu² +
-    // D²/σx².
+    // The covariance of light from a point is singular, after a window it is not: on x = D u, 1/σ²
+    // is the sum 1/σu² + D²/σx².
     let point = [[4.0, 2.0], [2.0, 1.0]];
     let seen = gaussian_window(&point, [0.5, 0.3]).unwrap();
     let along: f64 = 1.0 / (1.0 + 4.0 / 0.25 + 1.0 / 0.09);

@@ -1,16 +1,16 @@
-//! The kernel from slopes to angles.
+//! Tests of the kernel from slopes to angles.
 
 use crate::geometry::plane_sphere_kernel;
 use crate::numerics::quadrature::integrate;
 use etendue_field::Complex;
 use std::f64::consts::{PI, TAU};
 
-/// The accuracy stated.
+/// The accuracy that the documentation states.
 const STATED: f64 = 1e-13;
 
 #[test]
 fn values_of_tricomi_function() {
-    // π e^(−a) U(−b/2, 0, 2a)/Γ(1 + b/2), mpmath 1.3 at 60 digits.
+    // Values of π e^(−a) U(−b/2, 0, 2a)/Γ(1 + b/2), from mpmath 1.3 at 60 digits.
     let values = [
         (0.001, 160.0, -0.004_354_544_446_450_9),
         (1e-6, 2.3, -0.090_144_709_358_218_17),
@@ -46,7 +46,7 @@ fn symmetry_and_zero() {
         } else {
             2.0 * libm::sin(0.5 * PI * b) / b
         };
-        // At zero, and next to it: the kink there is a ln a.
+        // At zero and next to it, where the kink is a ln a.
         assert!((plane_sphere_kernel(0.0, theta) - expected).abs() < STATED);
         assert!((plane_sphere_kernel(1e-15, theta) - expected).abs() < 1e-11);
     }
@@ -69,8 +69,8 @@ fn laguerre_polynomials_at_even_orders() {
     }
 }
 
-/// The definition, its path moved up by a height at which nothing oscillates fast: the upright ends
-/// are where tan t = ± i coth.
+/// Evaluates the definition with its path moved up to a height at which nothing oscillates fast:
+/// the vertical ends are where tan t = ± i coth.
 fn by_definition(v: f64, theta: f64) -> f64 {
     let (a, b) = (TAU * v, TAU * theta);
     let height = 0.4;
@@ -90,21 +90,22 @@ fn the_integral_it_stands_for() {
             2.0 * super::scatter(i, 1),
         );
         let off = (plane_sphere_kernel(v, theta) - by_definition(v, theta)).abs();
-        // Terms up to e^(0.4 · 12.6) = 150 cancel in the definition so moved.
+        // Terms up to e^(0.4 · 12.6) = 150 cancel on the moved path.
         assert!(off < 1e-12, "({v}, {theta}): {off:e}");
     }
 }
 
 #[test]
 fn spectrum_of_a_gaussian_in_slope_seen_in_angle() {
-    // exp(−π tan² θ / w²) transformed, against its spectrum in slope times the kernel.
+    // The transform of exp(−π tan² θ / w²), against its spectrum in slope times the kernel.
     let w: f64 = 0.8;
     for theta in [0.0, 0.4, 1.3] {
         let direct = integrate(200, [-0.5 * PI, 0.5 * PI], |t| {
             let v = libm::tan(t) / w;
             libm::exp(-PI * v * v) * libm::cos(TAU * theta * t)
         });
-        // Ωv = ± s³ smooths the kink of the kernel at zero; e^(−π w² Ω²) is 1e-20 at Ω = 5.
+        // Substituting Ωv = ± s³ smooths the kink of the kernel at zero; e^(−π w² Ω²) is 1e-20 at Ω
+        // = 5.
         let side = |sign: f64| {
             integrate(200, [0.0, libm::cbrt(5.0_f64)], |s| {
                 let v = s * s * s;
@@ -113,13 +114,13 @@ fn spectrum_of_a_gaussian_in_slope_seen_in_angle() {
             })
         };
         let through = side(1.0) + side(-1.0);
-        // 200 nodes on s⁵ ln s, what is left of the kink: its coefficients fall as n^−12.
+        // 200 nodes on s⁵ ln s, the remainder of the kink: its coefficients fall as n^−12.
         assert!(
             (through - direct).abs() < 1e-12,
             "{theta}: {}",
             through - direct
         );
-        // To take slopes for angles is not the same.
+        // Treating slopes as angles gives a different result.
         let slopes = w * libm::exp(-PI * w * w * theta * theta);
         assert!((slopes - direct).abs() > 1e-3);
     }

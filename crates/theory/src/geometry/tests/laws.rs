@@ -1,8 +1,8 @@
-//! What must hold for any numbers.
+//! Tests of laws that hold for any parameters.
 
 use super::*;
 
-/// Rounding of products of a handful of entries of order one.
+/// Rounding of products of a few entries of order one.
 const ROUNDING: f64 = 1e-14;
 
 #[test]
@@ -58,7 +58,7 @@ fn thin_lens_between_travels() {
         .then(&AffineMap::travel(b));
     let abcd = [[1.0 - b / f, a + b - a * b / f], [-1.0 / f, 1.0 - a / f]];
     assert!(apart(&system, &AffineMap::linear(abcd)) < ROUNDING);
-    // 1/a + 1/b = 1/f: an image, where direction does not matter, b/a as large and upside down.
+    // 1/a + 1/b = 1/f gives an image: independent of direction, magnified by b/a and inverted.
     let b = 1.0 / (1.0 / f - 1.0 / a);
     let image = AffineMap::<4>::travel(a)
         .then(&AffineMap::thin_lens(f))
@@ -94,7 +94,7 @@ fn closed_form_of_a_mirror() {
 fn lensmaker() {
     let (r1, r2, thickness, n) = (0.5, 0.8, 0.02, GLASS.after);
     let lens = |thickness| {
-        // The second surface of a biconvex lens is hollow as seen from inside.
+        // The second surface of a biconvex lens is concave as seen from inside.
         AffineMap::<2>::refracting_surface(0.0, 1.0 / r1, &GLASS)
             .unwrap()
             .then(&AffineMap::travel(thickness))
@@ -138,7 +138,7 @@ fn specular_steps_keep_etendue() {
         assert!(kept.symplectic_defect(1.0) < ROUNDING);
         assert!((kept.det() - 1.0).abs() < ROUNDING);
     }
-    // Nothing happens where nothing changes, curved or not.
+    // An interface between equal media has no effect, curved or not.
     assert!(apart(&same, &AffineMap::identity()) < ROUNDING);
     let ratio = GLASS.index_ratio();
     assert!(path.then(&surface).symplectic_defect(ratio) < ROUNDING);
@@ -147,14 +147,14 @@ fn specular_steps_keep_etendue() {
     let flat = AffineMap::<2>::refracting_surface(0.7, 0.4, &GLASS).unwrap();
     assert!(flat.symplectic_defect(ratio) < ROUNDING);
     assert!((flat.det() - ratio).abs() < ROUNDING);
-    // A surface is no plane across the light; nor is a shear by M without its cosine a thing that light
-    // does.
+    // A surface is not perpendicular to the light, so it has a defect; and a shear by M without the
+    // cosine is not a physical map.
     assert!(AffineMap::<4>::incidence(0.7).symplectic_defect(1.0) > 0.3);
     let nan = AffineMap::<2>::travel(f64::NAN);
     assert!(nan.symplectic_defect(1.0).is_nan());
 }
 
-/// Turns the frame round, (X, Y, D) to (−X, Y, −D), as for light that goes straight back.
+/// Turns the frame round, (X, Y, D) to (−X, Y, −D), as for light that returns along its path.
 fn turn_round() -> AffineMap<4> {
     AffineMap::<4>::linear([
         [-1.0, 0.0, 0.0, 0.0],
@@ -173,7 +173,7 @@ fn paths_are_reversible() {
         .then(&AffineMap::<4>::refracting_surface(theta1, SHAPE, &GLASS).unwrap())
         .then(&AffineMap::thin_lens(0.7));
     let [[m11, m12], [m21, m22]] = SHAPE;
-    // From behind, hollow is convex, T points the other way, B does not.
+    // From behind, concave becomes convex and T is reversed; B is not.
     let behind = [[-m11, m12], [m21, -m22]];
     let back = |behind| {
         AffineMap::<4>::thin_lens(0.7)
@@ -206,7 +206,7 @@ fn sections_are_the_plane_of_incidence() {
 
 #[test]
 fn turning_the_axes_turns_what_happens() {
-    // A lens has no axes; a travel neither.
+    // Lenses and travel are rotationally symmetric.
     let turn = AffineMap::<4>::rotation(0.4);
     for step in [AffineMap::travel(1.2), AffineMap::thin_lens(0.6)] {
         assert!(apart(&turn.then(&step), &step.then(&turn)) < ROUNDING);
@@ -215,11 +215,12 @@ fn turning_the_axes_turns_what_happens() {
         all.then(&AffineMap::<4>::rotation(std::f64::consts::TAU / 10.0))
     });
     assert!(apart(&full, &AffineMap::identity()) < ROUNDING);
-    // A point on the new first axis has no second coordinate.
+    // A point on the new first axis has a zero second coordinate.
     let (sin, cos) = libm::sincos(0.4_f64);
     let [x, y, ..] = turn.apply([cos, sin, 0.0, 0.0]);
     assert!((x - 1.0).abs() < ROUNDING && y.abs() < ROUNDING);
-    // A mirror met head on does not care how the axes lie, if its shape operator turns with them.
+    // At normal incidence on a mirror, the orientation of the axes does not matter if the shape
+    // operator turns with them.
     let [[a, b], [_, d]] = SHAPE;
     let turned = [
         [
@@ -231,7 +232,7 @@ fn turning_the_axes_turns_what_happens() {
             sin * sin * a + 2.0 * cos * sin * b + cos * cos * d,
         ],
     ];
-    // T = −X before and X after: the axes of the surface turn the other way.
+    // T = −X before and X after: the axes of the surface turn in the opposite sense.
     let one = turn.then(&AffineMap::<4>::mirror_reflection(0.0, turned));
     let other = AffineMap::<4>::mirror_reflection(0.0, SHAPE).then(&AffineMap::rotation(-0.4));
     assert!(apart(&one, &other) < ROUNDING);

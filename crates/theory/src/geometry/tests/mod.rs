@@ -1,4 +1,4 @@
-//! Laws of the maps, traced rays, and what the misprints of the paper do to them.
+//! Tests of the maps: general laws, traced rays, and the effect of the paper's misprints.
 
 mod gaussians;
 mod kernel;
@@ -10,28 +10,28 @@ mod trace;
 
 use super::{AffineMap, Matrix, Media};
 
-/// Not symmetric about anything, saddle-shaped.
+/// An asymmetric saddle.
 const SHAPE: Matrix<2> = [[0.6, 0.25], [0.25, -0.3]];
 const GLASS: Media = Media {
     before: 1.0,
     after: 1.5,
 };
 
-/// The largest difference between two maps, entry by entry.
+/// Returns the largest difference between two maps, entry by entry.
 fn apart<const N: usize>(a: &AffineMap<N>, b: &AffineMap<N>) -> f64 {
     let offsets = (0..N).map(|i| (a.offset[i] - b.offset[i]).abs());
     let entries = (0..N * N).map(|n| (a.matrix[n / N][n % N] - b.matrix[n / N][n % N]).abs());
     offsets.chain(entries).fold(0.0, f64::max)
 }
 
-/// Numbers spread evenly over (−1, 1), and jointly over the coordinates: multiples of roots of
-/// primes.
+/// Returns numbers spread uniformly over (−1, 1), and jointly over the coordinates: multiples of
+/// roots of primes.
 fn scatter(index: usize, coordinate: usize) -> f64 {
     let prime: f64 = [2.0, 3.0, 5.0, 7.0][coordinate];
     2.0 * ((index as f64 + 1.0) * prime.sqrt()).fract() - 1.0
 }
 
-/// Rays spread over a neighbourhood of size e.
+/// Returns rays spread over a neighbourhood of size e.
 fn bundle<const N: usize>(count: usize, e: f64) -> impl Iterator<Item = [f64; N]> {
     (0..count).map(move |i| std::array::from_fn(|k| e * scatter(i, k)))
 }

@@ -1,4 +1,4 @@
-//! The misprints of the paper, one by one: none is what rays do, though some hide behind each
+//! Tests of the paper's misprints, one by one: none matches traced rays, though some cancel each
 //! other.
 
 use super::rays::{circle, error_and_order};
@@ -11,13 +11,13 @@ use std::f64::consts::TAU;
 const THETA0: f64 = 0.6;
 const K: f64 = 0.5;
 
-/// With the 2π that is missing in print.
+/// Inserts the 2π that is missing in print.
 fn with_two_pi(mut step: SpectrumMap<2>) -> SpectrumMap<2> {
     step.phase = step.phase.map(|t| TAU * t);
     step
 }
 
-/// A mirror chain with the prints of incidence, of curvature and of outgoing angle.
+/// Builds a mirror reflection with the printed versions of incidence, curvature and outgoing angle.
 fn mirror(
     incidence: &SpectrumMap<2>,
     curvature: Edition,
@@ -78,8 +78,8 @@ fn no_misprint_follows_the_rays() {
             "{what}: {error:e}, {order}"
         );
     }
-    // Two phases of a mirror cancel; alone, an angle that is off does not get smaller with the
-    // neighbourhood.
+    // The two phases of a mirror cancel; a single wrong angle gives an error that does not shrink
+    // with the neighbourhood.
     let alone = mirror(&phase[0], Corrected, &right[1]);
     let (error, order) = error_and_order(&alone.rays(), traced);
     assert!(error > 100.0 && order < -0.9, "phase: {error:e}, {order}");
@@ -120,7 +120,7 @@ fn planar_mirrors_keep_magnitudes() {
         let cos = libm::cos(THETA0);
         let rounding = 1e-14;
         assert!((size(Edition::Corrected) - expected).abs() < rounding);
-        // The two wrong arguments of Table 1 cancel on a plane, the factors of Eq. 9 and 10 do not.
+        // The two wrong arguments of Table 1 cancel on a plane; the factors of Eq. 9 and 10 do not.
         assert!((size(Edition::Table) - expected).abs() < rounding);
         assert!((size(Edition::Equations) - cos * cos * expected).abs() < rounding);
     }

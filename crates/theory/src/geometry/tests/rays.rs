@@ -1,15 +1,15 @@
-//! Maps against traced rays: the error falls with the neighbourhood's size, as its first or second
-//! power.
+//! Tests of the maps against traced rays: the error is of first or second order in the size of the
+//! neighbourhood.
 
 use super::trace::{GraphSurface, LightAxes, reflected, refracted};
 use super::*;
 use crate::geometry::plane_sphere::{to_angles, to_slopes};
 
-/// Half of the largest neighbourhood.
+/// Half the size of the largest neighbourhood.
 const SIZE: f64 = 1e-3;
 
-/// The largest error of a map over rays of a neighbourhood of size e, relative to e, and the power
-/// of e it falls with.
+/// Returns the largest error of a map over rays in a neighbourhood of size e, relative to e, and
+/// the order in e at which it falls.
 pub(super) fn error_and_order<const N: usize>(
     map: &AffineMap<N>,
     traced: impl Fn([f64; N]) -> [f64; N],
@@ -25,7 +25,7 @@ pub(super) fn error_and_order<const N: usize>(
     (narrow, libm::log2(wide / narrow))
 }
 
-/// The next term of the error is e times smaller and moves the order by about as much.
+/// The next term of the error is e times smaller and changes the order by about as much.
 const ORDER: f64 = 0.02;
 
 fn assert_order<const N: usize>(
@@ -38,7 +38,7 @@ fn assert_order<const N: usize>(
     assert!(error < 20.0 * SIZE.powf(expected), "{error:e}");
 }
 
-/// A circle's ray in the plane of incidence.
+/// Traces a ray that meets a circle in the plane of incidence.
 pub(super) fn circle(k: f64, theta0: f64, [x, u]: [f64; 2]) -> [f64; 2] {
     let [x, _, u, _] = reflected(GraphSurface::sphere(k), theta0, [x, 0.0, u, 0.0]);
     [x, u]
@@ -98,8 +98,8 @@ fn other_rules_of_refraction_do_not_converge() {
     let in_plane = AffineMap::<2>::refraction(theta0, &GLASS).unwrap();
     let across = AffineMap::<2>::refraction(0.0, &GLASS).unwrap();
     let off = AffineMap::<4>::incidence(theta2).inverse().unwrap();
-    // Latitudes refracted by the rule for longitudes; nothing refracted across; the cosine of the
-    // way in on the way back.
+    // Three mistakes: latitudes refracted by the rule for longitudes; no refraction across the
+    // plane of incidence; the cosine of the incident side on the way back.
     let wrong = [
         (AffineMap::<2>::linear(in_plane.matrix), theta0, theta2),
         (AffineMap::identity(), theta0, theta2),
@@ -123,8 +123,8 @@ fn other_rules_of_refraction_do_not_converge() {
 #[test]
 fn foci_of_a_hollow_sphere() {
     let (radius, theta0) = (2.0, 0.7_f64);
-    // Neighbours of the central ray, parallel to it; the error of the central difference is of the
-    // order of e².
+    // Neighbours of the central ray, parallel to it; the error of the central difference is of
+    // order e².
     let e = 1e-4;
     let crossing = |axis: usize| {
         let ends = [-e, e].map(|offset| {
@@ -142,7 +142,7 @@ fn foci_of_a_hollow_sphere() {
     ]; // Coddington
     for (axis, expected) in expected.into_iter().enumerate() {
         let traced = crossing(axis);
-        // E² = 1e-8, and a curvature of order one.
+        // e² = 1e-8, and a curvature of order one.
         assert!((traced - expected).abs() < 1e-7, "{traced}");
         let got = -map[axis][axis] / map[axis + 2][axis];
         assert!((got - expected).abs() < 1e-14, "{got}"); // rounding
@@ -164,7 +164,7 @@ fn axes_turned_about_the_light() {
 
 #[test]
 fn axes_turned_about_a_normal() {
-    // (θ, φ) are turned as a vector of the plane, which they are near the normal and nowhere else.
+    // (θ, φ) turn as a vector in the plane, which is correct only near the normal.
     let axes = LightAxes::leaving(0.0);
     let turned = |z| to_angles(axes.turned(0.8).coordinates(axes.ray(to_slopes(z))));
     assert_order(&AffineMap::<4>::rotation(0.8), turned, 2.0);

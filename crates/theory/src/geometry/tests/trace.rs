@@ -1,4 +1,4 @@
-//! Rays traced in space, by elementary geometry: what the maps are held against.
+//! Rays traced in space by elementary geometry, as a reference for the maps.
 
 use super::*;
 
@@ -8,7 +8,7 @@ fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// a + t b.
+/// Returns a + t b.
 fn along(a: Vector, t: f64, b: Vector) -> Vector {
     [0, 1, 2].map(|i| a[i] + t * b[i])
 }
@@ -22,19 +22,19 @@ fn scaled(a: Vector, t: f64) -> Vector {
 pub(super) struct LightAxes([Vector; 3]);
 
 impl LightAxes {
-    /// Light that seems to come from the angle θ: D = −(sin θ T + cos θ N).
+    /// Returns the axes for light that seems to come from the angle θ: D = −(sin θ T + cos θ N).
     pub(super) fn coming(theta: f64) -> Self {
         let (sin, cos) = libm::sincos(theta);
         Self([[-cos, 0.0, sin], [0.0, 1.0, 0.0], [-sin, 0.0, -cos]])
     }
 
-    /// Light that leaves at the angle θ: D = sin θ T + cos θ N.
+    /// Returns the axes for light that leaves at the angle θ: D = sin θ T + cos θ N.
     pub(super) fn leaving(theta: f64) -> Self {
         let (sin, cos) = libm::sincos(theta);
         Self([[cos, 0.0, -sin], [0.0, 1.0, 0.0], [sin, 0.0, cos]])
     }
 
-    /// X and Y turned about D, from X towards Y.
+    /// Returns the axes with X and Y turned about D, from X towards Y.
     pub(super) fn turned(&self, angle: f64) -> Self {
         let Self([x, y, d]) = *self;
         let (sin, cos) = libm::sincos(angle);
@@ -42,7 +42,7 @@ impl LightAxes {
         Self([turned, along(scaled(y, cos), -sin, x), d])
     }
 
-    /// Origin and unit direction of a ray.
+    /// Returns the origin and unit direction of a ray.
     pub(super) fn ray(&self, [x, y, u, v]: [f64; 4]) -> [Vector; 2] {
         let Self([ex, ey, d]) = *self;
         let direction = along(along(d, u, ex), v, ey);
@@ -51,7 +51,7 @@ impl LightAxes {
         [origin, scaled(direction, 1.0 / length)]
     }
 
-    /// Two-plane coordinates of a ray.
+    /// Returns the two-plane coordinates of a ray.
     pub(super) fn coordinates(&self, [point, direction]: [Vector; 2]) -> [f64; 4] {
         let Self([ex, ey, d]) = *self;
         let forward = dot(direction, d);
@@ -61,8 +61,8 @@ impl LightAxes {
     }
 }
 
-/// The surface 2 N·p + pᵀ Q p = 0 through the origin: a sphere of curvature k for Q = k 1, else a
-/// graph with the shape operator M.
+/// The surface 2 N·p + pᵀ Q p = 0 through the origin: a sphere of curvature k for Q = k 1,
+/// otherwise a graph with the shape operator M.
 #[derive(Clone, Copy)]
 pub(super) struct GraphSurface([Vector; 3]);
 
@@ -79,7 +79,7 @@ impl GraphSurface {
         self.0.map(|row| dot(row, p))
     }
 
-    /// Where a ray meets the surface near the origin, and the unit normal there.
+    /// Returns the point near the origin where a ray meets the surface, and the unit normal there.
     fn hit(&self, [o, d]: [Vector; 2]) -> [Vector; 2] {
         let a = dot(d, self.quadratic(d));
         let half_b = dot(o, self.quadratic(d)) + d[2];
@@ -91,7 +91,7 @@ impl GraphSurface {
     }
 }
 
-/// A ray reflected by a surface met at θ₀, in the frames before and after.
+/// Traces a ray reflected by a surface met at θ₀, in the frames before and after.
 pub(super) fn reflected(surface: GraphSurface, theta0: f64, z: [f64; 4]) -> [f64; 4] {
     let ray = LightAxes::coming(theta0).ray(z);
     let [point, n] = surface.hit(ray);
@@ -99,7 +99,7 @@ pub(super) fn reflected(surface: GraphSurface, theta0: f64, z: [f64; 4]) -> [f64
     LightAxes::leaving(-theta0).coordinates([point, direction])
 }
 
-/// A ray refracted by a surface met at θ₀, in the frames before and after.
+/// Traces a ray refracted by a surface met at θ₀, in the frames before and after.
 pub(super) fn refracted(
     surface: GraphSurface,
     theta0: f64,

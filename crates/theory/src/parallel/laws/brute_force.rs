@@ -1,10 +1,10 @@
-//! Chains walked by hand, and transforms by many rays.
+//! A reference for tests: chains traced by hand, and transforms by many rays.
 
 use crate::{Chain, Operator};
 use etendue_field::{Complex, Light, Mask, Shape, TwoPlane, Window};
 use std::f64::consts::TAU;
 
-/// A chain walked from its end by hand: distances and masks, and factors G.
+/// A chain traced back from its end by hand: distances and masks, and factors G.
 struct WalkedRay<'a> {
     distance: f64,
     masks: Vec<(f64, &'a Mask)>,
@@ -29,7 +29,7 @@ impl<'a> WalkedRay<'a> {
         walk
     }
 
-    /// What is left of the light along a ray.
+    /// Returns the share of the light that passes along a ray.
     fn passes(&self, ray: &TwoPlane) -> f64 {
         let shading = ray.secant_squared().powi(-2 * self.cosines);
         let masks = self.masks.iter().map(|(distance, mask)| {
@@ -40,9 +40,9 @@ impl<'a> WalkedRay<'a> {
     }
 }
 
-/// The transform by quasi-random rays: from the light to the final plane.
+/// Computes the transform by quasi-random rays from the light to the final plane.
 ///
-/// Points of the R₄ sequence (Roberts 2018): multiples of the powers of 1/φ, φ⁵ = φ + 1.
+/// Uses points of the R₄ sequence (Roberts 2018): multiples of the powers of 1/φ, φ⁵ = φ + 1.
 pub(super) fn brute_force(
     chain: &Chain,
     window: &Window,
@@ -59,7 +59,7 @@ pub(super) fn brute_force(
             radiance,
             exponent,
         } => (shape.area(), *exponent, *radiance),
-        // At distance D √(1 + u² + v²).
+        // At the distance D √(1 + u² + v²).
         Light::Point { intensity } => (1.0, -1.0, *intensity),
         other => panic!("no brute force for {other:?}"),
     };
@@ -81,7 +81,7 @@ pub(super) fn brute_force(
     sums.iter().map(|sum| sum * scale).collect()
 }
 
-/// The point of the light for two numbers in the unit interval, uniform in area.
+/// Returns the point of the light for two numbers in the unit interval, uniform in area.
 fn start(light: &Light, c: f64, d: f64) -> [f64; 2] {
     match light {
         Light::Area {

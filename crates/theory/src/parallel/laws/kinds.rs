@@ -1,4 +1,4 @@
-//! Every kind of light, mask and factor against brute force, and planted faults.
+//! Tests of every kind of light, mask and factor against brute force, and of planted faults.
 
 use super::{FREQUENCIES, brute_force, hann, zero};
 use crate::parallel::disc_resolution::DiscResolution;
@@ -16,7 +16,7 @@ fn light() -> Light {
     lambertian(square([0.05, -0.02], 0.3))
 }
 
-/// Light, mask a metre away, plane 0.8 m after it.
+/// Builds a chain of a light, a mask 1 m away, and a plane 0.8 m after it.
 fn bench(light: Light, mask: Option<Mask>) -> Chain {
     chain_of(light, [(1.0, mask), (0.8, None)])
 }
@@ -26,8 +26,8 @@ fn with_cosine(mut chain: Chain) -> Chain {
     chain
 }
 
-/// The largest difference from quasi-random rays, relative to what arrives at zero frequency
-/// without masks.
+/// Returns the largest difference from quasi-random rays, relative to the light that arrives at
+/// zero frequency without masks.
 fn error(chain: &Chain, value: impl Fn([f64; 4]) -> Complex) -> f64 {
     let truth = brute_force(chain, &hann(), &FREQUENCIES, RAYS);
     let pairs = FREQUENCIES.iter().zip(truth);
@@ -40,7 +40,7 @@ fn error(chain: &Chain, value: impl Fn([f64; 4]) -> Complex) -> f64 {
 
 fn assert_agrees(name: &str, chain: &Chain) {
     let error = error(chain, |k| at(chain, &hann(), k));
-    // Quasi-random points with edges: better than 1/√200000 = 2.2e-3.
+    // The error of quasi-random points with edges: better than 1/√200000 = 2.2e-3.
     assert!(error < 1e-3, "{name}: {error:e}");
 }
 
@@ -97,7 +97,7 @@ fn differential_irradiance_agrees_with_brute_force() {
     assert_agrees("cosine below a point", &with_cosine(bench(POINT, None)));
 }
 
-/// A lobe cos⁴θ is the very factor G.
+/// A lobe cos⁴θ equals the factor G.
 #[test]
 fn a_spot_of_exponent_four_is_a_cosine() {
     let shape = Shape::Rectangle(square([0.0, 0.1], 0.4));
@@ -108,7 +108,7 @@ fn a_spot_of_exponent_four_is_a_cosine() {
     }
 }
 
-/// The chain with another power of 1 + u² + v² than it asks for.
+/// Evaluates the chain with another power of 1 + u² + v² than its own.
 fn at_power(chain: &Chain, window: &Window, power: f64, k: [f64; 4]) -> Complex {
     let path = chain.path();
     let slope = Slope::new([&window.u, &window.v], power);
@@ -117,11 +117,11 @@ fn at_power(chain: &Chain, window: &Window, power: f64, k: [f64; 4]) -> Complex 
     expansion.at(k)
 }
 
-/// A fault of some size against the truth.
+/// Asserts that a fault of a given size is detected against the reference.
 fn assert_seen(name: &str, chain: &Chain, fault: impl Fn([f64; 4]) -> Complex) {
     let right = error(chain, |k| at(chain, &hann(), k));
     let wrong = error(chain, fault);
-    // Smooth: the points are better than where masks cut.
+    // The function is smooth, so the points are more accurate than where masks cut.
     assert!(right < 5e-4, "{name}: {right:e}");
     assert!(wrong > 5e-3, "{name}: {wrong:e}"); // ten times that
 }
@@ -146,7 +146,7 @@ fn planted_faults_are_seen() {
     });
 }
 
-/// A Gaussian window, cut where it is 2e-16.
+/// Returns a Gaussian window, truncated where it is 2e-16.
 fn gaussian_window(a: f64, b: f64) -> Window {
     let profile = |width| Profile::Gaussian {
         width,
@@ -165,7 +165,7 @@ fn discs_and_points_agree_with_closed_forms() {
     let round = chain_of(spot(disc([0.0; 2], radius), 0.0), [(distance, None)]);
     let point = chain_of(Light::Point { intensity: 1.0 }, [(distance, None)]);
     let closed_disc = |k| disc_light(radius, distance, &gaussian, k);
-    // Constant in slope: without the root.
+    // Constant in slope, without the root.
     let closed_point = |[x, y, u, v]: [f64; 4]| {
         let along = |k| point_light(distance, &gaussian, k);
         along([x, u]) * along([y, v])
@@ -179,14 +179,14 @@ fn discs_and_points_agree_with_closed_forms() {
     }
 }
 
-/// Without the root of its √(1 + u² + v²) a point 2 m away is 2 % too dark under Gaussians of
-/// widths 1 and ½.
+/// Without the factor √(1 + u² + v²), a point 2 m away is 2 % too dark under Gaussians of widths 1
+/// and ½.
 #[test]
 fn the_root_of_a_point_is_two_per_cent() {
     let window = gaussian_window(1.0, 0.5);
     let chain = chain_of(POINT, [(2.0, None)]);
     let [with, without] = [0.5, 0.0].map(|power| at_power(&chain, &window, power, [0.0; 4]).re);
     assert!((with / without - 1.02).abs() < 2e-3, "{}", with / without); // to the digits stated
-    // Without the root it is a Gaussian integral: I/(D²/a² + 1/b²).
+    // Without the root the result is a Gaussian integral: I/(D²/a² + 1/b²).
     assert!((without * 8.0 / 1.3 - 1.0).abs() < 1e-14, "{without}"); // the cut is at 2e-16
 }

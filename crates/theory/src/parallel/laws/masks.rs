@@ -1,4 +1,4 @@
-//! Half-planes and gratings: what the phase of a spectrum and its places say.
+//! Tests of half-planes and gratings: the phases of spectra and the frequencies of their content.
 
 use super::{FREQUENCIES, hann, zero};
 use crate::testing::*;
@@ -26,7 +26,7 @@ fn two_half_planes_let_nothing_through_together() {
         assert!((sum - value(&open())).norm() < 1e-14 * zero(&open())); // rounding
         assert!(value(&both).norm() < 1e-12 * zero(&open())); // rounding of four products
     }
-    // Moduli alone do not know it: at the frequency of the shear they miss each other by far.
+    // The moduli alone do not add up: at the frequency of the shear they are far off.
     let k = [2.0, 0.0, -3.4, 0.0];
     let value = |chain: &Chain| at(chain, &hann(), k).norm();
     let blind = value(&alone[0]) + value(&alone[1]) - value(&open());
@@ -44,7 +44,7 @@ fn two_half_planes_in_one_mask_leave_a_slit() {
         shapes: vec![],
         half_planes: half_planes.to_vec(),
     };
-    // The same from blockers that are large enough.
+    // The same result from blockers that are large enough.
     let blocks = rectangles(&[-50.1, 50.15].map(|y| square([0.0, y], 100.0)));
     let behind = |mask| {
         chain_of(
@@ -59,8 +59,8 @@ fn two_half_planes_in_one_mask_leave_a_slit() {
     }
 }
 
-/// ½ ℓ̂(Ωx, Ωu) + m/4 (e^(ip) ℓ̂(Ωx − f, Ωu + h f) + e^(−ip) ℓ̂(Ωx + f, Ωu − h f)), h being the
-/// distance since.
+/// ½ ℓ̂(Ωx, Ωu) + m/4 (e^(ip) ℓ̂(Ωx − f, Ωu + h f) + e^(−ip) ℓ̂(Ωx + f, Ωu − h f)), where h is the
+/// distance since the grating.
 #[test]
 fn a_grating_is_three_copies() {
     let (f, phase, modulation, h) = (3.0, 0.4, 0.9, 0.7);
@@ -76,16 +76,16 @@ fn a_grating_is_three_copies() {
         };
         let sum = copy(0.0) * 0.5 + (copy(1.0) + copy(-1.0)) * (0.25 * modulation);
         let difference = sum - at(&seen, &hann(), [x, y, u, v]);
-        // Discs taken apart for different frequencies.
+        // Discs are split differently for different frequencies.
         assert!(difference.norm() < 1e-9 * zero(&open));
     }
 }
 
-/// Content at (0, f Δh), outside the wedge between the lines of the two depths: each grating alone
-/// has nothing there.
+/// Content appears at (0, f Δh), outside the wedge between the lines of the two depths, where
+/// neither grating alone has any.
 #[test]
 fn two_gratings_leave_the_wedge() {
-    // On a zero of the transform of the window, whose half-widths are 0.5 and 0.3.
+    // At a zero of the transform of the window, whose half-widths are 0.5 and 0.3.
     let (f, between) = (5.0, 1.0);
     let mask = || Some(grating(0, f, 0.0));
     let wide = || lambertian(square([0.0, 0.0], 8.0));
@@ -93,8 +93,8 @@ fn two_gratings_leave_the_wedge() {
     let k = [0.0, 0.0, f * between, 0.0];
     let value = |chain: &Chain| at(chain, &hann(), k).norm() / zero(chain);
     let both = value(&seen(mask(), mask()));
-    // (m/4)² of (½)² from the difference of the two frequencies; half of it is the edge of the
-    // window.
+    // (m/4)² relative to (½)², from the difference of the two frequencies; half of it is the edge
+    // of the window.
     assert!(
         (both / (0.9_f64.powi(2) / 4.0) - 1.0).abs() < 0.05,
         "{both}"
@@ -127,13 +127,13 @@ fn travels_add_up_with_gratings_and_points() {
         ];
         for k in FREQUENCIES {
             let difference = at(&whole, &hann(), k) - at(&parts, &hann(), k);
-            // The same polygons, distances are exact.
+            // The polygons are the same and the distances are exact.
             assert!(difference.norm() < 1e-15 * zero(&whole));
         }
     }
 }
 
-/// A grating of phase p moved by x₀ is one of phase p − 2π f x₀.
+/// A grating of phase p displaced by x₀ equals one of phase p − 2π f x₀.
 #[test]
 fn a_phase_is_a_place() {
     let behind = |phase, x: f64| {
@@ -149,7 +149,7 @@ fn a_phase_is_a_place() {
         let value = |chain: &Chain| at(chain, &hann(), k);
         let scale = zero(&chain(0.3, &[(1.0, vec![])]));
         assert!((value(&full_turn) - value(&none)).norm() < 1e-14 * scale); // rounding of the phase
-        // The two add up to a grey filter.
+        // The two add up to a neutral filter.
         let sum = value(&half_turn) + value(&none);
         let open = value(&chain(0.3, &[(1.0, vec![])]));
         assert!((sum - open).norm() < 1e-14 * scale); // rounding

@@ -1,4 +1,4 @@
-//! Diffuse reflection against the polygons.
+//! Tests of diffuse reflection against the polygons.
 
 use crate::testing::*;
 use crate::{Chain, Operator, at};
@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 const ALBEDO: f64 = 0.6;
 
-/// Onto a floor 1.8 m away, under its cosine.
+/// Builds a chain onto a floor 1.8 m away, with its cosine.
 fn onto_floor(light: Light, mask: Option<Mask>) -> Chain {
     let mut chain = chain_of(light, [(1.0, mask), (0.8, None)]);
     chain.operators.push(cosine());
@@ -26,8 +26,8 @@ fn with_slopes(half: f64, profile: fn(f64) -> Profile) -> Window {
     window(Profile::Hann(0.5), profile(half))
 }
 
-/// What leaves the floor is albedo/π times the integral of what arrives over all slopes, mirrored
-/// in x, times the slope window: two ways to the same numbers.
+/// The light that leaves the floor is albedo/π times the integral of the incident light over all
+/// slopes, mirrored in x, times the slope window: two ways to compute the same numbers.
 #[test]
 fn exitant_radiance_is_what_arrives() {
     let light = lambertian(square([0.05, -0.02], 0.3));
@@ -49,14 +49,14 @@ fn exitant_radiance_is_what_arrives() {
             .chain(none)
         {
             let hann = |k: f64| {
-                // The transform of cos²(πt/2h): a known pair, h sinc(2hk)/(1 − (2hk)²).
+                // The transform of cos²(πt/2h), a known pair: h sinc(2hk)/(1 − (2hk)²).
                 let s = 0.6 * k;
                 0.3 * crate::numerics::sinc::sinc(s) / (1.0 - s * s)
             };
             let expected =
                 at(&arriving, &all, [-x, y, 0.0, 0.0]) * (ALBEDO / PI * hann(u) * hann(v));
             let error = (at(&leaving, &seen, [x, y, u, v]) - expected).norm() / largest;
-            // The receiver's rule of second order, some 400 nodes.
+            // The error of the receiver's rule of second order with about 400 nodes.
             assert!(error < 1e-5, "{error:e}");
         }
     }

@@ -1,25 +1,25 @@
-//! What is integrated over the slopes that arrive at a point: (1 + u² + v²)^(−p) times gratings.
+//! The integrand over the slopes that arrive at a point: (1 + u² + v²)^(−p) times gratings.
 
 use crate::barrier::Bounds;
 use crate::numerics::quadrature::gauss_legendre;
 use etendue_field::Grating;
 use std::f64::consts::TAU;
 
-/// −ln of the relative error of a rule: 10⁻¹².
+/// −ln of the relative error of a rule, which is 10⁻¹².
 const NATS: f64 = 28.0;
 /// The most nodes a rule has; longer intervals are cut into panels.
 const MAX_NODES: usize = 48;
-/// Nodes on an arc, beside those its length needs: for the turn of its direction.
+/// Nodes on an arc in addition to those its length needs, for the turn of its direction.
 const ARC: usize = 10;
-/// Halvings of the longest panel that have a count of their own.
+/// Number of halvings of the longest panel with a precomputed number of nodes.
 const LEVELS: usize = 24;
 /// Steps of a closed form.
 const CLOSED: f64 = 100.0;
-/// A rectangle that needs no more nodes than this is integrated by them: in the closed form its
-/// corners cancel.
+/// The most nodes for which a rectangle is integrated numerically: in the closed form the corners
+/// of so small a rectangle cancel.
 const FEW_NODES: usize = 16;
 
-/// The lobe (1 + u² + v²)^(−p), u and v being slopes.
+/// The lobe (1 + u² + v²)^(−p), where u and v are slopes.
 #[derive(Clone, Copy, Debug)]
 enum SlopePower {
     /// p = 0.
@@ -46,7 +46,7 @@ impl SlopePower {
         }
     }
 
-    /// At a slope with 1 + u² + v² = `secant_squared`.
+    /// Returns the value at a slope with 1 + u² + v² = `secant_squared`.
     fn value(&self, secant_squared: f64) -> f64 {
         match *self {
             Self::Flat => 1.0,
@@ -57,10 +57,10 @@ impl SlopePower {
     }
 }
 
-/// How many nodes a length of slopes needs.
+/// The number of nodes that a length of slopes needs.
 #[derive(Debug)]
 struct NodeCounts {
-    /// The longest panel; that of level k is 2^k times as short.
+    /// The longest panel; a panel of level k is 2^k times shorter.
     longest: f64,
     levels: [usize; LEVELS],
 }
@@ -78,7 +78,7 @@ impl NodeCounts {
         }
     }
 
-    /// Panels, and nodes in each, for an interval of that length.
+    /// Returns the number of panels, and of nodes in each, for an interval of that length.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -94,13 +94,13 @@ impl NodeCounts {
     }
 }
 
-/// Nodes that integrate (1 + u² + v²)^(−p) e^(2πifu) over an interval of u to the error
-/// e^(−[`NATS`]).
+/// Returns the number of nodes that integrate (1 + u² + v²)^(−p) e^(2πifu) over an interval of u to
+/// the error e^(−[`NATS`]).
 ///
-/// The rule errs by ρ^(−2n) times the largest value on the ellipse around the interval that reaches
-/// b into the imaginary direction, ln ρ = arsinh(2b/length) (Trefethen 2013, *Approximation Theory
-/// and Approximation Practice*, Theorem 19.3); b < 1 keeps away from the poles, and the best of
-/// some b is taken.
+/// The error of the rule is ρ^(−2n) times the largest value on the ellipse around the interval that
+/// extends by b in the imaginary direction, ln ρ = arsinh(2b/length) (Trefethen 2013,
+/// *Approximation Theory and Approximation Practice*, Theorem 19.3). b < 1 avoids the poles, and
+/// the best of several b is taken.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -117,19 +117,19 @@ fn nodes(power: f64, frequency: f64, length: f64) -> usize {
     counts.fold(f64::INFINITY, f64::min).ceil() as usize
 }
 
-/// The lobe, and rules that integrate it and the gratings in front of it.
+/// The lobe, and rules that integrate it with the gratings in front of it.
 #[derive(Debug)]
 pub(crate) struct Integrator {
     lobe: SlopePower,
-    /// For u and for v.
+    /// Node counts for u and for v.
     counts: [NodeCounts; 2],
     /// Gauss rules on (−1, 1), by their number of nodes.
     rules: Vec<Vec<(f64, f64)>>,
 }
 
 impl Integrator {
-    /// For (1 + u² + v²)^(−`power`) behind gratings whose frequencies, in cycles per slope along u
-    /// and along v, add up to `frequencies`.
+    /// Builds rules for (1 + u² + v²)^(−`power`) behind gratings whose frequencies, in cycles per
+    /// slope along u and along v, add up to `frequencies`.
     pub(crate) fn new(power: f64, frequencies: [f64; 2]) -> Self {
         Self {
             lobe: SlopePower::new(power),
@@ -139,22 +139,22 @@ impl Integrator {
     }
 }
 
-/// The lobe times the gratings seen from one point.
+/// The lobe times the gratings as seen from one point.
 #[derive(Debug)]
 pub(crate) struct ReceiverDensity<'a> {
     pub(crate) integrator: &'a Integrator,
-    /// Gratings as functions of the slope: frequencies in cycles per slope, phases of this point.
+    /// Gratings as functions of the slope: frequencies in cycles per slope, phases at this point.
     pub(crate) gratings: Vec<Grating>,
 }
 
 impl ReceiverDensity<'_> {
-    /// At one slope.
+    /// Returns the value at one slope.
     pub(crate) fn value(&self, u: f64, v: f64) -> f64 {
         let gratings = self.gratings.iter().map(|g| g.transmittance(u, v));
         self.integrator.lobe.value(1.0 + u * u + v * v) * gratings.product::<f64>()
     }
 
-    /// The integral over a rectangle; its sign turns where an interval is turned.
+    /// Returns the integral over a rectangle; reversing an interval changes the sign.
     pub(crate) fn rectangle(&self, sides: Bounds) -> f64 {
         let [u, v] = sides;
         if self.gratings.is_empty() {
@@ -172,7 +172,7 @@ impl ReceiverDensity<'_> {
         columns.sum()
     }
 
-    /// ∫ du from `from` to `to` at v.
+    /// Returns ∫ du from `from` to `to` at v.
     pub(crate) fn along_u(&self, [from, to]: [f64; 2], v: f64) -> f64 {
         if self.gratings.is_empty() {
             match self.integrator.lobe {
@@ -187,15 +187,15 @@ impl ReceiverDensity<'_> {
         along * across.map(|g| g.transmittance(0.0, v)).product::<f64>()
     }
 
-    /// Parts, and the rule on (−1, 1) of each, for an arc of that length and at most a quarter
-    /// turn.
+    /// Returns the number of parts, and the rule on (−1, 1) of each, for an arc of that length and
+    /// at most a quarter turn.
     pub(crate) fn arc(&self, length: f64) -> (usize, &[(f64, f64)]) {
         let [u, v] = self.integrator.counts.each_ref().map(|c| c.of(length));
         let [panels, nodes] = [0, 1].map(|k| u[k].max(v[k]));
         (panels, &self.integrator.rules[nodes + ARC])
     }
 
-    /// Steps of [`Self::rectangle`].
+    /// Returns the number of steps of [`Self::rectangle`].
     pub(crate) fn steps(&self, sides: Bounds) -> f64 {
         let [u, v] = self.along(sides);
         let few = u * v <= FEW_NODES as f64;
@@ -206,7 +206,7 @@ impl ReceiverDensity<'_> {
         }
     }
 
-    /// Steps of [`Self::along_u`] over a length.
+    /// Returns the number of steps of [`Self::along_u`] over a length.
     pub(crate) fn steps_along_u(&self, length: f64) -> f64 {
         match self.integrator.lobe {
             SlopePower::Flat | SlopePower::Cosine if self.gratings.is_empty() => CLOSED,
@@ -214,7 +214,7 @@ impl ReceiverDensity<'_> {
         }
     }
 
-    /// Steps for the lobe at a node.
+    /// Returns the number of steps for the lobe at a node.
     fn step(&self) -> f64 {
         match self.integrator.lobe {
             SlopePower::Flat | SlopePower::Cosine => 3.0,
@@ -223,7 +223,7 @@ impl ReceiverDensity<'_> {
         }
     }
 
-    /// Nodes along the sides of a rectangle.
+    /// Returns the number of nodes along each side of a rectangle.
     fn along(&self, sides: Bounds) -> [f64; 2] {
         [0, 1].map(|axis| {
             let [low, high] = sides[axis];
@@ -232,7 +232,7 @@ impl ReceiverDensity<'_> {
         })
     }
 
-    /// Nodes of a rectangle.
+    /// Returns the number of nodes of a rectangle.
     fn size(&self, sides: Bounds) -> usize {
         let along = [0, 1].map(|axis| {
             let [low, high] = sides[axis];
@@ -241,7 +241,7 @@ impl ReceiverDensity<'_> {
         along.as_flattened().iter().product()
     }
 
-    /// Slopes along an axis and their weights, the gratings of this axis included.
+    /// Returns slopes along an axis with their weights, which include the gratings of this axis.
     fn nodes(&self, axis: usize, [low, high]: [f64; 2]) -> impl Iterator<Item = (f64, f64)> {
         let [panels, nodes] = self.integrator.counts[axis].of(high - low);
         let rule = &self.integrator.rules[nodes];
@@ -258,7 +258,7 @@ impl ReceiverDensity<'_> {
     }
 }
 
-/// ∫∫ (1 + u² + v²)⁻² du dv over a rectangle (docs/theory.md (15)).
+/// Returns ∫∫ (1 + u² + v²)⁻² du dv over a rectangle (docs/theory.md (15)).
 fn cosine([[u0, u1], [v0, v1]]: Bounds) -> f64 {
     let corner = |u: f64, v: f64| {
         let side = |u: f64, v: f64| {
@@ -270,7 +270,7 @@ fn cosine([[u0, u1], [v0, v1]]: Bounds) -> f64 {
     (corner(u1, v1) - corner(u0, v1)) - (corner(u1, v0) - corner(u0, v0))
 }
 
-/// ∫ (1 + u² + v²)⁻² du from 0 to u.
+/// Returns ∫ (1 + u² + v²)⁻² du from 0 to u.
 fn cosine_along_u(u: f64, v: f64) -> f64 {
     let c2 = 1.0 + v * v;
     let c = c2.sqrt();
@@ -289,7 +289,7 @@ mod tests {
         }
     }
 
-    /// The same integral by many panels of many nodes.
+    /// Computes the same integral by many panels of many nodes.
     fn brute(density: &ReceiverDensity<'_>, [u, v]: Bounds) -> f64 {
         let cut = |[low, high]: [f64; 2], i: u32| {
             let step = (high - low) / 20.0;
@@ -342,7 +342,7 @@ mod tests {
             };
             for sides in [[[-0.2, 0.25], [-0.1, 0.3]], [[0.3, 0.8], [0.2, 0.21]]] {
                 let error = density.rectangle(sides) / brute(&density, sides) - 1.0;
-                // As promised at NATS.
+                // The accuracy stated at NATS.
                 assert!(error.abs() < 3e-12, "{frequency} {sides:?} {error:e}");
             }
         }

@@ -8,62 +8,65 @@ use ndarray::{Array1, Array2};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Fewest and most nodes along an axis of the receiver.
+/// The fewest and the most nodes along an axis of the receiver.
 const NODES: [f64; 2] = [96.0, 1024.0];
-/// Fewest nodes of a plain sum, which other sums are held against.
+/// The fewest nodes of a plain sum, which is the reference for other sums.
 const OF_PLAIN_SUMS: usize = 384;
-/// Nodes for each cycle across the receiver: two, and as many again for what shines there.
+/// Number of nodes for each cycle across the receiver: two, and two more for the incident light.
 const PER_CYCLE: f64 = 4.0;
-/// Nodes across the narrowest penumbra or period on the receiver.
+/// Number of nodes across the narrowest penumbra or period on the receiver.
 const ACROSS: f64 = 8.0;
-/// Fewest nodes across what is resolved.
+/// The fewest nodes across a feature that counts as resolved.
 const MIN_NODES: f64 = 4.0;
-/// How the error falls with the spacing of the nodes: irradiance has kinks where penumbras begin
+/// The order of the error in the spacing of the nodes: irradiance has kinks where penumbras begin
 /// and end.
 const ORDER: i32 = 2;
-/// Places in a cell of a projection along each axis, at least.
+/// The fewest sample positions in a cell of a projection along each axis.
 const PLACES: usize = 4;
 
-/// Radiance that leaves the receiver, times the area of a node. Reflection turns the frame
-/// round: x' = −x, y' = y, as D' = −D and X' = −X.
+/// Radiance that leaves the receiver, times the area of a node. Reflection turns the frame round:
+/// x' = −x, y' = y, since D' = −D and X' = −X.
 pub(super) struct ExitantTable {
     axes: [KernelAxis; 2],
-    /// x' and y' of the nodes: the middles of equal cells.
+    /// x' and y' of the nodes: the centres of equal cells.
     coordinates: [Vec<f64>; 2],
     /// [x', y'].
     values: Array2<f64>,
 }
 
 impl Receiver<'_> {
-    /// The slices of the spectrum of the reflected light, after its travel, under a window.
+    /// Returns the slices of the spectrum of the reflected light, after its travel, under a window.
     ///
-    /// Midpoint rule of second order over the receiver,
-    /// [`quadrature_error`](Self::quadrature_error) says how good; exact in slopes. Rows are
-    /// computed in parallel, each by one thread: the same for any number of threads. Unit: W m⁻²
+    /// Uses a midpoint rule of second order over the receiver, whose error
+    /// [`quadrature_error`](Self::quadrature_error) returns; exact in slopes. Rows are computed in
+    /// parallel, each by one thread: the result is the same for any number of threads. Unit: W m⁻²
     /// sr⁻¹ · m².
     pub(crate) fn slices(&self, window: &Window, grid: &SliceGrid) -> Slices {
         self.slices_with(self.nodes(window, grid.rho.max()), window, grid)
     }
 
-    /// The same with so many nodes along each axis.
+    /// Returns the slices with a given number of nodes along each axis.
     pub(crate) fn slices_with(&self, nodes: usize, window: &Window, grid: &SliceGrid) -> Slices {
         self.table(window, nodes).slices(grid)
     }
 
-    /// The spectrum at one frequency (Ωx, Ωy, Ωu, Ωv): a plain sum over no fewer nodes.
+    /// Returns the spectrum at one frequency (Ωx, Ωy, Ωu, Ωv): a plain sum over at least as many
+    /// nodes.
     pub(crate) fn at(&self, window: &Window, frequency: [f64; 4]) -> Complex {
         let highest = libm::hypot(frequency[0], frequency[1]);
         let nodes = self.nodes(window, highest).max(OF_PLAIN_SUMS);
         self.table(window, nodes).at(frequency)
     }
 
-    /// ∫∫ ℓ' W dy dv as means over cells of (x, u), by the midpoint rule. Unit: W m⁻² sr⁻¹ · m.
+    /// Returns ∫∫ ℓ' W dy dv as means over cells of (x, u), by the midpoint rule. Unit: W m⁻² sr⁻¹
+    /// · m.
     pub(crate) fn projection(&self, window: &Window, grid: &ProjectionGrid) -> Projection {
         self.table(window, self.nodes(window, 0.0)).projection(grid)
     }
 
-    /// Relative L2 error of slices: what half as many nodes along each axis change, over 2² − 1
-    /// since the error is of second order in their spacing. `None` if the slices are zero.
+    /// Returns the relative L2 error of slices: their change with half as many nodes along each
+    /// axis, divided by 2² − 1 since the error is of second order in the spacing. `None` if the
+    /// slices are zero.
     pub(crate) fn quadrature_error(
         &self,
         window: &Window,
@@ -78,8 +81,8 @@ impl Receiver<'_> {
         error.is_finite().then_some(error)
     }
 
-    /// Nodes along each axis: enough for the narrowest penumbra or period, and for frequencies up
-    /// to the highest. Even, so that they can be halved.
+    /// Returns the number of nodes along each axis: enough for the narrowest penumbra or period,
+    /// and for the highest frequency. It is even, to allow halving.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -92,20 +95,19 @@ impl Receiver<'_> {
         2 * (0.5 * nodes.min(most)).ceil() as usize
     }
 
-    /// Metres of the receiver that are seen through a window.
+    /// Returns the width of the receiver that is seen through a window, in metres.
     fn side(&self, window: &Window) -> f64 {
         let [x, y] = axes(window, self.after).map(|axis| 2.0 * axis.reach());
         x.max(y)
     }
 
-    /// Whether nodes tell apart all that shines on the receiver: finer patterns would be aliased,
-    /// and the error that coarser nodes tell would be as well.
+    /// Checks whether the nodes resolve the pattern of light on the receiver: finer patterns would
+    /// be aliased, and the error estimate from coarser nodes would be unreliable.
     pub(crate) fn is_resolved(&self, window: &Window) -> bool {
         let cell = self.side(window) / NODES[1];
         self.barriers.iter().all(|barrier| {
             let beyond = self.distance - barrier.distance;
-            // Lengths in a mask's plane are this much longer on the receiver, for a point of the
-            // light.
+            // Magnification from a mask's plane onto the receiver, for a point of the light.
             let grown = self.distance / beyond;
             let is_told = |length: f64| length * grown > MIN_NODES * cell;
             let penumbra = self.width() * barrier.distance / beyond;
@@ -118,7 +120,7 @@ impl Receiver<'_> {
         })
     }
 
-    /// The width of the light.
+    /// Returns the width of the light.
     fn width(&self) -> f64 {
         match self.light.shape {
             Some(Shape::Rectangle(r)) => r.size[0].min(r.size[1]),
@@ -127,8 +129,8 @@ impl Receiver<'_> {
         }
     }
 
-    /// The shortest length over which the irradiance changes: a penumbra, or the period of a
-    /// grating.
+    /// Returns the shortest length over which the irradiance changes: a penumbra, or the period of
+    /// a grating.
     fn finest(&self) -> f64 {
         let width = self.width();
         let lengths = self.barriers.iter().map(|barrier| {
@@ -141,7 +143,8 @@ impl Receiver<'_> {
         lengths.fold(self.distance, f64::min)
     }
 
-    /// Radiance on `nodes` × `nodes` nodes over what is seen through a window.
+    /// Returns the radiance on `nodes` × `nodes` nodes over the part of the receiver seen through a
+    /// window.
     pub(super) fn table(&self, window: &Window, nodes: usize) -> ExitantTable {
         let axes = axes(window, self.after);
         let size = axes.map(|axis| 2.0 * axis.reach() / nodes as f64);
@@ -200,7 +203,7 @@ impl ExitantTable {
         slices
     }
 
-    /// One frequency (Ωx, Ωy, Ωu, Ωv), node by node.
+    /// Returns the value at one frequency (Ωx, Ωy, Ωu, Ωv), node by node.
     pub(super) fn at(&self, [x, y, u, v]: [f64; 4]) -> Complex {
         let kernel = |k: usize, frequency| {
             let (axis, coordinates) = (&self.axes[k], &self.coordinates[k]);
@@ -211,7 +214,7 @@ impl ExitantTable {
         values.map(|((i, j), e)| along_x[i] * along_y[j] * e).sum()
     }
 
-    /// A row where nothing travels: radiance does not know the slope, and the spectrum is a
+    /// Returns a row without travel: radiance does not depend on the slope, and the spectrum is a
     /// product.
     fn at_receiver(&self, frequencies: &[FrequencyRow; 2]) -> Vec<Complex> {
         let wave = |k: usize| -> Vec<Complex> {
@@ -232,7 +235,7 @@ impl ExitantTable {
             .collect()
     }
 
-    /// A row after travel: Σ K(x') E(x', y') K(y').
+    /// Returns a row after travel: Σ K(x') E(x', y') K(y').
     fn travelled(&self, frequencies: &[FrequencyRow; 2]) -> Vec<Complex> {
         let kernels = |k: usize| self.axes[k].along(&self.coordinates[k], &frequencies[k]);
         let [x, y]: [Kernels; 2] = [kernels(0), kernels(1)];
@@ -275,12 +278,12 @@ impl ExitantTable {
         }
     }
 
-    /// Radiance integrated over y and v, for each x'.
+    /// Returns the radiance integrated over y and v, for each x'.
     fn across(&self) -> Vec<f64> {
         let axis = &self.axes[1];
         let kernel = axis.at(&self.coordinates[1], [0.0; 2]).into_iter();
         let kernel: Array1<f64> = kernel.map(|k| k.re).collect();
-        // The table holds the area of a node; along x it is a value.
+        // The table includes the area of a node; along x a value is needed.
         let spacing = 2.0 * self.axes[0].reach() / self.coordinates[0].len() as f64;
         (self.values.dot(&kernel) / spacing).to_vec()
     }
@@ -295,8 +298,8 @@ fn places(nodes: f64) -> usize {
     nodes.ceil() as usize
 }
 
-/// The straight line between the two values next to a place, in units of their spacing from the
-/// middle.
+/// Interpolates linearly between the two values next to a position, given in units of their spacing
+/// from the middle.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

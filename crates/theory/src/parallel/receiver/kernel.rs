@@ -1,4 +1,5 @@
-//! How light from one coordinate of the receiver adds to the spectrum of a window farther on.
+//! The contribution of light from one coordinate of the receiver to the spectrum of a window
+//! farther on.
 
 use crate::numerics::quadrature::gauss_legendre;
 use crate::parallel::row::{ComplexRow, FrequencyRow, add_scaled};
@@ -6,7 +7,7 @@ use etendue_field::{Complex, Profile, cis};
 use ndarray::{Array2, aview1};
 use std::f64::consts::TAU;
 
-/// One axis: a window in position and slope, `after` metres past the receiver.
+/// One axis of a window in position and slope, `after` metres past the receiver.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct KernelAxis {
     pub(crate) position: Profile,
@@ -22,13 +23,13 @@ pub(crate) struct Kernels {
 }
 
 impl KernelAxis {
-    /// The farthest coordinate of the receiver that is seen through the window.
+    /// Returns the farthest coordinate of the receiver that is seen through the window.
     pub(crate) fn reach(&self) -> f64 {
         self.position.half_width() + self.after * self.slope.half_width()
     }
 
-    /// K(t) = ∫ W(t + a u) W(u) e^(−2πi(ω (t + a u) + ν u)) du at some coordinates t and one
-    /// frequency (docs/theory.md (19)).
+    /// Returns K(t) = ∫ W(t + a u) W(u) e^(−2πi(ω (t + a u) + ν u)) du at some coordinates t and
+    /// one frequency (docs/theory.md (19)).
     pub(crate) fn at(&self, coordinates: &[f64], [omega, nu]: [f64; 2]) -> Vec<Complex> {
         let rule = self.rule([omega, nu]);
         let wave = |x: f64, u: f64| cis(-TAU * (omega * x + nu * u));
@@ -36,7 +37,7 @@ impl KernelAxis {
         coordinates.iter().map(kernel).collect()
     }
 
-    /// The same for all ν of a row.
+    /// Returns K at some coordinates for all ν of a row.
     pub(crate) fn along(&self, coordinates: &[f64], row: &FrequencyRow) -> Kernels {
         let rule = self.rule([row.position, row.step * row.half as f64]);
         let mut re = Array2::zeros((row.count(), coordinates.len()));
@@ -60,8 +61,8 @@ impl KernelAxis {
         sum
     }
 
-    /// The spectrum of the profile in slopes, from its cosines: what K factors into where nothing
-    /// travels.
+    /// Returns the spectrum of the profile in slopes, from its cosines: the factor of K if there is
+    /// no travel.
     pub(crate) fn slope_spectrum(&self, nu: f64) -> f64 {
         let half = self.slope.half_width();
         let wave = |frequency: f64| crate::numerics::sinc::sinc(2.0 * half * frequency);
@@ -71,8 +72,8 @@ impl KernelAxis {
             .sum()
     }
 
-    /// Slopes inside the window from the coordinate t of the receiver; an empty interval if there
-    /// are none.
+    /// Returns the slopes inside the window from the coordinate t of the receiver; an empty
+    /// interval if there are none.
     fn slopes(&self, t: f64) -> [f64; 2] {
         let (h, k) = (self.position.half_width(), self.slope.half_width());
         if self.after <= 0.0 {
@@ -83,7 +84,7 @@ impl KernelAxis {
         [low, high.min(k).max(low)]
     }
 
-    /// Rays from t through the window: weight, position and slope of each node.
+    /// Returns rays from t through the window: weight, position and slope of each node.
     fn rays(&self, t: f64, rule: &[(f64, f64)]) -> impl Iterator<Item = (f64, f64, f64)> {
         let [low, high] = self.slopes(t);
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
@@ -95,7 +96,7 @@ impl KernelAxis {
         })
     }
 
-    /// A Gauss rule on (−1, 1) with nodes enough for a frequency.
+    /// Returns a Gauss rule on (−1, 1) with enough nodes for a frequency.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -105,14 +106,15 @@ impl KernelAxis {
         gauss_legendre(self.nodes(frequency) as usize)
     }
 
-    /// Nodes of the rule for a frequency: those of the waves, and some for 10⁻¹⁴.
+    /// Returns the number of nodes of the rule for a frequency: those for the waves, and some for
+    /// an accuracy of 10⁻¹⁴.
     pub(super) fn nodes(&self, frequency: [f64; 2]) -> f64 {
         let waves = 2.0 * self.slope.half_width() * self.fastest(frequency);
-        // A node per half radian, π/2 per wave, is where Gauss rules begin to converge.
+        // Gauss rules begin to converge at one node per half radian, π/2 per wave.
         (16.0 + 1.7 * waves).ceil()
     }
 
-    /// The highest frequency along u of the exponential and of the window.
+    /// Returns the highest frequency along u of the exponential and of the window.
     fn fastest(&self, [omega, nu]: [f64; 2]) -> f64 {
         let fastest = |profile: &Profile| {
             let terms = profile.cosine_terms();

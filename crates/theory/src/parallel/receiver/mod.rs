@@ -2,9 +2,9 @@
 //! leaves it.
 //!
 //! A light, masks in planes across the central ray, and the receiver are parallel. A ray that
-//! arrives at (x, y) with slopes (u, v) was at (x − h u, y − h v) a distance h before, so that
-//! whatever stands upstream is seen from a point as the same shape, smaller. The irradiance E(x, y)
-//! = ∫ L(u, v) (1 + u² + v²)⁻² du dv is a sum over light and blockers so seen, with signs, of
+//! arrives at (x, y) with slopes (u, v) was at (x − h u, y − h v) a distance h before. So every
+//! shape upstream is seen from a point as the same shape, smaller. The irradiance E(x, y) = ∫ L(u,
+//! v) (1 + u² + v²)⁻² du dv is a signed sum over the light and blockers seen in this way, of
 //! integrals over rectangles and discs (docs/theory.md, section 4b).
 
 mod density;
@@ -23,22 +23,23 @@ use etendue_field::{Disc, Grating, Rectangle, Shape};
 use region::ReceiverRegion;
 use std::f64::consts::{PI, TAU};
 
-/// A Lambertian receiver, what shines on it, and how far its light then travels.
+/// A Lambertian receiver, the light and masks before it, and the distance that light travels after
+/// it.
 #[derive(Debug)]
 pub(crate) struct Receiver<'a> {
     light: ParallelEmitter,
     barriers: Vec<Barrier<'a>>,
-    /// From the light to the receiver.
+    /// Distance from the light to the receiver.
     distance: f64,
-    /// What the light's radiance is integrated with.
+    /// The integrator of the light's radiance.
     integrator: Integrator,
-    /// How far reflected light travels to where it is looked at.
+    /// Distance that reflected light travels to the plane where it is observed.
     after: f64,
     albedo: f64,
 }
 
-/// How slopes tell positions upstream: position = origin + b · slope at a distance h before the
-/// receiver.
+/// The relation between slopes and positions upstream: position = origin + b · slope at a distance
+/// h before the receiver.
 #[derive(Clone, Copy, Debug)]
 enum SlopeProjection {
     /// Rays that arrive at a point of the receiver: b = −h.
@@ -55,7 +56,7 @@ impl SlopeProjection {
         }
     }
 
-    /// Change of position per slope.
+    /// Returns the change of position per slope.
     fn scale(&self, before: f64) -> f64 {
         match *self {
             Self::At(_) => -before,
@@ -63,7 +64,7 @@ impl SlopeProjection {
         }
     }
 
-    /// Bounds in a plane, as slopes.
+    /// Converts bounds in a plane to slopes.
     fn slopes(&self, sides: Bounds, before: f64) -> Bounds {
         let (origin, scale) = (self.origin(), self.scale(before));
         [0, 1].map(|k| {
@@ -72,7 +73,7 @@ impl SlopeProjection {
         })
     }
 
-    /// Bounds in slopes, as positions in a plane.
+    /// Converts bounds in slopes to positions in a plane.
     fn positions(&self, sides: Bounds, before: f64) -> Bounds {
         let (origin, scale) = (self.origin(), self.scale(before));
         [0, 1].map(|k| {
@@ -81,7 +82,7 @@ impl SlopeProjection {
         })
     }
 
-    /// A shape in a plane, as slopes.
+    /// Converts a shape in a plane to slopes.
     fn seen(&self, shape: &Shape, before: f64) -> Shape {
         let (origin, scale) = (self.origin(), self.scale(before));
         let at = |center: [f64; 2]| [0, 1].map(|k| (center[k] - origin[k]) / scale);
@@ -97,7 +98,7 @@ impl SlopeProjection {
         }
     }
 
-    /// A grating in a plane, as a function of slopes.
+    /// Converts a grating in a plane to a function of slopes.
     fn grating(&self, grating: &Grating, before: f64) -> Grating {
         let phase = TAU * grating.frequency * self.origin()[grating.axis];
         Grating {
@@ -109,11 +110,11 @@ impl SlopeProjection {
 }
 
 impl<'a> Receiver<'a> {
-    /// A receiver of an albedo `distance` from the light, `layers` between them, whose light
-    /// travels `after` more; metres.
+    /// Builds a receiver with an albedo, `distance` from the light with `layers` between them,
+    /// whose reflected light travels `after`; metres.
     ///
-    /// With `cosine` off, radiance is added up over slopes without (1 + u² + v²)⁻²: wrong on
-    /// purpose.
+    /// Without `cosine`, radiance is integrated over slopes without (1 + u² + v²)⁻², which is
+    /// deliberately wrong.
     pub(crate) fn new(
         light: ParallelEmitter,
         layers: &[MaskLayer<'a>],
@@ -125,7 +126,7 @@ impl<'a> Receiver<'a> {
         let shading = if cosine { 2.0 } else { 0.0 };
         let bundle = match light.shape {
             Some(_) => SlopeProjection::At([0.0; 2]),
-            // Its radiance has δ(x − D u) δ(y − D v).
+            // The radiance of a point has δ(x − D u) δ(y − D v).
             None => SlopeProjection::From(distance),
         };
         let barriers: Vec<_> = layers
@@ -150,9 +151,10 @@ impl<'a> Receiver<'a> {
         }
     }
 
-    /// Irradiance at a point of the receiver, in the frame of the light that arrives, W m⁻².
+    /// Returns the irradiance at a point of the receiver, in the frame of the arriving light, W
+    /// m⁻².
     ///
-    /// To 10⁻¹² of the irradiance without blockers.
+    /// Accurate to 10⁻¹² of the irradiance without blockers.
     pub(crate) fn irradiance(&self, x: f64, y: f64) -> f64 {
         let brightness = self.light.brightness;
         if let Some(shape) = &self.light.shape {
@@ -170,9 +172,9 @@ impl<'a> Receiver<'a> {
         through.product::<f64>() * brightness * lobe / self.distance.powi(2)
     }
 
-    /// Mean irradiance over a rectangle of the receiver around a point, if the light is a point;
-    /// else the irradiance at the middle. Shadows of a point light end abruptly, and a value in the
-    /// middle of a cell would say nothing of the rest.
+    /// Returns the mean irradiance over a rectangle of the receiver around a point if the light is
+    /// a point; otherwise the irradiance at the centre. Shadows of a point light have sharp edges,
+    /// so a value at the centre of a cell would not represent the cell.
     fn cell(&self, center: [f64; 2], size: [f64; 2]) -> f64 {
         if self.light.shape.is_some() {
             return self.irradiance(center[0], center[1]);
@@ -185,7 +187,7 @@ impl<'a> Receiver<'a> {
         self.light.brightness * self.received(&bundle, region) / sides.area()
     }
 
-    /// The integral over those slopes of a region that no blocker stops.
+    /// Returns the integral over those slopes of a region that no blocker stops.
     fn received(&self, bundle: &SlopeProjection, region: ReceiverRegion) -> f64 {
         self.passed(
             bundle,
@@ -195,8 +197,8 @@ impl<'a> Receiver<'a> {
         )
     }
 
-    /// The light of a region that passes barriers, one after the other: all, less what each shape
-    /// stops.
+    /// Returns the light of a region that passes barriers, one after the other: all of it, minus
+    /// the light that each shape stops.
     fn passed(
         &self,
         bundle: &SlopeProjection,
@@ -221,7 +223,7 @@ impl<'a> Receiver<'a> {
         self.passed(bundle, open, rest, density) - stopped
     }
 
-    /// What is integrated over slopes behind the gratings of some barriers.
+    /// Returns the integrand over slopes behind the gratings of some barriers.
     fn density(&self, bundle: &SlopeProjection, barriers: &[Barrier<'_>]) -> ReceiverDensity<'_> {
         let gratings = barriers
             .iter()
@@ -232,8 +234,8 @@ impl<'a> Receiver<'a> {
         }
     }
 
-    /// Radiance that leaves the receiver, the same in all directions: albedo / π · E (the paper's
-    /// Eq. 6, whose ρ is the BRDF, albedo / π).
+    /// Returns the radiance that leaves the receiver, the same in all directions: albedo / π · E
+    /// (the paper's Eq. 6, whose ρ is the BRDF, albedo / π).
     fn exitance(&self) -> f64 {
         self.albedo / PI
     }

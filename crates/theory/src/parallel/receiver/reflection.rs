@@ -1,13 +1,14 @@
-//! Light that a diffuse receiver reflects.
+//! Light that a diffuse receiver reflects, at the end of a chain.
 
 use crate::parallel::chain::ChainSegment;
 use crate::parallel::receiver::Receiver;
 
 impl<'a> ChainSegment<'a> {
-    /// The diffuse surface at the end of the path, if there is one, and what shines on it.
+    /// Returns the diffuse surface at the end of the path, if there is one, with the light and
+    /// masks before it.
     ///
     /// # Panics
-    /// When there is more than one factor G.
+    /// If there is more than one factor G.
     pub(crate) fn receiver(&self) -> Option<Receiver<'a>> {
         let reflection = self.reflection?;
         assert!(self.cosines < 2, "a receiver has one cosine");

@@ -1,23 +1,23 @@
-//! Sets of slopes: a rectangle and discs, intersected.
+//! Sets of slopes: intersections of a rectangle and discs.
 
 use super::density::ReceiverDensity;
 use crate::barrier::Bounds;
 use etendue_field::{Disc, Shape};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// Discs that differ by less than this share of their radius are one.
+/// Discs that differ by less than this share of their radius are treated as equal.
 const SAME_RADIUS: f64 = 1e-12;
 
 /// The intersection of a rectangle and discs, in slopes.
 #[derive(Clone, Debug)]
 pub(crate) struct ReceiverRegion {
-    /// The rectangle; its sides may be infinite where there are discs.
+    /// The rectangle; its sides may be infinite if there are discs.
     sides: Bounds,
     discs: Vec<Disc>,
 }
 
 impl ReceiverRegion {
-    /// A rectangle.
+    /// Returns the region of a rectangle.
     pub(crate) fn rectangle(sides: Bounds) -> Self {
         Self {
             sides,
@@ -25,7 +25,7 @@ impl ReceiverRegion {
         }
     }
 
-    /// A shape.
+    /// Returns the region of a shape.
     pub(crate) fn shape(shape: &Shape) -> Self {
         match *shape {
             Shape::Rectangle(r) => Self::rectangle([r.extent(0), r.extent(1)]),
@@ -36,7 +36,7 @@ impl ReceiverRegion {
         }
     }
 
-    /// The smallest rectangle known to hold it.
+    /// Returns the smallest rectangle known to contain the region.
     pub(crate) fn bounds(&self) -> Bounds {
         let discs = self.discs.iter().map(|disc| {
             let bounds = Shape::Disc(*disc).bounds();
@@ -45,7 +45,7 @@ impl ReceiverRegion {
         discs.fold(self.sides, common)
     }
 
-    /// What it has in common with a rectangle; `None` if nothing.
+    /// Returns the intersection with a rectangle; `None` if it is empty.
     pub(crate) fn within(&self, sides: Bounds) -> Option<Self> {
         let region = Self {
             sides: common(self.sides, sides),
@@ -54,7 +54,7 @@ impl ReceiverRegion {
         region.simplified()
     }
 
-    /// What it has in common with a shape; `None` if nothing.
+    /// Returns the intersection with a shape; `None` if it is empty.
     pub(crate) fn cut(&self, shape: &Shape) -> Option<Self> {
         match *shape {
             Shape::Rectangle(r) => self.within([r.extent(0), r.extent(1)]),
@@ -66,8 +66,8 @@ impl ReceiverRegion {
         }
     }
 
-    /// Without the discs that hold the rectangle or another disc; `None` if two of its parts do not
-    /// meet.
+    /// Removes discs that contain the rectangle or another disc; returns `None` if two of the parts
+    /// do not overlap.
     fn simplified(mut self) -> Option<Self> {
         let [u, v] = self.sides;
         if u[0] >= u[1] || v[0] >= v[1] {
@@ -92,11 +92,11 @@ impl ReceiverRegion {
         Some(self)
     }
 
-    /// The integral of a density over it.
+    /// Returns the integral of a density over the region.
     ///
-    /// By Green's theorem that of A(u, v) = ∫ density du along its boundary over v: arcs of the
-    /// circles, on which everything is smooth, and upright edges of the rectangle (docs/theory.md,
-    /// Eq. 16).
+    /// By Green's theorem this is the integral of A(u, v) = ∫ density du along the boundary over v:
+    /// arcs of the circles, on which everything is smooth, and vertical edges of the rectangle
+    /// (docs/theory.md, Eq. 16).
     pub(crate) fn integral(&self, density: &ReceiverDensity<'_>) -> f64 {
         let Some(first) = self.discs.first() else {
             return density.rectangle(self.sides);
@@ -107,7 +107,7 @@ impl ReceiverRegion {
         arcs.sum::<f64>() + right - left
     }
 
-    /// Steps of [`Self::integral`], each circle being taken whole.
+    /// Returns the number of steps of [`Self::integral`], counting each circle as a whole.
     pub(crate) fn steps(&self, density: &ReceiverDensity<'_>) -> f64 {
         if self.discs.is_empty() {
             return density.steps(self.sides);
@@ -122,12 +122,13 @@ impl ReceiverRegion {
         nodes * density.steps_along_u(bounds[0][1] - bounds[0][0]) + edges
     }
 
-    /// ∫ A dv up the part of the line at u inside the discs and between the lower and upper side.
+    /// Returns ∫ A dv up the part of the line at u inside the discs and between the lower and upper
+    /// side.
     fn edge(&self, u: f64, from: f64, density: &ReceiverDensity<'_>) -> f64 {
         let chords = self.discs.iter().map(|disc| {
             let across = u - disc.center[0];
             let half = (disc.radius * disc.radius - across * across).sqrt();
-            // Not a number where the line passes the disc by: the comparison below is false.
+            // NaN if the line misses the disc: the comparison below is then false.
             [disc.center[1] - half, disc.center[1] + half]
         });
         let mut part = self.sides[1];
@@ -144,7 +145,7 @@ impl ReceiverRegion {
         }
     }
 
-    /// ∫ A dv along the arcs of circle `i` that bound the region.
+    /// Returns ∫ A dv along the arcs of circle `i` that bound the region.
     fn arcs(&self, i: usize, from: f64, density: &ReceiverDensity<'_>) -> f64 {
         let disc = self.discs[i];
         let ends = self.crossings(i);
@@ -160,7 +161,8 @@ impl ReceiverRegion {
         inside.map(|arc| along(&disc, arc, from, density)).sum()
     }
 
-    /// Angles, ascending, where circle `i` may enter or leave the rest; one at least.
+    /// Returns the angles, ascending, at which circle `i` may enter or leave the rest of the
+    /// region; at least one.
     fn crossings(&self, i: usize) -> Vec<f64> {
         let disc = &self.discs[i];
         let mut angles = vec![0.0];
@@ -179,7 +181,7 @@ impl ReceiverRegion {
             let middle = libm::atan2(dv, du);
             angles.extend([middle - half, middle + half]);
         }
-        // Not a number where they do not cross.
+        // NaN if they do not cross.
         angles.retain(|a| a.is_finite());
         angles.iter_mut().for_each(|a| *a = a.rem_euclid(TAU));
         angles.sort_by(f64::total_cmp);
@@ -187,7 +189,7 @@ impl ReceiverRegion {
     }
 }
 
-/// ∫ A dv along an arc of a circle, A being zero at u = `from`.
+/// Returns ∫ A dv along an arc of a circle, where A is zero at u = `from`.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -211,7 +213,7 @@ fn along(disc: &Disc, [start, end]: [f64; 2], from: f64, density: &ReceiverDensi
         .sum()
 }
 
-/// The point of a circle at an angle.
+/// Returns the point of a circle at an angle.
 fn on(disc: &Disc, angle: f64) -> [f64; 2] {
     let (sin, cos) = libm::sincos(angle);
     [
@@ -228,7 +230,7 @@ fn common(a: Bounds, b: Bounds) -> Bounds {
     [0, 1].map(|k| [a[k][0].max(b[k][0]), a[k][1].min(b[k][1])])
 }
 
-/// Distances of a point from the nearest and the farthest point of a rectangle.
+/// Returns the distances of a point from the nearest and the farthest point of a rectangle.
 fn distances(sides: Bounds, point: [f64; 2]) -> [f64; 2] {
     let along = [0, 1].map(|k| {
         let [below, above] = [sides[k][0] - point[k], point[k] - sides[k][1]];
@@ -237,7 +239,7 @@ fn distances(sides: Bounds, point: [f64; 2]) -> [f64; 2] {
     [0, 1].map(|end| libm::hypot(along[0][end], along[1][end]))
 }
 
-/// Whether one disc holds another, or is the same.
+/// Checks whether one disc contains or equals another.
 fn holds(large: &Disc, small: &Disc) -> bool {
     distance(large, small) + small.radius <= large.radius * (1.0 + SAME_RADIUS)
 }

@@ -1,4 +1,4 @@
-//! What the light that leaves a receiver takes to predict, counted at some places of it.
+//! Estimates of the work to predict the light that leaves a receiver, counted at some points of it.
 
 use super::density::ReceiverDensity;
 use super::kernel::KernelAxis;
@@ -8,18 +8,18 @@ use crate::barrier::Barrier;
 use crate::work::PredictionWork;
 use etendue_field::{ProjectionGrid, Rectangle, SliceGrid, Window};
 
-/// Places along each axis at which steps are counted.
+/// Number of points along each axis at which steps are counted.
 const SOME: usize = 4;
-/// Steps at a place that are counted: with more than these, a table of the fewest nodes is beyond
-/// all limits.
+/// The most steps counted at a point: with more, even a table of the fewest nodes exceeds all
+/// limits.
 const MAX_STEPS: f64 = 1e8;
-/// Steps for a shape that is looked at, and for one that stops light.
+/// Steps for a shape that is tested, and for one that blocks light.
 const SHAPE: f64 = 100.0;
 /// Steps of a sum over one node at one frequency.
 const SUM: f64 = 0.6;
 
 impl Receiver<'_> {
-    /// Slices, their error, `derivatives` and a picture.
+    /// Estimates the work of slices, their error, `derivatives` and a picture.
     pub(crate) fn work(
         &self,
         window: &Window,
@@ -31,7 +31,7 @@ impl Receiver<'_> {
         let axes = exitant::axes(window, self.after);
         let place = self.mean_steps(&axes, nodes);
         let places = (nodes * nodes) as f64;
-        // The error is told by a table with half as many nodes along each axis.
+        // The error estimate uses a table with half as many nodes along each axis.
         let tables = 2.25 + derivatives;
         let irradiance = PredictionWork {
             steps: tables * places * place,
@@ -52,7 +52,7 @@ impl Receiver<'_> {
             .then(picture)
     }
 
-    /// Steps for the irradiance at a place, in the mean over some.
+    /// Returns the steps for the irradiance at a point, averaged over some points.
     fn mean_steps(&self, axes: &[KernelAxis; 2], nodes: usize) -> f64 {
         let size = axes.map(|axis| 2.0 * axis.reach() / nodes as f64);
         let at = |k: usize, i: usize| {
@@ -64,7 +64,7 @@ impl Receiver<'_> {
         steps.sum::<f64>() / (SOME * SOME) as f64
     }
 
-    /// Steps of [`Self::cell`].
+    /// Returns the number of steps of [`Self::cell`].
     fn steps(&self, center: [f64; 2], size: [f64; 2]) -> f64 {
         let (bundle, region) = match &self.light.shape {
             Some(shape) => {
@@ -87,7 +87,7 @@ impl Receiver<'_> {
         steps
     }
 
-    /// Adds the steps of [`Self::passed`], up to [`MAX_STEPS`].
+    /// Adds the number of steps of [`Self::passed`], up to [`MAX_STEPS`].
     fn count(
         &self,
         bundle: &SlopeProjection,
@@ -119,7 +119,7 @@ impl Receiver<'_> {
     }
 }
 
-/// From a table to slices.
+/// Returns the work from a table to slices.
 fn sums(axes: &[KernelAxis; 2], nodes: f64, grid: &SliceGrid) -> PredictionWork {
     let [azimuths, rows, count] = grid.half_shape().map(|n| n as f64);
     let highest = [grid.rho.max(), grid.nu.max()];
@@ -129,7 +129,7 @@ fn sums(axes: &[KernelAxis; 2], nodes: f64, grid: &SliceGrid) -> PredictionWork 
     } else {
         [0.0; 2]
     };
-    // A rule of many nodes is found anew for each row, by recurrences as long.
+    // A rule of many nodes is computed again for each row, by recurrences of that length.
     let kernels = rule.map(|n| nodes * n * (2.0 * count + 40.0) + 10.0 * n * n);
     let row = if travels {
         kernels[0] + kernels[1] + 2.0 * SUM * nodes * nodes * count

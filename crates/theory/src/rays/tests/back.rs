@@ -1,10 +1,10 @@
-//! Rays followed back come from where rays go, with the density of that.
+//! Tests of backward rays: they invert forward rays, and their density is correct.
 
 use super::super::backward::Back;
 use super::*;
 use crate::geometry::{AffineMap, from_fn};
 
-/// An area light, and surfaces that light meets aslant.
+/// Builds an area light, and surfaces at oblique incidence.
 fn bent(surfaces: &[(&str, Specular, f64, [f64; 3])]) -> SpecularSystem {
     let light = Light::Area {
         shape: Shape::Rectangle(Rectangle {
@@ -38,7 +38,8 @@ const GLASS: (&str, Specular, f64, [f64; 3]) = (
 const MIRROR: (&str, Specular, f64, [f64; 3]) =
     ("mirror", Specular::Mirror, 0.4, [-0.2, -0.3, -0.1]);
 
-/// Forward again rays land where they were drawn, and |∂z/∂ray| is that of differences.
+/// Checks that rays followed forward land where they were sampled, and that |∂z/∂ray| agrees with
+/// finite differences.
 fn come_back(system: &SpecularSystem, plane: &Plane) {
     let back = Back::new(system, plane);
     for z in [
@@ -61,7 +62,7 @@ fn come_back(system: &SpecularSystem, plane: &Plane) {
             (beside(column, 1.0)[row] - beside(column, -1.0)[row]) / (2.0 * step)
         });
         let expected = AffineMap::<4>::linear(differences).det().abs();
-        // Differences are good to step² times third derivatives.
+        // Finite differences have an error of step² times third derivatives.
         assert!(
             (spread / expected - 1.0).abs() < 1e-7,
             "{plane:?}: {spread} {expected}"
@@ -69,7 +70,7 @@ fn come_back(system: &SpecularSystem, plane: &Plane) {
     }
 }
 
-/// Through glass aslant, a hollow mirror and a lens.
+/// Through oblique glass, a concave mirror and a lens.
 #[test]
 fn rays_come_back_to_where_they_were_drawn() {
     let lens = Specular::ThinLens { focal_length: 0.7 };

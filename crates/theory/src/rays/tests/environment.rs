@@ -1,4 +1,4 @@
-//! Light of an environment: on surfaces, past masks, and behind mirrors and glass.
+//! Tests of light from an environment: on surfaces, past masks, and behind mirrors and glass.
 
 use super::super::draw::{RaySampler, RayStrategy};
 use super::super::region::neighbourhood;
@@ -9,16 +9,18 @@ use etendue_field::{
 };
 use std::sync::Arc;
 
-/// What is asked of nets of two million rays, at four cycles along all coordinates of a window.
+/// The error allowed for nets of two million rays, at four cycles along all coordinates of a
+/// window.
 const OF_NETS: f64 = 5e-3;
-/// Points of a midpoint rule along each coordinate of a plane: the light falls to 10⁻⁴ within five.
+/// Points of a midpoint rule along each coordinate of a plane: the spectrum falls to 10⁻⁴ within
+/// five cycles.
 const NODES: u32 = 30;
 
 const WINDOW: [Profile; 2] = [Profile::Hann(0.3), Profile::Hann(0.7)];
 /// Radius of the sphere, metres.
 const RADIUS: f64 = 0.9;
 
-/// Two lobes, one beside the central ray, in axes that are turned about it.
+/// Two lobes, one off the central ray, in axes that are turned about it.
 fn lobes() -> Environment {
     let lobe = |from: DVec3, width, radiance| SphericalGaussian {
         from: from.normalize(),
@@ -35,7 +37,7 @@ fn lobes() -> Environment {
     }
 }
 
-/// The same light as a picture, almost.
+/// Approximately the same light as a picture.
 fn map() -> Environment {
     let Environment { frame, map } = lobes();
     let picture = LatLong::from_fn(256, 128, |from| map.radiance(from));
@@ -50,7 +52,7 @@ fn under(environment: &Environment, elements: Vec<SpecularSurface>) -> SpecularS
     system(Light::Environment { environment }, elements)
 }
 
-/// On a sphere a metre away whose normal is tilted by an angle, for light that arrives.
+/// A plane for arriving light on a sphere 1 m away whose normal is tilted by an angle.
 fn on_sphere(tilt: f64, orientation: Orientation, quantity: Quantity) -> Plane {
     let patch = placed(&Frame::IDENTITY, 1.0, tilt, [0.0; 2], [1.0 / RADIUS; 3]);
     let incidence = Incidence::new(&Frame::IDENTITY.travelled(1.0), patch.frame.d);
@@ -75,9 +77,9 @@ fn on_sphere(tilt: f64, orientation: Orientation, quantity: Quantity) -> Plane {
     }
 }
 
-/// What arrives on a sphere, from its definition: the normal is the place over the radius, and
-/// directions are counted from it. `sign` is −1 for the curvature of a hollow sphere, and `cosine`
-/// the power of the cosine.
+/// Light arriving on a sphere, from the definition: the normal is the position over the radius, and
+/// directions are counted from it. `sign` is −1 for the curvature of a concave sphere, and `cosine`
+/// is the power of the cosine.
 fn on_sphere_by_hand(environment: &Environment, plane: &Plane, sign: f64, z: [f64; 4]) -> f64 {
     let [x, y, u, v] = z;
     let [s, t] = if plane.patch.is_some() {
@@ -110,7 +112,7 @@ fn on_sphere_by_hand(environment: &Environment, plane: &Plane, sign: f64, z: [f6
     }
 }
 
-/// The windowed spectrum of a light field by a midpoint rule over the window.
+/// Computes the windowed spectrum of a light field by a midpoint rule over the window.
 fn by_rule(radiance: &dyn Fn([f64; 4]) -> f64, window: &Window, grid: &SliceGrid) -> Slices {
     let halves = [window.x, window.y, window.u, window.v].map(|p| p.half_width());
     let nodes: u32 = NODES.pow(4);
@@ -132,9 +134,9 @@ fn by_rule(radiance: &dyn Fn([f64; 4]) -> f64, window: &Window, grid: &SliceGrid
     sum.finish(1.0)
 }
 
-/// On a sphere, straight on and aslant, all that a plane may count, of lobes and of a picture; with
-/// the curvature of a hollow sphere, without the cosine, and turned the wrong way it is something
-/// else.
+/// Tests all quantities that a plane may record on a sphere, at normal and oblique incidence, for
+/// lobes and a picture; the curvature of a concave sphere, a missing cosine and a wrong turn each
+/// give a different result.
 #[test]
 fn the_sky_on_a_sphere() {
     let (window, grid) = (window(WINDOW[0], WINDOW[1]), grid(3, [0.3, 0.7]));
@@ -156,7 +158,7 @@ fn the_sky_on_a_sphere() {
         };
         let right = off(&plane, 1.0);
         let stated = found.error.unwrap();
-        // The stated error is a standard error; over hundreds of frequencies it is hardly exceeded.
+        // The stated error is a standard error; over hundreds of frequencies it is rarely exceeded.
         assert!(
             stated < OF_NETS && right < 1.5 * stated,
             "{orientation:?}: {right:e}, {:?}",
@@ -190,7 +192,7 @@ fn the_sky_on_a_sphere() {
     }
 }
 
-/// Past a grating, by slopes, and on a surface aslant to which light comes past it.
+/// Past a grating, by slopes, and on an oblique surface that light reaches past the grating.
 #[test]
 fn the_sky_past_a_grating() {
     let (window, grid) = (window(WINDOW[0], Profile::Hann(0.5)), grid(2, [0.3, 0.5]));
@@ -224,7 +226,7 @@ fn the_sky_past_a_grating() {
     }
 }
 
-/// A flat mirror turns directions round, and glass makes radiance n² times as large.
+/// A flat mirror reverses directions, and glass multiplies radiance by n².
 #[test]
 fn the_sky_behind_a_mirror_and_in_glass() {
     let (window, grid) = (window(WINDOW[0], Profile::Hann(0.5)), grid(2, [0.3, 0.5]));
@@ -274,7 +276,7 @@ fn the_sky_behind_a_mirror_and_in_glass() {
     }
 }
 
-/// However rays are drawn, they stand for the same light: their densities are those they have.
+/// All sampling strategies represent the same light, so their densities are correct.
 #[test]
 fn all_ways_to_draw_the_sky_agree() {
     let window = window(WINDOW[0], Profile::Hann(0.5));
@@ -286,7 +288,7 @@ fn all_ways_to_draw_the_sky_agree() {
     );
     let plain = under(&environment, vec![]);
     let local = on_sphere(0.4, Orientation::LocalNormals, Quantity::Radiance);
-    // A small sphere seen from the side: rays meet it in the window from behind, too.
+    // A small sphere seen from the side: some rays also meet it in the window from behind.
     let mut aside = on_sphere(0.9, Orientation::LocalNormals, Quantity::Radiance);
     if let Some(patch) = &mut aside.patch {
         patch.curvature = [2.5; 3];
@@ -318,14 +320,14 @@ fn all_ways_to_draw_the_sky_agree() {
         assert!(found.len() > 1, "{plane:?}");
         for other in &found[1..] {
             let off = other / found[0] - 1.0;
-            // Nets of 2¹⁸ rays, drawn in four coordinates.
+            // Nets of 2¹⁸ rays, sampled in four coordinates.
             assert!(off.abs() < 5e-3, "{found:?}");
         }
     }
 }
 
 /// The line of section 6.1 of Durand et al. 2005: on a curved surface light of an environment has
-/// its spectrum where Ωx = k Ωθ. A field of one direction is that line.
+/// its spectrum where Ωx = k Ωθ. The spectrum of light from one direction is exactly that line.
 #[test]
 fn curvature_shears_the_sky_onto_a_line() {
     let narrow = SphericalGaussian {
@@ -340,7 +342,7 @@ fn curvature_shears_the_sky_onto_a_line() {
     let (window, grid) = (window(WINDOW[0], WINDOW[1]), grid(1, [0.3, 0.7]));
     let plane = on_sphere(0.0, Orientation::LocalNormals, Quantity::Radiance);
     let found = exact(&under(&environment, vec![]), &plane, &window, &grid);
-    // Σ P ρ ν / Σ P ν² is k where all power is on the line; the window widens it along ρ alone.
+    // Σ P ρ ν / Σ P ν² is k if all power is on the line; the window widens it along ρ alone.
     let full = found.slices.full();
     let (mut cross, mut own) = (0.0, 0.0);
     for (m, rho) in grid.rho.values().into_iter().enumerate() {

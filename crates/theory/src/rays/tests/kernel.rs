@@ -1,4 +1,4 @@
-//! The sums over rays.
+//! Tests of the sums over rays.
 
 use super::*;
 use crate::nets::RayNode;
@@ -18,7 +18,7 @@ fn nodes(count: usize) -> Vec<RayNode> {
 
 #[test]
 fn plain_summation() {
-    // An odd number of rays, more than one block; more powers than between two fresh ones.
+    // An odd number of rays, larger than one block; more powers than between two recomputations.
     let nodes = nodes(777);
     let axis = |half, spacing| FrequencyAxis { half, spacing };
     let grid = SliceGrid {
@@ -35,7 +35,7 @@ fn plain_summation() {
             Complex::from_polar(node.weight, -TAU * phase)
         };
         let plain: Complex = nodes.iter().map(term).sum();
-        // 32 roundings of a factor, and those of phases up to 400.
+        // 32 roundings of a factor, and the rounding of phases up to 400.
         assert!((value - plain).norm() < 1e-12 * total, "{k} {m} {n}");
     }
 }

@@ -1,4 +1,4 @@
-//! Known answers.
+//! Tests against known answers.
 
 use super::*;
 use crate::numerics::quadrature::gauss_legendre;
@@ -6,12 +6,12 @@ use crate::testing::{chain_of, disc, lambertian, opaque, rectangles, spot, squar
 use etendue_field::{Grating, Mask, Shape};
 use std::f64::consts::{PI, TAU};
 
-/// What is asked of a midpoint rule: ten times the error at which it stops.
+/// The error allowed for a midpoint rule: ten times the error at which it stops.
 const GOOD: f64 = 1e-6;
-/// What is asked of nets of two million rays.
+/// The error allowed for nets of two million rays.
 const OF_NETS: f64 = 1.5e-3;
 
-/// Slices of a function of the frequency.
+/// Returns slices of a function of the frequency.
 fn slices_of(grid: &SliceGrid, value: impl Fn([f64; 4]) -> Complex) -> Slices {
     let mut slices = Slices::zeros(*grid);
     for ((k, m, n), to) in slices.half.indexed_iter_mut() {
@@ -20,9 +20,9 @@ fn slices_of(grid: &SliceGrid, value: impl Fn([f64; 4]) -> Complex) -> Slices {
     slices
 }
 
-/// The spectrum at distance d of a projector's field, as a Gauss rule over slopes sums it up: on x
-/// = d u, y = d v it is the image times √(1 + u² + v²), the point being farther away aside
-/// (docs/theory.md, section 2). Without that where not `exact`.
+/// Returns the spectrum at distance d of a projector's field, computed by a Gauss rule over slopes:
+/// on x = d u, y = d v it is the image times √(1 + u² + v²), because off-axis positions are farther
+/// from the point (docs/theory.md, section 2). Omits that factor if not `exact`.
 fn at_distance(d: f64, width: f64, window: &Window, grid: &SliceGrid, exact: bool) -> Slices {
     let most = (window.x.half_width() / d).min(window.u.half_width());
     // Up to 22 cycles take 70 nodes.
@@ -70,7 +70,7 @@ fn projector_over_a_distance() {
         let expected = at_distance(d, 0.3, &window, &grid, true);
         let off = got.slices.relative_difference(&expected);
         assert!(off < GOOD && got.error.unwrap() < GOOD, "{off:e}");
-        // The test sees that factor.
+        // The test detects that factor.
         let without = at_distance(d, 0.3, &window, &grid, false);
         let told = got.slices.relative_difference(&without);
         assert!(told > 10.0 * GOOD, "{told}");
@@ -79,7 +79,7 @@ fn projector_over_a_distance() {
 
 #[test]
 fn beam_over_a_distance() {
-    // A beam stays what it is: its spectrum is constant in Ωu, Ωv.
+    // A beam does not change: its spectrum is constant in Ωu, Ωv.
     let (width, cut) = (0.2, 0.7);
     let system = system(beam([width, 0.3]), vec![]);
     let window = window(Profile::Gaussian { width: 0.4, cut }, Profile::Hann(0.1));
@@ -90,7 +90,7 @@ fn beam_over_a_distance() {
     let expected = slices_of(&grid, |[x, y, ..]| {
         Complex::from(a * b * libm::exp(-PI * (a * a * x * x + b * b * y * y)))
     });
-    // The cut leaves exp(−π (0.49/0.16 + 0.49/0.09)) outside.
+    // The cut excludes exp(−π (0.49/0.16 + 0.49/0.09)).
     let off = got.slices.relative_difference(&expected);
     assert!(off < 1e-9, "{off:e}");
 }
@@ -124,7 +124,7 @@ fn area_lights_agree_with_polygons() {
         let off = got.slices.relative_difference(&expected);
         let said = got.error.unwrap();
         assert!(off < OF_NETS && off < 2.0 * said, "{off:e}, said {said:e}");
-        // A grating a centimetre farther is told apart.
+        // A grating one centimetre farther away is distinguished.
         system.layers = vec![(0.61, Mask::Grating(grating))];
         let moved = exact(&system, &after(&system, 1.5), &window, &grid);
         let told = moved.slices.relative_difference(&expected);
@@ -132,7 +132,7 @@ fn area_lights_agree_with_polygons() {
     }
 }
 
-/// The shadows of a rectangle and of a disc: edges, at which nets lose some of what they gain.
+/// Shadows of a rectangle and of a disc: edges reduce the advantage of nets.
 #[test]
 fn shadows_are_as_good_as_stated() {
     let square_light = Shape::Rectangle(square([0.0, 0.05], 0.2));
@@ -148,7 +148,7 @@ fn shadows_are_as_good_as_stated() {
     }
 }
 
-/// How far the shadow of a mask is from its closed form, and how far it is said to be.
+/// Returns the error of a mask's shadow relative to its closed form, and its estimated error.
 fn shadow(light: Light, mask: Mask) -> (f64, f64) {
     let window = window(Profile::Hann(0.3), Profile::Hann(0.3));
     let grid = grid(2, [0.3, 0.3]);
@@ -187,7 +187,7 @@ fn plane_mirror_is_a_travel() {
     );
     let straight = system(light, vec![]);
     let got = exact(&folded, &after(&folded, 0.5), &window, &grid);
-    // The frame turns over: x' = −x, so azimuths φ become π − φ and (ρ, ν) their negatives; y' = y.
+    // The frame flips: x' = −x, so azimuths φ become π − φ and (ρ, ν) their negatives; y' = y.
     let expected = exact(&straight, &after(&straight, 1.5), &window, &grid);
     let full = expected.slices.full();
     let mut turned = Slices::zeros(grid);
@@ -207,8 +207,8 @@ fn plane_mirror_is_a_travel() {
 
 #[test]
 fn lens_images_a_slide() {
-    // A slide: a Lambertian light of 1 cm² with a grating right at it, at a = 0.5 m from a lens of
-    // f = 0.3 m; its image is at b = 0.75 m.
+    // A slide: a Lambertian light of 1 cm² with a grating directly on it, at a = 0.5 m from a lens
+    // of f = 0.3 m; its image is at b = 0.75 m.
     let (a, f) = (0.5, 0.3);
     let b = 1.0 / (1.0 / f - 1.0 / a);
     let patch = placed(&Frame::IDENTITY, a, 0.0, [0.0; 2], [0.0; 3]);
@@ -231,9 +231,9 @@ fn lens_images_a_slide() {
         slices.half[[0, 1, 1]].norm() / slices.at_zero()
     };
     let sharp = contrast(b);
-    // m/2 = 0.45 of a grating where it is sharp; the window of a few of its periods leaves all of
-    // it but a few in a hundred.
+    // m/2 = 0.45 for a sharp grating; a window of a few of its periods preserves all but a few per
+    // cent of it.
     assert!((sharp - 0.45).abs() < 0.02, "{sharp}");
-    // 5 cm beside, slopes of ± 0.05 smear ± 2.5 mm, a third of a period of 7.5 mm.
+    // 5 cm out of focus, slopes of ± 0.05 blur by ± 2.5 mm, a third of a period of 7.5 mm.
     assert!(contrast(b + 0.05) < 0.9 * sharp);
 }

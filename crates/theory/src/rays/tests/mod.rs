@@ -1,4 +1,4 @@
-//! Rays through smooth surfaces against closed forms and first-order maps.
+//! Tests of rays through smooth surfaces against closed forms and first-order maps.
 
 use super::*;
 use crate::geometry::{Edition, SpectrumMap};
@@ -9,7 +9,7 @@ use etendue_field::{
 };
 use glam::DVec3;
 
-/// Two million nodes: errors are far below what these tests look for.
+/// Two million nodes: errors are far below the deviations that these tests detect.
 const BUDGET: RayBudget = RayBudget {
     nodes: 2e6,
     error: 1e-5,
@@ -46,12 +46,12 @@ mod order;
 mod read_off;
 mod surfaces;
 
-/// Windows as wide along both axes.
+/// Returns a window with equal widths along both axes.
 fn window(position: Profile, slope: Profile) -> Window {
     crate::testing::window(position, slope)
 }
 
-/// Frequencies up to four cycles over windows of half-widths `h`.
+/// Returns frequencies up to four cycles over windows of half-widths `h`.
 fn grid(azimuths: usize, h: [f64; 2]) -> SliceGrid {
     let axis = |h: f64| FrequencyAxis {
         half: 8,
@@ -93,7 +93,7 @@ fn element(name: &str, patch: Patch, event: Specular) -> SpecularSurface {
     }
 }
 
-/// The plane at the end of the last leg.
+/// Returns the plane at the end of the last leg.
 fn after(system: &SpecularSystem, distance: f64) -> Plane {
     let last = system
         .hits()
@@ -103,8 +103,8 @@ fn after(system: &SpecularSystem, distance: f64) -> Plane {
     Plane::orthogonal(last.travelled(distance))
 }
 
-/// A surface across a leg: its normal is −D turned by θ₀ within the plane at the angle `azimuth`
-/// about D, its principal axes by `twist` about it.
+/// Places a surface across a leg: its normal is −D turned by θ₀ within the plane at the angle
+/// `azimuth` about D, and its principal axes are turned by `twist` about the normal.
 fn placed(
     leg: &Frame,
     distance: f64,
@@ -135,7 +135,7 @@ fn system(light: Light, elements: Vec<SpecularSurface>) -> SpecularSystem {
     }
 }
 
-/// One mirror a metre from the light.
+/// A single mirror 1 m from the light.
 fn mirror(light: Light, theta0: f64, turns: [f64; 2], curvature: [f64; 3]) -> SpecularSystem {
     let patch = placed(&Frame::IDENTITY, 1.0, theta0, turns, curvature);
     system(light, vec![element("mirror", patch, Specular::Mirror)])

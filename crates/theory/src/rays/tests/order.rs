@@ -1,16 +1,16 @@
-//! How fast the first-order prediction comes closer to the exact one, as everything but the
+//! Tests of how fast the first-order prediction converges to the exact one as everything but the
 //! geometry shrinks.
 
 use super::*;
 
-/// ‖linear − exact‖/‖exact‖ at a size e: windows and light e times as wide, frequencies 1/e times
-/// as high.
+/// Returns ‖linear − exact‖/‖exact‖ at a size e: windows and light e times as wide, frequencies 1/e
+/// times as high.
 fn error(system: &SpecularSystem, plane: &Plane, widths: [f64; 2], e: f64, print: Edition) -> f64 {
     let window = window(Profile::Hann(widths[0] * e), Profile::Hann(widths[1] * e));
     let grid = grid(3, widths.map(|w| w * e));
     let system = system.shrunk(e);
     let right = exact(&system, plane, &window, &grid);
-    // Of nets most of it is in both.
+    // Most of the error of nets is common to both.
     assert!(right.error < Some(3e-3), "{:?}", right.error);
     assert!(right.slices.at_zero() > 0.0);
     let map = chain(&view(&system, plane), print).unwrap().map;
@@ -18,7 +18,7 @@ fn error(system: &SpecularSystem, plane: &Plane, widths: [f64; 2], e: f64, print
     first.slices.relative_difference(&right.slices)
 }
 
-/// The power of e with which it falls.
+/// Returns the power of e with which the error falls.
 fn order(system: &SpecularSystem, plane: &Plane, widths: [f64; 2]) -> f64 {
     let [wide, narrow] = [0.1, 0.05].map(|e| error(system, plane, widths, e, Edition::Corrected));
     assert!(wide < 0.5 && narrow > 0.0, "{wide} {narrow}");
@@ -32,7 +32,7 @@ fn oblique_mirrors_are_of_first_order_and_straight_ones_of_second() {
         for turns in [[0.0, 0.0], [0.6, 0.5]] {
             let oblique = mirror(projector([0.4, 0.3]), 0.7, turns, shape);
             let found = order(&oblique, &after(&oblique, 0.4), [0.6, 0.5]);
-            // The next power of e is a tenth.
+            // The term of the next power of e is a tenth.
             assert!((found - 1.0).abs() < 0.2, "{found} {shape:?}");
             let straight = mirror(projector([0.4, 0.3]), 0.0, turns, shape);
             let found = order(&straight, &after(&straight, 0.4), [0.6, 0.5]);

@@ -1,14 +1,14 @@
-//! The chain read off, against derivatives of the traced rays, and known foci.
+//! Tests of the chain derived from the geometry, against derivatives of traced rays and known foci.
 
 use super::*;
 use crate::rays::central::Incidence;
 
-/// Where a ray of the light lands.
+/// Returns the landing point of a ray of the light.
 fn lands(system: &SpecularSystem, plane: &Plane, ray: [f64; 4]) -> Option<[f64; 4]> {
     Some(plane.coordinates(&system.follow(ray)?)?.0)
 }
 
-/// ∂z'/∂z of the traced rays by central differences.
+/// Returns ∂z'/∂z of the traced rays by central differences.
 fn traced(system: &SpecularSystem, plane: &Plane) -> [[f64; 4]; 4] {
     const STEP: f64 = 1e-5;
     let mut rows = [[0.0; 4]; 4];
@@ -26,7 +26,8 @@ fn traced(system: &SpecularSystem, plane: &Plane) -> [[f64; 4]; 4] {
     rows
 }
 
-/// Largest difference between the chain's rays and the traced ones, the offset included.
+/// Returns the largest difference between the chain's rays and the traced ones, including the
+/// offset.
 fn off(system: &SpecularSystem, plane: &Plane, print: Edition) -> f64 {
     let first = chain(&view(system, plane), print).unwrap();
     let center = lands(system, plane, [0.0; 4]).unwrap();
@@ -37,15 +38,15 @@ fn off(system: &SpecularSystem, plane: &Plane, print: Edition) -> f64 {
     offsets.chain(entries).fold(0.0, f64::max)
 }
 
-/// Central differences of rays: a step of 10⁻⁵ squared, and rounding over it.
+/// Error of central differences of rays: a step of 10⁻⁵ squared, and rounding over the step.
 const CLOSE: f64 = 1e-8;
 
-/// A point with a narrow picture; only its geometry counts here.
+/// A point with a narrow picture; only its geometry matters here.
 fn light() -> Light {
     projector([0.1, 0.1])
 }
 
-/// The frame of leg `i`, at its start.
+/// Returns the frame of leg `i`, at its start.
 fn leg(system: &SpecularSystem) -> Frame {
     system
         .hits()
@@ -78,7 +79,7 @@ fn systems() -> Vec<SpecularSystem> {
                     light(),
                     vec![element("glass", patch, glass(1.0, 1.5))],
                 ));
-                // Into glass by its back, normal along the light.
+                // Light enters the glass from the back, with the normal along the light.
                 let flipped = Frame::new(patch.frame.origin, -patch.frame.d, patch.frame.x);
                 let patch = Patch {
                     frame: flipped.unwrap(),
@@ -91,7 +92,8 @@ fn systems() -> Vec<SpecularSystem> {
             }
         }
     }
-    // Two mirrors whose planes of incidence differ, then a lens that is met aside and askew.
+    // Two mirrors with different planes of incidence, then a lens that is met off-centre and
+    // obliquely.
     let first = mirror(light(), 0.5, [0.3, 0.2], [-0.5, 0.3, 0.0]);
     let patch = placed(&leg(&first), 0.7, -0.6, [1.2, 0.4], [0.4, 0.1, 0.0]);
     let second = with(first, "second", patch, Specular::Mirror);
@@ -102,7 +104,7 @@ fn systems() -> Vec<SpecularSystem> {
         let event = Specular::ThinLens { focal_length: 0.4 };
         all.push(with(second.clone(), "lens", patch, event));
     }
-    // A sphere met beside its vertex.
+    // A sphere met away from its vertex.
     let mut aside = mirror(light(), 0.3, [0.2, 0.0], [-0.7; 3]);
     let x = aside.elements[0].patch.frame.x;
     aside.elements[0].patch.frame.origin += x * 0.2;
@@ -118,7 +120,7 @@ fn chain_is_the_derivative_of_the_rays() {
         let mut plane = after(&system, 0.65);
         let off_by = off(&system, &plane, Edition::Corrected);
         assert!(off_by < CLOSE, "{off_by:e} {:?}", system.elements);
-        // A plane turned about the ray, its origin aside.
+        // A plane rotated about the ray, with its origin displaced.
         let x = plane.frame.x * 0.8 + plane.frame.y * 0.6;
         let origin = plane.frame.origin + x * 0.01;
         plane.frame = Frame::new(origin, plane.frame.d, x).unwrap();
@@ -129,7 +131,8 @@ fn chain_is_the_derivative_of_the_rays() {
 
 #[test]
 fn printed_chains_are_not() {
-    // Onto a surface none is right; behind a mirror curvature tells.
+    // None of the printed versions is correct onto a surface; behind a mirror, curvature reveals
+    // the difference.
     let system = mirror(light(), 0.7, [0.0, 0.0], [-0.5, -0.2, 0.0]);
     let plane = after(&system, 0.65);
     for print in [Edition::Equations, Edition::Table] {
@@ -137,7 +140,7 @@ fn printed_chains_are_not() {
     }
 }
 
-/// A plane on a surface that light meets or leaves: frame (T, B, N) turned about N.
+/// Builds a plane on a surface that light meets or leaves: frame (T, B, N) turned about N.
 fn on_surface(
     frame: Frame,
     orientation: Orientation,
@@ -218,7 +221,7 @@ fn foci_of_a_hollow_sphere() {
     for (got, expected) in first.foci.iter().zip(expected) {
         assert!((got - expected).abs() < 1e-12); // rounding
     }
-    // Rays a micrometre aside cross the central ray there, X being in the plane of incidence.
+    // Rays one micrometre away cross the central ray there; X is in the plane of incidence.
     for axis in 0..2 {
         let plane = after(&system, expected[axis]);
         let mut ray = [0.0; 4];
@@ -253,7 +256,7 @@ fn focus_of_a_ball_lens() {
         ],
     );
     let first = chain(&view(&ball, &after(&ball, 0.1)), Edition::Corrected).unwrap();
-    // The focal length n R/(2(n − 1)) counts from the centre (Hecht, Optics).
+    // The focal length n R/(2(n − 1)) is measured from the centre (Hecht, Optics).
     let expected = n * radius / (2.0 * (n - 1.0)) - radius;
     for focus in &first.foci {
         assert!((focus - expected).abs() < 1e-12, "{focus}"); // rounding
@@ -282,7 +285,8 @@ fn steps_read_like_a_figure() {
     );
 }
 
-/// What a run tests a chain by sees each number of its maps that is off by a hundred-thousandth.
+/// The check of chains that a run makes detects an error of a hundred-thousandth in any entry of a
+/// map.
 #[test]
 fn a_wrong_map_leaves_a_defect() {
     let window = window(Profile::Hann(0.02), Profile::Hann(0.02));
@@ -290,7 +294,8 @@ fn a_wrong_map_leaves_a_defect() {
         let view = view(&system, &after(&system, 0.5));
         let sound = chain(&view, Edition::Corrected).unwrap().map;
         let found = |map: &SpectrumMap<4>| defect(&view, map, &window).unwrap();
-        // Differences over steps of 10⁻⁵ leave 10⁻¹⁰ of a metre, here of two centimetres.
+        // Differences over steps of 10⁻⁵ leave an error of 10⁻¹⁰ m, here relative to two
+        // centimetres.
         assert!(found(&sound) < 1e-7, "{:e}", found(&sound));
         let mut wrong = sound;
         wrong.factor *= 1.0 + 1e-4;
@@ -310,7 +315,8 @@ fn a_wrong_map_leaves_a_defect() {
     }
 }
 
-/// Behind a mesh a plane lies across the path of its normals, and leans against that of its patch.
+/// Behind a mesh a plane is perpendicular to the path given by the mesh's normals, and tilted
+/// relative to that of its patch.
 #[test]
 fn a_plane_may_lean_against_the_leg() {
     for system in systems() {

@@ -1,10 +1,10 @@
-//! What else is read from rays: pictures, covariances, derivatives, and rays that are lost.
+//! Tests of other results from rays: pictures, covariances, derivatives, and rays that are lost.
 
 use super::*;
 
 #[test]
 fn covariance_of_a_gaussian_beam() {
-    // exp(−π x²/w²) has the variance w²/2π; no window narrows it.
+    // exp(−π x²/w²) has the variance w²/2π; the window does not narrow it.
     let w = 0.1;
     let oblique = mirror(beam([w, w]), 0.0, [0.0; 2], [-0.01; 3]);
     let plane = after(&oblique, 0.5);
@@ -22,7 +22,7 @@ fn covariance_of_a_gaussian_beam() {
     let expected = map.covariance(&before);
     for i in 0..16 {
         let off = (got[i / 4][i % 4] - expected[i / 4][i % 4]).abs();
-        // A mirror of 100 m bends it little: the order of (x/R)² of slopes 2x/R.
+        // A mirror of 100 m bends it slightly: of order (x/R)² of slopes 2x/R.
         assert!(off < 1e-5 * variance, "{i}: {off:e}");
     }
     assert!(got[0][2].abs() > 1e-4 * variance); // slopes follow positions
@@ -89,13 +89,13 @@ fn derivatives_by_every_parameter() {
         let other = view.with(parameter, value + 1e-4).unwrap();
         let read = other.value(parameter).unwrap();
         assert!((read - value - 1e-4).abs() < 1e-12, "{name}"); // rounding
-        // A forward difference with another step, of converged predictions.
+        // A forward difference with another step, from converged predictions.
         let moved = exact(&other.system, &other.plane, &window, &grid);
         let mut forward = moved.slices.clone();
         forward.half -= &prediction.slices.half;
         forward.half /= Complex::from(1e-4);
         let off = forward.relative_difference(slope);
-        // Half the second derivative times 10⁻⁴; what quadratures leave does not cancel.
+        // Half the second derivative times 10⁻⁴; quadrature errors do not cancel.
         assert!(off < 0.02, "{name}: {off}");
         assert!(
             slope
@@ -132,7 +132,7 @@ fn rays_are_lost() {
         assert_eq!(system.follow([0.0; 4]).is_some(), passes);
         assert_eq!(system.hits().is_some(), passes);
     }
-    // Behind the light.
+    // A surface behind the light.
     let patch = placed(&Frame::IDENTITY, -1.0, 0.0, [0.0; 2], [0.0; 3]);
     let behind = self::system(
         beam([0.1, 0.1]),

@@ -1,4 +1,4 @@
-//! Light that a BRDF scatters, against closed forms and quadrature.
+//! Tests of light scattered by a BRDF, against closed forms and quadrature.
 
 use super::*;
 use crate::RayBudget;
@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 const DISTANCE: f64 = 1.0;
 
-/// Two million nodes: errors are far below what these tests look for.
+/// Two million nodes: errors are far below the deviations that these tests detect.
 fn exact(system: &ScatteringSystem, plane: &Plane, window: &Window, grid: &SliceGrid) -> Predicted {
     by(
         system,
@@ -27,7 +27,7 @@ fn exact(system: &ScatteringSystem, plane: &Plane, window: &Window, grid: &Slice
     )
 }
 
-/// ‖first order − exact‖/‖exact‖.
+/// Returns ‖first order − exact‖/‖exact‖.
 fn linearised(
     system: &ScatteringSystem,
     plane: &Plane,
@@ -92,7 +92,7 @@ fn white(lobe: Lobe) -> Reflectance {
     Brdf::new(lobe, 0.7, Fresnel::White).into()
 }
 
-/// A surface a metre from the light, met at θ₀ in the plane of X.
+/// Builds a surface 1 m from the light, met at θ₀ in the plane of X.
 fn system(
     light: Light,
     theta0: f64,
@@ -114,7 +114,7 @@ fn system(
     }
 }
 
-/// Across the mirrored ray, some way along it.
+/// Returns a plane across the mirrored ray, at a distance along it.
 fn across(theta0: f64, after: f64) -> Plane {
     let n = DVec3::new(libm::sin(theta0), 0.0, -libm::cos(theta0));
     let reflected = |v: DVec3| v - 2.0 * v.dot(n) * n;
@@ -134,7 +134,7 @@ fn across(theta0: f64, after: f64) -> Plane {
     }
 }
 
-/// On the surface, light leaving.
+/// Returns a plane on the surface, for light leaving it.
 fn on(system: &ScatteringSystem, theta0: f64, orientation: Orientation) -> Plane {
     let t = DVec3::new(-libm::cos(theta0), 0.0, -libm::sin(theta0));
     let n = system.patch.frame.d;
@@ -204,18 +204,18 @@ fn flat_lambertian_surface_is_the_receiver() {
     let plane = across(0.0, 0.2);
     let found = exact(&system, &plane, &window, &grid);
     let apart = found.slices.relative_difference(&known);
-    // The error stated is the error made: over so many frequencies the two differ by little.
+    // The stated error matches the actual error: over so many frequencies the two differ little.
     let error = found.error.unwrap();
     let ratio = apart / error;
     assert!((0.6..1.6).contains(&ratio), "{apart:e} {error:e}");
     assert!(error < 6e-3, "{error:e}"); // of a million nodes
-    // Without the mask it is another field.
+    // Without the mask the field is different.
     system.layers.clear();
     let open = exact(&system, &plane, &window, &grid);
     assert!(open.slices.relative_difference(&known) > 0.05);
 }
 
-/// Maps read off by differences are the corrected operators of docs/theory.md, section 7.
+/// Maps derived by finite differences are the corrected operators of docs/theory.md, section 7.
 #[test]
 fn chain_is_the_product_of_operators() {
     for (theta0, k) in [
@@ -239,13 +239,13 @@ fn chain_is_the_product_of_operators() {
             let a = read.matrix.as_flattened().iter().chain(&read.offset);
             let b = put.matrix.as_flattened().iter().chain(&put.offset);
             let worst = a.zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            // Differences of 1e-16 over 1e-5.
+            // Rounding of 1e-16 over a step of 1e-5.
             assert!(worst < 1e-8, "{theta0} {k}: {worst:e}\n{read:?}\n{put:?}");
         }
     }
 }
 
-/// ‖first order − exact‖/‖exact‖ in neighbourhoods e times as wide.
+/// Returns ‖first order − exact‖/‖exact‖ in neighbourhoods e times as wide.
 fn errors(
     theta0: f64,
     k: f64,
@@ -273,7 +273,7 @@ fn errors(
         .to_vec()
 }
 
-/// Phong lobes as wide as the neighbourhood: 1/√n of the size.
+/// Returns a Phong lobe as wide as the neighbourhood: 1/√n of the size.
 fn phong(e: f64) -> Lobe {
     Lobe::Phong {
         exponent: 1.0 / (0.25 * e * e),
@@ -291,7 +291,7 @@ fn first_order_is_of_its_order() {
         let errors = errors(theta0, k, |e| white(phong(e)), orientation);
         let order = libm::log2(errors[1] / errors[2]);
         let due = if theta0 == 0.0 { 2.0 } else { 1.0 };
-        // Three sizes; what is beyond the first order left out is a quarter of it and less.
+        // Three sizes; terms beyond the first neglected order are at most a quarter of it.
         assert!(
             (order - due).abs() < 0.25,
             "{theta0} {orientation:?}: {order} {errors:?}"
@@ -300,7 +300,8 @@ fn first_order_is_of_its_order() {
     }
 }
 
-/// Two lobes with factors of both angles, and weights whose wave is as long as the neighbourhood.
+/// Two lobes with factors of both angles, and weights with a wavelength of the size of the
+/// neighbourhood.
 #[test]
 fn weighted_and_separable_brdfs_are_of_first_order() {
     let table = |values: [f64; 2]| {
@@ -335,8 +336,8 @@ fn weighted_and_separable_brdfs_are_of_first_order() {
     }
 }
 
-/// A lobe around the normal, a cosine left out, an exponent off by 5 %: each is a worse neighbour
-/// than first order.
+/// A lobe around the normal, a missing cosine and an exponent wrong by 5 % each increase the error
+/// beyond that of first order.
 #[test]
 fn wrong_operators_are_seen() {
     let theta0 = 0.6;
@@ -358,7 +359,7 @@ fn wrong_operators_are_seen() {
     };
     let least = error(&system, &sound);
     let mut turned = sound.clone();
-    // The central ray as if it came along the normal: no cosine, and no mirror direction.
+    // Treats the central ray as if it came along the normal: no cosine, and no mirror direction.
     turned.onto.offset[2] = 0.0;
     assert!(error(&system, &turned) > 5.0 * least);
     let mut sheared = sound;
@@ -376,9 +377,9 @@ fn wrong_operators_are_seen() {
     assert!(exact_error(&sharper) > 0.005);
 }
 
-/// ∫ L cos⁺ dω of a spherical Gaussian, at an angle γ from its middle: the product of spherical
-/// harmonics that is the convolution with the clamped cosine (Ramamoorthi and Hanrahan 2001; in 2D
-/// the paper's section 6.1).
+/// Returns ∫ L cos⁺ dω of a spherical Gaussian, at an angle γ from its centre: the product of
+/// spherical harmonics that is the convolution with the clamped cosine (Ramamoorthi and Hanrahan
+/// 2001; in 2D the paper's section 6.1).
 fn harmonic_irradiance(width: f64, gamma: f64) -> f64 {
     let squared = width * width;
     let legendre = |l: i32, x: f64| {
@@ -444,9 +445,9 @@ fn diffuse_sphere_under_an_environment_is_the_known_product() {
     for (map, most) in [
         // The error of a net of 2¹⁸ points.
         (EnvironmentMap::Lobes(vec![lobe]), 1e-5),
-        // Likewise, with kinks between pixels; they are 0.006 rad over widths of 0.25: (1/40)²/24.
+        // Likewise, with kinks between pixels, which are 0.006 rad over widths of 0.25: (1/40)²/24.
         (map([1024, 512]), 1e-4),
-        // Bilinear between centres, 0.03 rad apart: (1/8)²/12 of the lobe's curvature.
+        // Bilinear between pixel centres, 0.03 rad apart: (1/8)²/12 of the lobe's curvature.
         (map([200, 100]), 4e-4),
     ] {
         let system = under(map);
@@ -471,16 +472,16 @@ fn diffuse_sphere_under_an_environment_is_the_known_product() {
     }
     let system = under(EnvironmentMap::Lobes(vec![lobe]));
     let plane = on_it(&system);
-    // The same environment turned by the width of a pixel of 256 along is another light.
+    // The same environment rotated by one pixel of 256 gives a different result.
     assert!(
         (harmonic_irradiance(width, 0.3) / harmonic_irradiance(width, 0.3 + TAU / 256.0) - 1.0)
             > 1e-3
     );
-    // First order is exact but for the sphere.
+    // First order is exact except for the sphere.
     let window = window(Profile::Hann(0.1), Profile::Hann(0.4));
     let grid = grid([0.1, 0.4]);
     let chain = chain(&view(&system, &plane)).unwrap();
     let error = linearised(&system, &plane, &window, &grid, &chain);
-    // (k s)³ of 0.08³, and what tilts of both axes do to each other.
+    // (k s)³ of 0.08³, and the interaction of tilts about both axes.
     assert!(error < 3e-3, "{error}");
 }

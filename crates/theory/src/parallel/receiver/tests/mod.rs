@@ -1,4 +1,4 @@
-//! Lights, masks and windows for the checks of this module.
+//! Tests of the receiver, with the lights, masks and windows that they share.
 
 mod points;
 mod spectra;
@@ -50,7 +50,7 @@ impl TestReceiver {
         self.after(0.0)
     }
 
-    /// The receiver looked at that far on.
+    /// Returns the receiver, observed at the distance `after` from it.
     fn after(&self, after: f64) -> Receiver<'_> {
         Receiver::new(
             ParallelEmitter::new(&self.light),
@@ -62,8 +62,8 @@ impl TestReceiver {
         )
     }
 
-    /// The share of light that passes from a point (a, b) of the light to (x, y) of the receiver,
-    /// mask by mask.
+    /// Returns the share of light that passes all masks from a point (a, b) of the light to (x, y)
+    /// of the receiver.
     fn passes(&self, [a, b]: [f64; 2], [x, y]: [f64; 2]) -> f64 {
         let masks = self.masks.iter();
         masks
@@ -75,8 +75,8 @@ impl TestReceiver {
             .product()
     }
 
-    /// L cosⁿθ · cos²θ / r², what a square metre of the light at (a, b) adds to the irradiance at
-    /// (x, y).
+    /// Returns L cosⁿθ · cos²θ / r², the irradiance at (x, y) per square metre of the light at (a,
+    /// b).
     fn added(&self, at: [f64; 2], point: [f64; 2]) -> f64 {
         let Light::Area {
             shape,
@@ -96,8 +96,8 @@ impl TestReceiver {
     }
 }
 
-/// Benches with every kind of light and mask, off the centre so that nothing hides behind a
-/// symmetry.
+/// Returns scenes with every kind of light and mask, off-centre to avoid symmetries that could hide
+/// errors.
 fn benches() -> Vec<TestReceiver> {
     let slab = rectangle([0.13, -0.07], [0.5, 0.3]);
     let round = disc([-0.1, 0.12], 0.25);

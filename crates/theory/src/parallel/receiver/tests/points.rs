@@ -1,10 +1,10 @@
-//! Irradiance at points, against the literature and against plain sums over the light.
+//! Tests of irradiance at points, against the literature and against plain sums over the light.
 
 use super::spectra::cube;
 use super::*;
 use std::f64::consts::PI;
 
-/// As promised: relative to the irradiance without blockers.
+/// The stated accuracy, relative to the irradiance without blockers.
 const CLOSE: f64 = 1e-12;
 
 fn alone(light: Light, distance: f64) -> TestReceiver {
@@ -36,11 +36,10 @@ fn disc_seen_from_anywhere() {
             let (r2, h2) = ((radius / offset).powi(2), (distance / offset).powi(2));
             let z = 1.0 + h2 + r2;
             let root = (z * z - 4.0 * r2).sqrt();
-            // 1 − (z − 2R²)/√ without its cancellation, (√² − (z − 2R²)²) = 4R²(z − 1 − R²) =
-            // 4R²H².
+            // 1 − (z − 2R²)/√ without cancellation, (√² − (z − 2R²)²) = 4R²(z − 1 − R²) = 4R²H².
             let expected = 2.0 * r2 * h2 / (root * (root + z - 2.0 * r2));
             let got = receiver.irradiance(0.2, -0.1 + offset) / (1.7 * PI);
-            // The root loses digits below the edge of a large disc.
+            // The root loses digits next to the edge of a large disc.
             assert!(
                 (got / expected - 1.0).abs() < 1e-11,
                 "{radius} {offset}: {got} {expected}"
@@ -70,7 +69,7 @@ fn what_a_receiver_of_albedo_one_gives_off_is_what_it_receives() {
     let bench = alone(area(rectangle([0.0; 2], [0.3; 2]), 0.0), 1.0);
     let mut receiver = bench.receiver();
     receiver.albedo = 1.0;
-    // ∫ L G du dv over all slopes, by the irradiance under an endless sky of that radiance.
+    // ∫ L G du dv over all slopes, from the irradiance under an infinite sky of that radiance.
     let sky = Light::Area {
         shape: rectangle([0.0; 2], [2e6; 2]),
         radiance: receiver.exitance() * receiver.irradiance(0.1, 0.2),
@@ -83,7 +82,8 @@ fn what_a_receiver_of_albedo_one_gives_off_is_what_it_receives() {
 #[test]
 fn benches_against_sums_over_the_light() {
     const POINTS: u32 = 1_000_000;
-    // Spreads more evenly than a grid, on which upright edges err all at once.
+    // A quasi-random set instead of a grid, on which all vertical edges would cause an error at
+    // once.
     let spread: Vec<_> = cube(POINTS).map(|[s, t, ..]| [s, t]).collect();
     for (number, bench) in benches().iter().enumerate() {
         let receiver = bench.receiver();
@@ -128,7 +128,7 @@ fn tiles_that_fill_the_plane_leave_nothing() {
 
 #[test]
 fn two_discs_meet_in_a_lens() {
-    // Without the cosine the integral is an area; a lens is two segments.
+    // Without the cosine the integral is an area; a lens is the sum of two segments.
     let light = area(disc([0.0, 0.0], 0.5), 0.0);
     let segment = |r: f64, x: f64| r * r * libm::acos(x / r) - x * (r * r - x * x).sqrt();
     for (offset, radius) in [

@@ -1,4 +1,5 @@
-//! Slices and projections, against plain sums and against rays drawn over all variables at once.
+//! Tests of slices and projections, against plain sums and against rays sampled over all variables
+//! at once.
 
 use super::*;
 use crate::numerics::quadrature::integrate;
@@ -41,22 +42,22 @@ fn fast_and_plain_sums_agree() {
                 let (rho, nu) = (m as f64 * grid.rho.spacing, grid.nu.value(n));
                 let plain = table.at(grid.frequency(k, rho, nu));
                 let error = (slices.half[[k, m, n]] - plain).norm() / slices.at_zero();
-                // Rounding, and Gauss rules to 1e-14.
+                // Rounding, and Gauss rules accurate to 1e-14.
                 assert!(error < 1e-12, "{after} {k} {m} {n}: {error:e}");
             }
         }
     }
 }
 
-/// Points that fill a cube of six dimensions evenly: multiples of square roots of primes (Richtmyer
-/// 1951).
+/// Returns points that fill a cube of six dimensions evenly: multiples of square roots of primes
+/// (Richtmyer 1951).
 pub(super) fn cube(count: u32) -> impl Iterator<Item = [f64; 6]> {
     let steps = [2.0_f64, 3.0, 5.0, 7.0, 11.0, 13.0].map(f64::sqrt);
     (1..=count).map(move |n| steps.map(|s| (0.5 + s * f64::from(n)).fract()))
 }
 
-/// The spectrum at frequencies by rays drawn at random through the window and from the light,
-/// followed back.
+/// Estimates the spectrum at frequencies from rays sampled at random through the window and from
+/// the light, followed back.
 fn drawn(bench: &TestReceiver, after: f64, window: &Window, rays: u32) -> Vec<Complex> {
     let Light::Area { shape, .. } = bench.light else {
         unreachable!("area lights only")
@@ -68,8 +69,8 @@ fn drawn(bench: &TestReceiver, after: f64, window: &Window, rays: u32) -> Vec<Co
     for point in cube(rays) {
         let [x, y, u, v] = [0, 1, 2, 3].map(|k| halves[k] * (2.0 * point[k] - 1.0));
         let weight = window.value(&TwoPlane { x, y, u, v });
-        // D' = −D, X' = −X and Y' = D' × X' = Y: back along the ray, then x in the frame of arrival
-        // is −x'.
+        // D' = −D, X' = −X and Y' = D' × X' = Y: back along the ray, x in the frame of arrival is
+        // −x'.
         let floor = [-(x - after * u), y - after * v];
         let at = [0, 1].map(|k| bounds.center[k] + bounds.size[k] * (point[4 + k] - 0.5));
         let radiance = 0.6 / PI * bench.added(at, floor) * weight;
@@ -90,7 +91,7 @@ const FREQUENCIES: [[f64; 4]; 5] = [
     [-2.0, 1.5, 1.0, 0.7],
 ];
 
-/// Largest deviation from rays drawn, of the largest value.
+/// Returns the largest deviation from sampled rays, relative to the largest value.
 fn deviation(receiver: &Receiver<'_>, drawn: &[Complex]) -> f64 {
     let table = receiver.table(&hann(), 128);
     let pairs = FREQUENCIES.iter().zip(drawn);
@@ -98,9 +99,9 @@ fn deviation(receiver: &Receiver<'_>, drawn: &[Complex]) -> f64 {
     worst.fold(0.0, f64::max) / drawn[0].norm()
 }
 
-/// Rays drawn.
+/// Number of sampled rays.
 const RAYS: u32 = 2_000_000;
-/// What they in six dimensions leave open.
+/// The sampling error of these rays in six dimensions.
 const DRAWN: f64 = 1e-3;
 
 #[test]
@@ -142,7 +143,7 @@ fn planted_faults_are_seen() {
     assert!(no_pi > 1.0, "{no_pi}");
     let no_travel = wrong(true, 0.0, 0.6);
     assert!(no_travel > 10.0 * DRAWN, "{no_travel}");
-    // A frame that does not turn round: the spectrum at −Ωx, −Ωu.
+    // With a frame that does not turn round, the result would be the spectrum at −Ωx, −Ωu.
     let receiver = bench.after(0.7);
     let [x, y, u, v] = FREQUENCIES[3];
     let turned = receiver.at(&hann(), [-x, y, -u, v]);
@@ -168,7 +169,7 @@ fn error_falls_with_the_square_of_the_spacing() {
         let fine = slices(1024);
         let errors = [32, 64, 128, 256].map(|n| slices(n).relative_difference(&fine));
         let order = libm::log2(errors[0] / errors[3]) / 3.0;
-        // Where kinks fall between nodes is chance, the rest is second order.
+        // The position of kinks between nodes is random; otherwise the error is of second order.
         assert!((1.6..3.5).contains(&order), "{after}: {errors:?} {order}");
         assert!(errors[3] < 1e-4, "{errors:?}"); // the aim at the fewest nodes
     }
@@ -187,7 +188,7 @@ fn error_is_told() {
         assert!((slices.at_zero() - zero).norm() < 1e-12 * zero.norm()); // rounding of two sums
         let told = receiver.quadrature_error(&window, &grid, &slices).unwrap();
         let truth = slices.relative_difference(&receiver.table(&window, 1000).slices(&grid));
-        // An estimate, not a bound: right to a factor of a few, both below the aim.
+        // An estimate, not a bound: correct to a factor of a few, both below the requested error.
         assert!(
             truth < 3.0 * told + 1e-9 && told < 1e-4,
             "{number}: {told:e} {truth:e}"
@@ -220,7 +221,7 @@ fn projection_is_the_other_side_of_the_slice() {
                 .sum();
             let expected = table.at([rho, 0.0, nu, 0.0]);
             let error = (sum * cells.cell_area() - expected).norm() / zero;
-            // A cell blurs by (π f width)²/6 < 4e-4 at 2 cycles and 128 cells.
+            // A cell causes a blur of (π f width)²/6 < 4e-4 at 2 cycles and 128 cells.
             assert!(error < 4e-4, "{number} {rho} {nu}: {error:e}");
         }
     }
@@ -278,7 +279,7 @@ fn hard_shadows_of_a_point_light() {
         (got - expected).norm() / expected.norm()
     });
     let order = libm::log2(errors[0] / errors[2]) / 2.0;
-    // Means over cells keep the second order where edges cross them.
+    // Means over cells keep the second order if edges cross them.
     assert!(errors[2] < 2e-4 && order > 1.6, "{errors:?}");
     assert_eq!(receiver.nodes(&hann(), 0.0), 1024);
 }
