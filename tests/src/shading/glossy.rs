@@ -147,16 +147,14 @@ impl GlossyBench {
         )
     }
 
-    /// # Panics
-    /// If the scene is invalid.
+    /// # Panics If the scene is invalid.
     fn scene(&self, windows: &Windows, photons: u64, seed: u64) -> Scene {
         let text = self.text(windows, photons, seed);
         let file = SceneFile::parse(&text).expect("a scene file");
         resolve("glossy", file, ".".as_ref(), u64::MAX).expect("a sound scene")
     }
 
-    /// # Panics
-    /// If the plane has none.
+    /// # Panics If the plane has none.
     fn criterion(&self) -> Criterion {
         let scene = self.scene(&ANY, 1000, 1);
         let plane = &scene.planes[0];
@@ -172,8 +170,7 @@ impl GlossyBench {
         }
     }
 
-    /// Windows that contain the lobe, grids that contain the spectrum, and the widening by the
-    /// window in u.
+    /// Windows that contain the lobe, grids that contain the spectrum, and the widening by the window in u.
     fn windows(&self, c: &Criterion) -> (Windows, f64) {
         let deviation = GAUSSIAN / c.lobe_cutoff;
         let finer = self.says(c)[0] / c.lobe_cutoff;
@@ -459,8 +456,7 @@ pub(crate) fn glossy(photons: Option<u64>) -> (ReportSection, Curves) {
     (section, picture)
 }
 
-/// The range of measurements for a criterion of `bandwidth`, if the window widens the spectrum by
-/// at most `floor`.
+/// The range of measurements for a criterion of `bandwidth`, if the window widens the spectrum by at most `floor`.
 fn range(bandwidth: f64, floor: f64) -> [f64; 2] {
     let error = ERROR * bandwidth;
     [bandwidth - error, bandwidth.hypot(floor) + error]
