@@ -42,7 +42,7 @@ class Scene:
     `set` overrides fields by their paths: `{"blockers.0.pitch": 0.1}`. A tree may name
     meshes and pictures in `folder`.
 
-    Raises `SceneError`, whose `faults` lists all that is wrong with it.
+    Raises `SceneError`, whose `faults` lists all errors in it.
     """
 
     def __init__(

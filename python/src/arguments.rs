@@ -72,7 +72,7 @@ impl<'py> Arguments<'_, 'py> {
         to: &mut u64,
     ) -> PyResult<()> {
         let allowed = format!(
-            "a whole number from {} on, such as 1e6 or 2**20",
+            "a whole number of {} or more, such as 1e6 or 2**20",
             range.start()
         );
         self.set(name, to, allowed, |value| {

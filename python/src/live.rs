@@ -217,7 +217,7 @@ pub(crate) fn alive<T: Send + 'static>(
             }
             Err(RecvTimeoutError::Disconnected) => {
                 return Err(PyRuntimeError::new_err(
-                    "a fault of Étendue ended the work: what it said is on standard error",
+                    "a bug in Étendue ended the work: its message is on standard error",
                 ));
             }
         }

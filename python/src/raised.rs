@@ -9,13 +9,13 @@ create_exception!(
     etendue,
     SceneError,
     PyValueError,
-    "A scene, or another input, that is not sound. `faults` lists all that is wrong, each in a sentence."
+    "An invalid scene or another invalid input. `faults` lists all errors, one sentence each."
 );
 create_exception!(
     etendue,
     CannotRun,
     PyRuntimeError,
-    "What was asked for cannot be done here: memory, disk, a folder that holds something else."
+    "The request cannot be carried out here: memory, disk, or a folder that holds something else."
 );
 
 /// The exception for a failure. Exit code 2 of the command is bad input.

@@ -35,7 +35,7 @@ impl Rays {
         let batch = batch.as_array();
         let rays = x.len();
         if [y.len(), u.len(), v.len(), weight.len(), batch.len()] != [rays; 5] {
-            return fault("x, y, u, v, weight and batch must be of one length".to_owned());
+            return fault("x, y, u, v, weight and batch must have the same length".to_owned());
         }
         let mut all =
             vec![Vec::with_capacity(rays / (batches.max(1) as usize) + 1); batches as usize];

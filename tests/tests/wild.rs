@@ -443,7 +443,7 @@ fn what_goes_by_squares_is_decided() {
 fn a_low_sky_is_decided() {
     let scene = scene("low_sky");
     let reasons = Applicability::new(&scene, &scene.planes[0]).reasons;
-    assert_eq!(reasons, ["light that meets glass out of turn"]);
+    assert_eq!(reasons, ["light that meets glass out of order"]);
 }
 
 /// Rays continue differently from the triangles of a mesh and from its osculating patch: in one

@@ -56,7 +56,7 @@ pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
     })?;
     if rows.is_empty() {
         return Err(Failure::bad_input(
-            "no plane of this scene looks, across its ray, at light that has left a smooth surface with a BRDF",
+            "no plane of this scene is orthogonal to its ray and sees light that leaves a smooth surface with a BRDF",
         ));
     }
     let header = header(args);
@@ -68,9 +68,11 @@ pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
     let cells = rows.iter().map(BandwidthRow::cells);
     let table: Vec<Vec<String>> = std::iter::once(header).chain(cells).collect();
     say(
-        "Bandwidths hold 95 % of the energy: that of the lobe in cycles per radian, others in cycles per unit slope at a fixed point of the plane.",
+        "Bandwidths contain 95 % of the energy: that of the lobe is in cycles per radian, the others are in cycles per unit slope at a fixed point of the plane.",
     );
-    say("B, B': Durand et al. 2005, Eqs. 20 and 21, corrected; as printed beside them.\n");
+    say(
+        "B, B': Durand et al. 2005, Eqs. 20 and 21, corrected; the columns beside them hold the equations as printed.\n",
+    );
     deliver(&aligned(table).join("\n"))?;
     for warning in warnings {
         say(&format!("warning: {warning}"));
@@ -209,14 +211,14 @@ fn beyond_criteria(plane: &VirtualPlane, applicability: &Applicability) -> Vec<S
     let mut warnings = Vec::new();
     if !reflectance.is_uniform() {
         warnings.push(format!(
-            "{}: the BRDF of {name} varies over it; criteria know its sharpest lobe alone",
+            "{}: the BRDF of {name} varies over the surface; the criteria use its sharpest lobe only",
             plane.name
         ));
     }
     let is_about_normal = |term: &Term| !term.brdf.lobe.is_about_mirror();
     if reflectance.terms.iter().any(is_about_normal) {
         warnings.push(format!(
-            "{}: a lobe of {name} is about its normal; criteria are of those about the mirror direction",
+            "{}: a lobe of {name} is centred on the normal; the criteria assume lobes about the mirror direction",
             plane.name
         ));
     }
@@ -231,7 +233,7 @@ fn warning(plane: &VirtualPlane, bandwidth: f64) -> Option<String> {
     let end = (NEAR * nu.max()).min(nu.max() - nu.spacing);
     (bandwidth >= end).then(|| {
         format!(
-            "{}: a bandwidth of {} is at the end of its frequencies: there may be more beyond; frequencies.nu.max is {}",
+            "{}: a bandwidth of {} is at the end of the frequency range, and the spectrum may extend beyond it; frequencies.nu.max is {}",
             plane.name,
             number(bandwidth),
             nu.max()

@@ -46,7 +46,7 @@ pub(crate) fn conclude(
         if !gone.is_empty() {
             let names = gone.join(", ");
             say(&format!(
-                "removed with the earlier result, not saved again: {names}"
+                "removed with the earlier result and not saved again: {names}"
             ));
         }
     }

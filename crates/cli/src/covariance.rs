@@ -140,7 +140,7 @@ fn of_plane(
     bar.finish_and_clear();
     let field = field.map_err(Failure::cannot_run)?;
     let Some(covariance) = &field.covariance else {
-        return Err(Failure::cannot_run("no covariance: a fault of etendue"));
+        return Err(Failure::cannot_run("no covariance: a bug in etendue"));
     };
     CovarianceReport::new(
         (measurement, index),

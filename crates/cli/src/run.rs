@@ -114,7 +114,7 @@ fn finished(folder: &Path, scene: &Scene, args: &RunArgs) -> Option<u8> {
     let verdict: Verdict = serde_json::from_value(summary["verdict"].clone()).ok()?;
     if !args.work.quiet {
         say(&format!(
-            "verdict: {}; the run is done: {}",
+            "verdict: {}; the run was already finished: {}",
             word(verdict),
             folder.display()
         ));
@@ -124,7 +124,10 @@ fn finished(folder: &Path, scene: &Scene, args: &RunArgs) -> Option<u8> {
 
 /// The error that somebody has just removed the result.
 fn gone(folder: &Path) -> Failure {
-    Failure::cannot_run(format!("the result in {} is gone", folder.display()))
+    Failure::cannot_run(format!(
+        "the result in {} no longer exists",
+        folder.display()
+    ))
 }
 
 fn stages(

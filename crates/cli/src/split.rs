@@ -14,7 +14,7 @@ pub(crate) fn split(args: &SplitArgs) -> Result<u8, Failure> {
     let (parts, batches) = (args.parts, scene.run.batches);
     if parts > batches {
         return Err(Failure::bad_input(format!(
-            "--parts {parts}: the scene has {batches} batches, and a part is one at least"
+            "--parts {parts}: the scene has {batches} batches, and each part needs at least one"
         )));
     }
     let out = args.out.or_named(&scene.name);

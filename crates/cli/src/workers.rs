@@ -27,7 +27,7 @@ pub fn command_of_workers(line: impl IntoIterator<Item = OsString>, workers: &dy
     };
     if !is_shared(&command) {
         let message =
-            "only `run` without --target-error, `predict` and `sweep` are for several processes";
+            "only `run` without --target-error, `predict` and `sweep` can use several processes";
         return ended(Err(Failure::bad_input(message)), !leads);
     }
     if !leads {

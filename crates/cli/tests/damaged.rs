@@ -129,7 +129,7 @@ fn a_changed_index_is_refused() {
         (
             a,
             |t| t["seed"] = json!(3),
-            &["seed 3; that of its scene is 18446744073709551557"],
+            &["seed 3; the seed of its scene is 18446744073709551557"],
         ),
         (
             a,
@@ -390,7 +390,7 @@ fn meshes_are_part_of_the_scene() {
         refused(
             folder.path(),
             &arguments,
-            &["do not fit together: inputs.tri.obj is"],
+            &["are incompatible: inputs.tri.obj is"],
         );
     }
     let copy = at("a/measurement.inputs/tri.obj");

@@ -67,7 +67,7 @@ fn two_results_are_told_apart_when_they_differ() {
         &folder,
         "a b",
         0,
-        &[&seeds[..], &[same, "the same, but run"]].concat(),
+        &[&seeds[..], &[same, "the same, with other settings"]].concat(),
     );
     found(&folder, "a backward", 0, &["method backward", same]);
     // Shared photons: identical bytes, or undecided.
@@ -194,7 +194,7 @@ fn damaged_folders_are_refused_by_name() {
         &index[..index.len() / 2],
     ] {
         fs::write(&summary, broken).unwrap();
-        refuses(path, &["b/summary.json: it is no summary of a run"]);
+        refuses(path, &["b/summary.json: it is not a summary of a run"]);
     }
     let text = String::from_utf8(index.clone()).unwrap();
     fs::write(&summary, text.replace("\"seed\": 2", "\"seed\": 3")).unwrap();

@@ -236,7 +236,7 @@ fn what_makes_no_figure_is_refused() {
     }
     for (arguments, parts) in [
         ("7 --plane light", ["--plane is for", "SCENE.ron"]),
-        ("7 wide.ron", ["7 is no scene file", ""]),
+        ("7 wide.ron", ["7 is not a scene file", ""]),
         ("wide.ron ./wide.ron", ["two scenes are named wide", ""]),
         (
             "wide.ron --plane leaving",

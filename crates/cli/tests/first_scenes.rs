@@ -130,31 +130,31 @@ const MISTAKES: &[[&str; 3]] = &[
     [
         "(0.2, 0.2)),",
         "(0.2, 0.2))",
-        "line 3, column 5: the scene: `blockers` stands here; allowed: a comma before it, or a closing bracket",
+        "line 3, column 5: the scene: unexpected `blockers`; allowed: a comma before it, or a closing bracket",
     ],
     // A bracket left out.
     [
         "size: (6, 6)),",
         "size: (6, 6),",
-        "line 11, column 5: surfaces[0]: `]` stands here; allowed: the name of a field, or `)`",
+        "line 11, column 5: surfaces[0]: unexpected `]`; allowed: the name of a field, or `)`",
     ],
     // A decimal comma.
     [
         "pitch: 0.2",
         "pitch: 0,2",
-        "line 6, column 22: blockers[0]: `2` stands here; allowed: the name of a field; decimals have a point, such as 0.1",
+        "line 6, column 22: blockers[0]: unexpected `2`; allowed: the name of a field; decimals have a point, such as 0.1",
     ],
     // A number with a unit.
     [
         "pitch: 0.2",
         "pitch: 20cm",
-        "line 6, column 22: blockers[0]: `cm` stands here; allowed: a number without a unit",
+        "line 6, column 22: blockers[0]: unexpected `cm`; allowed: a number without a unit",
     ],
     // A number in the notation of the command line.
     [
         "pitch: 0.2",
         "pitch: 2^20",
-        "line 6, column 21: blockers[0]: `^20` stands here; allowed: a number without a power, such as 1_048_576 or 1e6",
+        "line 6, column 21: blockers[0]: unexpected `^20`; allowed: a number without a power, such as 1_048_576 or 1e6",
     ],
     // A number in quotes.
     [
@@ -190,7 +190,7 @@ const MISTAKES: &[[&str; 3]] = &[
     [
         r#"Before("floor")"#,
         "Distance(4.5)",
-        "line 14, column 31: planes[0].at is Distance(4.5); allowed: 0 to 2 m on the way to the last surface, up to 4 m on the way from it, where something stands",
+        "line 14, column 31: planes[0].at is Distance(4.5); allowed: 0 to 2 m on the way to the last surface, up to 4 m on the way from it, where an object ends it",
     ],
     // Jitter that makes squares overlap.
     [
@@ -296,8 +296,8 @@ fn likely_mistakes_are_warned_of() {
         (
             "count: (20, 20)",
             "count: (20, 2)",
-            "arrival: light it sees passes squares up to (0.3, 0.3) m from the central ray, \
-             beyond its edge at (2, 0.2) m: nothing stops it there",
+            "arrival: the light it sees passes squares up to (0.3, 0.3) m from the central ray, \
+             beyond its edge at (2, 0.2) m, where nothing blocks it",
         ),
     ] {
         let output = check(from, to, &[]);

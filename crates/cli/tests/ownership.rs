@@ -204,9 +204,9 @@ fn single_files_replace_nothing_unless_told() {
     let before = files(folder.path());
     for (arguments, code, part) in [
         ("s.ron --draw mine.png", 3, "--force"),
-        ("s.ron --draw link.png", 3, "no regular file"),
-        ("s.ron --draw link.png --force", 3, "no regular file"),
-        ("s.ron --draw folder.png --force", 3, "no regular file"),
+        ("s.ron --draw link.png", 3, "not a regular file"),
+        ("s.ron --draw link.png --force", 3, "not a regular file"),
+        ("s.ron --draw folder.png --force", 3, "not a regular file"),
         ("s.png --draw s.png --force", 2, "is read by this command"),
     ] {
         let (found, message) = check(arguments);
@@ -253,7 +253,7 @@ fn one_writer_at_a_time() {
     for command in ["run s.ron", "measure s.ron", "export --to mitsuba s.ron"] {
         let output = call_without_quiet(folder.path(), &format!("{command} --out out"));
         assert!(
-            output.contains("another etendue is writing there"),
+            output.contains("another etendue process is writing there"),
             "{output}"
         );
     }

@@ -109,7 +109,7 @@ fn points_go_through_no_link() {
         assert_eq!(output.status.code(), Some(3), "{output:?}");
         let message = String::from_utf8(output.stderr).unwrap();
         assert!(
-            message.contains("a link or a file stands where"),
+            message.contains("a link or a file is in the place of"),
             "{message}"
         );
         assert_eq!(fs::read_dir(path.join("elsewhere")).unwrap().count(), 0);

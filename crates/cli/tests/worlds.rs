@@ -182,7 +182,7 @@ fn what_is_asked_must_be_there() {
     for (line, part) in [
         ("probe room.xml --pixel 24,0", "allowed: 0,0 to 23,15"),
         ("probe room.xml", "--pixel"),
-        ("probe room.xml --pixel 1,1 --rays 3", "from 64 on"),
+        ("probe room.xml --pixel 1,1 --rays 3", "64 or more"),
         ("render room.xml --camera side", "allowed: front"),
         ("render room.xml --size 0x5", "two whole numbers"),
         ("render room.xml --samples 1", "--samples"),

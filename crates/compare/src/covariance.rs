@@ -87,7 +87,7 @@ impl TracedPlane {
             Theory::Reflections(_) => {
                 return Err("several surfaces have scattered the light".to_owned());
             }
-            Theory::None => return Err("no chain leads to this plane".to_owned()),
+            Theory::None => return Err("there is no chain for this plane".to_owned()),
         };
         let seen = traced.map_err(|reason| reason.to_string())?;
         let seen = seen.multiplied(&window(&plane.window));
@@ -168,8 +168,7 @@ impl CovarianceReport {
         let mut remarks: Vec<String> = self.untraced.iter().cloned().collect();
         if self.untraced.is_none() && self.traced.is_none() {
             remarks.push(
-                "by covariance tracing the spectrum has no end, as of light from a point; \
-                 in the band it is a ridge"
+                "by covariance tracing the spectrum is unbounded, as for light from a point; within the band it is a ridge"
                     .to_owned(),
             );
         }
@@ -188,14 +187,13 @@ impl CovarianceReport {
             .collect();
         if !axes.is_empty() {
             remarks.push(format!(
-                "the variance along {} grows over the second half of the band, where replicas, tails of edges or more of \
-                 the spectrum lie: it is that of the band",
+                "the variance along {} grows over the second half of the band, which holds replicas, tails of edges or more of the spectrum: the value covers the band only",
                 axes.join(", ")
             ));
         }
         if let Some([off, error]) = self.off {
             remarks.push(format!(
-                "covariance tracing is off by {} of the variances; noise is {}",
+                "covariance tracing differs by {} of the variances; noise is {}",
                 percent(off, 1),
                 percent(error, 1)
             ));

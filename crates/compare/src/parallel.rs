@@ -23,7 +23,7 @@ pub(crate) fn obstacles_to_theory(scene: &Scene, plane: &VirtualPlane) -> Vec<St
         }
     }
     if scene.light.is_picture() {
-        found.push("light of a picture, but for a path of smooth surfaces alone".to_owned());
+        found.push("the light of a picture, unless all surfaces of the path are smooth".to_owned());
     }
     if matches!(scene.light, Light::Environment { .. }) {
         found.push("light of an environment".to_owned());
@@ -42,7 +42,7 @@ pub(crate) fn obstacles_to_theory(scene: &Scene, plane: &VirtualPlane) -> Vec<St
     }
     found.extend(in_the_way(scene, plane));
     if let Some(name) = beyond_edge(scene, plane) {
-        found.push(format!("the edge of {name}, which the window sees"));
+        found.push(format!("the edge of {name} in view of the window"));
     }
     found
 }
@@ -70,7 +70,7 @@ fn in_the_way(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
     for layer in scene.blockers.iter().filter(|_| plane.leg > 0) {
         let parts = parts(layer, scene, plane);
         if parts.iter().any(|part| passes(scene, plane, part, true)) {
-            found.push(format!("visibility of {} on the way back", layer.name));
+            found.push(format!("visibility of {} on later legs", layer.name));
         }
     }
     for (i, object) in scene.patches.iter().enumerate() {

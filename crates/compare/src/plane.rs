@@ -202,31 +202,28 @@ impl ComparedSides<'_> {
             // Theory may prove that no light arrives; finding no ray is no proof.
             self.prediction.is_statistical().then(|| {
                 format!(
-                    "no ray of the prediction found a way to the window, and {inside} of {emitted} \
-                     photons did; with none, fewer than 3 in {emitted} do (95 %)"
+                    "no ray of the prediction reached the window; {inside} of {emitted} photons did (0 would mean a share below 3 in {emitted} at 95 %)"
                 )
             })
         } else if inside == 0 {
-            Some(format!("none of {emitted} photons came into the window"))
+            Some(format!("none of {emitted} photons reached the window"))
         } else if self.is_sparse() {
             let batches = self.measurement.batches().len();
             Some(format!(
-                "too few photons in the window, {inside} in {batches} batches, or too few rays of \
-                 the prediction: one batch holds none{needs}"
+                "too few photons in the window, {inside} in {batches} batches, or too few rays of the prediction: at least one batch has none{needs}"
             ))
         } else if let Some(each) = self.uneven(agrees) {
             Some(format!(
-                "a few heavy photons, or rays of the prediction, carry the light, which varies as if \
-                 each batch held {each:.1}: too few to disagree{needs}"
+                "a few photons, or rays of the prediction, carry most of the light: it varies as if each batch held {each:.1}, too few for a test{needs}"
             ))
         } else if agrees && error > test.resolution {
             let error = percent(error);
             let what = match (self.prediction.mesh_error, self.prediction.class) {
                 (None, _) => "the quadrature of the prediction may be off",
                 (Some(_), Class::Reference) => {
-                    "behind a mesh this coarse photons and backward rays may differ"
+                    "with so coarse a mesh, photons and backward rays may differ"
                 }
-                (Some(_), _) => "behind a mesh this coarse photons and the prediction may differ",
+                (Some(_), _) => "with so coarse a mesh, photons and the prediction may differ",
             };
             Some(format!(
                 "{what} by {error}, noise is {}; more photons do not help",
@@ -240,7 +237,7 @@ impl ComparedSides<'_> {
             ))
         } else if noise > test.resolution.max(MAX_HANDFUL_NOISE) {
             Some(format!(
-                "noise is {} of the spectrum, of so few photons that p says nothing{needs}",
+                "noise is {} of the spectrum, from too few photons for a meaningful p{needs}",
                 percent(noise)
             ))
         } else {
@@ -532,8 +529,7 @@ fn warnings(predicted: &Array2<f64>, grid: &SliceGrid, blur: Option<(f64, f64)>)
         let border = at(axis);
         if border > BORDER * peak {
             warnings.push(format!(
-                "the spectrum goes on beyond |{name}| = {}, where it is {:.0} dB below its peak; \
-                 bandwidths count what is inside",
+                "the spectrum extends beyond |{name}| = {}, where it is {:.0} dB below its peak; bandwidths cover the inside only",
                 tidy(max),
                 10.0 * libm::log10(peak / border)
             ));

@@ -54,11 +54,12 @@ impl Theory {
     /// The assumptions of the theory about a scene, each checked where the theory applies.
     #[must_use]
     pub fn assumptions(&self) -> &'static [&'static str] {
-        const FOLLOWED: &[&str] = &["light meets each surface once, in the order of the path, \
-             and where it is not in its own shadow"];
+        const FOLLOWED: &[&str] = &[
+            "light meets each surface once, in the order of the path, and never in its own shadow",
+        ];
         match self {
             Self::Parallel(_) => &[
-                "all that light meets lies in planes across the path",
+                "all objects that light meets lie in planes across the path",
                 "the receiver has no edge in view",
             ],
             Self::Specular(_) | Self::Scattering(_) => FOLLOWED,

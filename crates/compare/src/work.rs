@@ -31,9 +31,9 @@ impl fmt::Display for TooMuchWork {
             (format!("{gigabytes:.1} GB on one core"), limit)
         } else {
             let steps = if work.steps.is_finite() {
-                format!("{:.1e} steps, of {total:.1e} or more in all", work.steps)
+                format!("{:.1e} steps, out of {total:.1e} or more", work.steps)
             } else {
-                "more steps than can be counted".to_owned()
+                "too many steps to count".to_owned()
             };
             let minutes = MOST_STEPS / 6e10;
             let limit =
@@ -42,7 +42,7 @@ impl fmt::Display for TooMuchWork {
         };
         write!(
             f,
-            "the prediction of {plane} takes {estimate}; the limit is {limit}; it is made of {}",
+            "the prediction of {plane} takes {estimate}; the limit is {limit}; the work consists of {}",
             work.drivers
         )
     }

@@ -124,7 +124,7 @@ fn a_mirror_that_is_met_out_of_turn() {
                 facing: (-0.7071067811865476, 0, 0.7071067811865476),
                 form: Plane, aperture: 0.55, event: Mirror)"#
     );
-    applies_only(0.02, 0.3, "light that meets second out of turn", |half| {
+    applies_only(0.02, 0.3, "light that meets second out of order", |half| {
         scene(
             LIGHT,
             "",
@@ -201,9 +201,9 @@ fn darkness_has_a_reason() {
     let closed = [
         (
             both.as_str(),
-            "half-planes of other and edge leave no way open",
+            "half-planes of other and edge block all paths",
         ),
-        (lid, "lid covers all ways"),
+        (lid, "lid blocks all paths"),
     ];
     for (surface, class) in &surfaces {
         for light in [LIGHT, PROJECTOR] {
@@ -272,7 +272,7 @@ fn light_that_turns_before_the_masks_is_not_taken_for_dark() {
         )
     };
     let narrow = of(&built(0.03));
-    let dark = "half-planes of edge leave no way open";
+    let dark = "half-planes of edge block all paths";
     assert_eq!(narrow.dark.as_deref(), Some(dark), "{:?}", narrow.reasons);
     let wide = of(&built(0.4));
     assert_eq!((wide.class(), wide.dark), (Class::FirstOrder, None));
@@ -328,7 +328,7 @@ fn what_stands_at_a_plane_or_before_a_flat_surface() {
     };
     assert_eq!(
         text(r#""floor", "card""#),
-        ["light that meets card out of turn"]
+        ["light that meets card out of order"]
     );
 }
 

@@ -176,7 +176,7 @@ fn the_edge_of_a_mirror_that_is_met_out_of_turn() {
     assert!(aperture.is_finite());
     assert_eq!(
         found(1.001 * aperture),
-        ["light that meets second out of turn"]
+        ["light that meets second out of order"]
     );
     assert_eq!(found(0.95 * aperture), [""; 0]);
 }

@@ -195,7 +195,7 @@ fn many_planes() {
     );
     let said = refusal(&scene);
     assert!(
-        said.contains("steps, of") && said.contains("the limit is 6e11 for all planes"),
+        said.contains("steps, out of") && said.contains("the limit is 6e11 for all planes"),
         "{said}"
     );
 }

@@ -26,8 +26,7 @@ use xml::{Xml, diffuse};
 pub enum NotInMitsuba {
     /// A spot light.
     #[error(
-        "Mitsuba has no light with an area whose radiance falls off as cosⁿθ: \
-         a spot with exponent {exponent} cannot be exported, one with exponent 0 can"
+        "Mitsuba has no area light whose radiance falls off as cosⁿθ: a spot with exponent {exponent} cannot be exported, one with exponent 0 can"
     )]
     Spot {
         /// Its exponent n.
@@ -46,22 +45,21 @@ pub enum NotInMitsuba {
     },
     /// An object behind the plane in which an environment begins.
     #[error(
-        "light from far away begins in the plane of `center` here, and comes from all around in Mitsuba: \
-         {name:?}, which reaches behind that plane, would stand in its way, and cannot be exported"
+        "distant light starts in the plane of `center` here, but surrounds the whole scene in Mitsuba: {name:?} reaches behind that plane and would block it, and cannot be exported"
     )]
     BehindTheSky {
         /// Name of the object.
         name: String,
     },
     /// A thin lens.
-    #[error("Mitsuba has no lens without thickness but in cameras: {name:?} cannot be exported")]
+    #[error("Mitsuba has thin lenses in cameras only: {name:?} cannot be exported")]
     ThinLens {
         /// Name of the lens.
         name: String,
     },
     /// A sum of BRDFs that is not a blend.
     #[error(
-        "Mitsuba adds two BRDFs by weights w and 1 − w alone: {name:?} cannot be exported; \
+        "Mitsuba adds two BRDFs with weights w and 1 − w only: {name:?} cannot be exported; \
          Reflects with `other` and `blend` can"
     )]
     Sum {
@@ -70,7 +68,7 @@ pub enum NotInMitsuba {
     },
     /// A factor that depends on the angle to the normal.
     #[error(
-        "Mitsuba has no factors of the angle at which light comes or leaves: {name:?} cannot be exported"
+        "Mitsuba has no factors of the incoming or outgoing angle: {name:?} cannot be exported"
     )]
     AngleTable {
         /// Name of its surface.

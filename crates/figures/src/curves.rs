@@ -59,7 +59,7 @@ pub struct CurvePanel {
 }
 
 /// Panels of curves that show one quantity; each has its own scales, which include y = 0 unless y
-/// is logarithmic.
+/// is logarithmic or all values are far from 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curves {
     /// Title, markup.
@@ -209,11 +209,17 @@ fn axes(panel: &CurvePanel, y: &AxisQuantity) -> [Axis; 2] {
         by_factors(around(|p| p[1], |p| p[1] + p[2]))
     } else {
         let [least, most] = around(|p| p[1] - p[2], |p| p[1] + p[2]);
-        let [least, most] = [least.min(0.0), most.max(0.0)];
+        // Values far from zero would be a flat line on an axis with zero.
+        let is_far = most - least < 0.3 * least.abs().max(most.abs());
+        let [least, most] = if is_far {
+            [least, most]
+        } else {
+            [least.min(0.0), most.max(0.0)]
+        };
         let margin = 0.06 * (most - least);
         // Zero is an edge if no values are below it.
         [
-            if least < 0.0 { least - margin } else { 0.0 },
+            if least == 0.0 { 0.0 } else { least - margin },
             most + margin,
         ]
     };

@@ -72,5 +72,5 @@ pub use image::photograph;
 pub use plate::{Bars, Plate, PlateRow, plate};
 pub use section::{DrawnObject, DrawnWorld, PlaneMark, Section, Segment, SegmentKind};
 pub use section_figure::section;
-pub use strip::{Strip, StripColumn, strip};
+pub use strip::{AcrossPictures, Strip, StripColumn, strip};
 pub use style::Style;

@@ -19,7 +19,7 @@ pub struct StripColumn<'a> {
     /// The light field in (x, u).
     pub light_field: Picture<'a>,
     /// The light field in (y, v). This row is drawn if each column has one.
-    pub across: Option<Picture<'a>>,
+    pub across: Option<AcrossPictures<'a>>,
     /// The power spectrum in (ρ, ν).
     pub spectrum: Picture<'a>,
     /// The predicted spectrum. This row is drawn if each column has one.
@@ -33,6 +33,17 @@ pub struct StripColumn<'a> {
     /// Lines below the pictures, such as "*p* = 0.43, pass", markup; may be empty.
     pub verdict: Vec<String>,
     /// Dashed lines over the spectrum.
+    pub guides: Vec<Guide>,
+}
+
+/// The light field in (y, v) and the spectrum that it has at azimuth 90°.
+#[derive(Clone, Debug)]
+pub struct AcrossPictures<'a> {
+    /// The light field in (y, v).
+    pub light_field: Picture<'a>,
+    /// The power spectrum at azimuth 90°.
+    pub spectrum: Picture<'a>,
+    /// Dashed lines over that spectrum.
     pub guides: Vec<Guide>,
 }
 
@@ -61,8 +72,9 @@ pub struct Strip<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum StripRow {
     LightField,
-    Across,
     Spectrum,
+    Across,
+    AcrossSpectrum,
     Predicted,
     FullRadial,
     FullPredicted,
@@ -77,9 +89,10 @@ impl StripRow {
             .iter()
             .all(|column| column.predicted.is_some());
         let across = strip.columns.iter().all(|column| column.across.is_some());
-        let mut rows = vec![Self::LightField];
-        rows.extend(across.then_some(Self::Across));
-        rows.push(Self::Spectrum);
+        let mut rows = vec![Self::LightField, Self::Spectrum];
+        if across {
+            rows.extend([Self::Across, Self::AcrossSpectrum]);
+        }
         rows.extend(predicted.then_some(Self::Predicted));
         let full_radial = |column: &StripColumn<'_>| column.full_radial.is_some();
         if strip.columns.iter().all(full_radial) {
@@ -101,6 +114,7 @@ impl StripRow {
         match self {
             Self::LightField => "light field",
             Self::Across => "across",
+            Self::AcrossSpectrum => "its spectrum",
             Self::Spectrum => "spectrum",
             Self::Predicted => "predicted",
             Self::FullRadial => "full radial",
@@ -111,9 +125,10 @@ impl StripRow {
 
     /// The picture of this row in a column.
     fn picture<'a, 'b>(self, column: &'b StripColumn<'a>) -> &'b Picture<'a> {
-        let full_radial = column.full_radial.as_ref();
+        let (full_radial, across) = (column.full_radial.as_ref(), column.across.as_ref());
         let other = match self {
-            Self::Across => column.across.as_ref(),
+            Self::Across => across.map(|across| &across.light_field),
+            Self::AcrossSpectrum => across.map(|across| &across.spectrum),
             Self::Predicted => column.predicted.as_ref(),
             Self::FullRadial => full_radial.map(|[measured, _]| measured),
             Self::FullPredicted => full_radial.map(|[_, predicted]| predicted),
@@ -130,7 +145,7 @@ impl StripRow {
     fn quantity(self, strip: &Strip<'_>) -> AxisQuantity {
         match self {
             Self::LightField | Self::Across => strip.light_field.clone(),
-            Self::Spectrum | Self::Predicted => strip.spectrum.clone(),
+            Self::Spectrum | Self::AcrossSpectrum | Self::Predicted => strip.spectrum.clone(),
             Self::FullRadial | Self::FullPredicted => strip.full_radial.clone(),
             Self::OffChain => AxisQuantity::new("off the chain", "% of the peak"),
         }
@@ -142,7 +157,7 @@ const CUT: f64 = 190.0;
 /// Height of the lines from the cut to the columns.
 const LEADERS: f64 = 34.0;
 /// Minimum width of a picture: columns that do not fit go below the others.
-const MIN_WIDTH: f64 = 78.0;
+const MIN_WIDTH: f64 = 60.0;
 
 /// Draws a strip, as wide as the page.
 ///
@@ -196,6 +211,10 @@ fn grid<'b, 'a>(strip: &'b Strip<'a>, style: &Style) -> PageGrid<'b, 'a> {
         let cell = |column: &'b StripColumn<'a>| {
             let guides = match row {
                 StripRow::Spectrum | StripRow::Predicted => &column.guides[..],
+                StripRow::AcrossSpectrum => {
+                    let across = column.across.as_ref();
+                    across.map_or(&[][..], |across| &across.guides)
+                }
                 _ => &[],
             };
             (row.picture(column), guides)

@@ -44,7 +44,8 @@ impl Files {
             is_outside = true;
         }
         Err(if is_outside {
-            "leads out of the folder that a scene may read from, links followed".to_owned()
+            "is outside of the folder that a scene may read from, after links are followed"
+                .to_owned()
         } else {
             "is not found".to_owned()
         })
@@ -72,7 +73,7 @@ impl Files {
         let left = self.left.get().checked_sub(bytes);
         self.left.set(left.unwrap_or_default());
         left.map(|_| ()).ok_or_else(|| {
-            format!("is too much: at most {MOST_BYTES} bytes are read for one scene")
+            format!("exceeds the limit: at most {MOST_BYTES} bytes are read for one scene")
         })
     }
 }

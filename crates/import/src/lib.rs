@@ -46,7 +46,7 @@ pub fn import(file: &Path, options: &Options) -> Result<Imported, Refused> {
         "pbrt" => pbrt::import(file, options),
         "ron" | "json" => Err(Refused::because(
             file,
-            "a scene of Étendue; run and check read it. Allowed here: gltf, glb (glTF 2.0), obj, ply, pbrt (pbrt-v4), xml (Mitsuba 3)".to_owned(),
+            "a scene of Étendue, for run and check. Allowed here: gltf, glb (glTF 2.0), obj, ply, pbrt (pbrt-v4), xml (Mitsuba 3)".to_owned(),
         )),
         other => Err(Refused::because(
             file,

@@ -25,7 +25,7 @@ use std::path::Path;
 pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused> {
     let file = MainFile::open(file, options)?;
     let read = ObjFile::parse(&file.read()?);
-    let read = read.map_err(|fault| file.refused(format!("is no sound mesh: {fault}")))?;
+    let read = read.map_err(|fault| file.refused(format!("is not a valid mesh: {fault}")))?;
     let report = Report::default();
     let (place, folder) = (file.place(), file.folder());
     let reader = reader::ObjReader::new(&file.files, &report, place, folder, options.color);

@@ -82,7 +82,7 @@ pub(crate) fn import_text(
 fn read(text: &str, file: &MainFile<'_>, options: &Options) -> Result<Imported, Refused> {
     let (files, report, whole) = (&file.files, Report::default(), file.place());
     for (name, _) in &options.set {
-        let message = format!("{name} is set, but pbrt's files have no parameters of their own");
+        let message = format!("{name} is set, but pbrt files have no parameters");
         report.cause(&whole, message);
     }
     let scene = build::Builder::new(files, &report, &file.path).build(text, &file.name);

@@ -25,9 +25,9 @@ pub(crate) fn fault(geometry: &Geometry, to_world: DAffine3) -> Option<&'static 
         && to_world.matrix3.determinant().abs() > 0.0;
     match (is_regular, fits) {
         (false, _) => Some(
-            "that is placed out of range, or scaled to nothing; allowed: coordinates up to 1e9, and scales from 1e-9 to 1e9",
+            "that is placed out of range, or scaled to size 0; allowed: coordinates up to 1e9, and scales from 1e-9 to 1e9",
         ),
-        (true, false) => Some("with shear, or not scaled alike along its axes"),
+        (true, false) => Some("with shear, or with different scales along its axes"),
         (true, true) => None,
     }
 }

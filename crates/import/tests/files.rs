@@ -67,7 +67,7 @@ fn no_file_leads_out_of_the_root() {
     // Without a root, nothing above the scene's folder is read.
     let refused = import(&at("s.xml"), &Options::default()).unwrap_err();
     assert!(
-        refused.to_string().contains("leads out of the folder"),
+        refused.to_string().contains("is outside of the folder"),
         "{refused}"
     );
     let refused = import(&at("t.xml"), &root).unwrap_err();
@@ -76,13 +76,16 @@ fn no_file_leads_out_of_the_root() {
         refused
             .causes
             .iter()
-            .all(|c| c.message.contains("leads out of the folder"))
+            .all(|c| c.message.contains("is outside of the folder"))
     );
     #[cfg(unix)]
     {
         std::os::unix::fs::symlink(files.path().join("out.xml"), at("link.xml")).unwrap();
         let refused = import(&at("u.xml"), &root).unwrap_err();
-        assert!(refused.to_string().contains("links followed"), "{refused}");
+        assert!(
+            refused.to_string().contains("links are followed"),
+            "{refused}"
+        );
         fs::remove_file(at("link.xml")).unwrap();
     }
     let refused = import(&at("u.xml"), &root).unwrap_err();
@@ -118,7 +121,9 @@ fn parameters_are_set_from_outside() {
     common::assert_close(&found, &[2.5, 3.0], 0.0);
     let refused = read(&set(&[("spp", "3")])).unwrap_err();
     assert!(
-        refused.to_string().contains("no `$spp` in the scene"),
+        refused
+            .to_string()
+            .contains("`$spp` is set, but the scene does not use it"),
         "{refused}"
     );
 }

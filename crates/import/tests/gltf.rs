@@ -87,7 +87,7 @@ fn children_are_placed_within_their_parents() {
     let circle = r#"{"children":[1]},{"children":[0]}"#;
     let found = causes(&mesh(circle, "", ""));
     assert!(
-        found[0].contains("nodes[0]: is below two nodes, or below itself"),
+        found[0].contains("nodes[0]: has two parents, or is its own ancestor"),
         "{found:?}"
     );
 }

@@ -17,9 +17,13 @@ fn accessors_stay_within_their_buffers() {
             r#""count":18446744073709551615,"type":"VEC3""#,
             "reaches beyond",
         ),
-        (r#""POSITION":0"#, r#""POSITION":77"#, "an index of nothing"),
+        (
+            r#""POSITION":0"#,
+            r#""POSITION":77"#,
+            "an index out of bounds",
+        ),
         (r#""type":"VEC3""#, r#""type":"VEC2""#, "has type Vec2"),
-        (r#""buffer":0"#, r#""buffer":9"#, "an index of nothing"),
+        (r#""buffer":0"#, r#""buffer":9"#, "an index out of bounds"),
         (
             r#""bufferView":0,"#,
             r#""bufferView":0,"sparse":{"count":1,"indices":{"bufferView":0,"componentType":5121},"values":{"bufferView":0}},"#,

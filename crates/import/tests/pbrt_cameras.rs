@@ -114,14 +114,20 @@ fn unsound_cameras_are_refused() {
             "text:1:19: camera `spherical` is not supported",
         ),
         ("Camera \"perspective\" \"float fov\" 180", "fov is 180"),
-        ("Scale 1 2 1 Camera \"perspective\"", "scaled differently"),
-        ("Scale 0 0 0 Camera \"perspective\"", "scaled differently"),
+        (
+            "Scale 1 2 1 Camera \"perspective\"",
+            "different scales along its axes",
+        ),
+        (
+            "Scale 0 0 0 Camera \"perspective\"",
+            "different scales along its axes",
+        ),
         (
             "Film \"rgb\" \"float cropwindow\" [0 0.5 0 1]",
             "parts of a film",
         ),
         ("Film \"rgb\" \"integer xresolution\" 0", "xresolution is 0"),
-        ("ActiveTransform EndTime", "transforms that move"),
+        ("ActiveTransform EndTime", "animated transforms"),
         ("ColorSpace \"rec2020\"", "colour space `rec2020`"),
     ] {
         let found = unsettled(before);

@@ -119,7 +119,7 @@ fn types_must_fit() {
 #[test]
 fn strings_have_escapes_and_text_is_counted_in_characters() {
     let found = causes("Shape \"ä\\\"b\" \"float c\" nan");
-    assert_eq!(found[0], "text:3:24: `nan` is no finite number");
+    assert_eq!(found[0], "text:3:24: `nan` is not a finite number");
     assert!(
         found[1].starts_with("text:3:1: shape `ä\\\"b` is not supported"),
         "{found:?}"
@@ -149,10 +149,7 @@ fn files_are_read_in_place_and_cycles_are_found() {
     assert_eq!(places("Include \"a/up.pbrt\" Shape \"disk\""), [1.0, 1.0]);
     assert_eq!(places("Import \"part.pbrt\" Shape \"disk\""), [1.0, 0.0]);
     let cycle = read("Include \"one.pbrt\"").unwrap_err();
-    assert_eq!(
-        cycle,
-        ["two.pbrt:2:1: file `one.pbrt` is read within itself"]
-    );
+    assert_eq!(cycle, ["two.pbrt:2:1: file `one.pbrt` includes itself"]);
     let bad = read("Import \"bad.pbrt\"").unwrap_err();
     assert!(bad[0].starts_with("bad.pbrt:2:2: shape `cube`"), "{bad:?}");
 }
@@ -173,7 +170,7 @@ fn files_lie_below_the_root() {
     assert!(
         found
             .iter()
-            .all(|cause| cause.contains("leads out of the folder")),
+            .all(|cause| cause.contains("is outside of the folder")),
         "{found:?}"
     );
 }

@@ -132,8 +132,11 @@ fn quadrics_have_sizes() {
             "Shape \"disk\" \"float innerradius\" 0.5",
             "innerradius is 0.5",
         ),
-        ("Scale 1 2 1 Shape \"sphere\"", "not scaled alike"),
-        ("Scale 1 0 1 Shape \"disk\"", "scaled to nothing"),
+        (
+            "Scale 1 2 1 Shape \"sphere\"",
+            "different scales along its axes",
+        ),
+        ("Scale 1 0 1 Shape \"disk\"", "scaled to size 0"),
         ("Shape \"curve\"", "shape `curve` is not supported"),
         (
             "Shape \"loopsubdiv\"",
@@ -165,7 +168,7 @@ fn patches_are_two_triangles() {
         assert_close(&[place.x / 2.0, place.y], &uv.to_array(), 0.0);
     }
     let twisted = "Shape \"bilinearmesh\" \"point3 P\" [0 0 0 2 0 0 0 1 0 2 1 1]";
-    assert!(causes(twisted)[0].contains("a patch that is no plane"));
+    assert!(causes(twisted)[0].contains("a patch that is not flat"));
 }
 
 #[test]

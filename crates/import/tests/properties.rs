@@ -43,7 +43,7 @@ fn all_causes_are_listed() {
     let found = causes(inside);
     for (line, what) in [
         (2, "shape `teapot` is not supported"),
-        (3, "`big` is no finite number"),
+        (3, "`big` is not a finite number"),
         (4, "bsdf `fur` is not supported"),
         (5, "no object has id `nothing`"),
         (6, "neither one number nor three"),
@@ -67,7 +67,7 @@ fn ids_are_there_once() {
     let twice = "<shape type=\"sphere\"><float name=\"radius\" value=\"1\"/><float name=\"radius\" value=\"1\"/></shape>";
     assert_eq!(
         causes(twice),
-        ["text:2:54: property `radius` is there twice"]
+        ["text:2:54: property `radius` is given twice"]
     );
 }
 

@@ -88,7 +88,7 @@ fn an_illuminance_that_no_factor_reaches_is_refused() {
     let text = format!("WorldBegin\n{light}\nShape \"sphere\"");
     let refused = import_pbrt(&text, folder.path(), &Options::default()).unwrap_err();
     assert!(
-        refused.to_string().contains("illuminance asks for"),
+        refused.to_string().contains("the factor for illuminance"),
         "{refused}"
     );
 }

@@ -68,9 +68,12 @@ fn matrices_are_written_row_by_row() {
 fn unsound_steps_are_causes() {
     for (step, what) in [
         ("<rotate angle=\"3\"/>", "an axis of length 0"),
-        ("<scale value=\"1\" x=\"2\"/>", "value beside x, y or z"),
-        ("<translate x=\"1.0f\"/>", "`1.0f` is no finite number"),
-        ("<translate x=\"nan\"/>", "`nan` is no finite number"),
+        (
+            "<scale value=\"1\" x=\"2\"/>",
+            "value together with x, y or z",
+        ),
+        ("<translate x=\"1.0f\"/>", "`1.0f` is not a finite number"),
+        ("<translate x=\"nan\"/>", "`nan` is not a finite number"),
         ("<matrix value=\"1 2 3\"/>", "3 numbers"),
         (
             "<matrix value=\"1 0 0 0 0 1 0 0 0 0 1 0 0 0 1 1\"/>",
@@ -78,9 +81,9 @@ fn unsound_steps_are_causes() {
         ),
         (
             "<lookat origin=\"1,1,1\" target=\"1,1,1\"/>",
-            "no direction",
+            "no viewing direction",
         ),
-        ("<shear x=\"1\"/>", "no part of a transform"),
+        ("<shear x=\"1\"/>", "is not allowed in a transform"),
     ] {
         let shape = format!(
             "<shape type=\"rectangle\"><transform name=\"to_world\">{step}</transform></shape>"

@@ -59,7 +59,7 @@ pub(crate) fn criteria(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     taken.curves(&Curves {
         title: "Criteria and photons".to_owned(),
         note: "*B*: the frequency below which 95 % of the power lies, at a fixed point a distance *d* off. Corrected: Ω_{ρ} |1 + 2*kd*/cos *θ*_{1}|, and behind an edge at *d'*: \
-               Ω_{ρ} |1 + *d* (cos *θ*_{0}/*d'* + 2*k*)/cos *θ*_{1}|. Where the corrected value is least the window sets what is measured."
+               Ω_{ρ} |1 + *d* (cos *θ*_{0}/*d'* + 2*k*)/cos *θ*_{1}|. At the minimum of the corrected value, the window determines the measured one."
             .to_owned(),
         y: AxisQuantity::new("*B*", "cycles/slope"),
         panels: panels.to_vec(),
@@ -129,7 +129,7 @@ fn counted(
     let batches = 0..scene.run.batches;
     let measurement = measured(&scene, Method::Photons, batches, taken.reporter)?;
     let found = measured_bandwidth(&measurement, 0).map_err(Failure::cannot_run)?;
-    let dark = || Failure::cannot_run(format!("no light comes to the eye of {name}"));
+    let dark = || Failure::cannot_run(format!("no light reaches the eye of {name}"));
     let found = found.ok_or_else(dark)?;
     Ok([(sweep.shown)(value), found.value, found.error])
 }

@@ -22,7 +22,7 @@ impl Flat {
 
     /// Widths along X, and distances along the central ray, of a scene with a rectangular light, one array of squares and a floor.
     pub(crate) fn of(scene: &Scene) -> Result<Self, Failure> {
-        let missing = || Failure::cannot_run(format!("{} has no flatland", scene.name));
+        let missing = || Failure::cannot_run(format!("{} has no flatland version", scene.name));
         let Light::Area {
             shape: Shape::Rectangle(light),
             ..

@@ -38,9 +38,11 @@ fn of_paper(request: &FigureRequest) -> Result<Vec<Subject>, Failure> {
     if let Some((option, _)) = of_scenes.iter().find(|(_, given)| *given) {
         let message = match request.arguments {
             ArgumentStyle::Command => {
-                format!("--{option} is for figures of scene files: etendue figure SCENE.ron")
+                format!(
+                    "--{option} applies only to figures of scene files: etendue figure SCENE.ron"
+                )
             }
-            ArgumentStyle::Python => format!("{option} is for figures of scenes"),
+            ArgumentStyle::Python => format!("{option} applies only to figures of scenes"),
         };
         return Err(Failure::bad_input(message));
     }

@@ -23,7 +23,7 @@ pub(crate) fn lights(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let heads = ["point", "point, after 2 m", "spot", "spot, after 2 m"];
     taken.plate(&Plate {
         title: "Light sources",
-        note: "A point is a Dirac in space and even in angle; its spectrum is even in space and, but for the window, a Dirac in angle. After travel its light is a line *x*\u{a0}=\u{a0}*d\u{a0}u*, and its spectrum *ν*\u{a0}=\u{a0}−*d\u{a0}ρ*.",
+        note: "A point is a Dirac in space and uniform in angle; its spectrum is uniform in space and, apart from the window, a Dirac in angle. After travel its light is a line *x*\u{a0}=\u{a0}*d\u{a0}u*, and its spectrum *ν*\u{a0}=\u{a0}−*d\u{a0}ρ*.",
         heads: heads.map(str::to_owned).to_vec(),
         rows: compared(&seen, false),
         feet: feet(&seen),
@@ -107,8 +107,8 @@ pub(crate) fn occluders(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         ),
     ];
     taken.plate(&Plate {
-        title: "Two occluders that together leave no light",
-        note: "Measured, the slice at azimuth 0. Each occluder leaves half of the light; their phases differ, and together they leave none.",
+        title: "Two occluders that together block all light",
+        note: "Measured, the slice at azimuth 0. Each occluder leaves half of the light, with a different phase; together they leave none.",
         heads: ["one occluder", "the other", "both"]
             .map(str::to_owned)
             .to_vec(),
@@ -150,7 +150,7 @@ pub(crate) fn parameterisations(taken: &FigureData<'_>) -> Result<Figure, Failur
     }
     taken.plate(&Plate {
         title: "Two parameterisations",
-        note: "Angles are counted along T, which is against X here: the shear has the other sign. *B*: 95 % bandwidths in the azimuth where they are largest; slopes and angles hardly differ.",
+        note: "Angles are measured along T, which is opposite to X here, so the shear has the opposite sign. *B*: 95 % bandwidths in the azimuth where they are largest; slopes and angles hardly differ.",
         heads: ["by slopes", "by angles"].map(str::to_owned).to_vec(),
         rows: compared(&seen, false),
         feet,
@@ -200,7 +200,7 @@ pub(crate) fn blockers(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     };
     taken.plate(&Plate {
         title: "Blockers of three sizes, seen from the receiver",
-        note: "Blockers take the share *blocked* of the light in the window. The receiver sees most high frequencies behind blockers of middle size: replicas of the smallest are sheared out of its reach.",
+        note: "Blockers block the share *blocked* of the light in the window. The receiver has most high frequencies behind blockers of medium size: replicas of the smallest are sheared beyond its range.",
         heads: ["pitch 1 m", "pitch 0.2 m", "pitch 0.04 m"]
             .map(str::to_owned)
             .to_vec(),

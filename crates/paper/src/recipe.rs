@@ -106,7 +106,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
     },
     Recipe {
         name: "7",
-        about: "one occluder, the other, and both: what each takes away differs in phase, and together they take all",
+        about: "one occluder, the other, and both: the light they block differs in phase, and together they block all of it",
         scenes: &[
             ("fig7_one", scene!("fig7_one")),
             ("fig7_other", scene!("fig7_other")),
@@ -119,7 +119,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
     },
     Recipe {
         name: "8",
-        about: "the receiver by slopes and by angles: what taking one for the other costs, and bandwidths",
+        about: "the receiver by slopes and by angles: the error of replacing one by the other, and bandwidths",
         scenes: &[("fig8", scene!("fig8"))],
         also: &[],
         has_table: false,
@@ -168,7 +168,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
     },
     Recipe {
         name: "13",
-        about: "directions in 3D by longitude and latitude, and what it costs to take these for flat",
+        about: "directions in 3D by longitude and latitude, and the error of treating these as flat",
         scenes: &[TWIST, ("twisted_glossy", scene!("table1/twisted_glossy"))],
         also: &[],
         has_table: true,
@@ -186,7 +186,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
     },
     Recipe {
         name: "15",
-        about: "the bandwidth of a glossy reflection step by step, and the criteria of Eqs. 20 and 21 beside what is measured",
+        about: "the bandwidth of a glossy reflection step by step, and the criteria of Eqs. 20 and 21 beside measurements",
         scenes: &[("fig15", scene!("fig15"))],
         also: &[
             ("bandwidth", scene!("bandwidth")),
@@ -198,7 +198,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
     },
     Recipe {
         name: "16",
-        about: "the criteria of Fig. 17, and where they put shading samples",
+        about: "the criteria of Fig. 17, and the shading samples they place",
         scenes: &[],
         also: &[],
         has_table: false,
@@ -207,7 +207,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
     },
     Recipe {
         name: "17",
-        about: "a picture of few shading samples: even ones, by the criteria, and a reference",
+        about: "a picture from few shading samples: uniform, by the criteria, and a reference",
         scenes: &[],
         also: &[],
         has_table: false,

@@ -136,7 +136,7 @@ pub(crate) fn adaptive(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     ];
     let steps = taken.plate(&Plate {
         title: "Bandwidth of a glossy reflection, step by step",
-        note: "A beam, light from far away with content at all frequencies in angle, on a glossy sphere. The lobe cuts the line off; curvature shears it twice, and travel once more.",
+        note: "A beam, distant light with content at all frequencies in angle, on a glossy sphere. The lobe limits the line; curvature shears it twice, and travel once more.",
         heads: heads.map(str::to_owned).to_vec(),
         rows: compared(&seen, false),
         feet: feet(&seen),

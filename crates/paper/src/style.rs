@@ -14,7 +14,7 @@ pub(crate) fn read(path: &Path) -> Result<Style, Failure> {
     let style: Style = ron::Options::default()
         .with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME)
         .from_bytes(&bytes)
-        .map_err(|e| fault(&format!("{e}; a style is such as {EXAMPLE}")))?;
+        .map_err(|e| fault(&format!("{e}; an example of a style is {EXAMPLE}")))?;
     let [least, most] = Style::WIDTHS;
     if !(least..=most).contains(&style.width) {
         return Err(fault(&format!(

@@ -70,7 +70,7 @@ fn sources(request: &FigureRequest) -> Result<Vec<&SceneSource>, Failure> {
     let sources = request.wanted.iter().map(|wanted| match wanted {
         Wanted::Scene(source) => Ok(source),
         Wanted::PaperFigure(name) => Err(Failure::bad_input(format!(
-            "{name} is no scene file, and beside scene files there is nothing else: they are one figure"
+            "{name} is not a scene file, and scene files make one figure that takes nothing else"
         ))),
     });
     sources.collect()

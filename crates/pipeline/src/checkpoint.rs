@@ -105,10 +105,10 @@ fn time_is_up(kept: &CheckpointStore, batches: usize) -> Failure {
     let [done, begun] = kept.count();
     let begun = match begun {
         0 => String::new(),
-        begun => format!(", and the beginning of {begun} more,"),
+        begun => format!(", and parts of {begun} more,"),
     };
     Failure::cannot_run(format!(
-        "time is up: {done} of {batches} batches{begun} are kept in {}; the same command with --resume goes on from them",
+        "time is up: {done} of {batches} batches{begun} are kept in {}; the same command with --resume continues from them",
         kept.folder().display()
     ))
 }
@@ -179,13 +179,14 @@ impl Keeper<'_> {
         if let Err(failure) = write() {
             if !self.is_full.swap(true, Ordering::Relaxed) {
                 let message = failure.message;
-                self.reporter
-                    .warn(&format!("{message}: a run that ends early cannot go on"));
+                self.reporter.warn(&format!(
+                    "{message}: a run that ends early cannot be resumed"
+                ));
             }
             return;
         }
         unfinished::keeps(
-            "interrupted: what is measured is kept, up to the last few seconds, and the same command with --resume goes on from it",
+            "interrupted: the measurement is kept, up to the last few seconds; the same command with --resume continues it",
         );
     }
 

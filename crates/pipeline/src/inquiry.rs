@@ -68,17 +68,19 @@ impl Inquiry {
         let [this, other] = methods.map(Method::words);
         let finding = match (tracers.verdict, theory.exact_verdict()) {
             (Verdict::Pass, Verdict::Fail) => {
-                format!("{this} and {other} agree, the prediction does not: a finding about theory")
+                format!(
+                    "{this} and {other} agree, the prediction differs: a finding about the theory"
+                )
             }
             (Verdict::Fail, Verdict::Pass) => {
-                format!("{other} and the prediction agree, {this} do not: a finding about {this}")
+                format!("{other} and the prediction agree, {this} differ: a finding about {this}")
             }
             (Verdict::Fail, Verdict::Fail) => {
                 format!("no two of {this}, {other} and the prediction agree")
             }
             (Verdict::Pass, Verdict::Pass) => both_pass([this, other], failed, theory, rays),
             (Verdict::Undecided, _) | (_, Verdict::Undecided) => {
-                format!("{other} are too few to tell who is wrong; take more photons")
+                format!("{other} are too few to decide which is wrong; use more photons")
             }
         };
         Self {
@@ -101,10 +103,10 @@ fn both_pass(
     let squares = disagreement(failed);
     let error = theory.excess_squared_error.unwrap_or(f64::INFINITY);
     if squares.iter().all(|square| *square >= DETECTABLE * error) {
-        return format!("{other} agree with both: chance may have made it fail; take another seed");
+        return format!("{other} agree with both: the failure may be chance; use another seed");
     }
     let noise = percent(theory.noise_limit);
-    let cannot = format!("{other} cannot tell who is wrong: their noise is {noise}");
+    let cannot = format!("{other} cannot decide which is wrong: their noise is {noise}");
     let positive = squares.into_iter().filter(|square| *square > 0.0);
     let least = positive.fold(f64::INFINITY, f64::min);
     // The standard error of a square falls at least as fast as the number of rays grows.
@@ -112,10 +114,10 @@ fn both_pass(
     if needed > rays && needed.is_finite() {
         let apart = percent(Some(least.sqrt()));
         format!(
-            "{cannot}, and {this} and the prediction are {apart} apart; it takes {needed:.1e} of them or more (--photons)"
+            "{cannot}, and {this} and the prediction differ by {apart}; {needed:.1e} of them or more are needed (--photons)"
         )
     } else {
-        format!("{cannot}, and the disagreement is within the noise; take more photons")
+        format!("{cannot}, and the disagreement is within the noise; use more photons")
     }
 }
 
@@ -186,7 +188,7 @@ mod tests {
     fn who_is_wrong_is_told() {
         assert!(found(1.0, 1.0, 1.0).is_empty());
         let theory = found(1.0, 1.0, 1.2).concat();
-        assert!(theory.ends_with("a finding about theory"), "{theory}");
+        assert!(theory.ends_with("a finding about the theory"), "{theory}");
         let photons = found(1.2, 1.0, 1.0).concat();
         assert!(photons.ends_with("a finding about photons"), "{photons}");
         let all = found(1.2, 1.0, 0.8).concat();
@@ -213,10 +215,10 @@ mod tests {
             let methods = [Method::Photons, Method::Backward];
             Inquiry::new(methods, &failed, (&passed, &passed), 1e6).finding
         };
-        let chance = "agree with both: chance may have made it fail";
+        let chance = "agree with both: the failure may be chance";
         assert!(found(1.25, 8.4e-6).contains(chance), "3.6 standard errors");
         let open = found(1.25, 8.5e-6);
-        assert!(open.contains("cannot tell who is wrong"), "{open}");
+        assert!(open.contains("cannot decide which is wrong"), "{open}");
         let open = found(1.25, 3e-5);
         for words in [
             "0.550 % apart",

@@ -31,7 +31,7 @@ fn check_rays(scene: &Scene, theories: &[Applicability]) -> Result<(), Failure> 
     let mut planes = scene.planes.iter().zip(theories);
     match planes.find(|(_, theory)| !theory.reasons.is_empty()) {
         Some((plane, theory)) => Err(Failure::bad_input(format!(
-            "{}: plane {}: the light is a ray file, and there is no prediction ({}); allowed: planes across the central ray before the first surface, behind flat blockers across it. `etendue measure` takes any",
+            "{}: plane {}: the light is a ray file, for which there is no prediction here ({}); allowed: planes across the central ray before the first surface, behind flat blockers across it. `etendue measure` accepts any plane",
             scene.name,
             plane.name,
             theory.reasons.join(", ")

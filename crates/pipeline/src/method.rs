@@ -36,7 +36,7 @@ pub fn step(method: Method) -> String {
     let shared = match method {
         Method::Photons | Method::Backward => "",
         // Otherwise no ray finds the light.
-        Method::Even => ", which go on as photons do: what is wrong on their way is not seen",
+        Method::Even => ", which continue as photons do: errors on their paths are not detected",
     };
     format!("instead of theory  {}{shared}", method.words())
 }

@@ -63,15 +63,15 @@ pub fn on_chain(plane: &PlaneReport) -> Option<String> {
     match verdict {
         Verdict::Pass => None,
         Verdict::Fail if chain.radiance_defect.abs() >= chain.defect => Some(format!(
-            "{name}: the first-order chain{printed} has a wrong scale: it leaves the central ray {} of its radiance",
+            "{name}: the first-order chain{printed} has a wrong scale: it gives the central ray {} of its radiance",
             percent(Some(1.0 + chain.radiance_defect)),
         )),
         Verdict::Fail => Some(format!(
-            "{name}: the first-order chain{printed} has a wrong map: however near to the central ray, its rays stay {} of the window's half-width off",
+            "{name}: the first-order chain{printed} has a wrong map: even close to the central ray, its rays are off by {} of the window's half-width",
             percent(Some(chain.defect)),
         )),
         Verdict::Undecided => Some(format!(
-            "{name}: the first-order chain is off by {} here and says nothing of this light field",
+            "{name}: the first-order chain is off by {} here and does not describe this light field",
             percent(Some(chain.error)),
         )),
     }

@@ -45,7 +45,7 @@ pub fn reached(
         let measurement = measured(scene, method, 0..scene.run.batches, reporter)?;
         let emitted = grouped(photons);
         let Some((plane, noise)) = noisiest(&measurement) else {
-            let none = format!("--target-error: none of {emitted} photons came into a window");
+            let none = format!("--target-error: none of {emitted} photons reached a window");
             return Err(Failure::cannot_run(none));
         };
         if noise <= target {
@@ -62,8 +62,7 @@ pub fn reached(
         }
         if photons == most || needed > MAX_FACTOR * most as f64 {
             return Err(Failure::cannot_run(format!(
-                "--target-error {} %: {now}, and falls as the root of their number or faster: \
-                 {needed:.1e} photons reach that; allowed: {}, more by --photons",
+                "--target-error {} %: {now}, and falls with the square root of their number or faster: {needed:.1e} photons suffice; allowed: {}, or more with --photons",
                 tidy(100.0 * target),
                 grouped(most)
             )));

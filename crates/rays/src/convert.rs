@@ -86,7 +86,7 @@ fn dropped(file: &RayFile) -> Vec<String> {
             let others = file.particles().filter(|p| p.pdg != mcpl::PHOTON).count();
             note(
                 others > 0,
-                &format!("kind and energy of {others} particles that are no photons:"),
+                &format!("kind and energy of {others} particles that are not photons:"),
             );
             note(
                 file.particles().any(|p| p.time_ms.abs() > 0.0),

@@ -32,7 +32,7 @@ impl<'a> ByteCursor<'a> {
             let left = self.left();
             Fault::byte(
                 self.at,
-                format!("{what} takes {length} bytes, and {left} are left"),
+                format!("{what} takes {length} bytes, but {left} are left"),
             )
         })?;
         self.at += length;

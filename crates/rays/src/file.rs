@@ -82,7 +82,7 @@ impl RayFile {
         } else if bytes.starts_with(b"\x93NUMPY") {
             npy::read(bytes).map(Self::Npy)
         } else {
-            let message = "no ray file that is read here: IES TM-25, MCPL and NPY begin with \"TM25\", \"MCPL\" and \"\\x93NUMPY\"";
+            let message = "not a supported ray file: IES TM-25, MCPL and NPY files begin with \"TM25\", \"MCPL\" and \"\\x93NUMPY\"";
             Err(Fault::byte(0, message))
         }
     }

@@ -50,7 +50,7 @@ pub(crate) fn read(bytes: &[u8]) -> Result<RaySet, Fault> {
     let found = bytes.len() - start;
     if rays.checked_mul(8 * columns) != Some(found) {
         let message = format!(
-            "{rays} rays of {} bytes should follow, and {found} bytes do",
+            "{rays} rays of {} bytes should follow, but {found} bytes do",
             8 * columns
         );
         return Err(Fault::byte(start, message));

@@ -272,15 +272,15 @@ fn malformed_files_are_refused_where_they_are() {
     let good = mcpl_2();
     refused(
         &good[..good.len() - 1],
-        "byte 93: 1 particles of 28 bytes should follow, and 27 bytes do",
+        "byte 93: 1 particles of 28 bytes should follow, but 27 bytes do",
     );
     refused(&[&good[..], &[0; 28]].concat(), "and 56 bytes do");
     let stray = [&good[..], b"\n"].concat();
     assert_eq!(McplFile::read(&stray).unwrap().write(), stray);
     refused(&good[..60], "left");
-    refused(b"hello", "no ray file");
-    refused(b"", "no ray file");
-    refused(b"MCPL004L", "MCPL002 and MCPL003");
+    refused(b"hello", "not a supported ray file");
+    refused(b"", "not a supported ray file");
+    refused(b"MCPL004L", "MCPL002, MCPL003");
     let with = |at: usize, new: &[u8]| {
         let mut bytes = good.clone();
         bytes[at..at + new.len()].copy_from_slice(new);
@@ -321,7 +321,7 @@ fn malformed_files_are_refused_where_they_are() {
     let ray = good.len() - 28;
     refused(
         &good[..good.len() - 4],
-        "1 rays of 28 bytes should follow, and 24 bytes do",
+        "1 rays of 28 bytes should follow, but 24 bytes do",
     );
     refused(&with(4, &2014_i32.to_le_bytes()), "version 2014");
     refused(&with(20, &u64::MAX.to_le_bytes()), "rays of 28 bytes");

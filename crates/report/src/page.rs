@@ -42,7 +42,7 @@ pub fn stored_data(folder: &Path) -> Result<String, Failure> {
     let inside = text
         .split_once(BEFORE)
         .and_then(|(_, rest)| rest.split_once(AFTER));
-    let (data, _) = inside.ok_or_else(|| fault("it holds no data of a run"))?;
+    let (data, _) = inside.ok_or_else(|| fault("it has no data of a run"))?;
     // A new index can be written for any page, so what is read from it is checked to be data.
     serde_json::from_str::<IgnoredAny>(data).map_err(|e| fault(&e.to_string()))?;
     Ok(data.to_owned())

@@ -17,8 +17,8 @@ use etendue_compare::{
 };
 use etendue_field::{Side, VirtualPlane, percent};
 use etendue_figures::{
-    Comparison, Figure, Guide, Picture, Scale, Strip, StripColumn, Style, comparison, section,
-    strip,
+    AcrossPictures, Comparison, Figure, Guide, Picture, Scale, Strip, StripColumn, Style,
+    comparison, section, strip,
 };
 use etendue_pipeline::MeasuredScene;
 use etendue_pipeline::Summary;
@@ -184,17 +184,41 @@ pub fn strip_of(
     let others = along.iter().map(|(plane, (compared, _))| {
         let grid = &compared.projection.mean.grid;
         let values = across(&compared.measured, [grid.half_x, grid.half_u])?;
-        Some((across_axes(plane, grid), values))
+        let [own, other] =
+            [0, compared.measured.grid.azimuths / 2].map(|k| at_azimuth(compared, k));
+        Some((across_axes(plane, grid), values, own, other))
     });
     let is_seen = !predicted && (section.other.is_some() || planes.iter().any(differs_across));
     let others: Option<Vec<_>> = if is_seen { others.collect() } else { None };
-    for (column, ([x, y], values)) in columns.iter_mut().zip(others.iter().flatten()) {
-        column.across = Some(Picture {
-            x: x.clone(),
-            y: y.clone(),
-            values: values.view(),
+    for (column, ([x, y], values, own, other)) in columns.iter_mut().zip(others.iter().flatten()) {
+        let spectrum = column.spectrum.clone();
+        column.spectrum.values = own.view();
+        // Of two lines through the origin the first is in the plane of incidence.
+        let is_shear = |guide: &&Guide| guide.through == [0.0, 0.0];
+        let shears: Vec<Guide> = column.guides.iter().filter(is_shear).copied().collect();
+        if let [own, other] = shears[..] {
+            column
+                .guides
+                .retain(|guide| *guide != other || own == other);
+        }
+        column.across = Some(AcrossPictures {
+            light_field: Picture {
+                x: x.clone(),
+                y: y.clone(),
+                values: values.view(),
+            },
+            spectrum: Picture {
+                values: other.view(),
+                ..spectrum
+            },
+            guides: shears.last().copied().into_iter().collect(),
         });
     }
+    let shown = if others.is_some() {
+        "at azimuth 0 below (*x*, *u*), and at 90° below (*y*, *v*)"
+    } else {
+        spectra_are(scene.planes.iter())
+    };
     let drawn = Strip {
         title: &format!(
             "{}: the light field along the path, and its spectrum",
@@ -204,7 +228,7 @@ pub fn strip_of(
             "{} photons, seed {}; spectra are {}.{dashed}",
             grouped(photons),
             scene.run.seed,
-            spectra_are(scene.planes.iter())
+            shown
         ),
         section: &section,
         columns,
@@ -214,6 +238,13 @@ pub fn strip_of(
         floor: FLOOR,
     };
     strip(&drawn, &style.copied().unwrap_or_default()).map_err(Failure::cannot_run)
+}
+
+/// The measured power spectrum at one azimuth, [ρ, ν].
+fn at_azimuth(compared: &PlaneComparison, azimuth: usize) -> Array2<f64> {
+    let slices = compared.measured.full();
+    let slice = slices.index_axis(ndarray::Axis(0), azimuth);
+    slice.mapv(|value| value.norm_sqr())
 }
 
 /// A description of which spectra of planes are drawn.

@@ -15,10 +15,10 @@ pub enum ReadError {
     #[error("not a regular file")]
     NotRegular,
     /// The path, with links followed, leads out of the folder.
-    #[error("outside of the folder it must be in, links followed")]
+    #[error("outside of the folder it must be in, after links are followed")]
     Outside,
     /// The file is longer than allowed.
-    #[error("{length} bytes long; at most {most} are read")]
+    #[error("{length} bytes long; allowed: at most {most}")]
     TooLong {
         /// Length of the file, bytes.
         length: u64,

@@ -266,12 +266,8 @@ fn overrides_reach_every_kind_of_field() {
         ("run.photon", "3", "photons"),
         ("planes.9.name", "a", "0 to 4"),
         ("run.photons", "many", "invalid type"),
-        (
-            "window.x.Box",
-            "0.2",
-            "allowed: Hann, or another set as a whole",
-        ),
-        ("description.a", "b", "nothing below a value"),
+        ("window.x.Box", "0.2", "allowed: Hann, or the whole item"),
+        ("description.a", "b", "nothing: a value has no fields"),
     ] {
         let message = set(path, value).unwrap_err().to_string();
         assert!(message.contains(part), "{part} not in: {message}");

@@ -336,7 +336,9 @@ fn total_reflection_is_named() {
     let grazing = r#"Smooth(name: "glass", center: (1.44, 0, 0.58), facing: (0.1, 0, 1), form: Plane, aperture: 0.3, event: Refraction(front: 1.5, back: 1))"#;
     let error = resolved(&text().replace(GLASS, grazing)).expect_err("total reflection");
     assert!(
-        error.to_string().contains("does not reflect it all"),
+        error
+            .to_string()
+            .contains("without total internal reflection"),
         "{error}"
     );
 }

@@ -31,7 +31,7 @@ pub(crate) fn unfit(error: &serde_path_to_error::Error<serde_json::Error>) -> St
         _ => String::new(),
     };
     let told = match told {
-        "expected value" => "no value of JSON stands here",
+        "expected value" => "not a JSON value",
         other => other,
     };
     format!("{field}: {told}{meant}; allowed: {}", wanted(&field))

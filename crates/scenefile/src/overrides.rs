@@ -101,10 +101,10 @@ fn refusal(node: &Value, name: &str) -> String {
         }
         Value::Object(fields) => fields.keys().cloned().collect::<Vec<_>>().join(", "),
         Value::String(here) if is_name_of_variant(name) => here.clone(),
-        _ => "nothing below a value".to_owned(),
+        _ => "nothing: a value has no fields".to_owned(),
     };
     let another = if is_name_of_variant(name) {
-        ", or another set as a whole, such as blockers.0=\"Grating(…)\""
+        ", or the whole item, such as blockers.0=\"Grating(…)\""
     } else {
         ""
     };

@@ -134,7 +134,7 @@ fn of_names(code: &Error, name: &str, path: &str) -> Option<(bool, String)> {
         }
         Error::DuplicateStructField { field, .. } => {
             let field = below(path, field);
-            (false, format!("{field} is stated twice; allowed: once"))
+            (false, format!("{field} is given twice; allowed: once"))
         }
         _ => return None,
     })
@@ -177,9 +177,9 @@ fn unexpected(code: &Error, text: &str, [line, column]: [usize; 2]) -> String {
         Error::ExpectedIdentifier => "the name of a field, or `)`",
         Error::ExpectedMapColon => "a colon after the name of a field",
         Error::TrailingCharacters => "nothing after the last bracket",
-        code => return format!("`{found}` stands here: {}", shown(code, limits::VALUE)),
+        code => return format!("unexpected `{found}`: {}", shown(code, limits::VALUE)),
     };
-    format!("`{found}` stands here; allowed: {allowed}")
+    format!("unexpected `{found}`; allowed: {allowed}")
 }
 
 /// The beginning of a value, on one line.

@@ -118,7 +118,10 @@ pub fn read(stored: &Stored<Held>, planes: &[VirtualPlane]) -> Result<Measuremen
     let held = &stored.index.content;
     let seed = stored.index.scene_file.run.seed;
     if held.seed != seed {
-        return Err(stored.fault(format!("seed {}; that of its scene is {seed}", held.seed)));
+        return Err(stored.fault(format!(
+            "seed {}; the seed of its scene is {seed}",
+            held.seed
+        )));
     }
     read_files(&|name| stored.npz(name), held, planes)
 }

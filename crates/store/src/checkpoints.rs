@@ -176,7 +176,7 @@ impl CheckpointStore {
     fn batch(&self, name: &CheckpointName, photons: u64, path: &Path) -> Result<Batch, Failure> {
         let bytes = read_file(path, available_memory()).map_err(Failure::bad_input)?;
         if *name != CheckpointName::new(name.batch, name.parts, &bytes) {
-            return Err(Failure::bad_input("its name has another hash"));
+            return Err(Failure::bad_input("the hash in its name does not match"));
         }
         let held = Held {
             seed: self.seed,

@@ -7,7 +7,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 /// Why a folder is not available.
-pub(super) const BUSY: &str = "another etendue is writing there";
+pub(super) const BUSY: &str = "another etendue process is writing there";
 
 /// A locked file, which is removed together with the lock.
 #[derive(Debug)]
@@ -25,7 +25,7 @@ impl Lock {
             let mut options = File::options();
             let options = options.read(true).write(true).create(true).truncate(false);
             if path.is_symlink() {
-                return Err(Failure::write(path, "a link is there"));
+                return Err(Failure::write(path, "it is a link"));
             }
             let file = options.open(path).map_err(failure)?;
             match file.try_lock() {

@@ -23,12 +23,12 @@ impl OutputFile {
     pub fn claim(path: &Path, force: bool, inputs: &[PathBuf]) -> Result<Self, Failure> {
         let failure = |e: io::Error| Failure::write(path, e);
         let Some(name) = path.file_name() else {
-            return Err(Failure::write(path, "it names no file"));
+            return Err(Failure::write(path, "it does not name a file"));
         };
         match fs::symlink_metadata(path) {
             Err(_) => {}
             Ok(found) if !found.is_file() => {
-                return Err(Failure::write(path, "what stands there is no regular file"));
+                return Err(Failure::write(path, "it exists and is not a regular file"));
             }
             Ok(_) => {
                 let there = path.canonicalize().map_err(failure)?;
@@ -40,7 +40,7 @@ impl OutputFile {
                     )));
                 }
                 if !force {
-                    let what = "a file stands there; --force replaces it";
+                    let what = "the file exists; --force replaces it";
                     return Err(Failure::write(path, what));
                 }
             }

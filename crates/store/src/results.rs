@@ -47,7 +47,7 @@ const UNFINISHED: &str = ".etendue-unfinished";
 const LOCK: &str = ".etendue.lock";
 
 /// Why nothing is written below a folder.
-pub const LINKED: &str = "a link or a file stands where a folder is to be";
+pub const LINKED: &str = "a link or a file is in the place of a folder";
 
 /// How long another process may hold a folder before a message is given.
 const PATIENCE: Duration = Duration::from_secs(3);
@@ -113,7 +113,7 @@ impl Results {
     pub fn claim(folder: &Path, plan: Plan) -> Result<Self, Failure> {
         let failure = |e| Failure::write(folder, e);
         if folder.symlink_metadata().is_ok() && !folder.is_dir() {
-            return Err(Failure::write(folder, "what stands there is no folder"));
+            return Err(Failure::write(folder, "it exists and is not a folder"));
         }
         let is_new = !folder.exists();
         fs::create_dir_all(folder).map_err(failure)?;
@@ -208,7 +208,7 @@ impl Results {
         if !self.planned().any(|planned| planned == name) {
             return Err(Failure::write(
                 &shown,
-                "it was not announced: a fault of etendue",
+                "it was not announced: a bug in etendue",
             ));
         }
         let path = self.staged(name);

@@ -93,7 +93,7 @@ impl<T: DeserializeOwned> Stored<T> {
             )));
         }
         if !sealed::is_sealed(&bytes) {
-            let what = "it was changed since it was written: its index_hash is not that of what stands before it";
+            let what = "it was changed since it was written: its index_hash does not match the text before it";
             return Err(fault(what.to_owned()));
         }
         let index: Index<T> = serde_json::from_slice(&bytes).map_err(|e| fault(e.to_string()))?;
@@ -187,7 +187,7 @@ impl<T> Stored<T> {
         let [own, others] = values;
         let (path, other) = (self.path.display(), other.path.display());
         Err(Failure::bad_input(format!(
-            "{path} and {other} do not fit together: {field} is {own} and {others}"
+            "{path} and {other} are incompatible: {field} is {own} and {others}"
         )))
     }
 

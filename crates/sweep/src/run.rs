@@ -5,9 +5,9 @@ use crate::points::SweepPoints;
 use crate::quiet_reporter::Unshown;
 use crate::request::SweepRequest;
 use crate::table::{self, BANDWIDTHS, PointResult, SLOPE};
-use crate::values::{Sweep, shown};
+use crate::values::{Sweep, SweepPoint, short, shown};
 use etendue_compare::Applicability;
-use etendue_field::{decimals, fixed, uncertain};
+use etendue_field::{decimals, fixed, tidy, uncertain};
 use etendue_pipeline::{Leader, Reporter, Work, limits, load, method};
 use etendue_scene::{Scene, SceneFile, read_file};
 use etendue_store::sealed::json;
@@ -62,7 +62,7 @@ pub fn run(
     // its own.
     drop(Results::claim(folder, plan(request, &inputs))?);
     unfinished::keeps(
-        "interrupted: the points that are done are kept, and the same command goes on from them",
+        "interrupted: finished points are kept; the same command continues from them",
     );
     let found = run_all(request, folder, &inputs, all, workers, reporter)?;
     let results = Results::claim(folder, plan(request, &inputs))?;
@@ -182,20 +182,35 @@ fn folders(
     folder: &Path,
     all: &SweepPoints,
 ) -> Result<Vec<String>, Failure> {
-    let name = |scene: &Scene| {
-        let name = format!("points/{}", name_of(scene, request));
+    let name = |(scene, point): (&Scene, &SweepPoint)| {
+        let name = format!("points/{}", name_of(scene, point, request));
         match inside(folder, &format!("{name}/{SUMMARY}")) {
             Some(_) => Ok(name),
             None => Err(Failure::write(&folder.join(name), LINKED)),
         }
     };
-    all.scenes.iter().map(name).collect()
+    all.scenes.iter().zip(&all.points).map(name).collect()
 }
 
-/// The name of a point: the same for the same scene and method.
-fn name_of(scene: &Scene, request: &SweepRequest) -> String {
+/// The name of a point: its values, and a hash that is the same for the same scene and method.
+fn name_of(scene: &Scene, point: &SweepPoint, request: &SweepRequest) -> String {
+    /// Maximum length of the values in a name.
+    const MAX_VALUES: usize = 48;
+    let values = point
+        .iter()
+        .map(|(path, x)| format!("{}={}_", short(path), tidy(*x)));
+    let values: String = values.collect();
     let what = format!("{} {}", scene.hash(), request.method.words());
-    blake3::hash(what.as_bytes()).to_hex()[..16].to_owned()
+    let hash = blake3::hash(what.as_bytes()).to_hex();
+    format!(
+        "{}{}",
+        if values.len() > MAX_VALUES {
+            ""
+        } else {
+            &values
+        },
+        &hash[..16]
+    )
 }
 
 /// The content of `sweep.json`, except for the hashes of the files.

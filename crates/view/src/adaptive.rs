@@ -34,7 +34,7 @@ pub(crate) fn render(
             ArgumentStyle::Python => "method='reference'",
         };
         return Err(Failure::bad_input(format!(
-            "the camera has a lens, and the criteria of few shading samples are about a pinhole: allowed is {allowed}"
+            "the camera has a lens, and the criteria of few shading samples assume a pinhole; allowed: {allowed}"
         )));
     }
     let pixels = camera.size[0] * camera.size[1];

@@ -112,7 +112,7 @@ fn camera_at(viewpoint: &Viewpoint, arguments: ArgumentStyle) -> Result<Camera, 
     let frame = frame.ok_or_else(|| {
         let [from, at, up] = ["look_from", "look_at", "up"].map(|name| arguments.name(name));
         Failure::bad_input(format!(
-            "{from} and {at} are one place, or {up} goes along the line between them"
+            "{from} and {at} are the same point, or {up} is parallel to the line between them"
         ))
     })?;
     Ok(Camera {

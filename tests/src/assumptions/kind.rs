@@ -4,7 +4,7 @@
 /// Each assumption, with a phrase from the reasons for its violation. A reason belongs to the first
 /// phrase it contains.
 const PHRASES: [(&str, &str); 15] = [
-    ("surfaces are met in their order", "out of turn"),
+    ("surfaces are met in their order", "out of order"),
     (
         "a surface is met once, and not in its own shadow",
         "in its own shadow",

@@ -12,11 +12,11 @@ fn qualities() -> impl TypedValueParser<Value = Quality> {
     one_of([
         named(
             Quality::Draft,
-            "An eighth of the photons of the scenes, twice as many frequencies as they ask for along each axis",
+            "An eighth of the photons of the scenes, twice their number of frequencies along each axis",
         ),
         named(
             Quality::Print,
-            "The photons of the scenes, four times as many frequencies",
+            "The photons of the scenes, four times their number of frequencies along each axis",
         ),
     ])
 }

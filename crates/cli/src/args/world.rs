@@ -325,7 +325,7 @@ fn enough(text: &str) -> Result<u64, String> {
         return Ok(number);
     }
     Err(format!(
-        "allowed: from {} on, one for each batch",
+        "allowed: {} or more, one for each batch",
         ranges::RAYS.start()
     ))
 }

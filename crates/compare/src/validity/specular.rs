@@ -31,7 +31,9 @@ pub(crate) fn unforeseen_by_rays(
     let apart = off.map(|off| off.apart);
     found.extend(apart.filter(|apart| *apart > OFF_PATCHES).map(|apart| {
         let percent = 100.0 * apart;
-        format!("a mesh that sends light {percent:.3} % of the window beside its osculating patch")
+        format!(
+            "a mesh that sends light {percent:.3} % of the window away from its osculating patch"
+        )
     }));
     (found, later)
 }

@@ -24,7 +24,7 @@ impl Meets {
             Self::Layer { .. } => None,
             Self::OutOfTurn(object) => {
                 let name = scene.name_of(object);
-                Some(format!("light that meets {name} out of turn"))
+                Some(format!("light that meets {name} out of order"))
             }
             Self::Itself(object) => {
                 let name = scene.name_of(object);

@@ -36,9 +36,8 @@ impl Writer {
             Light::Environment { environment } => {
                 let (width, values) = sky::map(environment);
                 let file = self.file("sky.pfm", pfm(width, &values));
-                self.xml.comment(
-                    "the sky; where it would shine against the central ray it is dark, as in Étendue",
-                );
+                self.xml
+                    .comment("the sky; directions against the central ray are dark, as in Étendue");
                 self.xml.sky(&file, &environment.frame);
             }
             Light::Rays { .. } => return Err(NotInMitsuba::Rays),

@@ -27,9 +27,7 @@ impl Xml {
             xml.comment(&plane_text(plane));
         }
         let surfaces = (scene.path.legs.len() - 1).max(1);
-        xml.comment(&format!(
-            "Light is followed over {surfaces} surfaces at most."
-        ));
+        xml.comment(&format!("Paths have at most {surfaces} surfaces."));
         xml.line(&format!(
             "<integrator type=\"path\"><integer name=\"max_depth\" value=\"{}\"/></integrator>",
             surfaces + 1

@@ -189,7 +189,7 @@ impl GltfReader<'_> {
         let bytes: Arc<[u8]> = match (&buffer.uri, self.chunk) {
             (Some(uri), _) => self.bytes_of(uri)?.into(),
             (None, Some(chunk)) if number == 0 => chunk.into(),
-            _ => return Err("has no uri, and the file no chunk for it".to_owned()),
+            _ => return Err("has no uri, and the file has no chunk for it".to_owned()),
         };
         let length = usize::try_from(buffer.byte_length.0).ok();
         let within = length.and_then(|length| bytes.get(..length));

@@ -20,7 +20,7 @@ impl<'a> GltfReader<'a> {
             return;
         };
         let Some(looking) = placed.looking() else {
-            return self.cause(&placed.path, "scales a camera to nothing");
+            return self.cause(&placed.path, "scales a camera to size 0");
         };
         let read = match (&camera.perspective, &camera.orthographic) {
             (Some(of), _) => self.perspective(of, &format!("{path}.perspective")),
@@ -42,7 +42,7 @@ impl<'a> GltfReader<'a> {
             projection,
             clip,
         });
-        self.note_once("cameras have no number of pixels: 512 across, and as many down as their aspect ratio asks for");
+        self.note_once("cameras have no resolution: 512 pixels across, and a height according to their aspect ratio");
     }
 
     /// The projection, its scale, the aspect ratio of the picture, and the clip planes.
@@ -55,7 +55,7 @@ impl<'a> GltfReader<'a> {
         let aspect = match of.aspect_ratio {
             Some(aspect) => self.within(&format!("{path}.aspectRatio"), aspect, ASPECTS),
             None => {
-                self.note(path, "has no aspectRatio: 1 is taken");
+                self.note(path, "has no aspectRatio: 1 is used");
                 Some(1.0)
             }
         };

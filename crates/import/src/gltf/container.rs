@@ -106,7 +106,7 @@ fn check(root: &Root, place: &SourcePlace, report: &Report) -> bool {
             return;
         }
         let what = match error {
-            Error::IndexOutOfBounds => "an index of nothing",
+            Error::IndexOutOfBounds => "an index out of bounds",
             Error::Missing => "is missing",
             Error::Oversize => "too large",
             _ => "not allowed",
@@ -123,7 +123,7 @@ fn has_positions(root: &Root, place: &SourcePlace, report: &Report) -> bool {
         for (j, primitive) in mesh.primitives.iter().enumerate() {
             if primitive.attributes.values().any(|at| at.value() >= count) {
                 let message =
-                    format!("meshes[{i}].primitives[{j}].attributes: an index of nothing");
+                    format!("meshes[{i}].primitives[{j}].attributes: an index out of bounds");
                 report.cause(place, message);
                 is_sound = false;
             }

@@ -41,7 +41,7 @@ impl GltfReader<'_> {
         }
         self.note(
             &path,
-            "approximated: a mixture of what is opaque and of glass",
+            "approximated: a mixture of an opaque material and glass",
         );
         let weight = Texture::Constant(share);
         let of = Box::new([opaque, glass]);
@@ -56,10 +56,10 @@ impl GltfReader<'_> {
         let roughness = roughness(alpha?).filter(|_| !is_thin);
         let message = match is_thin {
             true => {
-                "approximated: a smooth thin sheet, with all reflections within; its base colour counts once"
+                "approximated: a smooth thin sheet with all internal reflections; its base colour applies once"
             }
             false => {
-                "approximated: an interface that the base colour counts at, each time light passes"
+                "approximated: an interface whose base colour applies each time light passes it"
             }
         };
         self.note(path, message);

@@ -14,13 +14,13 @@ impl<'a> GltfReader<'a> {
         let extensions = self.root.extensions.as_ref();
         let lights = extensions.and_then(|of| of.khr_lights_punctual.as_ref());
         let Some(light) = lights.and_then(|of| of.lights.get(number)) else {
-            return self.cause(&placed.path, "a light that is not there");
+            return self.cause(&placed.path, "an unknown light");
         };
         if self.world.lights.len() >= MAX_SHAPES {
             return self.cause(&placed.path, format!("more than {MAX_SHAPES} lights"));
         }
         if light.range.is_some() {
-            let message = "left out: light goes on without end";
+            let message = "left out: light has no maximum range";
             self.note(&format!("{path}.range"), message);
         }
         if let Some(light) = self.light(light, placed, &path) {
@@ -41,7 +41,7 @@ impl<'a> GltfReader<'a> {
         };
         let looking = placed.looking();
         if looking.is_none() && kind != Type::Point {
-            self.cause(&placed.path, "scales a light to nothing");
+            self.cause(&placed.path, "scales a light to size 0");
         }
         match kind {
             Type::Point => Some(Light::Point {

@@ -41,7 +41,7 @@ impl<'a> GltfReader<'a> {
             None => scatter,
             Some(opacity) => {
                 if emission.is_some() {
-                    let message = "does not weaken what the material emits";
+                    let message = "does not affect the emission of the material";
                     self.note(&format!("{}.alphaMode", draft.path), message);
                 }
                 let of = Box::new(scatter);
@@ -50,7 +50,7 @@ impl<'a> GltfReader<'a> {
         };
         if draft.sets.len() > 1 {
             let message = format!(
-                "pictures by several texture coordinates, {:?}; allowed: one of them",
+                "pictures with several sets of texture coordinates, {:?}; allowed: one set",
                 draft.sets
             );
             self.cause(&draft.path, message);
@@ -75,7 +75,7 @@ impl<'a> GltfReader<'a> {
             }
             true => metallic_roughness,
             false => {
-                self.note_once("surfaces that are not doubleSided scatter light on their front alone; their backs, which glTF does not show, are black");
+                self.note_once("surfaces that are not doubleSided scatter light on their front only; their backs, which glTF does not show, are black");
                 metallic_roughness
             }
         };
@@ -124,7 +124,7 @@ impl<'a> GltfReader<'a> {
         let texture = match &source.pbr_metallic_roughness.base_color_texture {
             Some(info) => {
                 if cutoff.is_some() {
-                    let message = "approximated: pixels are let through or not, without what is between their centres";
+                    let message = "approximated: each pixel is opaque or transparent, with no interpolation between pixels";
                     self.note(&format!("{}.alphaCutoff", draft.path), message);
                 }
                 self.bitmap(draft, info, "pbrMetallicRoughness.baseColorTexture", level)?
@@ -144,7 +144,7 @@ impl<'a> GltfReader<'a> {
             self.cause(&format!("{path}.normalTexture"), message);
         }
         if source.occlusion_texture.is_some() {
-            let message = "left out: light is followed instead";
+            let message = "left out: paths of light determine the occlusion";
             self.note(&format!("{path}.occlusionTexture"), message);
         }
         let Some(extensions) = &source.extensions else {

@@ -74,7 +74,7 @@ impl GltfReader<'_> {
 
     fn uvs(&mut self, primitive: &Primitive, path: &str, set: u32) -> Option<Vec<[f64; 2]>> {
         let Some(index) = attribute(primitive, Semantic::TexCoords(set)) else {
-            let message = format!("has no TEXCOORD_{set}, which its material asks for");
+            let message = format!("has no TEXCOORD_{set}, which its material needs");
             self.cause(path, message);
             return None;
         };
@@ -92,13 +92,13 @@ impl GltfReader<'_> {
         }
         let mended = parts.mend_normals();
         if mended {
-            let message = "approximated: vertices without a normal have that of a triangle";
+            let message = "approximated: vertices without a normal use that of a triangle";
             self.note(path, message);
         }
         let turned = parts.turn_normals();
         if turned > 0 {
             let message = format!(
-                "{turned} normals point away from the front of their triangles, and are turned over"
+                "{turned} normals point away from the front of their triangles, and are reversed"
             );
             self.note(path, message);
         }
@@ -109,7 +109,7 @@ impl GltfReader<'_> {
         if primitive.targets.is_some() {
             self.note(
                 &format!("{path}.targets"),
-                "left out: the mesh is as it is without",
+                "left out: the mesh keeps its base shape",
             );
         }
         if attribute(primitive, Semantic::Colors(0)).is_some() {

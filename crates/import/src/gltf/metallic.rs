@@ -105,7 +105,7 @@ impl GltfReader<'_> {
             });
         }
         let path = format!("{}.{PBR}", draft.path);
-        self.note(&path, format!("approximated: a diffuse base below a coat of index {index}, with light reflected within"));
+        self.note(&path, format!("approximated: a diffuse base below a coat of index {index}, with internal reflections"));
         let alpha = match alpha {
             Texture::Bitmap(bitmap) => {
                 let values = bitmap.pixels.values();
@@ -164,7 +164,10 @@ impl GltfReader<'_> {
         let specular = factor * self.color.of(color.map(f64::from));
         let is_plain = specular <= 0.0 || (specular - 1.0).abs() < 1e-9;
         if !is_plain {
-            self.note(&path, "approximated: a factor on what the coat reflects");
+            self.note(
+                &path,
+                "approximated: a factor on the reflection of the coat",
+            );
         }
         Some(DielectricCoat { index, specular })
     }

@@ -29,7 +29,7 @@ impl<'a> GltfReader<'a> {
                 continue;
             };
             if std::mem::replace(&mut met[number], true) {
-                self.cause(&path, "is below two nodes, or below itself");
+                self.cause(&path, "has two parents, or is its own ancestor");
                 continue;
             }
             let Some(own) = self.own(node, &path) else {
@@ -63,7 +63,7 @@ impl<'a> GltfReader<'a> {
         };
         if self.root.scenes.len() > 1 {
             let others = self.root.scenes.len() - 1;
-            let message = format!("is shown; {others} other scenes are left out");
+            let message = format!("is used; {others} other scenes are left out");
             self.note(&format!("scenes[{chosen}]"), message);
         }
         scene.nodes.iter().map(|node| node.value()).collect()
@@ -76,7 +76,7 @@ impl<'a> GltfReader<'a> {
             (Some(first), true) => {
                 self.cause(
                     &format!("nodes[{first}]"),
-                    "is below two nodes, or below itself",
+                    "has two parents, or is its own ancestor",
                 );
             }
             (Some(_), false) => self.note("nodes", format!("{unmet} are not in the scene")),
@@ -94,7 +94,7 @@ impl<'a> GltfReader<'a> {
         if node.skin.is_some() {
             self.note(
                 &format!("{path}.skin"),
-                "left out: the mesh is as it was bound",
+                "left out: the mesh keeps its bind pose",
             );
         }
         if let Some(mesh) = node.mesh {
@@ -121,7 +121,7 @@ impl<'a> GltfReader<'a> {
             node.translation.is_some() || node.rotation.is_some() || node.scale.is_some();
         match node.matrix {
             Some(_) if is_split => {
-                self.cause(path, "matrix beside translation, rotation or scale");
+                self.cause(path, "matrix together with translation, rotation or scale");
                 None
             }
             Some(matrix) => self.matrix(matrix, path),
@@ -156,7 +156,7 @@ impl<'a> GltfReader<'a> {
                     return None;
                 }
                 if (length - 1.0).abs() > UNIT {
-                    let message = format!("has length {length}, and is brought to 1");
+                    let message = format!("has length {length}, and is normalised");
                     self.note(&format!("{path}.rotation"), message);
                 }
                 turn.normalize()

@@ -30,7 +30,7 @@ impl<'a> GltfReader<'a> {
         let size: f64 = lengths.iter().product();
         let is_tiny = lengths.iter().any(|length| *length < 1.0 / MAX_NUMBER);
         if is_tiny || linear.determinant().abs() <= 1e-12 * size {
-            let message = "scales a mesh to nothing: left out";
+            let message = "scales a mesh to size 0: left out";
             return self.note(&placed.path, message);
         }
         let own = || mesh.name.clone();
@@ -129,7 +129,7 @@ impl<'a> GltfReader<'a> {
                 let fits = spent.map_err(|error| self.cause(path, error)).is_ok();
                 let made = parts.finish().filter(|_| fits).map(Arc::new);
                 let message = format!(
-                    "shines on both sides: its back is a surface of its own, {gap:.3e} behind"
+                    "emits on both sides: its back is a separate surface, {gap:.3e} behind"
                 );
                 self.note(path, message);
                 self.backs.insert(key, made.clone());

@@ -68,7 +68,8 @@ impl GltfReader<'_> {
         };
         let [across, down] = [wrap(sampler.wrap_s), wrap(sampler.wrap_t)];
         if across != down {
-            let message = format!("approximated: wrapS, {across:?}, is taken for wrapT, {down:?}");
+            let message =
+                format!("approximated: wrapS, {across:?}, is used in place of wrapT, {down:?}");
             self.note(path, message);
         }
         let filter = match sampler.mag_filter {

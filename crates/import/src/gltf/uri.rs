@@ -23,7 +23,7 @@ pub(super) fn source(uri: &str, most: u64) -> Result<BufferSource, String> {
     if let Some(data) = uri.strip_prefix("data:") {
         let (kind, text) = data.split_once(',').ok_or("is data without a comma")?;
         if !kind.ends_with(";base64") {
-            return Err("is data in another code; allowed: base64".to_owned());
+            return Err("is data in another encoding; allowed: base64".to_owned());
         }
         // Four characters encode three bytes.
         if (text.len() as u64) / 4 * 3 > most {
@@ -34,7 +34,7 @@ pub(super) fn source(uri: &str, most: u64) -> Result<BufferSource, String> {
         return Ok(BufferSource::Data(bytes));
     }
     if uri.contains("://") {
-        return Err("is on another machine; allowed: files and data".to_owned());
+        return Err("is remote; allowed: files and data".to_owned());
     }
     unescaped(uri).map(BufferSource::File)
 }

@@ -51,7 +51,7 @@ impl Tree<'_> {
             return Err(told("includes itself".to_owned()));
         }
         if self.open.len() > MOST_INCLUDED {
-            return Err(format!("more than {MOST_INCLUDED} files in one another"));
+            return Err(format!("includes nested more than {MOST_INCLUDED} deep"));
         }
         self.includes += 1;
         if self.includes > MAX_INCLUDES {

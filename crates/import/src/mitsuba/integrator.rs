@@ -39,7 +39,7 @@ impl<'a> MitsubaReader<'a> {
 
     fn note_depth(&self, object: &'a MitsubaObject) {
         let message = format!(
-            "integrator {} is left out: light is followed without an end",
+            "integrator {} is left out: paths have no maximum length",
             quoted(&object.plugin)
         );
         self.report.note(&object.place, message);
@@ -53,14 +53,14 @@ impl<'a> MitsubaReader<'a> {
             0 => {
                 self.report.cause(
                     self.place_of(object, "max_depth"),
-                    "max_depth is 0, which shows nothing; allowed: -1, or from 1 on",
+                    "max_depth is 0, which shows nothing; allowed: -1, or 1 or more",
                 );
                 None
             }
             depth => {
                 let less = depth.checked_sub(1).map(u32::try_from);
                 let Some(Ok(less)) = less else {
-                    let message = format!("max_depth is {depth}; allowed: -1, or from 1 on");
+                    let message = format!("max_depth is {depth}; allowed: -1, or 1 or more");
                     self.report
                         .cause(self.place_of(object, "max_depth"), message);
                     return None;

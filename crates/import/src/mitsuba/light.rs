@@ -56,7 +56,7 @@ impl<'a> MitsubaReader<'a> {
         let irradiance = self.strength(object, "irradiance");
         let direction = direction?.unwrap_or(DVec3::Z).try_normalize();
         if direction.is_none() {
-            self.report.cause(&object.place, "a direction of no length");
+            self.report.cause(&object.place, "a direction of length 0");
         }
         Some(Light::Directional {
             direction: direction?,
@@ -77,7 +77,7 @@ impl<'a> MitsubaReader<'a> {
     ) -> Option<Option<DVec3>> {
         match [name, "to_world"].map(|name| self.has(object, name)) {
             [true, true] => {
-                let message = format!("{name} beside to_world; allowed: one of both");
+                let message = format!("{name} together with to_world; allowed: one of them");
                 self.report.cause(&object.place, message);
                 None
             }
@@ -86,7 +86,7 @@ impl<'a> MitsubaReader<'a> {
                 let found = of(self.transform(object, "to_world")?);
                 if found.is_none() {
                     self.report
-                        .cause(&object.place, "to_world leaves no direction");
+                        .cause(&object.place, "to_world gives no direction");
                 }
                 found.map(Some)
             }
@@ -134,7 +134,7 @@ impl<'a> MitsubaReader<'a> {
 
     fn sky(&mut self, object: &'a MitsubaObject) -> Option<Light> {
         let scale = match self.has(object, "scale") {
-            true => self.number_within(object, "scale", "from 0 on", |s| s >= 0.0),
+            true => self.number_within(object, "scale", "0 or more", |s| s >= 0.0),
             false => Some(1.0),
         };
         let to_world = self.rigid(object);
@@ -142,7 +142,7 @@ impl<'a> MitsubaReader<'a> {
         let (scale, to_world) = (scale?, to_world?);
         if pixels.values().iter().any(|v| *v < 0.0) {
             self.report
-                .cause(&object.place, "pixels below 0; allowed: from 0 on");
+                .cause(&object.place, "pixels below 0; allowed: 0 or more");
             return None;
         }
         let bytes = size_of_val(pixels.values()) as u64;

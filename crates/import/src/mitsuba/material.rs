@@ -59,14 +59,13 @@ impl<'a> MitsubaReader<'a> {
         if self.made_materials > MAX_MATERIALS {
             // References may duplicate nested materials.
             if self.made_materials == MAX_MATERIALS + 1 {
-                let message =
-                    format!("more than {MAX_MATERIALS} bsdfs, with all that are repeated");
+                let message = format!("more than {MAX_MATERIALS} bsdfs, counting repetitions");
                 self.report.cause(&object.place, message);
             }
             return None;
         }
         if depth > MAX_DEPTH {
-            let message = format!("more than {MAX_DEPTH} bsdfs in one another, or one in itself");
+            let message = format!("bsdfs nested more than {MAX_DEPTH} deep, or one in itself");
             self.report.cause(&object.place, message);
             return None;
         }
@@ -115,7 +114,7 @@ impl<'a> MitsubaReader<'a> {
         };
         let has_index = self.has(object, "eta") || self.has(object, "k");
         if name != "none" && has_index {
-            let message = "material beside eta or k; allowed: one of both";
+            let message = "material together with eta or k; allowed: one of them";
             self.report
                 .cause(self.place_of(object, "material"), message);
             return None;
@@ -142,7 +141,7 @@ impl<'a> MitsubaReader<'a> {
         match self.texture_or(object, name, Role::Number, default)? {
             Texture::Constant(value) if value >= 0.0 => Some(value),
             _ => {
-                let message = format!("{name} is no number from 0 on");
+                let message = format!("{name} is not a number of 0 or more");
                 self.report.cause(self.place_of(object, name), message);
                 None
             }
@@ -256,7 +255,7 @@ impl<'a> MitsubaReader<'a> {
         if texture.largest() > 0.0 {
             return Some(as_number(texture));
         }
-        let message = format!("{name} is nowhere above 0");
+        let message = format!("{name} is not above 0 anywhere");
         self.report.cause(self.place_of(object, name), message);
         None
     }

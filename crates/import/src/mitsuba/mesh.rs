@@ -77,7 +77,7 @@ impl<'a> MitsubaReader<'a> {
         let value = self.whole(object, "shape_index")?;
         let number = u32::try_from(value);
         if number.is_err() {
-            let message = format!("shape_index is {value}; allowed: from 0 on");
+            let message = format!("shape_index is {value}; allowed: 0 or more");
             self.report
                 .cause(self.place_of(object, "shape_index"), message);
         }
@@ -139,7 +139,7 @@ impl<'a> MitsubaReader<'a> {
             true => serialized::read(&bytes, key.number, self.files),
             false => DetailedMesh::parse(&key.path, &bytes)
                 .map(MeshParts::from)
-                .map_err(|fault| format!("is no sound mesh: {fault}")),
+                .map_err(|fault| format!("is not a valid mesh: {fault}")),
         }
     }
 
@@ -173,7 +173,7 @@ impl<'a> MitsubaReader<'a> {
             (false, Some(_)) => {
                 parts.face_normals();
                 if parts.mend_normals() {
-                    let message = "approximated: vertices without a normal have that of a triangle";
+                    let message = "approximated: vertices without a normal use that of a triangle";
                     self.report.note(&object.place, message);
                 }
             }

@@ -20,7 +20,7 @@ impl<'a> MitsubaReader<'a> {
             },
         };
         if both.iter().any(lets_through) {
-            let message = "twosided around a bsdf that lets light through";
+            let message = "twosided around a bsdf that transmits light";
             self.report.cause(&object.place, message);
             return None;
         }
@@ -67,7 +67,7 @@ impl<'a> MitsubaReader<'a> {
 
     fn wrong_number(&self, object: &'a MitsubaObject, allowed: &str) -> Option<Material> {
         let plugin = &object.plugin;
-        let message = format!("{plugin} with another number of bsdfs; allowed: {allowed}");
+        let message = format!("{plugin} with a wrong number of bsdfs; allowed: {allowed}");
         self.report.cause(&object.place, message);
         None
     }

@@ -97,5 +97,5 @@ fn undefined(after: &str) -> String {
     let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
     let end = after.find(|c| !is_name(c)).unwrap_or(after.len());
     let name = quoted(&after[..end]);
-    format!("parameter {name} has no value: neither a <default> before it nor one from outside")
+    format!("parameter {name} has no value: no <default> precedes it, and none is set from outside")
 }

@@ -52,7 +52,7 @@ impl Tree<'_> {
                     Value::Vector([x?, y?, z?].into())
                 }
             },
-            _ => return Err("no element of a scene".to_owned()),
+            _ => return Err("not an element of a scene".to_owned()),
         })
     }
 

@@ -95,7 +95,7 @@ impl<'a> MitsubaReader<'a> {
             -self.number(object, name).unwrap_or_default()
         });
         let lens = if is_lens {
-            let radius = self.number_within(object, "aperture_radius", "from 0 on", |r| r >= 0.0);
+            let radius = self.number_within(object, "aperture_radius", "0 or more", |r| r >= 0.0);
             if !self.has(object, "aperture_radius") {
                 self.report
                     .cause(&object.place, "thinlens without aperture_radius");
@@ -127,7 +127,7 @@ impl<'a> MitsubaReader<'a> {
                 .map(|length| diagonal(DIAGONAL / 2.0 / length));
         }
         if self.has(object, "focal_length") {
-            let message = "focal_length beside fov; allowed: one of both";
+            let message = "focal_length together with fov; allowed: one of them";
             self.report
                 .cause(self.place_of(object, "focal_length"), message);
         }
@@ -184,7 +184,7 @@ impl<'a> MitsubaReader<'a> {
             .all(|c| c.abs() < 1e-3);
         let is_even = (lengths[0] - lengths[1]).abs() <= 1e-3 * lengths[0];
         if !is_square || !is_even || [x, y, z].contains(&DVec3::ZERO) {
-            let message = "to_world shears, or scales x and y by different factors";
+            let message = "to_world shears, or scales x and y differently";
             self.report
                 .cause(self.place_of(object, "to_world"), message);
             return None;

@@ -21,7 +21,9 @@ const MAX_PER_BYTE: u64 = 64;
 /// Reads the mesh of this index, from 0.
 pub(super) fn read(bytes: &[u8], number: u32, files: &Files) -> Result<MeshParts, String> {
     let (version, start) = find(bytes, number)?;
-    let packed = bytes.get(start..).ok_or("has a mesh beyond its end")?;
+    let packed = bytes
+        .get(start..)
+        .ok_or("has a mesh that starts beyond its end")?;
     let most = files.left().min(packed.len() as u64 * MAX_PER_BYTE);
     let mut stream = UnpackedStream {
         inner: ZlibDecoder::new(packed).take(most),
@@ -72,7 +74,7 @@ fn head(bytes: &[u8], at: usize) -> Result<u16, String> {
     match (u16::from_le_bytes([*a, *b]), u16::from_le_bytes([*c, *d])) {
         (MAGIC, version @ 3..=4) => Ok(version),
         (MAGIC, version) => Err(format!("is of version {version}; allowed: 3, 4")),
-        _ => Err("is no file of serialized meshes".to_owned()),
+        _ => Err("is not a file of serialized meshes".to_owned()),
     }
 }
 
@@ -112,7 +114,7 @@ impl<R: Read> UnpackedStream<R> {
     fn some<const N: usize>(&mut self) -> Result<[u8; N], String> {
         let mut bytes = [0; N];
         let read = self.inner.read_exact(&mut bytes);
-        read.map_err(|error| format!("is damaged, or ends early ({error})"))?;
+        read.map_err(|error| format!("is damaged or truncated ({error})"))?;
         Ok(bytes)
     }
 
@@ -132,7 +134,7 @@ impl<R: Read> UnpackedStream<R> {
             Ok(count)
         } else {
             Err(format!(
-                "announces {count} vertices or triangles, more than it can hold"
+                "states {count} vertices or triangles, more than it can hold"
             ))
         }
     }
@@ -170,7 +172,7 @@ impl<R: Read> UnpackedStream<R> {
                 *corner = u32::from_le_bytes(self.some()?);
                 if u64::from(*corner) >= vertices {
                     return Err(format!(
-                        "names vertex {corner} of {vertices} in triangle {i}"
+                        "refers to vertex {corner} of {vertices} in triangle {i}"
                     ));
                 }
             }

@@ -28,7 +28,7 @@ impl<'a> MitsubaReader<'a> {
         let to_world = self.to_world(object);
         let groups = self.children(object, ObjectKind::Shape);
         let [(_, group)] = groups[..] else {
-            let message = "an instance of another number of shapegroups; allowed: one";
+            let message = "an instance with a wrong number of shapegroups; allowed: one";
             return self.report.cause(&object.place, message);
         };
         if group.plugin != "shapegroup" {
@@ -52,7 +52,7 @@ impl<'a> MitsubaReader<'a> {
     fn shape(&mut self, object: &'a MitsubaObject, outer: DAffine3, is_instance: bool) {
         if self.world.shapes.len() >= MOST_SHAPES {
             if !self.report.has_causes() {
-                let message = format!("more than {MOST_SHAPES} shapes, with all instances");
+                let message = format!("more than {MOST_SHAPES} shapes, counting instances");
                 self.report.cause(&object.place, message);
             }
             return;

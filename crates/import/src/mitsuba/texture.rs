@@ -81,7 +81,7 @@ impl<'a> MitsubaReader<'a> {
         if lowest >= 0.0 {
             return Some(texture);
         }
-        let message = format!("{name} goes down to {lowest}; allowed: from 0 on");
+        let message = format!("{name} goes down to {lowest}; allowed: 0 or more");
         self.report.cause(self.place_of(object, name), message);
         None
     }

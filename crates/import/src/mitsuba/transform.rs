@@ -30,7 +30,7 @@ pub(super) fn step(name: &str, attributes: &Attributes) -> Result<DAffine3, Stri
             let length = axis.length();
             if (length - 1.0).abs() > UNIT {
                 return Err(format!(
-                    "an axis of length {length}; allowed: 1, as Mitsuba 3 does not normalise it and makes no rotation of others"
+                    "an axis of length {length}; allowed: 1, as Mitsuba 3 does not normalise it, and other lengths give no rotation"
                 ));
             }
             Ok(rotation(axis / length, angle))
@@ -41,13 +41,13 @@ pub(super) fn step(name: &str, attributes: &Attributes) -> Result<DAffine3, Stri
             let target = value::vector(required(attributes, "target")?)?;
             let up = find(attributes, "up").map_or(Ok(DVec3::ZERO), value::vector)?;
             look_at(origin, target, up)
-                .ok_or_else(|| "no direction to look in, or up is along it".to_owned())
+                .ok_or_else(|| "no viewing direction, or up is parallel to it".to_owned())
         }
         "matrix" => {
             allow(attributes, &["value"])?;
             matrix(&value::numbers(required(attributes, "value")?)?)
         }
-        _ => Err(format!("<{name}> is no part of a transform")),
+        _ => Err(format!("<{name}> is not allowed in a transform")),
     }
 }
 
@@ -110,7 +110,7 @@ fn vector(attributes: &Attributes, default: f64) -> Result<DVec3, String> {
     let each = ["x", "y", "z"].map(|axis| find(attributes, axis));
     if let Some(text) = find(attributes, "value") {
         if each.iter().any(Option::is_some) {
-            return Err("value beside x, y or z".to_owned());
+            return Err("value together with x, y or z".to_owned());
         }
         return value::triple(text).map(DVec3::from);
     }

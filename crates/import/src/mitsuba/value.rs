@@ -11,7 +11,7 @@ pub(super) fn number(text: &str) -> Result<f64, String> {
     let parsed: Option<f64> = text.trim().parse().ok();
     match parsed {
         Some(value) if value.is_finite() => in_range(value),
-        _ => Err(format!("{} is no finite number", quoted(text))),
+        _ => Err(format!("{} is not a finite number", quoted(text))),
     }
 }
 

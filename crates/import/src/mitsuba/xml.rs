@@ -55,7 +55,7 @@ impl<'a> Tree<'a> {
         self.open.push(path.to_owned());
         self.file(text, name, Rc::from([folder]), None);
         for name in self.parameters.unused() {
-            let message = format!("no `${name}` in the scene, which is set");
+            let message = format!("`${name}` is set, but the scene does not use it");
             self.report
                 .cause(&SourcePlace::whole("parameters"), message);
         }
@@ -100,7 +100,7 @@ impl<'a> Tree<'a> {
         let place = source.cursor.place(root.range().start, &source.name);
         match root.attribute("version").map(version) {
             Some(Some(major)) => source.is_old = major < 2,
-            Some(None) => self.report.cause(&place, "the version is no number"),
+            Some(None) => self.report.cause(&place, "the version is not a number"),
             None => self.report.cause(&place, "no attribute version"),
         }
         match parent {
@@ -120,7 +120,7 @@ impl<'a> Tree<'a> {
                     0,
                 );
             }
-            None => self.report.cause(&place, "the root is no <scene>"),
+            None => self.report.cause(&place, "the root is not <scene>"),
         }
     }
 
@@ -143,7 +143,8 @@ impl<'a> Tree<'a> {
         if self.elements > MOST_ELEMENTS || depth > MAX_DEPTH {
             // The cause is added once, not for each further element.
             if self.elements <= MOST_ELEMENTS || self.elements == MOST_ELEMENTS + 1 {
-                let most = format!("at most {MOST_ELEMENTS} elements, {MAX_DEPTH} in one another");
+                let most =
+                    format!("at most {MOST_ELEMENTS} elements, nested at most {MAX_DEPTH} deep");
                 self.report
                     .cause(&place, format!("too many elements: {most}"));
             }
@@ -254,7 +255,7 @@ impl<'a> Tree<'a> {
         let properties = &mut self.objects[at].properties;
         let is_value = !matches!(value, Value::Object(_) | Value::Reference(_));
         if is_value && properties.iter().rev().take(1000).any(|p| p.name == name) {
-            let message = format!("property {} is there twice", quoted(&name));
+            let message = format!("property {} is given twice", quoted(&name));
             self.report.cause(place, message);
         }
         properties.push(ObjectProperty {
@@ -302,7 +303,7 @@ impl<'a> Tree<'a> {
                 self.add(parent, name, Value::Reference(id), place, source);
                 Ok(())
             }
-            element if !VALUES.contains(&element) => Err("no element of a scene".to_owned()),
+            element if !VALUES.contains(&element) => Err("not an element of a scene".to_owned()),
             element => {
                 required(attributes, "name")?;
                 let value = self.value(node, element, attributes, source);

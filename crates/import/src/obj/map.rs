@@ -62,7 +62,7 @@ impl MtlMap {
             }
         }
         if rest.is_empty() {
-            report.cause(&place, "names no file");
+            report.cause(&place, "does not name a file");
             return None;
         }
         if !(scale.abs().max_element() <= MAX_NUMBER && offset.abs().max_element() <= MAX_NUMBER) {

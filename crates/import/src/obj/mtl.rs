@@ -82,7 +82,7 @@ fn close(
     match entries.entry(name) {
         Slot::Occupied(known) => {
             let message = format!(
-                "material {} again: the first one counts",
+                "material {} is given twice: the first one is used",
                 quoted(known.key())
             );
             report.note(&entry.place, message);

@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// Imports one diffuse surface of reflectance 0.5 on both sides.
 pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused> {
     let scene = MainFile::open(file, options)?;
-    let unsound = |error: String| scene.refused(format!("is no sound mesh: {error}"));
+    let unsound = |error: String| scene.refused(format!("is not a valid mesh: {error}"));
     let read = DetailedMesh::parse(file, &scene.read()?);
     let read = read.map_err(|fault| unsound(fault.to_string()))?;
     let mut parts = MeshParts::from(read);
@@ -24,10 +24,13 @@ pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused
     let mesh = mesh.ok_or_else(|| unsound("no triangle with an area".to_owned()))?;
     let (report, place) = (Report::default(), scene.place());
     if mended {
-        let message = "approximated: vertices without a normal have that of a triangle";
+        let message = "approximated: vertices without a normal use that of a triangle";
         report.note(&place, message);
     }
-    report.note(&place, "has no material: diffuse, 0.5 on both sides");
+    report.note(
+        &place,
+        "has no material: diffuse with reflectance 0.5 on both sides",
+    );
     let world = World {
         shapes: vec![Shape {
             name: String::new(),

@@ -106,11 +106,11 @@ impl<'a> ObjReader<'a> {
         parts.face_normals();
         let place = self.at(part.line);
         if parts.mend_normals() {
-            let message = "approximated: vertices without a normal have that of a triangle";
+            let message = "approximated: vertices without a normal use that of a triangle";
             self.report.note(&place, message);
         }
         if surface.has_picture && parts.uvs.is_none() {
-            let message = "faces without texture coordinates, which their material asks for";
+            let message = "faces without texture coordinates, which their material needs";
             return self.report.cause(&place, message);
         }
         let Some(mesh) = parts.finish() else {
@@ -134,8 +134,10 @@ impl<'a> ObjReader<'a> {
         }
         let made = match name {
             None => {
-                self.report
-                    .note(&self.place, "has faces without a material: diffuse, 0.5");
+                self.report.note(
+                    &self.place,
+                    "has faces without a material: diffuse with reflectance 0.5",
+                );
                 Some(self.default_surface())
             }
             Some(known) => match self.entries.get(known).cloned() {

@@ -23,7 +23,7 @@ impl PbrtReader<'_> {
         };
         area.is_used.set(true);
         if is_in_object {
-            let message = "left out, as in pbrt: area lights of an object";
+            let message = "left out, as in pbrt: area lights in an object";
             self.note_once(&area.place, message);
             return Ok(None);
         }
@@ -35,7 +35,7 @@ impl PbrtReader<'_> {
             return Err(area.fault(self.report, "twosided", message.to_owned()));
         }
         if shape.entity.has("alpha") {
-            let message = "alpha of a shape that shines is not supported";
+            let message = "alpha of a shape that emits light is not supported";
             return Err(shape.entity.fault(self.report, "alpha", message.to_owned()));
         }
         match area.has("filename") {
@@ -48,7 +48,7 @@ impl PbrtReader<'_> {
     fn shown(&mut self, area: &Entity, uv: Uv) -> Read<EmittedRadiance> {
         for name in ["L", "power"] {
             if area.has(name) {
-                let message = format!("{name} beside filename is not supported");
+                let message = format!("{name} together with filename is not supported");
                 return Err(area.fault(self.report, name, message));
             }
         }
@@ -88,8 +88,7 @@ impl PbrtReader<'_> {
                 Ok(Some(Texture::Constant(radiance * factor)))
             }
             None if has_power => {
-                let message =
-                    "power of a mesh: pbrt gives it to each triangle; allowed: a mesh of one";
+                let message = "power of a mesh, which pbrt gives to each triangle; allowed: a mesh of one triangle";
                 Err(area.fault(self.report, "power", message.to_owned()))
             }
             None => Ok(emission),

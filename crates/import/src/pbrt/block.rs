@@ -26,7 +26,7 @@ impl Builder<'_> {
     pub(super) fn push(&mut self, kind: char, place: &SourcePlace) -> Result<(), String> {
         self.within_world("a block")?;
         if self.stack.len() >= MAX_DEPTH {
-            return Err(format!("more than {MAX_DEPTH} blocks in one another"));
+            return Err(format!("blocks nested more than {MAX_DEPTH} deep"));
         }
         self.stack.push((self.state.clone(), kind, place.clone()));
         Ok(())
@@ -42,7 +42,7 @@ impl Builder<'_> {
                 Ok(())
             }
             Some((.., place)) => Err(format!(
-                "{word}End, but the block that began in line {} is open",
+                "{word}End, but the block opened in line {} is not closed",
                 place.line
             )),
             None => Err(format!("{word}End without {word}Begin")),

@@ -56,7 +56,7 @@ impl PbrtReader<'_> {
             _ => return Err(entity.unsupported(self.report, ALLOWED)),
         };
         let placed = without_scale(map.inverse()).ok_or_else(|| {
-            let message = "a camera that is sheared, or scaled differently along axes";
+            let message = "a camera with shear, or with different scales along its axes";
             self.report.cause(&entity.place, message);
             CauseGiven
         });
@@ -112,7 +112,7 @@ impl PbrtReader<'_> {
         let report = self.report;
         let angle: (_, fn(f64) -> bool) = ("between 0 and 180 degrees", |a| 0.0 < a && a < 180.0);
         let fov = entity.float_within(report, "fov", 90.0, angle);
-        let radius: (_, fn(f64) -> bool) = ("from 0 on", |r| r >= 0.0);
+        let radius: (_, fn(f64) -> bool) = ("0 or more", |r| r >= 0.0);
         let radius = entity.float_within(report, "lensradius", 0.0, radius);
         let above: (_, fn(f64) -> bool) = ("above 0", |f| f > 0.0);
         let focus = entity.float_within(report, "focaldistance", 1e6, above);
@@ -156,7 +156,8 @@ impl PbrtReader<'_> {
         let iso = film.map_or(Ok(100.0), |film| film.float_or(self.report, "iso", 100.0))?;
         let ratio = (close - open) * iso / 100.0;
         if (ratio - 1.0).abs() > 1e-9 {
-            let message = format!("pbrt's picture has {ratio} times the radiance: left out");
+            let message =
+                format!("pbrt multiplies the radiance by {ratio} for the exposure: left out");
             self.report.note(&entity.place, message);
         }
         Ok(())
@@ -246,7 +247,7 @@ impl PbrtReader<'_> {
                 Err(CauseGiven) => return,
             };
             if depth < 0 {
-                let message = format!("maxdepth is {depth}; allowed: from 0 on");
+                let message = format!("maxdepth is {depth}; allowed: 0 or more");
                 entity.fault(self.report, "maxdepth", message);
             }
         }

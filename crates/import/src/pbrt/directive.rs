@@ -75,7 +75,7 @@ impl Builder<'_> {
         let product = self.state.to_world * map;
         if !holds(product) {
             return Err(format!(
-                "its product with the transform before has numbers out of range; allowed: up to {MAX_NUMBER:e}"
+                "its product with the preceding transform has numbers out of range; allowed: up to {MAX_NUMBER:e}"
             ));
         }
         self.state.to_world = product;
@@ -140,7 +140,7 @@ fn active_transform(tokens: &mut Tokens<'_>) -> Result<(), String> {
             tokens.next();
             Ok(())
         }
-        _ => Err("transforms that move are not supported; allowed: All".to_owned()),
+        _ => Err("animated transforms are not supported; allowed: All".to_owned()),
     }
 }
 

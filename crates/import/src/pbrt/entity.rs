@@ -177,7 +177,7 @@ impl Entity {
         match self.values(report, name, &[ParameterKind::Bool])? {
             None => Ok(default),
             Some(ParameterValues::Truths(all)) if all.len() == 1 => Ok(all[0]),
-            Some(_) => Err(self.fault(report, name, format!("{name} is not one truth value"))),
+            Some(_) => Err(self.fault(report, name, format!("{name} is not one boolean"))),
         }
     }
 

@@ -20,10 +20,10 @@ impl Builder<'_> {
         let path = self.files.find(std::slice::from_ref(&self.folder), name);
         let path = path.map_err(|error| format!("file {} {error}", quoted(name)))?;
         if self.open.contains(&path) {
-            return Err(format!("file {} is read within itself", quoted(name)));
+            return Err(format!("file {} includes itself", quoted(name)));
         }
         if self.open.len() >= DEEPEST_FILES {
-            return Err(format!("more than {DEEPEST_FILES} files in one another"));
+            return Err(format!("includes nested more than {DEEPEST_FILES} deep"));
         }
         self.included += 1;
         if self.included > MOST_FILES {
@@ -46,7 +46,7 @@ impl Builder<'_> {
             if self.stack.len() < level {
                 self.report.cause(
                     place,
-                    format!("file {} ends more than it begins", quoted(name)),
+                    format!("file {} closes more blocks than it opens", quoted(name)),
                 );
             }
             self.state = state;

@@ -35,7 +35,7 @@ impl PbrtReader<'_> {
     }
 
     pub(super) fn scale_of(&self, entity: &Entity) -> Read<f64> {
-        let allowed: (_, fn(f64) -> bool) = ("from 0 on", |v| v >= 0.0);
+        let allowed: (_, fn(f64) -> bool) = ("0 or more", |v| v >= 0.0);
         entity.float_within(self.report, "scale", 1.0, allowed)
     }
 
@@ -45,7 +45,7 @@ impl PbrtReader<'_> {
         let wanted = entity.float(self.report, name)?;
         let factor = wanted.filter(|w| *w > 0.0).map_or(1.0, |w| w / now);
         in_range(factor).map_err(|error| {
-            let message = format!("{name} asks for a factor that {error}");
+            let message = format!("the factor for {name}: {error}");
             entity.fault(self.report, name, message)
         })
     }
@@ -78,7 +78,7 @@ impl PbrtReader<'_> {
         let to = entity.point_or(self.report, "to", DVec3::Z);
         let way = to_world.transform_vector3(to? - from?).try_normalize();
         way.ok_or_else(|| {
-            self.report.cause(&entity.place, "a direction of no length");
+            self.report.cause(&entity.place, "a direction of length 0");
             CauseGiven
         })
     }
@@ -101,7 +101,7 @@ impl PbrtReader<'_> {
         let from = entity.point_or(report, "from", DVec3::ZERO);
         let way = self.way(entity, to_world);
         if without_scale(to_world).is_none() {
-            let message = "a spot that is sheared, or scaled differently along axes";
+            let message = "a spot with shear, or with different scales along its axes";
             report.cause(&entity.place, message);
             return Err(CauseGiven);
         }

@@ -78,7 +78,7 @@ impl PbrtReader<'_> {
         entity.is_used.set(true);
         self.made_materials += 1;
         if self.made_materials > MAX_MATERIALS || self.depth > MAX_DEPTH {
-            let message = "it is in itself, or too many materials are in one another";
+            let message = "it contains itself, or too many materials are nested";
             self.cause_once(&entity.place, message.to_owned());
             return Err(CauseGiven);
         }
@@ -130,7 +130,7 @@ impl PbrtReader<'_> {
         let number = Ask::Spectrum(Role::Number);
         if entity.has("reflectance") {
             if entity.has("eta") || entity.has("k") {
-                let message = "reflectance beside eta or k; allowed: one of both".to_owned();
+                let message = "reflectance together with eta or k; allowed: one of them".to_owned();
                 return Err(entity.fault(self.report, "reflectance", message));
             }
             let share = self.constant_or(entity, "reflectance", ALBEDO, 1.0)?;
@@ -145,7 +145,7 @@ impl PbrtReader<'_> {
     }
 
     fn coated(&mut self, entity: &Entity, uv: Uv) -> Read<Plastic> {
-        let message = "approximated: layers are those of a plastic, whose rough coat does not blur what the base scatters; pbrt-v4 follows random walks between both";
+        let message = "approximated: a plastic, whose rough coat does not blur the light from the base; pbrt-v4 traces random walks between the layers";
         self.note_once(&entity.place, message);
         let albedo = self.constant_or(entity, "albedo", ALBEDO, 0.0);
         for name in ["thickness", "maxdepth", "nsamples", "g"] {

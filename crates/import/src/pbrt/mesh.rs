@@ -83,7 +83,7 @@ impl PbrtReader<'_> {
         }
         let mesh = DetailedMesh::parse(&inner, &bytes);
         mesh.map(MeshParts::from)
-            .map_err(|fault| format!("is no sound mesh: {fault}"))
+            .map_err(|fault| format!("is not a valid mesh: {fault}"))
     }
 
     fn triangle_mesh(&mut self, entity: &Entity, needs_uv: bool) -> Read<Arc<Triangles>> {
@@ -141,11 +141,11 @@ impl PbrtReader<'_> {
         let size = along.length().max(across.length()).max(diagonal.length());
         let volume = along.cross(across).dot(diagonal).abs();
         if volume > FLAT * size * size * size {
-            let message = "a patch that is no plane; allowed: planes".to_owned();
+            let message = "a patch that is not flat; allowed: planes".to_owned();
             return Err(entity.fault(self.report, "P", message));
         }
         if needs_uv && (along + across - diagonal).length() > FLAT * size {
-            let message = "approximated: texture coordinates of a patch that is no parallelogram are those of two triangles";
+            let message = "approximated: a patch that is not a parallelogram has the texture coordinates of two triangles";
             self.note_once(&entity.place, message);
         }
         Ok(())

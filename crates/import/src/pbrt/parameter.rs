@@ -157,7 +157,7 @@ impl List {
             // One message per parameter is enough.
             (Some(ParameterValues::Broken), _) => return,
             (_, Token::Broken(what)) => what.to_owned(),
-            (_, Token::Open | Token::Close) => "a bracket where a value should be".to_owned(),
+            (_, Token::Open | Token::Close) => "a bracket in place of a value".to_owned(),
             (None, Token::Text(text)) => {
                 self.found = Some(ParameterValues::Texts(vec![text.into_owned()]));
                 return;
@@ -183,7 +183,7 @@ impl List {
                 Ok(value) => return all.push(value),
                 Err(error) => error,
             },
-            (Some(_), _) => "values of different sorts in one list".to_owned(),
+            (Some(_), _) => "values of different types in one list".to_owned(),
         };
         report.cause(&tokens.place(at), error);
         self.found = Some(ParameterValues::Broken);

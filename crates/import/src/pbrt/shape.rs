@@ -64,7 +64,7 @@ impl PbrtReader<'_> {
     /// Adds a shape; returns whether there may be more.
     fn add(&mut self, shape: etendue_world::Shape, place: &SourcePlace) -> bool {
         if self.world.shapes.len() >= MOST_SHAPES {
-            let message = format!("more than {MOST_SHAPES} shapes, with all instances");
+            let message = format!("more than {MOST_SHAPES} shapes, counting instances");
             if self.is_first(&SourcePlace::whole(""), &message) {
                 self.report.cause(place, message);
             }
@@ -92,7 +92,7 @@ impl PbrtReader<'_> {
             entity.drop_all();
             if let Some(area) = area {
                 let message =
-                    "left out, as in pbrt: an area light on a shape whose material is no surface";
+                    "left out, as in pbrt: an area light on a shape without a surface material";
                 self.note_once(&entity.place, message);
                 area.is_used.set(true);
             }
@@ -123,8 +123,7 @@ impl PbrtReader<'_> {
         if matches!(opacity, Texture::Constant(a) if a >= 1.0) {
             return number;
         }
-        let message =
-            "approximated: where alpha lets light through it counts as a surface of the path";
+        let message = "approximated: passing a transparent part counts as a surface of the path";
         self.note_once(entity.place_of("alpha"), message);
         let of = Box::new(self.world.materials[number].clone());
         self.add_material(Material::Mask { opacity, of })
@@ -139,7 +138,7 @@ impl PbrtReader<'_> {
         let is_mirrored = shape.to_world.matrix3.determinant() < 0.0;
         let turns = is_mirrored && !matches!(geometry, Geometry::Mesh(_));
         if turns && shines {
-            let message = "below a mirror pbrt sees this light on one side and sends its light from the other; the other is taken";
+            let message = "below a mirroring transform, pbrt shows this light on one side and emits from the other; the emitting side is used";
             self.note_once(&shape.entity.place, message);
         }
         shape.is_reversed != (turns && !shines)

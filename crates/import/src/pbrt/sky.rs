@@ -21,12 +21,12 @@ const WITHIN: usize = 4096;
 impl PbrtReader<'_> {
     pub(super) fn sky(&mut self, entity: &Entity, to_world: DAffine3) -> Read<Light> {
         if entity.has("L") {
-            let message = "L beside filename; allowed: one of both".to_owned();
+            let message = "L together with filename; allowed: one of them".to_owned();
             return Err(entity.fault(self.report, "L", message));
         }
         let scale = self.scale_of(entity);
         let turned = without_scale(to_world).ok_or_else(|| {
-            let message = "a sky that is sheared, or scaled differently along axes";
+            let message = "a sky with shear, or with different scales along its axes";
             self.report.cause(&entity.place, message);
             CauseGiven
         });

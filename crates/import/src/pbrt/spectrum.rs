@@ -42,9 +42,11 @@ impl PbrtReader<'_> {
             (role, PbrtSpectrum::Sampled(samples)) => rgb(&samples, role),
             (_, PbrtSpectrum::Named(name)) => match named::index(&name) {
                 Some(rgb) => rgb,
-                None => return Err(fault("is light; allowed: what is not")),
+                None => return Err(fault("is the spectrum of a light; allowed: other spectra")),
             },
-            (_, PbrtSpectrum::Blackbody(_)) => return Err(fault("is light; allowed: what is not")),
+            (_, PbrtSpectrum::Blackbody(_)) => {
+                return Err(fault("is the spectrum of a light; allowed: other spectra"));
+            }
         };
         Ok(Some(self.color.of(color)))
     }
@@ -59,7 +61,7 @@ impl PbrtReader<'_> {
         let samples = match spectrum {
             PbrtSpectrum::Rgb(rgb) => return Ok(rgb),
             PbrtSpectrum::Blackbody(kelvin) if kelvin > 0.0 => blackbody(kelvin),
-            PbrtSpectrum::Blackbody(_) => return Err(fault("is no temperature above 0")),
+            PbrtSpectrum::Blackbody(_) => return Err(fault("is not a temperature above 0")),
             PbrtSpectrum::Sampled(samples) => samples,
             PbrtSpectrum::Named(name) => match name.as_str() {
                 "stdillum-D65" => return Ok([1.0; 3]),
@@ -69,16 +71,20 @@ impl PbrtReader<'_> {
                     return Ok([1.0; 3]);
                 }
                 _ if named::is_illuminant(&name) => {
-                    return Err(fault("has no colour here; allowed: luminance alone"));
+                    return Err(fault("has no colour here; allowed: luminance only"));
                 }
-                _ => return Err(fault("is an index of refraction; allowed: light")),
+                _ => {
+                    return Err(fault(
+                        "is an index of refraction; allowed: the spectrum of a light",
+                    ));
+                }
             },
         };
         let color = rgb(&samples, Role::Emission);
         let luminance = Color::Luminance.of(color);
         match luminance > 0.0 {
             true => Ok(color.map(|v| v / luminance)),
-            false => Err(fault("is not seen: it has no luminance")),
+            false => Err(fault("has no luminance")),
         }
     }
 

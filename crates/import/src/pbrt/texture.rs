@@ -112,10 +112,10 @@ impl PbrtReader<'_> {
         let found = self.scene.textures.get(&(is_spectrum, name.to_owned()));
         let Some(entity) = found else {
             let kind = if is_spectrum { "spectrum" } else { "float" };
-            return Err(fault(&format!("is not known among those of type {kind}")));
+            return Err(fault(&format!("is not a known one of type {kind}")));
         };
         if self.depth >= MAX_DEPTH {
-            return Err(fault("is in itself, or too many are in one another"));
+            return Err(fault("contains itself, or too many are nested"));
         }
         entity.is_used.set(true);
         self.depth += 1;

@@ -122,7 +122,9 @@ impl<'a> Tokens<'a> {
                     escaped.get_or_insert_with(|| before.to_owned());
                     match self.bump().and_then(escape) {
                         Some(c) => c,
-                        None => return Token::Broken("a \\ before no sign that it goes with"),
+                        None => {
+                            return Token::Broken("a \\ before a character that it cannot escape");
+                        }
                     }
                 }
                 other => other,
@@ -170,5 +172,5 @@ fn escape(c: char) -> Option<char> {
 pub(super) fn number(word: &str) -> Result<f64, String> {
     let parsed: Option<f64> = word.parse().ok();
     let finite = parsed.filter(|value| value.is_finite());
-    finite.ok_or_else(|| format!("{} is no finite number", crate::report::quoted(word)))
+    finite.ok_or_else(|| format!("{} is not a finite number", crate::report::quoted(word)))
 }

@@ -9,7 +9,7 @@ const ALIKE: f64 = 1e-3;
 /// A rotation by degrees about an axis of any length.
 pub(super) fn rotation([angle, x, y, z]: [f64; 4]) -> Result<DAffine3, String> {
     let axis = DVec3::new(x, y, z).try_normalize();
-    let axis = axis.ok_or("an axis of no length")?;
+    let axis = axis.ok_or("an axis of length 0")?;
     let (sin, cos) = libm::sincos(angle.to_radians());
     let column =
         |unit: DVec3| cos * unit + (1.0 - cos) * axis.dot(unit) * axis + sin * axis.cross(unit);
@@ -22,11 +22,9 @@ pub(super) fn rotation([angle, x, y, z]: [f64; 4]) -> Result<DAffine3, String> {
 /// The map to camera coordinates with Z forward, Y up and X right: pbrt's world is left-handed.
 pub(super) fn look_at(numbers: [f64; 9]) -> Result<DAffine3, String> {
     let [eye, at, up] = [0, 3, 6].map(|i| DVec3::from_slice(&numbers[i..]));
-    let along = (at - eye)
-        .try_normalize()
-        .ok_or("no direction to look in")?;
+    let along = (at - eye).try_normalize().ok_or("no viewing direction")?;
     let right = up.normalize_or_zero().cross(along).try_normalize();
-    let right = right.ok_or("up is along the direction to look in")?;
+    let right = right.ok_or("up is parallel to the viewing direction")?;
     let linear = DMat3::from_cols(right, along.cross(right), along);
     Ok(DAffine3::from_mat3_translation(linear, eye).inverse())
 }
@@ -35,7 +33,7 @@ pub(super) fn look_at(numbers: [f64; 9]) -> Result<DAffine3, String> {
 pub(super) fn matrix(numbers: &[f64; 16]) -> Result<DAffine3, String> {
     let matrix = DMat4::from_cols_array(numbers);
     if matrix.row(3) != DVec4::W {
-        return Err("every fourth number together is not 0 0 0 1".to_owned());
+        return Err("the numbers 4, 8, 12 and 16 are not 0 0 0 1".to_owned());
     }
     Ok(DAffine3::from_mat4(matrix))
 }

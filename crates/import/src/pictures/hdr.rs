@@ -19,12 +19,12 @@ pub(super) fn read(bytes: &[u8]) -> Result<Channels, String> {
                 return Err("is not in format 32-bit_rle_rgbe".to_owned());
             }
             Some(_) => {}
-            None => return Err("ends in its header".to_owned()),
+            None => return Err("ends within its header".to_owned()),
         }
     }
     let (width, height) = line(&mut rest)
         .and_then(size)
-        .ok_or("has no size of the kind -Y height +X width")?;
+        .ok_or("has no size in the form -Y height +X width")?;
     check_size(width, height, bytes.len())?;
     let mut values = Vec::new();
     for _ in 0..height {

@@ -16,7 +16,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Channels, String> {
     check_size(width, height, bytes.len())?;
     let levels = decoder.decode().map_err(damaged)?;
     if levels.len() != 3 * width * height {
-        return Err("has another number of pixels than its header says".to_owned());
+        return Err("does not have the number of pixels that its header states".to_owned());
     }
     Ok(Channels {
         width,

@@ -264,7 +264,7 @@ impl ResultPair<'_> {
             } = &slices.sample;
             if noise_dof.is_none() && sigma.iter().any(|sigma| *sigma > 0.0) {
                 return Some(format!(
-                    "{folder} keeps no noise_dof, which results have from this version on: run it again"
+                    "{folder} has no noise_dof, which results contain since this version: run it again"
                 ));
             }
             let each = plane.in_window as f64 / result.index.batches as f64;
@@ -277,7 +277,7 @@ impl ResultPair<'_> {
             }
             if let Some(each) = carried_by(&slices.sample, &slices.grid) {
                 return Some(format!(
-                    "a few heavy photons carry the light of {folder}, which varies as if each batch held {each:.1}"
+                    "a few photons carry most of the light of {folder}: it varies as if each batch held {each:.1}"
                 ));
             }
         }
@@ -296,7 +296,7 @@ impl ResultPair<'_> {
                 "they share photons, or their noise is overstated".to_owned()
             };
             return Some(format!(
-                "{apart} apart, where independent noise makes {noise}: {seeds}; run one with another seed"
+                "they differ by {apart}, independent noise by {noise}: {seeds}; run one with another seed"
             ));
         }
         let resolution = [a, b].map(|r| r.scene_file["run"]["resolution"].as_f64());

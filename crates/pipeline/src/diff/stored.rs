@@ -105,9 +105,9 @@ impl StoredResult {
         let bytes = read_below(folder, SUMMARY, MAX_INDEX_BYTES)
             .map_err(|e| Failure::bad_input(format!("cannot read {shown}: {e}")))?;
         let index: ResultIndex = serde_json::from_slice(&bytes)
-            .map_err(|e| fault(format!("it is no summary of a run: {e}")))?;
+            .map_err(|e| fault(format!("it is not a summary of a run: {e}")))?;
         if !sealed::is_sealed(&bytes) {
-            let what = "it was changed since it was written: its index_hash is not that of what stands before it";
+            let what = "it was changed since it was written: its index_hash does not match the text before it";
             return Err(fault(what.to_owned()));
         }
         if index.batches < 3 {

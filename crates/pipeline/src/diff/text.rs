@@ -50,13 +50,13 @@ fn scene(diff: &Diff) -> Vec<String> {
     let [a, b] = &diff.results;
     let changes = &diff.scene;
     if has_other_inputs(a, b, changes) {
-        return vec!["scene: its fields are the same, a mesh or a picture is another".to_owned()];
+        return vec!["scene: the same fields, but another mesh or picture".to_owned()];
     }
     if changes.is_empty() {
         return vec!["scene: the same".to_owned()];
     }
     let head = if changes.iter().all(is_of_run) {
-        "scene: the same, but run in another way"
+        "scene: the same, with other settings of the run"
     } else {
         "scene: another"
     };

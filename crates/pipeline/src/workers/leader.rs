@@ -199,7 +199,7 @@ impl<'a> Leader<'a> {
             let own = own().inspect_err(|_| left.drop_all());
             (own, others.join())
         });
-        others.map_err(|_| Failure::cannot_run("the process that leads has failed"))??;
+        others.map_err(|_| Failure::cannot_run("the leading process has failed"))??;
         own
     }
 
@@ -222,7 +222,7 @@ impl<'a> Leader<'a> {
             match said {
                 WorkerMessage::Ready { key: theirs, .. } if theirs != key => {
                     return Err(Failure::cannot_run(format!(
-                        "process {who} has another scene, or another version of Étendue"
+                        "process {who} has another scene or another version of Étendue"
                     )));
                 }
                 WorkerMessage::Ready { abreast, .. } => {

@@ -80,8 +80,9 @@ impl McplHeader {
         };
         if size as usize != header.record_size() {
             let right = header.record_size();
-            let message =
-                format!("a particle takes {size} bytes by the header; its options make it {right}");
+            let message = format!(
+                "a particle takes {size} bytes according to the header, and {right} according to its options"
+            );
             return Err(Fault::byte(size_at, message));
         }
         header.source = text(&mut cursor, "the name of the source")?;
@@ -170,7 +171,7 @@ fn signature(bytes: &[u8]) -> Result<(u32, bool), Fault> {
         b"MCPL003" => 3,
         other => {
             let shown = String::from_utf8_lossy(other);
-            let message = format!("it begins with {shown:?}; read are MCPL002 and MCPL003");
+            let message = format!("it begins with {shown:?}; allowed: MCPL002, MCPL003");
             return Err(Fault::byte(0, message));
         }
     };
@@ -178,10 +179,7 @@ fn signature(bytes: &[u8]) -> Result<(u32, bool), Fault> {
         b'L' => Ok((version, true)),
         b'B' => Ok((version, false)),
         other => {
-            let message = format!(
-                "the order of bytes is {:?}; allowed: L, B",
-                char::from(other)
-            );
+            let message = format!("the byte order is {:?}; allowed: L, B", char::from(other));
             Err(Fault::byte(7, message))
         }
     }
@@ -196,7 +194,7 @@ fn texts(cursor: &mut ByteCursor<'_>, what: &str) -> Result<u32, Fault> {
     let at = cursor.at();
     let count = cursor.u32(what)?;
     if count > MOST_TEXTS {
-        let message = format!("{what} is {count}; at most {MOST_TEXTS} are read");
+        let message = format!("{what} is {count}; allowed: at most {MOST_TEXTS}");
         return Err(Fault::byte(at, message));
     }
     Ok(count)

@@ -189,7 +189,7 @@ fn wrong_length(start: usize, count: u64, size: usize, found: usize) -> Fault {
             "the header says 0 particles, and {found} bytes follow it: the file was not closed (`mcpltool --repair` counts its particles)"
         )
     } else {
-        format!("{count} particles of {size} bytes should follow, and {found} bytes do")
+        format!("{count} particles of {size} bytes should follow, but {found} bytes do")
     };
     Fault::byte(start, message)
 }

@@ -209,7 +209,7 @@ impl Tm25Header {
             let version = self.version;
             return Err(Fault::byte(
                 4,
-                format!("version {version}; read are 2013 and 2020"),
+                format!("version {version}; allowed: 2013, 2020"),
             ));
         }
         self.creation_method = cursor.i32("the method of creation")?;
@@ -283,7 +283,7 @@ impl Tm25Header {
     ) -> Result<(), Fault> {
         let start = cursor.at();
         if spectra > MOST_SPECTRA {
-            let message = format!("{spectra} spectra; at most {MOST_SPECTRA} are read");
+            let message = format!("{spectra} spectra; allowed: at most {MOST_SPECTRA}");
             return Err(Fault::byte(76, message));
         }
         for _ in 0..spectra {
@@ -306,10 +306,10 @@ impl Tm25Header {
         let length = cursor.at() - start;
         let filling = cursor.take(
             length.next_multiple_of(32) - length,
-            "filling after spectra",
+            "padding after spectra",
         )?;
         if filling.iter().any(|&b| b != 0) {
-            notes.push("the filling after spectra is not zero; dropped".to_owned());
+            notes.push("the padding after spectra is not zero; dropped".to_owned());
         }
         Ok(())
     }

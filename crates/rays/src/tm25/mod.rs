@@ -51,7 +51,7 @@ impl Tm25File {
             .and_then(|rays| rays.checked_mul(4 * columns));
         if needed != Some(found) {
             let message = format!(
-                "{rays} rays of {} bytes should follow, and {found} bytes do",
+                "{rays} rays of {} bytes should follow, but {found} bytes do",
                 4 * columns
             );
             return Err(Fault::byte(start, message));
@@ -77,7 +77,11 @@ impl Tm25File {
     pub fn new(header: Tm25Header, numbers: Vec<f32>) -> Result<Self, Fault> {
         header.check()?;
         if !numbers.len().is_multiple_of(header.columns()) {
-            let message = format!("{} numbers for rays of {}", numbers.len(), header.columns());
+            let message = format!(
+                "{} numbers, not a multiple of {} for each ray",
+                numbers.len(),
+                header.columns()
+            );
             return Err(Fault::file(message));
         }
         let mut file = Self {
@@ -205,7 +209,7 @@ impl Tm25File {
             let size = length([3, 4, 5].map(|i| f64::from(row[i])));
             if size < 1e-3 {
                 return refused(format!(
-                    "its direction has the length {size}; unit vectors are expected"
+                    "its direction has the length {size}; allowed: unit vectors"
                 ));
             }
             lengths += usize::from((size - 1.0).abs() > LENGTH_SLACK);
@@ -227,7 +231,7 @@ impl Tm25File {
         }
         if lengths > 0 {
             self.notes.push(format!(
-                "{lengths} directions are no unit vectors; they are read as such"
+                "{lengths} directions are not unit vectors; they are read as such"
             ));
         }
         self.note_flux(sum);

@@ -25,11 +25,13 @@ pub(super) fn read(
         .filter(|&code| char::from_u32(code).is_none())
         .count();
     if wrong > 0 {
-        notes.push(format!("{what}: {wrong} characters are none; shown as �"));
+        notes.push(format!(
+            "{what}: {wrong} characters are invalid; shown as �"
+        ));
     }
     if codes().skip(end).any(|code| code != 0) {
         notes.push(format!(
-            "{what}: there is more after the zero that ends it; dropped"
+            "{what}: there is more after the terminating zero; dropped"
         ));
     }
     Ok(text)

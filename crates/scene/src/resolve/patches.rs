@@ -108,7 +108,7 @@ impl Resolver<'_> {
                     self.faults.add(
                         of,
                         show(event),
-                        "ThinLens(…) on a Plane: it has no form of its own",
+                        "ThinLens(…) on a Plane: a thin lens has no curvature",
                     );
                 }
                 Specular::ThinLens { focal_length }

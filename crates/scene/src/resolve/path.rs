@@ -107,7 +107,7 @@ impl Resolver<'_> {
             let PatchObject { patch, event, .. } = &things.patches[i];
             let behind = patch.normal(point).dot(normal) < 0.0;
             if behind && matches!(event, Event::Reflects(_)) {
-                let allowed = "a surface met on the side it faces: behind it is black";
+                let allowed = "a surface met on its front: its back is black";
                 self.faults.add_on_path(of, show(visit), allowed);
             }
         }
@@ -140,14 +140,17 @@ impl Resolver<'_> {
                 return None;
             }
             if let Some(leaves) = path.leaves.filter(|_| i + 1 == path.visits.len()) {
-                let allowed = format!("nothing: {} sends light on by itself", show(name));
+                let allowed = format!("nothing: {} determines the direction", show(name));
                 self.faults.add("path.leaves", vector(&leaves), allowed);
             }
             let d = event
                 .turned(&lens, facing, hit.point, leg.d)
                 .map(DVec3::normalize);
             if d.is_none() {
-                let allowed = format!("an angle at which {} does not reflect it all", show(name));
+                let allowed = format!(
+                    "an angle without total internal reflection at {}",
+                    show(name)
+                );
                 self.faults
                     .add_on_path(format!("path.visits[{i}]"), show(name), allowed);
             }

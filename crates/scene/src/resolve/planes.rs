@@ -81,7 +81,7 @@ impl Resolver<'_> {
         }
         let of = format!("{of}.orientation");
         if plane.orientation == Orientation::Mirrored && place.side == Side::After {
-            let allowed = "a place Before(…) a surface: light that leaves it goes where it goes";
+            let allowed = "a place Before(…) a surface: light after it is not mirrored";
             self.faults.add(&of, show(plane.orientation), allowed);
         }
         let hit = match place.side {
@@ -239,7 +239,7 @@ impl Resolver<'_> {
         let end = last.start + last.length;
         if !end.is_nan() && !(0.0..end).contains(&distance) {
             let allowed = format!(
-                "0 to {} m on the way to the last surface, up to {} m on the way from it, where something stands",
+                "0 to {} m on the way to the last surface, up to {} m on the way from it, where an object ends it",
                 tidy(last.start),
                 tidy(end)
             );
@@ -375,7 +375,7 @@ impl Resolver<'_> {
                 field: "frequencies of all planes".to_owned(),
                 value: format!("{} of spectra over {batches} batches", gigabytes(bytes)),
                 allowed: format!(
-                    "what memory holds here, {}: lower frequencies, a smaller window, or lengths in metres",
+                    "at most the memory here, {}: lower frequencies, a smaller window, or lengths in metres",
                     gigabytes(memory as f64)
                 ),
                 memory: true,

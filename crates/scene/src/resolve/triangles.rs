@@ -93,8 +93,7 @@ impl Resolver<'_> {
             return Mesh::new(mesh.vertices().to_vec(), kept).ok();
         }
         let allowed = format!(
-            "at least {least:.3e} m, {THIN:e} of the largest coordinate{}: f64 knows no normal of \
-             what is thinner",
+            "at least {least:.3e} m, {THIN:e} of the largest coordinate{}: thinner triangles have no normal in f64",
             others(thin.len())
         );
         let field = at.field(&at.triangle(first));

@@ -158,7 +158,7 @@ impl LightFile {
 /// whose third is `front`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Environment")]
-#[schemars(transform = told("what comes from where", "Lobes([(from: (0, 0, -1), width: 0.3)])"))]
+#[schemars(transform = told("the light from each direction", "Lobes([(from: (0, 0, -1), width: 0.3)])"))]
 pub enum EnvironmentFile {
     /// A sum of lobes.
     Lobes(Vec<SphericalGaussianFile>),

@@ -58,7 +58,7 @@ impl Results {
             match fs::symlink_metadata(&path) {
                 Err(_) => {}
                 Ok(found) if !found.is_file() => {
-                    return Err(Failure::write(&shown, "what stands there is no file"));
+                    return Err(Failure::write(&shown, "it exists and is not a file"));
                 }
                 Ok(_) if self.is_own(name, &path, &earlier) => {}
                 Ok(_) => foreign.push(name),

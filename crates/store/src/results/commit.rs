@@ -42,9 +42,7 @@ impl MovedFiles {
             let what = match e.kind() {
                 io::ErrorKind::AlreadyExists => {
                     let force = self.arguments.force();
-                    format!(
-                        "a file has come to stand there; move it away, or replace it with {force}"
-                    )
+                    format!("a file has appeared there; move it away, or replace it with {force}")
                 }
                 _ => e.to_string(),
             };

@@ -30,11 +30,13 @@ pub enum Untraced {
 impl Display for Untraced {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Blocked => "a blocker stands in the central ray or has an edge there",
-            Self::Obstacles => "what stands around the path is no window about the central ray",
-            Self::Light => "no Gaussian stands for this light",
-            Self::Reflectance => "no Gaussian stands for how this reflectance varies",
-            Self::Lost => "the central ray does not get there by maps that have an inverse",
+            Self::Blocked => "a blocker covers the central ray or has an edge there",
+            Self::Obstacles => {
+                "objects around the path do not form a window centred on the central ray"
+            }
+            Self::Light => "no Gaussian describes this light",
+            Self::Reflectance => "no Gaussian describes the variation of this reflectance",
+            Self::Lost => "the central ray does not arrive, or a map along it has no inverse",
         })
     }
 }

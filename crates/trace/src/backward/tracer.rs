@@ -37,8 +37,7 @@ pub struct Backward {
 /// finds the source.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "no ray traced back from {plane} finds the light: it is a point there, or a point or a beam that \
-     a mirror, an interface or a lens turns first; measure it by photons"
+    "no ray traced back from {plane} finds the light: it is a point there, or a point or a beam that a mirror, an interface or a lens deflects; measure it with photons"
 )]
 pub struct LightNotFound {
     plane: String,

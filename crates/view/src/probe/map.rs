@@ -172,7 +172,7 @@ fn drawn(
     comparison(&Comparison {
         title: &format!("{name}: bandwidth at the camera"),
         note: &format!(
-            "95 % of the power in windows {} pixels wide; predicted: Eq. 20, corrected, for light of all frequencies, or what the window has alone",
+            "95 % of the power in windows {} pixels wide; predicted: Eq. 20, corrected, for light of all frequencies, or the bandwidth of the window alone",
             case.request.window
         ),
         x: Axis::edges("column", "pixels", [0.0, w]),
@@ -210,7 +210,7 @@ fn words(map: &Array2<MapPoint>) -> String {
     ratios.sort_unstable_by(f64::total_cmp);
     let all = ratios.len();
     let mut lines = vec![format!(
-        "{seen} of {} bandwidths measured, the rest is dark or too noisy; {all} are on a lobe and above what the window has alone",
+        "{seen} of {} bandwidths measured, the rest are dark or too noisy; {all} are on a lobe and above the bandwidth of the window alone",
         map.len()
     )];
     if all > 0 {

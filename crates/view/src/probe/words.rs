@@ -69,7 +69,7 @@ pub(super) fn of_plane(found: &Found) -> Value {
 
 fn word(reflects: Reflects) -> String {
     match reflects {
-        Reflects::Nothing => "nothing: it is black from here".to_owned(),
+        Reflects::Nothing => "nothing: it is black from this side".to_owned(),
         Reflects::Diffuse => "diffuse".to_owned(),
         Reflects::Mirror => "mirror or smooth interface".to_owned(),
         Reflects::Lobe(lobe) => match lobe {
@@ -102,7 +102,7 @@ pub(super) fn lines(
         let times = report.photons_needed.map(|n| n / request.rays as f64);
         let more = match times {
             Some(times) => format!(
-                "about {} times as many {rays} and {photons} decide it",
+                "about {} times as many {rays} and {photons} are needed",
                 times.ceil()
             ),
             None => format!("more {rays} or {photons} may decide it"),
@@ -211,11 +211,11 @@ fn bandwidths(probe: &Probe<'_>, measured: Uncertain, arguments: ArgumentStyle) 
     lines.push(line("of the window alone", OF_WINDOW / half_width));
     lines.push(match criterion(&probe.stops[0]) {
         Some(cycles) => line("by Eq. 20, light of all frequencies", cycles),
-        None => "  Eq. 20 is about lobes: it says nothing of this surface".to_owned(),
+        None => "  Eq. 20 describes lobes: it does not apply to this surface".to_owned(),
     });
     if is_own {
         lines.push(format!(
-            "  What is measured is the window: a wider one ({}) shows what the light has.",
+            "  The measured bandwidth is that of the window: a wider one ({}) shows that of the light.",
             arguments.name("window")
         ));
     }

@@ -112,11 +112,11 @@ impl<'a> Body<'a> {
     fn scalar(&mut self, row: PlyRow<'_>, scalar: Scalar) -> Result<f64, PlyTrouble> {
         let file_ends = || {
             let PlyElement { name, count, .. } = row.element;
-            let allowed = format!("{count} rows of element {name}, as the header announces");
+            let allowed = format!("{count} rows of element {name}, as the header states");
             ("missing, as the file ends".to_string(), allowed)
         };
         let line_ends = || {
-            let allowed = "a value for each property that the header announces";
+            let allowed = "a value for each property in the header";
             ("missing, as the line ends".to_string(), allowed.to_string())
         };
         match &mut self.data {
@@ -138,7 +138,7 @@ impl<'a> Body<'a> {
     fn finish(&mut self, row: PlyRow<'_>) -> Result<(), Fault> {
         match &mut self.data {
             Data::Text { words, .. } => words.next().map_or(Ok(()), |word| {
-                let allowed = "the end of the line, after the properties announced";
+                let allowed = "the end of the line, after the stated properties";
                 Err(fault(row.place("the next word"), quoted(word), allowed))
             }),
             Data::Binary { .. } => Ok(()),
@@ -157,7 +157,7 @@ impl<'a> Body<'a> {
             return Ok(());
         }
         let value = format!("{} bytes long", rest.len());
-        let allowed = "empty, after as many elements as the header announces";
+        let allowed = "empty, after as many elements as the header states";
         Err(fault("the rest of the file", value, allowed))
     }
 }
