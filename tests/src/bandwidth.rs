@@ -21,9 +21,9 @@ pub(crate) fn page(photons: Option<u64>) -> ExitCode {
             .and_then(|figure| {
                 let page = format!("{HEAD}{}", section.markdown());
                 let files = [
-                    ("docs/bandwidth.svg", figure.svg),
-                    ("docs/bandwidth.csv", figure.csv),
-                    ("docs/bandwidth.md", page),
+                    ("results/bandwidth.svg", figure.svg),
+                    ("results/bandwidth.csv", figure.csv),
+                    ("results/bandwidth.md", page),
                 ];
                 files.into_iter().try_for_each(|(path, text)| {
                     fs::write(path, text).map_err(|error| format!("{path}: {error}"))

@@ -1,9 +1,9 @@
 //! Statistical validation of Étendue.
 //!
 //! `short` takes a few minutes, for every change; `suite` runs all scenes without smooth surfaces
-//! and writes `docs/suite.md`; `table1` checks the operators of the paper, `shading` the reflection
+//! and writes `results/suite.md`; `table1` checks the operators of the paper, `shading` the reflection
 //! of light at surfaces, `claims` the statements in the paper's text, and `main` all results of the
-//! main scene: each writes its part of `docs/validation.md`; `all` writes the whole of it, with
+//! main scene: each writes its part of `results/validation.md`; `all` writes the whole of it, with
 //! every row of the paper's Table 1. `second` compares the code shared by theory and tracers with a
 //! second implementation. `hostile` and `kills` attack the program `etendue` from outside; `wild`
 //! searches for scenes on which it is wrong. `assumptions` disables the checks of a scene that
@@ -45,13 +45,13 @@ use std::process::ExitCode;
 #[command(after_help = "Examples:
   cargo run --release -p etendue-validation -- short
   cargo run --release -p etendue-validation -- faults --photons 8388608
-  cargo run --release -p etendue-validation -- suite        ten minutes; writes docs/suite.md
-  cargo run --release -p etendue-validation -- table1       writes docs/validation.md
-  cargo run --release -p etendue-validation -- shading      writes docs/validation.md
-  cargo run --release -p etendue-validation -- claims       two minutes; writes docs/validation.md
-  cargo run --release -p etendue-validation -- bandwidth    writes docs/bandwidth.md, .svg and .csv
-  cargo run --release -p etendue-validation -- full-radial  minutes; writes docs/validation.md
-  cargo run --release -p etendue-validation -- nets         three minutes; writes docs/nets.md
+  cargo run --release -p etendue-validation -- suite        ten minutes; writes results/suite.md
+  cargo run --release -p etendue-validation -- table1       writes results/validation.md
+  cargo run --release -p etendue-validation -- shading      writes results/validation.md
+  cargo run --release -p etendue-validation -- claims       two minutes; writes results/validation.md
+  cargo run --release -p etendue-validation -- bandwidth    writes results/bandwidth.md, .svg and .csv
+  cargo run --release -p etendue-validation -- full-radial  minutes; writes results/validation.md
+  cargo run --release -p etendue-validation -- nets         three minutes; writes results/nets.md
   cargo run --release -p etendue-validation -- second       seconds; shared functions, written twice
   cargo run --release -p etendue-validation -- hostile      20,000 mutated inputs, for etendue beside it
   cargo run --release -p etendue-validation -- kills        200 kills, for etendue beside it
@@ -59,7 +59,7 @@ use std::process::ExitCode;
   cargo run --release -p etendue-validation -- small        20 minutes; small objects in the light of 2,000 random scenes
   cargo run --release -p etendue-validation -- assumptions  minutes; checks of theory switched off, on random scenes
   cargo run --release -p etendue-validation -- pulls        measured parameters of 300 random scenes, in stated errors
-  cargo run --release -p etendue-validation -- all          half an hour; writes docs/validation.md")]
+  cargo run --release -p etendue-validation -- all          half an hour; writes results/validation.md")]
 struct ValidationCli {
     #[command(subcommand)]
     command: ValidationCommand,
@@ -94,31 +94,31 @@ enum ValidationCommand {
         most: u64,
     },
     /// Predict every scene without smooth surfaces and trace it both ways, with faults only these
-    /// scenes can reveal; into docs/suite.md.
+    /// scenes can reveal; into results/suite.md.
     Suite {
         /// Photons per scene, instead of those in the files.
         #[arg(long)]
         photons: Option<u64>,
     },
-    /// Table 1 of the paper, every operator in 2D and in 4D, misprints and planted faults; into docs/validation.md.
+    /// Table 1 of the paper, every operator in 2D and in 4D, misprints and planted faults; into results/validation.md.
     Table1 {
         /// Photons per scene, instead of those in the files.
         #[arg(long)]
         photons: Option<u64>,
     },
-    /// Cosines, BRDFs, textures, environments and the sampling criteria of the paper; into docs/validation.md.
+    /// Cosines, BRDFs, textures, environments and the sampling criteria of the paper; into results/validation.md.
     Shading {
         /// Photons per scene, instead of those in the files.
         #[arg(long)]
         photons: Option<u64>,
     },
-    /// Statements in the paper's text, checked with photons; into docs/validation.md.
+    /// Statements in the paper's text, checked with photons; into results/validation.md.
     Claims {
         /// Photons per scene, instead of a million or more.
         #[arg(long)]
         photons: Option<u64>,
     },
-    /// The sampling criteria compared with photons, into docs/bandwidth.md with its picture.
+    /// The sampling criteria compared with photons, into results/bandwidth.md with its picture.
     Bandwidth {
         /// Photons per point; if given, nothing is written.
         #[arg(long)]
@@ -135,7 +135,7 @@ enum ValidationCommand {
         photons: u64,
     },
     /// Stated errors of predictions by nets of rays, compared with the true errors; into
-    /// docs/nets.md.
+    /// results/nets.md.
     Nets,
     /// The code shared by theory and tracers, compared with a second implementation; exit code 1 if
     /// they differ or a planted fault is not detected.
@@ -159,9 +159,9 @@ enum ValidationCommand {
     /// Pulls of measured parameters and slopes over random scenes, and the cost of predictions;
     /// exit code 1 if stated errors are wrong.
     Pulls(pulls::PullOptions),
-    /// The main scene: every plane, noise floors, calibration and planted faults; into docs/validation.md.
+    /// The main scene: every plane, noise floors, calibration and planted faults; into results/validation.md.
     Main,
-    /// The whole of docs/validation.md: `main`, `table1`, `shading` and `claims`, and every row of the paper's Table 1.
+    /// The whole of results/validation.md: `main`, `table1`, `shading` and `claims`, and every row of the paper's Table 1.
     All,
 }
 
@@ -270,31 +270,31 @@ fn printed(outcome: std::io::Result<Vec<ReportSection>>) -> ExitCode {
 fn page(command: &ValidationCommand) -> Option<[&'static str; 4]> {
     Some(match command {
         ValidationCommand::Main => [
-            "docs/validation.md",
+            "results/validation.md",
             "The main scene",
             "main",
             "Scene: `scenes/fig9b.ron`",
         ],
         ValidationCommand::Suite { photons: None } => [
-            "docs/suite.md",
+            "results/suite.md",
             "The suite",
             "suite",
             "Scenes: all of `scenes/` without smooth surfaces",
         ],
         ValidationCommand::Table1 { photons: None } => [
-            "docs/validation.md",
+            "results/validation.md",
             "Table 1",
             "table1",
             "Scenes: all of `scenes/table1/` without BRDFs, photons as in the files",
         ],
         ValidationCommand::Shading { photons: None } => [
-            "docs/validation.md",
+            "results/validation.md",
             "Shading",
             "shading",
             "In 2D and without photons where no scene is named",
         ],
         ValidationCommand::Claims { photons: None } => [
-            "docs/validation.md",
+            "results/validation.md",
             "Words",
             "claims",
             "Scenes: made for each statement",
@@ -303,13 +303,13 @@ fn page(command: &ValidationCommand) -> Option<[&'static str; 4]> {
             seeds: 200,
             photons: 65_536,
         } => [
-            "docs/validation.md",
+            "results/validation.md",
             "Full radial spectra",
             "full-radial",
             "Scenes with fewer frequencies than in their files",
         ],
         ValidationCommand::All => [
-            "docs/validation.md",
+            "results/validation.md",
             "Every row of Table 1",
             "all",
             "Of the parts of this page",

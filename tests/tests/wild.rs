@@ -1,9 +1,9 @@
-//! Scenes on which theory was once wrong, wrongly certain, or without an answer (docs/wild.md).
+//! Scenes on which theory was once wrong, wrongly certain, or without an answer (results/wild.md).
 
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
-    reason = "a test that cannot go on should stop; what it prints is the table of docs/wild.md"
+    reason = "a test that cannot go on should stop; what it prints is the table of results/wild.md"
 )]
 
 use etendue_compare::{
@@ -90,7 +90,7 @@ fn as_it_is(scene: &Scene, plane: usize) -> Prediction {
     }
 }
 
-/// The printed row of docs/wild.md for a plane.
+/// The printed row of results/wild.md for a plane.
 fn row(scene: &Scene, class: Class, by: &str, seconds: f64, report: &PlaneReport) {
     let percent = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{:.2} %", 100.0 * x));
     println!(

@@ -15,7 +15,7 @@ pub(crate) fn scene(number: u64) -> String {
     draw::scene(kind, &mut draw::SceneDice::new(number))
 }
 
-/// Draws the scenes, prints the results, and writes docs/nets.md.
+/// Draws the scenes, prints the results, and writes results/nets.md.
 #[expect(
     clippy::print_stdout,
     clippy::print_stderr,
@@ -35,8 +35,8 @@ pub(crate) fn page() -> ExitCode {
     let text: Vec<String> = sections.iter().map(|section| section.markdown()).collect();
     let text = text.join("\n");
     println!("{text}");
-    if let Err(error) = fs::write("docs/nets.md", format!("{HEAD}{text}")) {
-        eprintln!("docs/nets.md: {error}");
+    if let Err(error) = fs::write("results/nets.md", format!("{HEAD}{text}")) {
+        eprintln!("results/nets.md: {error}");
         return ExitCode::from(3);
     }
     ExitCode::from(u8::from(!sections.iter().all(|section| section.passes())))
