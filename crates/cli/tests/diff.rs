@@ -254,7 +254,7 @@ fn results_of_earlier_versions_are_undecided() {
         plane.as_object_mut().unwrap().remove("noise_dof");
     }
     fs::write(&summary, sealed(tree)).unwrap();
-    let parts = ["version 0.0.1", "b keeps no noise_dof"];
+    let parts = ["version 0.0.1", "b has no noise_dof"];
     found(&folder, "a b", 4, &parts);
 }
 

@@ -235,7 +235,7 @@ fn what_makes_no_figure_is_refused() {
         refused(path, "figure wide.ron --style bad.ron --out out", &parts);
     }
     for (arguments, parts) in [
-        ("7 --plane light", ["--plane is for", "SCENE.ron"]),
+        ("7 --plane light", ["--plane applies only to", "SCENE.ron"]),
         ("7 wide.ron", ["7 is not a scene file", ""]),
         ("wide.ron ./wide.ron", ["two scenes are named wide", ""]),
         (

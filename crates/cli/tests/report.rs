@@ -126,7 +126,7 @@ fn what_is_no_whole_result_is_refused() {
     assert!(
         String::from_utf8(output.stderr)
             .unwrap()
-            .contains("absent is no whole result")
+            .contains("absent: no such folder")
     );
     let page = path.join("b/report.html");
     let changed = fs::read_to_string(&page).unwrap().replace("4096", "4097");

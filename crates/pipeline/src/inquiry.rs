@@ -221,9 +221,9 @@ mod tests {
         assert!(open.contains("cannot decide which is wrong"), "{open}");
         let open = found(1.25, 3e-5);
         for words in [
-            "0.550 % apart",
+            "differ by 0.550 %",
             "their noise is 1.500 %",
-            "it takes 3.6e6 of them or more",
+            "3.6e6 of them or more are needed",
         ] {
             assert!(open.contains(words), "{words}: {open}");
         }

@@ -274,7 +274,7 @@ fn malformed_files_are_refused_where_they_are() {
         &good[..good.len() - 1],
         "byte 93: 1 particles of 28 bytes should follow, but 27 bytes do",
     );
-    refused(&[&good[..], &[0; 28]].concat(), "and 56 bytes do");
+    refused(&[&good[..], &[0; 28]].concat(), "but 56 bytes do");
     let stray = [&good[..], b"\n"].concat();
     assert_eq!(McplFile::read(&stray).unwrap().write(), stray);
     refused(&good[..60], "left");

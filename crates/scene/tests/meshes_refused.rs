@@ -69,13 +69,13 @@ fn vertices_whose_normals_cancel_are_named_as_the_file_counts() {
     told(
         file("a.obj", &both, "event: Mirror"),
         &[
-            "surfaces[0].mesh, \"a.obj\": vertex 6 is where normals cancel",
+            "surfaces[0].mesh, \"a.obj\": vertex 6 is without a normal",
             "(2 more are not)",
         ],
     );
     told(
         file("a.ply", &ply(&both), "event: Mirror"),
-        &["\"a.ply\": vertex 5 is where"],
+        &["\"a.ply\": vertex 5 is without"],
     );
     assert!(
         file("a.obj", &both, "albedo: 0.5").is_ok(),

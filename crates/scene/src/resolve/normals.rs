@@ -39,8 +39,9 @@ impl Resolver<'_> {
         if let Some(first) = cancel.first() {
             let field = at.field(&format!("vertex {}", at.number(*first)));
             let left = share(&sums[*first as usize]);
-            let value =
-                format!("with normals that cancel: {left:.1e} of their sum by area is left");
+            let value = format!(
+                "without a normal: those of its triangles cancel to {left:.1e} of their sum"
+            );
             let allowed = format!(
                 "vertices of a smooth surface, with at least {MIN_NORMAL} left{}",
                 others(cancel.len())
