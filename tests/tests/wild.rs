@@ -224,6 +224,8 @@ fn scenes_that_were_wrong_do_not_fail() {
     holds("wide_gaussian_sky", &[("outgoing", FirstOrder)]);
     holds("leaning_mesh", &[("on_it", FirstOrder)]);
     holds("at_a_tilted_sky", &[("sky", FirstOrder)]);
+    let both_sides = [("arriving", FirstOrder), ("leaving", FirstOrder)];
+    holds("mask_beside_a_tilted_glass", &both_sides);
     let legs = [("outgoing", FirstOrder), ("beyond", FirstOrder)];
     holds("blocker_in_later_leg", &legs);
     let twice = [("outgoing", Reference), ("beyond", Reference)];

@@ -130,14 +130,15 @@ impl PlaneOnLeg {
     /// The distance along its heading, from `from` on, at which light on a ray of the leg comes to
     /// the plane; `None` if it does not.
     ///
-    /// Light that travels back along the leg only reaches planes on a surface, and never near the
-    /// central hit.
+    /// A plane on a surface records light where it meets the surface: an oblique surface reaches
+    /// before and behind its central hit, and what lies between may stand in the light of one part
+    /// alone. Light that travels back along the leg only reaches planes on a surface.
     #[inline]
     pub(crate) fn crossing(&self, ray: &TwoPlane, from: f64) -> Option<f64> {
-        if self.heading == Heading::Along {
-            return Some(self.distance);
-        }
-        let (point, _) = self.surface.as_ref()?.met(start(ray), direction(ray))?;
+        let Some(surface) = &self.surface else {
+            return (self.heading == Heading::Along).then_some(self.distance);
+        };
+        let (point, _) = surface.met(start(ray), direction(ray))?;
         (self.side == Side::After || point.z > from).then_some(point.z)
     }
 

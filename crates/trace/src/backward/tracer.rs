@@ -462,7 +462,7 @@ impl Backward {
         };
         let nothing = |_| [0.0; 4];
         // A plane on a surface records all light that arrives there, as it does for photons.
-        let end = End::Plane(plane_on_leg.distance, plane_on_leg.side);
+        let end = End::Plane(point.z, plane_on_leg.side);
         let found = self.incident(&IncomingRay::from_light(at_light), end, 1, &nothing);
         let weight = found * per_ray * area / density;
         let (ray, weight) = plane_on_leg.at_plane(&at_light, weight)?;
