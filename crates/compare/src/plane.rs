@@ -14,7 +14,7 @@ use crate::report::{
 use crate::residuals::{Residuals, largest};
 use crate::score::{ParameterReport, score};
 use crate::verdict::{Test, Verdict};
-use etendue_field::{SliceGrid, Slices, VirtualPlane, percent, tidy};
+use etendue_field::{SliceGrid, Slices, VirtualPlane, brief, percent};
 use etendue_spectrum::bandwidth::{SliceBandwidth, Widest, bandwidth_nu, bandwidth_rho, widest};
 use etendue_spectrum::estimate::{self, ProjectionEstimate, TooFewBatches};
 use etendue_spectrum::moments::{high_frequency_share, second_moment, shear_slope, wedge_share};
@@ -530,7 +530,7 @@ fn warnings(predicted: &Array2<f64>, grid: &SliceGrid, blur: Option<(f64, f64)>)
         if border > BORDER * peak {
             warnings.push(format!(
                 "the spectrum extends beyond |{name}| = {}, where it is {:.0} dB below its peak; bandwidths cover the inside only",
-                tidy(max),
+                brief(max),
                 10.0 * libm::log10(peak / border)
             ));
         }

@@ -9,6 +9,19 @@ pub fn tidy(x: f64) -> String {
     (rounded + 0.0).to_string()
 }
 
+/// Returns a text for people: at most seven significant digits, with a power of ten where zeros would
+/// hide them.
+#[must_use]
+pub fn brief(x: f64) -> String {
+    let rounded: f64 = format!("{x:.6e}").parse().unwrap_or(x);
+    let size = rounded.abs();
+    if size == 0.0 || (1e-4..1e7).contains(&size) || !size.is_finite() {
+        tidy(rounded)
+    } else {
+        format!("{rounded:e}")
+    }
+}
+
 /// Formats a share in per cent, to `places` decimals, or more if that would give fewer than two
 /// digits.
 #[must_use]
@@ -36,11 +49,17 @@ pub fn decimals(x: f64) -> usize {
     whole((1.0 - libm::log10(x).floor()).clamp(0.0, 17.0))
 }
 
+/// Errors below this would be hidden behind zeros.
+const MIN_PLAIN_ERROR: f64 = 1e-8;
+
 /// Formats value ± error, to two digits of the error.
 #[must_use]
 pub fn uncertain(value: f64, error: f64) -> String {
     if !(error > 0.0 && error.is_finite()) {
         return format!("{value}");
+    }
+    if error < MIN_PLAIN_ERROR {
+        return format!("{value:.1e} ± {error:.1e}");
     }
     let digits = decimals(error);
     format!("{} ± {error:.digits$}", fixed(value, digits))
@@ -61,7 +80,18 @@ pub fn whole(x: f64) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::{percent, tidy};
+    use super::{brief, percent, tidy, uncertain};
+
+    #[test]
+    fn texts_for_people_are_short() {
+        assert_eq!(brief(40.0 / 3.0), "13.33333");
+        assert_eq!(brief(1.0), "1");
+        assert_eq!(brief(-0.0), "0");
+        assert_eq!(brief(-3.000_2e-12), "-3.0002e-12");
+        assert_eq!(brief(2e7), "2e7");
+        assert_eq!(uncertain(9e-17, 8.5e-16), "9.0e-17 ± 8.5e-16");
+        assert_eq!(uncertain(0.199_999_56, 8.5e-7), "0.19999956 ± 0.00000085");
+    }
 
     #[test]
     fn shares_have_two_digits_at_least() {

@@ -4,7 +4,7 @@ use crate::summary::Summary;
 use etendue_compare::{
     FirstOrderReport, FullRadialReport, ParameterReport, PlaneReport, Verdict, sidak,
 };
-use etendue_field::{decimals, fixed, tidy, uncertain};
+use etendue_field::{brief, decimals, fixed, uncertain};
 
 /// The table of planes, the table of parameters, and the verdict, as printed by `etendue run`.
 pub fn text(summary: &Summary) -> String {
@@ -142,7 +142,7 @@ pub fn parameters(summary: &Summary) -> Vec<Vec<String>> {
             rows.push(vec![
                 plane.name.clone(),
                 with_unit(&parameter.name, &parameter.unit),
-                tidy(parameter.scene),
+                brief(parameter.scene),
                 measured,
                 change,
             ]);

@@ -33,7 +33,7 @@ pub use etendue_scenefile::{
     Fault, FormFile, FrequenciesFile, FresnelFile, GratingFile, HalfName, ImageFile, LightFile,
     LobeFile, MeshSource, PathFile, PatternFile, Place, PlaneFile, RunFile, Sampling, SceneError,
     SceneFile, ShapeFile, SphericalGaussianFile, SurfaceFile, TermFile, WindowFile, limits, schema,
-    shown,
+    shown, unit,
 };
 pub use mesh::{DetailedMesh, Mesh, ObjFile, ObjPart};
 pub use picture::{Channels, read_channels};

@@ -1,7 +1,7 @@
 //! Warns of likely mistakes in a valid scene: of units, of grids, and arrays that are too small.
 
 use crate::scene::{BlockerLayer, Scene};
-use etendue_field::{Light, Mask, VirtualPlane, Window, tidy};
+use etendue_field::{Light, Mask, VirtualPlane, Window, brief};
 use etendue_scenefile::{FrequenciesFile, PlaneFile, WindowFile};
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -46,15 +46,15 @@ fn long(scene: &Scene) -> Option<String> {
     if *median >= MANY_METRES {
         return Some(format!(
             "lengths are about {} m, up to {} m ({path}): are those millimetres?",
-            tidy(*median),
-            tidy(*longest)
+            brief(*median),
+            brief(*longest)
         ));
     }
     (*longest >= MANY_METRES && *median < NEAR).then(|| {
         format!(
             "{path} is {} m, among lengths of about {} m: are those millimetres?",
-            tidy(*longest),
-            tidy(*median)
+            brief(*longest),
+            brief(*median)
         )
     })
 }
@@ -68,7 +68,7 @@ fn steep(window: &WindowFile) -> Option<String> {
         .find(|(_, slope)| *slope > STEEP)?;
     Some(format!(
         "window.{name} reaches a slope of {}, {:.0}° from the central ray: is that an angle in degrees?",
-        tidy(slope),
+        brief(slope),
         libm::atan(slope).to_degrees()
     ))
 }
@@ -126,8 +126,8 @@ fn coarse(
         (axis.max < step).then(|| {
             format!(
                 "{of}.{name}.max is {}, less than one step of the grid, 1/(2 · half-width of the window) = {}",
-                tidy(axis.max),
-                tidy(step)
+                brief(axis.max),
+                brief(step)
             )
         })
     });
@@ -155,7 +155,7 @@ fn past_edges(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
 }
 
 fn pair([x, y]: [f64; 2]) -> String {
-    format!("({}, {})", tidy(x), tidy(y))
+    format!("({}, {})", brief(x), brief(y))
 }
 
 /// The extent of an array from the central ray, along X and along Y: to half a pitch beyond the

@@ -40,6 +40,24 @@ fn below(node: &'static Value, steps: &[&str]) -> Option<&'static Value> {
     })
 }
 
+/// The unit of the number at a path such as `blockers.0.pitch`; empty if none is stated.
+#[must_use]
+pub fn unit(path: &str) -> &'static str {
+    let is_variant = |step: &&str| step.starts_with(char::is_uppercase);
+    let steps: Vec<&str> = path.split('.').filter(|step| !is_variant(step)).collect();
+    let node = below(schema(), &steps).unwrap_or(&Value::Null);
+    let what = node["title"]
+        .as_str()
+        .or_else(|| referred(node)["title"].as_str());
+    match what.unwrap_or_default() {
+        what if what.contains("cycles per metre") => "cycles/m",
+        what if what.contains("per metre") => "1/m",
+        what if what.contains("radians") => "rad",
+        what if what.contains("metres") => "m",
+        _ => "",
+    }
+}
+
 /// The description of how the field at a path may be written.
 pub(crate) fn wanted(path: &str) -> String {
     let [what, example] = field(path);
@@ -65,6 +83,14 @@ mod tests {
     use std::collections::BTreeSet;
     use std::fs;
     use std::path::Path;
+
+    #[test]
+    fn units_are_those_of_the_descriptions() {
+        assert_eq!(super::unit("blockers.0.shapes.1.edge"), "m");
+        assert_eq!(super::unit("blockers.0.pitch"), "m");
+        assert_eq!(super::unit("blockers.0.fill"), "");
+        assert_eq!(super::unit("surfaces.0.albedo"), "");
+    }
 
     /// The texts of the scenes in this repository.
     fn scenes() -> Vec<String> {

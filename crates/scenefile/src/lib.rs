@@ -28,5 +28,6 @@ pub use file::{
     MeshSource, PathFile, PatternFile, Place, PlaneFile, RunFile, Sampling, SceneFile, ShapeFile,
     SphericalGaussianFile, SurfaceFile, TermFile, WindowFile,
 };
+pub use hints::unit;
 pub use schema::schema;
 pub use suggestion::did_you_mean;

@@ -110,7 +110,7 @@ fn panel(
     };
     CurvePanel {
         title,
-        x: AxisQuantity::new(short(path), ""),
+        x: AxisQuantity::new(short(path), etendue_scene::unit(path)),
         is_log: [go_by_factors(numbers.iter().map(|(x, _)| *x)), false],
         curves: vec![
             curve(CurveKind::Theory, "predicted", &predicted),

@@ -48,7 +48,7 @@ pub(crate) fn numbers(plane: &Value) -> Vec<TableNumber> {
         of(BANDWIDTHS[0], "cycles/m", &bandwidth["rho"], "predicted"),
         of(
             BANDWIDTHS[1],
-            "cycles per unit slope, on surfaces per radian",
+            "cycles per unit slope, or per radian on surfaces",
             &bandwidth["nu"],
             "predicted",
         ),

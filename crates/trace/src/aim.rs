@@ -88,9 +88,9 @@ impl FromSky {
     /// Aimed emission has, for the window of each plane on the first leg, a strategy by the plane's
     /// profiles and one by the environment. For each other plane it has one for the part of the
     /// first surface that the plane sees, and one by the plane's profiles if the plane is on that
-    /// surface. Plain emission is uniform over the windows of the planes on the first leg and over
-    /// the first surface, always by the environment, and over the windows of planes on that
-    /// surface.
+    /// surface. Plain emission draws positions uniformly over the windows of the planes on the first
+    /// leg, over the first surface and over the windows of planes on that surface; directions are
+    /// always drawn by the environment.
     pub(crate) fn new(scene: &Scene, environment: &Environment) -> Self {
         let aimed = scene.run.emission == Emission::Aimed;
         let mut strategies = Vec::new();

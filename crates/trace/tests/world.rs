@@ -103,8 +103,8 @@ fn planes_on_a_surface_have_one_flux() {
         assert!(((*p - center).length() - 2.0).abs() < 1e-9);
         assert!(d.dot(*p - center) < 0.0); // it arrives from outside
     }
-    // The same photons occur among those of planes that see more or different ones: on the same
-    // line, with the same power.
+    // Each of these photons is also recorded by the other planes: on the same line, with the same
+    // power.
     for others in [&across, &tangent] {
         let mut found = 0;
         for (p, d, watts) in &local[..50] {

@@ -125,7 +125,7 @@ pub(crate) struct PredictArgs {
     #[command(flatten)]
     pub(crate) out: StageFolderArgs,
 
-    /// As in the measurement: where no theory applies, the other method measures as many
+    /// Photons and seed of the measurement; where no theory applies, the other tracer uses as many
     #[command(flatten)]
     pub(crate) photons: PhotonArgs,
 

@@ -23,7 +23,7 @@ pub(super) fn read(bytes: &[u8], number: u32, files: &Files) -> Result<MeshParts
     let (version, start) = find(bytes, number)?;
     let packed = bytes
         .get(start..)
-        .ok_or("has a mesh that starts beyond its end")?;
+        .ok_or("has a mesh that starts after the end of the file")?;
     let most = files.left().min(packed.len() as u64 * MAX_PER_BYTE);
     let mut stream = UnpackedStream {
         inner: ZlibDecoder::new(packed).take(most),

@@ -1,4 +1,4 @@
-//! Draws the scene to scale where its path turns, in the plane of D and X at the light.
+//! Draws a scene whose path turns: to scale, in the plane of D and X at the light.
 
 use super::cut::CuttingPlane;
 use etendue_field::VirtualPlane;
