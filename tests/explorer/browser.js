@@ -62,7 +62,9 @@ class Browser {
   }
   async until(expression, seconds = 30) {
     for (let i = 0; i < 20 * seconds; i++) {
-      if (await this.value(expression)) return;
+      // A page that is being replaced has no answer.
+      const left = (error) => /navigated|context/.test(error.message) || Promise.reject(error);
+      if ((await this.value(expression).catch(left)) === true) return;
       await new Promise((resolve) => setTimeout(resolve, 50));
     }
     throw new Error(`never: ${expression}; ${this.console.join("; ")}`);

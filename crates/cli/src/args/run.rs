@@ -31,9 +31,9 @@ pub(crate) struct RunArgs {
     #[command(flatten)]
     pub(crate) photons: PhotonArgs,
 
-    /// Trace until the noise is at most this share of the spectrum at each plane: 2^20 photons
-    /// first, then as many as needed, up to --photons [default: 2^40]; exit code 3 if these do not
-    /// suffice
+    /// Trace until the noise of the photons is at most this share of the spectrum at each plane:
+    /// 2^20 photons first, then as many as needed, up to --photons [default: 2^40]; exit code 3 if
+    /// these do not suffice. Errors of predictions come on top
     #[arg(long, value_name = "SHARE", value_parser = share)]
     pub(crate) target_error: Option<f64>,
 
