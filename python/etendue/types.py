@@ -15,7 +15,8 @@ class Axis(TypedDict):
     max: float
     """Highest frequency, rounded up to a multiple of the spacing. 1e-9 to 1e9"""
     spacing: NotRequired[Union[float, None]]
-    """Spacing; 1/(2 · half-width of the window) unless stated, and never wider. 1e-9 to 1e9"""
+    """Spacing of the frequencies. The default, 1/(2 · half-width of the window), is also the
+largest. 1e-9 to 1e9"""
 
 
 class BlockersGrating(TypedDict):
@@ -26,17 +27,17 @@ class BlockersGrating(TypedDict):
 
 class BlockersGratingFields(TypedDict):
     axis: "AxisName"
-    """The axis along which it varies"""
+    """The axis along which the grating varies"""
     center: Sequence[float]
-    """Point from which t is counted, world coordinates"""
+    """Origin of t, world coordinates"""
     frequency: float
-    """f, cycles per metre. 1e-9 to 1e9"""
+    """Frequency f, cycles per metre. 1e-9 to 1e9"""
     modulation: NotRequired[float]
-    """m. 0 to 1"""
+    """Modulation m. 0 to 1"""
     name: str
     """Name"""
     phase: NotRequired[float]
-    """p, radians. -1000 to 1000"""
+    """Phase p, radians. -1000 to 1000"""
 
 
 class BlockersJitteredSquares(TypedDict):
@@ -49,11 +50,12 @@ class BlockersJitteredSquaresFields(TypedDict):
     center: Sequence[float]
     """Centre of the grid, world coordinates"""
     count: Sequence[int]
-    """Squares along X and along Y"""
+    """Number of squares along X and along Y"""
     fill: float
     """Side of a square as a share of the pitch. above 0, at most 1"""
     jitter: NotRequired[float]
-    """Each square is moved by U(−jitter/2, jitter/2) pitches along X and along Y. 0 to 1 − fill"""
+    """Amount of jitter: each square is moved by U(−jitter/2, jitter/2) pitches along X and
+along Y. 0 to 1 − fill"""
     name: str
     """Name, for planes to refer to"""
     pitch: float
@@ -70,24 +72,24 @@ class BlockersMesh(TypedDict):
 
 class BlockersMeshFields(TypedDict):
     center: Sequence[float]
-    """Where the mesh's origin is put, world coordinates"""
+    """Position of the mesh's origin, world coordinates"""
     mesh: "MeshSource"
     """The triangles"""
     name: str
     """Name"""
     scale: NotRequired[float]
-    """Factor on the mesh's coordinates. 1e-9 to 1e9"""
+    """Scale factor of the mesh's coordinates. 1e-9 to 1e9"""
 
 
 class BlockersShapes(TypedDict):
-    """Opaque shapes one by one; they must not overlap."""
+    """Individual opaque shapes, which must not overlap."""
 
     Shapes: "BlockersShapesFields"
 
 
 class BlockersShapesFields(TypedDict):
     center: Sequence[float]
-    """Point from which their coordinates along X and Y are counted, world coordinates"""
+    """Origin of the shapes' coordinates along X and Y, world coordinates"""
     name: str
     """Name"""
     shapes: Sequence["Shape"]
@@ -98,15 +100,16 @@ class Brdf(TypedDict):
     """A BRDF."""
 
     albedo: NotRequired[float]
-    """Factor on it, 0 to 1. 0 to 1"""
+    """Factor on the lobe, 0 to 1. 0 to 1"""
     fresnel: NotRequired["Fresnel"]
-    """Its Fresnel factor"""
+    """Fresnel factor"""
     incoming: NotRequired[Union[Sequence[float], None]]
-    """A factor of the angle at which light comes: values at equal steps from the normal to 90 degrees, linear in between; 1 unless stated"""
+    """Factor by the angle of incidence: values at equal steps from the normal to 90 degrees,
+linear in between; 1 by default"""
     lobe: "Lobe"
-    """Its lobe"""
+    """Lobe of the BRDF"""
     outgoing: NotRequired[Union[Sequence[float], None]]
-    """The same of the angle at which light leaves"""
+    """Factor by the angle of the outgoing light, in the same form"""
 
 
 class BulbDisc(TypedDict):
@@ -124,7 +127,8 @@ class BulbSquare(TypedDict):
 
 
 class EnvironmentFile(TypedDict):
-    """An OpenEXR picture over latitude and longitude, W m⁻² sr⁻¹; the path is relative to the scene file, and stays inside its folder."""
+    """An OpenEXR picture over latitude and longitude, W m⁻² sr⁻¹; the path is relative to the
+scene file, and must stay inside its folder."""
 
     File: str
 
@@ -136,46 +140,48 @@ class EnvironmentLobes(TypedDict):
 
 
 class EventReflects(TypedDict):
-    """Reflects by a BRDF, on the side it faces; black on the other."""
+    """Reflects by a BRDF on the side that the surface faces; the other side is black."""
 
     Reflects: "EventReflectsFields"
 
 
 class EventReflectsFields(TypedDict):
     blend: NotRequired[Union["Pattern", None]]
-    """What weights the BRDF where there is another"""
+    """Weight of the first BRDF where there is a second"""
     brdf: "Brdf"
     """The BRDF"""
     other: NotRequired[Union["Brdf", None]]
-    """Another BRDF that is added to it, weighted by 1 − `blend`"""
+    """A second BRDF that is added, weighted by 1 − `blend`"""
     texture: NotRequired[Union["Pattern", None]]
-    """What multiplies the BRDF"""
+    """Factor that multiplies the BRDF"""
 
 
 class EventRefraction(TypedDict):
-    """Lets it through by Snell's law; nothing is reflected."""
+    """Transmits light by Snell's law; nothing is reflected."""
 
     Refraction: "EventRefractionFields"
 
 
 class EventRefractionFields(TypedDict):
     back: float
-    """Index on the other side. 0.1 to 10"""
+    """Index of refraction on the other side. 0.1 to 10"""
     front: float
-    """Index of refraction on the side it faces. 0.1 to 10"""
+    """Index of refraction on the side that the surface faces. 0.1 to 10"""
 
 
 class EventSum(TypedDict):
-    """Reflects by a weighted sum of BRDFs, on the side it faces; black on the other."""
+    """Reflects by a weighted sum of BRDFs on the side that the surface faces; the other side is
+black."""
 
     Sum: "EventSumFields"
 
 
 class EventSumFields(TypedDict):
     terms: Sequence["Term"]
-    """The BRDFs with their weights, 1 to 8 of them. The first says where the central ray goes on, as far as the path does not"""
+    """The BRDFs with their weights, 1 to 8 of them. Where the path does not set the direction
+of the central ray, the first one does"""
     texture: NotRequired[Union["Pattern", None]]
-    """What multiplies their sum"""
+    """Factor that multiplies the sum"""
 
 
 class EventThinLens(TypedDict):
@@ -186,7 +192,7 @@ class EventThinLens(TypedDict):
 
 
 class FormCylinder(TypedDict):
-    """A circular cylinder with this curvature; its axis is across `along`."""
+    """A circular cylinder with this curvature and its axis across `along`."""
 
     Cylinder: float
     """-1e6 to 1e6"""
@@ -224,9 +230,9 @@ class FresnelConductor(TypedDict):
 
 class FresnelConductorFields(TypedDict):
     k: float
-    """k. 0 to 20"""
+    """Index of absorption k. 0 to 20"""
     n: float
-    """n. 0.05 to 20"""
+    """Index of refraction n. 0.05 to 20"""
 
 
 class FresnelDielectric(TypedDict):
@@ -240,22 +246,23 @@ class Grating(TypedDict):
     """The grating of a picture or a pattern."""
 
     axis: "AxisName"
-    """The axis along which it varies"""
+    """The axis along which the grating varies"""
     frequency: float
-    """f, cycles per unit of the picture, or per metre of a surface. 1e-9 to 1e9"""
+    """Frequency f, cycles per unit of the picture, or per metre of a surface. 1e-9 to 1e9"""
     modulation: NotRequired[float]
-    """m. 0 to 1"""
+    """Modulation m. 0 to 1"""
     phase: NotRequired[float]
-    """p, radians. -1e9 to 1e9"""
+    """Phase p, radians. -1e9 to 1e9"""
 
 
 class Image(TypedDict):
-    """A smooth picture: exp(−π (a²/w₁² + b²/w₂²)), times a grating ½ (1 + m cos(2π f t + p)) if it has one."""
+    """A smooth picture: exp(−π (a²/w₁² + b²/w₂²)), optionally times a grating ½ (1 + m cos(2π f t +
+p))."""
 
     grating: NotRequired[Union["Grating", None]]
-    """Its grating"""
+    """Grating of the picture"""
     width: Sequence[float]
-    """w₁ and w₂ along X and along Y"""
+    """Widths w₁ and w₂ along X and along Y"""
 
 
 class LightBeam(TypedDict):
@@ -266,7 +273,7 @@ class LightBeam(TypedDict):
 
 class LightBeamFields(TypedDict):
     center: Sequence[float]
-    """Where the central ray begins, world coordinates"""
+    """Start of the central ray, world coordinates"""
     image: "Image"
     """The picture, in metres along X and along Y"""
     irradiance: NotRequired[float]
@@ -289,20 +296,22 @@ class LightDiscFields(TypedDict):
 
 
 class LightEnvironment(TypedDict):
-    """Light from far away; that alone shines which comes from before the plane across `path.direction` at the centre."""
+    """Light from an environment; only directions in front of the plane across `path.direction` at
+the centre emit light."""
 
     Environment: "LightEnvironmentFields"
 
 
 class LightEnvironmentFields(TypedDict):
     center: Sequence[float]
-    """Where the central ray begins, world coordinates"""
+    """Start of the central ray, world coordinates"""
     front: NotRequired[Sequence[float]]
-    """Direction of the middle of the map, any length: its part orthogonal to `up` is used"""
+    """Direction of the middle of the map, any length; only the part orthogonal to `up` is
+used"""
     map: "Environment"
-    """How much comes from where"""
+    """Radiance by direction"""
     scale: NotRequired[float]
-    """Factor on the map. 1e-9 to 1e9"""
+    """Scale factor of the map's radiance. 1e-9 to 1e9"""
     up: NotRequired[Sequence[float]]
     """Direction of the map's top, any length"""
 
@@ -311,14 +320,14 @@ LightLobe = TypedDict("LightLobe", {"from": "Sequence[float]", "radiance": "NotR
 
 
 class LightPoint(TypedDict):
-    """A point that shines alike in all directions."""
+    """A point that emits uniformly in all directions."""
 
     Point: "LightPointFields"
 
 
 class LightPointFields(TypedDict):
     center: Sequence[float]
-    """Where it is, world coordinates"""
+    """Position, world coordinates"""
     intensity: NotRequired[float]
     """Intensity, W sr⁻¹. 1e-9 to 1e9"""
 
@@ -331,7 +340,7 @@ class LightProjector(TypedDict):
 
 class LightProjectorFields(TypedDict):
     center: Sequence[float]
-    """Where it is, world coordinates"""
+    """Position, world coordinates"""
     image: "Image"
     """The picture, over slopes along X and along Y"""
     intensity: NotRequired[float]
@@ -339,22 +348,26 @@ class LightProjectorFields(TypedDict):
 
 
 class LightRays(TypedDict):
-    """The rays of a file, as they go through the plane across `path.direction` at the centre; those that go back from it are left out."""
+    """The rays of a file, where they cross the plane across `path.direction` at the centre; rays
+that go backwards are omitted."""
 
     Rays: "LightRaysFields"
 
 
 class LightRaysFields(TypedDict):
     center: Sequence[float]
-    """Where the origin of the file is, and where the central ray begins, world coordinates"""
+    """Position of the file's origin and start of the central ray, world coordinates"""
     file: str
-    """IES TM-25, MCPL or NPY; the path is relative to the scene file, and stays inside its folder"""
+    """IES TM-25, MCPL or NPY file; the path is relative to the scene file, and must stay
+inside its folder"""
     flux: NotRequired[Union[float, None]]
-    """Flux of all rays of the file, W. Left out: what the file says; it must say so in W, or in lm with its total in W and lm. 1e-9 to 1e9"""
+    """Flux of all rays of the file, W. By default the flux stated in the file, which must be
+in W, or in lm with its total in W and lm. 1e-9 to 1e9"""
     front: NotRequired[Union[Sequence[float], None]]
-    """Direction of the file's Z axis, any length. Left out: `path.direction`"""
+    """Direction of the file's Z axis, any length; `path.direction` by default"""
     up: NotRequired[Union[Sequence[float], None]]
-    """Direction of the file's Y axis, any length: its part orthogonal to `front` is used. Left out: that of the central ray's frame"""
+    """Direction of the file's Y axis, any length; only the part orthogonal to `front` is used.
+By default the Y axis of the central ray's frame"""
 
 
 class LightRectangle(TypedDict):
@@ -380,7 +393,7 @@ class LightSpot(TypedDict):
 
 class LightSpotFields(TypedDict):
     bulb: "Bulb"
-    """Its shape"""
+    """Shape of the bulb"""
     center: Sequence[float]
     """Centre, world coordinates"""
     exponent: float
@@ -404,14 +417,14 @@ class LobeGgx(TypedDict):
 
 
 class LobePhong(TypedDict):
-    """cosⁿ of the angle to the mirror direction, with this n."""
+    """Phong lobe: cosⁿ of the angle to the mirror direction, with this n."""
 
     Phong: float
     """0 to 10000"""
 
 
 class MeshSourceFile(TypedDict):
-    """An OBJ or PLY file; the path is relative to the scene file, and stays inside its folder."""
+    """An OBJ or PLY file; the path is relative to the scene file, and must stay inside its folder."""
 
     File: str
 
@@ -424,11 +437,11 @@ class MeshSourceParaboloid(TypedDict):
 
 class MeshSourceParaboloidFields(TypedDict):
     cells: int
-    """Cells along a side, of two triangles each. 1 to 2048"""
+    """Number of cells along a side, of two triangles each. 1 to 2048"""
     curvatures: Sequence[float]
-    """k₁ and k₂, per metre: positive if it is convex"""
+    """Curvatures k₁ and k₂, per metre; positive if convex"""
     half: float
-    """It reaches to ± this along x and along y. 1e-9 to 1e8"""
+    """Half-width: the piece extends to ± this along x and along y. 1e-9 to 1e8"""
 
 
 class MeshSourceStar(TypedDict):
@@ -445,56 +458,58 @@ class MeshSourceStarFields(TypedDict):
     relief: float
     """Height of the lobes as a share of the radius. -0.9 to 0.9"""
     rings: int
-    """Rings from pole to pole. 2 to 2048"""
+    """Number of rings from pole to pole. 2 to 2048"""
 
 
 class Path(TypedDict):
-    """The central ray: it leaves the light's centre and goes from surface to surface, each sending it towards the centre of the
-next."""
+    """The central ray: it leaves the light's centre and travels from surface to surface, each of which
+sends it towards the centre of the next."""
 
     direction: Sequence[float]
-    """Direction in which it leaves the light; any length"""
+    """Direction in which the ray leaves the light; any length"""
     leaves: NotRequired[Union[Sequence[float], None]]
-    """Direction in which it leaves the last of them, any length: straight back unless stated"""
+    """Direction in which the ray leaves the last surface, any length; straight back by default"""
     visits: Sequence[str]
-    """Names of the surfaces it visits, in the order of light"""
+    """Names of the surfaces that the ray visits, in the order of light"""
     x_axis: Sequence[float]
-    """The X axis: its part orthogonal to the direction is used"""
+    """The X axis; only the part orthogonal to the direction is used"""
 
 
 class PatternCheckerboard(TypedDict):
-    """1 and 0 by turns on squares; two of their sides make this period."""
+    """A checkerboard of 1 and 0 with this period, two sides of a square."""
 
     Checkerboard: float
     """1e-9 to 1e9"""
 
 
 class PatternCosine(TypedDict):
-    """½ (1 + m cos(2π f t + p)), t along `along` or across it."""
+    """½ (1 + m cos(2π f t + p)), with t along `along` or across it."""
 
     Cosine: "PatternCosineFields"
 
 
 class PatternCosineFields(TypedDict):
     axis: "AxisName"
-    """The axis along which it varies: X is `along`"""
+    """The axis along which the pattern varies; X is `along`"""
     frequency: float
-    """f, cycles per metre. 1e-9 to 1e9"""
+    """Frequency f, cycles per metre. 1e-9 to 1e9"""
     modulation: NotRequired[float]
-    """m. 0 to 1"""
+    """Modulation m. 0 to 1"""
     phase: NotRequired[float]
-    """p, radians. -1e9 to 1e9"""
+    """Phase p, radians. -1e9 to 1e9"""
 
 
 class PatternPicture(TypedDict):
-    """A picture around the vertex, 0 beyond its edge: X to its right, Y to its top, seen from where the surface faces."""
+    """A picture around the vertex, 0 outside: X to its right, Y to its top, as seen from the side
+that the surface faces."""
 
     Picture: "PatternPictureFields"
 
 
 class PatternPictureFields(TypedDict):
     file: str
-    """An OpenEXR or PNG file of numbers from 0 to 1; the path is relative to the scene file, and stays inside its folder"""
+    """An OpenEXR or PNG file of numbers from 0 to 1; the path is relative to the scene file,
+and must stay inside its folder"""
     size: Sequence[float]
     """Width along X and height along Y, metres"""
 
@@ -522,28 +537,28 @@ class Plane(TypedDict):
     """A virtual plane."""
 
     at: "Place"
-    """Where on the path"""
+    """Place on the path"""
     frequencies: NotRequired[Union["Frequencies", None]]
-    """Its own frequencies"""
+    """The plane's own frequencies"""
     name: str
-    """Name: the folder of its results"""
+    """Name of the plane, and of the folder of its results"""
     orientation: NotRequired["Orientation"]
-    """What its coordinates are counted from"""
+    """Reference frame of the plane's coordinates"""
     quantity: NotRequired["Quantity"]
-    """What it records"""
+    """What the plane records"""
     window: NotRequired[Union["Window", None]]
-    """Its own window"""
+    """The plane's own window"""
 
 
 class ProfileBox(TypedDict):
-    """1 on |t| < h."""
+    """Box: 1 on |t| < h."""
 
     Box: float
     """1e-9 to 1e9"""
 
 
 class ProfileGaussian(TypedDict):
-    """exp(−π t² / width²), cut at |t| < cut."""
+    """Truncated Gaussian: exp(−π t² / width²) on |t| < cut."""
 
     Gaussian: "ProfileGaussianFields"
 
@@ -552,27 +567,27 @@ class ProfileGaussianFields(TypedDict):
     cut: float
     """Half-width of the support. 1e-9 to 1e9"""
     width: float
-    """The width: the full integral of the uncut Gaussian. 1e-9 to 1e9"""
+    """The width: the full integral of the Gaussian before truncation. 1e-9 to 1e9"""
 
 
 class ProfileHann(TypedDict):
-    """cos²(π t / 2h) on |t| < h."""
+    """Hann window: cos²(π t / 2h) on |t| < h."""
 
     Hann: float
     """1e-9 to 1e9"""
 
 
 class Run(TypedDict):
-    """How the scene is measured."""
+    """The settings of the measurement."""
 
     alpha: NotRequired[float]
-    """Share of true scenes the verdict may reject, over all planes. 1e-6 to 0.5"""
+    """Share of correct scenes that the verdict may reject, over all planes. 1e-6 to 0.5"""
     batches: NotRequired[int]
-    """Independent batches the errors come from. 32 to 1024: errors come from the spread of batches"""
+    """Number of independent batches, from which errors are estimated. 32 to 1024: errors come from the spread of batches"""
     emission: NotRequired["Emission"]
     """How photons leave the light"""
     photons: NotRequired[int]
-    """Photons emitted; 1e7 is a number too. one for each batch to 10^12"""
+    """Number of photons emitted; 1e7 is allowed too. one for each batch to 10^12"""
     resolution: NotRequired[float]
     """Noise, as a share of the spectrum, above which a plane does not pass. 0.0001 to 1"""
     sampling: NotRequired["Sampling"]
@@ -585,25 +600,26 @@ class Scene(TypedDict):
     """A scene file as a tree."""
 
     as_printed: NotRequired[bool]
-    """Whether geometric steps are predicted by the paper's equations as they are printed (9, 10, 11 and 19)"""
+    """Whether geometric steps are predicted by the paper's equations as printed (9, 10, 11 and
+19)"""
     blockers: NotRequired[Sequence["Blockers"]]
-    """What stands in its way"""
+    """The blockers"""
     description: NotRequired[str]
-    """What the scene shows, for the reader"""
+    """A description of the scene for the reader"""
     frequencies: "Frequencies"
-    """The frequencies of every plane that does not state its own"""
+    """The frequencies of every plane without its own"""
     light: "Light"
-    """Where light comes from"""
+    """The light source"""
     path: "Path"
     """The central ray"""
     planes: Sequence["Plane"]
-    """Where light is looked at"""
+    """The virtual planes"""
     run: NotRequired["Run"]
-    """How it is measured"""
+    """The settings of the measurement"""
     surfaces: NotRequired[Sequence["Surface"]]
-    """What it falls on"""
+    """The surfaces"""
     window: "Window"
-    """The window of every plane that does not state its own"""
+    """The window of every plane without one of its own"""
 
 
 class ShapeDisc(TypedDict):
@@ -655,33 +671,34 @@ class SurfaceMesh(TypedDict):
 
 class SurfaceMeshFields(TypedDict):
     albedo: NotRequired[float]
-    """Reflected over incident flux, if it is Lambertian. 0 to 1"""
+    """Albedo, reflected over incident flux, if the mesh is Lambertian. 0 to 1"""
     center: Sequence[float]
-    """Where the mesh's origin is put, world coordinates"""
+    """Position of the mesh's origin, world coordinates"""
     event: NotRequired[Union["Event", None]]
-    """What it does to light as a smooth surface, with normals interpolated between its vertices"""
+    """Interaction with light as a smooth surface, with normals interpolated between vertices"""
     mesh: "MeshSource"
     """The triangles"""
     name: str
     """Name"""
     scale: NotRequired[float]
-    """Factor on the mesh's coordinates. 1e-9 to 1e9"""
+    """Scale factor of the mesh's coordinates. 1e-9 to 1e9"""
 
 
 class SurfaceRectangle(TypedDict):
-    """A Lambertian rectangle, edges along X and Y unless it faces elsewhere."""
+    """A Lambertian rectangle, with edges along X and Y by default."""
 
     Rectangle: "SurfaceRectangleFields"
 
 
 class SurfaceRectangleFields(TypedDict):
     albedo: NotRequired[float]
-    """Reflected over incident flux. 0 to 1"""
+    """Albedo: reflected over incident flux. 0 to 1"""
     center: Sequence[float]
     """Centre, world coordinates"""
     facing: NotRequired[Union[Sequence[float], None]]
-    """Its normal, any length: back along `path.direction` unless stated. Its edges are then along the part of the path's
-X axis that is orthogonal to it (of Y, if X is along it), and across"""
+    """Normal of the rectangle, any length; by default back along `path.direction`. One pair of
+edges is along the part of the path's X axis that is orthogonal to the normal (of Y, if
+X is along it), the other across"""
     name: str
     """Name, for the path and the planes to refer to"""
     size: Sequence[float]
@@ -696,42 +713,42 @@ class SurfaceSmooth(TypedDict):
 
 class SurfaceSmoothFields(TypedDict):
     along: NotRequired[Union[Sequence[float], None]]
-    """Direction of the first curvature, any length: the path's X axis unless stated (Y, if it faces along X); its part
-orthogonal to the normal is used"""
+    """Direction of the first curvature, any length; by default the path's X axis (Y, if the
+surface faces along X). Only the part orthogonal to the normal is used"""
     aperture: float
-    """Its radius, seen along the normal. 1e-9 to 1e9"""
+    """Radius of the surface, seen along the normal. 1e-9 to 1e9"""
     center: Sequence[float]
-    """Its vertex, world coordinates"""
+    """Vertex of the surface, world coordinates"""
     event: "Event"
-    """What it does"""
+    """Interaction with light"""
     facing: Sequence[float]
-    """Its normal at the vertex, any length"""
+    """Normal at the vertex, any length"""
     form: "Form"
-    """Its form"""
+    """Shape of the surface"""
     name: str
     """Name"""
 
 
 class Term(TypedDict):
-    """A BRDF of a sum."""
+    """A term in a sum of BRDFs."""
 
     brdf: "Brdf"
     """The BRDF"""
     weight: NotRequired[Union["Pattern", None]]
-    """How much of it there is at each place: 1 unless stated"""
+    """Weight of the BRDF at each place; 1 by default"""
 
 
 class Window(TypedDict):
-    """The window: a profile for each coordinate; y and v are as x and u unless stated."""
+    """The window: a profile for each coordinate; by default y and v are the same as x and u."""
 
     u: "Profile"
-    """Along u, slope"""
+    """Profile along u, slope"""
     v: NotRequired[Union["Profile", None]]
-    """Along v"""
+    """Profile along v"""
     x: "Profile"
-    """Along x, metres"""
+    """Profile along x, metres"""
     y: NotRequired[Union["Profile", None]]
-    """Along y"""
+    """Profile along y"""
 
 AxisName = Union[Literal["X"], Literal["Y"]]
 """An axis across the central ray."""
@@ -746,34 +763,37 @@ Emission = Union[Literal["Aimed"], Literal["Plain"]]
 """How photons leave the light."""
 
 Environment = Union["EnvironmentLobes", "EnvironmentFile"]
-"""Radiance by the direction light comes from; in coordinates whose second axis is `up` and whose third is `front`."""
+"""Radiance by the direction from which light comes, in coordinates whose second axis is `up` and
+whose third is `front`."""
 
 Event = Union[Literal["Mirror"], "EventRefraction", "EventThinLens", "EventReflects", "EventSum"]
-"""What a smooth surface does to light."""
+"""The interaction of a smooth surface with light."""
 
 Form = Union[Literal["Plane"], "FormSphere", "FormCylinder", "FormParaboloid"]
-"""The form of a smooth surface around its vertex; curvatures per metre, positive if it is convex seen from where it faces."""
+"""The shape of a smooth surface around its vertex; curvatures per metre, positive if convex as
+seen from the side it faces."""
 
 Fresnel = Union[Literal["White"], "FresnelDielectric", "FresnelConductor"]
-"""The share of light that is reflected, by the angle of incidence."""
+"""The share of light that is reflected, as a function of the angle of incidence."""
 
 HalfName = Union[Literal["Below"], Literal["Above"]]
 """A side of a line."""
 
 Light = Union["LightRectangle", "LightDisc", "LightPoint", "LightSpot", "LightProjector", "LightBeam", "LightEnvironment", "LightRays"]
-"""The light. The central ray leaves its centre."""
+"""The light; the central ray starts at its centre."""
 
 Lobe = Union[Literal["Lambertian"], "LobePhong", "LobeBeckmann", "LobeGgx"]
 """The lobe of a BRDF."""
 
 MeshSource = Union["MeshSourceFile", "MeshSourceParaboloid", "MeshSourceStar"]
-"""Where a mesh comes from."""
+"""The source of a mesh."""
 
 Orientation = Union[Literal["Orthogonal"], Literal["Tangent"], Literal["LocalNormals"], Literal["Mirrored"]]
-"""What the coordinates of a plane's rays are counted from.
+"""The reference for the coordinates of a plane's rays.
 
-On a surface, T is in the plane of incidence and B = N × T (docs/conventions.md); directions point away from the surface, those of
-light that arrives being turned around. A direction is cos φ (sin θ T + cos θ N) + sin φ B: the plane-sphere parameterisation."""
+On a surface, T is in the plane of incidence and B = N × T (docs/conventions.md); directions
+point away from the surface, so those of arriving light are reversed. A direction is cos φ (sin
+θ T + cos θ N) + sin φ B: the plane-sphere parameterisation."""
 
 Pattern = Union["PatternCosine", "PatternCheckerboard", "PatternPicture"]
 """A number from 0 to 1 at each place of a surface."""
@@ -785,7 +805,7 @@ Profile = Union["ProfileHann", "ProfileBox", "ProfileGaussian"]
 """One factor of a window: 1 at its centre, zero outside |t| < half-width."""
 
 Quantity = Union[Literal["Radiance"], Literal["DifferentialIrradiance"]]
-"""What a plane records."""
+"""The quantity that a plane records."""
 
 Sampling = Union[Literal["Net"], Literal["Random"]]
 """The numbers that photons are drawn from."""
@@ -794,4 +814,4 @@ Shape = Union["ShapeRectangle", "ShapeDisc", "ShapeHalfPlane"]
 """A shape in the plane of its blockers."""
 
 Surface = Union["SurfaceRectangle", "SurfaceMesh", "SurfaceSmooth"]
-"""What light falls on."""
+"""A surface that light falls on."""
