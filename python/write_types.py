@@ -8,6 +8,11 @@ from pathlib import Path
 PLAIN = {"number": "float", "integer": "int", "string": "str", "boolean": "bool", "null": "None"}
 
 
+def in_one_line(node):
+    """What a node of the schema is, without the breaks of its lines in Rust."""
+    return node.get("description", "").replace("\n", " ")
+
+
 def name_of(reference: str) -> str:
     return reference.rsplit("/", 1)[1]
 
@@ -47,11 +52,11 @@ def written(node: dict, name: str) -> str:
         return name
     lines = [f"class {name}(TypedDict):"]
     if "description" in node:
-        lines.append(f'    """{node["description"]}"""\n')
+        lines.append(f'    """{in_one_line(node)}"""\n')
     for field, content in fields.items():
         inner = kind(content, name + "Fields")
         lines.append(f"    {field}: {inner}" if field in needed else f"    {field}: NotRequired[{inner}]")
-        words = ". ".join(filter(None, [content.get("description", "").rstrip("."), content.get("x-range", "")]))
+        words = ". ".join(filter(None, [in_one_line(content).rstrip("."), content.get("x-range", "")]))
         if words:
             lines.append(f'    """{words}"""')
     classes[name] = "\n".join(lines)
@@ -65,7 +70,7 @@ for name, node in sorted(schema["$defs"].items()):
     if node.get("type") == "object" and "oneOf" not in node:
         written(node, name)
     else:
-        words = f'\n"""{node["description"]}"""' if "description" in node else ""
+        words = f'\n"""{in_one_line(node)}"""' if "description" in node else ""
         aliases.append(f"{name} = {kind(node, name)}{words}")
 written({**schema, "description": "A scene file as a tree."}, "Scene")
 text = '''"""The fields of a scene as types: written by `write_types.py` from the JSON schema, as `etendue schema` prints it."""

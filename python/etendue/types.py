@@ -15,8 +15,7 @@ class Axis(TypedDict):
     max: float
     """Highest frequency, rounded up to a multiple of the spacing. 1e-9 to 1e9"""
     spacing: NotRequired[Union[float, None]]
-    """Spacing of the frequencies. The default, 1/(2 · half-width of the window), is also the
-largest. 1e-9 to 1e9"""
+    """Spacing of the frequencies. The default, 1/(2 · half-width of the window), is also the largest. 1e-9 to 1e9"""
 
 
 class BlockersGrating(TypedDict):
@@ -54,8 +53,7 @@ class BlockersJitteredSquaresFields(TypedDict):
     fill: float
     """Side of a square as a share of the pitch. above 0, at most 1"""
     jitter: NotRequired[float]
-    """Amount of jitter: each square is moved by U(−jitter/2, jitter/2) pitches along X and
-along Y. 0 to 1 − fill"""
+    """Amount of jitter: each square is moved by U(−jitter/2, jitter/2) pitches along X and along Y. 0 to 1 − fill"""
     name: str
     """Name, for planes to refer to"""
     pitch: float
@@ -104,8 +102,7 @@ class Brdf(TypedDict):
     fresnel: NotRequired["Fresnel"]
     """Fresnel factor"""
     incoming: NotRequired[Union[Sequence[float], None]]
-    """Factor by the angle of incidence: values at equal steps from the normal to 90 degrees,
-linear in between; 1 by default"""
+    """Factor by the angle of incidence: values at equal steps from the normal to 90 degrees, linear in between; 1 by default"""
     lobe: "Lobe"
     """Lobe of the BRDF"""
     outgoing: NotRequired[Union[Sequence[float], None]]
@@ -127,8 +124,7 @@ class BulbSquare(TypedDict):
 
 
 class EnvironmentFile(TypedDict):
-    """An OpenEXR picture over latitude and longitude, W m⁻² sr⁻¹; the path is relative to the
-scene file, and must stay inside its folder."""
+    """An OpenEXR picture over latitude and longitude, W m⁻² sr⁻¹; the path is relative to the scene file, and must stay inside its folder."""
 
     File: str
 
@@ -170,16 +166,14 @@ class EventRefractionFields(TypedDict):
 
 
 class EventSum(TypedDict):
-    """Reflects by a weighted sum of BRDFs on the side that the surface faces; the other side is
-black."""
+    """Reflects by a weighted sum of BRDFs on the side that the surface faces; the other side is black."""
 
     Sum: "EventSumFields"
 
 
 class EventSumFields(TypedDict):
     terms: Sequence["Term"]
-    """The BRDFs with their weights, 1 to 8 of them. Where the path does not set the direction
-of the central ray, the first one does"""
+    """The BRDFs with their weights, 1 to 8 of them. Where the path does not set the direction of the central ray, the first one does"""
     texture: NotRequired[Union["Pattern", None]]
     """Factor that multiplies the sum"""
 
@@ -256,8 +250,7 @@ class Grating(TypedDict):
 
 
 class Image(TypedDict):
-    """A smooth picture: exp(−π (a²/w₁² + b²/w₂²)), optionally times a grating ½ (1 + m cos(2π f t +
-p))."""
+    """A smooth picture: exp(−π (a²/w₁² + b²/w₂²)), optionally times a grating ½ (1 + m cos(2π f t + p))."""
 
     grating: NotRequired[Union["Grating", None]]
     """Grating of the picture"""
@@ -296,8 +289,7 @@ class LightDiscFields(TypedDict):
 
 
 class LightEnvironment(TypedDict):
-    """Light from an environment; only directions in front of the plane across `path.direction` at
-the centre emit light."""
+    """Light from an environment; only directions in front of the plane across `path.direction` at the centre emit light."""
 
     Environment: "LightEnvironmentFields"
 
@@ -306,8 +298,7 @@ class LightEnvironmentFields(TypedDict):
     center: Sequence[float]
     """Start of the central ray, world coordinates"""
     front: NotRequired[Sequence[float]]
-    """Direction of the middle of the map, any length; only the part orthogonal to `up` is
-used"""
+    """Direction of the middle of the map, any length; only the part orthogonal to `up` is used"""
     map: "Environment"
     """Radiance by direction"""
     scale: NotRequired[float]
@@ -348,8 +339,7 @@ class LightProjectorFields(TypedDict):
 
 
 class LightRays(TypedDict):
-    """The rays of a file, where they cross the plane across `path.direction` at the centre; rays
-that go backwards are omitted."""
+    """The rays of a file, where they cross the plane across `path.direction` at the centre; rays that go backwards are omitted."""
 
     Rays: "LightRaysFields"
 
@@ -358,16 +348,13 @@ class LightRaysFields(TypedDict):
     center: Sequence[float]
     """Position of the file's origin and start of the central ray, world coordinates"""
     file: str
-    """IES TM-25, MCPL or NPY file; the path is relative to the scene file, and must stay
-inside its folder"""
+    """IES TM-25, MCPL or NPY file; the path is relative to the scene file, and must stay inside its folder"""
     flux: NotRequired[Union[float, None]]
-    """Flux of all rays of the file, W. By default the flux stated in the file, which must be
-in W, or in lm with its total in W and lm. 1e-9 to 1e9"""
+    """Flux of all rays of the file, W. By default the flux stated in the file, which must be in W, or in lm with its total in W and lm. 1e-9 to 1e9"""
     front: NotRequired[Union[Sequence[float], None]]
     """Direction of the file's Z axis, any length; `path.direction` by default"""
     up: NotRequired[Union[Sequence[float], None]]
-    """Direction of the file's Y axis, any length; only the part orthogonal to `front` is used.
-By default the Y axis of the central ray's frame"""
+    """Direction of the file's Y axis, any length; only the part orthogonal to `front` is used. By default the Y axis of the central ray's frame"""
 
 
 class LightRectangle(TypedDict):
@@ -462,8 +449,7 @@ class MeshSourceStarFields(TypedDict):
 
 
 class Path(TypedDict):
-    """The central ray: it leaves the light's centre and travels from surface to surface, each of which
-sends it towards the centre of the next."""
+    """The central ray: it leaves the light's centre and travels from surface to surface, each of which sends it towards the centre of the next."""
 
     direction: Sequence[float]
     """Direction in which the ray leaves the light; any length"""
@@ -500,16 +486,14 @@ class PatternCosineFields(TypedDict):
 
 
 class PatternPicture(TypedDict):
-    """A picture around the vertex, 0 outside: X to its right, Y to its top, as seen from the side
-that the surface faces."""
+    """A picture around the vertex, 0 outside: X to its right, Y to its top, as seen from the side that the surface faces."""
 
     Picture: "PatternPictureFields"
 
 
 class PatternPictureFields(TypedDict):
     file: str
-    """An OpenEXR or PNG file of numbers from 0 to 1; the path is relative to the scene file,
-and must stay inside its folder"""
+    """An OpenEXR or PNG file of numbers from 0 to 1; the path is relative to the scene file, and must stay inside its folder"""
     size: Sequence[float]
     """Width along X and height along Y, metres"""
 
@@ -600,8 +584,7 @@ class Scene(TypedDict):
     """A scene file as a tree."""
 
     as_printed: NotRequired[bool]
-    """Whether geometric steps are predicted by the paper's equations as printed (9, 10, 11 and
-19)"""
+    """Whether geometric steps are predicted by the paper's equations as printed (9, 10, 11 and 19)"""
     blockers: NotRequired[Sequence["Blockers"]]
     """The blockers"""
     description: NotRequired[str]
@@ -696,9 +679,7 @@ class SurfaceRectangleFields(TypedDict):
     center: Sequence[float]
     """Centre, world coordinates"""
     facing: NotRequired[Union[Sequence[float], None]]
-    """Normal of the rectangle, any length; by default back along `path.direction`. One pair of
-edges is along the part of the path's X axis that is orthogonal to the normal (of Y, if
-X is along it), the other across"""
+    """Normal of the rectangle, any length; by default back along `path.direction`. One pair of edges is along the part of the path's X axis that is orthogonal to the normal (of Y, if X is along it), the other across"""
     name: str
     """Name, for the path and the planes to refer to"""
     size: Sequence[float]
@@ -713,8 +694,7 @@ class SurfaceSmooth(TypedDict):
 
 class SurfaceSmoothFields(TypedDict):
     along: NotRequired[Union[Sequence[float], None]]
-    """Direction of the first curvature, any length; by default the path's X axis (Y, if the
-surface faces along X). Only the part orthogonal to the normal is used"""
+    """Direction of the first curvature, any length; by default the path's X axis (Y, if the surface faces along X). Only the part orthogonal to the normal is used"""
     aperture: float
     """Radius of the surface, seen along the normal. 1e-9 to 1e9"""
     center: Sequence[float]
@@ -763,15 +743,13 @@ Emission = Union[Literal["Aimed"], Literal["Plain"]]
 """How photons leave the light."""
 
 Environment = Union["EnvironmentLobes", "EnvironmentFile"]
-"""Radiance by the direction from which light comes, in coordinates whose second axis is `up` and
-whose third is `front`."""
+"""Radiance by the direction from which light comes, in coordinates whose second axis is `up` and whose third is `front`."""
 
 Event = Union[Literal["Mirror"], "EventRefraction", "EventThinLens", "EventReflects", "EventSum"]
 """The interaction of a smooth surface with light."""
 
 Form = Union[Literal["Plane"], "FormSphere", "FormCylinder", "FormParaboloid"]
-"""The shape of a smooth surface around its vertex; curvatures per metre, positive if convex as
-seen from the side it faces."""
+"""The shape of a smooth surface around its vertex; curvatures per metre, positive if convex as seen from the side it faces."""
 
 Fresnel = Union[Literal["White"], "FresnelDielectric", "FresnelConductor"]
 """The share of light that is reflected, as a function of the angle of incidence."""
@@ -789,11 +767,7 @@ MeshSource = Union["MeshSourceFile", "MeshSourceParaboloid", "MeshSourceStar"]
 """The source of a mesh."""
 
 Orientation = Union[Literal["Orthogonal"], Literal["Tangent"], Literal["LocalNormals"], Literal["Mirrored"]]
-"""The reference for the coordinates of a plane's rays.
-
-On a surface, T is in the plane of incidence and B = N × T (docs/conventions.md); directions
-point away from the surface, so those of arriving light are reversed. A direction is cos φ (sin
-θ T + cos θ N) + sin φ B: the plane-sphere parameterisation."""
+"""The reference for the coordinates of a plane's rays.  On a surface, T is in the plane of incidence and B = N × T (docs/conventions.md); directions point away from the surface, so those of arriving light are reversed. A direction is cos φ (sin θ T + cos θ N) + sin φ B: the plane-sphere parameterisation."""
 
 Pattern = Union["PatternCosine", "PatternCheckerboard", "PatternPicture"]
 """A number from 0 to 1 at each place of a surface."""
