@@ -142,6 +142,23 @@ impl PlaneOnLeg {
         (self.side == Side::After || point.z > from).then_some(point.z)
     }
 
+    /// The same for a photon that starts at `from` and arrives at the surface at the end of the leg
+    /// first, or at something else (`None`): what starts or ends on the surface of the plane is there
+    /// already.
+    #[inline]
+    pub(crate) fn crossing_of_photon(
+        &self,
+        ray: &TwoPlane,
+        from: f64,
+        arrival: Option<f64>,
+    ) -> Option<f64> {
+        match (&self.surface, self.side) {
+            (None, _) => (self.heading == Heading::Along).then_some(self.distance),
+            (Some(_), Side::After) => Some(from),
+            (Some(_), Side::Before) => arrival.or_else(|| self.crossing(ray, from)),
+        }
+    }
+
     /// The largest slopes in the leg, along x and y, of light that arrives on a surface in the
     /// window of a plane; `None` across the leg, and where they are too large to aim by.
     pub(crate) fn slopes(&self, window: &Window) -> Option<[f64; 2]> {

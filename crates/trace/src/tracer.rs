@@ -284,7 +284,8 @@ impl FlightLeg {
         let on_path = met.is_some_and(|(_, target)| target.tag.is(self.ends));
         for plane_on_leg in planes_on_leg {
             let side = plane_on_leg.side;
-            let Some(distance) = plane_on_leg.crossing(&ray, from) else {
+            let arrival = on_path.then_some(end);
+            let Some(distance) = plane_on_leg.crossing_of_photon(&ray, from, arrival) else {
                 continue;
             };
             // A plane beside an object is at exactly the same distance, so rounding cannot separate
