@@ -62,11 +62,8 @@ fn print(finished: &FinishedSweep) {
     for reason in reasons.iter().take(MAX_REASONS) {
         say(&format!("  undecided: {reason}"));
     }
-    if let Some(more) = reasons
-        .len()
-        .checked_sub(MAX_REASONS)
-        .filter(|more| *more > 0)
-    {
+    let more = reasons.len().saturating_sub(MAX_REASONS);
+    if more > 0 {
         say(&format!("  and {more} more planes"));
     }
     say(&format!("sweep in {}", folder.display()));

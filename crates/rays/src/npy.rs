@@ -90,11 +90,11 @@ fn shape(bytes: &[u8]) -> Result<(usize, usize, usize), Fault> {
     };
     let (header, start) = NpyHeader::read(bytes).ok_or_else(refused)?;
     let is_plain = header.descr == "<f8" && !header.fortran_order;
-    match header.shape[..] {
-        [rays, columns @ (7 | 8)] if is_plain => {
-            let rays = usize::try_from(rays).map_err(|_| refused())?;
-            Ok((start, rays, if columns == 7 { 7 } else { 8 }))
-        }
+    let [rays, columns] = header.shape[..] else {
+        return Err(refused());
+    };
+    match (usize::try_from(rays), usize::try_from(columns)) {
+        (Ok(rays), Ok(columns @ (7 | 8))) if is_plain => Ok((start, rays, columns)),
         _ => Err(refused()),
     }
 }

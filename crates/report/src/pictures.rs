@@ -27,7 +27,7 @@ use etendue_scene::Scene;
 use etendue_store::Failure;
 use etendue_store::Results;
 use etendue_store::arrays::{radial_z, z};
-use ndarray::Array2;
+use ndarray::{Array2, Axis};
 use std::cmp::Ordering;
 use std::path::Path;
 use words::CoordinateNames;
@@ -184,8 +184,12 @@ pub fn strip_of(
     let others = along.iter().map(|(plane, (compared, _))| {
         let grid = &compared.projection.mean.grid;
         let values = across(&compared.measured, [grid.half_x, grid.half_u])?;
-        let [own, other] =
-            [0, compared.measured.grid.azimuths / 2].map(|k| at_azimuth(compared, k));
+        let slices = compared.measured.full();
+        let power = |azimuth| {
+            let slice = slices.index_axis(Axis(0), azimuth);
+            slice.mapv(|value| value.norm_sqr())
+        };
+        let [own, other] = [0, compared.measured.grid.azimuths / 2].map(power);
         Some((across_axes(plane, grid), values, own, other))
     });
     let is_seen = !predicted && (section.other.is_some() || planes.iter().any(differs_across));
@@ -238,13 +242,6 @@ pub fn strip_of(
         floor: FLOOR,
     };
     strip(&drawn, &style.copied().unwrap_or_default()).map_err(Failure::cannot_run)
-}
-
-/// The measured power spectrum at one azimuth, [ρ, ν].
-fn at_azimuth(compared: &PlaneComparison, azimuth: usize) -> Array2<f64> {
-    let slices = compared.measured.full();
-    let slice = slices.index_axis(ndarray::Axis(0), azimuth);
-    slice.mapv(|value| value.norm_sqr())
 }
 
 /// A description of which spectra of planes are drawn.

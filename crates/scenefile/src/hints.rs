@@ -43,13 +43,7 @@ fn below(node: &'static Value, steps: &[&str]) -> Option<&'static Value> {
 /// The unit of the number at a path such as `blockers.0.pitch`; empty if none is stated.
 #[must_use]
 pub fn unit(path: &str) -> &'static str {
-    let is_variant = |step: &&str| step.starts_with(char::is_uppercase);
-    let steps: Vec<&str> = path.split('.').filter(|step| !is_variant(step)).collect();
-    let node = below(schema(), &steps).unwrap_or(&Value::Null);
-    let what = node["title"]
-        .as_str()
-        .or_else(|| referred(node)["title"].as_str());
-    match what.unwrap_or_default() {
+    match field(path)[0] {
         what if what.contains("cycles per metre") => "cycles/m",
         what if what.contains("per metre") => "1/m",
         what if what.contains("radians") => "rad",

@@ -44,7 +44,6 @@ macro_rules! plain_number {
     };
 }
 
-plain_number!(f32, "<f4", Self::is_finite);
 plain_number!(f64, "<f8", Self::is_finite);
 plain_number!(u32, "<u4", |_| true);
 plain_number!(u64, "<u8", |_| true);
@@ -206,9 +205,13 @@ impl NpzFile {
             );
             return Err(self.fault(name, is));
         }
-        Array::from_shape_vec(shape.set_f(found.fortran_order), numbers)
-            .map(|array| array.as_standard_layout().into_owned())
-            .map_err(|e| self.fault(name, e))
+        let array = Array::from_shape_vec(shape.set_f(found.fortran_order), numbers)
+            .map_err(|e| self.fault(name, e))?;
+        Ok(if array.is_standard_layout() {
+            array
+        } else {
+            array.as_standard_layout().into_owned()
+        })
     }
 
     /// The numbers of an axis, of any length.

@@ -199,18 +199,12 @@ fn name_of(scene: &Scene, point: &SweepPoint, request: &SweepRequest) -> String 
     let values = point
         .iter()
         .map(|(path, x)| format!("{}={}_", short(path), tidy(*x)));
-    let values: String = values.collect();
+    let mut name: String = values.collect();
+    if name.len() > MAX_VALUES {
+        name.clear();
+    }
     let what = format!("{} {}", scene.hash(), request.method.words());
-    let hash = blake3::hash(what.as_bytes()).to_hex();
-    format!(
-        "{}{}",
-        if values.len() > MAX_VALUES {
-            ""
-        } else {
-            &values
-        },
-        &hash[..16]
-    )
+    name + &blake3::hash(what.as_bytes()).to_hex()[..16]
 }
 
 /// The content of `sweep.json`, except for the hashes of the files.

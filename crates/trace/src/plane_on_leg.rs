@@ -152,11 +152,12 @@ impl PlaneOnLeg {
         from: f64,
         arrival: Option<f64>,
     ) -> Option<f64> {
-        match (&self.surface, self.side) {
-            (None, _) => (self.heading == Heading::Along).then_some(self.distance),
-            (Some(_), Side::After) => Some(from),
-            (Some(_), Side::Before) => arrival.or_else(|| self.crossing(ray, from)),
-        }
+        let known = match self.side {
+            Side::After => Some(from),
+            Side::Before => arrival,
+        };
+        let known = known.filter(|_| self.surface.is_some());
+        known.or_else(|| self.crossing(ray, from))
     }
 
     /// The largest slopes in the leg, along x and y, of light that arrives on a surface in the
