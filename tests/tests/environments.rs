@@ -3,11 +3,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use etendue_compare::{Residuals, system};
-use etendue_field::{Light, Orientation, ProjectionGrid, Quantity};
+use etendue_compare::{Applicability, Residuals, Theory, system};
+use etendue_field::{Light, Orientation, ProjectionGrid, Quantity, VirtualPlane};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::{Measurement, measure};
 use etendue_theory::rays::SpecularSystem;
+use etendue_theory::reflections::ReflectionSystem;
 use etendue_theory::{Model, Observed, Predicted, RayBudget};
 use etendue_trace::Tracer;
 use glam::{DQuat, DVec3};
@@ -22,31 +23,45 @@ const PHOTONS: u64 = 1 << 22;
 /// False rejection rate over all planes.
 const ALPHA: f64 = 0.01;
 
-type Fault = (&'static str, fn(&mut Observed<SpecularSystem>));
+/// A fault planted in a system.
+type Fault<S = SpecularSystem> = (&'static str, fn(&mut Observed<S>));
 
 /// A scene file of the repository, with fewer photons.
 fn scene(name: &str) -> Scene {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes");
     let text = std::fs::read_to_string(format!("{folder}/{name}.ron")).unwrap();
     let file = SceneFile::parse(&text).unwrap();
-    let mut scene = resolve(name, file, folder.as_ref(), u64::MAX).unwrap();
+    let mut scene = resolve("scene", file, folder.as_ref(), u64::MAX).unwrap();
     scene.run.photons = PHOTONS;
     scene
 }
 
-fn predicted(scene: &Scene, plane: usize, fault: fn(&mut Observed<SpecularSystem>)) -> Predicted {
-    let plane = &scene.planes[plane];
-    let mut view = system(scene, plane).unwrap();
-    fault(&mut view);
+fn predicted(view: &impl Model, plane: &VirtualPlane) -> Predicted {
     let picture = ProjectionGrid::new(&plane.window, 1);
     view.predict(&[], (&plane.window, &plane.grid, &picture), BUDGET)
 }
 
 /// Checks that photons accept the prediction of a plane, and reject each fault.
 fn tells(scene: &Scene, photons: &Measurement, name: &str, faults: &[Fault]) {
+    let plane = scene.planes.iter().find(|plane| plane.name == name);
+    let view = system(scene, plane.unwrap()).unwrap();
+    tells_in(&view, scene, photons, name, faults);
+}
+
+fn tells_in<S: Clone>(
+    view: &Observed<S>,
+    scene: &Scene,
+    photons: &Measurement,
+    name: &str,
+    faults: &[Fault<S>],
+) where
+    Observed<S>: Model,
+{
     let plane = scene.planes.iter().position(|p| p.name == name).unwrap();
-    let p = |fault: fn(&mut Observed<SpecularSystem>)| {
-        let found = predicted(scene, plane, fault);
+    let p = |fault: fn(&mut Observed<S>)| {
+        let mut view = view.clone();
+        fault(&mut view);
+        let found = predicted(&view, &scene.planes[plane]);
         let residuals = Residuals::between(photons, plane, &found.slices, &found.replicates);
         residuals.p_value(scene.run.seed).unwrap()
     };
@@ -86,10 +101,14 @@ fn mirrored(view: &mut Observed<SpecularSystem>) {
 
 /// The environment rotated by a degree.
 fn turned_light(view: &mut Observed<SpecularSystem>) {
-    let Light::Environment { environment } = &mut view.system.light else {
+    turn(&mut view.system.light, 1.0);
+}
+
+fn turn(light: &mut Light, degrees: f64) {
+    let Light::Environment { environment } = light else {
         panic!("an environment");
     };
-    let turn = DQuat::from_axis_angle(DVec3::Y, 1.0_f64.to_radians());
+    let turn = DQuat::from_axis_angle(DVec3::Y, degrees.to_radians());
     let frame = &mut environment.frame;
     (frame.x, frame.y, frame.d) = (turn * frame.x, turn * frame.y, turn * frame.d);
 }
@@ -134,4 +153,26 @@ fn the_steps_of_shading() {
     tells(&scene, &photons, "curvature", &faults);
     let faults: [Fault; 2] = [("no cosine", without_cosine), ("sign of curvature", hollow)];
     tells(&scene, &photons, "cosine", &faults);
+}
+
+/// An environment in front of a diffuse wall and a glossy floor.
+#[test]
+fn behind_several_surfaces() {
+    let scene = scene("wild/sky_on_walls");
+    let photons = traced(&scene);
+    let faults: [Fault<ReflectionSystem>; 3] = [
+        ("no card", |view| view.system.obstacles.clear()),
+        ("light turned", |view| turn(&mut view.system.light, 3.0)),
+        ("floor flat", |view| {
+            view.system.surfaces[1].patch.curvature = [0.0; 3];
+        }),
+    ];
+    for (plane, faults) in [("leaving_wall", &faults[..2]), ("beyond", &faults[..])] {
+        let number = scene.planes.iter().position(|p| p.name == plane).unwrap();
+        let found = Applicability::new(&scene, &scene.planes[number]);
+        let Theory::Reflections(view) = found.theory else {
+            panic!("{plane}: no prediction by paths");
+        };
+        tells_in(&view, &scene, &photons, plane, faults);
+    }
 }

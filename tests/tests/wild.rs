@@ -215,6 +215,8 @@ fn scenes_that_were_refused_have_an_answer() {
     let behind = [("outgoing", Class::FirstOrder)];
     holds("many_squares_mirror", &behind);
     holds("many_squares_glossy", &behind);
+    let in_a_row = ["leaving_wall", "at_floor", "beyond"].map(|plane| (plane, Class::FirstOrder));
+    holds("sky_on_walls", &in_a_row);
 }
 
 #[test]

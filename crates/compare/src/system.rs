@@ -100,13 +100,13 @@ pub fn scattered(
 }
 
 /// The light, all masks and all surfaces of the path, and a plane behind some of them. `None` where
-/// light comes from an environment or a ray file, where it has met a mesh, and where it was
+/// light comes from a ray file, where it has met a mesh, and where it was
 /// scattered by no surface or by too many.
 pub(crate) fn reflected(
     scene: &Scene,
     plane: &VirtualPlane,
 ) -> Option<Observed<reflections::ReflectionSystem>> {
-    if matches!(scene.light, Light::Environment { .. } | Light::Rays { .. }) {
+    if matches!(scene.light, Light::Rays { .. }) {
         return None;
     }
     let legs = scene.path.legs.iter();

@@ -88,7 +88,7 @@ use etendue_field::{Light, Mask, Patch, Specular};
 
 /// How far behind the plane of the light a point of a plane may seem to be and still be lit, in
 /// metres: the rounding of a tilted plane at the light itself. No object is this close.
-const AT_LIGHT: f64 = 1e-9;
+pub(crate) const AT_LIGHT: f64 = 1e-9;
 
 /// A light and the specular surfaces that its central ray visits, in the frame at the light.
 #[derive(Clone, Debug, PartialEq)]

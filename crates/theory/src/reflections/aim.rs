@@ -10,7 +10,7 @@ use super::{PathSurface, ReflectionSystem};
 use crate::geometry::{AffineMap, Matrix, congruent, from_fn, times};
 use crate::model::Observed;
 use crate::rays::Plane;
-use etendue_field::{Frame, Orientation, Patch};
+use etendue_field::{Frame, Light, Orientation, Patch};
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
@@ -48,7 +48,7 @@ impl DirectionCoordinates {
         let first = from.map_or(0, |from| from.number + 1);
         let to = scatterers.get(leg);
         match (from, to) {
-            (None, _) if system.light.is_distant() => Self::Angles,
+            (None, _) if matches!(system.light, Light::Beam { .. }) => Self::Angles,
             (_, Some(to)) if to.number == first => {
                 let patch = system.surfaces[first].patch;
                 let local = patch.frame.to_local(to.frame.origin);
@@ -98,7 +98,7 @@ impl DirectionCoordinates {
     }
 
     /// Converts a Gaussian of the positions at the end of the leg to these coordinates.
-    fn counted(&self, positions: &Gaussian<2>) -> Gaussian<2> {
+    pub(super) fn counted(&self, positions: &Gaussian<2>) -> Gaussian<2> {
         match self {
             Self::Angles | Self::Plane(_) => *positions,
             Self::Patch { hit, turn, .. } => {

@@ -77,6 +77,14 @@ impl Gaussian<4> {
         })
     }
 
+    /// Returns the Gaussian of two coordinates, whatever the other two.
+    pub(super) fn marginal(&self, of: [usize; 2]) -> Gaussian<2> {
+        Gaussian {
+            mean: of.map(|i| self.mean[i]),
+            covariance: from_fn(|i, j| self.covariance[of[i]][of[j]]),
+        }
+    }
+
     /// Returns the Gaussian of two coordinates, positions or slopes, conditional on the other two;
     /// `None` if these have zero width.
     pub(super) fn given(&self, [a, b]: [usize; 2]) -> Option<Conditional> {

@@ -29,6 +29,7 @@ mod guide;
 mod model;
 mod path;
 mod predict;
+mod sky;
 mod surface;
 #[cfg(test)]
 mod tests;
@@ -45,7 +46,7 @@ pub const MAX_SCATTERERS: usize = 3;
 /// A light and the surfaces of its path, in the frame at the light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReflectionSystem {
-    /// The light, which emits from the plane z = 0, along Z; neither an environment nor a ray file.
+    /// The light, which emits from the plane z = 0, along Z; not a ray file.
     pub light: Light,
     /// Masks and other occluders that are not on the path.
     pub obstacles: Vec<Obstacle>,

@@ -3,6 +3,7 @@
 use super::aim::DirectionCoordinates;
 use super::chain::{ReflectionChain, ScatteringSurface, chain};
 use super::guide::{Conditional, Gaussian, GuideMixture, HeavyTailedGaussian};
+use super::sky::SkyRays;
 use super::{PathSurface, ReflectionSystem};
 use crate::model::Observed;
 use crate::nets::{DIMENSIONS, RayNode};
@@ -20,11 +21,46 @@ pub(super) struct FieldPaths<'a> {
     window: &'a Window,
     obstacles: PreparedObstacles<'a>,
     chain: ReflectionChain,
-    /// Gaussians of the light's rays, and of directions away from each scatterer, that reach the
-    /// window.
+    start: Start<'a>,
+    /// Gaussians of directions away from each scatterer that reach the window.
     guides: Vec<Conditional>,
     /// The aims of the leg from the light, and from each scatterer.
     aims: Vec<DirectionCoordinates>,
+}
+
+/// The sampling of the light's rays.
+#[derive(Debug)]
+enum Start<'a> {
+    /// By the Gaussian of the rays that reach the window.
+    Guided(Conditional),
+    Sky(Box<SkyRays<'a>>),
+}
+
+impl<'a> Start<'a> {
+    /// `guide` is the Gaussian of the light at the first scatterer that reaches the window, and `aim`
+    /// the coordinates of the leg from the light.
+    fn new(
+        view: &'a Observed<ReflectionSystem>,
+        chain: &ReflectionChain,
+        guide: &Gaussian<4>,
+        aim: DirectionCoordinates,
+    ) -> Option<Self> {
+        let light = &view.system.light;
+        let at_light = || of_light(&guide.before(&chain.maps[0])?, light);
+        Some(match light {
+            Light::Environment { environment } => {
+                let first = chain.scatterers.first()?;
+                let surface = &view.system.surfaces[first.number];
+                let is_aimed_at_it = matches!(aim, DirectionCoordinates::Patch { .. });
+                let guide = if is_aimed_at_it { *guide } else { at_light()? };
+                let has_lobe = surface.width(surface.hit).is_some();
+                let rays = SkyRays::new(environment, &guide, (first, has_lobe), aim)?;
+                Self::Sky(Box::new(rays))
+            }
+            Light::Beam { .. } => Self::Guided(at_light()?.given([2, 3])?),
+            _ => Self::Guided(at_light()?.given([0, 1])?),
+        })
+    }
 }
 
 /// A path through the exact geometry, and its counterpart in the chain.
@@ -58,19 +94,18 @@ impl<'a> FieldPaths<'a> {
             let surface = &view.system.surfaces[scatterer.number];
             guide = on_surface(&guide, surface, scatterer)?;
         }
-        let light = &view.system.light;
-        let known = if light.is_distant() { [2, 3] } else { [0, 1] };
-        let at_light = of_light(&guide.before(&chain.maps[0])?, light)?;
-        guides.push(at_light.given(known)?);
         guides.reverse();
         let legs = 0..chain.maps.len();
         let aims = legs.map(|leg| DirectionCoordinates::new(view, &chain.scatterers, leg));
+        let aims: Vec<DirectionCoordinates> = aims.collect();
+        let start = Start::new(view, &chain, &guide, aims[0])?;
         Some(Self {
             view,
             window,
-            aims: aims.collect(),
+            aims,
             obstacles: PreparedObstacles::new(&view.system.obstacles),
             chain,
+            start,
             guides,
         })
     }
@@ -106,25 +141,33 @@ impl<'a> FieldPaths<'a> {
             None => ([0.0; 2], 1.0),
         };
         let map = &self.chain.maps[0];
-        let (aim, guide) = (&self.aims[0], &self.guides[0]);
+        let aim = &self.aims[0];
         let mut target = None;
-        let (ray, density) = if light.is_distant() {
-            let rays = HeavyTailedGaussian::new(&guide.at(outer))?;
-            let [x, y] = rays.draw([a, b]);
-            ([x, y, 0.0, 0.0], rays.density([x, y]))
-        } else {
-            let [x, y] = outer;
-            let targets = HeavyTailedGaussian::new(&aim.seen(&guide.at(outer), outer, map))?;
-            let at = targets.draw([a, b]);
-            let density = targets.density(at);
-            if matches!(aim, DirectionCoordinates::Angles) {
-                ([x, y, at[0], at[1]], density)
-            } else {
-                let (d, steradians) = aim.direction(DVec3::new(x, y, 0.0), at, None)?;
-                target = aim.target(at);
-                // du dv = dω / cos³.
-                let density = density / steradians * d.z.powi(3);
-                ([x, y, d.x / d.z, d.y / d.z], density)
+        let (ray, density) = match &self.start {
+            Start::Sky(rays) => {
+                let (ray, density, aimed) = rays.draw([a, b, c, d])?;
+                target = aimed;
+                (ray, density)
+            }
+            Start::Guided(guide) if light.is_distant() => {
+                let rays = HeavyTailedGaussian::new(&guide.at(outer))?;
+                let [x, y] = rays.draw([a, b]);
+                ([x, y, 0.0, 0.0], rays.density([x, y]))
+            }
+            Start::Guided(guide) => {
+                let [x, y] = outer;
+                let targets = HeavyTailedGaussian::new(&aim.seen(&guide.at(outer), outer, map))?;
+                let at = targets.draw([a, b]);
+                let density = targets.density(at);
+                if matches!(aim, DirectionCoordinates::Angles) {
+                    ([x, y, at[0], at[1]], density)
+                } else {
+                    let (d, steradians) = aim.direction(DVec3::new(x, y, 0.0), at, None)?;
+                    target = aim.target(at);
+                    // du dv = dω / cos³.
+                    let density = density / steradians * d.z.powi(3);
+                    ([x, y, d.x / d.z, d.y / d.z], density)
+                }
             }
         };
         let flux = emitted(light, ray) * per_area / density;
@@ -187,7 +230,7 @@ impl<'a> FieldPaths<'a> {
             let mirrored = 2.0 * normal.dot(from) * normal - from;
             lobe.mean = aim.end(point, mirrored).unwrap_or(lobe.mean);
         }
-        let guide = seen(&self.guides[number + 1].at([s, t]));
+        let guide = seen(&self.guides[number].at([s, t]));
         let both = guide.product(&lobe);
         let targets = GuideMixture::new([(0.5, both), (0.25, Some(guide)), (0.25, Some(lobe))])?;
         let target = targets.draw(r);

@@ -1,0 +1,146 @@
+//! Rays of an environment that are sampled by its radiance and by the window.
+//!
+//! A direction is sampled, then a position: on the first surface if it scatters, otherwise at the
+//! light. Some directions follow the radiance of the environment and the others the guide, so that
+//! neither a bright lobe of the environment nor a narrow one of a BRDF is missed.
+
+use super::aim::DirectionCoordinates;
+use super::chain::{ScatteringSurface, towards};
+use super::guide::{Conditional, Gaussian, GuideMixture, HeavyTailedGaussian};
+use crate::rays::AT_LIGHT;
+use crate::scattering::local;
+use crate::sky::SkyDensity;
+use etendue_field::{Environment, Frame};
+use glam::DVec3;
+use std::f64::consts::FRAC_PI_2;
+
+/// Samples rays of an environment.
+#[derive(Debug)]
+pub(super) struct SkyRays<'a> {
+    environment: &'a Environment,
+    radiance: SkyDensity<'a>,
+    /// Directions that reach the window, and their share of all directions.
+    guide: (HeavyTailedGaussian, f64),
+    /// Positions that reach the window from a direction, and from all of them.
+    positions: (Conditional, Option<Gaussian<2>>),
+    coordinates: Coordinates,
+    aim: DirectionCoordinates,
+}
+
+/// The two coordinates of a direction.
+#[derive(Debug)]
+enum Coordinates {
+    /// Longitude and latitude of the direction light comes from, at a scattering surface.
+    Angles(Frame),
+    /// Slopes at the light.
+    Slopes,
+}
+
+/// A ray (x, y, u, v) at the light, its density in these coordinates, and the point of the first
+/// surface that it is aimed at.
+pub(super) type SkyRay = ([f64; 4], f64, Option<DVec3>);
+
+impl<'a> SkyRays<'a> {
+    /// `guide` describes the light at the first scatterer if `aim` is a position there, otherwise
+    /// the rays at the light. `has_lobe` is false if the first scatterer is diffuse: the guide
+    /// then knows nothing of directions. Returns `None` if the environment is dark.
+    pub(super) fn new(
+        environment: &'a Environment,
+        guide: &Gaussian<4>,
+        (first, has_lobe): (&ScatteringSurface, bool),
+        aim: DirectionCoordinates,
+    ) -> Option<Self> {
+        let share = if has_lobe { 0.5 } else { 0.0 };
+        let on_surface = matches!(aim, DirectionCoordinates::Patch { .. });
+        let (coordinates, normal) = if on_surface {
+            (Coordinates::Angles(first.frame), first.frame.d)
+        } else {
+            (Coordinates::Slopes, DVec3::NEG_Z)
+        };
+        Some(Self {
+            environment,
+            radiance: SkyDensity::new(environment, normal)?,
+            guide: (HeavyTailedGaussian::new(&guide.marginal([2, 3]))?, share),
+            positions: (
+                guide.given([2, 3])?,
+                (on_surface && has_lobe).then(|| guide.marginal([0, 1])),
+            ),
+            coordinates,
+            aim,
+        })
+    }
+
+    /// Returns the ray for a point of the unit cube; `None` if it does not go forward.
+    pub(super) fn draw(&self, [a, b, c, d]: [f64; 4]) -> Option<SkyRay> {
+        let (guide, guided) = self.guide;
+        let direction = if c < guided {
+            self.coordinates.direction(guide.draw([c / guided, d]))?
+        } else {
+            let from = self.radiance.draw([(c - guided) / (1.0 - guided), d]);
+            -self.environment.frame.vector_to_world(from)
+        };
+        let forward = direction.z;
+        if forward <= 0.0 {
+            return None;
+        }
+        let (at, steradians) = self.coordinates.of(direction)?;
+        let from = self.environment.origin_of(direction);
+        let radiance = self.environment.map.radiance(from);
+        let per_steradian = (1.0 - guided) * self.radiance.density(from, radiance)
+            + guided * guide.density(at) / steradians;
+        let (given, all) = &self.positions;
+        let share = if all.is_some() { 0.5 } else { 1.0 };
+        let counted = |positions: Gaussian<2>| self.aim.counted(&positions);
+        let positions = GuideMixture::new([
+            (share, Some(counted(given.at(at)))),
+            (1.0 - share, all.map(counted)),
+        ])?;
+        let position = positions.draw([a, b]);
+        let per_area = positions.density(position);
+        let target = self.aim.target(position);
+        let [u, v] = [direction.x / forward, direction.y / forward];
+        let ([x, y], per_area) = match (target, &self.aim) {
+            (Some(target), DirectionCoordinates::Patch { patch, .. }) if target.z > -AT_LIGHT => {
+                // dx dy at the light over the area of the coordinates on the patch.
+                let normal = patch.normal(target);
+                let spread = (normal.dot(direction) / normal.dot(patch.frame.d)).abs() / forward;
+                let start = target - target.z * DVec3::new(u, v, 1.0);
+                ([start.x, start.y], per_area / spread)
+            }
+            (Some(_), _) => return None,
+            (None, _) => (position, per_area),
+        };
+        // dω = cos³ du dv.
+        let density = per_area * per_steradian * forward.powi(3);
+        Some(([x, y, u, v], density, target))
+    }
+}
+
+impl Coordinates {
+    /// Returns the direction of light with these coordinates; `None` behind the surface.
+    fn direction(&self, at: [f64; 2]) -> Option<DVec3> {
+        match self {
+            Self::Angles(frame) => {
+                let is_in_front = at.iter().all(|angle| angle.abs() < FRAC_PI_2);
+                is_in_front.then(|| -towards(frame, frame.d, at))
+            }
+            Self::Slopes => Some(DVec3::new(at[0], at[1], 1.0).normalize()),
+        }
+    }
+
+    /// Returns the coordinates of a direction of light, and steradians per unit of them; `None`
+    /// behind the surface.
+    fn of(&self, direction: DVec3) -> Option<([f64; 2], f64)> {
+        match self {
+            Self::Angles(frame) => {
+                let [.., theta, phi] = local(frame, frame.origin, frame.d, -direction);
+                // dω = cos φ dθ dφ.
+                (theta.abs() < FRAC_PI_2).then(|| ([theta, phi], libm::cos(phi)))
+            }
+            Self::Slopes => {
+                let z = direction.z;
+                Some(([direction.x / z, direction.y / z], z.powi(3)))
+            }
+        }
+    }
+}
