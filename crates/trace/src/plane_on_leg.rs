@@ -43,12 +43,13 @@ const MAX_AIMED_ANGLE: f64 = 0.8;
 
 /// The points of a line on a patch.
 fn points(patch: &Patch, start: DVec3, along: DVec3) -> impl Iterator<Item = DVec3> {
-    let hits = patch.hits(
-        patch.frame.to_local(start),
-        patch.frame.vector_to_local(along),
-    );
+    let local = patch.frame.to_local(start);
+    let direction = patch.frame.vector_to_local(along);
+    // A ray nearly across its leg starts far away, and a quadratic loses digits from there.
+    let near = -local.dot(direction) / direction.length_squared();
+    let hits = patch.hits(local + near * direction, direction);
     let met = hits.into_iter().filter(|t| !t.is_nan());
-    met.map(move |t| start + t * along)
+    met.map(move |t| start + (near + t) * along)
 }
 
 impl PlaneOnLeg {

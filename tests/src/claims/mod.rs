@@ -1,6 +1,7 @@
 //! Statements in the paper's text, measured with photons: a row for each statement.
 
 mod blockers;
+mod criteria;
 mod locality;
 mod number;
 mod scene;
@@ -31,7 +32,12 @@ struct Claim {
 /// Returns the section.
 pub(crate) fn claims(photons: Option<u64>) -> ReportSection {
     let photons = photons.unwrap_or(PHOTONS);
-    let parts = [blockers::claims, surfaces::claims, locality::claims];
+    let parts = [
+        blockers::claims,
+        surfaces::claims,
+        criteria::claims,
+        locality::claims,
+    ];
     let rows = parts
         .iter()
         .flat_map(|claims| claims(photons).into_iter().map(row));

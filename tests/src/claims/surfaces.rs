@@ -1,15 +1,14 @@
-//! Statements about surfaces: reciprocity, mirror spheres, curvature, the cosine, lobes, environments, criteria.
+//! Statements about surfaces: reciprocity, mirror spheres, curvature, the cosine, lobes, environments.
 
 use super::number::{ClaimNumber, at};
 use super::scene::{SeenScene, number, scene};
-use super::{CHANCE, Claim, PULL, decreasing};
+use super::{CHANCE, Claim, PULL};
 use crate::report::Bound::{Above, AtLeast, AtMost, Below};
 use crate::report::Check;
 use crate::scenes::measured;
 use crate::shading::Tampered;
 use etendue_field::{Crossing, PhotonSource, Slices, VirtualPlane};
 use etendue_spectrum::bandwidth::{bandwidth_nu, bandwidth_rho};
-use etendue_theory::shading::{Criterion, PlanarLobe};
 use etendue_trace::Tracer;
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -23,13 +22,17 @@ pub(super) fn claims(photons: u64) -> Vec<Claim> {
     all.extend(curvature(photons));
     all.extend([cosine(photons), lobe(photons)]);
     all.extend(environment(photons));
-    all.push(criteria(photons));
     all
 }
 
 /// A surface at the origin with a central ray that arrives at `incidence`, radians, and leaves at
 /// `outgoing` on the other side of its normal.
-fn surface(light: &str, [incidence, outgoing]: [f64; 2], form: &str, brdf: &str) -> String {
+pub(super) fn surface(
+    light: &str,
+    [incidence, outgoing]: [f64; 2],
+    form: &str,
+    brdf: &str,
+) -> String {
     let (sine, cosine) = incidence.sin_cos();
     let leaves = PI - incidence - outgoing;
     let leaves = if brdf == "Mirror" {
@@ -45,7 +48,7 @@ fn surface(light: &str, [incidence, outgoing]: [f64; 2], form: &str, brdf: &str)
     )
 }
 
-fn planes(at: &str, orientation: &str, window: &str, frequencies: &str) -> String {
+pub(super) fn planes(at: &str, orientation: &str, window: &str, frequencies: &str) -> String {
     format!(
         "planes: [(name: \"plane\", at: {at}, orientation: {orientation}, window: ({window}), frequencies: ({frequencies}))]"
     )
@@ -240,7 +243,7 @@ fn form(k: f64) -> String {
     }
 }
 
-fn bandwidth(slices: &Slices, of: etendue_spectrum::bandwidth::SliceBandwidth) -> f64 {
+pub(super) fn bandwidth(slices: &Slices, of: etendue_spectrum::bandwidth::SliceBandwidth) -> f64 {
     let power = slices.radial_power();
     of(power.view(), &slices.grid, 0.95).unwrap_or(f64::NAN)
 }
@@ -401,65 +404,4 @@ fn environment(photons: u64) -> [Claim; 2] {
             holds: "not: its spectrum is no line",
         },
     ]
-}
-
-/// Lights of increasing size: the criterion assumes that they contain all frequencies.
-fn criteria(photons: u64) -> Claim {
-    let lobe = 1000.0;
-    let criterion = Criterion {
-        curvature: 0.5,
-        incidence: 0.5,
-        outgoing: -0.5,
-        distance: 0.5,
-        blocker_distance: Some(0.6),
-        lobe_cutoff: PlanarLobe::Phong { exponent: lobe }.cutoff(0.95),
-        environment_cutoff: f64::INFINITY,
-    };
-    let sizes = [0.003, 0.02, 0.05, 0.1];
-    let shares = sizes.map(|size| {
-        let text = surface(
-            &format!("Rectangle(center: (0, 0, -0.6), size: ({size}, {size}))"),
-            [0.5; 2],
-            "form: Sphere(0.5), aperture: 0.6",
-            &format!("Reflects(brdf: (lobe: Phong({lobe})))"),
-        );
-        let planes = planes(
-            "Distance(1.1)",
-            "Orthogonal",
-            "x: Hann(0.05), u: Hann(0.25)",
-            "azimuths: 1, rho: (max: 40), nu: (max: 30)",
-        );
-        let seen = SeenScene::of(scene(&format!("{text}, {planes}"), 4 * photons));
-        let found = seen.number(0, |slices| bandwidth(slices, bandwidth_nu));
-        let of = criterion.blocker();
-        ClaimNumber {
-            value: found.value / of,
-            error: found.error / of,
-            predicted: found.predicted / of,
-        }
-    });
-    let most = shares.iter().map(|share| share.value).fold(0.0, f64::max);
-    Claim {
-        said: "criteria that take the light to have all frequencies over-estimate bandwidth, and never under-estimate it (6.2)",
-        shown: format!(
-            "95 % bandwidth over ν at the eye over B', lights of {sizes:?} m, 0.6 m from a glossy sphere"
-        ),
-        checks: vec![
-            Check::new(
-                "largest",
-                most,
-                AtMost(1.05),
-                "the criterion is good to 5 %",
-            ),
-            Check::new(
-                "widest light",
-                shares[3].value,
-                AtMost(0.7),
-                "it has few frequencies",
-            ),
-            decreasing(&shares[1..]),
-        ],
-        numbers: shares.to_vec(),
-        holds: "holds: close to the criterion for a small light, below it for others",
-    }
 }

@@ -102,3 +102,38 @@ impl Criterion {
         self.distance * self.nearness() / libm::cos(self.outgoing)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Samples per metre of the surface by Eq. 21, over Ω_ρ, beside the error per metre of
+    /// irradiance caching, Δ/R + √(1 − n·n₀) (Ward et al. 1988), on a sphere: both contain the
+    /// inverse of the harmonic mean distance, and then the curvature, 2k here and k/√2 there.
+    #[test]
+    fn eq_21_spaces_samples_as_irradiance_caching_does() {
+        let step: f64 = 1e-3;
+        for (distance, curvature) in [(0.3, 0.0), (2.0, 0.0), (0.5, 1.0), (2.0, 3.0)] {
+            let criterion = Criterion {
+                curvature,
+                incidence: 0.4,
+                outgoing: -0.4,
+                distance: 7.0,
+                blocker_distance: Some(distance),
+                lobe_cutoff: 5.0,
+                environment_cutoff: f64::INFINITY,
+            };
+            let on_screen = criterion.printed_blocker() / criterion.lobe_cutoff;
+            let per_metre = on_screen * libm::cos(criterion.outgoing) / criterion.distance;
+            let turned = (1.0 - libm::cos(curvature * step)).sqrt();
+            let cached = (step / distance + turned) / step;
+            let apart = per_metre - cached;
+            let wanted = curvature * (2.0 - std::f64::consts::FRAC_1_SQRT_2);
+            // The cosine is expanded to second order, over a millimetre.
+            assert!(
+                (apart - wanted).abs() < 1e-5,
+                "{distance} {curvature}: {apart}"
+            );
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! Statements about the sampling criteria of section 6.2.
+
+use super::number::ClaimNumber;
+use super::scene::{SeenScene, scene};
+use super::surfaces::{bandwidth, planes, surface};
+use super::{Claim, decreasing};
+use crate::report::Bound::AtMost;
+use crate::report::Check;
+use etendue_spectrum::bandwidth::{bandwidth_nu, widest};
+use etendue_theory::shading::{Criterion, PlanarLobe};
+
+pub(super) fn claims(photons: u64) -> Vec<Claim> {
+    vec![criteria(photons), larger_curvature(photons)]
+}
+
+/// Lights of increasing size: the criterion assumes that they contain all frequencies.
+fn criteria(photons: u64) -> Claim {
+    let lobe = 1000.0;
+    let criterion = Criterion {
+        curvature: 0.5,
+        incidence: 0.5,
+        outgoing: -0.5,
+        distance: 0.5,
+        blocker_distance: Some(0.6),
+        lobe_cutoff: PlanarLobe::Phong { exponent: lobe }.cutoff(0.95),
+        environment_cutoff: f64::INFINITY,
+    };
+    let sizes = [0.003, 0.02, 0.05, 0.1];
+    let shares = sizes.map(|size| {
+        let text = surface(
+            &format!("Rectangle(center: (0, 0, -0.6), size: ({size}, {size}))"),
+            [0.5; 2],
+            "form: Sphere(0.5), aperture: 0.6",
+            &format!("Reflects(brdf: (lobe: Phong({lobe})))"),
+        );
+        let planes = planes(
+            "Distance(1.1)",
+            "Orthogonal",
+            "x: Hann(0.05), u: Hann(0.25)",
+            "azimuths: 1, rho: (max: 40), nu: (max: 30)",
+        );
+        let seen = SeenScene::of(scene(&format!("{text}, {planes}"), 4 * photons));
+        let found = seen.number(0, |slices| bandwidth(slices, bandwidth_nu));
+        let of = criterion.blocker();
+        ClaimNumber {
+            value: found.value / of,
+            error: found.error / of,
+            predicted: found.predicted / of,
+        }
+    });
+    let most = shares.iter().map(|share| share.value).fold(0.0, f64::max);
+    Claim {
+        said: "criteria that take the light to have all frequencies over-estimate bandwidth, and never under-estimate it (6.2)",
+        shown: format!(
+            "95 % bandwidth over ν at the eye over B', lights of {sizes:?} m, 0.6 m from a glossy sphere"
+        ),
+        checks: vec![
+            Check::new(
+                "largest",
+                most,
+                AtMost(1.05),
+                "the criterion is good to 5 %",
+            ),
+            Check::new(
+                "widest light",
+                shares[3].value,
+                AtMost(0.7),
+                "it has few frequencies",
+            ),
+            decreasing(&shares[1..]),
+        ],
+        numbers: shares.to_vec(),
+        holds: "holds: close to the criterion for a small light, below it for others",
+    }
+}
+
+/// A cylinder curved in the plane of incidence, one curved across it, and a sphere.
+fn larger_curvature(photons: u64) -> Claim {
+    let lobe = 1000.0;
+    let criterion = Criterion {
+        curvature: 0.8,
+        incidence: 0.7,
+        outgoing: -0.7,
+        distance: 0.5,
+        blocker_distance: None,
+        lobe_cutoff: PlanarLobe::Phong { exponent: lobe }.cutoff(0.95),
+        environment_cutoff: f64::INFINITY,
+    };
+    let forms = [
+        "Cylinder(0.8), along: (1, 0, 0)",
+        "Cylinder(0.8), along: (0, 1, 0)",
+        "Sphere(0.8)",
+    ];
+    let shares = forms.map(|form| {
+        let text = surface(
+            "Beam(center: (0, 0, -1), image: (width: (0.5, 0.5)))",
+            [0.7; 2],
+            &format!("form: {form}, aperture: 0.6"),
+            &format!("Reflects(brdf: (lobe: Phong({lobe})))"),
+        );
+        let planes = planes(
+            "Distance(1.5)",
+            "Orthogonal",
+            "x: Hann(0.05), u: Hann(0.25)",
+            "azimuths: 2, rho: (max: 60), nu: (max: 30)",
+        );
+        let seen = SeenScene::of(scene(&format!("{text}, {planes}"), 4 * photons));
+        let found = seen.number(0, |slices| {
+            let power = slices.half.mapv(|s| s.norm_sqr());
+            widest(power.view(), &slices.grid, bandwidth_nu).map_or(f64::NAN, |most| most.value)
+        });
+        let of = criterion.environment();
+        ClaimNumber {
+            value: found.value / of,
+            error: found.error / of,
+            predicted: found.predicted / of,
+        }
+    });
+    let [inside, across, sphere] = shares;
+    // Across the plane of incidence curvature counts by cos θ₁, not by 1/cos θ₁.
+    let [shear, cosine] = [
+        2.0 * criterion.curvature * criterion.distance,
+        0.7_f64.cos(),
+    ];
+    let wanted = (1.0 + shear * cosine) / (1.0 + shear / cosine);
+    Claim {
+        said: "in 3D the criterion takes the larger of the two curvatures (6.2)",
+        shown: format!(
+            "largest 95 % bandwidth over azimuths at the eye over B for k = 0.8 /m: a cylinder curved in the plane of incidence, one curved across it, a sphere; across it, k counts by cos θ₁, which makes {wanted:.3}"
+        ),
+        checks: vec![
+            Check::new(
+                "inside",
+                (inside.value - 1.0).abs(),
+                AtMost(0.05),
+                "the criterion is good to 5 %",
+            ),
+            Check::new(
+                "sphere",
+                (sphere.value - 1.0).abs(),
+                AtMost(0.05),
+                "the criterion is good to 5 %",
+            ),
+            Check::new(
+                "across",
+                (across.value / wanted - 1.0).abs(),
+                AtMost(0.05),
+                "the criterion is good to 5 %",
+            ),
+        ],
+        numbers: shares.to_vec(),
+        holds: "holds as a bound: reached in the plane of incidence, not across it",
+    }
+}
