@@ -136,7 +136,7 @@ fn two_parameterisations() {
 
 /// Fig. 14: on a sphere, before the lobes of its surface.
 #[test]
-#[ignore = "long: half a minute; .ci/run runs it"]
+#[ignore = "long: half a minute; .ci/long runs it"]
 fn the_steps_of_shading() {
     let scene = scene("fig14");
     let photons = traced(&scene);

@@ -66,7 +66,7 @@ fn mutated_input_is_borne() {
 }
 
 #[test]
-#[ignore = "long: half a minute; .ci/run runs it"]
+#[ignore = "long: half a minute; .ci/long runs it"]
 fn kills_leave_whole_results_or_none() {
     // An ordinary test mounts nothing.
     attack(&["kills", "--count", "12", "--full-disk", "limit"]);

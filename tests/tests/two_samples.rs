@@ -52,7 +52,7 @@ fn backward(seed: u64) -> Vec<Sample> {
 }
 
 #[test]
-#[ignore = "long: half a minute; .ci/run runs it"]
+#[ignore = "long: half a minute; .ci/long runs it"]
 fn p_is_uniform_over_200_pairs_of_seeds() {
     let planes = scene(1).planes;
     let mut p = vec![Vec::new(); planes.len()];

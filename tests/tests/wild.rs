@@ -187,7 +187,7 @@ fn a_mesh_beside_its_patch_is_no_disagreement() {
 
 /// The stated error for the triangles of a mesh equals the deviation of photons.
 #[test]
-#[ignore = "long: half a minute; .ci/run runs it"]
+#[ignore = "long: half a minute; .ci/long runs it"]
 fn triangles_are_as_far_off_as_is_stated() {
     let scene = scene("coarse_paraboloid");
     let photons = photons(&scene);
@@ -476,7 +476,7 @@ fn meshes_unlike_their_patches_are_decided() {
 /// Blockers, or a mesh that light visits later, are at a place where only few rays of the window
 /// meet them.
 #[test]
-#[ignore = "long: half a minute; .ci/run runs it"]
+#[ignore = "long: half a minute; .ci/long runs it"]
 fn what_stands_in_the_way_of_a_brdf_is_decided() {
     is_followed_past("squares_on_the_way_back", &["squares"]);
     let scene = scene("later_mesh");

@@ -77,7 +77,7 @@ fn curves_have_a_table() {
 
 /// Eqs. 20 and 21: photons lie on the corrected lines, and off the printed ones.
 #[test]
-#[ignore = "long: half a minute; .ci/run runs it"]
+#[ignore = "long: half a minute; .ci/long runs it"]
 fn photons_tell_the_criteria_from_their_print() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();

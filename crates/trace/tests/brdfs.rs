@@ -109,13 +109,13 @@ fn scene((_, surfaces, path, planes): &Case, emission: &str, photons: u32, seed:
 }
 
 #[test]
-#[ignore = "long: half a minute; .ci/run runs it"]
+#[ignore = "long: half a minute; .ci/long runs it"]
 fn all_ways_agree_behind_one_surface() {
     all_ways_agree(&CASES[..4]);
 }
 
 #[test]
-#[ignore = "long: half a minute; .ci/run runs it"]
+#[ignore = "long: half a minute; .ci/long runs it"]
 fn all_ways_agree_at_grazing_and_behind_several_surfaces() {
     all_ways_agree(&CASES[4..]);
 }

@@ -151,7 +151,7 @@ fn a_map_is_where_its_axes_put_it() {
 }
 
 #[test]
-#[ignore = "long: half a minute; .ci/run runs it"]
+#[ignore = "long: half a minute; .ci/long runs it"]
 fn all_ways_agree() {
     let folder = tempfile::tempdir().unwrap();
     write_map(folder.path(), "sky.exr", (0, 1));

@@ -69,7 +69,7 @@ fn windowed(
 }
 
 #[test]
-#[ignore = "long: half a minute; .ci/run runs it"]
+#[ignore = "long: half a minute; .ci/long runs it"]
 fn all_ways_agree_on_every_leg() {
     let mut tests = 0;
     let nearer = BLACK.replace("1.6)", "1.2)");

@@ -43,7 +43,7 @@ const GRATING: &str = r#"Grating(name: "grating", center: (0, 0, 1.2), axis: X, 
 const MESH: &str = r#"Mesh(name: "mesh", center: (0.1, -0.1, 1.4), mesh: Star(radius: 0.2, relief: 0.3, lobes: 3, rings: 40))"#;
 
 #[test]
-#[ignore = "long: half a minute; .ci/run runs it"]
+#[ignore = "long: half a minute; .ci/long runs it"]
 fn all_ways_agree() {
     let mut tests = 0;
     for light in [SQUARE, DISC, SPOT, POINT] {

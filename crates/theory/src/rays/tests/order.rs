@@ -83,7 +83,7 @@ fn printed_chains_do_not_converge() {
 }
 
 #[test]
-#[ignore = "long: half a minute; .ci/run runs it"]
+#[ignore = "long: half a minute; .ci/long runs it"]
 fn planes_on_surfaces_converge() {
     for (system, plane) in read_off::surface_planes() {
         let oblique = plane.longitude.abs() > 0.1;
