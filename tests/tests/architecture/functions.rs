@@ -1,0 +1,49 @@
+//! Functions above sixty lines need a reason: clippy finds those that have none.
+
+use super::{crates, root};
+use std::fs;
+use std::process::Command;
+
+/// The length of a planted function, in lines: above the threshold in clippy.toml.
+const PLANTED: usize = 70;
+
+/// Every crate takes the lints of the workspace, which ask for the reason.
+#[test]
+fn crates_take_the_lints_of_the_workspace() {
+    let read = |path: &str| fs::read_to_string(root().join(path)).unwrap();
+    assert!(read("Cargo.toml").contains("\ntoo_many_lines = \"warn\""));
+    let folders = crates().into_iter().map(|name| format!("crates/{name}"));
+    for folder in folders.chain(["tests".to_owned()]) {
+        let manifest = read(&format!("{folder}/Cargo.toml"));
+        assert!(manifest.contains("[lints]\nworkspace = true"), "{folder}");
+    }
+}
+
+/// A long function is found, unless it has a reason.
+#[test]
+fn a_planted_function_is_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let body = "    a += 1;\n".repeat(PLANTED);
+    let reason = "#[expect(clippy::too_many_lines, reason = \"planted\")]\n";
+    for (attribute, is_found) in [("", true), (reason, false)] {
+        let file = folder.path().join("planted.rs");
+        let text = format!("{attribute}pub fn planted(mut a: u64) -> u64 {{\n{body}    a\n}}\n");
+        fs::write(&file, text).unwrap();
+        let found = Command::new("clippy-driver")
+            .env("CLIPPY_CONF_DIR", root())
+            .args([
+                "--crate-type",
+                "lib",
+                "--edition",
+                "2024",
+                "--emit=metadata",
+            ])
+            .args(["-W", "clippy::too_many_lines", "--out-dir"])
+            .args([folder.path(), &file])
+            .output()
+            .unwrap();
+        let words = String::from_utf8_lossy(&found.stderr);
+        assert!(found.status.success(), "{words}");
+        assert_eq!(words.contains("too many lines"), is_found, "{words}");
+    }
+}
