@@ -58,12 +58,14 @@ pub fn strip_of(
         });
     }
     let mut section = drawing::cross_section(scene, along.iter().map(|at| at.plane));
+    let is_even = |plane: &VirtualPlane| plane.grid.azimuths % 2 == 0;
+    let differs = scene.planes.iter().all(is_even)
+        && (section.other.is_some() || planes.iter().any(differs_across));
+    let is_seen = !is_figure && differs;
     if is_figure {
         // A figure has no room for a second cut, or for the light field in it.
         section.other = None;
     }
-    let differs = planes.iter().any(differs_across);
-    let is_seen = !is_figure && (section.other.is_some() || differs);
     let both = is_seen.then(|| along.iter().map(BothSlices::of).collect());
     let both: Option<Vec<BothSlices>> = both.flatten();
     for (column, both) in columns.iter_mut().zip(both.iter().flatten()) {
