@@ -58,7 +58,7 @@ pub fn strip_of(
         });
     }
     let mut section = drawing::cross_section(scene, along.iter().map(|at| at.plane));
-    let is_even = |plane: &VirtualPlane| plane.grid.azimuths % 2 == 0;
+    let is_even = |plane: &VirtualPlane| plane.grid.azimuths.is_multiple_of(2);
     let differs = scene.planes.iter().all(is_even)
         && (section.other.is_some() || planes.iter().any(differs_across));
     let is_seen = !is_figure && differs;
