@@ -17,7 +17,9 @@ pub(crate) use shared::{PhotonArgs, SceneArgs, ThreadArgs};
 pub(crate) use sweep::{BandwidthArgs, CovarianceArgs, SweepArgs};
 pub(crate) use world::{ImportArgs, ProbeArgs, RenderArgs};
 
+use clap::error::{ContextKind, ContextValue};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use etendue_scene::nearest;
 use std::ffi::OsString;
 use std::fmt::Write;
 
@@ -37,7 +39,8 @@ First steps:
   etendue run scenes/fig9b.ron --set blockers.0.pitch=0.05 --out out/fine
   etendue render scenes/worlds/glossy.xml               a picture of a Mitsuba scene
 
-Exit codes: 0 pass, 1 disagreement, 2 bad input, 3 cannot run (directory, memory, interrupted), 4 undecided"
+Exit codes: 0 pass, 1 disagreement, 2 bad input, 3 cannot run (directory, memory, interrupted),
+4 undecided"
 )]
 pub(crate) struct Cli {
     #[command(subcommand)]
@@ -133,9 +136,31 @@ impl Cli {
     pub(crate) fn parse_line(
         line: impl IntoIterator<Item = impl Into<OsString> + Clone>,
     ) -> Result<Self, clap::Error> {
-        let matches = Self::grouped_command().try_get_matches_from(line)?;
-        Self::from_arg_matches(&matches)
+        let command = Self::grouped_command();
+        let names: Vec<String> = command
+            .get_subcommands()
+            .map(|command| command.get_name().to_owned())
+            .collect();
+        let matches = command.try_get_matches_from(line);
+        Self::from_arg_matches(&matches.map_err(|error| suggesting(error, &names))?)
     }
+}
+
+/// The error with the command that was probably meant: clap finds no swapped letters.
+fn suggesting(mut error: clap::Error, names: &[String]) -> clap::Error {
+    let unknown = error.get(ContextKind::InvalidSubcommand).cloned();
+    let has_tip = error.get(ContextKind::SuggestedSubcommand).is_some();
+    if let (Some(ContextValue::String(unknown)), false) = (unknown, has_tip) {
+        let meant = nearest(&unknown, names.iter().map(String::as_str));
+        let meant: Vec<String> = meant.map(str::to_owned).into_iter().collect();
+        if !meant.is_empty() {
+            error.insert(
+                ContextKind::SuggestedSubcommand,
+                ContextValue::Strings(meant),
+            );
+        }
+    }
+    error
 }
 
 #[cfg(test)]
@@ -157,6 +182,16 @@ mod tests {
         listed.sort_unstable();
         named.sort_unstable();
         assert_eq!(listed, named);
+    }
+
+    #[test]
+    fn a_misspelled_command_is_suggested() {
+        for (written, meant) in [("rnu", "run"), ("reprot", "report"), ("swep", "sweep")] {
+            let error = Cli::parse_line(["etendue", written])
+                .unwrap_err()
+                .to_string();
+            assert!(error.contains(&format!("'{meant}'")), "{error}");
+        }
     }
 
     #[test]

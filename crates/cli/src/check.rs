@@ -10,6 +10,7 @@ use etendue_report::pictures;
 use etendue_scene::Scene;
 use etendue_store::Failure;
 use etendue_store::Method;
+use etendue_store::file_seal::SealKind;
 use etendue_store::output::OutputFile;
 use etendue_theory::rays::AffineChain;
 use std::num::NonZero;
@@ -21,11 +22,12 @@ pub(crate) fn check(args: &CheckArgs) -> Result<u8, Failure> {
     let inputs = load::inputs(&args.scene.source(), &scene);
     let picture = args.draw.as_ref().map(|path| {
         let bytes = pictures::drawn_scene(&scene, path)?;
-        Ok((
-            path,
-            bytes,
-            OutputFile::claim(path, args.force.force, &inputs)?,
-        ))
+        let kind = match path.extension().and_then(|extension| extension.to_str()) {
+            Some("svg") => SealKind::Markup,
+            _ => SealKind::Png,
+        };
+        let file = OutputFile::claim_sealed(path, args.force.force, &inputs, kind)?;
+        Ok((path, bytes, file))
     });
     let picture = picture.transpose()?;
     let theories = Applicability::of_planes(&scene);

@@ -55,6 +55,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<u8, Failure> {
             compact: false,
         },
         expect: args.expect,
+        target_error: None,
         quiet: args.work.quiet,
     };
     on_threads(&args.work.threads, || {

@@ -15,6 +15,8 @@ use etendue_store::{Failure, Results};
 pub(crate) struct Ending<'a> {
     pub(crate) options: OutputOptions<'a>,
     pub(crate) expect: Option<Expect>,
+    /// The largest noise that the user allowed.
+    pub(crate) target_error: Option<f64>,
     pub(crate) quiet: bool,
 }
 
@@ -38,6 +40,10 @@ pub(crate) fn conclude(
     if !ending.quiet {
         say(&table::text(&summary));
         say(&format!("results in {}", finished.folder.display()));
+        let left_out = ending.target_error;
+        if let Some(left_out) = left_out.map(|t| target::left_out(&summary.planes, t)) {
+            say(&left_out);
+        }
         if let Some(outlook) = seconds.and_then(|s| target::outlook(&summary.planes, s)) {
             say(&outlook);
         }

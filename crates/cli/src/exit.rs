@@ -1,8 +1,8 @@
 //! How a command ends: its message and its exit code.
 
-use crate::print::{MAX_ERROR_LINES, printable};
+use crate::print::{MAX_ERROR_LINES, printable, tell};
 use etendue_store::Failure;
-use std::io::{ErrorKind, Write};
+use std::io::ErrorKind;
 use std::path::Path;
 
 /// Prints a command-line error, or the requested help or version; returns the exit code.
@@ -22,9 +22,8 @@ pub(crate) fn ended(outcome: Result<u8, Failure>, quiet: bool) -> u8 {
         Ok(code) => code,
         Err(failure) => {
             if !quiet {
-                // A closed standard error does not change the exit code.
                 let message = printable(&failure.message, MAX_ERROR_LINES);
-                let _ = writeln!(std::io::stderr(), "error: {message}");
+                tell(&format!("error: {message}"));
             }
             failure.code
         }

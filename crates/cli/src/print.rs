@@ -2,7 +2,7 @@
 
 use etendue_scene::shown;
 use etendue_store::{Failure, Finished};
-use std::io::{ErrorKind, Write};
+use std::io::{ErrorKind, IsTerminal, Write, stderr, stdout};
 use std::path::Path;
 
 /// Prints to standard output. A closed pipe or a full disk changes neither the result nor the exit
@@ -15,12 +15,59 @@ pub(crate) fn say(text: &str) {
 /// closed the pipe.
 pub(crate) fn deliver(text: &str) -> Result<(), Failure> {
     let text = printable(text, usize::MAX);
-    match writeln!(std::io::stdout(), "{text}") {
+    let text = if stdout().is_terminal() {
+        wrapped(&text)
+    } else {
+        text
+    };
+    match writeln!(stdout(), "{text}") {
         Err(e) if e.kind() != ErrorKind::BrokenPipe => {
             Err(Failure::write(Path::new("to standard output"), e))
         }
         _ => Ok(()),
     }
+}
+
+/// Prints a message to standard error, whether it can be printed or not.
+pub(crate) fn tell(message: &str) {
+    let message = if stderr().is_terminal() {
+        wrapped(message)
+    } else {
+        message.to_owned()
+    };
+    let _ = writeln!(stderr(), "{message}");
+}
+
+/// The number of columns after which sentences are wrapped on a terminal. Other programs receive
+/// each message in a line of its own.
+const COLUMNS: usize = 100;
+
+/// Sentences wrapped between words, with continued lines indented; rows of tables, whose columns
+/// are two spaces apart, stay as they are.
+fn wrapped(text: &str) -> String {
+    let lines = text.lines().map(|line| {
+        let start = line.len() - line.trim_start().len();
+        let (indent, words) = line.split_at(start);
+        if line.chars().count() <= COLUMNS || words.contains("  ") {
+            return line.to_owned();
+        }
+        let mut all = indent.to_owned();
+        let mut column = start;
+        for (i, word) in words.split(' ').enumerate() {
+            let length = word.chars().count();
+            if i > 0 && column + 1 + length > COLUMNS {
+                all.push_str(&format!("\n{indent}  "));
+                column = start + 2;
+            } else if i > 0 {
+                all.push(' ');
+                column += 1;
+            }
+            all.push_str(word);
+            column += length;
+        }
+        all
+    });
+    lines.collect::<Vec<_>>().join("\n")
 }
 
 /// Names the files of others that were replaced because of `--force`.
@@ -47,4 +94,25 @@ pub(crate) fn printable(text: &str, lines: usize) -> String {
         shown.push("…".to_owned());
     }
     shown.join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{COLUMNS, wrapped};
+
+    #[test]
+    fn sentences_are_wrapped_and_tables_are_not() {
+        let sentence = format!("  {}", "words of a long message ".repeat(9).trim_end());
+        let lines = wrapped(&sentence);
+        assert!(lines.lines().count() > 1);
+        assert!(lines.lines().all(|line| line.chars().count() <= COLUMNS));
+        let words = |text: &str| {
+            text.split_whitespace()
+                .map(str::to_owned)
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(words(&lines), words(&sentence));
+        let row = "cell  ".repeat(30) + "end";
+        assert_eq!(wrapped(&format!("{row}\nshort")), format!("{row}\nshort"));
+    }
 }

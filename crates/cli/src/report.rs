@@ -3,6 +3,7 @@
 use crate::args::ReportArgs;
 use crate::print::say;
 use etendue_report::page::{NAME, page, stored_data};
+use etendue_store::file_seal::SealKind;
 use etendue_store::output::OutputFile;
 use etendue_store::{Failure, SUMMARY};
 use std::path::{Path, PathBuf};
@@ -23,7 +24,8 @@ pub(crate) fn report(args: &ReportArgs) -> Result<u8, Failure> {
             .map(|name| name.to_string_lossy().into_owned())
     };
     let names: Vec<String> = args.folders.iter().filter_map(folder).collect();
-    let out = OutputFile::claim(&args.out, args.force.force, &inputs)?;
+    let (force, kind) = (args.force.force, SealKind::Markup);
+    let out = OutputFile::claim_sealed(&args.out, force, &inputs, kind)?;
     let parent = args.out.parent().filter(|path| *path != Path::new(""));
     let parent = parent.unwrap_or(Path::new("."));
     let beside = args.folders.iter().map(|folder| address(folder, parent));

@@ -190,6 +190,7 @@ fn stages(
             compact: args.compact,
         },
         expect: args.expect,
+        target_error: args.target_error,
         quiet: args.work.quiet,
     };
     let code = conclude(&case, &ending, results, watch)?;

@@ -1,7 +1,7 @@
 //! The warnings of a scene, each on a line of its own.
 
+use crate::print;
 use etendue_scene::Scene;
-use std::io::Write;
 
 /// Prints the warnings to standard error, unless the user asked for quiet: standard output is for
 /// the result.
@@ -14,6 +14,5 @@ pub(crate) fn tell(scene: &Scene, quiet: bool) {
 
 /// Prints one warning.
 pub(crate) fn warn(warning: &str) {
-    // A closed standard error is ignored.
-    let _ = writeln!(std::io::stderr(), "warning: {warning}");
+    print::tell(&format!("warning: {warning}"));
 }

@@ -4,12 +4,15 @@ class Picture {
     Object.assign(this, { plane, kind });
     const box = make("div", plane.box, { class: "picture" });
     const label = `${plane.name.replaceAll("_", " ")}: ${kind === "field" ? "light field" : "spectrum"}`;
-    this.canvas = make("canvas", box, { tabindex: "0", role: "img", "aria-label": label });
+    this.upwards = make("div", box, { class: "numbers beside", "aria-hidden": "true" });
+    const view = make("div", box, { class: "view" });
+    this.level = make("div", box, { class: "numbers level", "aria-hidden": "true" });
+    this.canvas = make("canvas", view, { tabindex: "0", role: "img", "aria-label": label });
     this.context = this.canvas.getContext("2d");
     this.over = document.createElementNS(SVG, "svg");
     this.over.setAttribute("viewBox", "-1 -1 2 2");
     this.over.setAttribute("preserveAspectRatio", "none");
-    box.append(this.over);
+    view.append(this.over);
     this.lines = [0, 1].map(() => this.over.appendChild(document.createElementNS(SVG, "line")));
     this.mark = this.over.appendChild(document.createElementNS(SVG, "circle"));
     this.mark.setAttribute("class", "mark");
@@ -30,6 +33,13 @@ class Picture {
     const from = state.at && state.at.picture === this ? state.at.share : [0, 0];
     const cells = [this.canvas.width, this.canvas.height];
     tell(this, from.map((share, i) => Math.min(0.999, Math.max(-0.999, share + (2 * step[i]) / cells[i]))));
+  }
+  /** Numbers at both ends of the axes and, between them, their names. */
+  scale([across, name], [upwards, upName]) {
+    const texts = (end, middle) => [`−${digits(end)}`, middle, digits(end)];
+    const show = (box, all) => box.replaceChildren(...all.map((text) => make("span", null, {}, text)));
+    show(this.level, texts(across, name));
+    show(this.upwards, texts(upwards, upName).reverse());
   }
   /** `share(i, j)` of `width` × `height` cells, as places on the color bar. */
   draw(width, height, share) {
@@ -84,7 +94,9 @@ class Plane {
   }
   draw() {
     if (!this.field) return;
-    const [cells, , , rho, , nu] = this.axes;
+    const [cells, halfX, halfU, rho, rhoStep, nu, nuStep] = this.axes;
+    this.fieldPicture.scale([halfX, "x (m)"], [halfU, "u"]);
+    this.spectrumPicture.scale([(rho + 0.5) * rhoStep, "ρ (1/m)"], [(nu + 0.5) * nuStep, "ν"]);
     const most = this.field.reduce((a, b) => (b > a ? b : a), 1e-300);
     this.fieldPicture.draw(cells, cells, (i, j) => this.field[i * cells + j] / most);
     const width = 2 * nu + 1;

@@ -61,6 +61,9 @@ pub struct Axis {
     pub max: f64,
     /// Whether the axis is logarithmic; both edges are above 0 then.
     pub is_log: bool,
+    /// Whether its numbers descend to the right, or upwards: rows of a photograph count from the
+    /// top. The first cell of an array is then at the high edge.
+    pub is_reversed: bool,
 }
 
 /// A tick: its position in the axis' unit, and its text.
@@ -79,6 +82,16 @@ impl Axis {
             min,
             max,
             is_log: false,
+            is_reversed: false,
+        }
+    }
+
+    /// The same axis with its numbers descending.
+    #[must_use]
+    pub fn reversed(self) -> Self {
+        Self {
+            is_reversed: true,
+            ..self
         }
     }
 
@@ -92,7 +105,12 @@ impl Axis {
     /// The centre of cell `index` of `count`.
     pub(crate) fn center(&self, index: usize, count: usize) -> f64 {
         // Symmetric in the two edges, so that the middle of a symmetric axis is exactly 0.
-        let above = index as f64 + 0.5;
+        let along = index as f64 + 0.5;
+        let above = if self.is_reversed {
+            count as f64 - along
+        } else {
+            along
+        };
         ((count as f64 - above) * self.min + above * self.max) / count as f64
     }
 
@@ -110,11 +128,12 @@ impl Axis {
     /// The position of `value`: 0 at the low edge and 1 at the high one.
     pub(crate) fn fraction(&self, value: f64) -> f64 {
         let [min, max] = self.range();
-        if self.is_log {
+        let above = if self.is_log {
             libm::log(value / min) / libm::log(max / min)
         } else {
             (value - min) / (max - min)
-        }
+        };
+        if self.is_reversed { 1.0 - above } else { above }
     }
 
     /// The power of ten factored out of the tick texts.
@@ -227,7 +246,7 @@ pub(crate) fn spaced_ticks(axis: &Axis, length: f64) -> (Vec<Tick>, f64) {
 /// Whether tick texts at a font `size` do not overlap.
 fn fit(axis: &Axis, ticks: &[Tick], length: f64, size: f64) -> bool {
     ticks.windows(2).all(|pair| {
-        let step = axis.fraction(pair[1].value) - axis.fraction(pair[0].value);
+        let step = (axis.fraction(pair[1].value) - axis.fraction(pair[0].value)).abs();
         let [a, b] = [0, 1].map(|i| width(&pair[i].text, size));
         step * length >= 0.5 * (a + b) + 3.0
     })
@@ -327,6 +346,21 @@ mod tests {
         );
         assert_eq!(texts(&axis(0.09, 1.1), 4.0), ["0.1", "0.2", "0.5", "1"]);
         assert_eq!(texts(&axis(1e5, 1e6), 4.0), ["1e5", "2e5", "5e5", "1e6"]);
+    }
+
+    #[test]
+    fn a_reversed_axis_counts_from_the_other_edge() {
+        let axis = Axis::edges("row", "pixels", [0.0, 8.0]).reversed();
+        let places = [0.0, 2.0, 8.0].map(|row| axis.fraction(row));
+        assert!(
+            places
+                .iter()
+                .zip([1.0, 0.75, 0.0])
+                .all(|(a, b)| (a - b).abs() < 1e-12)
+        ); // rounding
+        assert!((axis.center(0, 4) - 7.0).abs() < 1e-12);
+        let (ticks, _) = spaced_ticks(&axis, 200.0);
+        assert!(ticks.len() >= 3);
     }
 
     #[test]

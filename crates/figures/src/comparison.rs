@@ -1,4 +1,4 @@
-//! One quantity, measured | predicted | difference in σ.
+//! One quantity from two sources, such as measured | predicted | difference in σ.
 
 use crate::axis::{Axis, AxisQuantity};
 use crate::bar;
@@ -9,7 +9,7 @@ use crate::sizes::{HEAD_TEXT, LABEL_BASELINE};
 use crate::svg::{Anchor, Area, Svg, TextStyle};
 use ndarray::ArrayView2;
 
-/// One quantity measured and predicted on the same cells, [x, y], both axes ascending. NaN: no value.
+/// One quantity, measured and expected on the same cells, [x, y], both axes ascending. NaN: no value.
 #[derive(Clone, Debug)]
 pub struct Comparison<'a> {
     /// The quantity and plane shown; markup.
@@ -24,12 +24,17 @@ pub struct Comparison<'a> {
     pub quantity: AxisQuantity,
     /// The color scale of measured and predicted.
     pub scale: Scale,
+    /// What the two sides are, such as "measured" and "predicted".
+    pub sides: [&'a str; 2],
     /// Measured values; may be negative after subtraction of the shot noise.
     pub measured: ArrayView2<'a, f64>,
-    /// Predicted values.
+    /// Predicted values, or those of whatever the measurement is compared with.
     pub predicted: ArrayView2<'a, f64>,
     /// (measured − predicted) / σ.
     pub z: ArrayView2<'a, f64>,
+    /// Both sides on finer cells over the same axes, drawn in place of the values; the table keeps
+    /// the values.
+    pub finer: Option<[ArrayView2<'a, f64>; 2]>,
 }
 
 /// Differences beyond this many σ saturate.
@@ -76,11 +81,13 @@ pub fn comparison(comparison: &Comparison<'_>) -> Result<Figure, Error> {
 
 fn draw_panels(svg: &mut Svg, comparison: &Comparison<'_>, top: f64) -> Result<(), Error> {
     let value = value_shading(comparison);
-    let axis = Axis::edges("(measured − predicted) / *σ*", "", [-Z_LIMIT, Z_LIMIT]);
+    let [one, other] = comparison.sides;
+    let axis = Axis::edges(&comparison.difference("*σ*"), "", [-Z_LIMIT, Z_LIMIT]);
     let difference = Shading::linear(Colors::Diverging, axis).showing(comparison.z);
+    let [measured, predicted] = comparison.drawn();
     let panels = [
-        ("measured", comparison.measured, &value),
-        ("predicted", comparison.predicted, &value),
+        (one, measured, &value),
+        (other, predicted, &value),
         ("difference", comparison.z, &difference),
     ];
     for (index, (name, values, shading)) in panels.into_iter().enumerate() {
@@ -100,6 +107,19 @@ fn draw_panels(svg: &mut Svg, comparison: &Comparison<'_>, top: f64) -> Result<(
     bar::draw(svg, &difference, BARS_X[1], area(2, top), OVERHANG)
 }
 
+impl<'a> Comparison<'a> {
+    /// The values of both sides that are drawn.
+    fn drawn(&self) -> [ArrayView2<'a, f64>; 2] {
+        self.finer.unwrap_or([self.measured, self.predicted])
+    }
+
+    /// The difference of the two sides over its standard deviation.
+    fn difference(&self, sigma: &str) -> String {
+        let [one, other] = self.sides;
+        format!("({one} − {other}) / {sigma}")
+    }
+}
+
 fn area(index: usize, top: f64) -> Area {
     Area {
         x: PANELS_X[index],
@@ -111,7 +131,7 @@ fn area(index: usize, top: f64) -> Area {
 
 /// The colors shared by measured and predicted.
 fn value_shading(comparison: &Comparison<'_>) -> Shading {
-    let (measured, predicted) = (comparison.measured, comparison.predicted);
+    let [measured, predicted] = comparison.drawn();
     let shading = match comparison.scale {
         Scale::Linear => {
             let top = largest(measured).max(largest(predicted));
@@ -122,10 +142,11 @@ fn value_shading(comparison: &Comparison<'_>) -> Shading {
             Shading::linear(Colors::MAGNITUDES, axis)
         }
         Scale::Decibel { floor } => {
-            let name = format!(
-                "{} relative to the predicted peak",
-                comparison.quantity.name
-            );
+            let name = match comparison.sides {
+                [_, "predicted"] => "relative to the predicted peak".to_owned(),
+                [_, other] => format!("relative to the peak of {other}"),
+            };
+            let name = format!("{} {name}", comparison.quantity.name);
             Shading::decibel(Colors::MAGNITUDES, &name, floor, largest(predicted))
         }
         Scale::Phase => Shading::phase(&comparison.quantity.name),
@@ -136,13 +157,13 @@ fn value_shading(comparison: &Comparison<'_>) -> Shading {
 /// The table: a row for each cell, x slowest.
 fn numbers(comparison: &Comparison<'_>) -> Result<String, Error> {
     let Comparison { x, y, quantity, .. } = comparison;
-    let of = |kind: &str| format!("{kind} {}", quantity.heading());
+    let of = |side: usize| format!("{} {}", comparison.sides[side], quantity.heading());
     let header = [
         x.quantity.heading(),
         y.quantity.heading(),
-        of("measured"),
-        of("predicted"),
-        "(measured − predicted) / σ".to_owned(),
+        of(0),
+        of(1),
+        comparison.difference("σ"),
     ];
     let (columns, rows) = comparison.measured.dim();
     let cells = comparison.measured.indexed_iter();

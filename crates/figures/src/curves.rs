@@ -188,11 +188,10 @@ fn axes(panel: &CurvePanel, y: &AxisQuantity) -> [Axis; 2] {
         let from = points().map(low).fold(f64::INFINITY, f64::min);
         [from, points().map(high).fold(f64::NEG_INFINITY, f64::max)]
     };
-    let axis = |quantity: &AxisQuantity, is_log, [min, max]: [f64; 2]| Axis {
+    let axis = |quantity: &AxisQuantity, is_log, ends: [f64; 2]| Axis {
         quantity: quantity.clone(),
-        min,
-        max,
         is_log,
+        ..Axis::edges("", "", ends)
     };
     let by_factors = |[low, high]: [f64; 2]| {
         let margin = libm::pow(high / low, 0.06).max(1.01);

@@ -33,7 +33,8 @@ impl Picture<'_> {
     }
 }
 
-/// A line over a spectrum, ν = ν₀ + slope · (ρ − ρ₀), along which theory predicts its content.
+/// A line over a spectrum, ν = ν₀ + slope · (ρ − ρ₀), along which theory predicts its content; only
+/// its two ends are drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Guide {
     /// The point (ρ₀, ν₀): the origin, or the centre of a replica.
@@ -92,19 +93,11 @@ const ROW_NAME: f64 = 63.0;
 
 /// Strokes of the lines over spectra: visible by themselves on dark colors, and by the stroke below
 /// on pale ones.
-pub(crate) const GUIDE: [Stroke; 2] = [
-    Stroke {
-        color: "#10304a",
-        width: 2.6,
-        dash: GUIDE_DASH,
-    },
-    Stroke {
-        color: "#7fe0ff",
-        width: 1.0,
-        dash: GUIDE_DASH,
-    },
-];
-const GUIDE_DASH: &str = "4 5";
+pub(crate) const GUIDE: [Stroke; 2] =
+    [Stroke::solid("#10304a", 3.2), Stroke::solid("#7fe0ff", 1.4)];
+/// The part of a picture's side along which a line is drawn at each of its ends: between them the
+/// ridge that it predicts stays visible.
+const GUIDE_END: f64 = 0.1;
 
 /// A column with its position.
 #[derive(Clone, Copy, Debug)]
@@ -338,15 +331,40 @@ fn draw_guides(svg: &mut Svg, panel: &Panel<'_>, guides: &[Guide]) {
     if guides.is_empty() {
         return;
     }
-    svg.clipped(panel.area, |svg| {
-        for guide in guides {
-            let ends = panel.x.range().map(|rho| {
-                let nu = guide.through[1] + guide.slope * (rho - guide.through[0]);
-                panel.point(rho, nu)
-            });
+    let length = GUIDE_END * panel.area.width.min(panel.area.height);
+    for guide in guides {
+        let Some([start, end]) = inside(panel, guide) else {
+            continue;
+        };
+        for [from, to] in ends(start, end, length) {
             for stroke in GUIDE {
-                svg.line(ends[0], ends[1], stroke);
+                svg.line(from, to, stroke);
             }
         }
-    });
+    }
+}
+
+/// The ends of the part of a line inside a picture; `None` where it passes beside it.
+fn inside(panel: &Panel<'_>, guide: &Guide) -> Option<[[f64; 2]; 2]> {
+    let [left, right] = panel.x.range();
+    let [low, high] = panel.y.range();
+    let at = |rho: f64| guide.through[1] + guide.slope * (rho - guide.through[0]);
+    let mut rhos = [left, right];
+    if guide.slope != 0.0 {
+        let mut crossings =
+            [low, high].map(|nu| guide.through[0] + (nu - guide.through[1]) / guide.slope);
+        crossings.sort_by(f64::total_cmp);
+        rhos = [left.max(crossings[0]), right.min(crossings[1])];
+    }
+    let middle = at(0.5 * (rhos[0] + rhos[1]));
+    let is_seen = rhos[0] < rhos[1] && (low..=high).contains(&middle);
+    is_seen.then(|| rhos.map(|rho| panel.point(rho, at(rho))))
+}
+
+/// Short lines at both ends of a line.
+pub(crate) fn ends(start: [f64; 2], end: [f64; 2], length: f64) -> [[[f64; 2]; 2]; 2] {
+    let along = [0, 1].map(|i| end[i] - start[i]);
+    let share = length / libm::hypot(along[0], along[1]).max(2.0 * length);
+    let from = |point: [f64; 2], share: f64| [point, [0, 1].map(|i| point[i] + share * along[i])];
+    [from(start, share), from(end, -share)]
 }

@@ -4,7 +4,7 @@
 //! a PNG of the same drawing and a CSV of its numbers. The crate computes no physics and uses
 //! neither disk nor system fonts: the same values give the same bytes.
 //!
-//! * [`comparison()`]: one quantity, measured | predicted | difference in σ;
+//! * [`comparison()`]: one quantity from two sources, such as measured | predicted | difference in σ;
 //! * [`strip()`]: the scene cut along the central ray and, under each virtual plane, its light field and spectrum;
 //! * [`plate()`]: pictures in rows and columns;
 //! * [`section()`]: that cut alone;
@@ -30,9 +30,11 @@
 //!     y: Axis::centers("*ν*", "cycles/slope", [0.0, 32.0], 2),
 //!     quantity: AxisQuantity::new("|*S*|^{2}", "W² m⁻⁴ sr⁻² m⁴"),
 //!     scale: Scale::Decibel { floor: -60.0 },
+//!     sides: ["measured", "predicted"],
 //!     measured: power.view(),
 //!     predicted: power.view(),
 //!     z: (&power - &power).view(),
+//!     finer: None,
 //! })?;
 //! assert!(figure.png()?.starts_with(b"\x89PNG"));
 //! # Ok::<(), etendue_figures::Error>(())

@@ -6,7 +6,7 @@ use crate::bar;
 use crate::color::{Colors, Scale, hex};
 use crate::cut::SectionLayout;
 use crate::figure::{Error, Figure, csv_text, decimal};
-use crate::grid::{GAPS, GUIDE, Guide, LEFT, PageGrid, Picture, RIGHT, inner};
+use crate::grid::{GAPS, GUIDE, Guide, LEFT, PageGrid, Picture, RIGHT, ends, inner};
 use crate::plate::feet;
 use crate::section::Section;
 use crate::sizes::{SOFT, TICK_TEXT};
@@ -22,6 +22,9 @@ pub struct StripColumn<'a> {
     pub across: Option<AcrossPictures<'a>>,
     /// The power spectrum in (ρ, ν).
     pub spectrum: Picture<'a>,
+    /// The spectrum on finer cells over the same axes, drawn in its place; the table keeps
+    /// `spectrum`.
+    pub finer: Option<Picture<'a>>,
     /// The predicted spectrum. This row is drawn if each column has one.
     pub predicted: Option<Picture<'a>>,
     /// The full radial spectrum over (|Ωxy|, |Ωuv|), measured and predicted. These rows are drawn
@@ -32,7 +35,7 @@ pub struct StripColumn<'a> {
     pub off_chain: Option<Picture<'a>>,
     /// Lines below the pictures, such as "*p* = 0.43, pass", markup; may be empty.
     pub verdict: Vec<String>,
-    /// Dashed lines over the spectrum.
+    /// Lines at the edges of the spectrum.
     pub guides: Vec<Guide>,
 }
 
@@ -43,7 +46,9 @@ pub struct AcrossPictures<'a> {
     pub light_field: Picture<'a>,
     /// The power spectrum at azimuth 90°.
     pub spectrum: Picture<'a>,
-    /// Dashed lines over that spectrum.
+    /// The same on finer cells, drawn in its place.
+    pub finer: Option<Picture<'a>>,
+    /// Lines at the edges of that spectrum.
     pub guides: Vec<Guide>,
 }
 
@@ -141,6 +146,16 @@ impl StripRow {
         })
     }
 
+    /// The picture that is drawn in its place.
+    fn drawn<'a, 'b>(self, column: &'b StripColumn<'a>) -> &'b Picture<'a> {
+        let finer = match self {
+            Self::Spectrum => column.finer.as_ref(),
+            Self::AcrossSpectrum => column.across.as_ref().and_then(|a| a.finer.as_ref()),
+            _ => None,
+        };
+        finer.unwrap_or_else(|| self.picture(column))
+    }
+
     /// The quantity of this row's pictures.
     fn quantity(self, strip: &Strip<'_>) -> AxisQuantity {
         match self {
@@ -217,7 +232,7 @@ fn grid<'b, 'a>(strip: &'b Strip<'a>, style: &Style) -> PageGrid<'b, 'a> {
                 }
                 _ => &[],
             };
-            (row.picture(column), guides)
+            (row.drawn(column), guides)
         };
         crate::grid::PictureRow {
             name: row.name(),
@@ -240,7 +255,7 @@ fn grid<'b, 'a>(strip: &'b Strip<'a>, style: &Style) -> PageGrid<'b, 'a> {
     PageGrid::new(rows, strip.columns.len(), MIN_WIDTH.min(half), style)
 }
 
-/// Draws the keys of dashed lines and of cells without a value; returns the lowest baseline.
+/// Draws the keys of predicted lines and of cells without a value; returns the lowest baseline.
 fn keys(
     svg: &mut Svg,
     strip: &Strip<'_>,
@@ -268,8 +283,10 @@ fn guide_key(svg: &mut Svg, [x, y]: [f64; 2], style: &Style) {
         height: 12.0,
     };
     svg.fill(swatch, &hex(Colors::Sequential(style.palette).at(0.0)));
-    for stroke in GUIDE {
-        svg.line([x, y - 4.0], [swatch.right(), y - 4.0], stroke);
+    for [from, to] in ends([x, y - 4.0], [swatch.right(), y - 4.0], 9.0) {
+        for stroke in GUIDE {
+            svg.line(from, to, stroke);
+        }
     }
     let style = TextStyle::new([swatch.right() + 7.0, y], TICK_TEXT, Anchor::Start).fill(SOFT);
     svg.text(style, "predicted shear");

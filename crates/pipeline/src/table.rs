@@ -189,12 +189,13 @@ pub fn with_unit(name: &str, unit: &str) -> String {
 }
 
 /// The measured value and the smallest detectable change, the latter as a share of the parameter if
-/// it has a size. Both are – where even a change by the whole parameter would be undetectable, and
+/// it has a size, or with the parameter's unit. Both are – where even a change by the whole parameter would be undetectable, and
 /// the value is – where its error is larger than itself.
 fn measured(parameter: &ParameterReport) -> [String; 2] {
     let value = uncertain(parameter.measured, parameter.error);
     if parameter.scene.abs() < 1e-12 {
-        return [value, format!("{:.1e}", parameter.detectable)];
+        let change = format!("{:.1e} {}", parameter.detectable, parameter.unit);
+        return [value, change.trim_end().to_owned()];
     }
     let share = (parameter.detectable / parameter.scene).abs();
     let change = if share > 1.0 {
@@ -347,7 +348,7 @@ mod tests {
         assert_eq!(shown(2.0, -113.0, 41.0), ["–", "–"]);
         assert_eq!(shown(1.0, 1.0, 6.3e-6)[1], "0.0024 %");
         assert_eq!(shown(2.0, 0.1, 0.2), ["–", "38.60 %"]);
-        assert_eq!(shown(0.0, 0.1, 0.2), ["0.10 ± 0.20", "7.7e-1"]);
+        assert_eq!(shown(0.0, 0.1, 0.2), ["0.10 ± 0.20", "7.7e-1 m"]);
     }
 
     #[test]

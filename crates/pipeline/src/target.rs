@@ -94,6 +94,24 @@ pub fn outlook(planes: &[PlaneReport], seconds: f64) -> Option<String> {
     ))
 }
 
+/// What the noise of `target` leaves out, in words.
+#[must_use]
+pub fn left_out(planes: &[PlaneReport], target: f64) -> String {
+    let errors = planes
+        .iter()
+        .filter_map(|plane| Some((&plane.name, plane.quadrature_error?)));
+    let largest = errors.max_by(|(_, a), (_, b)| a.total_cmp(b));
+    let errors = match largest {
+        Some((name, error)) => format!("here up to {} ({name})", percent(Some(error))),
+        None => "here none, as all are in closed form".to_owned(),
+    };
+    format!(
+        "--target-error {} %: noise is at most that at each plane; errors of predictions come on \
+         top, {errors}",
+        tidy(100.0 * target)
+    )
+}
+
 /// The lit plane with the most noise, and its noise as a share of the spectrum.
 fn noisiest(measurement: &Measurement) -> Option<(&str, f64)> {
     let planes = measurement.planes().iter().enumerate();

@@ -74,7 +74,7 @@ pub fn write_result(
         arrays::write(&mut results, summary.made_from(), plane)?;
         pictures::plane(
             &mut results,
-            &pictures::made_from(summary),
+            (&pictures::made_from(summary), pictures::sides(plane)),
             prediction,
             at,
             plane,

@@ -30,4 +30,4 @@ pub use file::{
 };
 pub use hints::unit;
 pub use schema::schema;
-pub use suggestion::did_you_mean;
+pub use suggestion::{did_you_mean, nearest};

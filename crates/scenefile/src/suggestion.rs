@@ -7,6 +7,15 @@ use strsim::osa_distance;
 /// similar.
 #[must_use]
 pub fn did_you_mean<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+    match nearest(name, known) {
+        Some(other) => format!(" (did you mean {}?)", crate::shown(other, limits::NAME)),
+        None => String::new(),
+    }
+}
+
+/// The known name most similar to this one; `None` where none is similar.
+#[must_use]
+pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let lower = |name: &str| -> String {
         // Longer names are refused in any case.
         let start = name.chars().take(limits::NAME);
@@ -21,8 +30,6 @@ pub fn did_you_mean<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) ->
     let near = known.filter(|(distance, other)| {
         *distance <= most && *distance < other.chars().take(limits::NAME).count()
     });
-    match near.min_by_key(|(distance, _)| *distance) {
-        Some((_, other)) => format!(" (did you mean {}?)", crate::shown(other, limits::NAME)),
-        None => String::new(),
-    }
+    let nearest = near.min_by_key(|(distance, _)| *distance);
+    nearest.map(|(_, other)| other)
 }

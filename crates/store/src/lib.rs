@@ -16,6 +16,7 @@ pub mod checkpoints;
 pub mod exr;
 mod failure;
 pub mod fields;
+pub mod file_seal;
 pub mod framing;
 mod lock;
 pub mod machine;

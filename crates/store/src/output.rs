@@ -1,17 +1,23 @@
 //! A single output file chosen by the user, such as a picture or a table.
 
 use crate::Failure;
+use crate::file_seal::SealKind;
 use crate::lock::Lock;
+use etendue_scene::read_file;
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use tempfile::TempPath;
+
+/// The largest file that is read to see whether this program wrote it.
+const MOST_SEALED: u64 = 1 << 30;
 
 /// A file that only appears when it is complete.
 #[derive(Debug)]
 pub struct OutputFile {
     path: PathBuf,
     force: bool,
+    seal: Option<SealKind>,
     /// The temporary file that becomes the output.
     lock: Lock,
 }
@@ -21,6 +27,31 @@ impl OutputFile {
     /// is kept, unless `force` is set and it is a regular file; it must not be among `inputs` in
     /// any case.
     pub fn claim(path: &Path, force: bool, inputs: &[PathBuf]) -> Result<Self, Failure> {
+        Self::of_kind(path, force, inputs, None)
+    }
+
+    /// The same for a file that bears a mark: one that this program wrote, unchanged since, is
+    /// replaced without `force`.
+    pub fn claim_sealed(
+        path: &Path,
+        mut force: bool,
+        inputs: &[PathBuf],
+        kind: SealKind,
+    ) -> Result<Self, Failure> {
+        let is_file = fs::symlink_metadata(path).is_ok_and(|found| found.is_file());
+        if is_file && !force {
+            let bytes = read_file(path, MOST_SEALED).unwrap_or_default();
+            force = kind.is_sealed(&bytes);
+        }
+        Self::of_kind(path, force, inputs, Some(kind))
+    }
+
+    fn of_kind(
+        path: &Path,
+        force: bool,
+        inputs: &[PathBuf],
+        seal: Option<SealKind>,
+    ) -> Result<Self, Failure> {
         let failure = |e: io::Error| Failure::write(path, e);
         let Some(name) = path.file_name() else {
             return Err(Failure::write(path, "it does not name a file"));
@@ -40,8 +71,16 @@ impl OutputFile {
                     )));
                 }
                 if !force {
-                    let what = "the file exists; --force replaces it";
-                    return Err(Failure::write(path, what));
+                    return Err(Failure::write(
+                        path,
+                        match seal {
+                            None => "the file exists; --force replaces it",
+                            Some(_) => {
+                                "the file exists, and etendue did not write it or it was changed \
+                                 since; --force replaces it"
+                            }
+                        },
+                    ));
                 }
             }
         }
@@ -50,6 +89,7 @@ impl OutputFile {
         Ok(Self {
             path: path.to_owned(),
             force,
+            seal,
             lock,
         })
     }
@@ -58,7 +98,10 @@ impl OutputFile {
     pub fn write(mut self, bytes: &[u8]) -> Result<(), Failure> {
         let mut write = || -> io::Result<()> {
             self.lock.file.set_len(0)?;
-            self.lock.file.write_all(bytes)?;
+            match self.seal {
+                Some(kind) => self.lock.file.write_all(&kind.sealed(bytes))?,
+                None => self.lock.file.write_all(bytes)?,
+            }
             self.lock.file.sync_all()?;
             // A file that has been moved must not be removed with the lock.
             let waiting = TempPath::try_from_path(std::mem::take(&mut self.lock.path))?;

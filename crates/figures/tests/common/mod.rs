@@ -72,9 +72,11 @@ pub fn compare(
         y: Axis::edges("*u*", "", [-0.5, 0.5]),
         quantity: AxisQuantity::new("*L*", "W m⁻² sr⁻¹"),
         scale,
+        sides: ["measured", "predicted"],
         measured,
         predicted,
         z: z.view(),
+        finer: None,
     })
     .unwrap()
 }
@@ -126,6 +128,7 @@ pub fn path(section: &Section, values: ArrayView2<'_, f64>) -> Figure {
     let column = || StripColumn {
         light_field: picture(),
         spectrum: picture(),
+        finer: None,
         across: None,
         predicted: None,
         full_radial: None,

@@ -1,6 +1,6 @@
 //! The data of a run that a page shows.
 
-use crate::pictures::{light_field_axes, spectrum_axes, verdict_line};
+use crate::pictures::{light_field_axes, light_field_quantity, spectrum_axes, verdict_line};
 use crate::shell_word;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -48,6 +48,8 @@ struct PlaneData<'a> {
     /// Azimuths, radians.
     azimuths: Vec<f64>,
     field: Grids,
+    /// The unit of the light field.
+    field_unit: String,
     /// The radial spectrum for ρ ≥ 0, like the slices.
     radial: Grids,
     /// A slice for each azimuth; `None` if they are too large.
@@ -200,6 +202,10 @@ impl<'a> PlaneData<'a> {
             },
             azimuths: (0..grid.azimuths).map(|k| grid.azimuth(k)).collect(),
             field: Grids::new(field.values.view(), predicted_field.view(), field_z.view()),
+            field_unit: light_field_quantity()
+                .unit
+                .replace("^{−2}", "⁻²")
+                .replace("^{−1}", "⁻¹"),
             radial: Grids::new(radial[0].view(), radial[1].view(), radial[2].view()),
             slices: with_slices.then(|| slices(found)),
         }

@@ -53,13 +53,46 @@ const place = (axis, i) => axis.min + ((i + 0.5) * (axis.max - axis.min)) / axis
 const cell = (axis, value) =>
   Math.min(axis.count - 1, Math.max(0, Math.floor(((value - axis.min) / (axis.max - axis.min)) * axis.count)));
 
+/** Round numbers along an axis, about as many as asked for. */
+const ticks = (min, max, count) => {
+  const least = (max - min) / count;
+  const decade = 10 ** Math.floor(Math.log10(least));
+  const step = [1, 2, 5, 10].map((n) => n * decade).find((n) => n >= least * (1 - 1e-9));
+  const first = Math.ceil(min / step - 1e-9);
+  const last = Math.floor(max / step + 1e-9);
+  return Array.from({ length: Math.max(0, last - first + 1) }, (_, i) => (first + i) * step);
+};
+const signed = (text) => text.replace("-", "−");
+/** Numbers beside a picture or a color bar, at their shares of its length. */
+const scale = (parent, side, [min, max], count, show = (x) => digits(x, 3)) => {
+  const box = make("div", null, parent, { class: `scale ${side}`, "aria-hidden": "true" });
+  for (const value of ticks(min, max, count)) {
+    const share = `${(100 * (value - min)) / (max - min)}%`;
+    make("span", signed(show(value)), box, { style: side === "below" ? `left: ${share}` : `bottom: ${share}` });
+  }
+  return box;
+};
+const label = (axis) => (axis.unit ? `${axis.name} (${axis.unit})` : axis.name);
+const gradient = (table) => {
+  const stops = Array.from({ length: 33 }, (_, i) => `rgb(${color(table, i / 32).join()})`);
+  return `linear-gradient(to top, ${stops.join()})`;
+};
+
 /** A canvas with a mark; `kind` links it with others, `grids()` are what it stands beside. */
 class Picture {
   constructor(kind, which, panel, parent, caption) {
     Object.assign(this, { kind, which, panel });
     const figure = make("figure", null, parent);
     make("figcaption", caption, figure);
-    this.canvas = make("canvas", null, figure, { tabindex: "0", role: "img", "aria-label": `${panel.name}: ${caption}` });
+    const plot = make("div", null, figure, { class: "plot" });
+    const { x, y } = this.grid();
+    make("div", label(y), plot, { class: "name upwards" });
+    scale(plot, "left", [y.min, y.max], 5);
+    this.canvas = make("canvas", null, plot, { tabindex: "0", role: "img", "aria-label": `${panel.name}: ${caption}` });
+    make("div", null, plot, { class: "bar", style: `background: ${gradient(which === "z" ? diverging : sequential)}` });
+    this.levels = make("div", null, plot, { class: "levels" });
+    scale(plot, "below", [x.min, x.max], 4);
+    make("div", label(x), plot, { class: "name level" });
     this.canvas.addEventListener("pointermove", (event) => this.point(event));
     this.canvas.addEventListener("pointerdown", (event) => this.point(event));
     this.canvas.addEventListener("keydown", (event) => this.key(event));
@@ -91,7 +124,23 @@ class Picture {
     const level = value > 0 && peak > 0 ? 10 * Math.log10(value / peak) : -Infinity;
     return color(sequential, 1 - level / state.floor);
   }
+  /** The numbers beside the color bar. */
+  bar() {
+    const range = () => {
+      if (this.which === "z") return [[-MOST_SIGMA, MOST_SIGMA], "σ"];
+      if (this.kind === "spectrum") return [[state.floor, 0], "dB of the peak"];
+      return [[0, this.panel.peak() || 1], this.panel.plane.field_unit];
+    };
+    const [ends, unit] = range();
+    const key = JSON.stringify([ends, unit]);
+    if (key === this.levelsKey) return;
+    this.levelsKey = key;
+    this.levels.replaceChildren();
+    scale(this.levels, "right", ends, 5);
+    make("div", unit, this.levels, { class: "name upwards" });
+  }
   draw() {
+    this.bar();
     const grid = this.grid();
     const [w, h] = [grid.x.count, grid.y.count];
     if (this.canvas.width !== w || this.canvas.height !== h) Object.assign(this.canvas, { width: w, height: h });
@@ -118,9 +167,6 @@ class Panel {
     Object.assign(this, { plane, kind, name: plane.report.name });
     const box = make("div", null, parent, { class: "pictures" });
     for (const [which, caption] of captions) new Picture(kind, which, this, box, caption);
-    const { x, y } = this.grids().measured;
-    const range = (axis) => `${axis.name} from ${digits(axis.min, 3)} to ${digits(axis.max, 3)} ${axis.unit}`;
-    make("figcaption", `→ ${range(x)}, ↑ ${range(y)}`, parent);
     this.line = make("div", "", parent, { class: "value", "aria-live": "polite" });
     panels.push(this);
   }
@@ -203,9 +249,28 @@ const showPlane = (plane, parent) => {
   for (const warning of report.warnings) make("p", `warning: ${warning}`, section);
 };
 
+/** The fields of a scene by their paths. */
+const fields = (value, path = "") => {
+  if (value === null || typeof value !== "object") return [[path, JSON.stringify(value)]];
+  return Object.entries(value).flatMap(([key, inner]) => fields(inner, path ? `${path}.${key}` : key));
+};
+/** What distinguishes a run from the others of a scene of the same name. */
+const differences = (run) => {
+  const alike = runs.filter((other) => other.scene === run.scene).map((other) => new Map(fields(other.scene_file)));
+  const own = new Map(fields(run.scene_file));
+  const names = [...new Set(alike.flatMap((other) => [...other.keys()]))];
+  const differing = names.filter((name) => alike.some((other) => other.get(name) !== own.get(name)));
+  const shown = differing.slice(0, 6).map((name) => `${name} = ${own.get(name) ?? "–"}`);
+  return [...shown, ...(differing.length > 6 ? [`${differing.length - 6} more fields`] : [])].join(", ");
+};
+
 const showRun = (run) => {
   const article = make("article", null, document.getElementById("runs"), { class: "run" });
-  make("h2", run.scene, article);
+  const differing = differences(run);
+  make("h2", differing ? `${run.scene}: ${differing}` : run.scene, article);
+  const source = run.provenance.split("\n");
+  const lines = [run.folder, source[0], source.at(-1)].filter((line) => line);
+  make("p", lines.join(" · "), article, { class: "source" });
   make("p", run.words, article, { class: `verdict ${run.verdict}` });
   // As an image, an SVG runs no script and asks for nothing from outside, whoever made it.
   const src = `data:image/svg+xml,${encodeURIComponent(run.path)}`;

@@ -172,17 +172,19 @@ fn drawn(
     comparison(&Comparison {
         title: &format!("{name}: bandwidth at the camera"),
         note: &format!(
-            "95 % of the power in windows {} pixels wide; predicted: Eq. 20, corrected, for light of all frequencies, or the bandwidth of the window alone",
+            "95 % of the power in windows {} pixels wide; criterion: Eq. 20, corrected, for light of all frequencies, or the bandwidth of the window alone where that is larger",
             case.request.window
         ),
         x: Axis::edges("column", "pixels", [0.0, w]),
-        y: Axis::edges("row from below", "pixels", [0.0, h]),
+        y: Axis::edges("row", "pixels", [0.0, h]).reversed(),
         // On a linear scale a few pixels at the edges of curved objects would take the whole range.
         quantity: AxisQuantity::new("log_{10} *B*", "cycles/slope"),
         scale: Scale::Linear,
+        sides: ["measured", "criterion"],
         measured: of(|point| libm::log10(point.measured)).view(),
         predicted: of(|point| libm::log10(expected(point))).view(),
         z: of(|point| (point.measured - expected(point)) / point.error).view(),
+        finer: None,
     })
     .map_err(Failure::cannot_run)
 }

@@ -57,7 +57,7 @@ pub fn probe_pixel(
     let files = probe.planes.iter().flat_map(|plane| files_of(&plane.name));
     let (results, folder) = scene.claim(format!("{name}-{column}-{row}"), files.collect())?;
     let found = measured(request, &probe, reporter)?;
-    let note = format!("{name}, pixel {column}, {row}; backward rays | photons");
+    let note = format!("{name}, pixel {column}, {row}");
     let verdict = written(&scene, results, (&note, pixel), (&probe, &found), reporter)?;
     let found: Vec<&Found> = found.iter().map(|(found, _)| found).collect();
     Ok(ProbedPixel {
@@ -80,7 +80,8 @@ fn written(
     made_from["rays"] = tree_of!(scene.request.rays);
     for (plane, (found, photons)) in probe.planes.iter().zip(found) {
         arrays::write(&mut results, made_from.clone(), &found.comparison)?;
-        pictures::plane(&mut results, note, photons, plane, &found.comparison)?;
+        let source = (note, ["backward rays", "photons"]);
+        pictures::plane(&mut results, source, photons, plane, &found.comparison)?;
     }
     let each = found.iter().map(|(found, _)| verdict(found));
     let verdict = each.fold(Verdict::Pass, Verdict::and);

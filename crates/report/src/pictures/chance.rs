@@ -1,0 +1,90 @@
+//! How many cells of a difference chance puts beyond the range of its colors.
+
+use etendue_compare::PlaneComparison;
+use etendue_store::arrays::radial_z;
+use ndarray::Axis;
+
+/// The difference at which colors end, in standard deviations.
+const BEYOND: f64 = 4.0;
+
+/// The number of independent frequencies, and how many of them are beyond 4 σ: in the difference,
+/// and on average in noise alone.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Outliers {
+    cells: usize,
+    found: usize,
+    expected: f64,
+}
+
+impl Outliers {
+    /// Power is not normal: in the dark it is the mean of as many exponential variables as there
+    /// are azimuths, so large values are more frequent than for a normal variable. Its first three
+    /// moments determine a shifted gamma variable, which has that distribution exactly where all
+    /// azimuths have the same noise.
+    pub(super) fn of(plane: &PlaneComparison) -> Self {
+        let grid = plane.measured.grid;
+        let z = radial_z(plane);
+        let mut all = Self::default();
+        for ((m, n), _) in plane.sigma.index_axis(Axis(0), 0).indexed_iter() {
+            let z = z[[grid.rho.half + m, n]];
+            if !grid.is_independent(m, n) || !z.is_finite() {
+                continue;
+            }
+            let (mut second, mut third) = (0.0, 0.0);
+            for azimuth in 0..grid.azimuths {
+                let power = plane.predicted.half[[azimuth, m, n]].norm_sqr();
+                let noise = plane.sigma[[azimuth, m, n]].powi(2);
+                second += noise * (2.0 * power + noise);
+                third += noise * noise * (6.0 * power + 2.0 * noise);
+            }
+            all.cells += 1;
+            all.found += usize::from(z.abs() > BEYOND);
+            all.expected += beyond(third / libm::pow(second, 1.5));
+        }
+        all
+    }
+
+    /// The numbers in a sentence.
+    pub(super) fn words(&self) -> String {
+        let Self {
+            cells,
+            found,
+            expected,
+        } = self;
+        format!(
+            "Beyond 4 *σ*: {found} of {cells} frequencies, by chance {expected:.1} on average; neighbours share noise."
+        )
+    }
+}
+
+/// The probability that a shifted gamma variable of mean 0, variance 1 and this skewness exceeds
+/// 4 in modulus, by the approximation of Wilson and Hilferty (1931).
+fn beyond(skewness: f64) -> f64 {
+    let shape = 4.0 / skewness.max(1e-6).powi(2);
+    let tail = |z: f64| {
+        let root = libm::cbrt((1.0 + z / shape.sqrt()).max(0.0));
+        let normal = (root - 1.0 + 1.0 / (9.0 * shape)) * (9.0 * shape).sqrt();
+        0.5 * libm::erfc(normal / std::f64::consts::SQRT_2)
+    };
+    tail(BEYOND) + (1.0 - tail(-BEYOND))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The mean of 8 exponential variables exceeds 1 + 4/√8 with probability
+    /// Σ_(k<8) xᵏ e⁻ˣ/k!, x = 8 + 4 √8; a normal variable is beyond 4 with 6.3·10⁻⁵.
+    #[test]
+    fn power_is_beyond_four_more_often_than_a_normal_variable() {
+        let x = 8.0 + 4.0 * 8.0_f64.sqrt();
+        let terms = (1..8).scan(1.0, |term, k| {
+            *term *= x / f64::from(k);
+            Some(*term)
+        });
+        let truth = libm::exp(-x) * (1.0 + terms.sum::<f64>());
+        let found = beyond(2.0 / 8.0_f64.sqrt());
+        assert!((found / truth - 1.0).abs() < 0.06, "{found} for {truth}"); // the approximation
+        assert!((beyond(0.0) / 6.334e-5 - 1.0).abs() < 0.01);
+    }
+}

@@ -1,0 +1,316 @@
+//! Spectra between the frequencies of a scene, for pictures without visible cells.
+//!
+//! Light outside the window does not count, so neighbouring frequencies determine the spectrum
+//! between them. Of all windowed light fields W ℓ with the given spectrum, the one with the least
+//! ∫ ℓ² is drawn; its spectrum is a weighted sum of the given frequencies with the covariance of
+//! white noise behind the window, K(Ω) = ∫ W² e^(−2πi Ω z) dz / ∫ W².
+
+use etendue_field::{Complex, FrequencyAxis, Profile, SliceGrid, Slices, Window};
+use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis, Slice};
+use std::f64::consts::TAU;
+
+/// The number of cells along an axis from which none are visible.
+const SMOOTH: usize = 160;
+/// The share of the variance of a value between the given ones that these may leave open.
+const OPEN: f64 = 0.01;
+
+/// The weights of the frequencies of a plane for finer ones.
+pub(super) struct Finer {
+    grid: SliceGrid,
+    /// Along ρ ≥ 0 and along ν, for each azimuth, [finer, given].
+    weights: Vec<[Array2<f64>; 2]>,
+}
+
+impl Finer {
+    /// Finer frequencies that fill the same range; `None` where the scene's are fine enough, or too
+    /// far apart to determine those between them.
+    pub(super) fn new(given: &SliceGrid, window: &Window) -> Option<Self> {
+        let grid = SliceGrid {
+            azimuths: given.azimuths,
+            rho: divided(&given.rho),
+            nu: divided(&given.nu),
+        };
+        let of_azimuth = |azimuth| {
+            let toward = libm::sincos(given.azimuth(azimuth));
+            let positions = Covariance::new([window.x, window.y], toward);
+            let slopes = Covariance::new([window.u, window.v], toward);
+            let rows = weights(&given.rho, &grid.rho, &positions)?;
+            let columns = weights(&given.nu, &grid.nu, &slopes)?;
+            let rows = rows.slice_axis(Axis(0), Slice::from(grid.rho.half..));
+            Some([rows.to_owned(), columns])
+        };
+        if grid == *given {
+            return None;
+        }
+        let weights: Option<Vec<_>> = (0..grid.azimuths).map(of_azimuth).collect();
+        Some(Self {
+            grid,
+            weights: weights?,
+        })
+    }
+
+    /// The spectrum on the finer frequencies.
+    pub(super) fn of(&self, slices: &Slices) -> Slices {
+        let mut finer = Slices::zeros(self.grid);
+        let full = slices.full();
+        let each = finer.half.outer_iter_mut().zip(full.outer_iter());
+        for ((mut finer, slice), [rows, columns]) in each.zip(&self.weights) {
+            let by_row = product(rows.view(), slice.t());
+            let values = product(columns.view(), by_row.view());
+            finer.assign(&values.t());
+        }
+        finer
+    }
+}
+
+/// The mean power over azimuths on the finer frequencies, without the noise that `power`, on those
+/// of the scene, leaves out.
+pub(super) fn finer_power(finer: &Slices, slices: &Slices, power: &Array2<f64>) -> Array2<f64> {
+    let noise = slices.radial_power() - power;
+    let (from, to) = (&slices.grid, &finer.grid);
+    let rows = linear(&from.rho, &to.rho);
+    let columns = linear(&from.nu, &to.nu);
+    let mut finer = finer.radial_power();
+    for ((i, j), value) in finer.indexed_iter_mut() {
+        let (row, column) = (rows[i], columns[j]);
+        for (m, by_row) in row {
+            for (n, by_column) in column {
+                *value -= by_row * by_column * noise[[m, n]];
+            }
+        }
+    }
+    finer
+}
+
+/// An odd number of finer frequencies for each one, so that each remains among them.
+fn divided(axis: &FrequencyAxis) -> FrequencyAxis {
+    let parts = SMOOTH.div_ceil(axis.count());
+    let parts = parts + usize::from(parts.is_multiple_of(2));
+    FrequencyAxis {
+        half: (parts * axis.count() - 1) / 2,
+        spacing: axis.spacing / parts as f64,
+    }
+}
+
+/// The two given frequencies around each finer one, with their weights.
+fn linear(from: &FrequencyAxis, to: &FrequencyAxis) -> Vec<[(usize, f64); 2]> {
+    let last = from.count() - 1;
+    let place = |value: f64| {
+        let at = (value / from.spacing + from.half as f64).clamp(0.0, last as f64);
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "between 0 and the number of frequencies"
+        )]
+        let low = (at.floor() as usize).min(last.saturating_sub(1));
+        let share = at - low as f64;
+        [(low, 1.0 - share), ((low + 1).min(last), share)]
+    };
+    to.values().into_iter().map(place).collect()
+}
+
+/// The covariance, along a slice, of the spectrum of white noise behind a window.
+struct Covariance {
+    /// Points of both profiles' squares, with their weights, along the slice.
+    profiles: [Vec<(f64, f64)>; 2],
+}
+
+impl Covariance {
+    fn new(profiles: [Profile; 2], (sin, cos): (f64, f64)) -> Self {
+        const POINTS: u32 = 200;
+        let points = |profile: Profile, toward: f64| {
+            let all = (0..POINTS).map(|i| {
+                let t =
+                    profile.half_width() * ((2.0 * f64::from(i) + 1.0) / f64::from(POINTS) - 1.0);
+                (toward * t, profile.value(t).powi(2))
+            });
+            let all: Vec<(f64, f64)> = all.collect();
+            let sum: f64 = all.iter().map(|(_, weight)| weight).sum();
+            all.into_iter()
+                .map(|(t, weight)| (t, weight / sum))
+                .collect()
+        };
+        let [one, other] = profiles;
+        Self {
+            profiles: [points(one, cos), points(other, sin)],
+        }
+    }
+
+    fn at(&self, frequency: f64) -> f64 {
+        let of = |points: &Vec<(f64, f64)>| -> f64 {
+            let terms = points
+                .iter()
+                .map(|(t, weight)| weight * libm::cos(TAU * frequency * t));
+            terms.sum()
+        };
+        self.profiles.iter().map(of).product()
+    }
+}
+
+/// The weights of given frequencies for finer ones, [finer, given]; `None` where these leave some
+/// value between them open.
+fn weights(
+    from: &FrequencyAxis,
+    to: &FrequencyAxis,
+    covariance: &Covariance,
+) -> Option<Array2<f64>> {
+    let count = from.count();
+    let parts = (from.spacing / to.spacing).round();
+    let apart: Array1<f64> = (0..to.count())
+        .map(|steps| covariance.at(steps as f64 * to.spacing))
+        .collect();
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a small odd number"
+    )]
+    let parts = parts as usize;
+    let factor = Cholesky::new(count, |i, j| apart[parts * i.abs_diff(j)]);
+    let mut weights = Array2::zeros((to.count(), count));
+    for (finer, mut row) in weights.outer_iter_mut().enumerate() {
+        // The given frequency i is number parts · i + (parts − 1)/2 of the finer ones.
+        let known = |i: usize| apart[finer.abs_diff(parts * i + parts / 2)];
+        let known: Array1<f64> = (0..count).map(known).collect();
+        let solved = factor.solve(&known);
+        let explained: f64 = solved.iter().zip(&known).map(|(a, b)| a * b).sum();
+        let is_between = finer >= parts / 2 && finer < to.count() - parts / 2;
+        if is_between && explained < 1.0 - OPEN {
+            return None;
+        }
+        row.assign(&solved);
+    }
+    Some(weights)
+}
+
+/// A symmetric matrix A = L Lᵀ.
+struct Cholesky(Array2<f64>);
+
+impl Cholesky {
+    /// What is added to the diagonal: neighbouring frequencies are nearly dependent.
+    const RIDGE: f64 = 1e-8;
+
+    fn new(count: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
+        let mut l = Array2::<f64>::zeros((count, count));
+        for i in 0..count {
+            for j in 0..=i {
+                let sum: f64 = (0..j).map(|k| l[[i, k]] * l[[j, k]]).sum();
+                l[[i, j]] = if i == j {
+                    (entry(i, i) + Self::RIDGE - sum).max(Self::RIDGE).sqrt()
+                } else {
+                    (entry(i, j) - sum) / l[[j, j]]
+                };
+            }
+        }
+        Self(l)
+    }
+
+    fn solve(&self, right: &Array1<f64>) -> Array1<f64> {
+        let (l, count) = (&self.0, right.len());
+        let mut x = right.clone();
+        for i in 0..count {
+            let sum: f64 = (0..i).map(|k| l[[i, k]] * x[k]).sum();
+            x[i] = (x[i] - sum) / l[[i, i]];
+        }
+        for i in (0..count).rev() {
+            let sum: f64 = (i + 1..count).map(|k| l[[k, i]] * x[k]).sum();
+            x[i] = (x[i] - sum) / l[[i, i]];
+        }
+        x
+    }
+}
+
+/// The product A Bᵀ. Products of the array library differ in their bits between processors.
+fn product(a: ArrayView2<'_, f64>, b: ArrayView2<'_, Complex>) -> Array2<Complex> {
+    let sum = |a: ArrayView1<'_, f64>, b: ArrayView1<'_, Complex>| {
+        let terms = a.iter().zip(b).map(|(a, b)| b * *a);
+        terms.fold(Complex::ZERO, |sum, term| sum + term)
+    };
+    Array2::from_shape_fn((a.nrows(), b.nrows()), |(i, j)| sum(a.row(i), b.row(j)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use etendue_field::cis;
+
+    const WINDOW: Window = Window {
+        x: Profile::Hann(0.5),
+        y: Profile::Hann(0.5),
+        u: Profile::Hann(0.4),
+        v: Profile::Hann(0.4),
+    };
+
+    /// The slices of a few rays, each with the weight of the window.
+    fn of_rays(grid: SliceGrid) -> Slices {
+        let rays = [
+            [0.1, -0.2, 0.3, 0.05],
+            [-0.31, 0.12, -0.11, 0.2],
+            [0.02, 0.33, 0.0, -0.15],
+            [0.25, 0.2, 0.2, 0.25],
+        ];
+        let mut slices = Slices::zeros(grid);
+        for ((k, m, n), value) in slices.half.indexed_iter_mut() {
+            let rho = m as f64 * grid.rho.spacing;
+            let frequency = grid.frequency(k, rho, grid.nu.value(n));
+            for [x, y, u, v] in rays {
+                let profiles = [(WINDOW.x, x), (WINDOW.y, y), (WINDOW.u, u), (WINDOW.v, v)];
+                let weight: f64 = profiles
+                    .map(|(profile, t)| profile.value(t))
+                    .iter()
+                    .product();
+                let phase: f64 = frequency.iter().zip([x, y, u, v]).map(|(f, t)| f * t).sum();
+                *value += cis(-TAU * phase) * weight;
+            }
+        }
+        slices
+    }
+
+    fn grid(spacings: [f64; 2]) -> SliceGrid {
+        let [rho, nu] = spacings.map(|spacing| FrequencyAxis { half: 9, spacing });
+        SliceGrid {
+            azimuths: 4,
+            rho,
+            nu,
+        }
+    }
+
+    #[test]
+    fn the_window_determines_what_is_between_frequencies() {
+        let coarse = of_rays(grid([1.0, 1.25]));
+        let drawn = Finer::new(&coarse.grid, &WINDOW).unwrap().of(&coarse);
+        let truth = of_rays(drawn.grid);
+        let parts = drawn.grid.rho.count() / coarse.grid.rho.count();
+        let error = |within: f64| {
+            let (rho, nu) = (drawn.grid.rho, drawn.grid.nu);
+            let is_inside = |m: usize, n: usize| {
+                m as f64 <= within * rho.half as f64 && nu.value(n).abs() <= within * nu.max()
+            };
+            let (mut off, mut all) = (0.0, 0.0);
+            for (((_, m, n), a), b) in drawn.half.indexed_iter().zip(&truth.half) {
+                if is_inside(m, n) {
+                    off += (a - b).norm_sqr();
+                    all += b.norm_sqr();
+                }
+            }
+            f64::sqrt(off / all)
+        };
+        // What lies beyond the range of frequencies is not known.
+        assert!(error(1.0) < 0.06, "{}", error(1.0));
+        assert!(error(0.9) < 0.02, "{}", error(0.9));
+        for ((k, m, n), value) in coarse.half.indexed_iter() {
+            let at = drawn.half[[k, parts * m, parts * n + parts / 2]];
+            assert!((at - value).norm_sqr().sqrt() < 1e-5, "{at} for {value}"); // the ridge
+        }
+        let power = finer_power(&drawn, &coarse, &coarse.radial_power());
+        assert!(
+            (power - drawn.radial_power())
+                .iter()
+                .all(|off| off.abs() < 1e-12)
+        );
+    }
+
+    #[test]
+    fn frequencies_too_far_apart_determine_nothing() {
+        assert!(Finer::new(&grid([2.5, 1.25]), &WINDOW).is_none());
+    }
+}

@@ -1,0 +1,357 @@
+//! The strip along the path: the scene and, below it, the light field and spectrum of each plane.
+
+use super::cross_section::{across, differs_across};
+use super::finer::{Finer, finer_power};
+use super::words::{
+    CoordinateNames, across_axes, full_radial_axes, full_radial_quantity, light_field_quantity,
+    spectrum_quantity,
+};
+use super::{FLOOR, verdict_lines, write};
+use crate::drawing;
+use etendue_compare::{
+    Applicability, Class, FullRadialComparison, PlaneComparison, Theory, Verdict, stands_before,
+};
+use etendue_field::{Side, Slices, VirtualPlane};
+use etendue_figures::{AcrossPictures, Figure, Guide, Picture, Strip, StripColumn, Style, strip};
+use etendue_pipeline::MeasuredScene;
+use etendue_pipeline::table::grouped;
+use etendue_scene::Scene;
+use etendue_store::Failure;
+use etendue_store::Results;
+use ndarray::{Array2, Axis};
+use std::cmp::Ordering;
+
+/// The strip along the path; returns it as SVG.
+pub fn path(
+    results: &mut Results,
+    case: &MeasuredScene,
+    planes: &[PlaneComparison],
+) -> Result<String, Failure> {
+    let photons = case.measurement.emitted();
+    let figure = strip_of(&case.scene, photons, &case.theories, planes, None)?;
+    write(results, "path", &figure)?;
+    Ok(figure.svg)
+}
+
+/// The planes in the order in which light meets them; in the style of a figure, with their
+/// predicted spectra below. `photons` is the number emitted: a partial measurement has fewer than
+/// the scene requests.
+pub fn strip_of(
+    scene: &Scene,
+    photons: u64,
+    theories: &[Applicability],
+    planes: &[PlaneComparison],
+    style: Option<&Style>,
+) -> Result<Figure, Failure> {
+    let along = in_order(scene, theories, planes);
+    let is_figure = style.is_some();
+    let mut columns: Vec<StripColumn<'_>> = along
+        .iter()
+        .map(|at| column(scene, at, is_figure))
+        .collect();
+    let dashed = predicted_lines(&columns, planes);
+    let off_chain = off_chains(&along);
+    for (column, values) in columns.iter_mut().zip(&off_chain) {
+        column.off_chain = Some(Picture {
+            values: values.view(),
+            ..column.spectrum.clone()
+        });
+    }
+    let mut section = drawing::cross_section(scene, along.iter().map(|at| at.plane));
+    let is_even = |plane: &VirtualPlane| plane.grid.azimuths.is_multiple_of(2);
+    let differs = scene.planes.iter().all(is_even)
+        && (section.other.is_some() || planes.iter().any(differs_across));
+    let is_seen = !is_figure && differs;
+    if is_figure {
+        // A figure has no room for a second cut, or for the light field in it.
+        section.other = None;
+    }
+    let both = is_seen.then(|| along.iter().map(BothSlices::of).collect());
+    let both: Option<Vec<BothSlices>> = both.flatten();
+    for (column, both) in columns.iter_mut().zip(both.iter().flatten()) {
+        both.show(column);
+    }
+    // A figure has finer frequencies of its own.
+    let drawn = along.iter().filter(|_| !is_figure && both.is_none());
+    let drawn: Vec<_> = drawn.map(PlaneOnPath::finer_power).collect();
+    for (column, values) in columns.iter_mut().zip(&drawn) {
+        column.finer = values.as_ref().map(|values| Picture {
+            values: values.view(),
+            ..column.spectrum.clone()
+        });
+    }
+    let shown = match (&both, is_figure && differs) {
+        (Some(_), _) => BOTH.to_owned(),
+        (None, true) => format!("{}{MIXED}", spectra_are(scene.planes.iter())),
+        (None, false) => spectra_are(scene.planes.iter()).to_owned(),
+    };
+    let drawn = Strip {
+        title: &format!(
+            "{}: the light field along the path, and its spectrum",
+            scene.name
+        ),
+        note: &format!(
+            "{} photons, seed {}; spectra are {shown}.{dashed}",
+            grouped(photons),
+            scene.run.seed,
+        ),
+        section: &section,
+        columns,
+        light_field: light_field_quantity(),
+        spectrum: spectrum_quantity(),
+        full_radial: full_radial_quantity(),
+        floor: FLOOR,
+    };
+    strip(&drawn, &style.copied().unwrap_or_default()).map_err(Failure::cannot_run)
+}
+
+/// What is shown where the light differs between both planes through the central ray.
+const BOTH: &str = "at azimuth 0 below (*x*, *u*), and at 90° below (*y*, *v*). The light field \
+    in (*y*, *v*) is the inverse transform of that spectrum, which ends at the highest \
+    frequencies, so fringes accompany its edges (Gibbs phenomenon)";
+/// The warning of a figure that shows the mean in their place.
+const MIXED: &str = ", although the light differs between azimuths 0 and 90°, which `etendue \
+    run` draws apart";
+
+/// A plane with its theory and its comparison.
+struct PlaneOnPath<'a> {
+    plane: &'a VirtualPlane,
+    compared: &'a PlaneComparison,
+    theory: &'a Applicability,
+}
+
+/// The planes in the order in which light meets them.
+fn in_order<'a>(
+    scene: &'a Scene,
+    theories: &'a [Applicability],
+    planes: &'a [PlaneComparison],
+) -> Vec<PlaneOnPath<'a>> {
+    let each = scene.planes.iter().zip(planes).zip(theories);
+    let each = each.map(|((plane, compared), theory)| PlaneOnPath {
+        plane,
+        compared,
+        theory,
+    });
+    let mut along: Vec<_> = each.collect();
+    let place = |at: &PlaneOnPath<'_>| (at.plane.distance, at.plane.side == Side::After);
+    along.sort_by(|a, b| place(a).partial_cmp(&place(b)).unwrap_or(Ordering::Equal));
+    along
+}
+
+impl PlaneOnPath<'_> {
+    /// The measured radial power between the frequencies of the scene.
+    fn finer_power(&self) -> Option<Array2<f64>> {
+        let PlaneComparison {
+            measured, radial, ..
+        } = self.compared;
+        let finer = Finer::new(&measured.grid, &self.plane.window)?;
+        Some(finer_power(&finer.of(measured), measured, &radial.power))
+    }
+}
+
+/// The spectra at azimuths 0 and 90°, and the light field in (y, v).
+struct BothSlices {
+    axes: [etendue_figures::Axis; 2],
+    light_field: Array2<f64>,
+    spectra: [Array2<f64>; 2],
+    finer: Option<[Array2<f64>; 2]>,
+}
+
+impl BothSlices {
+    /// `None` where there is no slice at 90°.
+    fn of(at: &PlaneOnPath<'_>) -> Option<Self> {
+        let measured = &at.compared.measured;
+        let grid = &at.compared.projection.mean.grid;
+        let light_field = across(measured, [grid.half_x, grid.half_u])?;
+        let powers = |slices: &Slices| {
+            let full = slices.full();
+            [0, slices.grid.azimuths / 2].map(|azimuth| {
+                let slice = full.index_axis(Axis(0), azimuth);
+                slice.mapv(|value| value.norm_sqr())
+            })
+        };
+        let finer = Finer::new(&measured.grid, &at.plane.window);
+        Some(Self {
+            axes: across_axes(at.plane, grid),
+            light_field,
+            spectra: powers(measured),
+            finer: finer.map(|finer| powers(&finer.of(measured))),
+        })
+    }
+
+    /// Puts both slices in place of the mean over azimuths.
+    fn show<'a>(&'a self, column: &mut StripColumn<'a>) {
+        let spectrum = column.spectrum.clone();
+        let with = |values: &'a Array2<f64>| Picture {
+            values: values.view(),
+            ..spectrum.clone()
+        };
+        let [own, other] = self.spectra.each_ref().map(with);
+        column.spectrum = own;
+        let finer = self.finer.as_ref().map(|both| both.each_ref().map(with));
+        let [finer, other_finer] = finer.map_or([None, None], |both| both.map(Some));
+        column.finer = finer;
+        // Of two lines through the origin the first is in the plane of incidence.
+        let is_shear = |guide: &&Guide| guide.through == [0.0, 0.0];
+        let shears: Vec<Guide> = column.guides.iter().filter(is_shear).copied().collect();
+        if let [own, other] = shears[..] {
+            column
+                .guides
+                .retain(|guide| *guide != other || own == other);
+        }
+        let [x, y] = self.axes.clone();
+        column.across = Some(AcrossPictures {
+            light_field: Picture {
+                x,
+                y,
+                values: self.light_field.view(),
+            },
+            spectrum: other,
+            finer: other_finer,
+            guides: shears.last().copied().into_iter().collect(),
+        });
+    }
+}
+
+/// The differences from the first-order chains, if one of them has a wrong map.
+fn off_chains(along: &[PlaneOnPath<'_>]) -> Vec<Array2<f64>> {
+    let fails = along.iter().any(|at| {
+        let chain = at.compared.report.first_order.as_ref();
+        chain.is_some_and(|chain| chain.verdict == Verdict::Fail)
+    });
+    let each = along.iter().filter(|_| fails);
+    each.map(|at| off_chain(at.compared)).collect()
+}
+
+/// A description of which spectra of planes are drawn.
+pub fn spectra_are<'a>(planes: impl Iterator<Item = &'a VirtualPlane>) -> &'static str {
+    let counts: Vec<usize> = planes.map(|plane| plane.grid.azimuths).collect();
+    match counts.iter().filter(|count| **count == 1).count() {
+        0 => "means over azimuths",
+        slices if slices == counts.len() => "those at azimuth 0",
+        _ => "means over azimuths, or those at azimuth 0 where there is one",
+    }
+}
+
+/// A description of the predicted lines of a strip.
+fn predicted_lines(columns: &[StripColumn<'_>], planes: &[PlaneComparison]) -> &'static str {
+    let most = columns.iter().map(|column| column.guides.len()).max();
+    let is_exact = planes.iter().all(|p| p.report.class == Class::Exact);
+    match (most, is_exact) {
+        (None | Some(0), _) => "",
+        (Some(1), true) => " Lines at the edges: predicted, *ν* = −*d* *ρ*.",
+        (_, true) => " Lines at the edges: predicted, *ν* = −*d* *ρ*, and its replicas.",
+        (_, false) => {
+            " Lines at the edges: where the chain puts the light, in the plane of incidence and across it."
+        }
+    }
+}
+
+/// The difference of the photons from the first-order chain, in percent of the largest measured
+/// |S|, [ρ, ν].
+fn off_chain(compared: &PlaneComparison) -> Array2<f64> {
+    let power = &compared.radial.power;
+    let peak = power.iter().copied().fold(0.0, f64::max);
+    match &compared.off_chain {
+        Some(off) => off.mapv(|off| 100.0 * (off / peak).sqrt()),
+        None => Array2::from_elem(power.dim(), f64::NAN),
+    }
+}
+
+/// The full radial spectrum of a plane, measured and predicted.
+pub fn full_radial<'a>(
+    plane: &VirtualPlane,
+    compared: &'a FullRadialComparison,
+) -> [Picture<'a>; 2] {
+    let [x, y] = full_radial_axes(plane, &compared.measured);
+    [&compared.measured.power, &compared.predicted].map(|power| Picture {
+        x: x.clone(),
+        y: y.clone(),
+        values: power.view(),
+    })
+}
+
+/// The column of pictures under a plane.
+fn column<'a>(scene: &Scene, at: &PlaneOnPath<'a>, is_figure: bool) -> StripColumn<'a> {
+    let PlaneOnPath {
+        plane,
+        compared,
+        theory,
+    } = *at;
+    let projection = &compared.projection.mean;
+    let words = CoordinateNames::of(plane);
+    let [x, u] = words.projection_axes(&projection.grid);
+    let [rho, nu] = words.frequency_axes(&compared.measured.grid);
+    let spectrum = |power: &'a Array2<f64>| Picture {
+        x: rho.clone(),
+        y: nu.clone(),
+        values: power.view(),
+    };
+    StripColumn {
+        light_field: Picture {
+            x,
+            y: u,
+            values: projection.values.view(),
+        },
+        spectrum: spectrum(&compared.radial.power),
+        finer: None,
+        across: None,
+        predicted: is_figure.then(|| spectrum(&compared.predicted_radial)),
+        full_radial: compared
+            .full_radial
+            .as_ref()
+            .map(|full| full_radial(plane, full)),
+        off_chain: None,
+        verdict: verdict_lines(compared),
+        guides: match (&theory.theory, &compared.report.first_order) {
+            (Theory::Parallel(_), _) if compared.report.in_window > 0 => guides(scene, plane),
+            // A lobe leaves no line of light, unlike a mirror.
+            (Theory::Specular(_), Some(first_order)) => ridges(scene, &first_order.chain.matrix),
+            _ => Vec::new(),
+        },
+    }
+}
+
+/// Lines where theory puts the light: along ν = −d ρ after travel d, and, at a distance h behind
+/// blockers of frequency f that the window and the frequencies can resolve, the same line through
+/// (± f, ∓ h f). A diffuse surface keeps only ν = 0, and travel begins again.
+fn guides(scene: &Scene, plane: &VirtualPlane) -> Vec<Guide> {
+    let reflected = plane.leg > 0;
+    let through = |through| Guide {
+        through,
+        slope: -scene.path.along(plane),
+    };
+    let behind = scene
+        .blockers
+        .iter()
+        .filter(|layer| !reflected && stands_before(layer.distance, scene, plane));
+    let replicas = behind.flat_map(|layer| {
+        let h = plane.distance - layer.distance;
+        let (period, most) = (2.0 * plane.window.x.half_width(), plane.grid.rho.max());
+        let seen = |pitch: &f64| *pitch < period && *pitch * most >= 1.0;
+        let frequency = layer.pitch.filter(seen).map(|pitch| 1.0 / pitch);
+        frequency.map_or(Vec::new(), |f| vec![[f, -h * f], [-f, h * f]])
+    });
+    std::iter::once([0.0, 0.0])
+        .chain(replicas)
+        .map(through)
+        .collect()
+}
+
+/// Lines where the chain puts the light of a picture, in the plane of incidence and across it:
+/// light of a projector lies along ρ where it begins, light of a beam along ν, and content at Ω
+/// goes to A⁻ᵀ Ω.
+fn ridges(scene: &Scene, matrix: &[[f64; 4]; 4]) -> Vec<Guide> {
+    let slope = |i: usize| {
+        let [position, slope] = [matrix[i], matrix[i + 2]];
+        let free = if scene.light.is_distant() { i } else { i + 2 };
+        -position[free] / slope[free]
+    };
+    let through = [0.0, 0.0];
+    let slopes = [0, 1].map(slope).into_iter();
+    let guides = slopes.filter(|slope| slope.abs() < STEEPEST);
+    guides.map(|slope| Guide { through, slope }).collect()
+}
+
+/// The distance in metres beyond which a line is vertical in any picture.
+const STEEPEST: f64 = 1e6;

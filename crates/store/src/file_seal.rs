@@ -1,0 +1,98 @@
+//! A mark in a file that this program wrote: a hash of all other bytes, at the end. A file with
+//! its own hash was not changed since and may be replaced.
+
+/// The kind of file, which determines how the mark is stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SealKind {
+    /// HTML or SVG: a comment as the last line.
+    Markup,
+    /// PNG: a text chunk before the last chunk.
+    Png,
+}
+
+const BEFORE: &str = "\n<!-- etendue ";
+const AFTER: &str = " -->\n";
+/// Keyword and start of the text of a PNG's chunk.
+const TEXT: &[u8] = b"Software\0etendue ";
+/// Bytes of a PNG's last chunk, which is empty.
+const LAST: usize = 12;
+/// Digits of a hash.
+const DIGITS: usize = 64;
+
+impl SealKind {
+    /// The file with its mark.
+    #[must_use]
+    pub fn sealed(self, bytes: &[u8]) -> Vec<u8> {
+        let hash = blake3::hash(bytes).to_hex();
+        let (start, mark, end) = match self {
+            Self::Markup => {
+                let mark = format!("{BEFORE}{hash}{AFTER}").into_bytes();
+                (bytes, mark, &[][..])
+            }
+            Self::Png => {
+                let (start, end) = bytes.split_at(bytes.len().saturating_sub(LAST));
+                (start, chunk(&[TEXT, hash.as_bytes()].concat()), end)
+            }
+        };
+        [start, &mark, end].concat()
+    }
+
+    /// Whether a file bears its own mark.
+    #[must_use]
+    pub fn is_sealed(self, bytes: &[u8]) -> bool {
+        let (mark, last) = match self {
+            Self::Markup => (BEFORE.len() + DIGITS + AFTER.len(), 0),
+            Self::Png => (LAST + TEXT.len() + DIGITS, LAST),
+        };
+        let Some(start) = bytes.len().checked_sub(mark + last) else {
+            return false;
+        };
+        let before = [&bytes[..start], &bytes[bytes.len() - last..]].concat();
+        self.sealed(&before) == bytes
+    }
+}
+
+/// A text chunk of a PNG: its length, kind, data and checksum.
+fn chunk(data: &[u8]) -> Vec<u8> {
+    let summed = [b"tEXt", data].concat();
+    let length = u32::try_from(data.len()).unwrap_or(0).to_be_bytes();
+    let sum = checksum(&summed).to_be_bytes();
+    [&length[..], &summed, &sum].concat()
+}
+
+/// CRC-32 as PNG has it (ISO 3309).
+fn checksum(bytes: &[u8]) -> u32 {
+    const POLYNOMIAL: u32 = 0xedb8_8320;
+    let step = |sum: u32, _| (sum >> 1) ^ (POLYNOMIAL & (sum & 1).wrapping_neg());
+    let add = |sum: u32, byte: &u8| (0..8).fold(sum ^ u32::from(*byte), step);
+    !bytes.iter().fold(u32::MAX, add)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_checksum_is_that_of_png() {
+        // The check value of CRC-32, and the checksum of every PNG's last chunk.
+        assert_eq!(checksum(b"123456789"), 0xcbf4_3926);
+        assert_eq!(checksum(b"IEND"), 0xae42_6082);
+    }
+
+    #[test]
+    fn a_changed_file_does_not_bear_its_mark() {
+        let end = [&[0; 4], &b"IEND"[..], &0xae42_6082_u32.to_be_bytes()].concat();
+        let png = [b"\x89PNG and pixels", &end[..]].concat();
+        for (kind, bytes) in [
+            (SealKind::Markup, b"<svg></svg>".to_vec()),
+            (SealKind::Png, png),
+        ] {
+            let mut sealed = kind.sealed(&bytes);
+            assert!(kind.is_sealed(&sealed));
+            assert!(!kind.is_sealed(&bytes));
+            assert!(!kind.is_sealed(b""));
+            sealed[3] ^= 1;
+            assert!(!kind.is_sealed(&sealed));
+        }
+    }
+}
