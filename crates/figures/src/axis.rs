@@ -55,12 +55,15 @@ impl AxisQuantity {
 pub struct Axis {
     /// The quantity along the axis.
     pub quantity: AxisQuantity,
-    /// Outer edge of the first cell, in the quantity's unit.
+    /// Outer edge of the cell with the lowest values, in the quantity's unit.
     pub min: f64,
-    /// Outer edge of the last cell.
+    /// Outer edge of the cell with the highest values.
     pub max: f64,
     /// Whether the axis is logarithmic; both edges are above 0 then.
     pub is_log: bool,
+    /// Whether values decrease from the first cell to the last, as the rows of a photograph do
+    /// upwards.
+    pub is_reversed: bool,
 }
 
 /// A tick: its position in the axis' unit, and its text.
@@ -79,6 +82,7 @@ impl Axis {
             min,
             max,
             is_log: false,
+            is_reversed: false,
         }
     }
 
@@ -92,6 +96,11 @@ impl Axis {
     /// The centre of cell `index` of `count`.
     pub(crate) fn center(&self, index: usize, count: usize) -> f64 {
         // Symmetric in the two edges, so that the middle of a symmetric axis is exactly 0.
+        let index = if self.is_reversed {
+            count - 1 - index
+        } else {
+            index
+        };
         let above = index as f64 + 0.5;
         ((count as f64 - above) * self.min + above * self.max) / count as f64
     }
@@ -107,13 +116,18 @@ impl Axis {
         }
     }
 
-    /// The position of `value`: 0 at the low edge and 1 at the high one.
+    /// The position of `value`: 0 at the edge of the first cell and 1 at that of the last.
     pub(crate) fn fraction(&self, value: f64) -> f64 {
         let [min, max] = self.range();
-        if self.is_log {
+        let fraction = if self.is_log {
             libm::log(value / min) / libm::log(max / min)
         } else {
             (value - min) / (max - min)
+        };
+        if self.is_reversed {
+            1.0 - fraction
+        } else {
+            fraction
         }
     }
 
@@ -191,6 +205,11 @@ impl Axis {
     }
 }
 
+/// Length of an axis below which its texts are kept from those of the next panel.
+pub(crate) const COMFORTABLE: f64 = 64.0;
+/// The length by which tick texts may exceed such an axis.
+const OVERHANG: f64 = 7.0;
+
 /// First digits of the steps between ticks.
 const USUAL: [f64; 3] = [1.0, 2.0, 5.0];
 /// First digits used if the usual ones leave fewer than three ticks.
@@ -224,10 +243,18 @@ pub(crate) fn spaced_ticks(axis: &Axis, length: f64) -> (Vec<Tick>, f64) {
     enough.chain(others).next().unwrap_or(first)
 }
 
-/// Whether tick texts at a font `size` do not overlap.
+/// Whether tick texts at a font `size` do not overlap, nor, along a short axis, come near those of
+/// the next panel.
 fn fit(axis: &Axis, ticks: &[Tick], length: f64, size: f64) -> bool {
+    let beyond = |tick: &Tick| {
+        let at = axis.fraction(tick.value) * length;
+        0.5 * width(&tick.text, size) - at.min(length - at)
+    };
+    if length < COMFORTABLE && ticks.iter().any(|tick| beyond(tick) > OVERHANG) {
+        return false;
+    }
     ticks.windows(2).all(|pair| {
-        let step = axis.fraction(pair[1].value) - axis.fraction(pair[0].value);
+        let step = (axis.fraction(pair[1].value) - axis.fraction(pair[0].value)).abs();
         let [a, b] = [0, 1].map(|i| width(&pair[i].text, size));
         step * length >= 0.5 * (a + b) + 3.0
     })
@@ -327,6 +354,17 @@ mod tests {
         );
         assert_eq!(texts(&axis(0.09, 1.1), 4.0), ["0.1", "0.2", "0.5", "1"]);
         assert_eq!(texts(&axis(1e5, 1e6), 4.0), ["1e5", "2e5", "5e5", "1e6"]);
+    }
+
+    #[test]
+    fn a_reversed_axis_begins_with_its_highest_values() {
+        let rows = Axis {
+            is_reversed: true,
+            ..Axis::edges("row", "pixels", [0.0, 10.0])
+        };
+        let first_and_last = [rows.center(0, 10) - 9.5, rows.center(9, 10) - 0.5];
+        assert!(first_and_last.iter().all(|off| off.abs() < 1e-12)); // rounding
+        assert!(rows.fraction(10.0).abs() < 1e-12 && (rows.fraction(0.0) - 1.0).abs() < 1e-12);
     }
 
     #[test]

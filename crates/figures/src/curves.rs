@@ -193,6 +193,7 @@ fn axes(panel: &CurvePanel, y: &AxisQuantity) -> [Axis; 2] {
         min,
         max,
         is_log,
+        is_reversed: false,
     };
     let by_factors = |[low, high]: [f64; 2]| {
         let margin = libm::pow(high / low, 0.06).max(1.01);
@@ -237,6 +238,7 @@ fn draw(svg: &mut Svg, panel: &CurvePanel, y: &AxisQuantity, area: Area) {
         y: &y,
         label_x: true,
         label_y: true,
+        labelled: [Some(area.width), Some(area.height)],
     };
     svg.clipped(area, |svg| {
         for curve in &panel.curves {
