@@ -176,6 +176,6 @@ pub(crate) fn blockers(taken: &FigureData<'_>) -> Result<Figure, Failure> {
             errors: each(&|share| share.error),
             predicted: each(&|share| share.predicted),
         }),
-        side: Some(88.0),
+        side: Some(84.0),
     })
 }

@@ -295,7 +295,7 @@ mod tests {
             let width = numbers(" width")[0];
             assert!(width <= 672.0, "figure {}: {width} units wide", recipe.name);
             let height = numbers(" height")[0];
-            let is_short = height <= 1.41 * width;
+            let is_short = height <= 1.41 * 672.0;
             assert!(is_short, "figure {}: {width} × {height}", recipe.name);
             let smallest = numbers("font-size").into_iter().fold(f64::MAX, f64::min);
             let points = 0.75 * smallest;

@@ -142,7 +142,7 @@ pub(crate) fn adaptive(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         rows: compared(&seen, false),
         feet: feet(&seen),
         bars: None,
-        side: None,
+        side: Some(48.0),
     })?;
     Ok(stacked(&[steps, criteria(taken)?]))
 }

@@ -25,7 +25,7 @@ pub(crate) fn coordinates(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         rows: compared(&seen, false),
         feet: feet(&seen),
         bars: None,
-        side: Some(108.0),
+        side: Some(88.0),
     })?;
     let panels = shrunk(&taken.also[0], &["angles"])?;
     let error = orders(
