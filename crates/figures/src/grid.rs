@@ -227,10 +227,13 @@ impl<'b, 'a> PageGrid<'b, 'a> {
     /// The columns of a block, each with its centre and the width for a text below it.
     pub(crate) fn columns(&self, block: usize) -> impl Iterator<Item = (usize, f64, f64)> {
         let places = &self.blocks[block];
-        let steps = places.windows(2).map(|pair| pair[1].left - pair[0].left);
-        let room = steps.fold(self.side + GAPS[1], f64::min) - TEXT_GAP;
-        let places = places.iter();
-        places.map(move |place| (place.column, place.left + 0.5 * self.side, room))
+        let room = move |i: usize| {
+            let near = &places[i.saturating_sub(1)..(i + 2).min(places.len())];
+            let steps = near.windows(2).map(|pair| pair[1].left - pair[0].left);
+            steps.fold(self.side + GAPS[1], f64::min) - TEXT_GAP
+        };
+        let middles = places.iter().enumerate();
+        middles.map(move |(i, place)| (place.column, place.left + 0.5 * self.side, room(i)))
     }
 
     /// Width of the widest block.

@@ -133,7 +133,7 @@ pub(crate) fn adaptive(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         "lobe",
         "back",
         "outgoing",
-        "at the eye",
+        "eye",
     ];
     let steps = taken.plate(&Plate {
         title: "Bandwidth of a glossy reflection, step by step",
@@ -142,7 +142,7 @@ pub(crate) fn adaptive(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         rows: compared(&seen, false),
         feet: feet(&seen),
         bars: None,
-        side: Some(48.0),
+        side: Some(54.0),
     })?;
     Ok(stacked(&[steps, criteria(taken)?]))
 }

@@ -1,6 +1,6 @@
 //! Table 1: each operator, shown by the light before and after it.
 
-use crate::rows::{DECIBEL, Seen, feet, row};
+use crate::rows::{DECIBEL, Seen, row};
 use crate::subject::FigureData;
 use etendue_figures::{Figure, Picture, Plate, PlateRow, Scale, stacked};
 use etendue_report::pictures::{light_field_quantity, spectrum_quantity};
@@ -10,7 +10,7 @@ use etendue_store::Failure;
 type Step = (&'static str, [[&'static str; 2]; 2]);
 
 /// Largest width of a picture, so that both parts fit a page.
-const SIDE: f64 = 52.0;
+const SIDE: f64 = 58.0;
 
 /// The two parts of the paper's table.
 const PARTS: [(&str, [Step; 5]); 2] = [
@@ -69,7 +69,7 @@ const PARTS: [(&str, [Step; 5]); 2] = [
     ),
 ];
 
-const NOTE: &str = "Measured. Formulas are corrected, without phases; *c* = cos *θ*. Below: whether theory holds after it.";
+const NOTE: &str = "Measured. Formulas are corrected, without phases; *c* = cos *θ*.";
 
 /// Light fields and spectra before and after each operator.
 pub(crate) fn operators(taken: &FigureData<'_>) -> Result<Figure, Failure> {
@@ -90,18 +90,12 @@ pub(crate) fn operators(taken: &FigureData<'_>) -> Result<Figure, Failure> {
             note: if i == 0 { NOTE } else { "" },
             heads: steps.iter().map(|(name, _)| (*name).to_owned()).collect(),
             rows: rows(&before, &after),
-            feet: verdicts(&after),
+            feet: Vec::new(),
             bars: None,
             side: Some(SIDE),
         })
     });
     Ok(stacked(&parts.collect::<Result<Vec<Figure>, _>>()?))
-}
-
-/// The verdict on each plane, in one line.
-fn verdicts(seen: &[Seen<'_>]) -> Vec<Vec<String>> {
-    let first = |lines: Vec<String>| lines.into_iter().take(1).collect();
-    feet(seen).into_iter().map(first).collect()
 }
 
 fn rows<'a>(before: &[Seen<'a>], after: &[Seen<'a>]) -> Vec<PlateRow<'a>> {
