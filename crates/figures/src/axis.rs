@@ -55,9 +55,9 @@ impl AxisQuantity {
 pub struct Axis {
     /// The quantity along the axis.
     pub quantity: AxisQuantity,
-    /// Outer edge of the first cell, in the quantity's unit.
+    /// Outer edge of the cell with the lowest values, in the quantity's unit.
     pub min: f64,
-    /// Outer edge of the last cell.
+    /// Outer edge of the cell with the highest values.
     pub max: f64,
     /// Whether the axis is logarithmic; both edges are above 0 then.
     pub is_log: bool,
@@ -125,7 +125,7 @@ impl Axis {
         }
     }
 
-    /// The position of `value`: 0 at the low edge and 1 at the high one.
+    /// The position of `value`: 0 at the edge of the first cell and 1 at that of the last.
     pub(crate) fn fraction(&self, value: f64) -> f64 {
         let [min, max] = self.range();
         let above = if self.is_log {
@@ -210,6 +210,11 @@ impl Axis {
     }
 }
 
+/// Length of an axis below which its texts are kept from those of the next panel.
+pub(crate) const COMFORTABLE: f64 = 64.0;
+/// The length by which tick texts may exceed such an axis.
+const OVERHANG: f64 = 7.0;
+
 /// First digits of the steps between ticks.
 const USUAL: [f64; 3] = [1.0, 2.0, 5.0];
 /// First digits used if the usual ones leave fewer than three ticks.
@@ -243,8 +248,16 @@ pub(crate) fn spaced_ticks(axis: &Axis, length: f64) -> (Vec<Tick>, f64) {
     enough.chain(others).next().unwrap_or(first)
 }
 
-/// Whether tick texts at a font `size` do not overlap.
+/// Whether tick texts at a font `size` do not overlap, nor, along a short axis, come near those of
+/// the next panel.
 fn fit(axis: &Axis, ticks: &[Tick], length: f64, size: f64) -> bool {
+    let beyond = |tick: &Tick| {
+        let at = axis.fraction(tick.value) * length;
+        0.5 * width(&tick.text, size) - at.min(length - at)
+    };
+    if length < COMFORTABLE && ticks.iter().any(|tick| beyond(tick) > OVERHANG) {
+        return false;
+    }
     ticks.windows(2).all(|pair| {
         let step = (axis.fraction(pair[1].value) - axis.fraction(pair[0].value)).abs();
         let [a, b] = [0, 1].map(|i| width(&pair[i].text, size));

@@ -17,6 +17,11 @@ pub enum Scale {
         /// Lower end of the colors, in decibels, below 0.
         floor: f64,
     },
+    /// From −`most` to `most`, blue to red.
+    Signed {
+        /// Upper end of the colors, above 0.
+        most: f64,
+    },
     /// Degrees, once around the circle.
     Phase,
 }

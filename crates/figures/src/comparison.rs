@@ -97,6 +97,7 @@ fn draw_panels(svg: &mut Svg, comparison: &Comparison<'_>, top: f64) -> Result<(
             y: &comparison.y,
             label_x: true,
             label_y: index == 0,
+            labelled: [Some(PANEL); 2],
         };
         panel.heat_map(svg, values, shading)?;
         panel.axes(svg);
@@ -149,6 +150,14 @@ fn value_shading(comparison: &Comparison<'_>) -> Shading {
             let name = format!("{} {name}", comparison.quantity.name);
             Shading::decibel(Colors::MAGNITUDES, &name, floor, largest(predicted))
         }
+        Scale::Signed { most } => Shading::linear(
+            Colors::Diverging,
+            Axis::edges(
+                &comparison.quantity.name,
+                &comparison.quantity.unit,
+                [-most, most],
+            ),
+        ),
         Scale::Phase => Shading::phase(&comparison.quantity.name),
     };
     shading.showing(measured).showing(predicted)

@@ -236,6 +236,7 @@ fn draw(svg: &mut Svg, panel: &CurvePanel, y: &AxisQuantity, area: Area) {
         y: &y,
         label_x: true,
         label_y: true,
+        labelled: [Some(area.width), Some(area.height)],
     };
     svg.clipped(area, |svg| {
         for curve in &panel.curves {

@@ -5,9 +5,9 @@ mod place;
 use crate::axis::{Axis, upright_ticks};
 use crate::marks::{BADGE, HATCH, Hatching, LIGHT, PLANE, badge, line_of};
 use crate::section::{PlaneMark, Section, Segment, SegmentKind};
-use crate::sizes::{FAINT, HEAD_TEXT, INK, LABEL_TEXT, SOFT, TICK, TICK_TEXT};
+use crate::sizes::{FAINT, HEAD_TEXT, INK, LABEL_TEXT, LEAST_TEXT, SOFT, TICK, TICK_TEXT};
 use crate::svg::{Anchor, Area, Stroke, Svg, TextStyle};
-use crate::text::width;
+use crate::text::{lines, plain, width};
 use etendue_field::Side;
 use place::{SegmentName, names, number_places};
 
@@ -19,6 +19,27 @@ const MARGIN: f64 = 36.0;
 const FEET: f64 = 10.0;
 /// Height of a row of segment names.
 const NAME_ROW: f64 = 17.0;
+
+/// Line spacing of a plane's heading.
+const HEADING_LINE: f64 = 16.0;
+
+/// The name of a plane in one line, or in two if it is too long for one.
+fn name_lines(name: &str, room: f64) -> Vec<String> {
+    // Bold letters are wider than estimated.
+    let mut words = lines(name, 1.2 * SMALL_NAME, room).into_iter();
+    let first = words.next().unwrap_or_default();
+    if first.chars().count() <= NUMBER {
+        return vec![name.to_owned()];
+    }
+    let rest: Vec<String> = words.collect();
+    let rest = (!rest.is_empty()).then(|| rest.join(" "));
+    std::iter::once(first).chain(rest).collect()
+}
+
+/// Length of a number before a name, which has no line of its own.
+const NUMBER: usize = 2;
+/// Smallest size of a plane's name in one line.
+const SMALL_NAME: f64 = 10.0;
 
 /// A section laid out in an area of the drawing.
 #[derive(Debug)]
@@ -37,8 +58,8 @@ pub(crate) struct SectionLayout<'a> {
 impl<'a> SectionLayout<'a> {
     /// Height of ticks and label of the z axis, above the area.
     pub(crate) const AXIS: f64 = 46.0;
-    /// Height of a plane's heading: number, name, distance.
-    pub(crate) const HEADING: f64 = 56.0;
+    /// Height of a plane's heading: number, name in one line, distance.
+    const HEADING: f64 = 56.0;
 
     pub(crate) fn new(section: &'a Section, area: Area) -> Self {
         let along = if section.unfolded {
@@ -113,21 +134,52 @@ impl<'a> SectionLayout<'a> {
         svg.polyline(&points, stroke);
     }
 
+    /// Height of the headings of some planes, each with its room.
+    pub(crate) fn heading_height(&self, rooms: impl Iterator<Item = (usize, f64)>) -> f64 {
+        let more = rooms.filter_map(|(plane, room)| {
+            let mark = self.section.planes.get(plane)?;
+            let lines = name_lines(&mark.name, room).len() + self.place(mark, room).len();
+            Some(lines.saturating_sub(2))
+        });
+        Self::HEADING + HEADING_LINE * more.max().unwrap_or(0) as f64
+    }
+
+    /// The distance of a plane, and its side of an element at the same place, in one line or two.
+    fn place(&self, mark: &PlaneMark, room: f64) -> Vec<String> {
+        // Four significant digits, in the shortest form.
+        let rounded = format!("{:.3e}", mark.distance).parse::<f64>();
+        let distance = rounded.unwrap_or(mark.distance);
+        let distance = format!("*z* = {} m", crate::axis::minus(&distance.to_string()));
+        let text = match self.beside(mark) {
+            "" => distance.clone(),
+            side => format!("{distance}, {side}"),
+        };
+        if width(&plain(&text), LEAST_TEXT) <= room {
+            vec![text]
+        } else {
+            let side = self.beside(mark).to_owned();
+            let lines = [distance, side].into_iter();
+            lines.filter(|line| !line.is_empty()).collect()
+        }
+    }
+
     /// A plane's number, name and distance, centred below a point.
     pub(crate) fn heading(&self, svg: &mut Svg, plane: usize, [x, y]: [f64; 2], room: f64) {
         let Some(mark) = self.section.planes.get(plane) else {
             return;
         };
         badge(svg, [x, y + BADGE], plane);
-        let style = TextStyle::new([x, y + 32.0], HEAD_TEXT, Anchor::Middle).bold();
-        svg.fitted(style, &mark.name, room);
-        // Four significant digits, in the shortest form.
-        let rounded = format!("{:.3e}", mark.distance).parse::<f64>();
-        let distance = rounded.unwrap_or(mark.distance);
-        let style = TextStyle::new([x, y + 47.0], TICK_TEXT, Anchor::Middle).fill(SOFT);
-        let distance = crate::axis::minus(&distance.to_string());
-        let text = format!("*z* = {distance} m{}", self.beside(mark));
-        svg.fitted(style, &text, room);
+        let mut baseline = y + 32.0;
+        for (i, line) in name_lines(&mark.name, room).iter().enumerate() {
+            baseline = y + 32.0 + HEADING_LINE * i as f64;
+            let style = TextStyle::new([x, baseline], HEAD_TEXT, Anchor::Middle).bold();
+            svg.fitted(style, line, room);
+        }
+        for line in self.place(mark, room) {
+            baseline += HEADING_LINE;
+            let style = TextStyle::new([x, baseline], TICK_TEXT, Anchor::Middle).fill(SOFT);
+            svg.fitted(style, &line, room);
+        }
     }
 
     /// Whether a plane is before or after an element at the same place.
@@ -147,8 +199,8 @@ impl<'a> SectionLayout<'a> {
         };
         match mark.side {
             _ if !self.section.segments.iter().any(stands) => "",
-            Side::Before => ", before",
-            Side::After => ", after",
+            Side::Before => "before",
+            Side::After => "after",
         }
     }
 

@@ -95,6 +95,7 @@ pub fn ellipses(of: &Ellipses<'_>) -> Result<Figure, Error> {
         y: &of.picture.y,
         label_x: true,
         label_y: true,
+        labelled: [Some(area.width), Some(area.height)],
     };
     let values = of.picture.values;
     let name = format!("{} relative to its peak", of.quantity.name);

@@ -1,5 +1,7 @@
 //! A figure as SVG, PNG, PDF and CSV.
 
+use crate::image::raster;
+use crate::sizes::INCH;
 use crate::svg::Svg;
 use krilla::Document;
 use krilla::geom::Size;
@@ -27,15 +29,12 @@ pub enum Error {
     /// The drawing could not be read back.
     #[error("the figure's SVG cannot be rasterized: {0}")]
     Svg(#[from] usvg::Error),
-    /// A heat map could not be written.
-    #[error("a heat map cannot be written as PNG: {0}")]
+    /// A heat map or the raster could not be written.
+    #[error("an image cannot be written as PNG: {0}")]
     Image(#[from] png::EncodingError),
     /// The raster would have no pixels or too many.
     #[error("a figure of {0} × {1} pixels cannot be drawn")]
     Size(u32, u32),
-    /// The raster could not be written.
-    #[error("the figure cannot be written as PNG: {0}")]
-    Raster(String),
     /// The page could not be written.
     #[error("the figure cannot be written as PDF: {0}")]
     Page(String),
@@ -45,7 +44,8 @@ pub enum Error {
 }
 
 impl Figure {
-    /// The drawing as a PNG, two pixels to an SVG unit, text in DejaVu Sans.
+    /// The drawing as a PNG, two pixels to an SVG unit, text in DejaVu Sans. The PNG states its
+    /// resolution, 192 pixels per inch.
     ///
     /// # Errors
     /// If the SVG cannot be read back or the raster cannot be written.
@@ -60,9 +60,11 @@ impl Figure {
         let mut pixels = tiny_skia::Pixmap::new(width, height).ok_or(Error::Size(width, height))?;
         let scale = tiny_skia::Transform::from_scale(PNG_SCALE, PNG_SCALE);
         resvg::render(&tree, scale, &mut pixels.as_mut());
-        pixels
-            .encode_png()
-            .map_err(|error| Error::Raster(error.to_string()))
+        raster(
+            [width, height],
+            f64::from(PNG_SCALE) * INCH,
+            &pixels.take_demultiplied(),
+        )
     }
 }
 

@@ -1,6 +1,6 @@
 //! A grid of pictures, with its columns split into blocks that fit the page width.
 
-use crate::axis::Axis;
+use crate::axis::{Axis, COMFORTABLE};
 use crate::bar;
 use crate::color::{Colors, Scale, Shading, has_gaps, largest};
 use crate::figure::Error;
@@ -41,6 +41,8 @@ pub struct Guide {
     pub through: [f64; 2],
     /// dν/dρ, in metres; −d for light that has travelled d.
     pub slope: f64,
+    /// Whether the line is that of the plane across the plane of incidence.
+    pub is_across: bool,
 }
 
 /// A row of pictures that share colors.
@@ -75,6 +77,9 @@ impl PictureRow<'_, '_> {
             Scale::Decibel { floor } => {
                 Shading::decibel(colors, name, style.floor.unwrap_or(floor), peak)
             }
+            Scale::Signed { most } => {
+                Shading::linear(Colors::Diverging, Axis::edges(name, unit, [-most, most]))
+            }
             Scale::Phase => Shading::phase(name),
         }
     }
@@ -86,6 +91,8 @@ pub(crate) const LEFT: f64 = 75.0;
 pub(crate) const RIGHT: f64 = 81.0;
 /// Gap between adjacent pictures, if the right one has no numbers beside its axis, and if it has.
 pub(crate) const GAPS: [f64; 2] = [26.0, 56.0];
+/// The former gap, where there are many pictures side by side.
+const CLOSE: f64 = 16.0;
 /// Gap between a picture and the one below, if they share the x axis, and if not.
 const ROW_GAPS: [f64; 2] = [14.0, LABEL_BASELINE + 18.0];
 /// Distance from the left edge of the first picture to the row name.
@@ -93,11 +100,16 @@ const ROW_NAME: f64 = 63.0;
 
 /// Strokes of the lines over spectra: visible by themselves on dark colors, and by the stroke below
 /// on pale ones.
-pub(crate) const GUIDE: [Stroke; 2] =
-    [Stroke::solid("#10304a", 3.2), Stroke::solid("#7fe0ff", 1.4)];
+pub(crate) fn guide_strokes(is_across: bool) -> [Stroke; 2] {
+    let color = if is_across { "#8dff9c" } else { "#7fe0ff" };
+    [Stroke::solid("#10304a", 3.2), Stroke::solid(color, 1.4)]
+}
+
 /// The part of a picture's side along which a line is drawn at each of its ends: between them the
 /// ridge that it predicts stays visible.
 const GUIDE_END: f64 = 0.1;
+/// Least distance of the texts below two adjacent pictures.
+const TEXT_GAP: f64 = 4.0;
 
 /// A column with its position.
 #[derive(Clone, Copy, Debug)]
@@ -118,21 +130,23 @@ pub(crate) struct PageGrid<'b, 'a> {
     style: Style,
     /// Width of a picture.
     pub(crate) side: f64,
+    /// Gap between adjacent pictures, if the right one has no numbers beside its axis.
+    near: f64,
     /// Height of a picture over its width.
     shape: f64,
     blocks: Vec<Vec<PlacedColumn>>,
 }
 
 impl<'b, 'a> PageGrid<'b, 'a> {
-    /// Lays out rows of `columns` pictures at least `least` wide, if one fits. All have the shape
-    /// of the first.
+    /// Lays out rows of `columns` pictures of the least and largest width, if one fits. All have the
+    /// shape of the first.
     ///
     /// # Panics
     /// If a row does not have a picture for each column.
     pub(crate) fn new(
         rows: Vec<PictureRow<'b, 'a>>,
         columns: usize,
-        least: f64,
+        [least, largest]: [f64; 2],
         style: &Style,
     ) -> Self {
         // Maximum picture width for one block, and for several, which would make a long page.
@@ -146,19 +160,26 @@ impl<'b, 'a> PageGrid<'b, 'a> {
             rows,
             style: *style,
             side: 0.0,
+            near: GAPS[0],
             shape,
             blocks: Vec::new(),
         };
         for count in 1..=columns.max(1) {
             let length = columns.div_ceil(count).max(1);
             let starts: Vec<usize> = (0..columns).step_by(length).collect();
-            let gaps = |start: usize| -> f64 {
-                let after = start + 1..(start + length).min(columns);
-                after.map(|column| grid.gap(column)).sum()
-            };
-            let widest = starts.iter().map(|start| gaps(*start)).fold(0.0, f64::max);
-            let most = MAX_SIDES[usize::from(count > 1)] / shape;
-            grid.side = ((inner(style) - widest) / length as f64).min(most).floor();
+            let most = largest.min(MAX_SIDES[usize::from(count > 1)] / shape);
+            for near in [GAPS[0], CLOSE] {
+                grid.near = near;
+                let gaps = |start: &usize| -> f64 {
+                    let after = start + 1..(start + length).min(columns);
+                    after.map(|column| grid.gap(column)).sum()
+                };
+                let widest = starts.iter().map(gaps).fold(0.0, f64::max);
+                grid.side = ((inner(style) - widest) / length as f64).min(most).floor();
+                if grid.side >= COMFORTABLE {
+                    break;
+                }
+            }
             if grid.side >= least || length == 1 {
                 grid.blocks = starts
                     .iter()
@@ -195,7 +216,7 @@ impl<'b, 'a> PageGrid<'b, 'a> {
     /// The gap before a column.
     fn gap(&self, column: usize) -> f64 {
         let differs = self.rows.iter().any(|row| Self::differs(row, column));
-        GAPS[usize::from(differs)]
+        if differs { GAPS[1] } else { self.near }
     }
 
     /// The number of stacked blocks.
@@ -206,10 +227,13 @@ impl<'b, 'a> PageGrid<'b, 'a> {
     /// The columns of a block, each with its centre and the width for a text below it.
     pub(crate) fn columns(&self, block: usize) -> impl Iterator<Item = (usize, f64, f64)> {
         let places = &self.blocks[block];
-        let steps = places.windows(2).map(|pair| pair[1].left - pair[0].left);
-        let room = steps.fold(self.side + GAPS[1], f64::min) - 6.0;
-        let places = places.iter();
-        places.map(move |place| (place.column, place.left + 0.5 * self.side, room))
+        let room = move |i: usize| {
+            let near = &places[i.saturating_sub(1)..(i + 2).min(places.len())];
+            let steps = near.windows(2).map(|pair| pair[1].left - pair[0].left);
+            steps.fold(self.side + GAPS[1], f64::min) - TEXT_GAP
+        };
+        let middles = places.iter().enumerate();
+        middles.map(move |(i, place)| (place.column, place.left + 0.5 * self.side, room(i)))
     }
 
     /// Width of the widest block.
@@ -227,6 +251,30 @@ impl<'b, 'a> PageGrid<'b, 'a> {
             let mut both = self.rows[row].cells.iter().zip(&below.cells);
             both.all(|((a, _), (b, _))| a.x == b.x)
         })
+    }
+
+    /// The width that the x label of a picture is for: that of all pictures of a block, if they are
+    /// narrow and have the same axis; `None` where it is written to the left.
+    fn labelled_across(&self, row: usize, places: &[PlacedColumn], i: usize) -> Option<f64> {
+        let x = |place: &PlacedColumn| &self.rows[row].cells[place.column].0.x;
+        let is_same = places.iter().all(|place| x(place) == x(&places[0]));
+        if self.side >= COMFORTABLE || !is_same {
+            return Some(self.side);
+        }
+        let last = places.last().filter(|_| i == 0)?;
+        Some(last.left + self.side - places[0].left)
+    }
+
+    /// The height that the y label of a picture is for: that of the pictures below it with the same
+    /// axes too; `None` where it is written above.
+    fn labelled_down(&self, row: usize, column: usize) -> Option<f64> {
+        let y = |row: usize| &self.rows[row].cells[column].0.y;
+        let is_same = |above: usize| self.shares_x(above) && y(above) == y(above + 1);
+        if row > 0 && is_same(row - 1) {
+            return None;
+        }
+        let more = (row..self.rows.len()).take_while(|above| is_same(*above));
+        Some(self.height() + more.count() as f64 * (self.height() + ROW_GAPS[0]))
     }
 
     /// Draws a block with its pictures starting at `top`; returns the lowest baseline.
@@ -300,6 +348,10 @@ impl<'b, 'a> PageGrid<'b, 'a> {
                 y: &picture.y,
                 label_x: !self.shares_x(index),
                 label_y: i == 0 || Self::differs(row, place.column),
+                labelled: [
+                    self.labelled_across(index, places, i),
+                    self.labelled_down(index, place.column),
+                ],
             };
             let peak = if row.shared {
                 highest
@@ -337,7 +389,7 @@ fn draw_guides(svg: &mut Svg, panel: &Panel<'_>, guides: &[Guide]) {
             continue;
         };
         for [from, to] in ends(start, end, length) {
-            for stroke in GUIDE {
+            for stroke in guide_strokes(guide.is_across) {
                 svg.line(from, to, stroke);
             }
         }

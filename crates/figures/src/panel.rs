@@ -1,6 +1,6 @@
 //! A heat map in its frame, with ticks and axis labels.
 
-use crate::axis::{Axis, spaced_ticks, upright_ticks};
+use crate::axis::{Axis, COMFORTABLE, spaced_ticks, upright_ticks};
 use crate::color::Shading;
 use crate::figure::Error;
 use crate::image::heat_map;
@@ -10,7 +10,9 @@ use crate::text::width;
 use ndarray::ArrayView2;
 
 /// The length by which an axis label may exceed its panel, along x and y.
-const OVERHANG: [f64; 2] = [24.0, 12.0];
+const OVERHANG: [f64; 2] = [24.0, 13.0];
+/// The former along x beside a close panel.
+const CLOSE_OVERHANG: f64 = 10.0;
 
 /// The position of a heat map and the texts around it.
 #[derive(Debug)]
@@ -21,6 +23,9 @@ pub(crate) struct Panel<'a> {
     /// Whether tick texts and labels are written; ticks are always drawn.
     pub(crate) label_x: bool,
     pub(crate) label_y: bool,
+    /// The length that each label is for, from the left and from the top of the panel, if it is
+    /// written: panels to the right and below may share it.
+    pub(crate) labelled: [Option<f64>; 2],
 }
 
 impl Panel<'_> {
@@ -70,17 +75,22 @@ impl Panel<'_> {
             let style = TextStyle::new([at, bottom + TICK_BASELINE], size, Anchor::Middle);
             svg.text(style, &tick.text);
         }
-        if !self.label_x {
+        let Some(length) = self.labelled[0].filter(|_| self.label_x) else {
             return;
-        }
-        let [middle, _] = self.area.middle();
+        };
+        let middle = self.area.x + 0.5 * length;
         let style = TextStyle::new(
             [middle, bottom + LABEL_BASELINE],
             LABEL_TEXT,
             Anchor::Middle,
         );
         let label = self.x.quantity.label(self.x.exponent());
-        svg.fitted(style, &label, self.area.width + OVERHANG[0]);
+        let overhang = if length < COMFORTABLE {
+            CLOSE_OVERHANG
+        } else {
+            OVERHANG[0]
+        };
+        svg.fitted(style, &label, length + overhang);
     }
 
     fn y_axis(&self, svg: &mut Svg) {
@@ -95,12 +105,12 @@ impl Panel<'_> {
                 widest = widest.max(width(&tick.text, TICK_TEXT));
             }
         }
-        if self.label_y {
-            let [_, middle] = self.area.middle();
+        if let Some(height) = self.labelled[1].filter(|_| self.label_y) {
+            let middle = self.area.y + 0.5 * height;
             let at = [left - TICK - 3.0 - widest - 8.0, middle];
             let style = TextStyle::new(at, LABEL_TEXT, Anchor::Middle).upwards();
             let label = self.y.quantity.label(self.y.exponent());
-            svg.fitted(style, &label, self.area.height + OVERHANG[1]);
+            svg.fitted(style, &label, height + OVERHANG[1]);
         }
     }
 }

@@ -6,10 +6,10 @@ use crate::color::Scale;
 use crate::figure::{Error, Figure, csv_text, decimal};
 use crate::grid::{LEFT, PageGrid, Picture, PictureRow, RIGHT, inner};
 use crate::panel::Panel;
-use crate::sizes::{FAINT, HEAD_TEXT, INK, SOFT, THEORY_COLOR, TICK_TEXT};
+use crate::sizes::{FAINT, HEAD_TEXT, INK, LEAST_TEXT, SMALL_TEXT, SOFT, THEORY_COLOR, TICK_TEXT};
 use crate::style::Style;
 use crate::svg::{Anchor, Area, Stroke, Svg, TextStyle};
-use crate::text::{lines, plain};
+use crate::text::{lines, plain, width};
 use etendue_field::uncertain;
 
 /// A row of pictures that share a color scale.
@@ -35,7 +35,7 @@ pub struct Plate<'a> {
     pub title: &'a str,
     /// A line below the title, markup; may be empty.
     pub note: &'a str,
-    /// Headings of the columns.
+    /// Headings of the columns. What follows a line break is a second line, markup.
     pub heads: Vec<String>,
     /// The rows, from top to bottom.
     pub rows: Vec<PlateRow<'a>>,
@@ -43,6 +43,8 @@ pub struct Plate<'a> {
     pub feet: Vec<Vec<String>>,
     /// Bars with a number for each column, at the bottom.
     pub bars: Option<Bars>,
+    /// Largest width of a picture; `None`: as wide as the page allows.
+    pub side: Option<f64>,
 }
 
 /// A measured number for each column, with its standard error and its prediction.
@@ -59,6 +61,9 @@ pub struct Bars {
     /// Predicted values, drawn as lines across the bars.
     pub predicted: Vec<Option<f64>>,
 }
+
+/// Label of a color bar whose colors are relative to the largest value of each picture.
+pub(crate) const OWN_PEAK: &str = "relative to its peak";
 
 /// Height of the bar panel, and width of each bar.
 const BARS: f64 = 110.0;
@@ -79,17 +84,16 @@ const TITLE: f64 = 440.0;
 /// If a row does not have a picture for each head.
 pub fn plate(plate: &Plate<'_>, style: &Style) -> Result<Figure, Error> {
     let rows = plate.rows.iter().map(row);
-    let grid = PageGrid::new(rows.collect(), plate.heads.len(), MIN_WIDTH, style);
+    let most = plate.side.unwrap_or(f64::INFINITY);
+    let widths = [MIN_WIDTH.min(most), most];
+    let grid = PageGrid::new(rows.collect(), plate.heads.len(), widths, style);
     let mut svg = Svg::default();
     let inner = grid.width().max(TITLE.min(inner(style)));
     let room = inner + 0.8 * RIGHT;
     let mut bottom = style.title(&mut svg, LEFT, room, plate.title, plate.note);
     for block in 0..grid.blocks() {
         let top = bottom + if block == 0 { 26.0 } else { 40.0 };
-        for (column, middle, room) in grid.columns(block) {
-            let style = TextStyle::new([middle, top - 9.0], HEAD_TEXT, Anchor::Middle).bold();
-            svg.fitted(style, &plate.heads[column], room);
-        }
+        let top = heads(&mut svg, &plate.heads, &grid, block, top);
         bottom = grid.draw(&mut svg, block, top)?;
         let verdicts: &[Vec<String>] = if style.verdicts { &plate.feet } else { &[] };
         bottom = feet(&mut svg, verdicts, &grid, block, bottom);
@@ -130,13 +134,33 @@ fn row<'b, 'a>(row: &'b PlateRow<'a>) -> PictureRow<'b, 'a> {
         bar: if row.shared {
             [name, unit]
         } else {
-            ["of each peak".to_owned(), String::new()]
+            [OWN_PEAK.to_owned(), String::new()]
         },
         scale: row.scale,
         shared: row.shared,
         cells: cells.map(|picture| (picture, &[][..])).collect(),
     }
 }
+
+/// Draws the headings of a block above `top`, or lower where they have two lines; returns the top of
+/// the pictures.
+fn heads(svg: &mut Svg, heads: &[String], grid: &PageGrid<'_, '_>, block: usize, top: f64) -> f64 {
+    let has_formula = |(column, ..): (usize, f64, f64)| heads[column].contains('\n');
+    let formulas = grid.columns(block).any(has_formula);
+    for (column, middle, room) in grid.columns(block) {
+        let (name, formula) = heads[column]
+            .split_once('\n')
+            .unwrap_or((&heads[column], ""));
+        let style = TextStyle::new([middle, top - 9.0], HEAD_TEXT, Anchor::Middle).bold();
+        svg.fitted(style, name, room);
+        let at = [middle, top - 9.0 + FORMULA];
+        svg.fitted(TextStyle::new(at, TICK_TEXT, Anchor::Middle), formula, room);
+    }
+    top + if formulas { FORMULA } else { 0.0 }
+}
+
+/// Line spacing of a heading and its second line.
+const FORMULA: f64 = 17.0;
 
 /// Draws the lines below each column of a block; returns the lower edge of the last.
 pub(crate) fn feet(
@@ -151,6 +175,8 @@ pub(crate) fn feet(
         let Some(lines) = feet.get(column) else {
             continue;
         };
+        let lines = lines.iter().flat_map(|text| broken(text, room));
+        let lines: Vec<String> = lines.collect();
         most = most.max(lines.len());
         for (line, text) in lines.iter().enumerate() {
             let at = [middle, baseline + 21.0 + 16.0 * line as f64];
@@ -158,6 +184,15 @@ pub(crate) fn feet(
         }
     }
     baseline + 6.0 + 16.0 * most as f64
+}
+
+/// A line, broken at spaces if it is wider than `room` even in small letters.
+fn broken(text: &str, room: f64) -> Vec<String> {
+    if width(&plain(text), LEAST_TEXT) > room {
+        lines(text, SMALL_TEXT, room)
+    } else {
+        vec![text.to_owned()]
+    }
 }
 
 /// Draws bars from 0 with a key below them; returns the lower edge of the key.
@@ -177,6 +212,7 @@ fn draw_bars(svg: &mut Svg, bars: &Bars, area: Area, middles: &[f64]) -> f64 {
         },
         label_x: true,
         label_y: true,
+        labelled: [Some(area.width), Some(area.height)],
     };
     let at = |value: f64| panel.point(0.0, value)[1];
     for (column, value) in bars.measured.iter().enumerate() {

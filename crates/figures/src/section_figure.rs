@@ -61,7 +61,8 @@ pub fn section(section: &Section, title: &str, note: &str) -> Result<Figure, Err
     let bottom = if section.planes.is_empty() {
         area.bottom() + 10.0
     } else {
-        heads + SectionLayout::HEADING
+        let rooms = (0..section.planes.len()).map(|plane| (plane, pitch - 10.0));
+        heads + cut.heading_height(rooms)
     };
     Ok(Figure {
         svg: svg.finish(area.right() + 20.0, bottom),

@@ -1,5 +1,7 @@
 //! Sizes and colors that all figures share, in SVG units (1/96 inch at natural size).
 
+/// Units per inch.
+pub(crate) const INCH: f64 = 96.0;
 /// Minimum text size: 6 points.
 pub(crate) const LEAST_TEXT: f64 = 8.0;
 /// Text and frames.
@@ -17,6 +19,8 @@ pub(crate) const TICK: f64 = 4.0;
 
 /// Font size of tick texts.
 pub(crate) const TICK_TEXT: f64 = 11.0;
+/// Font size of texts below narrow pictures.
+pub(crate) const SMALL_TEXT: f64 = 9.5;
 /// Font size of axis labels.
 pub(crate) const LABEL_TEXT: f64 = 12.0;
 /// Font size of panel headings.

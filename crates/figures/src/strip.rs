@@ -6,12 +6,13 @@ use crate::bar;
 use crate::color::{Colors, Scale, hex};
 use crate::cut::SectionLayout;
 use crate::figure::{Error, Figure, csv_text, decimal};
-use crate::grid::{GAPS, GUIDE, Guide, LEFT, PageGrid, Picture, RIGHT, ends, inner};
-use crate::plate::feet;
+use crate::grid::{GAPS, Guide, LEFT, PageGrid, Picture, RIGHT, ends, guide_strokes, inner};
+use crate::plate::{OWN_PEAK, feet};
 use crate::section::Section;
 use crate::sizes::{SOFT, TICK_TEXT};
 use crate::style::Style;
 use crate::svg::{Anchor, Area, Svg, TextStyle};
+use crate::text::width;
 
 /// The content below a virtual plane.
 #[derive(Clone, Debug)]
@@ -123,7 +124,7 @@ impl StripRow {
             Self::Spectrum => "spectrum",
             Self::Predicted => "predicted",
             Self::FullRadial => "full radial",
-            Self::FullPredicted => "its prediction",
+            Self::FullPredicted => "prediction",
             Self::OffChain => "off the chain",
         }
     }
@@ -168,11 +169,11 @@ impl StripRow {
 }
 
 /// Height of the cut.
-const CUT: f64 = 190.0;
+const CUT: f64 = 150.0;
 /// Height of the lines from the cut to the columns.
 const LEADERS: f64 = 34.0;
 /// Minimum width of a picture: columns that do not fit go below the others.
-const MIN_WIDTH: f64 = 60.0;
+const MIN_WIDTH: f64 = 48.0;
 
 /// Draws a strip, as wide as the page.
 ///
@@ -210,7 +211,8 @@ pub fn strip(strip: &Strip<'_>, style: &Style) -> Result<Figure, Error> {
             }
             cut.heading(&mut svg, column, [middle, heads], room);
         }
-        bottom = grid.draw(&mut svg, block, heads + SectionLayout::HEADING)?;
+        let rooms = grid.columns(block).map(|(column, _, room)| (column, room));
+        bottom = grid.draw(&mut svg, block, heads + cut.heading_height(rooms))?;
         bottom = feet(&mut svg, &verdicts, &grid, block, bottom);
     }
     let bottom = keys(&mut svg, strip, &grid, [LEFT + inner, bottom], style);
@@ -239,7 +241,7 @@ fn grid<'b, 'a>(strip: &'b Strip<'a>, style: &Style) -> PageGrid<'b, 'a> {
             bar: if row == StripRow::OffChain {
                 ["|*S* − chain|".to_owned(), "% of the peak".to_owned()]
             } else {
-                ["of each peak".to_owned(), String::new()]
+                [OWN_PEAK.to_owned(), String::new()]
             },
             scale: match row {
                 StripRow::LightField | StripRow::Across | StripRow::OffChain => Scale::Linear,
@@ -252,7 +254,12 @@ fn grid<'b, 'a>(strip: &'b Strip<'a>, style: &Style) -> PageGrid<'b, 'a> {
     let rows = StripRow::of(strip).into_iter().map(row).collect();
     // Two keys fit side by side on the narrowest page.
     let half = 0.5 * (inner(style) - GAPS[1]);
-    PageGrid::new(rows, strip.columns.len(), MIN_WIDTH.min(half), style)
+    PageGrid::new(
+        rows,
+        strip.columns.len(),
+        [MIN_WIDTH.min(half), f64::INFINITY],
+        style,
+    )
 }
 
 /// Draws the keys of predicted lines and of cells without a value; returns the lowest baseline.
@@ -267,7 +274,7 @@ fn keys(
     let gaps = grid.has_gaps();
     let y = bottom + if guided || gaps { 18.0 } else { 0.0 };
     if guided {
-        guide_key(svg, [LEFT, y], style);
+        guide_keys(svg, strip, [LEFT, y], style);
     }
     if gaps {
         bar::gap_key(svg, right, y);
@@ -275,21 +282,34 @@ fn keys(
     y
 }
 
-fn guide_key(svg: &mut Svg, [x, y]: [f64; 2], style: &Style) {
-    let swatch = Area {
+/// Draws the key of dashed lines. The plane of incidence is named where lines differ by it.
+fn guide_keys(svg: &mut Svg, strip: &Strip<'_>, [x, y]: [f64; 2], style: &Style) {
+    let mut guides = strip.columns.iter().flat_map(|column| &column.guides);
+    let names: &[&str] = if guides.any(|guide| guide.is_across) {
+        &["shear in the plane of incidence", "across it"]
+    } else {
+        &["predicted shear"]
+    };
+    let mut swatch = Area {
         x,
         y: y - 10.0,
         width: 34.0,
         height: 12.0,
     };
-    svg.fill(swatch, &hex(Colors::Sequential(style.palette).at(0.0)));
-    for [from, to] in ends([x, y - 4.0], [swatch.right(), y - 4.0], 9.0) {
-        for stroke in GUIDE {
-            svg.line(from, to, stroke);
+    for (name, is_across) in names.iter().zip([false, true]) {
+        svg.fill(swatch, &hex(Colors::Sequential(style.palette).at(0.0)));
+        for [from, to] in ends([swatch.x, y - 4.0], [swatch.right(), y - 4.0], 9.0) {
+            for stroke in guide_strokes(is_across) {
+                svg.line(from, to, stroke);
+            }
         }
+        let at = [swatch.right() + 7.0, y];
+        svg.text(
+            TextStyle::new(at, TICK_TEXT, Anchor::Start).fill(SOFT),
+            name,
+        );
+        swatch.x = at[0] + width(name, TICK_TEXT) + 20.0;
     }
-    let style = TextStyle::new([swatch.right() + 7.0, y], TICK_TEXT, Anchor::Start).fill(SOFT);
-    svg.text(style, "predicted shear");
 }
 
 /// The table: a row for each cell of each picture, the pictures in order, x slowest.

@@ -1,6 +1,7 @@
 //! User settings of a figure's style.
 
 use crate::color::Palette;
+use crate::sizes::INCH;
 use crate::svg::Svg;
 use serde::{Deserialize, Serialize};
 
@@ -56,6 +57,5 @@ impl Style {
     }
 }
 
-const INCH: f64 = 96.0;
 /// Top margin of a page without a title.
 const UNTITLED: f64 = 10.0;

@@ -11,6 +11,12 @@ use etendue_field::tidy;
 const DRAWING: f64 = 170.0;
 const HEAD: f64 = 30.0;
 
+/// Least distance of a plane's number from objects.
+const CLEAR: f64 = 2.0;
+/// Largest distance of a plane's number from its end, and, if there is no room, from the other one.
+const NEAR: u32 = 60;
+const FARTHEST: u32 = 200;
+
 impl DrawnWorld {
     /// Total height.
     pub(crate) const HEIGHT: f64 = HEAD + DRAWING + 16.0;
@@ -38,7 +44,7 @@ impl DrawnWorld {
         for (i, plane) in self.planes.iter().enumerate() {
             let ends = plane.map(place);
             svg.line(ends[0], ends[1], Stroke::solid(PLANE, 1.2));
-            let number = free(ends, &numbers);
+            let number = self.free(ends, &numbers, &place);
             badge(svg, number, i);
             numbers.push(number);
         }
@@ -77,6 +83,36 @@ impl DrawnWorld {
         )
     }
 
+    /// A position for the number of a plane: beyond an end of it, clear of objects and other
+    /// numbers.
+    fn free(
+        &self,
+        [from, to]: [[f64; 2]; 2],
+        taken: &[[f64; 2]],
+        place: &dyn Fn([f64; 2]) -> [f64; 2],
+    ) -> [f64; 2] {
+        let along = [to[0] - from[0], to[1] - from[1]];
+        let length = libm::hypot(along[0], along[1]).max(1e-9);
+        let step = along.map(|a| a / length);
+        let objects = self.objects.iter().map(|object| &object.segment);
+        let objects = objects.filter(|segment| segment.kind != SegmentKind::Sky);
+        let lines = objects.map(|segment| [segment.start, segment.end].map(place));
+        let lines: Vec<[[f64; 2]; 2]> = lines.collect();
+        let is_clear = |number: &[f64; 2]| {
+            let apart = |other: &[f64; 2]| distance(*number, [*other; 2]) >= 2.0 * BADGE;
+            let beside = |line: &[[f64; 2]; 2]| distance(*number, *line) >= BADGE + CLEAR;
+            taken.iter().all(apart) && lines.iter().all(beside)
+        };
+        let beyond = |end: [f64; 2], sign: f64, steps: u32| {
+            let far = sign * (BADGE + f64::from(steps));
+            [0, 1].map(|i| end[i] + far * step[i])
+        };
+        let near = (0..NEAR).map(|n| beyond(to, 1.0, n));
+        let other = (0..FARTHEST).map(|n| beyond(from, -1.0, n));
+        let mut clear = near.chain(other).filter(is_clear);
+        clear.next().unwrap_or_else(|| beyond(to, 1.0, 0))
+    }
+
     fn objects(&self, svg: &mut Svg, place: &dyn Fn([f64; 2]) -> [f64; 2]) {
         let mut hatching = Hatching::default();
         for DrawnObject { segment, light } in &self.objects {
@@ -92,17 +128,13 @@ impl DrawnWorld {
     }
 }
 
-/// A position for the number of a plane: beyond its end, and clear of other numbers.
-fn free([from, to]: [[f64; 2]; 2], taken: &[[f64; 2]]) -> [f64; 2] {
+/// The distance of a point from a line.
+fn distance([x, y]: [f64; 2], [from, to]: [[f64; 2]; 2]) -> f64 {
     let along = [to[0] - from[0], to[1] - from[1]];
-    let length = libm::hypot(along[0], along[1]).max(1e-9);
-    let step = along.map(|a| a / length);
-    let mut number = [0, 1].map(|i| to[i] + BADGE * step[i]);
-    let apart = |a: &[f64; 2], b: [f64; 2]| libm::hypot(a[0] - b[0], a[1] - b[1]) >= 2.0 * BADGE;
-    while !taken.iter().all(|other| apart(other, number)) {
-        number = [0, 1].map(|i| number[i] + step[i]);
-    }
-    number
+    let off = [x - from[0], y - from[1]];
+    let square = (along[0] * along[0] + along[1] * along[1]).max(1e-18);
+    let part = ((off[0] * along[0] + off[1] * along[1]) / square).clamp(0.0, 1.0);
+    libm::hypot(off[0] - part * along[0], off[1] - part * along[1])
 }
 
 /// The arrowhead of the central ray.
@@ -132,4 +164,33 @@ fn bar(svg: &mut Svg, area: Area, scale: f64) {
     }
     let style = TextStyle::new([right + 6.0, y + 4.0], TICK_TEXT, Anchor::Start).fill(SOFT);
     svg.text(style, &format!("{} m", tidy(length)));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::section::Segment;
+
+    /// A blocker stands where the number of the plane would be.
+    #[test]
+    fn the_number_of_a_plane_covers_no_blocker() {
+        let blocker = DrawnObject {
+            segment: Segment {
+                kind: SegmentKind::Blocker,
+                start: [0.0, 14.0],
+                end: [0.0, 22.0],
+                label: None,
+            },
+            light: [1.0, 0.0],
+        };
+        let world = DrawnWorld {
+            path: Vec::new(),
+            objects: vec![blocker],
+            planes: Vec::new(),
+        };
+        let number = world.free([[0.0, 0.0], [0.0, 10.0]], &[], &|point| point);
+        assert!(distance(number, [[0.0, 14.0], [0.0, 22.0]]) >= BADGE + CLEAR);
+        // Far beyond the plane there is room.
+        assert!(number[1] > 22.0, "{number:?}");
+    }
 }

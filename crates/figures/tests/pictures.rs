@@ -99,6 +99,19 @@ fn the_png_has_twice_the_size_of_the_svg_and_the_same_bytes_every_time() {
     }
 }
 
+#[test]
+fn the_png_states_its_resolution() {
+    let values = corner();
+    let png = compare(values.view(), values.view(), DECIBEL)
+        .png()
+        .unwrap();
+    let chunk = png.windows(4).position(|bytes| bytes == b"pHYs").unwrap() + 4;
+    let per_metre = |at: usize| u32::from_be_bytes(png[at..at + 4].try_into().unwrap());
+    // 192 pixels per inch of 0.0254 metres.
+    assert_eq!([per_metre(chunk), per_metre(chunk + 4)], [7559, 7559]);
+    assert_eq!(png[chunk + 8], 1, "the unit is the metre");
+}
+
 /// Only the title is in its corner: ink there shows that the built-in fonts work.
 #[test]
 fn text_is_drawn() {

@@ -40,13 +40,15 @@ const SPARSE: usize = 20;
 /// Paths of each shading sample.
 const PATHS_PER_SAMPLE: u32 = 128;
 
-/// Paths of each pixel of the reference.
-const REFERENCE: u32 = 64;
+/// The pixel difference, over white, at which the colors of differences saturate.
+const MOST: f64 = 0.2;
 
 struct CreatureScene {
     paths: Paths,
     camera: Camera,
     samples: usize,
+    /// Paths of each pixel of the reference.
+    reference: u32,
 }
 
 impl CreatureScene {
@@ -60,11 +62,11 @@ impl CreatureScene {
         let world = import(&file, &Options::default())
             .map_err(Failure::bad_input)?
             .world;
-        let size = match quality {
-            Quality::Print => [800, 500],
-            Quality::Draft => [400, 250],
+        let (size, reference) = match quality {
+            Quality::Print => ([800, 500], 512),
+            Quality::Draft => ([400, 250], 512),
             #[cfg(test)]
-            Quality::Sketch => [48, 30],
+            Quality::Sketch => ([48, 30], 16),
         };
         let camera = world
             .cameras
@@ -76,6 +78,7 @@ impl CreatureScene {
                 ..camera.clone()
             },
             samples: size[0] * size[1] / SPARSE,
+            reference,
             paths: Paths::new(&world),
         })
     }
@@ -92,7 +95,7 @@ impl CreatureScene {
         render(&self.paths, &self.camera, &plan, &|_, _| {}, &|_| {})
     }
 
-    /// The values of pixels in the layout of figures: columns first, and rows from below.
+    /// The values of pixels in the layout of figures: columns first, and the lowest row first.
     fn picture(&self, values: Vec<f64>) -> Result<Array2<f64>, Failure> {
         let [w, h] = self.camera.size;
         let mut rows = Array2::from_shape_vec((h, w), values).map_err(Failure::cannot_run)?;
@@ -104,38 +107,62 @@ impl CreatureScene {
         let [w, h] = self.camera.size.map(|n| n as f64);
         Picture {
             x: Axis::edges("column", "pixels", [0.0, w]),
-            y: Axis::edges("row from below", "pixels", [0.0, h]),
+            y: Axis {
+                is_reversed: true,
+                ..Axis::edges("row", "pixels", [0.0, h])
+            },
             values: values.view(),
         }
     }
 }
 
-/// Two pictures side by side.
-struct PicturePair<'a> {
-    title: &'a str,
-    note: &'a str,
-    heads: [&'a str; 2],
-    values: [&'a Array2<f64>; 2],
-    quantity: AxisQuantity,
-    scale: Scale,
-    feet: Vec<Vec<String>>,
+/// A picture with its heading and a line below it, which may be empty.
+struct PicturePanel<'a> {
+    head: &'a str,
+    values: &'a Array2<f64>,
+    foot: String,
 }
 
-impl PicturePair<'_> {
-    fn drawn(self, scene: &CreatureScene, style: &Style) -> Result<Figure, Failure> {
+impl<'a> PicturePanel<'a> {
+    fn new(head: &'a str, values: &'a Array2<f64>) -> Self {
+        Self {
+            head,
+            values,
+            foot: String::new(),
+        }
+    }
+}
+
+/// Pictures side by side.
+struct PictureRow<'a> {
+    title: &'a str,
+    note: &'a str,
+    panels: &'a [PicturePanel<'a>],
+    quantity: AxisQuantity,
+    scale: Scale,
+    /// Whether the colors are those of the quantity; otherwise of each picture's largest value.
+    shared: bool,
+}
+
+impl PictureRow<'_> {
+    fn drawn(&self, scene: &CreatureScene, style: &Style) -> Result<Figure, Failure> {
+        let pictures = self.panels.iter().map(|panel| scene.shown(panel.values));
+        let heads = self.panels.iter().map(|panel| panel.head.to_owned());
+        let feet = self.panels.iter().map(|panel| vec![panel.foot.clone()]);
         let of = Plate {
             title: self.title,
             note: self.note,
-            heads: self.heads.map(str::to_owned).to_vec(),
+            heads: heads.collect(),
             rows: vec![PlateRow {
                 name: "",
-                quantity: self.quantity,
+                quantity: self.quantity.clone(),
                 scale: self.scale,
-                shared: false,
-                pictures: self.values.map(|values| scene.shown(values)).to_vec(),
+                shared: self.shared,
+                pictures: pictures.collect(),
             }],
-            feet: self.feet,
+            feet: feet.filter(|lines| !lines[0].is_empty()).collect(),
             bars: None,
+            side: None,
         };
         plate(&of, style).map_err(Failure::cannot_run)
     }
@@ -147,25 +174,30 @@ pub(crate) fn criteria(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let layers = scene.rendered(SampleMethod::Predicted, false).layers;
     let squares = |values: &[f64]| scene.picture(values.iter().map(|x| x * x).collect());
     let [blockers, bandwidth] = [squares(&layers.blockers)?, squares(&layers.bandwidth)?];
-    let density = scene.picture(layers.density.clone())?;
-    let dots = scene.picture(layers.samples.iter().map(|n| n.min(1.0)).collect())?;
-    let above = PicturePair {
+    let up_to_one =
+        |values: &[f64]| scene.picture(values.iter().map(|n| n.clamp(0.0, 1.0)).collect());
+    let [density, dots] = [up_to_one(&layers.density)?, up_to_one(&layers.samples)?];
+    let above = PictureRow {
         title: "Criteria and shading samples",
-        note: "Left: the nearness of what is reflected, 1/*d'*, the inverse of its harmonic mean. Right: the bandwidth by Eq. 21, corrected, in the direction of its largest.",
-        heads: ["blockers", "bandwidth"],
-        values: [&blockers, &bandwidth],
+        note: "(a) 1/*d'*, the nearness of what is reflected. (b) The bandwidth by Eq. 21, corrected, in the direction where it is largest. Both squared, in decibels below the largest value of each picture.",
+        panels: &[
+            PicturePanel::new("(a) blockers", &blockers),
+            PicturePanel::new("(b) bandwidth", &bandwidth),
+        ],
         quantity: AxisQuantity::new("square", ""),
         scale: Scale::Decibel { floor: -50.0 },
-        feet: Vec::new(),
+        shared: false,
     };
-    let below = PicturePair {
+    let below = PictureRow {
         title: "",
-        note: "Left: samples a pixel that are asked for, up to one. Right: pixels that have one.",
-        heads: ["density", "samples"],
-        values: [&density, &dots],
-        quantity: AxisQuantity::new("samples a pixel", ""),
+        note: "(c) The number of samples wanted in each pixel, shown up to one. (d) Pixels that have a sample.",
+        panels: &[
+            PicturePanel::new("(c) density", &density),
+            PicturePanel::new("(d) samples", &dots),
+        ],
+        quantity: AxisQuantity::new("samples per pixel", ""),
         scale: Scale::Linear,
-        feet: Vec::new(),
+        shared: true,
     };
     Ok(stacked(&[
         above.drawn(&scene, &taken.style)?,
@@ -173,61 +205,125 @@ pub(crate) fn criteria(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     ]))
 }
 
-/// Fig. 17.
-pub(crate) fn pictures(taken: &FigureData<'_>) -> Result<Figure, Failure> {
-    let scene = CreatureScene::new(taken.quality)?;
-    let stage = taken.reporter.begin(Work::Stage("rendering"));
-    let ways = [
-        (SampleMethod::Uniform, true),
-        (SampleMethod::Predicted, true),
-        (SampleMethod::Predicted, false),
-    ];
-    let few = ways.map(|(method, is_even)| scene.rendered(method, is_even).radiance);
-    let reference = scene.paths.picture(&scene.camera, REFERENCE, 2, &|_| {});
-    drop(stage);
-    let reference = reference.mean;
-    let white = bright(&reference);
-    let foot = |radiance: &Vec<f64>| vec![format!("relMSE {:.4}", error(radiance, &reference))];
-    let [even, round, along] = few.each_ref().map(foot);
-    let shown = |of: &[f64]| scene.picture(of.iter().map(|x| (x / white).min(1.0)).collect());
-    let [a, b, c] = few.each_ref().map(|of| shown(of));
-    let [a, b, c, d] = [a?, b?, c?, shown(&reference)?];
-    let note = format!(
-        "{} shading samples of {PATHS_PER_SAMPLE} paths, 0.05 a pixel. relMSE: the mean of (*x* − *r*)²/(*r*² + *ε*²), *ε* a hundredth of the mean, noise of the reference *r* included.",
-        scene.samples
-    );
-    let radiance = || AxisQuantity::new("radiance of white", "");
-    let above = PicturePair {
-        title: "A picture of few shading samples",
-        note: &note,
-        heads: ["even samples", "by the criteria, alike in all directions"],
-        values: [&a, &b],
-        quantity: radiance(),
-        scale: Scale::Linear,
-        feet: vec![even, round],
-    };
-    let below = PicturePair {
-        title: "",
-        note: "",
-        heads: ["by the criteria, along each direction", "reference"],
-        values: [&c, &d],
-        quantity: radiance(),
-        scale: Scale::Linear,
-        feet: vec![along, vec![format!("{REFERENCE} paths a pixel")]],
-    };
-    let style = photographs(&taken.style);
-    Ok(stacked(&[
-        above.drawn(&scene, &style)?,
-        below.drawn(&scene, &style)?,
-    ]))
+/// The pictures of Fig. 17: radiance in rows from the top.
+struct ComparedPictures {
+    /// From uniform samples, and from those of the criteria, isotropic and anisotropic.
+    few: [Vec<f64>; 3],
+    reference: etendue_paths::Picture,
+    /// The radiance shown as white.
+    white: f64,
 }
 
-/// The relative mean square error of a picture.
-fn error(radiance: &[f64], reference: &[f64]) -> f64 {
-    let count = reference.len() as f64;
-    let least = 0.01 * reference.iter().sum::<f64>() / count;
-    let of = |(x, r): (&f64, &f64)| (x - r).powi(2) / (r * r + least * least);
-    radiance.iter().zip(reference).map(of).sum::<f64>() / count
+impl ComparedPictures {
+    fn new(scene: &CreatureScene) -> Self {
+        let methods = [
+            (SampleMethod::Uniform, true),
+            (SampleMethod::Predicted, true),
+            (SampleMethod::Predicted, false),
+        ];
+        let few = methods.map(|(method, is_even)| scene.rendered(method, is_even).radiance);
+        let paths = &scene.paths;
+        let reference = paths.picture(&scene.camera, scene.reference, 2, &|_| {});
+        Self {
+            few,
+            white: bright(&reference.mean),
+            reference,
+        }
+    }
+
+    /// Relative luminance: radiance over that of white, at most 1.
+    fn luminance(&self, scene: &CreatureScene, of: &[f64]) -> Result<Array2<f64>, Failure> {
+        scene.picture(of.iter().map(|x| (x / self.white).min(1.0)).collect())
+    }
+
+    /// The difference from the reference over white.
+    fn difference(&self, scene: &CreatureScene, of: &[f64]) -> Result<Array2<f64>, Failure> {
+        let both = of.iter().zip(&self.reference.mean);
+        scene.picture(both.map(|(x, r)| (x - r) / self.white).collect())
+    }
+
+    /// The mean of squares over r² + ε², such as (x − r)².
+    fn relative(&self, squares: impl Iterator<Item = f64>) -> f64 {
+        let reference = &self.reference.mean;
+        let count = reference.len() as f64;
+        let least = 0.01 * reference.iter().sum::<f64>() / count;
+        let each = squares.zip(reference);
+        each.map(|(square, r)| square / (r * r + least * least))
+            .sum::<f64>()
+            / count
+    }
+
+    /// The relative mean square error of a picture.
+    fn error(&self, of: &[f64]) -> f64 {
+        let both = of.iter().zip(&self.reference.mean);
+        self.relative(both.map(|(x, r)| (x - r).powi(2)))
+    }
+
+    /// The relative mean square error of the reference, by its noise.
+    fn noise(&self) -> f64 {
+        self.relative(self.reference.variance.iter().copied())
+    }
+}
+
+/// Fig. 17.
+pub(crate) fn pictures(taken: &FigureData<'_>) -> Result<Figure, Failure> {
+    const HEADS: [&str; 3] = [
+        "(a) uniform",
+        "(b) criteria, isotropic",
+        "(c) criteria, anisotropic",
+    ];
+    let scene = CreatureScene::new(taken.quality)?;
+    let stage = taken.reporter.begin(Work::Stage("rendering"));
+    let found = ComparedPictures::new(&scene);
+    drop(stage);
+    let few = found.few.iter().chain([&found.reference.mean]);
+    let shown: Vec<Array2<f64>> = few
+        .map(|of| found.luminance(&scene, of))
+        .collect::<Result<_, _>>()?;
+    let off: Vec<Array2<f64>> = found
+        .few
+        .iter()
+        .map(|of| found.difference(&scene, of))
+        .collect::<Result<_, _>>()?;
+    let noise = found.noise();
+    let errors = found.few.iter().map(|of| found.error(of) - noise);
+    let feet = errors.map(|error| format!("relMSE {error:.4}"));
+    let feet = feet.chain([format!("noise: relMSE {noise:.4}")]);
+    let heads = HEADS.into_iter().chain(["(d) reference"]);
+    let panels = heads.zip(&shown).zip(feet);
+    let panels: Vec<PicturePanel<'_>> = panels
+        .map(|((head, values), foot)| PicturePanel { head, values, foot })
+        .collect();
+    let differences = HEADS.into_iter().zip(&off);
+    let differences: Vec<PicturePanel<'_>> = differences
+        .map(|(head, values)| PicturePanel::new(head, values))
+        .collect();
+    let note = format!(
+        "(a) to (c): {} shading samples of {PATHS_PER_SAMPLE} paths, 0.05 per pixel. (d): {} paths in each pixel. relMSE: the mean of (*x* − *r*)²/(*r*² + *ε*²) over the reference *r*, less its noise; *ε* is a hundredth of the mean.",
+        scene.samples, scene.reference
+    );
+    let style = photographs(&taken.style);
+    let luminance = |title, note, panels| PictureRow {
+        title,
+        note,
+        panels,
+        quantity: AxisQuantity::new("relative luminance", ""),
+        scale: Scale::Linear,
+        shared: true,
+    };
+    let below = PictureRow {
+        title: "Difference from the reference, in relative luminance",
+        note: "",
+        panels: &differences,
+        quantity: AxisQuantity::new("difference", ""),
+        scale: Scale::Signed { most: MOST },
+        shared: true,
+    };
+    Ok(stacked(&[
+        luminance("A picture of few shading samples", &note, &panels[..2]).drawn(&scene, &style)?,
+        luminance("", "", &panels[2..]).drawn(&scene, &style)?,
+        below.drawn(&scene, &style)?,
+    ]))
 }
 
 /// The radiance exceeded by a hundredth of the pixels.

@@ -55,7 +55,7 @@ pub(crate) fn slopes(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         "*g* = (1 + *v*^{2})^{−3/2}, *G* = (1 + *u*^{2} + *v*^{2})^{−2}; transforms 4π|*Ω*| *K*_{1}(2π|*Ω*|) and half π times that.",
         vec![
             panel(
-                "in slope",
+                "(a) in slope",
                 slope(),
                 vec![
                     curve(CurveKind::Theory, flat, [-3.0, 3.0], &g),
@@ -63,7 +63,7 @@ pub(crate) fn slopes(taken: &FigureData<'_>) -> Result<Figure, Failure> {
                 ],
             ),
             panel(
-                "transforms",
+                "(b) transforms",
                 frequency(),
                 vec![
                     curve(CurveKind::Theory, flat, [-1.5, 1.5], &g_hat),
@@ -98,7 +98,10 @@ fn solid_slopes(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     taken.plate(&Plate {
         title: "In 3D",
         note: "",
-        heads: vec!["*G*(*u*, *v*)".to_owned(), "its transform".to_owned()],
+        heads: vec![
+            "(c) *G*(*u*, *v*)".to_owned(),
+            "(d) its transform".to_owned(),
+        ],
         rows: vec![PlateRow {
             name: "theory",
             quantity: AxisQuantity::new("value", ""),
@@ -108,6 +111,7 @@ fn solid_slopes(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         }],
         feet: Vec::new(),
         bars: None,
+        side: None,
     })
 }
 

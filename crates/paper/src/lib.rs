@@ -9,11 +9,13 @@
     reason = "a Failure carries the whole message for the user, written where it occurs"
 )]
 
+mod caustic;
 mod creatures;
 mod criteria;
 mod flat;
 mod kernels;
 mod make;
+mod parameterisations;
 mod plates;
 mod quality;
 mod recipe;

@@ -1,11 +1,11 @@
 //! Figures with several scenes, or several kinds of spectra, side by side.
 
 use crate::flat::Flat;
-use crate::rows::{DECIBEL, Seen, compared, feet, phase, power, row};
+use crate::rows::{DECIBEL, Seen, compared, feet, lettered, phase, power, row};
 use crate::scene_run::Shot;
 use crate::subject::FigureData;
-use etendue_compare::{Bandwidth, Theory};
-use etendue_field::{Orientation, VirtualPlane, percent, uncertain};
+use etendue_compare::Theory;
+use etendue_field::{VirtualPlane, percent};
 use etendue_figures::{AxisQuantity, Bars, Figure, Plate, Scale};
 use etendue_report::pictures::light_field_quantity;
 use etendue_store::Failure;
@@ -24,10 +24,11 @@ pub(crate) fn lights(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     taken.plate(&Plate {
         title: "Light sources",
         note: "A point is a Dirac in space and uniform in angle; its spectrum is uniform in space and, apart from the window, a Dirac in angle. After travel its light is a line *x*\u{a0}=\u{a0}*d\u{a0}u*, and its spectrum *ν*\u{a0}=\u{a0}−*d\u{a0}ρ*.",
-        heads: heads.map(str::to_owned).to_vec(),
+        heads: lettered(&heads),
         rows: compared(&seen, false),
         feet: feet(&seen),
         bars: None,
+        side: None,
     })
 }
 
@@ -69,6 +70,7 @@ pub(crate) fn steps(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         rows,
         feet: feet(&seen),
         bars: None,
+        side: None,
     })
 }
 
@@ -115,46 +117,7 @@ pub(crate) fn occluders(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         rows,
         feet: feet(&seen),
         bars: None,
-    })
-}
-
-/// Fig. 8: slopes and angles at the receiver. The chain identifies the two, an error that the paper
-/// calls not significant.
-pub(crate) fn parameterisations(taken: &FigureData<'_>) -> Result<Figure, Failure> {
-    let seen = [
-        Seen::at(&taken.shots[0], "slopes")?,
-        Seen::at(&taken.shots[0], "angles")?,
-    ];
-    let mut feet = feet(&seen);
-    if let Some(first_order) = &seen[1].found.report.first_order {
-        let said = |share: Option<f64>| share.map_or("–".to_owned(), |share| percent(share, 2));
-        let (found, error) = (
-            said(first_order.excess),
-            said(Some(first_order.chain.error)),
-        );
-        feet[1].push(format!("*u* for *θ*: off by {found}, computed {error}"));
-    }
-    for (foot, seen) in feet.iter_mut().zip(&seen) {
-        let Bandwidth { rho, nu } = &seen.found.report.bandwidth_95;
-        let angular = ["slope", "rad"][usize::from(seen.plane.orientation == Orientation::Tangent)];
-        for (axis, unit, pair) in [("ρ", "m", rho), ("ν", angular, nu)] {
-            let (Some(measured), Some(error)) = (pair.measured, pair.error) else {
-                continue;
-            };
-            let predicted = pair.predicted.map_or("–".to_owned(), |p| format!("{p:.3}"));
-            foot.push(format!(
-                "*B*_{{{axis}}} {} /{unit}, predicted {predicted}",
-                uncertain(measured, error)
-            ));
-        }
-    }
-    taken.plate(&Plate {
-        title: "Two parameterisations",
-        note: "Angles are measured along T, which is opposite to X here, so the shear has the opposite sign. *B*: 95 % bandwidths in the azimuth where they are largest; slopes and angles hardly differ.",
-        heads: ["by slopes", "by angles"].map(str::to_owned).to_vec(),
-        rows: compared(&seen, false),
-        feet,
-        bars: None,
+        side: None,
     })
 }
 
@@ -201,9 +164,7 @@ pub(crate) fn blockers(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     taken.plate(&Plate {
         title: "Blockers of three sizes, seen from the receiver",
         note: "Blockers block the share *blocked* of the light in the window. The receiver has most high frequencies behind blockers of medium size: replicas of the smallest are sheared beyond its range.",
-        heads: ["pitch 1 m", "pitch 0.2 m", "pitch 0.04 m"]
-            .map(str::to_owned)
-            .to_vec(),
+        heads: lettered(&["pitch 1 m", "pitch 0.2 m", "pitch 0.04 m"]),
         rows: compared(&seen, true),
         feet,
         bars: Some(Bars {
@@ -215,5 +176,6 @@ pub(crate) fn blockers(taken: &FigureData<'_>) -> Result<Figure, Failure> {
             errors: each(&|share| share.error),
             predicted: each(&|share| share.predicted),
         }),
+        side: Some(84.0),
     })
 }

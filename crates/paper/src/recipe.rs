@@ -1,6 +1,8 @@
 //! The content of each figure of the paper.
 
-use crate::plates::{blockers, lights, occluders, parameterisations, steps};
+use crate::caustic::caustic;
+use crate::parameterisations::parameterisations;
+use crate::plates::{blockers, lights, occluders, steps};
 use crate::scene_run::resolved;
 use crate::scenes::{TWIST, scene};
 use crate::shading::{adaptive, environment};
@@ -119,7 +121,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
     },
     Recipe {
         name: "8",
-        about: "the receiver by slopes and by angles: the error of replacing one by the other, and bandwidths",
+        about: "the receiver by slopes and by angles: their difference, and bandwidths",
         scenes: &[("fig8", scene!("fig8"))],
         also: &[],
         has_table: false,
@@ -150,12 +152,15 @@ pub(crate) const RECIPES: &[Recipe] = &[
     },
     Recipe {
         name: "11",
-        about: "a caustic: a beam on a hollow mirror",
-        scenes: &[("solar_oven", scene!("table1/solar_oven"))],
+        about: "a caustic: a beam on a hollow mirror, met along its normal and at 40°",
+        scenes: &[
+            ("fig11", scene!("fig11")),
+            ("solar_oven", scene!("table1/solar_oven")),
+        ],
         also: &[],
         has_table: false,
         full_radial: false,
-        draw: |taken| taken.strip(),
+        draw: caustic,
     },
     Recipe {
         name: "12",
@@ -261,8 +266,8 @@ mod tests {
     use etendue_figures::Style;
     use etendue_pipeline::Silent;
 
-    /// Pages are at most seven inches wide, at 96 units of the drawing each, and texts, including
-    /// indices, have at least 6 points.
+    /// Pages are at most seven inches wide, at 96 units of the drawing each, and not longer than A4;
+    /// texts, including indices, have at least 6 points.
     #[test]
     #[ignore = "minutes: every figure is measured; .ci/pages runs it"]
     fn every_figure_fits_its_page_and_can_be_read() {
@@ -289,6 +294,9 @@ mod tests {
             };
             let width = numbers(" width")[0];
             assert!(width <= 672.0, "figure {}: {width} units wide", recipe.name);
+            let height = numbers(" height")[0];
+            let is_short = height <= 1.41 * 672.0;
+            assert!(is_short, "figure {}: {width} × {height}", recipe.name);
             let smallest = numbers("font-size").into_iter().fold(f64::MAX, f64::min);
             let points = 0.75 * smallest;
             assert!(points >= 6.0, "figure {}: {points} points", recipe.name);

@@ -111,12 +111,20 @@ pub(crate) fn compared<'a>(seen: &[Seen<'a>], shared: bool) -> Vec<PlateRow<'a>>
         Some(full_radial(seen.plane, full))
     });
     let full: Option<Vec<[Picture<'a>; 2]>> = full.collect();
-    for (i, name) in ["full radial", "its prediction"].into_iter().enumerate() {
+    for (i, name) in ["full radial", "prediction"].into_iter().enumerate() {
         let Some(full) = &full else { break };
         let pictures = full.iter().map(|both| both[i].clone()).collect();
         rows.push(row(name, full_radial_quantity(), DECIBEL, shared, pictures));
     }
     rows
+}
+
+/// Headings with letters, (a) first.
+pub(crate) fn lettered(heads: &[&str]) -> Vec<String> {
+    let letters = ('a'..='z').zip(heads);
+    letters
+        .map(|(letter, head)| format!("({letter}) {head}"))
+        .collect()
 }
 
 pub(crate) fn feet(seen: &[Seen<'_>]) -> Vec<Vec<String>> {

@@ -1,7 +1,7 @@
 //! Figs. 14 and 15: diffuse shading under an environment, and the bandwidth of glossy reflections.
 
 use crate::criteria::criteria;
-use crate::rows::{Seen, compared, feet};
+use crate::rows::{Seen, compared, feet, lettered};
 use crate::subject::FigureData;
 use etendue_field::{
     Complex, EnvironmentMap, Light, Profile, Slices, SphericalGaussian, cis, modulus,
@@ -20,10 +20,11 @@ pub(crate) fn environment(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         title: "Diffuse shading under an environment map",
         note: "Light that varies over angle alone has its spectrum along *ν*; curvature shears it onto *ρ* = *kν*, the cosine blurs it along *ν*, and what leaves a diffuse \
                surface is the line *ν* = 0.",
-        heads: names.map(str::to_owned).to_vec(),
+        heads: lettered(&names),
         rows: compared(&seen, false),
         feet: feet(&seen),
         bars: None,
+        side: None,
     })?;
     Ok(stacked(&[steps, product(taken, &seen[3])?]))
 }
@@ -126,21 +127,22 @@ fn at_zero_nu(slices: &Slices) -> Vec<[f64; 3]> {
 pub(crate) fn adaptive(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let seen: Vec<Seen<'_>> = Seen::all(&taken.shots[0]).collect();
     let heads = [
-        "a incidence",
-        "b curvature",
-        "c mirror",
-        "d lobe",
-        "e back",
-        "f outgoing",
-        "at the eye",
+        "incidence",
+        "curvature",
+        "mirror",
+        "lobe",
+        "back",
+        "outgoing",
+        "eye",
     ];
     let steps = taken.plate(&Plate {
         title: "Bandwidth of a glossy reflection, step by step",
         note: "A beam, distant light with content at all frequencies in angle, on a glossy sphere. The lobe limits the line; curvature shears it twice, and travel once more.",
-        heads: heads.map(str::to_owned).to_vec(),
+        heads: lettered(&heads),
         rows: compared(&seen, false),
         feet: feet(&seen),
         bars: None,
+        side: Some(54.0),
     })?;
     Ok(stacked(&[steps, criteria(taken)?]))
 }

@@ -1,6 +1,6 @@
 //! Figs. 3 and 13: coordinates of rays, and the error of taking one kind for another.
 
-use crate::rows::{Seen, compared, feet, row};
+use crate::rows::{Seen, compared, feet, lettered, row};
 use crate::scene_run::resolved;
 use crate::scenes::TWIST;
 use crate::subject::{FigureData, Text};
@@ -21,12 +21,11 @@ pub(crate) fn coordinates(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let spaces = taken.plate(&Plate {
         title: "Two parameterisations, and travel",
         note: "Five suns, 0.4 rad apart, behind a grating: stripes at slopes *u* = tan *θ*, which are unequally spaced, and at angles, which are equally spaced. Travel shears them along *x*; angles are measured along T, which is opposite to X.",
-        heads: ["slopes", "slopes, 0.5 m on", "angles, there"]
-            .map(str::to_owned)
-            .to_vec(),
+        heads: lettered(&["slopes", "slopes, 0.5 m on", "angles, there"]),
         rows: compared(&seen, false),
         feet: feet(&seen),
         bars: None,
+        side: Some(88.0),
     })?;
     let panels = shrunk(&taken.also[0], &["angles"])?;
     let error = orders(
@@ -75,25 +74,23 @@ pub(crate) fn directions(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     }
     let plate = taken.plate(&Plate {
         title: "Directions in 3D, by longitude and latitude",
-        note: "A projector on a saddle whose axes lie 45° out of the plane of incidence: a mirror, and rough copper seen 6.9° beside that plane. The equator of the surface is the plane of \
-               incidence, that of outgoing light holds the outgoing ray. Along: position and longitude or slope. Across: the other two, as far as the frequencies go. Below: the error of first order, which treats rotations of the sphere as rotations of a flat (*θ*, *φ*).",
-        heads: [
-            "mirror, normals",
-            "mirror, outgoing",
-            "copper, normals",
-            "copper, outgoing",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
+        note: "Light of a projector on a saddle turned by 45°: a mirror, and rough copper seen 6.9° beside the plane of incidence. Along: position and longitude or slope; across: the other two.",
+        heads: lettered(&[
+            "mirror\nnormals",
+            "mirror\noutgoing",
+            "copper\nnormals",
+            "copper\noutgoing",
+        ]),
         rows,
         feet,
         bars: None,
+        side: Some(76.0),
     })?;
     let panels = shrunk(&TWIST, &["curvature", "back", "outgoing"])?;
     let error = orders(
         taken,
         "The error of a flat (*θ*, *φ*)",
-        "‖first order − exact‖/‖exact‖ at the mirror, in neighbourhoods *e* times as wide: they are flat to first order.",
+        "‖first order − exact‖/‖exact‖ at the mirror, in neighbourhoods *e* times as wide.",
         &panels,
         1,
     )?;

@@ -1,63 +1,75 @@
 //! Table 1: each operator, shown by the light before and after it.
 
-use crate::rows::{DECIBEL, Seen, feet, row};
+use crate::rows::{DECIBEL, Seen, row};
 use crate::subject::FigureData;
 use etendue_figures::{Figure, Picture, Plate, PlateRow, Scale, stacked};
 use etendue_report::pictures::{light_field_quantity, spectrum_quantity};
 use etendue_store::Failure;
 
-/// An operator: its name, and the scene and plane before and after it.
+/// An operator: its name, a line break and its formula, and the scene and plane before and after it.
 type Step = (&'static str, [[&'static str; 2]; 2]);
+
+/// Largest width of a picture, so that both parts fit a page.
+const SIDE: f64 = 58.0;
 
 /// The two parts of the paper's table.
 const PARTS: [(&str, [Step; 5]); 2] = [
     (
-        "Maps and masks",
+        "Operators: maps and masks, then local shading",
         [
-            ("travel", [["travel", "near"], ["travel", "middle"]]),
             (
-                "visibility",
+                "travel\n*ℓ̂*(Ω_{x}, Ω_{u} + *d*Ω_{x})",
+                [["travel", "near"], ["travel", "middle"]],
+            ),
+            (
+                "visibility\n*ℓ̂* ⊗ *V̂*",
                 [["fig1", "before_blockers"], ["fig1", "after_blockers"]],
             ),
             (
-                "light incidence",
+                "light incidence\n*ℓ̂*(−Ω_{x}/*c*, Ω_{θ})/*c*",
                 [["incidence", "arrival"], ["incidence", "incidence"]],
             ),
             (
-                "outgoing angle",
+                "outgoing angle\n*c* *ℓ̂*(*c*Ω_{x}, Ω_{θ})",
                 [["incidence", "reflection"], ["incidence", "outgoing"]],
             ),
             (
-                "curvature",
+                "curvature\n*ℓ̂*(Ω_{x} − *k*Ω_{θ}, Ω_{θ})",
                 [["fig10", "1_incidence"], ["fig10", "2_curvature"]],
             ),
         ],
     ),
     (
-        "Local shading",
+        "",
         [
-            ("cosine", [["fig10", "2_curvature"], ["fig10", "3_cosine"]]),
-            ("BRDF", [["fig10", "4_mirror"], ["fig10", "5_reflection"]]),
             (
-                "texture",
+                "cosine\n*ℓ̂* ⊗ ĉos_{+}",
+                [["fig10", "2_curvature"], ["fig10", "3_cosine"]],
+            ),
+            (
+                "BRDF\n*dÊ* *ρ̂*",
+                [["fig10", "4_mirror"], ["fig10", "5_reflection"]],
+            ),
+            (
+                "texture\n*T̂* ⊗ *ℓ̂*",
                 [["glossy", "reflection"], ["textured_glossy", "texture"]],
             ),
             (
-                "separable BRDF",
+                "separable BRDF\n(*dÊ* ⊗ *f̂*(−Ω_{θ})) *ρ̂*",
                 [
                     ["fresnel_grazing", "cosine"],
                     ["fresnel_grazing", "reflection"],
                 ],
             ),
             (
-                "varying BRDF",
+                "varying BRDF\n*dÊ* ⊗_{x} *ρ̂*",
                 [["tiles", "mirrored"], ["tiles", "reflection"]],
             ),
         ],
     ),
 ];
 
-const NOTE: &str = "Measured. A map moves light and spectrum, a mask blurs the spectrum, a convolution limits it. Below: whether theory holds after the operator.";
+const NOTE: &str = "Measured. Formulas are corrected, without phases; *c* = cos *θ*.";
 
 /// Light fields and spectra before and after each operator.
 pub(crate) fn operators(taken: &FigureData<'_>) -> Result<Figure, Failure> {
@@ -78,8 +90,9 @@ pub(crate) fn operators(taken: &FigureData<'_>) -> Result<Figure, Failure> {
             note: if i == 0 { NOTE } else { "" },
             heads: steps.iter().map(|(name, _)| (*name).to_owned()).collect(),
             rows: rows(&before, &after),
-            feet: feet(&after),
+            feet: Vec::new(),
             bars: None,
+            side: Some(SIDE),
         })
     });
     Ok(stacked(&parts.collect::<Result<Vec<Figure>, _>>()?))

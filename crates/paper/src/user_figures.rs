@@ -145,6 +145,7 @@ fn side_by_side(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         rows: compared(&seen, true),
         feet: feet(&seen),
         bars: None,
+        side: None,
     })
 }
 

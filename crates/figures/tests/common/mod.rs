@@ -140,6 +140,7 @@ pub fn path(section: &Section, values: ArrayView2<'_, f64>) -> Figure {
         guides: vec![Guide {
             through: [0.0, 0.0],
             slope: -1.0,
+            is_across: false,
         }],
     };
     let path = Strip {
@@ -216,6 +217,7 @@ fn plate_of(count: usize, values: ArrayView2<'_, f64>, ends: fn(usize) -> [f64; 
             errors: some(0.2),
             predicted: some(1.4),
         }),
+        side: None,
     };
     plate(&rows, &Style::default()).unwrap()
 }

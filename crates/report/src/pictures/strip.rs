@@ -320,6 +320,7 @@ fn guides(scene: &Scene, plane: &VirtualPlane) -> Vec<Guide> {
     let through = |through| Guide {
         through,
         slope: -scene.path.along(plane),
+        is_across: false,
     };
     let behind = scene
         .blockers
@@ -347,11 +348,20 @@ fn ridges(scene: &Scene, matrix: &[[f64; 4]; 4]) -> Vec<Guide> {
         let free = if scene.light.is_distant() { i } else { i + 2 };
         -position[free] / slope[free]
     };
-    let through = [0.0, 0.0];
-    let slopes = [0, 1].map(slope).into_iter();
-    let guides = slopes.filter(|slope| slope.abs() < STEEPEST);
-    guides.map(|slope| Guide { through, slope }).collect()
+    let guides = [0, 1].map(|i| Guide {
+        through: [0.0, 0.0],
+        slope: slope(i),
+        is_across: i == 1,
+    });
+    let same = (guides[0].slope - guides[1].slope).abs() <= NEAR * guides[0].slope.abs().max(1.0);
+    let guides = guides.into_iter().take(if same { 1 } else { 2 });
+    guides
+        .filter(|guide| guide.slope.abs() < STEEPEST)
+        .collect()
 }
+
+/// The relative difference of two slopes that coincide up to rounding.
+const NEAR: f64 = 1e-9;
 
 /// The distance in metres beyond which a line is vertical in any picture.
 const STEEPEST: f64 = 1e6;

@@ -1,0 +1,35 @@
+//! Fig. 11: a beam on a hollow mirror, met along its normal and obliquely.
+
+use crate::rows::{DECIBEL, Seen, feet, row};
+use crate::subject::FigureData;
+use etendue_figures::{Figure, Plate, stacked};
+use etendue_pipeline::table::spaced;
+use etendue_report::pictures::spectrum_quantity;
+use etendue_store::Failure;
+
+/// Fig. 11: the steps at normal incidence, and below them spectra at 40°.
+pub(crate) fn caustic(taken: &FigureData<'_>) -> Result<Figure, Failure> {
+    let normal = taken.strip()?;
+    let seen: Vec<Seen<'_>> = Seen::all(&taken.shots[1]).collect();
+    let power = seen
+        .iter()
+        .map(|seen| seen.spectrum(seen.found.radial.power.view()));
+    let spectra = row(
+        "spectrum",
+        spectrum_quantity(),
+        DECIBEL,
+        false,
+        power.collect(),
+    );
+    let name = |seen: &Seen<'_>| spaced(&seen.plane.name);
+    let oblique = taken.plate(&Plate {
+        title: "The same mirror met at 40°",
+        note: "Measured. It has two foci, in the plane of incidence and across it, and no plane has all light on *ν* = 0.",
+        heads: seen.iter().map(name).collect(),
+        rows: vec![spectra],
+        feet: feet(&seen),
+        bars: None,
+        side: None,
+    })?;
+    Ok(stacked(&[normal, oblique]))
+}

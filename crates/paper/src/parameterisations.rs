@@ -1,0 +1,133 @@
+//! Fig. 8: the spectrum at the receiver by slopes, by angles, and the difference of the two.
+
+use crate::rows::{DECIBEL, Seen, feet, lettered, row};
+use crate::subject::FigureData;
+use etendue_compare::Bandwidth;
+use etendue_field::{Orientation, Slices, percent, uncertain};
+use etendue_figures::{Figure, Plate};
+use etendue_report::pictures::spectrum_quantity;
+use etendue_store::Failure;
+use ndarray::{Array2, Axis};
+
+/// Fig. 8: slopes and angles at the receiver. The chain identifies the two, an error that the paper
+/// calls not significant.
+pub(crate) fn parameterisations(taken: &FigureData<'_>) -> Result<Figure, Failure> {
+    let slopes = Seen::at(&taken.shots[0], "slopes")?;
+    let angles = Seen::at(&taken.shots[0], "angles")?;
+    let measured = panels(
+        [&slopes.found.measured, &angles.found.measured],
+        [&slopes.found.radial.power, &angles.found.radial.power],
+    );
+    let predicted = panels(
+        [&slopes.found.predicted, &angles.found.predicted],
+        [
+            &slopes.found.predicted_radial,
+            &angles.found.predicted_radial,
+        ],
+    );
+    let planes = [&slopes, &angles, &slopes];
+    let pictures = [&measured, &predicted].map(|panels| {
+        let both = planes.iter().zip(panels);
+        both.map(|(seen, power)| seen.spectrum(power.view()))
+            .collect()
+    });
+    let names = ["measured", "predicted"].into_iter().zip(pictures);
+    let rows =
+        names.map(|(name, pictures)| row(name, spectrum_quantity(), DECIBEL, true, pictures));
+    let mut feet = feet(&[slopes, angles]);
+    for (foot, seen) in feet.iter_mut().zip([&slopes, &angles]) {
+        foot.extend(bandwidths(seen));
+    }
+    feet.push(off(&angles));
+    taken.plate(&Plate {
+        title: "Two parameterisations",
+        note: "*ρ* runs along X in all panels. The difference is the mean of |*S*_{θ} − *S*_{u}|^{2} over azimuths, with each frequency of (b) at its place in (a). *B*: 95 % bandwidths in the azimuth where they are largest.",
+        heads: lettered(&["by slopes *u*", "by angles *θ*", "difference"]),
+        rows: rows.collect(),
+        feet,
+        bars: None,
+        side: None,
+    })
+}
+
+/// Radial spectra by slopes, by angles with ρ along X, and their difference.
+fn panels(
+    [slopes, angles]: [&Slices; 2],
+    [by_slopes, by_angles]: [&Array2<f64>; 2],
+) -> [Array2<f64>; 3] {
+    let mut along_x = by_angles.clone();
+    along_x.invert_axis(Axis(0));
+    [by_slopes.clone(), along_x, difference(slopes, angles)]
+}
+
+/// |S_θ − S_u|² averaged over azimuths, [ρ, ν], ρ along X.
+///
+/// T is opposite to X and B is Y; angles are those to where light comes from. The slice at (ρ, ν) in
+/// azimuth φ by slopes is thus that at (−ρ, ν) in azimuth −φ by angles, or at (ρ, −ν) in π − φ.
+fn difference(slopes: &Slices, angles: &Slices) -> Array2<f64> {
+    let [by_slopes, by_angles] = [slopes, angles].map(Slices::full);
+    let (azimuths, columns, rows) = by_slopes.dim();
+    Array2::from_shape_fn((columns, rows), |(i, j)| {
+        let squares = (0..azimuths).map(|k| {
+            let same = match k {
+                0 => [0, columns - 1 - i, j],
+                _ => [azimuths - k, i, rows - 1 - j],
+            };
+            (by_slopes[[k, i, j]] - by_angles[same]).norm_sqr()
+        });
+        squares.sum::<f64>() / azimuths as f64
+    })
+}
+
+/// The norm of the difference over that of the spectrum.
+fn off(angles: &Seen<'_>) -> Vec<String> {
+    let Some(first_order) = &angles.found.report.first_order else {
+        return Vec::new();
+    };
+    let said = |share: Option<f64>| share.map_or("–".to_owned(), |share| percent(share, 2));
+    vec![
+        "of the spectrum:".to_owned(),
+        format!("{} measured", said(first_order.excess)),
+        format!("{} computed", said(Some(first_order.chain.error))),
+    ]
+}
+
+/// The 95 % bandwidths of a plane.
+fn bandwidths(seen: &Seen<'_>) -> Vec<String> {
+    let Bandwidth { rho, nu } = &seen.found.report.bandwidth_95;
+    let angular = ["slope", "rad"][usize::from(seen.plane.orientation == Orientation::Tangent)];
+    let both = [("ρ", "m", rho), ("ν", angular, nu)].into_iter();
+    let lines = both.filter_map(|(axis, unit, pair)| {
+        let found = uncertain(pair.measured?, pair.error?);
+        let predicted = pair.predicted.map_or("–".to_owned(), |p| format!("{p:.3}"));
+        Some([
+            format!("*B*_{{{axis}}} {found} /{unit}"),
+            format!("predicted {predicted}"),
+        ])
+    });
+    lines.flatten().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::quality::Quality;
+    use crate::recipe::named;
+    use crate::scene_run::Shot;
+    use etendue_pipeline::Silent;
+
+    /// The difference of the two planes is that of the chain, which takes u for θ. It would be as
+    /// large as the spectra if a frequency of one were subtracted from another of the other.
+    #[test]
+    fn the_difference_of_the_planes_is_the_error_of_the_chain() {
+        let subject = named("8").unwrap().subject().unwrap();
+        let scene = subject.scenes[0].clone();
+        let shot = Shot::take(scene, Quality::Sketch, false, &Silent).unwrap();
+        let [slopes, angles] = ["slopes", "angles"].map(|name| Seen::at(&shot, name).unwrap());
+        let found = difference(&slopes.found.predicted, &angles.found.predicted).sum();
+        let share = (found / slopes.found.predicted.radial_power().sum()).sqrt();
+        let first_order = angles.found.report.first_order.as_ref().unwrap();
+        let error = first_order.chain.error;
+        assert!((share / error - 1.0).abs() < 0.05, "{share}, {error}");
+    }
+}
