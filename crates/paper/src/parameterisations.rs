@@ -126,8 +126,10 @@ mod tests {
         let [slopes, angles] = ["slopes", "angles"].map(|name| Seen::at(&shot, name).unwrap());
         let found = difference(&slopes.found.predicted, &angles.found.predicted).sum();
         let share = (found / slopes.found.predicted.radial_power().sum()).sqrt();
-        let first_order = angles.found.report.first_order.as_ref().unwrap();
-        let error = first_order.chain.error;
-        assert!((share / error - 1.0).abs() < 0.05, "{share}, {error}");
+        let report = &angles.found.report;
+        let chain = report.first_order.as_ref().unwrap().chain.error;
+        // The prediction by angles has an error of its own, that of its nets.
+        let wanted = libm::hypot(chain, report.quadrature_error.unwrap());
+        assert!((share / wanted - 1.0).abs() < 0.05, "{share}, {wanted}"); // the error of nets is an estimate
     }
 }
