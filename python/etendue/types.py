@@ -270,7 +270,7 @@ class LightBeamFields(TypedDict):
     image: "Image"
     """The picture, in metres along X and along Y"""
     irradiance: NotRequired[float]
-    """Irradiance where the picture is 1, W m⁻². 1e-9 to 1e9"""
+    """Irradiance, in W m⁻², where the picture has the value 1. 1e-9 to 1e9"""
 
 
 class LightDisc(TypedDict):
@@ -335,11 +335,11 @@ class LightProjectorFields(TypedDict):
     image: "Image"
     """The picture, over slopes along X and along Y"""
     intensity: NotRequired[float]
-    """Intensity where the picture is 1, W sr⁻¹. 1e-9 to 1e9"""
+    """Intensity, in W sr⁻¹, where the picture has the value 1. 1e-9 to 1e9"""
 
 
 class LightRays(TypedDict):
-    """The rays of a file, where they cross the plane across `path.direction` at the centre; rays that go backwards are omitted."""
+    """The rays of a file, at their intersections with the plane through the centre that is perpendicular to `path.direction`; rays that go backwards are omitted."""
 
     Rays: "LightRaysFields"
 

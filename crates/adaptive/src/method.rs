@@ -213,8 +213,8 @@ impl AdaptiveRun<'_> {
         .collect()
     }
 
-    /// The squared relative error around each pixel that planes through one half of the samples
-    /// have at the other half, after noise removal.
+    /// Fits planes to one half of the samples, compares them with the other half, and returns the
+    /// squared relative error around each pixel after noise removal.
     fn missed(&self, samples: &[(ShadedSample, f64)]) -> Vec<f64> {
         let lights = samples.iter().map(|(sample, _)| sample.light(sample.value));
         let dark = 0.01 * lights.sum::<f64>() / samples.len().max(1) as f64;

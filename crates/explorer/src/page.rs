@@ -68,7 +68,7 @@ impl Explorer {
         }
     }
 
-    /// The names of the planes, one per line; slow planes are marked with a *.
+    /// The names of the planes, one per line; planes that take long to compute are marked with a *.
     #[must_use]
     pub fn planes(&self) -> String {
         let all = PathPlace::all(&self.setup).into_iter();

@@ -27,14 +27,14 @@ pub enum Light {
     },
     /// A slide projector: a point on the central ray whose intensity is a picture over slopes (u, v).
     Projector {
-        /// Intensity where the picture is 1, W sr⁻¹.
+        /// Intensity, in W sr⁻¹, where the picture has the value 1.
         intensity: f64,
         /// The picture.
         image: Image,
     },
     /// A collimated beam along the central ray whose irradiance is a picture over (x, y).
     Beam {
-        /// Irradiance where the picture is 1, W m⁻².
+        /// Irradiance, in W m⁻², where the picture has the value 1.
         irradiance: f64,
         /// The picture.
         image: Image,

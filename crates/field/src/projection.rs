@@ -9,7 +9,7 @@ pub struct ProjectionGrid {
     pub bins: usize,
     /// Half-width in x, metres.
     pub half_x: f64,
-    /// Half-width in u, slope.
+    /// Half-width in u, as a slope.
     pub half_u: f64,
 }
 

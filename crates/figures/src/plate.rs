@@ -17,7 +17,7 @@ use etendue_field::uncertain;
 pub struct PlateRow<'a> {
     /// Name of the row.
     pub name: &'a str,
-    /// The quantity of the pictures.
+    /// The quantity that the pictures show.
     pub quantity: AxisQuantity,
     /// The mapping of values to colors.
     pub scale: Scale,

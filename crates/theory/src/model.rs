@@ -26,8 +26,8 @@ pub trait Model: Clone {
     /// the parameter, or if the central ray does not arrive.
     fn change(&mut self, parameter: Parameter, new: New<'_>) -> Option<()>;
 
-    /// Predicts the slices with their error, a picture, and the derivatives by the given
-    /// parameters.
+    /// Predicts the slices with their error, a picture, and the derivatives with respect to the
+    /// given parameters.
     fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: RayBudget) -> Predicted;
 
     /// Calls `then` with the light field as nets of rays, drawn as [`predict`](Self::predict) draws

@@ -23,8 +23,8 @@ pub struct Predicted {
     /// Second central moments of the windowed light field, in the plane's coordinates; `None` for
     /// closed forms, and if no light arrives.
     pub covariance: Option<Matrix<4>>,
-    /// The derivatives of the slices by each of the requested parameters, per unit of the
-    /// parameter.
+    /// The derivatives of the slices with respect to each of the requested parameters, per unit of
+    /// the parameter.
     pub derivatives: Vec<Slices>,
     /// The prediction of the first-order chain of a reflection minus the slices, over the same
     /// rays.

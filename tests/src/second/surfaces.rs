@@ -1,4 +1,5 @@
-//! Smooth surfaces of scene files and their effect on single rays, compared with solids and angles.
+//! Compares smooth surfaces of scene files with equivalent solids, and the directions of single
+//! rays after them with computed angles.
 
 use super::check::{SecondCheck, worse};
 use super::smooth::Smooth;

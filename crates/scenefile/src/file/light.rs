@@ -69,7 +69,7 @@ pub enum LightFile {
         /// Position, world coordinates.
         #[schemars(transform = place)]
         center: [f64; 3],
-        /// Intensity where the picture is 1, W sr⁻¹.
+        /// Intensity, in W sr⁻¹, where the picture has the value 1.
         #[serde(default = "one")]
         #[schemars(transform = intensity)]
         intensity: f64,
@@ -81,7 +81,7 @@ pub enum LightFile {
         /// Start of the central ray, world coordinates.
         #[schemars(transform = place)]
         center: [f64; 3],
-        /// Irradiance where the picture is 1, W m⁻².
+        /// Irradiance, in W m⁻², where the picture has the value 1.
         #[serde(default = "one")]
         #[schemars(transform = told("an irradiance, W m⁻²", "1"))]
         irradiance: f64,
@@ -110,8 +110,8 @@ pub enum LightFile {
         /// Radiance by direction.
         map: EnvironmentFile,
     },
-    /// The rays of a file, where they cross the plane across `path.direction` at the centre; rays
-    /// that go backwards are omitted.
+    /// The rays of a file, at their intersections with the plane through the centre that is
+    /// perpendicular to `path.direction`; rays that go backwards are omitted.
     Rays {
         /// Position of the file's origin and start of the central ray, world coordinates.
         #[schemars(transform = place)]

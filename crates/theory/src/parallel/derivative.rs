@@ -1,4 +1,4 @@
-//! Derivatives of slices by parameters of the chain.
+//! Derivatives of slices with respect to parameters of the chain.
 
 use crate::model::Model;
 use crate::parallel::slices::{fineness, slices_at_fineness};
@@ -7,12 +7,12 @@ use etendue_field::{SliceGrid, Slices, Window};
 
 /// The step of the forward difference, relative to the value of the parameter.
 ///
-/// The error of the difference is half the second derivative times the step: a parameter changes
-/// phases by up to some tens of radians, which gives about 10⁻³ of the derivative. Rounding adds
-/// 10⁻¹²/10⁻⁴ = 10⁻⁸ of the spectrum.
+/// The error of the difference is half the second derivative times the step. Since a parameter
+/// changes phases by at most some tens of radians, this error is about 10⁻³ of the derivative.
+/// Rounding adds 10⁻¹²/10⁻⁴ = 10⁻⁸ of the spectrum.
 const RELATIVE_STEP: f64 = 1e-4;
 
-/// Returns the derivative of the slices by a parameter, per unit of the parameter: the forward
+/// Returns the derivative of the slices with respect to a parameter, per its unit: the forward
 /// difference with a step of 10⁻⁴ of the parameter's value (of its unit, if the value is zero).
 ///
 /// `prediction` must be the slices of the chain itself, on the same window and grid.

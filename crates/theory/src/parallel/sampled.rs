@@ -16,7 +16,7 @@ enum NetDomain {
 }
 
 impl Chain {
-    /// Returns the prediction by nets of rays, with derivatives by some parameters.
+    /// Returns the prediction by nets of rays, with derivatives with respect to some parameters.
     #[must_use]
     pub fn sampled(
         &self,
@@ -64,7 +64,7 @@ impl Chain {
         over: Over<'_>,
         into: impl Fn(Self) -> V,
     ) -> Vec<ShiftedModels<V>> {
-        // Step of derivatives by masks, whose shadows move: large enough that some rays cross the
+        // Step for parameters of masks, whose shadows move: large enough that some rays cross the
         // shadow's edge, and small enough that phases turn by a third of a radian at most.
         const STEP: f64 = 1e-2;
         const PHASE: f64 = 0.05;

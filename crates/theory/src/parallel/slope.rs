@@ -2,9 +2,9 @@
 //! short sum of products of cosine series (docs/theory.md (5d)).
 //!
 //! The function is decomposed by elimination with complete pivoting, one product a(u) b(v) at a
-//! time (Townsend and Trefethen 2013), and each factor is fitted by cosines of a period longer than
-//! the window, where it is smooth (a Fourier extension, Huybrechs 2010). Both stop at a measured
-//! residual.
+//! time (Townsend and Trefethen 2013). Each factor is smooth in the window and is fitted there by
+//! cosines whose period is longer than the window (a Fourier extension, Huybrechs 2010). Both stop
+//! at a measured residual.
 
 use crate::numerics::quadrature::gauss_legendre;
 use etendue_field::{CosineTerm, Profile};

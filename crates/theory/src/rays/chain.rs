@@ -355,8 +355,8 @@ fn lens(frame: &Frame, hit: &CentralHit, focal_length: f64) -> Option<AffineMap<
     Some(map.then(&AffineMap::linear(after).inverse()?))
 }
 
-/// Returns the derivative of positions and slopes in a plane by those in the frame of a leg that
-/// meets it obliquely.
+/// Returns the derivative of positions and slopes in a plane with respect to those in the frame of
+/// a leg that meets it obliquely.
 fn seen_across(plane: &Frame, leg: &Frame) -> Matrix<4> {
     let towards = plane.vector_to_local(leg.d);
     let axes = [leg.x, leg.y].map(|axis| plane.vector_to_local(axis));

@@ -68,8 +68,8 @@ enum By {
         targets: [Target; 2],
         /// The target coordinates at which the central ray lands.
         center: [f64; 2],
-        /// Derivatives of the target coordinates by those that the light samples, and by the other
-        /// two.
+        /// Derivatives of the target coordinates with respect to those that the light samples, and
+        /// to the other two.
         outer: Matrix<2>,
         inverse: Matrix<2>,
         determinant: f64,

@@ -24,8 +24,8 @@ const FOR_PICTURES: RayBudget = RayBudget {
     error: 0.0,
 };
 
-/// Returns the prediction from rays followed through the exact geometry, with the derivatives by
-/// given parameters.
+/// Returns the prediction from rays followed through the exact geometry, with the derivatives with
+/// respect to given parameters.
 ///
 /// For a projector, point or beam this uses a midpoint rule, if no sharp edge cuts its light and
 /// the rule converges; otherwise nets of rays. Derivatives are central differences whose two sides

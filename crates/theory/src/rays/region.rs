@@ -34,7 +34,7 @@ pub(super) struct Finder<'a, F> {
     pub(super) neighbourhood: Neighbourhood,
 }
 
-/// The landing point of the central ray, and its derivative by the ray, [at plane, at light].
+/// Where the central ray lands, and the derivative with respect to the ray, [at plane, at light].
 pub(super) type Neighbourhood = ([f64; 4], Matrix<4>);
 
 /// Returns the neighbourhood for exact rays, ignoring masks; `None` if the central ray, or a

@@ -114,7 +114,7 @@ pub(super) struct Conditional {
     /// The value of the other two coordinates at which the mean is `mean`.
     known: [f64; 2],
     mean: [f64; 2],
-    /// The derivative of the mean by the other two coordinates.
+    /// The derivative of the mean with respect to the other two coordinates.
     gain: Matrix<2>,
     covariance: Matrix<2>,
 }

@@ -7,8 +7,8 @@ use crate::nets::{self, DIMENSIONS, Integrand, RayBudget, RayNets, RayNode};
 use crate::predicted::Predicted;
 use etendue_field::Slices;
 
-/// Returns the windowed spectrum, with the derivatives by given parameters. The result is bitwise
-/// identical on any number of threads.
+/// Returns the windowed spectrum, with the derivatives with respect to given parameters. The result
+/// is bitwise identical on any number of threads.
 ///
 /// The prediction of the chain, and the derivatives, are differences over the same paths: accurate
 /// to about a per cent of their values.

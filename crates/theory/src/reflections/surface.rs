@@ -42,8 +42,8 @@ impl PathSurface {
         Some(frame.vector_to_world(gradient))
     }
 
-    /// Returns the continuation of a ray that meets a specular surface at a point; `None` at a
-    /// scattering one, and under total internal reflection at a refracting one.
+    /// Returns the continuation of a ray that meets a specular surface at a point; `None` if the
+    /// surface scatters, or refracts and the ray is totally reflected.
     pub(super) fn turned(&self, ray: &LegRay, point: DVec3) -> Option<LegRay> {
         let Interaction::Specular(event) = self.interaction else {
             return None;

@@ -13,8 +13,8 @@ use crate::rays::{LegRay, Plane};
 use etendue_field::{EnvironmentMap, Light, SliceGrid, TwoPlane, Window};
 use glam::DVec3;
 
-/// Returns the windowed spectrum of the light that a surface scatters, with the derivatives by
-/// given parameters.
+/// Returns the windowed spectrum of the light that a surface scatters, with the derivatives with
+/// respect to given parameters.
 ///
 /// Rays are sampled at the plane, and for each ray one or four parts of the light that shines on
 /// its starting point (docs/theory.md (40)). `chain` is that of [`chain`](super::chain()); it
