@@ -217,6 +217,7 @@ fn scenes_that_were_refused_have_an_answer() {
     holds("many_squares_glossy", &behind);
     let in_a_row = ["leaving_wall", "at_floor", "beyond"].map(|plane| (plane, Class::FirstOrder));
     holds("sky_on_walls", &in_a_row);
+    holds("sky_on_both_sides", &[("leaving", Class::FirstOrder)]);
 }
 
 #[test]

@@ -83,7 +83,7 @@ impl<'a> SkyRays<'a> {
         if forward <= 0.0 {
             return None;
         }
-        let (at, steradians) = self.coordinates.of(direction)?;
+        let (at, steradians) = self.coordinates.of(direction);
         let from = self.environment.origin_of(direction);
         let radiance = self.environment.map.radiance(from);
         let per_steradian = (1.0 - guided) * self.radiance.density(from, radiance)
@@ -128,18 +128,18 @@ impl Coordinates {
         }
     }
 
-    /// Returns the coordinates of a direction of light, and steradians per unit of them; `None`
-    /// behind the surface.
-    fn of(&self, direction: DVec3) -> Option<([f64; 2], f64)> {
+    /// Returns the coordinates of a direction of light, and steradians per unit of them. A diffuse
+    /// surface also scatters light that comes from behind it.
+    fn of(&self, direction: DVec3) -> ([f64; 2], f64) {
         match self {
             Self::Angles(frame) => {
                 let [.., theta, phi] = local(frame, frame.origin, frame.d, -direction);
                 // dω = cos φ dθ dφ.
-                (theta.abs() < FRAC_PI_2).then(|| ([theta, phi], libm::cos(phi)))
+                ([theta, phi], libm::cos(phi))
             }
             Self::Slopes => {
                 let z = direction.z;
-                Some(([direction.x / z, direction.y / z], z.powi(3)))
+                ([direction.x / z, direction.y / z], z.powi(3))
             }
         }
     }
