@@ -20,8 +20,8 @@ pub(crate) fn coordinates(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let seen: Vec<Seen<'_>> = seen.into_iter().collect::<Result<_, _>>()?;
     let spaces = taken.plate(&Plate {
         title: "Two parameterisations, and travel",
-        note: "Five suns, 0.4 rad apart, behind a grating: stripes at slopes *u* = tan *θ*, which are unequally spaced, and at angles, which are equally spaced. Travel shears them along *x*; angles are measured along T, which is opposite to X.",
-        heads: ["slopes", "slopes, 0.5 m on", "angles, there"]
+        note: "Five suns, 0.4 rad apart, behind a grating: the stripes are unequally spaced in slope, *u* = tan *θ*, and equally spaced in angle. Travel shears them along *x*; angles are measured along T, which is opposite to X.",
+        heads: ["slopes", "slopes, after 0.5 m", "angles, there"]
             .map(str::to_owned)
             .to_vec(),
         rows: compared(&seen, false),
@@ -32,7 +32,7 @@ pub(crate) fn coordinates(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let error = orders(
         taken,
         "The error of taking *u* for *θ*",
-        "‖first order − exact‖/‖exact‖ of the spectrum in Fig. 8, whose window is *e* times as wide: the tangent is straight to second order.",
+        "‖first order − exact‖/‖exact‖ of the spectrum in Fig. 8, with a window *e* times as wide: tan *θ* equals *θ* to second order.",
         &panels,
         2,
     )?;
@@ -75,8 +75,8 @@ pub(crate) fn directions(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     }
     let plate = taken.plate(&Plate {
         title: "Directions in 3D, by longitude and latitude",
-        note: "A projector on a saddle whose axes lie 45° out of the plane of incidence: a mirror, and rough copper seen 6.9° beside that plane. The equator of the surface is the plane of \
-               incidence, that of outgoing light holds the outgoing ray. Along: position and longitude or slope. Across: the other two, as far as the frequencies go. Below: the error of first order, which treats rotations of the sphere as rotations of a flat (*θ*, *φ*).",
+        note: "A projector on a saddle whose axes lie 45° out of the plane of incidence: a mirror, and rough copper seen 6.9° out of that plane. The equator of the surface is the plane of \
+               incidence; the equator of outgoing light contains the outgoing ray. Along: position and longitude or slope. Across: the other two coordinates, limited to the measured frequencies. Below: the error of first order, which treats rotations of the sphere as rotations of a flat (*θ*, *φ*).",
         heads: [
             "mirror, normals",
             "mirror, outgoing",
@@ -93,7 +93,7 @@ pub(crate) fn directions(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let error = orders(
         taken,
         "The error of a flat (*θ*, *φ*)",
-        "‖first order − exact‖/‖exact‖ at the mirror, in neighbourhoods *e* times as wide: they are flat to first order.",
+        "‖first order − exact‖/‖exact‖ at the mirror, in neighbourhoods *e* times as wide: the sphere is flat to first order.",
         &panels,
         1,
     )?;

@@ -57,7 +57,7 @@ const PARTS: [(&str, [Step; 5]); 2] = [
     ),
 ];
 
-const NOTE: &str = "Measured. A map moves light and spectrum, a mask blurs the spectrum, a convolution limits it. Below: whether theory holds after the operator.";
+const NOTE: &str = "Measured light fields and spectra. A map moves light and spectrum, a mask blurs the spectrum, a convolution limits it. Below: whether theory holds after the operator.";
 
 /// Light fields and spectra before and after each operator.
 pub(crate) fn operators(taken: &FigureData<'_>) -> Result<Figure, Failure> {

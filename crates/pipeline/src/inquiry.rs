@@ -69,11 +69,13 @@ impl Inquiry {
         let finding = match (tracers.verdict, theory.exact_verdict()) {
             (Verdict::Pass, Verdict::Fail) => {
                 format!(
-                    "{this} and {other} agree, the prediction differs: a finding about the theory"
+                    "{this} and {other} agree, but the prediction differs: the theory is probably at fault"
                 )
             }
             (Verdict::Fail, Verdict::Pass) => {
-                format!("{other} and the prediction agree, {this} differ: a finding about {this}")
+                format!(
+                    "{other} and the prediction agree, but {this} differ: {this} are probably at fault"
+                )
             }
             (Verdict::Fail, Verdict::Fail) => {
                 format!("no two of {this}, {other} and the prediction agree")
@@ -114,7 +116,7 @@ fn both_pass(
     if needed > rays && needed.is_finite() {
         let apart = percent(Some(least.sqrt()));
         format!(
-            "{cannot}, and {this} and the prediction differ by {apart}; {needed:.1e} of them or more are needed (--photons)"
+            "{cannot}, and {this} and the prediction differ by {apart}; {needed:.1e} or more {other} are needed (--photons)"
         )
     } else {
         format!("{cannot}, and the disagreement is within the noise; use more photons")

@@ -63,7 +63,7 @@ pub fn on_chain(plane: &PlaneReport) -> Option<String> {
     match verdict {
         Verdict::Pass => None,
         Verdict::Fail if chain.radiance_defect.abs() >= chain.defect => Some(format!(
-            "{name}: the first-order chain{printed} has a wrong scale: it gives the central ray {} of its radiance",
+            "{name}: the first-order chain{printed} has a wrong scale: it gives the central ray {} of its true radiance",
             percent(Some(1.0 + chain.radiance_defect)),
         )),
         Verdict::Fail => Some(format!(
@@ -91,7 +91,7 @@ pub fn planes(summary: &Summary) -> Vec<Vec<String>> {
         "predicted",
     ];
     let chains = summary.planes.iter().any(|p| p.first_order.is_some());
-    header.extend(chains.then_some("chain off by (computed)"));
+    header.extend(chains.then_some("error of chain (computed)"));
     header.push("verdict");
     let row = |plane: &PlaneReport| {
         let mut row = vec![

@@ -104,10 +104,12 @@ fn values_of(text: &str) -> Result<Vec<f64>, String> {
 
 fn allowed(why: &str, arguments: ArgumentStyle) -> String {
     let forms = match arguments {
-        ArgumentStyle::Command => "PATH=A..B:N, PATH=A..B:Nlog by equal factors, or PATH=A,B,C",
-        ArgumentStyle::Python => "'A..B:N', 'A..B:Nlog' by equal factors, or a sequence",
+        ArgumentStyle::Command => {
+            "PATH=A..B:N, PATH=A..B:Nlog (logarithmic spacing), or PATH=A,B,C"
+        }
+        ArgumentStyle::Python => "'A..B:N', 'A..B:Nlog' (logarithmic spacing), or a sequence",
     };
-    format!("{why}; allowed: {forms}, numbers and at most {MAX_POINTS} of them")
+    format!("{why}; allowed: {forms}, with at most {MAX_POINTS} values, which are numbers")
 }
 
 fn number(text: &str) -> Result<f64, String> {
@@ -133,7 +135,7 @@ fn range(from: &str, rest: &str) -> Result<Vec<f64>, String> {
     let count = wanted
         .ok_or_else(|| format!("`{count}` is not a number of values from 2 to {MAX_POINTS}"))?;
     if is_log && ends[0] * ends[1] <= 0.0 {
-        return Err("equal factors cannot change the sign or reach zero".to_owned());
+        return Err("logarithmic spacing cannot change the sign or reach zero".to_owned());
     }
     Ok((0..count)
         .map(|i| between(ends, i, count, is_log))
@@ -163,7 +165,7 @@ pub fn points(sweeps: &[Sweep], together: bool) -> Result<Vec<SweepPoint>, Failu
         let count = counts.first().copied().unwrap_or(1);
         if counts.iter().any(|other| *other != count) {
             let message = format!(
-                "sweeps that go in step must have the same number of values, not {counts:?}"
+                "fields that vary together must have the same number of values, not {counts:?}"
             );
             return Err(Failure::bad_input(message));
         }

@@ -57,7 +57,8 @@ impl PbrtReader<'_> {
         ];
         let (filter, is_near) = entity.choice(self.report, "filter", &filters)?;
         if is_near {
-            let message = "filter is approximated by bilinear, of the picture at its full size";
+            let message =
+                "filter is approximated by bilinear interpolation of the picture at its full size";
             self.note_once(entity.place_of("filter"), message);
         }
         Ok(filter)

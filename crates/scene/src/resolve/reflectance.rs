@@ -45,7 +45,7 @@ impl Resolver<'_> {
             } else {
                 ("other", "blend")
             };
-            let allowed = format!("stated together with `{missing}`");
+            let allowed = format!("together with `{missing}` only");
             self.faults.add(format!("{of}.{stated}"), "alone", allowed);
         }
         let resolved = self.brdf(&format!("{of}.brdf"), brdf);
