@@ -124,7 +124,7 @@ impl StripRow {
             Self::Predicted => "predicted",
             Self::FullRadial => "full radial",
             Self::FullPredicted => "its prediction",
-            Self::OffChain => "chain error",
+            Self::OffChain => "off the chain",
         }
     }
 
@@ -162,7 +162,7 @@ impl StripRow {
             Self::LightField | Self::Across => strip.light_field.clone(),
             Self::Spectrum | Self::AcrossSpectrum | Self::Predicted => strip.spectrum.clone(),
             Self::FullRadial | Self::FullPredicted => strip.full_radial.clone(),
-            Self::OffChain => AxisQuantity::new("chain error", "% of the peak"),
+            Self::OffChain => AxisQuantity::new("off the chain", "% of the peak"),
         }
     }
 }

@@ -160,10 +160,10 @@ pub(crate) fn criteria(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     };
     let below = PicturePair {
         title: "",
-        note: "Left: samples a pixel that are asked for, up to one. Right: pixels that have one.",
+        note: "Left: requested samples per pixel, up to one. Right: pixels that have a sample.",
         heads: ["density", "samples"],
         values: [&density, &dots],
-        quantity: AxisQuantity::new("samples a pixel", ""),
+        quantity: AxisQuantity::new("samples per pixel", ""),
         scale: Scale::Linear,
         feet: Vec::new(),
     };

@@ -91,7 +91,7 @@ pub fn planes(summary: &Summary) -> Vec<Vec<String>> {
         "predicted",
     ];
     let chains = summary.planes.iter().any(|p| p.first_order.is_some());
-    header.extend(chains.then_some("error of chain (computed)"));
+    header.extend(chains.then_some("chain off by (computed)"));
     header.push("verdict");
     let row = |plane: &PlaneReport| {
         let mut row = vec![

@@ -85,7 +85,7 @@ impl Sweep {
             ))
         };
         match values.iter().find(|value| !value.is_finite()) {
-            Some(value) => refused(&format!("`{value}` is no number")),
+            Some(value) => refused(&format!("`{value}` is not a number")),
             None if !(1..=MAX_POINTS).contains(&values.len()) => {
                 refused(&format!("there are {} values", values.len()))
             }
@@ -114,7 +114,7 @@ fn allowed(why: &str, arguments: ArgumentStyle) -> String {
 
 fn number(text: &str) -> Result<f64, String> {
     let number = text.trim().parse().ok().filter(|x: &f64| x.is_finite());
-    number.ok_or_else(|| format!("`{}` is no number", text.trim()))
+    number.ok_or_else(|| format!("`{}` is not a number", text.trim()))
 }
 
 /// The values of a range, from the text before and after the dots.
@@ -271,9 +271,9 @@ mod tests {
         assert!(value("a=../b.ply") && value("a=\"x,y\"") && value("a=Box(0.3)"));
         assert!(matches!(setting("a=1,2"), Ok(Setting::Sweep(_))));
         let why = |text: &str| setting(text).unwrap_err();
-        assert!(why("a=0.1,,0.2").starts_with("`` is no number"));
-        assert!(why("a=Box(0.3),Hann(0.3)").starts_with("`Box(0.3)` is no number"));
-        assert!(why("a=0.1..x:3").starts_with("`x` is no number"));
+        assert!(why("a=0.1,,0.2").starts_with("`` is not a number"));
+        assert!(why("a=Box(0.3),Hann(0.3)").starts_with("`Box(0.3)` is not a number"));
+        assert!(why("a=0.1..x:3").starts_with("`x` is not a number"));
         assert!(why("a=-1..1:3log").starts_with("equal factors"));
         assert!(
             setting("a=0.1..0.4").is_err(),

@@ -29,7 +29,7 @@ impl Meets {
             Self::Itself(object) => {
                 let name = scene.name_of(object);
                 Some(format!(
-                    "light that meets {name} twice, or in the shadow of {name} on itself"
+                    "light that meets {name} twice, or meets {name} in its own shadow"
                 ))
             }
         }
