@@ -190,9 +190,15 @@ mod tests {
     fn who_is_wrong_is_told() {
         assert!(found(1.0, 1.0, 1.0).is_empty());
         let theory = found(1.0, 1.0, 1.2).concat();
-        assert!(theory.ends_with("the theory is probably at fault"), "{theory}");
+        assert!(
+            theory.ends_with("the theory is probably at fault"),
+            "{theory}"
+        );
         let photons = found(1.2, 1.0, 1.0).concat();
-        assert!(photons.ends_with("photons are probably at fault"), "{photons}");
+        assert!(
+            photons.ends_with("photons are probably at fault"),
+            "{photons}"
+        );
         let all = found(1.2, 1.0, 0.8).concat();
         assert!(all.starts_with("no two of"), "{all}");
     }
