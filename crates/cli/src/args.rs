@@ -53,7 +53,7 @@ pub(crate) enum Command {
     Run(RunArgs),
     /// Check a scene and show how it is understood; nothing is traced.
     Check(CheckArgs),
-    /// Run a scene with several values of its fields; write table and curves.
+    /// Run a scene for several field values; write a table and curves.
     Sweep(SweepArgs),
     /// Measure a scene, or some of its batches, for `compare`.
     Measure(MeasureArgs),

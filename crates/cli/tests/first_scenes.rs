@@ -224,7 +224,7 @@ const MISTAKES: &[[&str; 3]] = &[
     ],
 ];
 
-const CUT: &str = "line 15, column 7: the scene: the file ends here, and a bracket is still open; allowed: its missing fields and `)`";
+const CUT: &str = "line 15, column 7: the scene: the file ends here, but a bracket is still open; allowed: its missing fields and `)`";
 
 /// Settings on the command line, and their messages.
 const SET: &[[&str; 2]] = &[

@@ -53,7 +53,10 @@ pub(crate) fn drawn(
         .collect();
     let mut note = "Error bars: one standard error.".to_owned();
     if together && fields.len() > 1 {
-        note += &format!(" Varies together with {}.", fields[1..].join(", "));
+        note += &format!(
+            " The field varies together with {}.",
+            fields[1..].join(", ")
+        );
     }
     if short(fields[0]) != fields[0] {
         note += &format!(" {}: {}.", short(fields[0]), fields[0]);

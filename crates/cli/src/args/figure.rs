@@ -43,16 +43,21 @@ pub(crate) struct ReportArgs {
 #[command(after_help = "Examples:
   etendue figure 9
   etendue figure all --quality draft --out out/figures
-  etendue figure my.ron                                      light field and spectra along the path of your scene
-  etendue figure a.ron b.ron --plane receiver --out out      two scenes side by side at one plane
+  etendue figure my.ron                                   light field and spectra
+                                                          along the path of your scene
+  etendue figure a.ron b.ron --plane receiver --out out   two scenes side by side at one plane
 
-Figures of Durand et al. 2005: 1, 3 to 17, and table1. Figures 5 and 12 show kernels computed from theory alone; all others are measured
-and predicted. Each figure gets a folder with
-  figure.png, .svg, .pdf   the PDF is at most 7 inches wide (two columns of a journal)
-  figure.npz               light fields and spectra of all planes (docs/conventions.md)
+Figures of Durand et al. 2005: 1, 3 to 17, and table1. Figures 5 and 12 show kernels computed from theory \
+alone; all others are measured and predicted. Each figure gets a folder with
+  figure.png, .svg, .pdf   the PDF is at most 7 inches wide (two columns of a
+                           journal)
+  figure.npz               light fields and spectra of all planes
+                           (docs/conventions.md)
   figure.csv               the numbers of curves and bars
-  figure.json              the verdict of each plane, and the command that repeats the figure
-  NAME.ron                 the scenes of a figure of the paper; figure.json contains your own scenes as they were run
+  figure.json              the verdict of each plane, and the command that
+                           repeats the figure
+  NAME.ron                 the scenes of a figure of the paper; figure.json
+                           contains your own scenes as they were run
 The exit code is that of run for the worst plane.")]
 pub(crate) struct FigureArgs {
     /// Figures of the paper (1, 3 to 17, table1, or all), or scene files, drawn as one figure

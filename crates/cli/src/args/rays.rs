@@ -6,15 +6,18 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
-  etendue rays led.tm25ray                          show rays, power, units, wavelengths and texts
-  etendue rays led.tm25ray --out led.mcpl.gz        write the same rays as MCPL photons
+  etendue rays led.tm25ray                     show rays, power, units, wavelengths and texts
+  etendue rays led.tm25ray --out led.mcpl.gz   write the same rays as MCPL photons
   etendue rays out/fig9b/receiver/photons.mcpl --out rays.npy
 
 The format of FILE is recognised by its first bytes, and that of the output file by its extension:
   .tm25ray          IES TM-25: mm, nm, W or lm, single precision
-  .mcpl, .mcpl.gz   MCPL: cm, MeV, ms, weights; a photon of energy E has the wavelength hc/E
-  .npy              f64 [rays, 8]: x, y, z (m), kx, ky, kz, power, wavelength (m; NaN if unknown)
-A note lists what the output format cannot hold. Copies in the same format keep everything. docs/rays.md lists the units.")]
+  .mcpl, .mcpl.gz   MCPL: cm, MeV, ms, weights; a photon of energy E has the
+                    wavelength hc/E
+  .npy              f64 [rays, 8]: x, y, z (m), kx, ky, kz, power, wavelength
+                    (m; NaN if unknown)
+A note lists what the output format cannot hold. Copies in the same format keep everything. docs/rays.md \
+lists the units.")]
 pub(crate) struct RaysArgs {
     /// Ray file: IES TM-25, MCPL (also gzipped) or NPY
     #[arg(value_name = "FILE")]

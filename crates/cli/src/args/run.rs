@@ -16,10 +16,12 @@ use std::time::Duration;
   etendue run scenes/fig9b.ron
   etendue run scenes/fig9b.ron --photons 1e8 --seed 7 --threads 2 --out out/more
   etendue run scenes/fig9b.ron --set planes.3.at='Distance(1.5)' --save photons
-  etendue run scenes/fig9b.ron --save mcpl,tm25                        rays for other programs (docs/rays.md)
-  etendue run scenes/fig9b.ron --photons 2^33 --resume --time 2h      repeat this command until done
+  etendue run scenes/fig9b.ron --save mcpl,tm25                    rays for other programs
+                                                                   (docs/rays.md)
+  etendue run scenes/fig9b.ron --photons 2^33 --resume --time 2h   repeat until done
 
-Results are in out/NAME unless --out names another folder. Photon counts may be written 10_000_000, 1e7 or 2^23.
+Results are in out/NAME unless --out names another folder. Photon counts may be written 10_000_000, 1e7 or \
+2^23.
 Noise is lowest if the number of photons and the number of batches (such as 64) are powers of two.")]
 pub(crate) struct RunArgs {
     #[command(flatten)]
@@ -64,8 +66,8 @@ pub(crate) struct RunArgs {
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   etendue measure scenes/fig9b.ron --out out/all
-  etendue measure scenes/fig9b.ron --photons 1e8 --batches 0..32 --out out/a     on one machine,
-  etendue measure scenes/fig9b.ron --photons 1e8 --batches 32..64 --out out/b    on another
+  etendue measure scenes/fig9b.ron --photons 1e8 --batches 0..32 --out out/a    on one machine,
+  etendue measure scenes/fig9b.ron --photons 1e8 --batches 32..64 --out out/b   on another
 
 Batches with the same scene, seed and photon count can be combined, on whichever machine they were measured.")]
 pub(crate) struct MeasureArgs {
@@ -88,11 +90,12 @@ pub(crate) struct MeasureArgs {
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
-  etendue split scenes/fig9b.ron --photons 2^36 --parts 32               print a command for each part, then predict and compare
+  etendue split scenes/fig9b.ron --photons 2^36 --parts 32   print a command for each part,
+                                                             then predict and compare
   etendue split scenes/fig9b.ron --photons 2^36 --parts 32 --slurm > job.sh && sh job.sh
 
-Parts may run in any order on any machine; the result is byte for byte that of a single run. The folders of the parts are in the
-results folder, which is out/NAME unless --out names another.")]
+Parts may run in any order on any machine; the result is byte for byte that of a single run. The folders \
+of the parts are in the results folder, which is out/NAME unless --out names another.")]
 pub(crate) struct SplitArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
@@ -138,7 +141,8 @@ pub(crate) struct PredictArgs {
   etendue compare --measured out/all --predicted out/predicted --out out/fig9b
   etendue compare --measured out/a out/b --predicted out/predicted --out out/fig9b
 
-Parts of a measurement may be given in any order. At least 32 batches are needed; the report covers only the given batches.")]
+Parts of a measurement may be given in any order. At least 32 batches are needed; the report covers only \
+the given batches.")]
 pub(crate) struct CompareArgs {
     /// Folders written by `etendue measure`, with all or some of the batches
     #[arg(long, value_name = "DIR", num_args = 1.., required = true)]
@@ -162,10 +166,12 @@ pub(crate) struct CompareArgs {
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   etendue converge scenes/table1/concave_oblique.ron
-  etendue converge scenes/table1/concave_oblique.ron --set as_printed=true      the error of the paper's printed formulas does not fall
+  etendue converge scenes/table1/concave_oblique.ron --set as_printed=true
+      the error of the paper's printed formulas does not fall
 
-Light and windows are scaled by e and frequencies by 1/e. The error of first-order maps is then proportional to e, or to e² at normal
-incidence. No order is printed where the error is as small as that of the quadrature.")]
+Light and windows are scaled by e and frequencies by 1/e. The error of first-order maps is then \
+proportional to e, or to e² at normal incidence. No order is printed where the error is as small as that \
+of the quadrature.")]
 pub(crate) struct ConvergeArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
@@ -176,17 +182,19 @@ pub(crate) struct ConvergeArgs {
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
-  etendue diff results/fig9b out/fig9b                 two versions of the program
-  etendue diff out/seed1 out/seed2                     was a disagreement due to chance?
-  etendue diff out/photons out/backward                two methods
+  etendue diff results/fig9b out/fig9b    two versions of the program
+  etendue diff out/seed1 out/seed2        was a disagreement due to chance?
+  etendue diff out/photons out/backward   two methods
 
-Tests two kinds of numbers at level α, over all planes together: the measured slices (χ²: squared difference over the sum of both
-variances) and each parameter of the chain (difference over its standard error). Both results must have independent noise, from
-different seeds or methods. Results with the same seed share photons: they are either identical or undecided. Predictions of one
-scene must be equal within their stated errors. A plane whose window or frequencies differ between the results is not compared.
+Tests two kinds of numbers at level α, over all planes together: the measured slices (χ²: squared \
+difference over the sum of both variances) and each parameter of the chain (difference over its standard \
+error). Both results must have independent noise, from different seeds or methods. Results with the same \
+seed share photons: they are either identical or undecided. Predictions of one scene must be equal within \
+their stated errors. A plane whose window or frequencies differ between the results is not compared.
 
-The test assumes that each result is a mean of many independent batches, so that its noise is normal, and that noise is correlated
-between frequencies in the same way in both results. If this does not hold, p is too large rather than too small.
+The test assumes that each result is a mean of many independent batches, so that its noise is normal, and \
+that noise is correlated between frequencies in the same way in both results. If this does not hold, p is \
+too large rather than too small.
 
 Exit codes: 0 equal except for noise, 1 different, 2 bad input, 4 undecided")]
 pub(crate) struct DiffArgs {
@@ -219,7 +227,8 @@ pub(crate) struct CheckArgs {
 #[derive(Debug, Args)]
 #[command(after_help = "Example:
   etendue export --to mitsuba scenes/fig9b.ron --out out/mitsuba
-  python tests/peers/mitsuba_light_field.py --help         record the same light field with Mitsuba and compare spectra
+  python tests/peers/mitsuba_light_field.py --help   record the same light field with
+                                                     Mitsuba and compare spectra
 
 Files are in out/NAME-mitsuba unless --out names another folder.")]
 pub(crate) struct ExportArgs {

@@ -160,8 +160,9 @@ pub(crate) struct RenderMethod(Option<SampleMethod>);
   etendue import scenes/cbox/cbox.xml --root . --set res=64
   etendue import helmet.glb
 
-Prints the contents of the scene, and a note about everything that is left out or approximated, with its line in the file. A scene that
-cannot be rendered is refused: all causes are printed, and the exit code is 2.")]
+Prints the contents of the scene, and a note about everything that is left out or approximated, with its \
+line in the file. A scene that cannot be rendered is refused: all causes are printed, and the exit code is \
+2.")]
 pub(crate) struct ImportArgs {
     #[command(flatten)]
     pub(crate) scene: WorldArgs,
@@ -176,18 +177,23 @@ pub(crate) struct ImportArgs {
   etendue render scenes/worlds/creatures.xml --shading-samples 20000 --method uniform --out out/uniform
 
 Writes to out/NAME, or to the folder of --out:
-  picture.exr    radiance and its standard error, as two parts that each have one channel Y
-  picture.npz    the same numbers as float64 arrays radiance and error [row, column]
+  picture.exr    radiance and its standard error, as two parts that each have
+                 one channel Y
+  picture.npz    the same numbers as float64 arrays radiance and error [row,
+                 column]
   picture.png    for viewing; the brightest hundredth of the pixels is white
 OBJ, PLY and many glTF files have no camera or light: add them with --look-from, --look-at and --sky.
-With few shading samples (Durand et al. 2005, section 6.2), picture.exr and picture.npz also contain the maps related to the
-samples (bandwidth, curvature, blockers, shadow, density, samples, variance), picture.npz contains the positions of the samples (points),
-bandwidth.png and samples.png show two of the maps, and timing.json contains the time of each stage in seconds. Methods:
+With few shading samples (Durand et al. 2005, section 6.2), picture.exr and picture.npz also contain the \
+maps related to the samples (bandwidth, curvature, blockers, shadow, density, samples, variance), \
+picture.npz contains the positions of the samples (points), bandwidth.png and samples.png show two of the \
+maps, and timing.json contains the time of each stage in seconds. Methods:
   uniform     blue noise of even density
   predicted   density by the paper's criteria, Eqs. 20 and 21, corrected
   printed     density by the same criteria as printed in the paper
-  weighted    half by the criteria, half by the interpolation error of a first quarter of the samples
-  variance    density by the standard deviation of a first quarter of the samples, without theory
+  weighted    half by the criteria, half by the interpolation error of a first
+              quarter of the samples
+  variance    density by the standard deviation of a first quarter of the
+              samples, without theory
 Each pixel is the mean of the radiance over its area (a box filter), whatever filter the file names.")]
 pub(crate) struct RenderArgs {
     #[command(flatten)]
@@ -242,13 +248,15 @@ pub(crate) struct RenderArgs {
   etendue probe cbox.xml --pixel 128,200 --covariance
   etendue probe cbox.xml --map 64x40
 
-Follows the ray through a pixel from the camera to the first surface, and from there in the mirror direction. Measures the light field at
-the camera, and the light fields that leave and reach each surface, in two ways: by rays traced back and by photons from the lights. The
-verdict compares the two. Photons cannot connect through a mirror or to a sky; planes that need such photons stay undecided.
-Writes to out/NAME-X-Y, or to the folder of --out: probe.json, and for each plane the arrays and pictures of `run`.
+Follows the ray through a pixel from the camera to the first surface, and from there in the mirror \
+direction. Measures the light field at the camera, and the light fields that leave and reach each surface, \
+in two ways: by rays traced back and by photons from the lights. The verdict compares the two. Photons \
+cannot connect through a mirror or to a sky; planes that need such photons stay undecided.
+Writes to out/NAME-X-Y, or to the folder of --out: probe.json, and for each plane the arrays and pictures \
+of `run`.
 Exit codes are those of run.
-With --map, writes map.exr and map.npz with the arrays measured, error, criterion, window and samples (per pixel and direction), and
-map.png, .svg and .csv.")]
+With --map, writes map.exr and map.npz with the arrays measured, error, criterion, window and samples (per \
+pixel and direction), and map.png, .svg and .csv.")]
 pub(crate) struct ProbeArgs {
     #[command(flatten)]
     pub(crate) scene: WorldArgs,

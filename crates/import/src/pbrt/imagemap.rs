@@ -36,7 +36,7 @@ impl PbrtReader<'_> {
             false => pixels,
         };
         if ask == Ask::Float {
-            let message = "a coloured picture gives its luminance or one channel here, and the mean of its channels in pbrt";
+            let message = "a coloured picture is converted to its luminance or one channel here, but to the mean of its channels in pbrt";
             self.note_once(&entity.place, message);
         }
         Ok(Texture::Bitmap(Bitmap {

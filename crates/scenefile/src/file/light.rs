@@ -131,7 +131,7 @@ pub enum LightFile {
         #[schemars(transform = direction("(0, 1, 0)"))]
         up: Option<[f64; 3]>,
         /// Flux of all rays of the file, in W. By default, the flux stated in the file, which must be
-        /// in W; if its rays are in lm, the file must state the total flux in both W and lm.
+        /// in W, or in lm if the file states the total flux in both W and lm.
         #[serde(default)]
         #[schemars(transform = told("a flux in watts", "0.5"))]
         flux: Option<f64>,
