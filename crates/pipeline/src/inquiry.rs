@@ -231,7 +231,7 @@ mod tests {
         for words in [
             "differ by 0.550 %",
             "their noise is 1.500 %",
-            "3.6e6 of them or more are needed",
+            "3.6e6 or more backward rays are needed",
         ] {
             assert!(open.contains(words), "{words}: {open}");
         }

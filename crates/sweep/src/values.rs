@@ -274,7 +274,7 @@ mod tests {
         assert!(why("a=0.1,,0.2").starts_with("`` is not a number"));
         assert!(why("a=Box(0.3),Hann(0.3)").starts_with("`Box(0.3)` is not a number"));
         assert!(why("a=0.1..x:3").starts_with("`x` is not a number"));
-        assert!(why("a=-1..1:3log").starts_with("equal factors"));
+        assert!(why("a=-1..1:3log").starts_with("logarithmic spacing"));
         assert!(
             setting("a=0.1..0.4").is_err(),
             "a range without a number of values"
