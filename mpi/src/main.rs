@@ -51,7 +51,7 @@ impl Workers for Ranks {
             }
         };
         let Source::Rank(from) = status.source else {
-            return Err("a message of nobody".to_owned());
+            return Err("a message without a sender".to_owned());
         };
         let mut bytes = vec![0; status.count.unwrap_or(0)];
         let received = self.0.recv(&mut bytes, from, Tag::Value(TAG));

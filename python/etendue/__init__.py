@@ -7,8 +7,8 @@
 >>> result["receiver"].slices.measured.shape       # [azimuth, rho, nu]
 (8, 33, 65)
 
-`run` is `measure`, `predict` and `compare` in one. `spectrum` takes rays of your own. Lengths are metres, frequencies are cycles per
-metre (rho) and cycles per unit of slope (nu).
+`run` does `measure`, `predict` and `compare` in one call. `spectrum` takes rays of your own. Lengths are in metres, frequencies in cycles
+per metre (rho) and in cycles per unit of slope (nu).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The command `etendue`, as the wheel installs it."""
+"""The command `etendue` that the wheel installs."""
 
 from __future__ import annotations
 

@@ -31,16 +31,17 @@ def sweep(
     threads: int | None = None,
     progress: Progress = None,
 ) -> dict[str, NDArray[Any]]:
-    """Runs a scene with fields that take several values; returns the table of all planes, a column each.
+    """Runs a scene with several values of its fields. Returns the table of all planes, as an array for each column.
 
-    `set` gives a field one value, a sequence of numbers, or text: `{"blockers.0.pitch": "0.05..0.4:8"}` is 8 values, and `:8log` 8 values
-    by equal factors. Several fields make a grid, or with `together` go in step.
-    `photons`, `seed` and `method` are as in `run`. Each point has a seed of its own, unless `common_seed`.
-    What is done is kept in `out`: the same call goes on from there, also after Ctrl-C. `force` replaces files in `out` that Étendue did
-    not write.
-    `progress` is whether a bar is shown, or a function that is told how many points are done.
+    `set` gives a field one value, a sequence of numbers, or text: `{"blockers.0.pitch": "0.05..0.4:8"}` means 8 values at equal distances,
+    and `:8log` means 8 values with logarithmic spacing. Several fields take all combinations of their values; with `together`, they vary
+    together, value by value.
+    `photons`, `seed` and `method` are as in `run`. Each point has its own seed, unless `common_seed` is true.
+    Finished points are kept in `out`, and the same call continues from them, even after Ctrl-C. `force` replaces files in `out` that
+    Étendue did not write.
+    `progress` states whether a bar is shown, or is a function that receives the number of finished points.
 
-    Raises `SceneError` with all faults of the scene, and `CannotRun` where `out` holds something else.
+    Raises `SceneError` with all faults of the scene, and `CannotRun` if `out` contains something else.
     """
     arguments = given(
         together=together,
@@ -71,14 +72,14 @@ def figure(
     threads: int | None = None,
     progress: Progress = None,
 ) -> Path:
-    """Draws scenes: PNG, SVG, PDF and their data, in a folder below `out`. Returns the PNG.
+    """Draws scenes: writes PNG, SVG, PDF and their data to a folder below `out`. Returns the PNG.
 
-    One scene is drawn along its path, or at `plane` alone; several are drawn side by side at `plane`, or each at its last plane.
-    A name such as "7" or "table1" is a figure of the paper; of several such figures the PNG of the first is returned.
-    `set` overrides fields of the scenes. `style` is a file that says how the figure looks.
-    `quality` is "print" unless said, or "draft": an eighth of the photons of the scenes, and fewer frequencies.
+    One scene is drawn along its path, or at `plane` only; several scenes are drawn side by side at `plane`, or each at its last plane.
+    A name such as "7" or "table1" means a figure of the paper; if there are several, the PNG of the first is returned.
+    `set` overrides fields of the scenes. `style` is a file that determines how the figure looks.
+    `quality` is "print" (the default) or "draft", with an eighth of the photons of the scenes, and fewer frequencies.
     `force` replaces files in `out` that Étendue did not write.
-    `progress` is whether a bar is shown, or a function that is told how much of the work at hand is done.
+    `progress` states whether a bar is shown, or is a function that receives the progress of the current work.
     """
     if isinstance(scenes, (str, os.PathLike, Mapping, Scene)):
         raise TypeError("scenes is one scene; allowed: a sequence of them, such as [scene]")
@@ -91,7 +92,7 @@ def figure(
 
 
 def given(**arguments: Any) -> dict[str, Any]:
-    """The arguments that a caller has given: the library has the values of all others."""
+    """The arguments that a caller has given; the library has the defaults of all others."""
     return {name: value for name, value in arguments.items() if value is not None}
 
 

@@ -11,13 +11,13 @@ if TYPE_CHECKING:
     from etendue._etendue import Tell
 
 Progress = Union[bool, Callable[[int], object], None]
-"""Whether a bar is shown, or a function that is told how much of the work at hand is done: photons, pixels, points of a sweep.
-`None`: a bar where somebody looks, on a terminal or in a notebook, and tqdm is installed."""
+"""Whether a bar is shown, or a function that receives the progress of the current work: photons, pixels, or points of a sweep.
+`None` shows a bar in a terminal or a notebook if tqdm is installed."""
 
 
 @contextmanager
 def told(progress: Progress) -> Generator[Tell | None, None, None]:
-    """A function to tell progress to: of which work, what is done to what, how many there are, and how many are done."""
+    """A function that receives progress: which work, what is done to what, how many there are, and how many are done."""
     if callable(progress):
         yield lambda number, verb, things, total, done: progress(done)
         return
@@ -35,7 +35,7 @@ def told(progress: Progress) -> Generator[Tell | None, None, None]:
 
 
 class _Bars:
-    """A bar for the work at hand; one after the other."""
+    """A bar for the current work; one bar after the other."""
 
     def __init__(self, tqdm: Any) -> None:
         self._tqdm = tqdm

@@ -1,4 +1,4 @@
-"""Whole numbers that a caller gives, held against their ranges."""
+"""Checks whole numbers that a caller gives against their ranges."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The spectrum of rays of one's own."""
+"""The spectrum of a user's rays."""
 
 from __future__ import annotations
 
@@ -22,34 +22,34 @@ class Spectrum:
     """The windowed spectrum of rays, with errors."""
 
     azimuth: Floats
-    """Radians."""
+    """In radians."""
     rho: Floats
-    """Cycles per metre."""
+    """In cycles per metre."""
     nu: Floats
-    """Cycles per unit of u."""
+    """In cycles per unit of u."""
     slices: NDArray[np.complex128]
     """S(azimuth, rho, nu) = Σ weight · window · exp(−2πi (rho p + nu q)), p = x cos φ + y sin φ, q = u cos φ + v sin φ."""
     slices_sigma: Floats
     """Standard error of |slices|, from the spread between batches."""
     power: Floats
-    """The mean of |slices|² over azimuths, [rho, nu] with rho ≥ 0, less `shot_noise`. Where there is only noise it may be negative."""
+    """The mean of |slices|² over azimuths, [rho, nu] with rho ≥ 0, minus `shot_noise`. Where there is only noise, it may be negative."""
     power_sigma: Floats
-    """Its standard error, by the jackknife: up to √2 too large where noise is above the signal."""
+    """Standard error of `power`, by the jackknife: up to √2 too large where noise is above the signal."""
     shot_noise: Floats
-    """What the noise of the rays added, and was taken away."""
+    """The power that the noise of the rays added; it has been subtracted."""
     x: Floats
-    """Centres of the cells of the light field, metres."""
+    """Centres of the cells of the light field along x, in metres."""
     u: Floats
-    """Centres of its cells, slope."""
+    """Centres of the cells of the light field along u, as slopes."""
     light_field: Floats
     """The windowed light field summed over y and v, [x, u]."""
     light_field_sigma: Floats
-    """Its standard error."""
+    """Standard error of `light_field`."""
     in_window: int
     """Rays inside the window."""
     slope: tuple[float, float] | None
-    """Shear slope of the power, Σ power·rho·nu / Σ power·rho², in metres, and its error; `None` where no ray is in the window. The error is by the
-    jackknife, and up to √2 too large where most frequencies hold noise. So it is with the bandwidths."""
+    """Shear slope of the power, Σ power·rho·nu / Σ power·rho², in metres, and its error; `None` if no ray is in the window. The error is from
+    the jackknife, and up to √2 too large if most frequencies contain only noise. The same holds for the bandwidths."""
     bandwidth_rho: tuple[float, float] | None
     """95 % bandwidth along rho in the azimuth where it is largest, and its error."""
     bandwidth_nu: tuple[float, float] | None
@@ -73,28 +73,28 @@ def spectrum(
     threads: int | None = None,
     progress: Progress = None,
 ) -> Spectrum:
-    """The spectrum of anybody's rays, by the estimator of Étendue.
+    """Computes the spectrum of a user's rays, by the estimator of Étendue.
 
-    x, y are positions on a plane in metres, u, v slopes against its normal (tangents of angles), one of each for a ray.
-    `weight` is what a ray carries, 1 unless given: for radiance, flux times (1 + u² + v²)².
+    x, y are positions on a plane in metres, and u, v are slopes with respect to its normal (tangents of angles); each array has one number
+    per ray. `weight` is the weight of each ray, by default 1; for a spectrum of radiance it is flux times (1 + u² + v²)².
 
-    `window` is a profile for each coordinate, such as `{"x": {"Hann": 0.5}, "u": {"Hann": 0.5}}`: y and v are as x and u unless given.
-    0.5 is the half-width: cos²(π t / 2h) on |t| < h. Others are `{"Box": h}` and `{"Gaussian": {"width": w, "cut": h}}`.
-    `frequencies` are `{"rho": {"max": 12}, "nu": {"max": 24}}`, with `"azimuths"` if not 8. Their spacing is 1/(2h) unless `"spacing"` is
-    given, and `max` is rounded up to a multiple of it.
+    `window` is a profile for each coordinate, such as `{"x": {"Hann": 0.5}, "u": {"Hann": 0.5}}`; by default, y has the profile of x, and v
+    that of u. 0.5 is the half-width h: cos²(π t / 2h) on |t| < h. Other profiles are `{"Box": h}` and `{"Gaussian": {"width": w, "cut": h}}`.
+    `frequencies` are `{"rho": {"max": 12}, "nu": {"max": 24}}`, and optionally `"azimuths"` (8 by default). Their spacing is 1/(2h) unless
+    `"spacing"` is given, and `max` is rounded up to a multiple of the spacing.
 
-    Errors come from the spread between `batches` groups of rays. Ray i is in group i modulo `batches`, which is right where rays
-    are independent of each other. Where they are not (nets, paths that share a vertex), `batch` gives the group of each, a whole
-    number: groups must be independent.
+    Errors are estimated from the spread between `batches` groups of rays. Ray i is in group i modulo `batches`, which is right if the rays
+    are independent of each other. If they are not (nets, paths that share a vertex), `batch` gives the group of each ray, a whole
+    number; the groups must be independent.
 
-    Returns a `Spectrum`. Raises `ValueError` where arrays do not fit together, and `SceneError` for a window or frequencies that cannot be.
+    Returns a `Spectrum`. Raises `ValueError` if arrays do not match, and `SceneError` if the window or the frequencies are invalid.
     """
     columns = [_column(name, column) for name, column in (("x", x), ("y", y), ("u", u), ("v", v))]
     rays = columns[0].size
     columns.append(np.ones(rays) if weight is None else _column("weight", weight))
     for name, column in zip(("y", "u", "v", "weight"), columns[1:]):
         if column.size != rays:
-            raise ValueError(f"{name} has {column.size} numbers and x {rays}; allowed: one of each for a ray")
+            raise ValueError(f"{name} has {column.size} numbers and x {rays}; allowed: one number per ray in each")
     group, batches = _groups(rays, batch, batches)
     plane = Scene(_around(window, frequencies), name="rays")
     with told(progress) as tell:
@@ -116,10 +116,10 @@ def _column(name: str, numbers: ArrayLike) -> Floats:
 
 
 def _groups(rays: int, batch: ArrayLike | None, batches: int) -> tuple[NDArray[np.uint32], int]:
-    """The group of each ray, and how many there are."""
+    """The group of each ray, and the number of groups."""
     if batch is None:
         if not 2 <= batches <= rays or batches != int(batches):
-            raise ValueError(f"batches is {batches} for {rays} rays; allowed: 2 to one a ray")
+            raise ValueError(f"batches is {batches} for {rays} rays; allowed: 2 to the number of rays")
         return np.arange(rays, dtype=np.uint32) % np.uint32(batches), batches
     numbers = np.asarray(batch)
     if numbers.shape != (rays,) or numbers.dtype.kind not in "biu":
@@ -133,7 +133,7 @@ def _groups(rays: int, batch: ArrayLike | None, batches: int) -> tuple[NDArray[n
 
 
 def _around(window: types.Window, frequencies: types.Frequencies) -> types.Scene:
-    """A scene with one plane that has this window and these frequencies: what they may be is checked as in any scene."""
+    """A scene with one plane that has this window and these frequencies, which are checked as in any scene."""
     return {
         "light": {"Rectangle": {"center": [0, 0, 0], "size": [1, 1]}},
         "surfaces": [{"Rectangle": {"name": "screen", "center": [0, 0, 1], "size": [1, 1]}}],

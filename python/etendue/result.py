@@ -1,4 +1,4 @@
-"""What a run comes to."""
+"""The results of a run."""
 
 from __future__ import annotations
 
@@ -26,47 +26,47 @@ Verdict = Literal["pass", "fail", "undecided"]
 
 @dataclass(frozen=True, eq=False)
 class Slices:
-    """Slices of the windowed spectrum, [azimuth, rho, nu], complex. As `slices.npz`."""
+    """Slices of the windowed spectrum, [azimuth, rho, nu], complex, as in `slices.npz`."""
 
     azimuth: Floats
-    """Radians."""
+    """In radians."""
     rho: Floats
-    """Cycles per metre."""
+    """In cycles per metre."""
     nu: Floats
-    """Cycles per unit of u."""
+    """In cycles per unit of u."""
     measured: NDArray[np.complex128]
     predicted: NDArray[np.complex128]
     sigma: Floats
     """Standard deviation of |measured − predicted| if the prediction is true."""
     sigma_measured: Floats
-    """Standard deviation of |measured| alone; below sigma where the prediction has noise too."""
+    """Standard deviation of |measured| alone; smaller than `sigma` if the prediction also has noise."""
 
 
 @dataclass(frozen=True, eq=False)
 class Radial:
-    """The power spectrum over azimuths, [rho, nu]; rho begins below 0 as in `radial.npz`."""
+    """The mean of the power spectrum over azimuths, [rho, nu]; rho also has negative values, as in `radial.npz`."""
 
     rho: Floats
     nu: Floats
     measured: Floats
-    """Power without the noise of photons: negative where noise has it so."""
+    """Power minus the noise of photons; noise can make it negative."""
     predicted: Floats
     sigma: Floats
     """Standard deviation of measured − predicted if the prediction is true."""
     sigma_measured: Floats
     """Standard error of measured."""
     shot_noise: Floats
-    """What the noise of photons added, and was taken away."""
+    """The power that the noise of photons added; it has been subtracted."""
 
 
 @dataclass(frozen=True, eq=False)
 class LightField:
-    """The windowed light field summed over y and v, [x, u]: means of cells, W m⁻² sr⁻¹ m."""
+    """The windowed light field summed over y and v, [x, u]: means over cells, in W m⁻² sr⁻¹ m."""
 
     x: Floats
-    """Centres of cells, metres."""
+    """Centres of cells, in metres."""
     u: Floats
-    """Centres of cells, slope."""
+    """Centres of cells, as slopes."""
     measured: Floats
     predicted: Floats
     sigma: Floats
@@ -74,32 +74,32 @@ class LightField:
 
 
 class Plane:
-    """A virtual plane: what is measured, what is predicted, and the verdict. Arrays are memory of Étendue that NumPy has taken over."""
+    """A virtual plane: measurement, prediction and verdict. NumPy takes over the memory of the arrays without a copy."""
 
     def __init__(self, outcome: _etendue.Outcome, number: int, report: Mapping[str, Any]) -> None:
         self._outcome = outcome
         self._number = number
         self.report = report
-        """All its numbers, as in `summary.json`."""
+        """All numbers of the plane, as in `summary.json`."""
 
     @property
     def name(self) -> str:
-        """Its name."""
+        """The name of the plane."""
         return self.report["name"]
 
     @property
     def verdict(self) -> Verdict:
-        """The verdict on it."""
+        """The verdict on the plane."""
         return self.report["verdict"]
 
     @property
     def p_value(self) -> float | None:
-        """Probability of a disagreement as large as the one seen, if there is none."""
+        """Probability of a disagreement at least as large as the measured one if the prediction is true."""
         return self.report["p_value"]
 
     @property
     def parameters(self) -> dict[str, Mapping[str, Any]]:
-        """Distances and sizes as the spectra alone tell them: `measured`, `error`, and `scene`, the scene's own."""
+        """Distances and sizes derived from the spectra alone: `measured`, with its `error`, and the value in the scene, `scene`."""
         return {parameter["name"]: parameter for parameter in self.report["parameters"]}
 
     @cached_property
@@ -109,7 +109,7 @@ class Plane:
 
     @cached_property
     def radial(self) -> Radial:
-        """The power spectrum over azimuths."""
+        """The mean of the power spectrum over azimuths."""
         return Radial(**self._outcome.radial(self._number))
 
     @cached_property
@@ -143,7 +143,7 @@ class Plane:
         )
 
     def plot(self, ax: Any = None, what: Literal["measured", "predicted"] = "measured") -> Any:
-        """Draws the radial spectrum in dB below its peak on axes of matplotlib; returns them."""
+        """Draws the radial spectrum, in dB below its peak, on axes of matplotlib; returns the axes."""
         if ax is None:
             import matplotlib.pyplot as plt
 
@@ -160,7 +160,7 @@ class Plane:
 
 
 class Result(Mapping[str, Plane]):
-    """What a run comes to: its planes by their names, and the verdict."""
+    """The results of a run: its planes by name, and the verdict."""
 
     def __init__(self, scene: Scene, outcome: _etendue.Outcome) -> None:
         self.scene = scene
@@ -177,7 +177,7 @@ class Result(Mapping[str, Plane]):
 
     @property
     def planes(self) -> dict[str, Plane]:
-        """The planes by their names."""
+        """The planes by name."""
         return dict(self._planes)
 
     def __getitem__(self, name: str) -> Plane:
@@ -194,7 +194,7 @@ class Result(Mapping[str, Plane]):
     def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> Path:
         """Writes what `etendue run` writes: pictures, arrays, `report.html` and `summary.json`. Returns the folder.
 
-        Raises `CannotRun` when the folder holds the result of another scene, unless `force`.
+        Raises `CannotRun` if the folder contains the result of another scene, unless `force` is true.
         """
         return Path(self._outcome.save(folder, force))
 

@@ -17,32 +17,32 @@ if TYPE_CHECKING:
 
 Method = Literal["photons", "backward"]
 Value = Union[bool, int, float, str, Sequence[float]]
-"""What a field may be set to: a number, numbers, or text as it stands in a scene file, such as "Distance(1.5)"."""
+"""The values to which a field can be set: a number, several numbers, or text as in a scene file, such as "Distance(1.5)"."""
 Source = Union[str, "os.PathLike[str]", types.Scene]
-"""A scene file's path, or a tree of its fields: `types.Scene`, as `etendue schema` describes it."""
+"""The path of a scene file, or the tree of its fields: `types.Scene`, as described by `etendue schema`."""
 
 
 @dataclass(frozen=True)
 class PlaneInfo:
-    """What a scene says of a virtual plane before anything is measured."""
+    """What is known about a virtual plane before anything is measured."""
 
     name: str
-    """Its name."""
+    """The name of the plane."""
     prediction: str
-    """What it is held against: "exact", "first-order" or "reference"."""
+    """The kind of prediction with which the plane is compared: "exact", "first-order" or "reference"."""
     chain: tuple[str, ...]
-    """What happens to light on its way there."""
+    """What happens to light on its way to the plane."""
     reasons: tuple[str, ...]
-    """What no theory describes, where another tracer takes its place."""
+    """The parts of the scene that no theory describes; then another tracer replaces the theory."""
 
 
 class Scene:
-    """A scene that is sound, and how it is measured.
+    """A valid scene with the settings of its measurement.
 
-    `set` overrides fields by their paths: `{"blockers.0.pitch": 0.1}`. A tree may name
+    `set` overrides fields by their paths: `{"blockers.0.pitch": 0.1}`. A tree may refer to
     meshes and pictures in `folder`.
 
-    Raises `SceneError`, whose `faults` lists all errors in it.
+    Raises `SceneError`, whose `faults` lists all errors in the scene.
     """
 
     def __init__(
@@ -72,33 +72,33 @@ class Scene:
 
     @property
     def name(self) -> str:
-        """The name of its file, without its ending."""
+        """The name of the scene file, without its extension."""
         return self._job.name
 
     @property
     def file(self) -> types.Scene:
-        """The tree of its fields, defaults and overrides included."""
+        """The tree of the scene's fields, including defaults and overrides."""
         return cast(types.Scene, json.loads(self._job.json()))
 
     @property
     def photons(self) -> int:
-        """Photons that a run emits."""
+        """Number of photons that a run emits."""
         return self._job.photons
 
     @property
     def batches(self) -> int:
-        """Batches they are emitted in, each a measurement of its own."""
+        """Number of batches in which photons are emitted; each batch is an independent measurement."""
         return self._job.batches
 
     @property
     def planes(self) -> list[PlaneInfo]:
-        """Its virtual planes."""
+        """The virtual planes of the scene."""
         found = self._job.planes()
         return [PlaneInfo(name, kind, tuple(chain), tuple(reasons)) for name, kind, chain, reasons in found]
 
     @property
     def warnings(self) -> list[str]:
-        """What is probably a mistake, each in a sentence."""
+        """Probable mistakes in the scene, each described by a sentence."""
         return self._job.warnings()
 
     def __reduce__(self) -> tuple[object, ...]:
@@ -120,7 +120,7 @@ def as_scene(
     seed: int | None = None,
     method: Method = "photons",
 ) -> Scene:
-    """The scene itself, or one made of what describes it."""
+    """The given scene, or a scene made from its description."""
     if not isinstance(scene, Scene):
         return Scene(scene, set=set, photons=photons, seed=seed, method=method)
     if set is None and photons is None and seed is None:
@@ -137,7 +137,7 @@ def as_scene(
 
 
 def scene_argument(scene: Scene | Source) -> SceneArgument:
-    """A scene for the native side: the path of its file, or its text with its name and folder."""
+    """A scene as an argument of the native module: the path of its file, or its text with its name and folder."""
     if isinstance(scene, (str, os.PathLike)):
         return os.fspath(scene)
     scene = as_scene(scene)
@@ -145,12 +145,12 @@ def scene_argument(scene: Scene | Source) -> SceneArgument:
 
 
 def method_of(scene: Scene | Source) -> Method | None:
-    """How a scene is measured, if it says so."""
+    """The method by which a scene is measured, if it has one."""
     return scene._method if isinstance(scene, Scene) else None  # pyright: ignore[reportPrivateUsage]
 
 
 def field_texts(set: Mapping[str, Value] | None) -> list[tuple[str, str]]:
-    """Fields and their values as scene files have them."""
+    """Fields and their values as written in scene files."""
     return [(path, value_text(value)) for path, value in (set or {}).items()]
 
 
@@ -167,7 +167,7 @@ def _seed(seed: int) -> int:
 
 
 def value_text(value: Value) -> str:
-    """A value as scene files have it."""
+    """A value as written in scene files."""
     if isinstance(value, str):
         return value
     if isinstance(value, bool):

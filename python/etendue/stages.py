@@ -1,4 +1,4 @@
-"""The stages of a run: each a function, all in memory."""
+"""The stages of a run. Each is a function that works in memory."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from etendue.scene import Method, Scene, Source, Value, as_scene
 
 
 class Measurement:
-    """Some batches of a scene, or all. Two of one scene, seed and number of photons are `merge`d, wherever they were measured: it can be
-    sent to another process (pickled)."""
+    """The measurement of some or all batches of a scene. Measurements with the same scene, seed and number of photons can be combined by
+    `merge`, wherever they were made; a measurement can be pickled, to send it to another process."""
 
     def __init__(self, scene: Scene, raw: _etendue.Measurement) -> None:
         self.scene = scene
@@ -25,12 +25,12 @@ class Measurement:
 
     @property
     def batches(self) -> list[int]:
-        """The numbers of the batches it holds, those without a photon left out."""
+        """The numbers of the measured batches, without batches that have no photon."""
         return self._raw.batches
 
     @property
     def photons(self) -> int:
-        """Photons emitted in them."""
+        """Number of photons emitted in these batches."""
         return self._raw.photons
 
     def __reduce__(self) -> tuple[object, ...]:
@@ -41,7 +41,7 @@ class Measurement:
 
 
 class Prediction:
-    """What theory says of each plane of a scene; another tracer, where theory has no word."""
+    """The prediction for each plane of a scene: by theory, or by another tracer where no theory applies."""
 
     def __init__(self, scene: Scene, raw: _etendue.Prediction) -> None:
         self.scene = scene
@@ -53,9 +53,9 @@ def _unpacked(scene: Scene, batches: list[tuple[int, bytes]]) -> Measurement:
 
 
 def check(scene: Scene | Source, *, set: Mapping[str, Value] | None = None) -> Scene:
-    """The scene, if it is sound; its `planes` tell what each is held against. Nothing is traced.
+    """Returns the scene if it is valid; `planes` states with what each plane is compared. Nothing is traced.
 
-    Raises `SceneError` with all its faults.
+    Raises `SceneError` with all faults of the scene.
     """
     return as_scene(scene, set)
 
@@ -71,7 +71,7 @@ def measure(
     threads: int | None = None,
     progress: Progress = None,
 ) -> Measurement:
-    """Traces photons of a scene: all its batches, or those of these numbers. Other threads of Python go on meanwhile."""
+    """Traces photons of a scene: all batches, or the batches with the given numbers. Other Python threads continue meanwhile."""
     scene = as_scene(scene, set, photons, seed, method)
     numbers = _batches(scene, batches)
     threads = thread_count(threads)
@@ -83,19 +83,19 @@ def measure(
 def predict(
     scene: Scene | Source, *, set: Mapping[str, Value] | None = None, threads: int | None = None
 ) -> Prediction:
-    """What theory says of each plane of a scene."""
+    """Predicts each plane of a scene."""
     scene = as_scene(scene, set)
     return Prediction(scene, scene._job.predict(thread_count(threads)))  # pyright: ignore[reportPrivateUsage]
 
 
 def merge(measurements: Iterable[Measurement]) -> Measurement:
-    """Parts of one measurement in one, in any order: the same bits as if it had been measured at once.
+    """Merges parts of one measurement, in any order. The result is bit-identical to a measurement made at once.
 
-    Raises `SceneError` when a batch is in two of them, or they are of different planes, and `ValueError` when they are of different scenes.
+    Raises `SceneError` if a batch is in two parts, or the parts have different planes, and `ValueError` if they are of different scenes.
     """
     parts = list(measurements)
     if not all(isinstance(part, Measurement) for part in parts):  # pyright: ignore[reportUnnecessaryIsInstance]
-        raise TypeError("what is merged are measurements, as `measure` returns them")
+        raise TypeError("merge takes measurements, as `measure` returns them")
     if not parts:
         raise ValueError("there is nothing to merge")
     first = parts[0]
@@ -106,9 +106,9 @@ def merge(measurements: Iterable[Measurement]) -> Measurement:
 
 
 def compare(measurement: Measurement, prediction: Prediction | None = None, *, threads: int | None = None) -> Result:
-    """The verdict on a measurement. Its scene is predicted if no prediction is given."""
+    """Compares a measurement with a prediction, and returns the verdict. The scene is predicted if no prediction is given."""
     if not isinstance(measurement, Measurement):  # pyright: ignore[reportUnnecessaryIsInstance]
-        raise TypeError(f"a measurement is compared, not {type(measurement).__name__}: `measure` returns one, and `run` does all")
+        raise TypeError(f"compare takes a measurement, not {type(measurement).__name__}: `measure` returns one, and `run` does all stages")
     scene = measurement.scene
     if prediction is None:
         prediction = predict(scene, threads=threads)
@@ -132,17 +132,17 @@ def run(
     threads: int | None = None,
     progress: Progress = None,
 ) -> Result:
-    """Measures a scene, predicts it and compares. Nothing is written: `Result.save` does.
+    """Measures a scene, predicts it and compares both. Nothing is written; `Result.save` writes files.
 
     `scene` is the path of a scene file, a tree of its fields (`etendue.types.Scene`), or a `Scene`.
-    `set` overrides fields by their paths, as `{"blockers.0.pitch": 0.1}`; vectors are sequences, and text is as in a scene file: "Distance(1.5)".
-    `photons` and `seed` are instead of the scene's. Noise falls with photons, most of all for powers of two.
-    `method` is "photons", sent from the light, or "backward", rays traced from each window back to it.
-    `threads` is 1 to 1024, one for each core unless said; the result does not depend on it.
-    `progress` is whether a bar is shown, or a function that is told how many photons are done.
+    `set` overrides fields by their paths, as in `{"blockers.0.pitch": 0.1}`; vectors are sequences, and text is as in a scene file: "Distance(1.5)".
+    `photons` and `seed` replace those of the scene. Noise falls with the number of photons, and is lowest for powers of two.
+    `method` is "photons", which are sent from the light, or "backward": rays are traced from each window back to the light.
+    `threads` is 1 to 1024, by default one for each core; the result does not depend on it.
+    `progress` states whether a bar is shown, or is a function that receives the number of traced photons.
 
-    The same bytes as `etendue run` on processors of one kind. Ctrl-C stops it within a tenth of a second. Raises `SceneError` with all faults of the scene, and
-    `CannotRun` where memory does not do.
+    The result has the same bytes as that of `etendue run` on the same kind of processor. Ctrl-C stops the run within a tenth of a second.
+    Raises `SceneError` with all faults of the scene, and `CannotRun` if there is not enough memory.
     """
     scene = as_scene(scene, set, photons, seed, method)
     return compare(measure(scene, threads=threads, progress=progress), threads=threads)
@@ -155,10 +155,10 @@ class Photons:
     rays: NDArray[np.float64]
     """[N, 5]: x, y in metres, u, v, and weight."""
     batch: NDArray[np.uint32]
-    """The batch of each, [N]: batches are independent of each other, and the photons of one are not."""
+    """The batch of each photon, [N]. Batches are independent of each other; the photons of one batch are not."""
     emitted: int
-    """Photons emitted, those included that do not come to the plane. The sum of weight times window over this number is the integral of
-    the windowed radiance."""
+    """Number of emitted photons, including those that do not reach the plane. The sum of weight times window, divided by this number, is
+    the integral of the windowed radiance."""
 
 
 def photons(
@@ -170,7 +170,7 @@ def photons(
     photons: float | None = None,
     seed: int | None = None,
 ) -> Photons:
-    """The photons of a scene that cross one of its planes, inside its window and outside."""
+    """The photons of a scene that cross one of its planes, inside and outside the window."""
     scene = as_scene(scene, set, photons, seed)
     names = [known.name for known in scene.planes]
     if plane not in names:

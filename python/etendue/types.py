@@ -15,11 +15,11 @@ class Axis(TypedDict):
     max: float
     """Highest frequency, rounded up to a multiple of the spacing. 1e-9 to 1e9"""
     spacing: NotRequired[Union[float, None]]
-    """Spacing of the frequencies. The default, 1/(2 · half-width of the window), is also the largest. 1e-9 to 1e9"""
+    """Spacing of the frequencies. The default, 1/(2 · half-width of the window), is also the largest allowed. 1e-9 to 1e9"""
 
 
 class BlockersGrating(TypedDict):
-    """A semi-transparent cosine grating over the whole plane: ½ (1 + m cos(2π f t + p)), t being x or y."""
+    """A semi-transparent cosine grating over the whole plane: ½ (1 + m cos(2π f t + p)), where t is x or y."""
 
     Grating: "BlockersGratingFields"
 
@@ -28,34 +28,34 @@ class BlockersGratingFields(TypedDict):
     axis: "AxisName"
     """The axis along which the grating varies"""
     center: Sequence[float]
-    """Origin of t, world coordinates"""
+    """Origin of t, in world coordinates"""
     frequency: float
-    """Frequency f, cycles per metre. 1e-9 to 1e9"""
+    """Frequency f, in cycles per metre. 1e-9 to 1e9"""
     modulation: NotRequired[float]
     """Modulation m. 0 to 1"""
     name: str
     """Name"""
     phase: NotRequired[float]
-    """Phase p, radians. -1000 to 1000"""
+    """Phase p, in radians. -1000 to 1000"""
 
 
 class BlockersJitteredSquares(TypedDict):
-    """`count[0]` × `count[1]` squares on a jittered grid, edges along X and Y."""
+    """`count[0]` × `count[1]` squares on a jittered grid, with edges along X and Y."""
 
     JitteredSquares: "BlockersJitteredSquaresFields"
 
 
 class BlockersJitteredSquaresFields(TypedDict):
     center: Sequence[float]
-    """Centre of the grid, world coordinates"""
+    """Centre of the grid, in world coordinates"""
     count: Sequence[int]
     """Number of squares along X and along Y"""
     fill: float
     """Side of a square as a share of the pitch. above 0, at most 1"""
     jitter: NotRequired[float]
-    """Amount of jitter: each square is moved by U(−jitter/2, jitter/2) pitches along X and along Y. 0 to 1 − fill"""
+    """Amount of jitter: each square is moved along X and along Y by a random number of pitches, uniform in (−jitter/2, jitter/2). 0 to 1 − fill"""
     name: str
-    """Name, for planes to refer to"""
+    """Name by which planes refer to the blockers"""
     pitch: float
     """Distance between grid points. 1e-9 to 1e9"""
     seed: NotRequired[int]
@@ -70,7 +70,7 @@ class BlockersMesh(TypedDict):
 
 class BlockersMeshFields(TypedDict):
     center: Sequence[float]
-    """Position of the mesh's origin, world coordinates"""
+    """Position of the mesh's origin, in world coordinates"""
     mesh: "MeshSource"
     """The triangles"""
     name: str
@@ -87,7 +87,7 @@ class BlockersShapes(TypedDict):
 
 class BlockersShapesFields(TypedDict):
     center: Sequence[float]
-    """Origin of the shapes' coordinates along X and Y, world coordinates"""
+    """Origin of the shapes' X and Y coordinates, in world coordinates"""
     name: str
     """Name"""
     shapes: Sequence["Shape"]
@@ -98,15 +98,15 @@ class Brdf(TypedDict):
     """A BRDF."""
 
     albedo: NotRequired[float]
-    """Factor on the lobe, 0 to 1. 0 to 1"""
+    """Factor that multiplies the lobe, 0 to 1. 0 to 1"""
     fresnel: NotRequired["Fresnel"]
     """Fresnel factor"""
     incoming: NotRequired[Union[Sequence[float], None]]
-    """Factor by the angle of incidence: values at equal steps from the normal to 90 degrees, linear in between; 1 by default"""
+    """Factor that depends on the angle of incidence: values at equal steps from the normal to 90 degrees, interpolated linearly; 1 by default"""
     lobe: "Lobe"
     """Lobe of the BRDF"""
     outgoing: NotRequired[Union[Sequence[float], None]]
-    """Factor by the angle of the outgoing light, in the same form"""
+    """Factor that depends on the angle of the outgoing light, in the same form"""
 
 
 class BulbDisc(TypedDict):
@@ -117,14 +117,14 @@ class BulbDisc(TypedDict):
 
 
 class BulbSquare(TypedDict):
-    """A square with this side, edges along X and Y."""
+    """A square with this side length and edges along X and Y."""
 
     Square: float
     """1e-9 to 1e9"""
 
 
 class EnvironmentFile(TypedDict):
-    """An OpenEXR picture over latitude and longitude, W m⁻² sr⁻¹; the path is relative to the scene file, and must stay inside its folder."""
+    """An OpenEXR picture of the radiance, in W m⁻² sr⁻¹, over latitude and longitude; the path is relative to the scene file, and must stay inside its folder."""
 
     File: str
 
@@ -143,7 +143,7 @@ class EventReflects(TypedDict):
 
 class EventReflectsFields(TypedDict):
     blend: NotRequired[Union["Pattern", None]]
-    """Weight of the first BRDF where there is a second"""
+    """Weight of the first BRDF if there is a second BRDF"""
     brdf: "Brdf"
     """The BRDF"""
     other: NotRequired[Union["Brdf", None]]
@@ -173,20 +173,20 @@ class EventSum(TypedDict):
 
 class EventSumFields(TypedDict):
     terms: Sequence["Term"]
-    """The BRDFs with their weights, 1 to 8 of them. Where the path does not set the direction of the central ray, the first one does"""
+    """1 to 8 BRDFs with their weights. If the path does not set the direction in which the central ray leaves, the first BRDF determines it"""
     texture: NotRequired[Union["Pattern", None]]
     """Factor that multiplies the sum"""
 
 
 class EventThinLens(TypedDict):
-    """A thin lens, flat, with this focal length."""
+    """A flat thin lens with this focal length."""
 
     ThinLens: float
     """a focal length in metres, negative if the lens spreads light, not 0"""
 
 
 class FormCylinder(TypedDict):
-    """A circular cylinder with this curvature and its axis across `along`."""
+    """A circular cylinder with this curvature, whose axis is orthogonal to `along`."""
 
     Cylinder: float
     """-1e6 to 1e6"""
@@ -211,13 +211,13 @@ class Frequencies(TypedDict):
     azimuths: NotRequired[int]
     """Number K of azimuths πk/K. 1 to 1024"""
     nu: "Axis"
-    """Angular frequency ν, cycles per unit slope"""
+    """Angular frequency ν, in cycles per unit slope"""
     rho: "Axis"
-    """Spatial frequency ρ, cycles per metre"""
+    """Spatial frequency ρ, in cycles per metre"""
 
 
 class FresnelConductor(TypedDict):
-    """At a conductor with index n + i k."""
+    """Reflection at a conductor with index n + i k."""
 
     Conductor: "FresnelConductorFields"
 
@@ -230,7 +230,7 @@ class FresnelConductorFields(TypedDict):
 
 
 class FresnelDielectric(TypedDict):
-    """At a dielectric with this index of refraction."""
+    """Reflection at a dielectric with this index of refraction."""
 
     Dielectric: float
     """0.05 to 20"""
@@ -242,11 +242,11 @@ class Grating(TypedDict):
     axis: "AxisName"
     """The axis along which the grating varies"""
     frequency: float
-    """Frequency f, cycles per unit of the picture, or per metre of a surface. 1e-9 to 1e9"""
+    """Frequency f, in cycles per unit of the picture, or per metre of a surface. 1e-9 to 1e9"""
     modulation: NotRequired[float]
     """Modulation m. 0 to 1"""
     phase: NotRequired[float]
-    """Phase p, radians. -1e9 to 1e9"""
+    """Phase p, in radians. -1e9 to 1e9"""
 
 
 class Image(TypedDict):
@@ -266,7 +266,7 @@ class LightBeam(TypedDict):
 
 class LightBeamFields(TypedDict):
     center: Sequence[float]
-    """Start of the central ray, world coordinates"""
+    """Start of the central ray, in world coordinates"""
     image: "Image"
     """The picture, in metres along X and along Y"""
     irradiance: NotRequired[float]
@@ -274,37 +274,37 @@ class LightBeamFields(TypedDict):
 
 
 class LightDisc(TypedDict):
-    """A Lambertian disc orthogonal to the central ray, dark on its back."""
+    """A Lambertian disc orthogonal to the central ray, with a dark back."""
 
     Disc: "LightDiscFields"
 
 
 class LightDiscFields(TypedDict):
     center: Sequence[float]
-    """Centre, world coordinates"""
+    """Centre, in world coordinates"""
     radiance: NotRequired[float]
-    """Radiance, W m⁻² sr⁻¹. 1e-9 to 1e9"""
+    """Radiance, in W m⁻² sr⁻¹. 1e-9 to 1e9"""
     radius: float
     """Radius. 1e-9 to 1e9"""
 
 
 class LightEnvironment(TypedDict):
-    """Light from an environment; only directions in front of the plane across `path.direction` at the centre emit light."""
+    """Light from an environment. It starts in the plane through the centre that is orthogonal to `path.direction`, and goes forward only."""
 
     Environment: "LightEnvironmentFields"
 
 
 class LightEnvironmentFields(TypedDict):
     center: Sequence[float]
-    """Start of the central ray, world coordinates"""
+    """Start of the central ray, in world coordinates"""
     front: NotRequired[Sequence[float]]
-    """Direction of the middle of the map, any length; only the part orthogonal to `up` is used"""
+    """Direction, of any length, of the middle of the map; only the part orthogonal to `up` is used"""
     map: "Environment"
     """Radiance by direction"""
     scale: NotRequired[float]
     """Scale factor of the map's radiance. 1e-9 to 1e9"""
     up: NotRequired[Sequence[float]]
-    """Direction of the map's top, any length"""
+    """Direction, of any length, of the top of the map"""
 
 
 LightLobe = TypedDict("LightLobe", {"from": "Sequence[float]", "radiance": "NotRequired[float]", "width": "float"})
@@ -318,9 +318,9 @@ class LightPoint(TypedDict):
 
 class LightPointFields(TypedDict):
     center: Sequence[float]
-    """Position, world coordinates"""
+    """Position, in world coordinates"""
     intensity: NotRequired[float]
-    """Intensity, W sr⁻¹. 1e-9 to 1e9"""
+    """Intensity, in W sr⁻¹. 1e-9 to 1e9"""
 
 
 class LightProjector(TypedDict):
@@ -331,7 +331,7 @@ class LightProjector(TypedDict):
 
 class LightProjectorFields(TypedDict):
     center: Sequence[float]
-    """Position, world coordinates"""
+    """Position, in world coordinates"""
     image: "Image"
     """The picture, over slopes along X and along Y"""
     intensity: NotRequired[float]
@@ -346,34 +346,34 @@ class LightRays(TypedDict):
 
 class LightRaysFields(TypedDict):
     center: Sequence[float]
-    """Position of the file's origin and start of the central ray, world coordinates"""
+    """Position of the file's origin and start of the central ray, in world coordinates"""
     file: str
     """IES TM-25, MCPL or NPY file; the path is relative to the scene file, and must stay inside its folder"""
     flux: NotRequired[Union[float, None]]
-    """Flux of all rays of the file, W. By default the flux stated in the file, which must be in W, or in lm with its total in W and lm. 1e-9 to 1e9"""
+    """Flux of all rays of the file, in W. By default, the flux stated in the file, which must be in W, or in lm if the file states the total flux in both W and lm. 1e-9 to 1e9"""
     front: NotRequired[Union[Sequence[float], None]]
-    """Direction of the file's Z axis, any length; `path.direction` by default"""
+    """Direction, of any length, of the file's Z axis; by default, `path.direction`"""
     up: NotRequired[Union[Sequence[float], None]]
-    """Direction of the file's Y axis, any length; only the part orthogonal to `front` is used. By default the Y axis of the central ray's frame"""
+    """Direction, of any length, of the file's Y axis; only the part orthogonal to `front` is used. By default, the Y axis of the central ray's frame"""
 
 
 class LightRectangle(TypedDict):
-    """A Lambertian rectangle orthogonal to the central ray, edges along X and Y, dark on its back."""
+    """A Lambertian rectangle orthogonal to the central ray, with edges along X and Y and a dark back."""
 
     Rectangle: "LightRectangleFields"
 
 
 class LightRectangleFields(TypedDict):
     center: Sequence[float]
-    """Centre, world coordinates"""
+    """Centre, in world coordinates"""
     radiance: NotRequired[float]
-    """Radiance, W m⁻² sr⁻¹. 1e-9 to 1e9"""
+    """Radiance, in W m⁻² sr⁻¹. 1e-9 to 1e9"""
     size: Sequence[float]
     """Side lengths along X and Y"""
 
 
 class LightSpot(TypedDict):
-    """A flat bulb whose radiance falls off as cosⁿθ from the central ray."""
+    """A flat bulb whose radiance falls off as cosⁿθ, where θ is the angle to the central ray."""
 
     Spot: "LightSpotFields"
 
@@ -382,11 +382,11 @@ class LightSpotFields(TypedDict):
     bulb: "Bulb"
     """Shape of the bulb"""
     center: Sequence[float]
-    """Centre, world coordinates"""
+    """Centre, in world coordinates"""
     exponent: float
     """The exponent n. 0 to 10000"""
     radiance: NotRequired[float]
-    """Radiance along the central ray, W m⁻² sr⁻¹. 1e-9 to 1e9"""
+    """Radiance along the central ray, in W m⁻² sr⁻¹. 1e-9 to 1e9"""
 
 
 class LobeBeckmann(TypedDict):
@@ -404,7 +404,7 @@ class LobeGgx(TypedDict):
 
 
 class LobePhong(TypedDict):
-    """Phong lobe: cosⁿ of the angle to the mirror direction, with this n."""
+    """Phong lobe: cosⁿ of the angle to the mirror direction, with this exponent n."""
 
     Phong: float
     """0 to 10000"""
@@ -424,11 +424,11 @@ class MeshSourceParaboloid(TypedDict):
 
 class MeshSourceParaboloidFields(TypedDict):
     cells: int
-    """Number of cells along a side, of two triangles each. 1 to 2048"""
+    """Number of cells along a side; each cell consists of two triangles. 1 to 2048"""
     curvatures: Sequence[float]
-    """Curvatures k₁ and k₂, per metre; positive if convex"""
+    """Curvatures k₁ and k₂ per metre, positive if convex"""
     half: float
-    """Half-width: the piece extends to ± this along x and along y. 1e-9 to 1e8"""
+    """Half-width: the piece extends from −half to half along x and along y. 1e-9 to 1e8"""
 
 
 class MeshSourceStar(TypedDict):
@@ -452,24 +452,24 @@ class Path(TypedDict):
     """The central ray: it leaves the light's centre and travels from surface to surface, each of which sends it towards the centre of the next."""
 
     direction: Sequence[float]
-    """Direction in which the ray leaves the light; any length"""
+    """Direction, of any length, in which the ray leaves the light"""
     leaves: NotRequired[Union[Sequence[float], None]]
-    """Direction in which the ray leaves the last surface, any length; straight back by default"""
+    """Direction, of any length, in which the ray leaves the last surface; by default, straight back"""
     visits: Sequence[str]
-    """Names of the surfaces that the ray visits, in the order of light"""
+    """Names of the surfaces that the ray visits, in the order in which it visits them"""
     x_axis: Sequence[float]
     """The X axis; only the part orthogonal to the direction is used"""
 
 
 class PatternCheckerboard(TypedDict):
-    """A checkerboard of 1 and 0 with this period, two sides of a square."""
+    """A checkerboard of the values 1 and 0 with this period, which is twice the side of a square."""
 
     Checkerboard: float
     """1e-9 to 1e9"""
 
 
 class PatternCosine(TypedDict):
-    """½ (1 + m cos(2π f t + p)), with t along `along` or across it."""
+    """½ (1 + m cos(2π f t + p)), where t is measured along `along` or orthogonal to it."""
 
     Cosine: "PatternCosineFields"
 
@@ -478,15 +478,15 @@ class PatternCosineFields(TypedDict):
     axis: "AxisName"
     """The axis along which the pattern varies; X is `along`"""
     frequency: float
-    """Frequency f, cycles per metre. 1e-9 to 1e9"""
+    """Frequency f, in cycles per metre. 1e-9 to 1e9"""
     modulation: NotRequired[float]
     """Modulation m. 0 to 1"""
     phase: NotRequired[float]
-    """Phase p, radians. -1e9 to 1e9"""
+    """Phase p, in radians. -1e9 to 1e9"""
 
 
 class PatternPicture(TypedDict):
-    """A picture around the vertex, 0 outside: X to its right, Y to its top, as seen from the side that the surface faces."""
+    """A picture centred on the vertex, with the value 0 outside. X points to its right and Y to its top, as seen from the side that the surface faces."""
 
     Picture: "PatternPictureFields"
 
@@ -495,11 +495,11 @@ class PatternPictureFields(TypedDict):
     file: str
     """An OpenEXR or PNG file of numbers from 0 to 1; the path is relative to the scene file, and must stay inside its folder"""
     size: Sequence[float]
-    """Width along X and height along Y, metres"""
+    """Width along X and height along Y, in metres"""
 
 
 class PlaceAfter(TypedDict):
-    """In the plane of these blockers, after them; or of this surface, as light leaves it."""
+    """In the plane of these blockers, after light has passed them; or in the plane of this surface, as light leaves it."""
 
     After: str
 
@@ -565,17 +565,17 @@ class Run(TypedDict):
     """The settings of the measurement."""
 
     alpha: NotRequired[float]
-    """Share of correct scenes that the verdict may reject, over all planes. 1e-6 to 0.5"""
+    """Share of correct scenes that the verdict may reject, for all planes together. 1e-6 to 0.5"""
     batches: NotRequired[int]
-    """Number of independent batches, from which errors are estimated. 32 to 1024: errors come from the spread of batches"""
+    """Number of independent batches, from which errors are estimated. 32 to 1024: errors are estimated from the spread between batches"""
     emission: NotRequired["Emission"]
     """How photons leave the light"""
     photons: NotRequired[int]
-    """Number of photons emitted; 1e7 is allowed too. one for each batch to 10^12"""
+    """Number of emitted photons, which may be written as 1e7. at least one for each batch, at most 10^12"""
     resolution: NotRequired[float]
     """Noise, as a share of the spectrum, above which a plane does not pass. 0.0001 to 1"""
     sampling: NotRequired["Sampling"]
-    """The numbers that photons are drawn from"""
+    """The random numbers from which photons are drawn"""
     seed: NotRequired[int]
     """Seed of the photons. 0 to 2^64 − 1"""
 
@@ -590,7 +590,7 @@ class Scene(TypedDict):
     description: NotRequired[str]
     """A description of the scene for the reader"""
     frequencies: "Frequencies"
-    """The frequencies of every plane without its own"""
+    """The frequencies of every plane that has no frequencies of its own"""
     light: "Light"
     """The light source"""
     path: "Path"
@@ -602,7 +602,7 @@ class Scene(TypedDict):
     surfaces: NotRequired[Sequence["Surface"]]
     """The surfaces"""
     window: "Window"
-    """The window of every plane without one of its own"""
+    """The window of every plane that has no window of its own"""
 
 
 class ShapeDisc(TypedDict):
@@ -634,7 +634,7 @@ class ShapeHalfPlaneFields(TypedDict):
 
 
 class ShapeRectangle(TypedDict):
-    """A rectangle, edges along X and Y."""
+    """A rectangle with edges along X and Y."""
 
     Rectangle: "ShapeRectangleFields"
 
@@ -654,9 +654,9 @@ class SurfaceMesh(TypedDict):
 
 class SurfaceMeshFields(TypedDict):
     albedo: NotRequired[float]
-    """Albedo, reflected over incident flux, if the mesh is Lambertian. 0 to 1"""
+    """Albedo (the ratio of reflected to incident flux), if the mesh is Lambertian. 0 to 1"""
     center: Sequence[float]
-    """Position of the mesh's origin, world coordinates"""
+    """Position of the mesh's origin, in world coordinates"""
     event: NotRequired[Union["Event", None]]
     """Interaction with light as a smooth surface, with normals interpolated between vertices"""
     mesh: "MeshSource"
@@ -675,13 +675,13 @@ class SurfaceRectangle(TypedDict):
 
 class SurfaceRectangleFields(TypedDict):
     albedo: NotRequired[float]
-    """Albedo: reflected over incident flux. 0 to 1"""
+    """Albedo: the ratio of reflected to incident flux. 0 to 1"""
     center: Sequence[float]
-    """Centre, world coordinates"""
+    """Centre, in world coordinates"""
     facing: NotRequired[Union[Sequence[float], None]]
-    """Normal of the rectangle, any length; by default back along `path.direction`. One pair of edges is along the part of the path's X axis that is orthogonal to the normal (of Y, if X is along it), the other across"""
+    """Normal of the rectangle, of any length; by default, opposite to `path.direction`. One pair of edges is along the part of the path's X axis that is orthogonal to the normal (of the Y axis, if X is along the normal); the other pair is orthogonal to the first"""
     name: str
-    """Name, for the path and the planes to refer to"""
+    """Name by which the path and the planes refer to the surface"""
     size: Sequence[float]
     """Side lengths along X and Y"""
 
@@ -694,15 +694,15 @@ class SurfaceSmooth(TypedDict):
 
 class SurfaceSmoothFields(TypedDict):
     along: NotRequired[Union[Sequence[float], None]]
-    """Direction of the first curvature, any length; by default the path's X axis (Y, if the surface faces along X). Only the part orthogonal to the normal is used"""
+    """Direction, of any length, of the first curvature; by default, the path's X axis (or Y, if the surface faces along X). Only the part orthogonal to the normal is used"""
     aperture: float
     """Radius of the surface, seen along the normal. 1e-9 to 1e9"""
     center: Sequence[float]
-    """Vertex of the surface, world coordinates"""
+    """Vertex of the surface, in world coordinates"""
     event: "Event"
     """Interaction with light"""
     facing: Sequence[float]
-    """Normal at the vertex, any length"""
+    """Normal at the vertex, of any length"""
     form: "Form"
     """Shape of the surface"""
     name: str
@@ -719,22 +719,22 @@ class Term(TypedDict):
 
 
 class Window(TypedDict):
-    """The window: a profile for each coordinate; by default y and v are the same as x and u."""
+    """The window: a profile for each coordinate; by default, y has the profile of x, and v has that of u."""
 
     u: "Profile"
-    """Profile along u, slope"""
+    """Profile along u, as a slope"""
     v: NotRequired[Union["Profile", None]]
     """Profile along v"""
     x: "Profile"
-    """Profile along x, metres"""
+    """Profile along x, in metres"""
     y: NotRequired[Union["Profile", None]]
     """Profile along y"""
 
 AxisName = Union[Literal["X"], Literal["Y"]]
-"""An axis across the central ray."""
+"""An axis orthogonal to the central ray."""
 
 Blockers = Union["BlockersJitteredSquares", "BlockersShapes", "BlockersGrating", "BlockersMesh"]
-"""Black blockers, most of them in one plane orthogonal to the central ray."""
+"""Black blockers. All but meshes lie in one plane orthogonal to the central ray."""
 
 Bulb = Union["BulbSquare", "BulbDisc"]
 """The bulb of a spot, orthogonal to the central ray."""
@@ -749,7 +749,7 @@ Event = Union[Literal["Mirror"], "EventRefraction", "EventThinLens", "EventRefle
 """The interaction of a smooth surface with light."""
 
 Form = Union[Literal["Plane"], "FormSphere", "FormCylinder", "FormParaboloid"]
-"""The shape of a smooth surface around its vertex; curvatures per metre, positive if convex as seen from the side it faces."""
+"""The shape of a smooth surface around its vertex. Curvatures are per metre, and positive if the surface is convex as seen from the side that it faces."""
 
 Fresnel = Union[Literal["White"], "FresnelDielectric", "FresnelConductor"]
 """The share of light that is reflected, as a function of the angle of incidence."""
@@ -782,7 +782,7 @@ Quantity = Union[Literal["Radiance"], Literal["DifferentialIrradiance"]]
 """The quantity that a plane records."""
 
 Sampling = Union[Literal["Net"], Literal["Random"]]
-"""The numbers that photons are drawn from."""
+"""The random numbers from which photons are drawn."""
 
 Shape = Union["ShapeRectangle", "ShapeDisc", "ShapeHalfPlane"]
 """A shape in the plane of its blockers."""

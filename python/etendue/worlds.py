@@ -26,14 +26,14 @@ Sampling = Literal["reference", "uniform", "predicted", "printed", "weighted", "
 
 @dataclass(frozen=True)
 class Picture:
-    """What a camera sees: arrays [row, column], row 0 at the top."""
+    """The picture that a camera sees: arrays [row, column], with row 0 at the top."""
 
     radiance: NDArray[np.float64]
-    """W m⁻² sr⁻¹, the mean over each pixel."""
+    """In W m⁻² sr⁻¹, the mean over each pixel."""
     error: NDArray[np.float64]
-    """Its standard error; NaN for pictures of few shading samples, which have none."""
+    """Standard error of the radiance; NaN for pictures from few shading samples, which have no error."""
     folder: Path
-    """Where picture.exr and picture.png are."""
+    """The folder of picture.exr and picture.png."""
 
 
 @dataclass(frozen=True)
@@ -41,18 +41,18 @@ class Probe:
     """The light field behind a pixel."""
 
     verdict: str
-    """Of rays traced back against photons: pass, fail or undecided."""
+    """The verdict on the comparison of rays traced back with photons: pass, fail or undecided."""
     surfaces: list[dict[str, Any]]
-    """The surfaces on the central ray, from the camera on, with angle, curvatures and criterion."""
+    """The surfaces on the central ray, in order from the camera, with angle, curvatures and criterion."""
     planes: list[dict[str, Any]]
-    """The planes, with report, verdict and bandwidths [value, standard error] in cycles per slope and per metre."""
+    """The planes, with report, verdict and bandwidths [value, standard error], in cycles per unit slope and per metre."""
     folder: Path
-    """Where the arrays and pictures of each plane are."""
+    """The folder of the arrays and pictures of all planes."""
     text: str
     """Surfaces, planes and bandwidths, as `etendue probe` prints them."""
 
     def slices(self, plane: str) -> Mapping[str, NDArray[Any]]:
-        """The slices of a plane: azimuth, measured (rays), predicted (photons), sigma, rho, nu, as `slices.npz` has them."""
+        """The slices of a plane: azimuth, measured (rays), predicted (photons), sigma, rho and nu, as in `slices.npz`."""
         with np.load(self.folder / plane / "slices.npz") as arrays:
             return dict(arrays)
 
@@ -62,20 +62,20 @@ class Probe:
 
 @dataclass(frozen=True)
 class ImportedScene:
-    """What a scene holds."""
+    """The contents of a scene."""
 
     counts: dict[str, int]
-    """What there is of each kind, such as triangles."""
+    """The number of objects of each kind, such as triangles."""
     cameras: list[tuple[str, tuple[int, int]]]
-    """Each camera's name, and its pixels across and down. The first is used unless another is named."""
+    """The name of each camera, and its width and height in pixels. The first camera is used unless another is named."""
     has_light: bool
-    """Whether something shines."""
+    """Whether the scene has a light."""
     depth: int | None
-    """Most surfaces that light meets between a source and the camera, if the file says so."""
+    """The maximum number of surfaces that light meets between a source and the camera, if the file states one."""
     notes: list[str]
-    """A sentence for all that was left out or approximated."""
+    """A sentence about each thing that was left out or approximated."""
     text: str
-    """All of it, as `etendue import` prints it."""
+    """All contents, as `etendue import` prints them."""
 
     def __str__(self) -> str:
         return self.text
@@ -94,9 +94,9 @@ def import_scene(
     up: Point | None = None,
     fov: float | None = None,
 ) -> ImportedScene:
-    """Reads a scene of Mitsuba 3, pbrt-v4, glTF, OBJ or PLY, and says what it holds. The arguments are those of `render`.
+    """Reads a scene of Mitsuba 3, pbrt-v4, glTF, OBJ or PLY, and returns its contents. The arguments are those of `render`.
 
-    Raises `SceneError` with all causes for which the scene is refused.
+    Raises `SceneError` with all reasons for which the scene is refused.
     """
     arguments = given(
         root=root,
@@ -148,18 +148,18 @@ def render(
 ) -> Picture:
     """Traces paths from a camera of a scene of Mitsuba 3, pbrt-v4, glTF, OBJ or PLY.
 
-    `camera` is its name, the first unless said; `size` is pixels across and down, (64, 48) or "64x48", instead of the camera's.
-    `method` is "reference" with `samples` paths for each pixel (64 unless said), or a way to place `shading_samples` few samples of
-    `paths` paths each (128 unless said): "uniform", "predicted", "printed", "weighted" or "variance". It is "predicted" where
-    `shading_samples` is given alone. `blocker_rays` rays find the distance of blockers; with `isotropic`, samples are as dense along all
-    directions.
+    `camera` is the name of a camera, by default the first; `size` is the width and height in pixels, (64, 48) or "64x48", and replaces that
+    of the camera. `method` is "reference", with `samples` paths for each pixel (64 by default), or a way to distribute a small number of
+    `shading_samples` with `paths` paths each (128 by default): "uniform", "predicted", "printed", "weighted" or "variance". If only
+    `shading_samples` is given, it is "predicted". `blocker_rays` is the number of rays that find the distance of blockers; with `isotropic`,
+    samples are equally dense along all directions.
 
-    `root` is the folder that no file of the scene may lie out of; `color` is the number that a colour becomes; `set` gives parameters of
-    a Mitsuba file values. `bounces` is how many surfaces light meets at most; `sky` adds light of this radiance from everywhere.
-    `look_from` and `look_at` add a camera, with `up` and `fov`, the angle from side to side in degrees.
+    `root` is the folder that must contain all files of the scene; `color` is the number to which a colour is converted; `set` sets
+    parameters of a Mitsuba file. `bounces` is the maximum number of surfaces that light meets; `sky` adds light of this radiance from all
+    directions. `look_from` and `look_at` add a camera, with `up` and `fov`, the horizontal angle of view in degrees.
 
-    `force` replaces files in `out` that Étendue did not write. `progress` is whether a bar is shown, or a function that is told how many
-    pixels are done. Ctrl-C stops it at the end of a row. Raises `SceneError` with all causes for which the scene is refused.
+    `force` replaces files in `out` that Étendue did not write. `progress` states whether a bar is shown, or is a function that receives the
+    number of finished pixels. Ctrl-C stops rendering at the end of a row. Raises `SceneError` with all reasons for which the scene is refused.
     """
     arguments = given(
         camera=camera,
@@ -219,9 +219,9 @@ def probe(
 ) -> Probe:
     """Measures the light field behind a pixel (column, row), by rays traced back and by photons.
 
-    `depth` is how many surfaces along the ray are looked at, 1 to 16, 1 unless said; `window` is how many pixels are across the window, 16
-    unless said. `rays` rays are traced back for each plane, 2**20 unless said, and `photons` photons check them, 2**25 unless said.
-    `covariance` measures the covariance of each plane's spectrum too. All other arguments are those of `render`.
+    `depth` is the maximum number of surfaces along the ray, 1 to 16, by default 1; `window` is the width of the window in pixels, by default
+    16. `rays` is the number of rays traced back for each plane, by default 2**20, and `photons` is the number of photons that check them,
+    by default 2**25. `covariance` also measures the covariance of each plane's spectrum. All other arguments are those of `render`.
     """
     arguments = given(
         camera=camera,

@@ -62,7 +62,7 @@ impl Rays {
         }
         if let Some(empty) = all.iter().position(Vec::is_empty) {
             return fault(format!(
-                "batch {empty} of {batches} has no ray; allowed: at least one ray a batch"
+                "batch {empty} of {batches} has no ray; allowed: at least one ray per batch"
             ));
         }
         Ok(Self(all))

@@ -52,13 +52,13 @@ use std::process::ExitCode;
   cargo run --release -p etendue-validation -- bandwidth    writes results/bandwidth.md, .svg and .csv
   cargo run --release -p etendue-validation -- full-radial  minutes; writes results/validation.md
   cargo run --release -p etendue-validation -- nets         three minutes; writes results/nets.md
-  cargo run --release -p etendue-validation -- second       seconds; shared functions, written twice
-  cargo run --release -p etendue-validation -- hostile      20,000 mutated inputs, for etendue beside it
-  cargo run --release -p etendue-validation -- kills        200 kills, for etendue beside it
-  cargo run --release -p etendue-validation -- wild         100 random scenes, for etendue beside it
+  cargo run --release -p etendue-validation -- second       seconds; compares shared functions with a second implementation
+  cargo run --release -p etendue-validation -- hostile      20,000 mutated inputs for etendue in the same folder
+  cargo run --release -p etendue-validation -- kills        200 kills of etendue in the same folder
+  cargo run --release -p etendue-validation -- wild         100 random scenes for etendue in the same folder
   cargo run --release -p etendue-validation -- small        20 minutes; small objects in the light of 2,000 random scenes
-  cargo run --release -p etendue-validation -- assumptions  minutes; checks of theory switched off, on random scenes
-  cargo run --release -p etendue-validation -- pulls        measured parameters of 300 random scenes, in stated errors
+  cargo run --release -p etendue-validation -- assumptions  minutes; random scenes with the checks of theory switched off
+  cargo run --release -p etendue-validation -- pulls        errors of measured parameters of 300 random scenes, relative to stated errors
   cargo run --release -p etendue-validation -- all          half an hour; writes results/validation.md")]
 struct ValidationCli {
     #[command(subcommand)]
@@ -69,7 +69,7 @@ struct ValidationCli {
 enum ValidationCommand {
     /// A short form of the whole validation.
     Short,
-    /// Check that over many seeds p is uniform, χ²/dof is 1 and pulls have unit variance.
+    /// Check that over many seeds p is uniform, χ²/dof is 1, and pulls have unit variance.
     Calibration {
         /// Number of seeds.
         #[arg(long, default_value_t = 1000)]
@@ -87,38 +87,38 @@ enum ValidationCommand {
         #[arg(long, default_value_t = 1 << 23)]
         photons: u64,
     },
-    /// Check every plane, its parameters, and the receiver's noise floor up to a number of photons.
+    /// Check every plane and its parameters, and the receiver's noise floor up to a number of photons.
     Noise {
         /// Photons of the longest run.
         #[arg(long, default_value_t = 1_000_000_000)]
         most: u64,
     },
-    /// Predict every scene without smooth surfaces and trace it both ways, with faults only these
-    /// scenes can reveal; into results/suite.md.
+    /// Predict every scene without smooth surfaces and trace it in both directions, also with faults
+    /// that only these scenes can reveal; write results/suite.md.
     Suite {
         /// Photons per scene, instead of those in the files.
         #[arg(long)]
         photons: Option<u64>,
     },
-    /// Table 1 of the paper, every operator in 2D and in 4D, misprints and planted faults; into results/validation.md.
+    /// Check Table 1 of the paper: every operator in 2D and in 4D, misprints and planted faults; write results/validation.md.
     Table1 {
         /// Photons per scene, instead of those in the files.
         #[arg(long)]
         photons: Option<u64>,
     },
-    /// Cosines, BRDFs, textures, environments and the sampling criteria of the paper; into results/validation.md.
+    /// Check cosines, BRDFs, textures, environments and the sampling criteria of the paper; write results/validation.md.
     Shading {
         /// Photons per scene, instead of those in the files.
         #[arg(long)]
         photons: Option<u64>,
     },
-    /// Statements in the paper's text, checked with photons; into results/validation.md.
+    /// Check statements in the paper's text with photons; write results/validation.md.
     Claims {
         /// Photons per scene, instead of a million or more.
         #[arg(long)]
         photons: Option<u64>,
     },
-    /// The sampling criteria compared with photons, into results/bandwidth.md with its picture.
+    /// Compare the sampling criteria with photons; write results/bandwidth.md and its picture.
     Bandwidth {
         /// Photons per point; if given, nothing is written.
         #[arg(long)]
@@ -134,34 +134,34 @@ enum ValidationCommand {
         #[arg(long, default_value_t = 1 << 16)]
         photons: u64,
     },
-    /// Stated errors of predictions by nets of rays, compared with the true errors; into
+    /// Compare stated errors of predictions by nets of rays with the true errors; write
     /// results/nets.md.
     Nets,
-    /// The code shared by theory and tracers, compared with a second implementation; exit code 1 if
+    /// Compare the code shared by theory and tracers with a second implementation; exit code 1 if
     /// they differ or a planted fault is not detected.
     Second,
-    /// Mutated scenes, meshes, pictures and stored stages as input of the program; exit code 1 if
-    /// it fails on one.
+    /// Give the program mutated scenes, meshes, pictures and stored stages as input; exit code 1 if
+    /// it fails on any of them.
     Hostile(hostile::HostileOptions),
     /// Kill the program, start it twice at once and run it on full disks; exit code 1 if it leaves
     /// a broken result or loses a file.
     Kills(kills::KillOptions),
-    /// Random scenes with all features; exit code 1 after a panic, a hang or a wrong verdict.
+    /// Run random scenes with all features; exit code 1 after a panic, a hang or a wrong verdict.
     Wild(wild::WildOptions),
-    /// Random scenes that violate one assumption of theory, predicted nevertheless; exit code 1 if
-    /// photons never reject one of them.
+    /// Predict random scenes that each violate an assumption of theory; exit code 1 if photons never
+    /// reject the violation of one assumption.
     Assumptions(assumptions::AssumptionOptions),
-    /// Small objects in the light of random scenes; exit code 1 if photons reject a prediction.
+    /// Put small objects into the light of random scenes; exit code 1 if photons reject a prediction.
     Small(wild::SmallOptions),
-    /// Random scenes with several reflecting or refracting surfaces; exit code 1 if photons reject
+    /// Run random scenes with several reflecting or refracting surfaces; exit code 1 if photons reject
     /// a prediction.
     Several(wild::SmallOptions),
-    /// Pulls of measured parameters and slopes over random scenes, and the cost of predictions;
-    /// exit code 1 if stated errors are wrong.
+    /// Measure pulls of parameters and slopes over random scenes, and the cost of predictions; exit
+    /// code 1 if stated errors are wrong.
     Pulls(pulls::PullOptions),
-    /// The main scene: every plane, noise floors, calibration and planted faults; into results/validation.md.
+    /// Check the main scene: every plane, noise floors, calibration and planted faults; write results/validation.md.
     Main,
-    /// The whole of results/validation.md: `main`, `table1`, `shading` and `claims`, and every row of the paper's Table 1.
+    /// Write the whole of results/validation.md: `main`, `table1`, `shading` and `claims`, and every row of the paper's Table 1.
     All,
 }
 

@@ -35,11 +35,11 @@ use std::fmt::Write;
 
 First steps:
   etendue run scenes/fig9b.ron                          measure, predict, compare, draw
-  etendue check scenes/fig9b.ron                        show how a scene is understood
+  etendue check scenes/fig9b.ron                        show how the program understands a scene
   etendue run scenes/fig9b.ron --set blockers.0.pitch=0.05 --out out/fine
   etendue render scenes/worlds/glossy.xml               a picture of a Mitsuba scene
 
-Exit codes: 0 pass, 1 disagreement, 2 bad input, 3 cannot run (directory, memory, interrupted),
+Exit codes: 0 pass, 1 disagreement, 2 bad input, 3 cannot run (folder, memory, interruption),
 4 undecided"
 )]
 pub(crate) struct Cli {
@@ -53,7 +53,7 @@ pub(crate) enum Command {
     Run(RunArgs),
     /// Check a scene and show how it is understood; nothing is traced.
     Check(CheckArgs),
-    /// Run a scene with several values of its fields; table and curves.
+    /// Run a scene for several field values; write a table and curves.
     Sweep(SweepArgs),
     /// Measure a scene, or some of its batches, for `compare`.
     Measure(MeasureArgs),
@@ -77,9 +77,9 @@ pub(crate) enum Command {
     Converge(ConvergeArgs),
     /// Show what a scene file of another program holds.
     Import(ImportArgs),
-    /// Render a scene of another program, with errors.
+    /// Render a scene of another program, and estimate the errors.
     Render(RenderArgs),
-    /// Measure the light field behind a pixel of such a scene.
+    /// Measure the light field behind a pixel of such a rendered scene.
     Probe(ProbeArgs),
     /// Write a scene for Mitsuba 3.
     Export(ExportArgs),
@@ -98,7 +98,7 @@ const GROUPS: [(&str, &[&str]); 4] = [
         ],
     ),
     (
-        "Look at results and the paper",
+        "Show results and reproduce the paper",
         &["report", "figure", "bandwidth", "covariance", "converge"],
     ),
     (

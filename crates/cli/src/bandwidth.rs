@@ -68,10 +68,10 @@ pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
     let cells = rows.iter().map(BandwidthRow::cells);
     let table: Vec<Vec<String>> = std::iter::once(header).chain(cells).collect();
     say(
-        "Bandwidths contain 95 % of the energy: that of the lobe is in cycles per radian, the others are in cycles per unit slope at a fixed point of the plane.",
+        "A bandwidth is the frequency below which 95 % of the energy lies: in cycles per radian for the lobe, and otherwise in cycles per unit slope at a fixed point of the plane.",
     );
     say(
-        "B, B': Durand et al. 2005, Eqs. 20 and 21, corrected; the columns beside them hold the equations as printed.\n",
+        "B, B': Durand et al. 2005, Eqs. 20 and 21, corrected; the columns beside them use the equations as printed.\n",
     );
     deliver(&aligned(table).join("\n"))?;
     for warning in warnings {

@@ -125,7 +125,7 @@ fn description(scene: &Scene, theories: &[Applicability]) -> String {
             lines.extend(rays(&chain));
         }
         lines.push(format!(
-            "  looked at in {k} azimuths x {rho} x {nu} frequencies, up to {} cycles/m and {} cycles per {}",
+            "  measured at {k} azimuths x {rho} x {nu} frequencies, up to {} cycles/m and {} cycles per {}",
             tidy(plane.grid.rho.max()),
             tidy(plane.grid.nu.max()),
             if plane.orientation == Orientation::Orthogonal { "unit slope" } else { "radian" }

@@ -133,7 +133,7 @@ fn type_of(node: &Value) -> Option<&str> {
 
 /// A table of fields, one per row.
 fn table(node: &Value) -> String {
-    let mut text = String::from("\n| field | meaning | value | unless stated | example |\n");
+    let mut text = String::from("\n| field | meaning | value | default | example |\n");
     text.push_str("|---|---|---|---|---|\n");
     for (name, field) in fields(node) {
         let what = field["title"].as_str().unwrap_or_default();
@@ -146,7 +146,7 @@ fn table(node: &Value) -> String {
             .or(field["items"]["x-range"].as_str());
         let range = range.map_or(String::new(), |range| format!(", {range}"));
         let default = match is_required(node, name) {
-            true => "must be stated".to_owned(),
+            true => "required".to_owned(),
             false => default(&field["default"]),
         };
         let about = description(field);

@@ -122,7 +122,7 @@ impl SplitWork {
             (self.measure(&range, "$i"), self.predict(), self.compare());
         format!(
             "#!/bin/sh
-# Hands {name} to Slurm in {parts} parts: sh THIS. Add what your cluster asks for to each sbatch, such as --time and --cpus-per-task.
+# Submits {name} to Slurm in {parts} parts; run it as: sh THIS. Add the options that your cluster requires to each sbatch, such as --time and --cpus-per-task.
 set -eu
 parts=$(sbatch --parsable --job-name={name} --array=0-{last} <<'END'
 #!/bin/sh

@@ -62,7 +62,7 @@ fn bad_sweeps_and_scenes_are_refused() {
         ),
         (
             "bandwidth glossy.ron --csv out --sweep surfaces.0.form.Sphere=0..1:3 --sweep surfaces.0.facing.0=0..1:2",
-            &["go in step", "same number"],
+            &["vary together", "same number"],
         ),
         (
             "bandwidth small.ron --csv out",

@@ -196,8 +196,14 @@ fn a_target_error_is_reached() {
     let output = run("target", &["--target-error", "1.5%"]);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     let told = String::from_utf8(output.stdout).unwrap();
-    assert!(told.contains("2 097 152 photons follow, about"), "{told}");
-    assert!(told.contains("100 times the photons, about"), "{told}");
+    assert!(
+        told.contains("the next step traces 2 097 152 photons in about"),
+        "{told}"
+    );
+    assert!(
+        told.contains("100 times as many photons, in about"),
+        "{told}"
+    );
     let output = run("same", &["--photons", "2^21", "--quiet"]);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     let [mut reached, mut same] = ["target", "same"].map(|out| files(&folder.path().join(out)));

@@ -108,7 +108,7 @@ fn two_results_are_told_apart_when_they_differ() {
         &folder,
         "a grid",
         4,
-        &["it has other frequencies ρ: 13 up to 6 and 15 up to 7"],
+        &["its frequencies ρ differ: 13 up to 6 and 15 up to 7"],
     );
 }
 
@@ -200,7 +200,7 @@ fn damaged_folders_are_refused_by_name() {
     fs::write(&summary, text.replace("\"seed\": 2", "\"seed\": 3")).unwrap();
     refuses(
         path,
-        &["b/summary.json: it was changed since it was written"],
+        &["b/summary.json: it was changed after it was written"],
     );
     fs::remove_file(&summary).unwrap();
     refuses(path, &["cannot read b/summary.json"]);

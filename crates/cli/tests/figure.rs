@@ -104,8 +104,8 @@ fn photons_tell_the_criteria_from_their_print() {
     };
     let mut told = 0;
     for panel in [
-        "\"Eq. 20, over curvature\"",
-        "\"Eq. 20, over distance\"",
+        "\"Eq. 20 as a function of curvature\"",
+        "\"Eq. 20 as a function of distance\"",
         "\"Eq. 21",
     ] {
         let lines = ["corrected", "as printed"].map(|line| points(line, panel));

@@ -52,19 +52,19 @@ const MISTAKES: &[[&str; 3]] = &[
     [
         "size: (0.2, 0.2)",
         "size: 0.2",
-        "line 2, column 47: light.size is 0.2; allowed: side lengths along X and Y, metres, such as (0.2, 0.1)",
+        "line 2, column 47: light.size is 0.2; allowed: side lengths along X and Y, in metres, such as (0.2, 0.1)",
     ],
     // Two coordinates of three.
     [
         "center: (0, 0, 1)",
         "center: (0, 1)",
-        "line 5, column 38: blockers[0].center is (0, 1); allowed: a place in the world, metres, such as (0, 0, 1)",
+        "line 5, column 38: blockers[0].center is (0, 1); allowed: a place in the world, in metres, such as (0, 0, 1)",
     ],
     // Brackets of a list.
     [
         "center: (0, 0, 2)",
         "center: [0, 0, 2]",
-        "line 10, column 42: surfaces[0].center is [0, 0, 2]; allowed: a place in the world, metres, such as (0, 0, 1)",
+        "line 10, column 42: surfaces[0].center is [0, 0, 2]; allowed: a place in the world, in metres, such as (0, 0, 1)",
     ],
     // A half-width without its profile.
     [
@@ -190,7 +190,7 @@ const MISTAKES: &[[&str; 3]] = &[
     [
         r#"Before("floor")"#,
         "Distance(4.5)",
-        "line 14, column 31: planes[0].at is Distance(4.5); allowed: 0 to 2 m on the way to the last surface, up to 4 m on the way from it, where an object ends it",
+        "line 14, column 31: planes[0].at is Distance(4.5); allowed: 0 to 2 m, where the last surface is, and from there to 4 m, where an object ends the path",
     ],
     // Jitter that makes squares overlap.
     [
@@ -224,7 +224,7 @@ const MISTAKES: &[[&str; 3]] = &[
     ],
 ];
 
-const CUT: &str = "line 15, column 7: the scene: the file ends here, and a bracket is still open; allowed: its missing fields and `)`";
+const CUT: &str = "line 15, column 7: the scene: the file ends here, but a bracket is still open; allowed: its missing fields and `)`";
 
 /// Settings on the command line, and their messages.
 const SET: &[[&str; 2]] = &[
@@ -238,7 +238,7 @@ const SET: &[[&str; 2]] = &[
     ],
     [
         "light.size=0.3",
-        "light.size: invalid type: floating point `0.3`, expected an array of length 2; allowed: side lengths along X and Y, metres, such as (0.2, 0.1)",
+        "light.size: invalid type: floating point `0.3`, expected an array of length 2; allowed: side lengths along X and Y, in metres, such as (0.2, 0.1)",
     ],
     [
         "planes.0.at=Befor(floor)",
@@ -296,8 +296,8 @@ fn likely_mistakes_are_warned_of() {
         (
             "count: (20, 20)",
             "count: (20, 2)",
-            "arrival: the light it sees passes squares up to (0.3, 0.3) m from the central ray, \
-             beyond its edge at (2, 0.2) m, where nothing blocks it",
+            "arrival: light that reaches this plane passes squares up to (0.3, 0.3) m from the central ray, \
+             beyond the edge of the array at (2, 0.2) m, where nothing blocks it",
         ),
     ] {
         let output = check(from, to, &[]);

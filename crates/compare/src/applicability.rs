@@ -184,7 +184,7 @@ impl Applicability {
         steps.extend(unknown.map(|reason| format!("without theory  {reason}")));
         steps.extend(self.dark.iter().map(|reason| format!("dark  {reason}")));
         steps.push(format!(
-            "multiply  window: x {x:?}, y {y:?}, u {u:?}, v {v:?}"
+            "multiply  by the window: x {x:?}, y {y:?}, u {u:?}, v {v:?}"
         ));
         steps
     }

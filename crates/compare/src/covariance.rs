@@ -168,7 +168,7 @@ impl CovarianceReport {
         let mut remarks: Vec<String> = self.untraced.iter().cloned().collect();
         if self.untraced.is_none() && self.traced.is_none() {
             remarks.push(
-                "by covariance tracing the spectrum is unbounded, as for light from a point; within the band it is a ridge"
+                "according to covariance tracing, the spectrum is unbounded, as for light from a point; within the band it is a ridge"
                     .to_owned(),
             );
         }
@@ -187,13 +187,13 @@ impl CovarianceReport {
             .collect();
         if !axes.is_empty() {
             remarks.push(format!(
-                "the variance along {} grows over the second half of the band, which holds replicas, tails of edges or more of the spectrum: the value covers the band only",
+                "the variance along {} grows over the outer half of the band, where there are replicas, tails of edges or other parts of the spectrum: the value covers the band only",
                 axes.join(", ")
             ));
         }
         if let Some([off, error]) = self.off {
             remarks.push(format!(
-                "covariance tracing differs by {} of the variances; noise is {}",
+                "covariance tracing differs from the photons by {} of the variances; noise is {}",
                 percent(off, 1),
                 percent(error, 1)
             ));

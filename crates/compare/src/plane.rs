@@ -202,7 +202,7 @@ impl ComparedSides<'_> {
             // Theory may prove that no light arrives; finding no ray is no proof.
             self.prediction.is_statistical().then(|| {
                 format!(
-                    "no ray of the prediction reached the window; {inside} of {emitted} photons did (0 would mean a share below 3 in {emitted} at 95 %)"
+                    "no ray of the prediction reached the window; {inside} of {emitted} photons reached it (if none did, the share of such photons would be below 3 in {emitted}, with 95 % confidence)"
                 )
             })
         } else if inside == 0 {
@@ -214,7 +214,7 @@ impl ComparedSides<'_> {
             ))
         } else if let Some(each) = self.uneven(agrees) {
             Some(format!(
-                "a few photons, or rays of the prediction, carry most of the light: it varies as if each batch held {each:.1}, too few for a test{needs}"
+                "a few photons, or a few rays of the prediction, carry most of the light: it varies as if each batch held only {each:.1} of them, too few for a test{needs}"
             ))
         } else if agrees && error > test.resolution {
             let error = percent(error);
@@ -226,7 +226,7 @@ impl ComparedSides<'_> {
                 (Some(_), _) => "with so coarse a mesh, photons and the prediction may differ",
             };
             Some(format!(
-                "{what} by {error}, noise is {}; more photons do not help",
+                "{what} by {error} of the spectrum, and noise is {}; more photons do not help",
                 percent(noise)
             ))
         } else if agrees && noise > test.resolution {
@@ -237,7 +237,7 @@ impl ComparedSides<'_> {
             ))
         } else if noise > test.resolution.max(MAX_HANDFUL_NOISE) {
             Some(format!(
-                "noise is {} of the spectrum, from too few photons for a meaningful p{needs}",
+                "too few photons for a meaningful p-value: noise is {} of the spectrum{needs}",
                 percent(noise)
             ))
         } else {
@@ -529,7 +529,7 @@ fn warnings(predicted: &Array2<f64>, grid: &SliceGrid, blur: Option<(f64, f64)>)
         let border = at(axis);
         if border > BORDER * peak {
             warnings.push(format!(
-                "the spectrum extends beyond |{name}| = {}, where it is {:.0} dB below its peak; bandwidths cover the inside only",
+                "the spectrum extends beyond |{name}| = {}, where it is {:.0} dB below its peak; bandwidths cover only the frequencies below",
                 brief(max),
                 10.0 * libm::log10(peak / border)
             ));

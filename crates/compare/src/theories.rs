@@ -55,12 +55,12 @@ impl Theory {
     #[must_use]
     pub fn assumptions(&self) -> &'static [&'static str] {
         const FOLLOWED: &[&str] = &[
-            "light meets each surface once, in the order of the path, and never in its own shadow",
+            "light meets each surface once, in the order of the path, and no surface is in its own shadow",
         ];
         match self {
             Self::Parallel(_) => &[
-                "all objects that light meets lie in planes across the path",
-                "the receiver has no edge in view",
+                "all objects that light meets lie in planes orthogonal to the path",
+                "no edge of the receiver is in view",
             ],
             Self::Specular(_) | Self::Scattering(_) => FOLLOWED,
             Self::Reflections(_) | Self::None => &[],

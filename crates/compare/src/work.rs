@@ -31,13 +31,16 @@ impl fmt::Display for TooMuchWork {
             (format!("{gigabytes:.1} GB on one core"), limit)
         } else {
             let steps = if work.steps.is_finite() {
-                format!("{:.1e} steps, out of {total:.1e} or more", work.steps)
+                format!(
+                    "{:.1e} steps, out of {total:.1e} or more for all planes",
+                    work.steps
+                )
             } else {
                 "too many steps to count".to_owned()
             };
             let minutes = MOST_STEPS / 6e10;
             let limit =
-                format!("{MOST_STEPS:.0e} for all planes, about {minutes} minutes of one core");
+                format!("{MOST_STEPS:.0e} for all planes, about {minutes} minutes on one core");
             (steps, limit)
         };
         write!(

@@ -91,7 +91,7 @@ fn a_blocker_that_reaches_into_a_later_leg() {
 fn a_bowl_that_meets_its_own_light() {
     let bowl = r#"Smooth(name: "bowl", center: (-0.28, 0, 1), facing: (0, 0, -1),
                 form: Sphere(-2), aperture: 0.45, event: Mirror)"#;
-    let reason = "light that meets bowl twice, or bowl in its own shadow";
+    let reason = "light that meets bowl twice, or meets bowl in its own shadow";
     for light in [LIGHT, PROJECTOR] {
         applies_only(0.01, 0.3, reason, |half| {
             scene(light, "", bowl, r#""bowl""#, r#"After("bowl")"#, half)
@@ -107,7 +107,7 @@ fn a_bowl_that_shadows_itself() {
             r#"Smooth(name: "bowl", center: (0, 0, 1), {AT_45},
                 form: Sphere(-2), aperture: 0.45, event: {event})"#
         );
-        let reason = "light that meets bowl twice, or bowl in its own shadow";
+        let reason = "light that meets bowl twice, or meets bowl in its own shadow";
         applies_only(0.02, 0.3, reason, |half| {
             scene(LIGHT, "", &bowl, r#""bowl""#, r#"After("bowl")"#, half)
         });

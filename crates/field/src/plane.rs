@@ -17,11 +17,11 @@ pub enum Side {
 /// The quantity that a plane records.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Quantity {
-    /// Radiance, W m⁻² sr⁻¹.
+    /// Radiance, in W m⁻² sr⁻¹.
     #[default]
     Radiance,
     /// Differential irradiance: radiance times G = (1 + u² + v²)⁻² = cos θ dω / du dv
-    /// (Durand et al. 2005, section 3.3 in 2D; docs/theory.md (7)); on a surface times cos θ cos² φ = cos θ dω / dθ dφ.
+    /// (Durand et al. 2005, section 3.3 in 2D; docs/theory.md (7)); on a surface, radiance times cos θ cos² φ = cos θ dω / dθ dφ.
     DifferentialIrradiance,
 }
 
@@ -32,15 +32,16 @@ pub enum Quantity {
 /// θ T + cos θ N) + sin φ B: the plane-sphere parameterisation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Orientation {
-    /// The plane across the central ray, two-plane parameterisation.
+    /// The plane orthogonal to the central ray, in two-plane parameterisation.
     #[default]
     Orthogonal,
-    /// The tangent plane at the central hit: positions along T and B, angles to the normal N there.
+    /// The tangent plane where the central ray hits the surface: positions along T and B, angles to
+    /// the normal N at this point.
     Tangent,
     /// The surface itself: positions along T and B of the point hit, angles to the normal at that
     /// point, with T and B turned together with the normal by the smallest angle.
     LocalNormals,
-    /// As `LocalNormals`, with arriving light rotated about the normal into the direction of mirror
+    /// As `LocalNormals`, but arriving light is rotated about the normal into the direction of mirror
     /// reflection (Durand et al. 2005, Fig. 10, step 4).
     Mirrored,
 }

@@ -245,7 +245,7 @@ fn draw_bars(svg: &mut Svg, bars: &Bars, area: Area, middles: &[f64]) -> f64 {
     }
     panel.frame(svg);
     let key = format!(
-        "Bars: {}, measured, with standard errors. Lines: predicted.",
+        "Bars: {}, as measured, with standard errors. Lines: predictions.",
         bars.about
     );
     let mut y = area.bottom();

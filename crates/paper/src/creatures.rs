@@ -190,7 +190,7 @@ pub(crate) fn criteria(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     };
     let below = PictureRow {
         title: "",
-        note: "(c) The number of samples wanted in each pixel, shown up to one. (d) Pixels that have a sample.",
+        note: "(c) Requested samples per pixel, shown up to one. (d) Pixels that have a sample.",
         panels: &[
             PicturePanel::new("(c) density", &density),
             PicturePanel::new("(d) samples", &dots),

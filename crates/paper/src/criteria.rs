@@ -37,7 +37,7 @@ pub(crate) fn criteria(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         shown: |k| k,
     };
     let distance = CriterionSweep {
-        title: "Eq. 20, over distance",
+        title: "Eq. 20 as a function of distance",
         quantity: AxisQuantity::new("*d*", "m"),
         field: "planes.0.at.Distance",
         ends: [1.05, 2.0],
@@ -51,15 +51,19 @@ pub(crate) fn criteria(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         panel(
             taken,
             environment,
-            &curvature("Eq. 20, over curvature", values),
+            &curvature("Eq. 20 as a function of curvature", values),
         )?,
         panel(taken, environment, &distance)?,
-        panel(taken, edge, &curvature("Eq. 21, edge 0.4 m off", behind))?,
+        panel(
+            taken,
+            edge,
+            &curvature("Eq. 21, with an edge at 0.4 m", behind),
+        )?,
     ];
     taken.curves(&Curves {
         title: "Criteria and photons".to_owned(),
-        note: "*B*: the frequency below which 95 % of the power lies, at a fixed point a distance *d* off. Corrected: Ω_{ρ} |1 + 2*kd*/cos *θ*_{1}|, and behind an edge at *d'*: \
-               Ω_{ρ} |1 + *d* (cos *θ*_{0}/*d'* + 2*k*)/cos *θ*_{1}|. At the minimum of the corrected value, the window determines the measured one."
+        note: "*B*: the frequency below which 95 % of the power lies, at a fixed point at distance *d*. Corrected: Ω_{ρ} |1 + 2*kd*/cos *θ*_{1}|, and behind an edge at *d'*: \
+               Ω_{ρ} |1 + *d* (cos *θ*_{0}/*d'* + 2*k*)/cos *θ*_{1}|. At the minimum of the corrected value, the window determines the measured value."
             .to_owned(),
         y: AxisQuantity::new("*B*", "cycles/slope"),
         panels: panels.to_vec(),

@@ -186,7 +186,7 @@ pub(crate) fn fresnel(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let told = materials.iter().zip(&shares);
     let told = told.map(|(of, below)| format!("{} {}", of.name, below.join(", ")));
     let note = format!(
-        "Glass: *n* = 1.5. Diamond: 2.417. Aluminium: 1.488 + 7.821 i, at 650 nm. 80, 95 and 99 % of the energy lie below (cycles/rad): {}.",
+        "Glass: *n* = 1.5. Diamond: 2.417. Aluminium: 1.488 + 7.821 i, at 650 nm. Frequencies below which 80, 95 and 99 % of the energy lie (cycles/rad): {}.",
         told.collect::<Vec<_>>().join("; ")
     );
     let mut figure = taken.curves(&values(

@@ -65,7 +65,7 @@ pub(crate) fn steps(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     rows.insert(1, row("2D", quantity, DECIBEL, false, pictures.collect()));
     taken.plate(&Plate {
         title: "The steps of diffuse shading",
-        note: "2D: light, a row of blockers without jitter and a receiver in flatland, computed. Below it the scene in 3D, its blockers jittered: radial spectra, means over azimuths.",
+        note: "Top: the scene in 2D (flatland), computed, with a row of blockers without jitter. Below: the scene in 3D with jittered blockers; its radial spectra are means over azimuths.",
         heads: heads.map(str::to_owned).to_vec(),
         rows,
         feet: feet(&seen),
@@ -110,7 +110,7 @@ pub(crate) fn occluders(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     ];
     taken.plate(&Plate {
         title: "Two occluders that together block all light",
-        note: "Measured, the slice at azimuth 0. Each occluder leaves half of the light, with a different phase; together they leave none.",
+        note: "Measured slices at azimuth 0. Each occluder leaves half of the light, with a different phase; together they leave none.",
         heads: ["one occluder", "the other", "both"]
             .map(str::to_owned)
             .to_vec(),
@@ -163,14 +163,14 @@ pub(crate) fn blockers(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     };
     taken.plate(&Plate {
         title: "Blockers of three sizes, seen from the receiver",
-        note: "Blockers block the share *blocked* of the light in the window. The receiver has most high frequencies behind blockers of medium size: replicas of the smallest are sheared beyond its range.",
+        note: "*blocked*: the share of the light in the window that the blockers block. The receiver has most high frequencies behind blockers of medium size: the replicas of the smallest blockers are sheared beyond its range.",
         heads: lettered(&["pitch 1 m", "pitch 0.2 m", "pitch 0.04 m"]),
         rows: compared(&seen, true),
         feet,
         bars: Some(Bars {
             quantity: AxisQuantity::new("*H*", "%"),
             about: format!(
-                "*H*, the share of the energy of the irradiance above {cut:.2} cycles/m, where light leaves the receiver"
+                "*H*, the share of the energy of the irradiance that lies above {cut:.2} cycles/m where light leaves the receiver"
             ),
             measured: each(&|share| share.measured),
             errors: each(&|share| share.error),

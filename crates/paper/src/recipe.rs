@@ -59,7 +59,7 @@ impl Recipe {
 pub(crate) const RECIPES: &[Recipe] = &[
     Recipe {
         name: "1",
-        about: "spectra along a path, from the light to what leaves a diffuse receiver",
+        about: "spectra along a path, from the light to the light that leaves a diffuse receiver",
         scenes: &[("fig1", scene!("fig1"))],
         also: &[],
         has_table: false,
@@ -68,7 +68,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
     },
     Recipe {
         name: "3",
-        about: "the two parameterisations, by slopes and by angles, and travel",
+        about: "the two parameterisations, in slopes and in angles, and travel",
         scenes: &[("fig3", scene!("fig3"))],
         also: &[("fig8", scene!("fig8"))],
         has_table: true,
@@ -99,7 +99,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
     },
     Recipe {
         name: "6",
-        about: "all steps of diffuse shading: in flatland, and in 3D measured and predicted",
+        about: "all steps of diffuse shading: computed in flatland, and measured and predicted in 3D",
         scenes: &[("fig1", scene!("fig1"))],
         also: &[],
         has_table: false,
@@ -108,7 +108,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
     },
     Recipe {
         name: "7",
-        about: "one occluder, the other, and both: the light they block differs in phase, and together they block all of it",
+        about: "each of two occluders alone, and both: the light that they block differs in phase, and together they block all light",
         scenes: &[
             ("fig7_one", scene!("fig7_one")),
             ("fig7_other", scene!("fig7_other")),

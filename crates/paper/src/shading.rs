@@ -18,8 +18,8 @@ pub(crate) fn environment(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let seen: Vec<Seen<'_>> = seen.into_iter().collect::<Result<_, _>>()?;
     let steps = taken.plate(&Plate {
         title: "Diffuse shading under an environment map",
-        note: "Light that varies over angle alone has its spectrum along *ν*; curvature shears it onto *ρ* = *kν*, the cosine blurs it along *ν*, and what leaves a diffuse \
-               surface is the line *ν* = 0.",
+        note: "Light that varies over angle alone has its spectrum along *ν*; curvature shears the spectrum onto *ρ* = *kν*, the cosine blurs it along *ν*, and the light that leaves \
+               a diffuse surface has its spectrum on the line *ν* = 0.",
         heads: lettered(&names),
         rows: compared(&seen, false),
         feet: feet(&seen),
@@ -71,7 +71,7 @@ fn product(taken: &FigureData<'_>, shaded: &Seen<'_>) -> Result<Figure, Failure>
         title: "The product".to_owned(),
         note: "|*S*_{0}| at *ν* = 0, where the light leaves. Lines: the product in 2D, seen through the same window, with and without the spectrum of the cosine."
             .to_owned(),
-        y: AxisQuantity::new("of that at 0", ""),
+        y: AxisQuantity::new("relative to 0", ""),
         panels: vec![panel],
     })
 }
@@ -137,7 +137,7 @@ pub(crate) fn adaptive(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     ];
     let steps = taken.plate(&Plate {
         title: "Bandwidth of a glossy reflection, step by step",
-        note: "A beam, distant light with content at all frequencies in angle, on a glossy sphere. The lobe limits the line; curvature shears it twice, and travel once more.",
+        note: "A beam (distant light with content at all angular frequencies) on a glossy sphere. The lobe limits the line of the spectrum; curvature shears it twice, and travel once more.",
         heads: lettered(&heads),
         rows: compared(&seen, false),
         feet: feet(&seen),

@@ -20,8 +20,8 @@ pub(crate) fn coordinates(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let seen: Vec<Seen<'_>> = seen.into_iter().collect::<Result<_, _>>()?;
     let spaces = taken.plate(&Plate {
         title: "Two parameterisations, and travel",
-        note: "Five suns, 0.4 rad apart, behind a grating: stripes at slopes *u* = tan *θ*, which are unequally spaced, and at angles, which are equally spaced. Travel shears them along *x*; angles are measured along T, which is opposite to X.",
-        heads: lettered(&["slopes", "slopes, 0.5 m on", "angles, there"]),
+        note: "Five suns, 0.4 rad apart, behind a grating: the stripes are unequally spaced in slope, *u* = tan *θ*, and equally spaced in angle. Travel shears them along *x*; angles are measured along T, which is opposite to X.",
+        heads: lettered(&["slopes", "slopes, after 0.5 m", "angles, there"]),
         rows: compared(&seen, false),
         feet: feet(&seen),
         bars: None,
@@ -31,7 +31,7 @@ pub(crate) fn coordinates(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let error = orders(
         taken,
         "The error of taking *u* for *θ*",
-        "‖first order − exact‖/‖exact‖ of the spectrum in Fig. 8, whose window is *e* times as wide: the tangent is straight to second order.",
+        "‖first order − exact‖/‖exact‖ of the spectrum in Fig. 8, with a window *e* times as wide: tan *θ* equals *θ* to second order.",
         &panels,
         2,
     )?;

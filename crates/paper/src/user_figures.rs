@@ -70,7 +70,7 @@ fn sources(request: &FigureRequest) -> Result<Vec<&SceneSource>, Failure> {
     let sources = request.wanted.iter().map(|wanted| match wanted {
         Wanted::Scene(source) => Ok(source),
         Wanted::PaperFigure(name) => Err(Failure::bad_input(format!(
-            "{name} is not a scene file, and scene files make one figure that takes nothing else"
+            "{name} is not a scene file: scene files are drawn as one figure, without figures of the paper"
         ))),
     });
     sources.collect()

@@ -186,7 +186,7 @@ impl Keeper<'_> {
             return;
         }
         unfinished::keeps(
-            "interrupted: the measurement is kept, up to the last few seconds; the same command with --resume continues it",
+            "interrupted: the measurement is kept, except for the last few seconds; the same command with --resume continues it",
         );
     }
 

@@ -55,7 +55,7 @@ pub fn check_memory(scene: &Scene) -> Result<(), Failure> {
             let [nx, ny, nu, nv] = grid.cells;
             let gigabytes = |bytes: u64| bytes as f64 / 1e9;
             return Err(Failure::cannot_run(format!(
-                "--save field: the grid of {} has {nx} x {ny} x {nu} x {nv} cells and needs {:.1} GB; memory holds {:.1} GB here",
+                "--save field: the grid of {} has {nx} x {ny} x {nu} x {nv} cells and needs {:.1} GB; {:.1} GB are available",
                 plane.name,
                 gigabytes(bytes),
                 gigabytes(memory),

@@ -69,11 +69,13 @@ impl Inquiry {
         let finding = match (tracers.verdict, theory.exact_verdict()) {
             (Verdict::Pass, Verdict::Fail) => {
                 format!(
-                    "{this} and {other} agree, the prediction differs: a finding about the theory"
+                    "{this} and {other} agree, but the prediction differs: the theory is probably at fault"
                 )
             }
             (Verdict::Fail, Verdict::Pass) => {
-                format!("{other} and the prediction agree, {this} differ: a finding about {this}")
+                format!(
+                    "{other} and the prediction agree, but {this} differ: {this} are probably at fault"
+                )
             }
             (Verdict::Fail, Verdict::Fail) => {
                 format!("no two of {this}, {other} and the prediction agree")
@@ -114,7 +116,7 @@ fn both_pass(
     if needed > rays && needed.is_finite() {
         let apart = percent(Some(least.sqrt()));
         format!(
-            "{cannot}, and {this} and the prediction differ by {apart}; {needed:.1e} of them or more are needed (--photons)"
+            "{cannot}, and {this} and the prediction differ by {apart}; {needed:.1e} or more {other} are needed (--photons)"
         )
     } else {
         format!("{cannot}, and the disagreement is within the noise; use more photons")
@@ -188,9 +190,15 @@ mod tests {
     fn who_is_wrong_is_told() {
         assert!(found(1.0, 1.0, 1.0).is_empty());
         let theory = found(1.0, 1.0, 1.2).concat();
-        assert!(theory.ends_with("a finding about the theory"), "{theory}");
+        assert!(
+            theory.ends_with("the theory is probably at fault"),
+            "{theory}"
+        );
         let photons = found(1.2, 1.0, 1.0).concat();
-        assert!(photons.ends_with("a finding about photons"), "{photons}");
+        assert!(
+            photons.ends_with("photons are probably at fault"),
+            "{photons}"
+        );
         let all = found(1.2, 1.0, 0.8).concat();
         assert!(all.starts_with("no two of"), "{all}");
     }
@@ -223,7 +231,7 @@ mod tests {
         for words in [
             "differ by 0.550 %",
             "their noise is 1.500 %",
-            "3.6e6 of them or more are needed",
+            "3.6e6 or more backward rays are needed",
         ] {
             assert!(open.contains(words), "{words}: {open}");
         }

@@ -36,7 +36,9 @@ pub fn step(method: Method) -> String {
     let shared = match method {
         Method::Photons | Method::Backward => "",
         // Otherwise no ray finds the light.
-        Method::Even => ", which continue as photons do: errors on their paths are not detected",
+        Method::Even => {
+            ", which after emission are traced as photons are: errors of this tracing are not detected"
+        }
     };
     format!("instead of theory  {}{shared}", method.words())
 }

@@ -38,7 +38,7 @@ pub fn check_memory(planes: &[VirtualPlane]) -> Result<(), Failure> {
             let [needed, memory] = [bytes, memory].map(|bytes| bytes as f64 / 1e9);
             let name = &plane.name;
             return Err(Failure::cannot_run(format!(
-                "covariance: the grid of {name} has {nx} x {ny} x {nu} x {nv} cells and needs {needed:.1} GB; memory holds {memory:.1} GB here"
+                "covariance: the grid of {name} has {nx} x {ny} x {nu} x {nv} cells and needs {needed:.1} GB; {memory:.1} GB are available"
             )));
         }
     }

@@ -63,7 +63,7 @@ pub fn on_chain(plane: &PlaneReport) -> Option<String> {
     match verdict {
         Verdict::Pass => None,
         Verdict::Fail if chain.radiance_defect.abs() >= chain.defect => Some(format!(
-            "{name}: the first-order chain{printed} has a wrong scale: it gives the central ray {} of its radiance",
+            "{name}: the first-order chain{printed} has a wrong scale: it gives the central ray {} of its true radiance",
             percent(Some(1.0 + chain.radiance_defect)),
         )),
         Verdict::Fail => Some(format!(

@@ -62,7 +62,7 @@ pub fn reached(
         }
         if photons == most || needed > MAX_FACTOR * most as f64 {
             return Err(Failure::cannot_run(format!(
-                "--target-error {} %: {now}, and falls with the square root of their number or faster: {needed:.1e} photons suffice; allowed: {}, or more with --photons",
+                "--target-error {} %: {now}, and falls as one over the square root of their number or faster: {needed:.1e} photons suffice; allowed: {}, or more with --photons",
                 tidy(100.0 * target),
                 grouped(most)
             )));
@@ -72,7 +72,9 @@ pub fn reached(
             let time = begun.elapsed().mul_f64(next as f64 / photons as f64);
             let next = grouped(next);
             let time = HumanDuration(time);
-            reporter.note(&format!("{now}: {next} photons follow, about {time}"));
+            reporter.note(&format!(
+                "{now}: the next step traces {next} photons in about {time}"
+            ));
         }
         photons = next;
     }
@@ -89,8 +91,8 @@ pub fn outlook(planes: &[PlaneReport], seconds: f64) -> Option<String> {
     let longer = HumanDuration(Duration::try_from_secs_f64(100.0 * seconds).ok()?);
     let [noise, less] = [noise, 0.1 * noise].map(|noise| percent(Some(noise)));
     Some(format!(
-        "noise is {noise} at {plane}; 100 times the photons, about {longer}, bring it to {less} \
-         or below"
+        "noise is {noise} at {plane}; 100 times as many photons, in about {longer}, reduce it to \
+         {less} or below"
     ))
 }
 
@@ -102,12 +104,12 @@ pub fn left_out(planes: &[PlaneReport], target: f64) -> String {
         .filter_map(|plane| Some((&plane.name, plane.quadrature_error?)));
     let largest = errors.max_by(|(_, a), (_, b)| a.total_cmp(b));
     let errors = match largest {
-        Some((name, error)) => format!("here up to {} ({name})", percent(Some(error))),
-        None => "here none, as all are in closed form".to_owned(),
+        Some((name, error)) => format!("which are up to {} here ({name})", percent(Some(error))),
+        None => "of which there are none here, as all predictions are in closed form".to_owned(),
     };
     format!(
-        "--target-error {} %: noise is at most that at each plane; errors of predictions come on \
-         top, {errors}",
+        "--target-error {} %: noise is at most this at each plane; it does not include errors of \
+         predictions, {errors}",
         tidy(100.0 * target)
     )
 }

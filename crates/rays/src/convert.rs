@@ -136,7 +136,9 @@ fn to_tm25(set: &RaySet, notes: &mut Vec<String>) -> Result<Tm25File, Fault> {
             header.wavelength_nm = single(wavelength * 1e9);
         }
         Wavelengths::Each(each) if each.iter().any(|w| w.is_nan()) => {
-            notes.push("some rays have no wavelength; those of the others: dropped".to_owned());
+            notes.push(
+                "some rays have no wavelength; wavelengths of the others: dropped".to_owned(),
+            );
         }
         Wavelengths::Each(each) => {
             header.spectrum_type = SpectrumType::WavelengthPerRay;

@@ -143,7 +143,7 @@ fn past_edges(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
         let beyond = (0..2).any(|axis| reach[axis] > edges[axis]);
         beyond.then(|| {
             format!(
-                "{}: the light it sees passes {} up to {} m from the central ray, beyond its edge at {} m, where nothing blocks it",
+                "{}: light that reaches this plane passes {} up to {} m from the central ray, beyond the edge of the array at {} m, where nothing blocks it",
                 plane.name,
                 layer.name,
                 pair(reach),

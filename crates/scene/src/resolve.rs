@@ -140,8 +140,8 @@ impl Resolver<'_> {
                 Some(bytes)
             }
             Err(error) => {
-                let allowed = "a regular file of at most 1 GiB in the folder of the scene file or below, \
-                    links followed, without `..`";
+                let allowed = "a regular file of at most 1 GiB in the folder of the scene file or below \
+                    it, after links are followed, and without `..`";
                 self.faults
                     .add(of, format!("{} ({error})", show(name)), allowed);
                 None

@@ -42,9 +42,9 @@ impl Scene {
                 worst.filter(|((_, mismatch), _)| *mismatch > LEVEL)
             {
                 warnings.push(format!(
-                    "{}: too coarse for normals interpolated between its vertices. At {} photons \
-                     and backward rays may differ by {:.1} % of the spectrum; triangles {:.0} times \
-                     shorter are fine enough for {} %",
+                    "{}: too coarse for normals interpolated between its vertices. At {}, photons \
+                     and backward rays may differ by {:.1} % of the spectrum; with triangles {:.0} \
+                     times shorter, they differ by at most {} %",
                     mesh.name,
                     plane.name,
                     100.0 * mismatch,
@@ -64,7 +64,7 @@ impl Scene {
         let (behind, flux) = (rays.behind(), rays.flux());
         (behind > 0.0).then(|| {
             format!(
-                "light: {} W of the ray file's {} W do not go forward, along path.direction, and are left out",
+                "light: {} W of the ray file's {} W do not go forward, along path.direction, and are omitted",
                 tidy(behind),
                 tidy(behind + flux)
             )

@@ -277,7 +277,7 @@ const BAD: &[(&str, &str, &str)] = &[
     (
         LOBES,
         "File(\"dark.exr\")",
-        "light.map is \"dark.exr\"; allowed: a picture with light",
+        "light.map is \"dark.exr\"; allowed: a picture that is not dark everywhere",
     ),
     (
         LOBES,

@@ -115,7 +115,7 @@ fn a_number_beyond_its_range_is_told_with_it() {
         ),
         (
             edited("batches: 64", "batches: 31"),
-            "run.batches is 31; allowed: 32 to 1024: errors come from the spread of batches",
+            "run.batches is 31; allowed: 32 to 1024: errors are estimated from the spread between batches",
         ),
         (
             edited("rho: (max: 16)", "rho: (max: 16, spacing: NaN)"),

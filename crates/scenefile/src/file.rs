@@ -48,9 +48,9 @@ pub struct SceneFile {
     /// The virtual planes.
     #[schemars(transform = told("a list of planes", r#"[(name: "arrival", at: Before("floor"))]"#))]
     pub planes: Vec<PlaneFile>,
-    /// The window of every plane without one of its own.
+    /// The window of every plane that has no window of its own.
     pub window: WindowFile,
-    /// The frequencies of every plane without its own.
+    /// The frequencies of every plane that has no frequencies of its own.
     pub frequencies: FrequenciesFile,
     /// Whether geometric steps are predicted by the paper's equations as printed (9, 10, 11 and
     /// 19).
@@ -62,17 +62,17 @@ pub struct SceneFile {
     pub run: RunFile,
 }
 
-/// Black blockers, most of them in one plane orthogonal to the central ray.
+/// Black blockers. All but meshes lie in one plane orthogonal to the central ray.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Blockers", deny_unknown_fields)]
 #[schemars(transform = told("blockers", r#"Grating(name: "bars", center: (0, 0, 1), axis: X, frequency: 5)"#))]
 pub enum BlockersFile {
-    /// `count[0]` × `count[1]` squares on a jittered grid, edges along X and Y.
+    /// `count[0]` × `count[1]` squares on a jittered grid, with edges along X and Y.
     JitteredSquares {
-        /// Name, for planes to refer to.
+        /// Name by which planes refer to the blockers.
         #[schemars(transform = name_of_blockers)]
         name: String,
-        /// Centre of the grid, world coordinates.
+        /// Centre of the grid, in world coordinates.
         #[schemars(transform = place)]
         center: [f64; 3],
         /// Number of squares along X and along Y.
@@ -85,8 +85,8 @@ pub enum BlockersFile {
         /// Side of a square as a share of the pitch.
         #[schemars(transform = told("a share of the pitch", "0.6"), transform = depends("above 0, at most 1"))]
         fill: f64,
-        /// Amount of jitter: each square is moved by U(−jitter/2, jitter/2) pitches along X and
-        /// along Y.
+        /// Amount of jitter: each square is moved along X and along Y by a random number of pitches,
+        /// uniform in (−jitter/2, jitter/2).
         #[serde(default)]
         #[schemars(transform = told("a share of the pitch", "0.3"), transform = depends("0 to 1 − fill"))]
         jitter: f64,
@@ -100,31 +100,31 @@ pub enum BlockersFile {
         /// Name.
         #[schemars(transform = name_of_blockers)]
         name: String,
-        /// Origin of the shapes' coordinates along X and Y, world coordinates.
+        /// Origin of the shapes' X and Y coordinates, in world coordinates.
         #[schemars(transform = place)]
         center: [f64; 3],
         /// The shapes.
         #[schemars(transform = told("a list of shapes", "[Disc(center: (0, 0), radius: 0.1)]"))]
         shapes: Vec<ShapeFile>,
     },
-    /// A semi-transparent cosine grating over the whole plane: ½ (1 + m cos(2π f t + p)), t being x or y.
+    /// A semi-transparent cosine grating over the whole plane: ½ (1 + m cos(2π f t + p)), where t is x or y.
     Grating {
         /// Name.
         #[schemars(transform = name_of_blockers)]
         name: String,
-        /// Origin of t, world coordinates.
+        /// Origin of t, in world coordinates.
         #[schemars(transform = place)]
         center: [f64; 3],
         /// The axis along which the grating varies.
         axis: AxisName,
-        /// Frequency f, cycles per metre.
+        /// Frequency f, in cycles per metre.
         #[schemars(transform = cycles)]
         frequency: f64,
         /// Modulation m.
         #[serde(default = "one")]
         #[schemars(transform = modulation)]
         modulation: f64,
-        /// Phase p, radians.
+        /// Phase p, in radians.
         #[serde(default)]
         #[schemars(transform = phase, transform = within(-1e3, 1e3))]
         phase: f64,
@@ -134,7 +134,7 @@ pub enum BlockersFile {
         /// Name.
         #[schemars(transform = name_of_blockers)]
         name: String,
-        /// Position of the mesh's origin, world coordinates.
+        /// Position of the mesh's origin, in world coordinates.
         #[schemars(transform = place)]
         center: [f64; 3],
         /// The triangles.
@@ -164,10 +164,10 @@ impl BlockersFile {
 #[serde(rename = "Shape", deny_unknown_fields)]
 #[schemars(transform = told("a shape", "Rectangle(center: (0, 0), size: (0.1, 0.1))"))]
 pub enum ShapeFile {
-    /// A rectangle, edges along X and Y.
+    /// A rectangle with edges along X and Y.
     Rectangle {
         /// Centre along X and Y.
-        #[schemars(transform = told("a place along X and Y, metres", "(0.1, 0.2)"), transform = any)]
+        #[schemars(transform = told("a place along X and Y, in metres", "(0.1, 0.2)"), transform = any)]
         center: [f64; 2],
         /// Side lengths along X and Y.
         #[schemars(transform = sides)]
@@ -176,7 +176,7 @@ pub enum ShapeFile {
     /// A disc.
     Disc {
         /// Centre along X and Y.
-        #[schemars(transform = told("a place along X and Y, metres", "(0.1, 0.2)"), transform = any)]
+        #[schemars(transform = told("a place along X and Y, in metres", "(0.1, 0.2)"), transform = any)]
         center: [f64; 2],
         /// Radius.
         #[schemars(transform = length)]
@@ -194,7 +194,7 @@ pub enum ShapeFile {
     },
 }
 
-/// An axis across the central ray.
+/// An axis orthogonal to the central ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[schemars(transform = told("an axis, X or Y", "X"))]
 pub enum AxisName {
@@ -231,16 +231,16 @@ pub enum HalfName {
 #[serde(rename = "Path", deny_unknown_fields)]
 #[schemars(transform = told("the central ray", r#"(direction: (0, 0, 1), x_axis: (1, 0, 0), visits: ["floor"])"#))]
 pub struct PathFile {
-    /// Direction in which the ray leaves the light; any length.
+    /// Direction, of any length, in which the ray leaves the light.
     #[schemars(transform = direction("(0, 0, 1)"))]
     pub direction: [f64; 3],
     /// The X axis; only the part orthogonal to the direction is used.
     #[schemars(transform = direction("(1, 0, 0)"))]
     pub x_axis: [f64; 3],
-    /// Names of the surfaces that the ray visits, in the order of light.
+    /// Names of the surfaces that the ray visits, in the order in which it visits them.
     #[schemars(transform = told("a list of names of surfaces", r#"["floor"]"#))]
     pub visits: Vec<String>,
-    /// Direction in which the ray leaves the last surface, any length; straight back by default.
+    /// Direction, of any length, in which the ray leaves the last surface; by default, straight back.
     #[serde(default)]
     #[schemars(transform = direction("(0, 0, -1)"))]
     pub leaves: Option<[f64; 3]>,
@@ -280,25 +280,27 @@ pub enum Place {
     Emission,
     /// In the plane of these blockers or this surface, before light meets them.
     Before(String),
-    /// In the plane of these blockers, after them; or of this surface, as light leaves it.
+    /// In the plane of these blockers, after light has passed them; or in the plane of this surface,
+    /// as light leaves it.
     After(String),
     /// At this distance from the light, along the path.
     Distance(#[schemars(transform = depends("0 to the end of the path"))] f64),
 }
 
-/// The window: a profile for each coordinate; by default y and v are the same as x and u.
+/// The window: a profile for each coordinate; by default, y has the
+/// profile of x, and v has that of u.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Window", deny_unknown_fields)]
 #[schemars(transform = told("a window", "(x: Hann(0.5), u: Hann(0.5))"))]
 pub struct WindowFile {
-    /// Profile along x, metres.
+    /// Profile along x, in metres.
     #[schemars(transform = profile_of_place)]
     pub x: Profile,
     /// Profile along y.
     #[serde(default)]
     #[schemars(transform = profile_of_place)]
     pub y: Option<Profile>,
-    /// Profile along u, slope.
+    /// Profile along u, as a slope.
     #[schemars(transform = profile_of_slope)]
     pub u: Profile,
     /// Profile along v.
@@ -316,10 +318,10 @@ pub struct FrequenciesFile {
     #[serde(default = "eight", deserialize_with = "count")]
     #[schemars(transform = told("a whole number", "8"), transform = within(1.0, 1024.0))]
     pub azimuths: u32,
-    /// Spatial frequency ρ, cycles per metre.
+    /// Spatial frequency ρ, in cycles per metre.
     #[schemars(transform = told("frequencies in cycles per metre", "(max: 16)"))]
     pub rho: AxisFile,
-    /// Angular frequency ν, cycles per unit slope.
+    /// Angular frequency ν, in cycles per unit slope.
     #[schemars(transform = told("frequencies in cycles per unit slope", "(max: 32)"))]
     pub nu: AxisFile,
 }
@@ -332,7 +334,7 @@ pub struct AxisFile {
     #[schemars(transform = told("a frequency in the unit of its axis", "16"))]
     pub max: f64,
     /// Spacing of the frequencies. The default, 1/(2 · half-width of the window), is also the
-    /// largest.
+    /// largest allowed.
     #[serde(default)]
     #[schemars(transform = told("a frequency in the unit of its axis", "0.5"))]
     pub spacing: Option<f64>,
@@ -343,18 +345,18 @@ pub struct AxisFile {
 #[serde(rename = "Run", deny_unknown_fields, default)]
 #[schemars(transform = told("how the scene is measured", "(photons: 1e7)"))]
 pub struct RunFile {
-    /// Number of photons emitted; 1e7 is allowed too.
+    /// Number of emitted photons, which may be written as 1e7.
     #[serde(deserialize_with = "count")]
-    #[schemars(transform = told("a whole number", "1e7"), transform = depends("one for each batch to 10^12"))]
+    #[schemars(transform = told("a whole number", "1e7"), transform = depends("at least one for each batch, at most 10^12"))]
     pub photons: u64,
     /// Seed of the photons.
     #[schemars(transform = seed)]
     pub seed: u64,
     /// Number of independent batches, from which errors are estimated.
     #[serde(deserialize_with = "count")]
-    #[schemars(transform = told("a whole number", "64"), transform = within(32.0, 1024.0), transform = since("errors come from the spread of batches"))]
+    #[schemars(transform = told("a whole number", "64"), transform = within(32.0, 1024.0), transform = since("errors are estimated from the spread between batches"))]
     pub batches: u32,
-    /// Share of correct scenes that the verdict may reject, over all planes.
+    /// Share of correct scenes that the verdict may reject, for all planes together.
     #[schemars(transform = told("a share of correct scenes", "0.01"), transform = within(1e-6, 0.5))]
     pub alpha: f64,
     /// Noise, as a share of the spectrum, above which a plane does not pass.
@@ -362,7 +364,7 @@ pub struct RunFile {
     pub resolution: f64,
     /// How photons leave the light.
     pub emission: Emission,
-    /// The numbers that photons are drawn from.
+    /// The random numbers from which photons are drawn.
     pub sampling: Sampling,
 }
 
@@ -421,13 +423,14 @@ impl Visitor<'_> for Count {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[schemars(transform = told("Aimed or Plain", "Aimed"))]
 pub enum Emission {
-    /// Aimed at the windows of the planes: a mixture of one proposal for each.
+    /// Aimed at the windows of the planes: a mixture with one proposal for each window.
     Aimed,
-    /// In proportion to the light's emission: uniform over the area, by the cosine over direction.
+    /// In proportion to the light's emission: uniform over the area, and with the density of the
+    /// cosine over directions.
     Plain,
 }
 
-/// The numbers that photons are drawn from.
+/// The random numbers from which photons are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[schemars(transform = told("Net or Random", "Net"))]
 pub enum Sampling {

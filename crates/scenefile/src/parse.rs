@@ -161,7 +161,7 @@ fn unexpected(code: &Error, text: &str, [line, column]: [usize; 2]) -> String {
     let found = shown(&rest[..word(rest)], EXCERPT);
     let allowed = match code {
         Error::Eof => {
-            return "the file ends here, and a bracket is still open; allowed: its missing fields and `)`"
+            return "the file ends here, but a bracket is still open; allowed: its missing fields and `)`"
                 .into();
         }
         Error::ExpectedComma if rest.starts_with('^') => {

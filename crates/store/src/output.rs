@@ -77,7 +77,7 @@ impl OutputFile {
                             None => "the file exists; --force replaces it",
                             Some(_) => {
                                 "the file exists, and etendue did not write it or it was changed \
-                                 since; --force replaces it"
+                                 afterwards; --force replaces it"
                             }
                         },
                     ));

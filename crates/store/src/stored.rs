@@ -89,11 +89,11 @@ impl<T: DeserializeOwned> Stored<T> {
         // Checked before the rest, which another version may write differently.
         if let Some(version) = tree["version"].as_str().filter(|v| *v != VERSION) {
             return Err(fault(format!(
-                "written by version {version}, this is {VERSION}: all stages must be of one version"
+                "written by version {version}, but this is version {VERSION}: all stages must be of the same version"
             )));
         }
         if !sealed::is_sealed(&bytes) {
-            let what = "it was changed since it was written: its index_hash does not match the text before it";
+            let what = "it was changed after it was written: its index_hash does not match the text before it";
             return Err(fault(what.to_owned()));
         }
         let index: Index<T> = serde_json::from_slice(&bytes).map_err(|e| fault(e.to_string()))?;

@@ -36,12 +36,12 @@ pub(crate) fn drawn(
     let quantities = [
         (
             BANDWIDTHS[0],
-            "*ρ* of 95 % of the power",
+            "*ρ* below which 95 % of the power lies",
             AxisQuantity::new("*ρ*_{95}", "cycles/m"),
         ),
         (
             BANDWIDTHS[1],
-            "*ν* of 95 % of the power",
+            "*ν* below which 95 % of the power lies",
             AxisQuantity::new("*ν*_{95}", "cycles/slope"),
         ),
         (SLOPE, "shear slope", AxisQuantity::new("shear slope", "m")),
@@ -53,7 +53,10 @@ pub(crate) fn drawn(
         .collect();
     let mut note = "Error bars: one standard error.".to_owned();
     if together && fields.len() > 1 {
-        note += &format!(" In step with {}.", fields[1..].join(", "));
+        note += &format!(
+            " The field varies together with {}.",
+            fields[1..].join(", ")
+        );
     }
     if short(fields[0]) != fields[0] {
         note += &format!(" {}: {}.", short(fields[0]), fields[0]);

@@ -122,10 +122,10 @@ fn check(
             .collect();
         let several = match request.scene.arguments {
             ArgumentStyle::Command => {
-                "--set PATH=A..B:N or PATH=A,B,C gives a field several, such as --set blockers.0.pitch=0.05..0.4:8"
+                "--set PATH=A..B:N or PATH=A,B,C gives a field several values, such as --set blockers.0.pitch=0.05..0.4:8"
             }
             ArgumentStyle::Python => {
-                "set gives a field several, such as {'blockers.0.pitch': [0.05, 0.1]} or {'blockers.0.pitch': '0.05..0.4:8'}"
+                "set gives a field several values, such as {'blockers.0.pitch': [0.05, 0.1]} or {'blockers.0.pitch': '0.05..0.4:8'}"
             }
         };
         let message = format!("nothing is swept: {}{several}", given.concat());

@@ -283,8 +283,8 @@ fn undecided(at: &PointResult) -> Vec<String> {
 /// The table for the terminal: a row for each plane at each point.
 fn rows(paths: &[String], found: &[PointResult]) -> Vec<Vec<String>> {
     let shown = [
-        (BANDWIDTHS[0], "ρ of 95 % [cycles/m]"),
-        (BANDWIDTHS[1], "ν of 95 % [cycles/slope]"),
+        (BANDWIDTHS[0], "95 % below ρ [cycles/m]"),
+        (BANDWIDTHS[1], "95 % below ν [cycles/slope]"),
         (SLOPE, "shear slope [m]"),
     ];
     let mut header = paths.to_vec();

@@ -85,7 +85,7 @@ impl Sweep {
             ))
         };
         match values.iter().find(|value| !value.is_finite()) {
-            Some(value) => refused(&format!("`{value}` is no number")),
+            Some(value) => refused(&format!("`{value}` is not a number")),
             None if !(1..=MAX_POINTS).contains(&values.len()) => {
                 refused(&format!("there are {} values", values.len()))
             }
@@ -104,15 +104,17 @@ fn values_of(text: &str) -> Result<Vec<f64>, String> {
 
 fn allowed(why: &str, arguments: ArgumentStyle) -> String {
     let forms = match arguments {
-        ArgumentStyle::Command => "PATH=A..B:N, PATH=A..B:Nlog by equal factors, or PATH=A,B,C",
-        ArgumentStyle::Python => "'A..B:N', 'A..B:Nlog' by equal factors, or a sequence",
+        ArgumentStyle::Command => {
+            "PATH=A..B:N, PATH=A..B:Nlog (logarithmic spacing), or PATH=A,B,C"
+        }
+        ArgumentStyle::Python => "'A..B:N', 'A..B:Nlog' (logarithmic spacing), or a sequence",
     };
-    format!("{why}; allowed: {forms}, numbers and at most {MAX_POINTS} of them")
+    format!("{why}; allowed: {forms}, with at most {MAX_POINTS} values, which are numbers")
 }
 
 fn number(text: &str) -> Result<f64, String> {
     let number = text.trim().parse().ok().filter(|x: &f64| x.is_finite());
-    number.ok_or_else(|| format!("`{}` is no number", text.trim()))
+    number.ok_or_else(|| format!("`{}` is not a number", text.trim()))
 }
 
 /// The values of a range, from the text before and after the dots.
@@ -133,7 +135,7 @@ fn range(from: &str, rest: &str) -> Result<Vec<f64>, String> {
     let count = wanted
         .ok_or_else(|| format!("`{count}` is not a number of values from 2 to {MAX_POINTS}"))?;
     if is_log && ends[0] * ends[1] <= 0.0 {
-        return Err("equal factors cannot change the sign or reach zero".to_owned());
+        return Err("logarithmic spacing cannot change the sign or reach zero".to_owned());
     }
     Ok((0..count)
         .map(|i| between(ends, i, count, is_log))
@@ -163,7 +165,7 @@ pub fn points(sweeps: &[Sweep], together: bool) -> Result<Vec<SweepPoint>, Failu
         let count = counts.first().copied().unwrap_or(1);
         if counts.iter().any(|other| *other != count) {
             let message = format!(
-                "sweeps that go in step must have the same number of values, not {counts:?}"
+                "fields that vary together must have the same number of values, not {counts:?}"
             );
             return Err(Failure::bad_input(message));
         }
@@ -269,10 +271,10 @@ mod tests {
         assert!(value("a=../b.ply") && value("a=\"x,y\"") && value("a=Box(0.3)"));
         assert!(matches!(setting("a=1,2"), Ok(Setting::Sweep(_))));
         let why = |text: &str| setting(text).unwrap_err();
-        assert!(why("a=0.1,,0.2").starts_with("`` is no number"));
-        assert!(why("a=Box(0.3),Hann(0.3)").starts_with("`Box(0.3)` is no number"));
-        assert!(why("a=0.1..x:3").starts_with("`x` is no number"));
-        assert!(why("a=-1..1:3log").starts_with("equal factors"));
+        assert!(why("a=0.1,,0.2").starts_with("`` is not a number"));
+        assert!(why("a=Box(0.3),Hann(0.3)").starts_with("`Box(0.3)` is not a number"));
+        assert!(why("a=0.1..x:3").starts_with("`x` is not a number"));
+        assert!(why("a=-1..1:3log").starts_with("logarithmic spacing"));
         assert!(
             setting("a=0.1..0.4").is_err(),
             "a range without a number of values"

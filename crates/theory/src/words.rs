@@ -46,11 +46,11 @@ pub(crate) fn mask(named: &str, mask: &Mask) -> String {
             half_planes,
         } => {
             let opaque = opaque(shapes, half_planes.len());
-            format!("multiply  visibility of {named}{opaque}")
+            format!("multiply  by the visibility of {named}{opaque}")
         }
         Mask::Grating(grating) => {
             let formula = formula(grating, ["x", "y"]);
-            format!("multiply  grating {named}{formula}")
+            format!("multiply  by the grating {named}{formula}")
         }
     }
 }
@@ -59,9 +59,9 @@ pub(crate) fn obstacle(obstacle: &Obstacle) -> String {
     let name = &obstacle.name;
     match obstacle.form {
         ObstacleForm::Mask { from: 1.., .. } => {
-            format!("multiply  visibility of {name} on later legs")
+            format!("multiply  by the visibility of {name} on later legs")
         }
-        _ => format!("multiply  visibility of {name} on any leg"),
+        _ => format!("multiply  by the visibility of {name} on any leg"),
     }
 }
 

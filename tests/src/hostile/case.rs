@@ -240,7 +240,7 @@ const MOST_FREQUENCIES: u64 = 200_000;
 /// Whether `check` reports few enough frequencies, as azimuths x rho x nu at each plane.
 fn is_small(checked: &[u8]) -> bool {
     let text = String::from_utf8_lossy(checked);
-    let planes = text.lines().filter(|line| line.contains("  looked at in "));
+    let planes = text.lines().filter(|line| line.contains("  measured at "));
     let count = |line: &str| {
         let words = line.split_whitespace().take(9);
         let numbers = words.filter_map(|word| word.parse::<u64>().ok());

@@ -46,10 +46,10 @@ pub(crate) struct HostileOptions {
     /// Number of parallel cases [default: one for each core].
     #[arg(long)]
     threads: Option<usize>,
-    /// Folder for the input of bad cases, with the command line.
+    /// Folder for the inputs and command lines of bad cases.
     #[arg(long, default_value = "target/hostile")]
     keep: PathBuf,
-    /// Program to attack [default: the one in the same folder].
+    /// Program to attack [default: etendue in the same folder].
     #[arg(long)]
     etendue: Option<PathBuf>,
 }

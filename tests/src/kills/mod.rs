@@ -28,7 +28,7 @@ pub(crate) struct KillOptions {
     /// How to simulate a full disk [default: tmpfs, if it can be mounted].
     #[arg(long)]
     full_disk: Option<FullDisk>,
-    /// Program to test [default: the one in the same folder].
+    /// Program to test [default: etendue in the same folder].
     #[arg(long)]
     etendue: Option<PathBuf>,
 }

@@ -69,7 +69,7 @@ pub(crate) struct WildOptions {
     /// Only draw the scenes, and keep them all.
     #[arg(long)]
     draw: bool,
-    /// Program to test [default: the one in the same folder].
+    /// Program to test [default: etendue in the same folder].
     #[arg(long)]
     etendue: Option<PathBuf>,
 }

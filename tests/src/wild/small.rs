@@ -36,7 +36,7 @@ pub(crate) struct SmallOptions {
     /// Only count classes, and trace nothing.
     #[arg(long)]
     pub(super) classes: bool,
-    /// Only plant faults, for scenes with several surfaces.
+    /// Only plant faults (in scenes with several surfaces).
     #[arg(long)]
     pub(super) planted: bool,
     /// Folder for scenes whose prediction is rejected by photons.

@@ -12,11 +12,11 @@ fn qualities() -> impl TypedValueParser<Value = Quality> {
     one_of([
         named(
             Quality::Draft,
-            "An eighth of the photons of the scenes, twice their number of frequencies along each axis",
+            "An eighth of the scenes' photons, and twice the scenes' number of frequencies along each axis",
         ),
         named(
             Quality::Print,
-            "The photons of the scenes, four times their number of frequencies along each axis",
+            "The scenes' photons, and four times the scenes' number of frequencies along each axis",
         ),
     ])
 }
@@ -25,13 +25,13 @@ fn qualities() -> impl TypedValueParser<Value = Quality> {
 #[command(after_help = "Example:
   etendue report out/fig9a out/fig9b out/fig9c --out out/fig9.html
 
-Each run writes a page of its own, report.html. Pages are complete in one file and need no network.")]
+Each run also writes its own page, report.html. A page is a single file and needs no network.")]
 pub(crate) struct ReportArgs {
-    /// Folders of `etendue run` or `compare`
+    /// Folders written by `etendue run` or `compare`
     #[arg(value_name = "DIR", required = true)]
     pub(crate) folders: Vec<PathBuf>,
 
-    /// The page
+    /// File to which the page is written
     #[arg(long, value_name = "FILE", default_value = "out/report.html")]
     pub(crate) out: PathBuf,
 
@@ -43,17 +43,22 @@ pub(crate) struct ReportArgs {
 #[command(after_help = "Examples:
   etendue figure 9
   etendue figure all --quality draft --out out/figures
-  etendue figure my.ron                                      light field and spectra along the path of your scene
-  etendue figure a.ron b.ron --plane receiver --out out      two scenes side by side at one plane
+  etendue figure my.ron                                   light field and spectra
+                                                          along the path of your scene
+  etendue figure a.ron b.ron --plane receiver --out out   two scenes side by side at one plane
 
-Figures of Durand et al. 2005: 1, 3 to 17, and table1. Figures 5 and 12 show kernels, from theory alone; all others are measured
-and predicted. Each figure gets a folder with
-  figure.png, .svg, .pdf   the PDF is at most 7 inches wide (two columns of a journal)
-  figure.npz               light fields and spectra of all planes (docs/conventions.md)
+Figures of Durand et al. 2005: 1, 3 to 17, and table1. Figures 5 and 12 show kernels computed from theory \
+alone; all others are measured and predicted. Each figure gets a folder with
+  figure.png, .svg, .pdf   the PDF is at most 7 inches wide (two columns of a
+                           journal)
+  figure.npz               light fields and spectra of all planes
+                           (docs/conventions.md)
   figure.csv               the numbers of curves and bars
-  figure.json              the verdict of each plane, and the command that makes the figure again
-  NAME.ron                 its scenes; figure.json holds your scenes as they were run
-Exit codes are those of run, for the worst plane.")]
+  figure.json              the verdict of each plane, and the command that
+                           repeats the figure
+  NAME.ron                 the scenes of a figure of the paper; figure.json
+                           contains your own scenes as they were run
+The exit code is that of run for the worst plane.")]
 pub(crate) struct FigureArgs {
     /// Figures of the paper (1, 3 to 17, table1, or all), or scene files, drawn as one figure
     #[arg(value_name = "NAME|SCENE.ron", required = true)]
@@ -63,19 +68,19 @@ pub(crate) struct FigureArgs {
     #[arg(long, value_name = "PATH=VALUE", value_parser = assignment)]
     pub(crate) set: Vec<(String, String)>,
 
-    /// Plane at which scene files are shown; with one scene file, only that plane [default: with
-    /// several the last, with one all]
+    /// Plane at which scene files are shown; a single scene file is then shown at this plane only
+    /// [default: all planes of a single scene file, or the last plane of each of several]
     #[arg(long, value_name = "NAME")]
     pub(crate) plane: Option<String>,
 
-    /// Folder of the figures
+    /// Folder to which the figures are written
     #[arg(long, value_name = "DIR", default_value = "results/figures")]
     pub(crate) out: PathBuf,
 
-    /// Style, in RON; each field may be left out: (titles: false, scene: false, verdicts: false,
-    /// width: 3.33, floor: -40, palette: Viridis). titles includes the notes; scene is the drawing
-    /// above the planes; width is the page width in inches, 3.3 to 7; floor is the lowest level of
-    /// spectra in dB; palettes are Inferno, Magma, Viridis and Cividis
+    /// Style file, in RON; each field is optional: (titles: false, scene: false, verdicts: false,
+    /// width: 3.33, floor: -40, palette: Viridis). titles also controls the notes; scene controls
+    /// the drawing above the planes; width is the page width in inches, 3.3 to 7; floor is the lowest
+    /// level of spectra in dB; palettes are Inferno, Magma, Viridis and Cividis
     #[arg(long, value_name = "FILE")]
     pub(crate) style: Option<PathBuf>,
 

@@ -16,11 +16,13 @@ use std::time::Duration;
   etendue run scenes/fig9b.ron
   etendue run scenes/fig9b.ron --photons 1e8 --seed 7 --threads 2 --out out/more
   etendue run scenes/fig9b.ron --set planes.3.at='Distance(1.5)' --save photons
-  etendue run scenes/fig9b.ron --save mcpl,tm25                        rays for other programs (docs/rays.md)
-  etendue run scenes/fig9b.ron --photons 2^33 --resume --time 2h      repeat until done
+  etendue run scenes/fig9b.ron --save mcpl,tm25                    rays for other programs
+                                                                   (docs/rays.md)
+  etendue run scenes/fig9b.ron --photons 2^33 --resume --time 2h   repeat until done
 
-Results are in out/NAME unless --out names another folder. Photon counts may be written 10_000_000, 1e7 or 2^23.
-Powers of two give the least noise, with 64 or another power of two batches.")]
+Results are in out/NAME unless --out names another folder. Photon counts may be written 10_000_000, 1e7 or \
+2^23.
+Noise is lowest if the number of photons and the number of batches (such as 64) are powers of two.")]
 pub(crate) struct RunArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
@@ -31,9 +33,9 @@ pub(crate) struct RunArgs {
     #[command(flatten)]
     pub(crate) photons: PhotonArgs,
 
-    /// Trace until the noise of the photons is at most this share of the spectrum at each plane:
-    /// 2^20 photons first, then as many as needed, up to --photons [default: 2^40]; exit code 3 if
-    /// these do not suffice. Errors of predictions come on top
+    /// Trace until the noise of the photons at each plane is at most this share of the spectrum:
+    /// first 2^20 photons, then as many as are needed, up to --photons [default: 2^40]; the exit
+    /// code is 3 if these do not suffice. Errors of predictions are not included
     #[arg(long, value_name = "SHARE", value_parser = share)]
     pub(crate) target_error: Option<f64>,
 
@@ -41,15 +43,15 @@ pub(crate) struct RunArgs {
     #[arg(long, conflicts_with_all = ["target_error", "expect"])]
     pub(crate) resume: bool,
 
-    /// Stop beginning batches after this time, such as 90s, 30m or 1h 30m; finished batches are kept for --resume
+    /// Begin no new batch after this time, such as 90s, 30m or 1h 30m; finished batches are kept for --resume
     #[arg(long, value_name = "TIME", value_parser = humantime::parse_duration, conflicts_with = "target_error")]
     pub(crate) time: Option<Duration>,
 
-    /// Additional data to keep
+    /// Additional data to save
     #[arg(long, value_name = "WHAT", value_delimiter = ',', value_parser = saves())]
     pub(crate) save: Vec<Save>,
 
-    /// Write a small folder for an archive: no CSV and SVG beside the pictures, and no explorer
+    /// Write a small folder for an archive, without the explorer and without CSV and SVG versions of the pictures
     #[arg(long)]
     pub(crate) compact: bool,
 
@@ -64,10 +66,10 @@ pub(crate) struct RunArgs {
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   etendue measure scenes/fig9b.ron --out out/all
-  etendue measure scenes/fig9b.ron --photons 1e8 --batches 0..32 --out out/a     on one machine,
-  etendue measure scenes/fig9b.ron --photons 1e8 --batches 32..64 --out out/b    on another
+  etendue measure scenes/fig9b.ron --photons 1e8 --batches 0..32 --out out/a    on one machine,
+  etendue measure scenes/fig9b.ron --photons 1e8 --batches 32..64 --out out/b   on another
 
-Batches with the same scene, seed and photon count can be combined, wherever they were measured.")]
+Batches with the same scene, seed and photon count can be combined, on whichever machine they were measured.")]
 pub(crate) struct MeasureArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
@@ -78,7 +80,7 @@ pub(crate) struct MeasureArgs {
     #[command(flatten)]
     pub(crate) photons: PhotonArgs,
 
-    /// Batches to measure, A..B with B excluded [default: all]; --photons counts the photons of all batches
+    /// Batches to measure, from A up to but not including B [default: all]; --photons is the number of photons in all batches of the scene together
     #[arg(long, value_name = "A..B", value_parser = range, allow_hyphen_values = true)]
     pub(crate) batches: Option<Range<u32>>,
 
@@ -88,16 +90,17 @@ pub(crate) struct MeasureArgs {
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
-  etendue split scenes/fig9b.ron --photons 2^36 --parts 32               a command for each part, then predict and compare
+  etendue split scenes/fig9b.ron --photons 2^36 --parts 32   print a command for each part,
+                                                             then predict and compare
   etendue split scenes/fig9b.ron --photons 2^36 --parts 32 --slurm > job.sh && sh job.sh
 
-Parts may run in any order on any machine; the result has the same bytes as one run. Their folders are inside the results folder,
-out/NAME unless --out names another.")]
+Parts may run in any order on any machine; the result is byte for byte that of a single run. The folders \
+of the parts are in the results folder, which is out/NAME unless --out names another.")]
 pub(crate) struct SplitArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
 
-    /// Number of parts, with about equally many batches
+    /// Number of parts, which all have about the same number of batches
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) parts: u32,
 
@@ -117,7 +120,7 @@ pub(crate) struct SplitArgs {
   etendue predict scenes/fig9b.ron --out out/predicted
   etendue predict scenes/fig9b.ron --set blockers.0.pitch=0.05 --out out/narrow
 
-A prediction can be compared with measurements of its scene with any seed and number of photons.")]
+A prediction can be compared with measurements of the same scene for any seed and any number of photons.")]
 pub(crate) struct PredictArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
@@ -138,13 +141,14 @@ pub(crate) struct PredictArgs {
   etendue compare --measured out/all --predicted out/predicted --out out/fig9b
   etendue compare --measured out/a out/b --predicted out/predicted --out out/fig9b
 
-Parts of a measurement may be given in any order. At least 32 batches are needed; the report covers the given batches.")]
+Parts of a measurement may be given in any order. At least 32 batches are needed; the report covers only \
+the given batches.")]
 pub(crate) struct CompareArgs {
-    /// Folders of `etendue measure`, with all or some batches
+    /// Folders written by `etendue measure`, with all or some of the batches
     #[arg(long, value_name = "DIR", num_args = 1.., required = true)]
     pub(crate) measured: Vec<PathBuf>,
 
-    /// Folder of `etendue predict`
+    /// Folder written by `etendue predict`
     #[arg(long, value_name = "DIR")]
     pub(crate) predicted: PathBuf,
 
@@ -162,10 +166,12 @@ pub(crate) struct CompareArgs {
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   etendue converge scenes/table1/concave_oblique.ron
-  etendue converge scenes/table1/concave_oblique.ron --set as_printed=true      the paper's printed formulas stay off
+  etendue converge scenes/table1/concave_oblique.ron --set as_printed=true
+      the error of the paper's printed formulas does not fall
 
-Light and windows are scaled by e and frequencies by 1/e. The error of first-order maps then falls as e, and as e² at normal incidence.
-No order is printed where the error reaches that of the quadrature.")]
+Light and windows are scaled by e and frequencies by 1/e. The error of first-order maps is then \
+proportional to e, or to e² at normal incidence. No order is printed where the error is as small as that \
+of the quadrature.")]
 pub(crate) struct ConvergeArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
@@ -176,21 +182,23 @@ pub(crate) struct ConvergeArgs {
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
-  etendue diff results/fig9b out/fig9b                 two versions of the program
-  etendue diff out/seed1 out/seed2                     was a disagreement chance?
-  etendue diff out/photons out/backward                two methods
+  etendue diff results/fig9b out/fig9b    two versions of the program
+  etendue diff out/seed1 out/seed2        was a disagreement due to chance?
+  etendue diff out/photons out/backward   two methods
 
-Tests, over all planes together at level α, the measured slices (χ² of their difference over the sum of both variances) and each
-parameter of the chain (difference over its standard error). Both results need independent noise: different seeds or methods.
-Results with the same seed share photons; they are then identical, or undecided. Predictions of one scene must be equal within
-their stated errors. A plane with another window or other frequencies is not compared.
+Tests two kinds of numbers at level α, over all planes together: the measured slices (χ²: squared \
+difference over the sum of both variances) and each parameter of the chain (difference over its standard \
+error). Both results must have independent noise, from different seeds or methods. Results with the same \
+seed share photons: they are either identical or undecided. Predictions of one scene must be equal within \
+their stated errors. A plane whose window or frequencies differ between the results is not compared.
 
-The test assumes that each result is a mean of many independent batches, hence has normal noise, and that the noise of both
-is correlated in the same way between frequencies; otherwise p is too large rather than too small.
+The test assumes that each result is a mean of many independent batches, so that its noise is normal, and \
+that noise is correlated between frequencies in the same way in both results. If this does not hold, p is \
+too large rather than too small.
 
-Exit codes: 0 the same but for noise, 1 different, 2 bad input, 4 undecided")]
+Exit codes: 0 equal except for noise, 1 different, 2 bad input, 4 undecided")]
 pub(crate) struct DiffArgs {
-    /// Folder of `etendue run` or `compare`
+    /// Folder written by `etendue run` or `compare`
     #[arg(value_name = "A")]
     pub(crate) a: PathBuf,
 
@@ -219,7 +227,8 @@ pub(crate) struct CheckArgs {
 #[derive(Debug, Args)]
 #[command(after_help = "Example:
   etendue export --to mitsuba scenes/fig9b.ron --out out/mitsuba
-  python tests/peers/mitsuba_light_field.py --help         record the same light field with Mitsuba and compare spectra
+  python tests/peers/mitsuba_light_field.py --help   record the same light field with
+                                                     Mitsuba and compare spectra
 
 Files are in out/NAME-mitsuba unless --out names another folder.")]
 pub(crate) struct ExportArgs {
@@ -242,7 +251,7 @@ pub(crate) struct ExportArgs {
   etendue schema > docs/scene.schema.json
   etendue schema --page > docs/scene.md")]
 pub(crate) struct SchemaArgs {
-    /// Print the page, in Markdown
+    /// Print the page of all fields, in Markdown
     #[arg(long)]
     pub(crate) page: bool,
 }
@@ -260,19 +269,19 @@ fn saves() -> impl TypedValueParser<Value = Save> {
     one_of([
         named(
             Save::Photons,
-            "Every photon that crossed a plane: photons.npy and photons.json, 40 bytes for each",
+            "Every photon that crossed a plane: photons.npy and photons.json, 40 bytes per photon",
         ),
         named(
             Save::Mcpl,
-            "The same photons as rays of the world with their power in W, photons.mcpl: 64 bytes for each",
+            "The same photons as rays in world coordinates with their power in W: photons.mcpl, 64 bytes per photon",
         ),
         named(
             Save::Tm25,
-            "The same as an IES TM-25 file in single precision, photons.tm25ray: 28 bytes for each",
+            "The same rays as an IES TM-25 file in single precision: photons.tm25ray, 28 bytes per photon",
         ),
         named(
             Save::Field,
-            "The light field on a 4D grid, field.npy and field.json, and its full radial spectrum, full_radial.npz, which is predicted and compared too; takes another pass over the photons for each plane, or two where memory is short",
+            "The light field on a 4D grid (field.npy and field.json) and its full radial spectrum (full_radial.npz), which is also predicted and compared; traces the photons once more for each plane, or twice if memory is short",
         ),
     ])
 }
@@ -280,7 +289,7 @@ fn saves() -> impl TypedValueParser<Value = Save> {
 /// The values of `--expect`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Expect {
-    /// Photons must agree with the exact predictions, and a first-order chain must have a wrong map.
+    /// Photons must agree with the exact predictions, and must show that the map of a first-order chain is wrong.
     Disagreement,
 }
 

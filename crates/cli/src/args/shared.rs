@@ -50,10 +50,10 @@ pub(super) fn one_named<T: Copy + Send + Sync + 'static, const N: usize>(
 pub(super) fn methods() -> impl TypedValueParser<Value = Method> {
     let named = |method: Method, help| (method, method.name(), help);
     one_of([
-        named(Method::Photons, "Photons from the light, forward"),
+        named(Method::Photons, "Photons traced forward from the light"),
         named(
             Method::Backward,
-            "Rays drawn in the window of each plane, traced back to the light",
+            "Rays that start at random in the window of each plane and are traced back to the light",
         ),
     ])
 }
@@ -68,14 +68,14 @@ impl PhotonArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct ForceArgs {
-    /// Replace files that etendue did not write or that were changed since; each is named
+    /// Replace files that etendue did not write, or that were changed after it wrote them, and print the name of each
     #[arg(long)]
     pub(crate) force: bool,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct ThreadArgs {
-    /// Threads [default: one for each core]; the results do not depend on it
+    /// Number of threads [default: one for each core]; the results do not depend on it
     #[arg(long = "threads", value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) count: Option<u16>,
 }
@@ -97,7 +97,7 @@ pub(crate) struct WorkArgs {
 /// The folder for the results of a scene.
 #[derive(Debug, Args)]
 pub(crate) struct FolderArgs {
-    /// Folder for the results [default: in out, named after the scene]
+    /// Folder for the results [default: a folder in out, named after the scene]
     #[arg(long = "out", value_name = "DIR")]
     pub(crate) folder: Option<PathBuf>,
 }

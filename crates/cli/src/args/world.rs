@@ -28,11 +28,11 @@ pub(crate) struct WorldArgs {
     #[arg(value_name = "SCENE")]
     pub(crate) path: PathBuf,
 
-    /// Folder that must contain all files of the scene, after links are resolved [default: that of the scene file]
+    /// Folder that must contain all files of the scene, after links are resolved [default: the folder of the scene file]
     #[arg(long, value_name = "DIR")]
     pub(crate) root: Option<PathBuf>,
 
-    /// Convert colours to this number
+    /// Number to which each colour is converted
     #[arg(long, value_name = "CHANNEL", default_value = "luminance", value_parser = one_named(Color::ALL))]
     pub(crate) color: Color,
 
@@ -40,12 +40,12 @@ pub(crate) struct WorldArgs {
     #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
     pub(crate) set: Vec<(String, String)>,
 
-    /// Maximum number of surfaces between a source and the camera, instead of the file's: 0 shows
-    /// sources, 1 adds direct light
+    /// Maximum number of surfaces between a light source and the camera, instead of the file's
+    /// maximum: 0 shows sources only, 1 adds direct light
     #[arg(long, value_name = "N")]
     pub(crate) bounces: Option<u32>,
 
-    /// Add uniform light of this radiance from all directions, W/(m² sr); it is never left out
+    /// Add uniform light of this radiance, in W/(m² sr), from all directions, whatever lights the scene has
     #[arg(long, value_name = "RADIANCE", value_parser = radiance)]
     pub(crate) sky: Option<f64>,
 
@@ -57,7 +57,7 @@ pub(crate) struct WorldArgs {
 /// first.
 #[derive(Debug, Args)]
 pub(crate) struct ViewArgs {
-    /// Put a camera of 512 × 512 pixels here, in coordinates of the scene
+    /// Add a camera of 512 × 512 pixels at this point, in coordinates of the scene
     #[arg(long, value_name = "X,Y,Z", value_parser = point, requires = "look_at", allow_hyphen_values = true)]
     pub(crate) look_from: Option<DVec3>,
 
@@ -69,7 +69,7 @@ pub(crate) struct ViewArgs {
     #[arg(long, value_name = "X,Y,Z", value_parser = point, requires = "look_from", default_value = "0,1,0", allow_hyphen_values = true)]
     pub(crate) up: DVec3,
 
-    /// Horizontal angle of view, degrees
+    /// Horizontal angle of view, in degrees
     #[arg(long, value_name = "DEG", value_parser = angle, requires = "look_from", default_value_t = Viewpoint::FOV)]
     pub(crate) fov: f64,
 }
@@ -160,8 +160,9 @@ pub(crate) struct RenderMethod(Option<SampleMethod>);
   etendue import scenes/cbox/cbox.xml --root . --set res=64
   etendue import helmet.glb
 
-Prints the contents of the scene, and a note with the line of everything that is left out or approximated. A scene that cannot be
-rendered is refused with all causes and exit code 2.")]
+Prints the contents of the scene, and a note about everything that is left out or approximated, with its \
+line in the file. A scene that cannot be rendered is refused: all causes are printed, and the exit code is \
+2.")]
 pub(crate) struct ImportArgs {
     #[command(flatten)]
     pub(crate) scene: WorldArgs,
@@ -176,19 +177,24 @@ pub(crate) struct ImportArgs {
   etendue render scenes/worlds/creatures.xml --shading-samples 20000 --method uniform --out out/uniform
 
 Writes to out/NAME, or to the folder of --out:
-  picture.exr    radiance and its standard error, as two parts with one channel Y
-  picture.npz    the same as arrays radiance and error [row, column], float64
+  picture.exr    radiance and its standard error, as two parts that each have
+                 one channel Y
+  picture.npz    the same numbers as float64 arrays radiance and error [row,
+                 column]
   picture.png    for viewing; the brightest hundredth of the pixels is white
 OBJ, PLY and many glTF files have no camera or light: add them with --look-from, --look-at and --sky.
-With few shading samples (Durand et al. 2005, section 6.2), picture.exr and picture.npz also have the maps behind the samples
-(bandwidth, curvature, blockers, shadow, density, samples, variance), picture.npz has their places (points), bandwidth.png and
-samples.png show two maps, and timing.json has the seconds of each stage. Methods:
+With few shading samples (Durand et al. 2005, section 6.2), picture.exr and picture.npz also contain the \
+maps related to the samples (bandwidth, curvature, blockers, shadow, density, samples, variance), \
+picture.npz contains the positions of the samples (points), bandwidth.png and samples.png show two of the \
+maps, and timing.json contains the time of each stage in seconds. Methods:
   uniform     blue noise of even density
   predicted   density by the paper's criteria, Eqs. 20 and 21, corrected
-  printed     density by these criteria as printed
-  weighted    half by the criteria, half by the error between a first quarter of the samples
-  variance    density by the standard deviation of a first quarter of the samples, without theory
-Pixels are boxes, whatever filter the file names: each is the mean of the radiance over its area.")]
+  printed     density by the same criteria as printed in the paper
+  weighted    half by the criteria, half by the interpolation error of a first
+              quarter of the samples
+  variance    density by the standard deviation of a first quarter of the
+              samples, without theory
+Each pixel is the mean of the radiance over its area (a box filter), whatever filter the file names.")]
 pub(crate) struct RenderArgs {
     #[command(flatten)]
     pub(crate) scene: WorldArgs,
@@ -196,8 +202,8 @@ pub(crate) struct RenderArgs {
     #[command(flatten)]
     pub(crate) camera: CameraArgs,
 
-    /// Distribution of samples: everywhere (reference), or few shading samples where the method
-    /// puts them [default: reference, or predicted with --shading-samples]
+    /// Distribution of samples: the same number in all pixels (reference), or a few shading samples
+    /// at points chosen by the method [default: reference, or predicted with --shading-samples]
     #[arg(long, value_name = "METHOD", value_parser = one_named(PictureRequest::METHODS.map(|(name, method)| (name, RenderMethod(method)))))]
     pub(crate) method: Option<RenderMethod>,
 
@@ -205,7 +211,7 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "N", default_value_t = PictureRequest::SAMPLES, value_parser = within::<u32>(ranges::SAMPLES))]
     pub(crate) samples: u32,
 
-    /// Shading samples in the whole picture, for all methods but reference [default: one for each
+    /// Shading samples in the whole picture, for all methods except reference [default: one for each
     /// 20 pixels]
     #[arg(long, value_name = "N", value_parser = within::<u32>(ranges::SHADING_SAMPLES))]
     pub(crate) shading_samples: Option<u32>,
@@ -214,12 +220,12 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "N", default_value_t = PictureRequest::PATHS, value_parser = within::<u32>(ranges::PATHS))]
     pub(crate) paths: u32,
 
-    /// Rays per point to find the distance of blockers, and as many again to lights; the paper uses
-    /// 100
+    /// Rays per point to find the distance of blockers; the same number is used for the distance of
+    /// lights; the paper uses 100
     #[arg(long, value_name = "N", default_value_t = PictureRequest::BLOCKER_RAYS, value_parser = within::<u32>(ranges::BLOCKER_RAYS))]
     pub(crate) blocker_rays: u32,
 
-    /// Use isotropic sample densities, as in the paper; otherwise they are denser along the
+    /// Use isotropic sample densities, as in the paper; by default, samples are denser along the
     /// direction in which light changes faster
     #[arg(long)]
     pub(crate) isotropic: bool,
@@ -242,12 +248,15 @@ pub(crate) struct RenderArgs {
   etendue probe cbox.xml --pixel 128,200 --covariance
   etendue probe cbox.xml --map 64x40
 
-Follows the ray through a pixel from the camera to the first surface, and on in the mirror direction. Measures the light field at the
-camera, and where light leaves and reaches each surface, in two ways: by rays traced back and by photons from the lights. The verdict
-compares the two. Photons cannot connect through a mirror or to a sky; such planes stay undecided.
-Writes to out/NAME-X-Y, or to the folder of --out: probe.json, and for each plane the arrays and pictures of `run`.
+Follows the ray through a pixel from the camera to the first surface, and from there in the mirror \
+direction. Measures the light field at the camera, and the light fields that leave and reach each surface, \
+in two ways: by rays traced back and by photons from the lights. The verdict compares the two. Photons \
+cannot connect through a mirror or to a sky; planes that need such photons stay undecided.
+Writes to out/NAME-X-Y, or to the folder of --out: probe.json, and for each plane the arrays and pictures \
+of `run`.
 Exit codes are those of run.
-A map writes map.exr and map.npz with measured, error, criterion, window and samples (per pixel and direction), and map.png, .svg and .csv.")]
+With --map, writes map.exr and map.npz with the arrays measured, error, criterion, window and samples (per \
+pixel and direction), and map.png, .svg and .csv.")]
 pub(crate) struct ProbeArgs {
     #[command(flatten)]
     pub(crate) scene: WorldArgs,
@@ -259,8 +268,8 @@ pub(crate) struct ProbeArgs {
     #[arg(long, value_name = "X,Y", value_parser = pixel, required_unless_present = "map")]
     pub(crate) pixel: Option<[usize; 2]>,
 
-    /// Instead of one pixel, compute the bandwidths at the camera for this many pixels, evenly over
-    /// the picture; by backward rays alone
+    /// Instead of probing one pixel, compute the bandwidths at the camera for this many pixels, spaced
+    /// evenly over the picture, by backward rays alone
     #[arg(long, value_name = "WxH", value_parser = size, conflicts_with_all = ["pixel", "photons", "surfaces"])]
     pub(crate) map: Option<[usize; 2]>,
 
@@ -268,7 +277,7 @@ pub(crate) struct ProbeArgs {
     #[arg(long = "depth", value_name = "N", default_value_t = ProbeRequest::SURFACES, value_parser = within::<u16>(ranges::SURFACES))]
     pub(crate) surfaces: u16,
 
-    /// Pixels across the window
+    /// Width of the window, in pixels
     #[arg(long, value_name = "PIXELS", default_value_t = ProbeRequest::WINDOW, value_parser = window)]
     pub(crate) window: f64,
 
@@ -284,8 +293,8 @@ pub(crate) struct ProbeArgs {
     #[arg(long, value_name = "N", default_value_t = ProbeRequest::SEED)]
     pub(crate) seed: u64,
 
-    /// Also measure the covariance of each plane's spectrum, and compare that of the camera with
-    /// covariance tracing from the first surface
+    /// Also measure the covariance of each plane's spectrum, and compare the covariance at the camera
+    /// with covariance tracing from the first surface
     #[arg(long, conflicts_with = "map")]
     pub(crate) covariance: bool,
 
@@ -325,7 +334,7 @@ fn enough(text: &str) -> Result<u64, String> {
         return Ok(number);
     }
     Err(format!(
-        "allowed: {} or more, one for each batch",
+        "allowed: {} or more, at least one for each batch",
         ranges::RAYS.start()
     ))
 }
@@ -349,7 +358,7 @@ pub(crate) struct CameraArgs {
     #[arg(long = "camera", value_name = "NAME")]
     pub(crate) name: Option<String>,
 
-    /// Pixels across and down, instead of the camera's
+    /// Width and height of the picture in pixels, instead of the camera's
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub(crate) size: Option<[usize; 2]>,
 }

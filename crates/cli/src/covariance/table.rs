@@ -10,9 +10,9 @@ const SHOWN: [[usize; 2]; 6] = [[0, 0], [0, 2], [2, 2], [1, 1], [1, 3], [3, 3]];
 /// A table for each plane, with remarks.
 pub(super) fn text(reports: &[CovarianceReport]) -> String {
     let mut lines = vec![
-        "Covariance of the power spectrum, cycles² per m², per m of slope and per slope²."
+        "Covariance of the power spectrum, in cycles² per m², per m × slope and per slope²."
             .to_owned(),
-        "traced: at all frequencies; all others: within the band.".to_owned(),
+        "The column \"traced\" covers all frequencies, the others only the band.".to_owned(),
     ];
     for report in reports {
         lines.push(String::new());

@@ -29,7 +29,7 @@ impl Meets {
             Self::Itself(object) => {
                 let name = scene.name_of(object);
                 Some(format!(
-                    "light that meets {name} twice, or {name} in its own shadow"
+                    "light that meets {name} twice, or meets {name} in its own shadow"
                 ))
             }
         }

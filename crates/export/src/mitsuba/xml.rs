@@ -171,7 +171,7 @@ fn plane_text(plane: &VirtualPlane) -> String {
         ..
     } = plane;
     format!(
-        "virtual plane {name:?}: {quantity:?} at {distance:?} m along the path, {side:?} what stands there, \
+        "virtual plane {name:?}: {quantity:?} at {distance:?} m along the path, {side:?} the object there, \
          after {leg} reflections"
     )
 }

@@ -42,7 +42,7 @@ impl<'a> GltfReader<'a> {
             projection,
             clip,
         });
-        self.note_once("cameras have no resolution: 512 pixels across, and a height according to their aspect ratio");
+        self.note_once("cameras have no resolution: pictures are 512 pixels wide, and their aspect ratio determines the height");
     }
 
     /// The projection, its scale, the aspect ratio of the picture, and the clip planes.
@@ -55,7 +55,7 @@ impl<'a> GltfReader<'a> {
         let aspect = match of.aspect_ratio {
             Some(aspect) => self.within(&format!("{path}.aspectRatio"), aspect, ASPECTS),
             None => {
-                self.note(path, "has no aspectRatio: 1 is used");
+                self.note(path, "has no aspectRatio: an aspect ratio of 1 is used");
                 Some(1.0)
             }
         };

@@ -92,7 +92,7 @@ impl GltfReader<'_> {
         }
         let mended = parts.mend_normals();
         if mended {
-            let message = "approximated: vertices without a normal use that of a triangle";
+            let message = "approximated: vertices without a normal use the normal of a triangle";
             self.note(path, message);
         }
         let turned = parts.turn_normals();

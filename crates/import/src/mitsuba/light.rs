@@ -96,7 +96,7 @@ impl<'a> MitsubaReader<'a> {
 
     fn spot(&mut self, object: &'a MitsubaObject) -> Option<Light> {
         if self.property(object, "texture").is_some() {
-            let message = "texture of a spot is not supported";
+            let message = "the texture of a spot is not supported";
             self.report.cause(self.place_of(object, "texture"), message);
         }
         let intensity = self.strength(object, "intensity");

@@ -173,7 +173,8 @@ impl<'a> MitsubaReader<'a> {
             (false, Some(_)) => {
                 parts.face_normals();
                 if parts.mend_normals() {
-                    let message = "approximated: vertices without a normal use that of a triangle";
+                    let message =
+                        "approximated: vertices without a normal use the normal of a triangle";
                     self.report.note(&object.place, message);
                 }
             }

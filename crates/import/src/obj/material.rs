@@ -102,7 +102,7 @@ impl ObjReader<'_> {
         let exponent = entry.ns.unwrap_or(1.0);
         let note = |message: &str| self.report.note(&entry.place, message);
         if entry.ns.is_none() {
-            note("Ks without Ns: 1 is used");
+            note("Ks without Ns: Ns = 1 is used");
         }
         note(
             "approximated: Ks and Ns are the modified Phong lobe ks (n + 2)/(2π) cosⁿ α about the mirror direction",
@@ -124,7 +124,7 @@ impl ObjReader<'_> {
     fn glass(&self, entry: &MtlEntry) -> Material {
         let index = entry.ni.unwrap_or(INDEX);
         if entry.ni.is_none() {
-            let message = format!("transmits without Ni: {INDEX} is used");
+            let message = format!("transmits without Ni: Ni = {INDEX} is used");
             self.report.note(&entry.place, message);
         }
         let message = "approximated: a smooth interface; Kd, Ks and Ns left out";

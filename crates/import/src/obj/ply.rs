@@ -24,7 +24,7 @@ pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused
     let mesh = mesh.ok_or_else(|| unsound("no triangle with an area".to_owned()))?;
     let (report, place) = (Report::default(), scene.place());
     if mended {
-        let message = "approximated: vertices without a normal use that of a triangle";
+        let message = "approximated: vertices without a normal use the normal of a triangle";
         report.note(&place, message);
     }
     report.note(

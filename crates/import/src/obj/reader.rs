@@ -106,7 +106,7 @@ impl<'a> ObjReader<'a> {
         parts.face_normals();
         let place = self.at(part.line);
         if parts.mend_normals() {
-            let message = "approximated: vertices without a normal use that of a triangle";
+            let message = "approximated: vertices without a normal use the normal of a triangle";
             self.report.note(&place, message);
         }
         if surface.has_picture && parts.uvs.is_none() {

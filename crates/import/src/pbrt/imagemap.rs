@@ -36,7 +36,7 @@ impl PbrtReader<'_> {
             false => pixels,
         };
         if ask == Ask::Float {
-            let message = "a coloured picture gives its luminance or one channel here, and the mean of its channels in pbrt";
+            let message = "a coloured picture is converted to its luminance or one channel here, but to the mean of its channels in pbrt";
             self.note_once(&entity.place, message);
         }
         Ok(Texture::Bitmap(Bitmap {
@@ -57,7 +57,8 @@ impl PbrtReader<'_> {
         ];
         let (filter, is_near) = entity.choice(self.report, "filter", &filters)?;
         if is_near {
-            let message = "filter is approximated by bilinear, of the picture at its full size";
+            let message =
+                "filter is approximated by bilinear interpolation of the picture at its full size";
             self.note_once(entity.place_of("filter"), message);
         }
         Ok(filter)

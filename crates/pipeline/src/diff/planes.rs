@@ -208,11 +208,7 @@ impl ResultPair<'_> {
             let last = axis.iter().copied().fold(0.0, f64::max);
             format!("{} up to {}", axis.len(), tidy(last))
         };
-        Some(format!(
-            "it has other {name}: {} and {}",
-            brief(a),
-            brief(b)
-        ))
+        Some(format!("its {name} differ: {} and {}", brief(a), brief(b)))
     }
 
     fn parameters(&self, a: &StoredPlane, b: &StoredPlane) -> Vec<ParameterDiff> {
@@ -264,7 +260,7 @@ impl ResultPair<'_> {
             } = &slices.sample;
             if noise_dof.is_none() && sigma.iter().any(|sigma| *sigma > 0.0) {
                 return Some(format!(
-                    "{folder} has no noise_dof, which results contain since this version: run it again"
+                    "{folder} has no noise_dof because an older version wrote it: run it again"
                 ));
             }
             let each = plane.in_window as f64 / result.index.batches as f64;
@@ -277,7 +273,7 @@ impl ResultPair<'_> {
             }
             if let Some(each) = carried_by(&slices.sample, &slices.grid) {
                 return Some(format!(
-                    "a few photons carry most of the light of {folder}: it varies as if each batch held {each:.1}"
+                    "a few photons carry most of the light of {folder}: it varies as if each batch held only {each:.1} of them"
                 ));
             }
         }
@@ -296,7 +292,7 @@ impl ResultPair<'_> {
                 "they share photons, or their noise is overstated".to_owned()
             };
             return Some(format!(
-                "they differ by {apart}, independent noise by {noise}: {seeds}; run one with another seed"
+                "they differ by {apart}, but independent noise would differ by {noise}: {seeds}; run one with another seed"
             ));
         }
         let resolution = [a, b].map(|r| r.scene_file["run"]["resolution"].as_f64());

@@ -107,7 +107,7 @@ impl StoredResult {
         let index: ResultIndex = serde_json::from_slice(&bytes)
             .map_err(|e| fault(format!("it is not a summary of a run: {e}")))?;
         if !sealed::is_sealed(&bytes) {
-            let what = "it was changed since it was written: its index_hash does not match the text before it";
+            let what = "it was changed after it was written: its index_hash does not match the text before it";
             return Err(fault(what.to_owned()));
         }
         if index.batches < 3 {

@@ -173,7 +173,7 @@ fn verdict(diff: &Diff) -> String {
             let how = if same_bytes {
                 "byte for byte"
             } else {
-                "but for rounding"
+                "except for rounding"
             };
             format!("same: both have the same seed and photons, and the same numbers {how}")
         }

@@ -264,12 +264,12 @@ impl Tm25Header {
             }
         }
         self.flags = Flags {
-            radiant_flux: cursor.flag("the flag of radiant flux")?,
-            wavelength: cursor.flag("the flag of wavelengths")?,
-            luminous_flux: cursor.flag("the flag of luminous flux")?,
-            stokes: cursor.flag("the flag of Stokes parameters")?,
-            tristimulus: cursor.flag("the flag of tristimulus values")?,
-            spectrum: cursor.flag("the flag of spectra")?,
+            radiant_flux: cursor.flag("the flag for radiant flux")?,
+            wavelength: cursor.flag("the flag for wavelengths")?,
+            luminous_flux: cursor.flag("the flag for luminous flux")?,
+            stokes: cursor.flag("the flag for Stokes parameters")?,
+            tristimulus: cursor.flag("the flag for tristimulus values")?,
+            spectrum: cursor.flag("the flag for the presence of spectra")?,
         };
         Ok(())
     }
@@ -337,15 +337,15 @@ impl Tm25Header {
         )?;
         refuse(
             kind == SpectrumType::WavelengthPerRay && !flags.wavelength,
-            "spectra are of the type \"wavelength of each ray\", and rays have none",
+            "spectra are of the type \"wavelength of each ray\", but rays have no wavelength",
         )?;
         refuse(
             (kind == SpectrumType::SpectrumPerRay) != flags.spectrum,
-            "rays name a spectrum if and only if spectra are of the type \"spectrum of each ray\"",
+            "rays must name a spectrum exactly when the type of spectra is \"spectrum of each ray\"",
         )?;
         refuse(
             flags.stokes && !radiant,
-            "rays have Stokes parameters and no radiant flux",
+            "rays have Stokes parameters but no radiant flux",
         )?;
         refuse(
             flags.tristimulus && !flags.luminous_flux,
@@ -354,12 +354,12 @@ impl Tm25Header {
         let single = self.wavelength_nm > 0.0 && self.wavelength_nm.is_finite();
         refuse(
             kind == SpectrumType::OneWavelength && !single,
-            "all rays have one wavelength, and it is not positive",
+            "the wavelength that all rays share is not positive",
         )?;
         let tables = [SpectrumType::OneSpectrum, SpectrumType::SpectrumPerRay].contains(&kind);
         refuse(
             tables && self.spectra.is_empty(),
-            "rays refer to spectra, and there are none",
+            "rays refer to spectra, but there are none",
         )?;
         self.check_spectra()
     }

@@ -231,7 +231,7 @@ impl Tm25File {
         }
         if lengths > 0 {
             self.notes.push(format!(
-                "{lengths} directions are not unit vectors; they are read as such"
+                "{lengths} directions are not unit vectors; they are treated as unit vectors"
             ));
         }
         self.note_flux(sum);
@@ -248,7 +248,7 @@ impl Tm25File {
         let stated = f64::from(stated);
         if !stated.is_nan() && (stated - sum).abs() > FLUX_SLACK * sum.abs() {
             self.notes.push(format!(
-                "the header states {stated} {unit}, and the rays have {sum} {unit}; the rays count"
+                "the header states {stated} {unit}, but the rays have {sum} {unit}; the power of the rays is used"
             ));
         }
     }

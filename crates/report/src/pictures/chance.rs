@@ -52,7 +52,7 @@ impl Outliers {
             expected,
         } = self;
         format!(
-            "Beyond 4 *σ*: {found} of {cells} frequencies, by chance {expected:.1} on average; neighbours share noise."
+            "{found} of {cells} frequencies differ by more than 4 *σ*; by chance, {expected:.1} would on average; noise is correlated between neighbours."
         )
     }
 }

@@ -107,11 +107,11 @@ pub fn strip_of(
 
 /// What is shown where the light differs between both planes through the central ray.
 const BOTH: &str = "at azimuth 0 below (*x*, *u*), and at 90° below (*y*, *v*). The light field \
-    in (*y*, *v*) is the inverse transform of that spectrum, which ends at the highest \
-    frequencies, so fringes accompany its edges (Gibbs phenomenon)";
+    in (*y*, *v*) is the inverse transform of that spectrum; as the spectrum is cut off \
+    at the highest frequencies, fringes accompany edges (Gibbs phenomenon)";
 /// The warning of a figure that shows the mean in their place.
-const MIXED: &str = ", although the light differs between azimuths 0 and 90°, which `etendue \
-    run` draws apart";
+const MIXED: &str = ", although the light differs between azimuths 0 and 90°; `etendue run` \
+    draws both separately";
 
 /// A plane with its theory and its comparison.
 struct PlaneOnPath<'a> {
@@ -228,8 +228,8 @@ pub fn spectra_are<'a>(planes: impl Iterator<Item = &'a VirtualPlane>) -> &'stat
     let counts: Vec<usize> = planes.map(|plane| plane.grid.azimuths).collect();
     match counts.iter().filter(|count| **count == 1).count() {
         0 => "means over azimuths",
-        slices if slices == counts.len() => "those at azimuth 0",
-        _ => "means over azimuths, or those at azimuth 0 where there is one",
+        slices if slices == counts.len() => "slices at azimuth 0",
+        _ => "means over azimuths, or slices at azimuth 0 where there is only one azimuth",
     }
 }
 
@@ -242,7 +242,7 @@ fn predicted_lines(columns: &[StripColumn<'_>], planes: &[PlaneComparison]) -> &
         (Some(1), true) => " Lines at the edges: predicted, *ν* = −*d* *ρ*.",
         (_, true) => " Lines at the edges: predicted, *ν* = −*d* *ρ*, and its replicas.",
         (_, false) => {
-            " Lines at the edges: where the chain puts the light, in the plane of incidence and across it."
+            " Lines at the edges: the spectrum according to the chain, in the plane of incidence and orthogonal to it."
         }
     }
 }

@@ -154,7 +154,7 @@ fn corner(word: &[u8], before: usize, count: usize) -> Result<u32, CornerFault> 
     let others_sound = parts.clone().count() <= 2
         && parts.all(|part| part.is_empty() || number::<i64>(part).is_some());
     let Some(vertex) = vertex.filter(|_| others_sound) else {
-        let allowed = "an index, perhaps with those of texture and normal: 7, 7/3, 7//5, 7/3/5";
+        let allowed = "an index of a vertex, optionally with indices of texture and normal: 7, 7/3, 7//5, 7/3/5";
         return Err((quoted(word), allowed.into()));
     };
     let named = usize::try_from(vertex.unsigned_abs()).unwrap_or(usize::MAX);

@@ -219,7 +219,7 @@ impl Resolver<'_> {
         if product > limits::PRODUCTS {
             let most = limits::PRODUCTS;
             let allowed = format!(
-                "at most {most:.0e} in all when the shapes of light and layers are multiplied"
+                "at most {most:.0e} for the product of the numbers of shapes of the light and of each layer"
             );
             self.faults.add("blockers: count", number(product), allowed);
         }

@@ -40,10 +40,10 @@ impl Resolver<'_> {
             let field = at.field(&format!("vertex {}", at.number(*first)));
             let left = share(&sums[*first as usize]);
             let value = format!(
-                "without a normal: those of its triangles cancel to {left:.1e} of their sum"
+                "without a normal: the normals of its triangles cancel to {left:.1e} of their summed lengths"
             );
             let allowed = format!(
-                "vertices of a smooth surface, with at least {MIN_NORMAL} left{}",
+                "vertices of a smooth surface, at which at least {MIN_NORMAL} is left{}",
                 others(cancel.len())
             );
             self.faults.add(field, value, allowed);
@@ -85,7 +85,7 @@ impl Resolver<'_> {
             at.triangle(triangle)
         );
         let allowed = format!(
-            "vertices of a smooth surface, at most {:.1}° from each triangle, all wound alike{}",
+            "vertices of a smooth surface, with normals at most {:.1}° from those of their triangles, which are all wound in the same direction{}",
             libm::acos(MIN_NORMAL).to_degrees(),
             others(turned.len())
         );

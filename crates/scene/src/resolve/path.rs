@@ -107,7 +107,8 @@ impl Resolver<'_> {
             let PatchObject { patch, event, .. } = &things.patches[i];
             let behind = patch.normal(point).dot(normal) < 0.0;
             if behind && matches!(event, Event::Reflects(_)) {
-                let allowed = "a surface met on its front: its back is black";
+                let allowed =
+                    "a surface that the central ray meets on its front: its back is black";
                 self.faults.add_on_path(of, show(visit), allowed);
             }
         }

@@ -56,7 +56,7 @@ impl Resolver<'_> {
                 let raster = self.picture("light.map", path, &["exr"], MAX_NUMBER);
                 let dark = |raster: &Raster| raster.values().iter().all(|value| *value <= 0.0);
                 if raster.as_ref().is_some_and(dark) {
-                    let allowed = "a picture with light somewhere";
+                    let allowed = "a picture that is not dark everywhere";
                     self.faults.add("light.map", show(path), allowed);
                 }
                 let scaled = raster.and_then(|raster| {
@@ -84,7 +84,7 @@ impl Resolver<'_> {
             // A faulty width has been reported already.
             let is_narrow = lobe.width > 0.0 && reach < FRAC_PI_2;
             if is_narrow && from.z > libm::sin(reach) {
-                let allowed = "a direction before the central ray: an environment shines forward, along path.direction";
+                let allowed = "a direction from which light goes forward, along path.direction: an environment emits no other light";
                 let DVec3 { x, y, z } = lobe.from;
                 self.faults
                     .add(format!("light.map[{i}].from"), vector(&[x, y, z]), allowed);

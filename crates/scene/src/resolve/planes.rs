@@ -81,7 +81,7 @@ impl Resolver<'_> {
         }
         let of = format!("{of}.orientation");
         if plane.orientation == Orientation::Mirrored && place.side == Side::After {
-            let allowed = "a place Before(…) a surface: light after it is not mirrored";
+            let allowed = "Mirrored only at a place Before(…) a surface: light after a surface is not mirrored";
             self.faults.add(&of, show(plane.orientation), allowed);
         }
         let hit = match place.side {
@@ -99,8 +99,7 @@ impl Resolver<'_> {
             Place::Emission | Place::Distance(_) => false,
         };
         let Some((hit, arriving)) = hit.filter(|_| at_hit) else {
-            let allowed =
-                "Orthogonal, or a place Before(…) or After(…) a surface that the path visits";
+            let allowed = "Orthogonal, or another orientation at a place Before(…) or After(…) a surface that the path visits";
             self.faults
                 .add_on_path(&of, show(plane.orientation), allowed);
             return across;
@@ -239,7 +238,7 @@ impl Resolver<'_> {
         let end = last.start + last.length;
         if !end.is_nan() && !(0.0..end).contains(&distance) {
             let allowed = format!(
-                "0 to {} m on the way to the last surface, up to {} m on the way from it, where an object ends it",
+                "0 to {} m, where the last surface is, and from there to {} m, where an object ends the path",
                 tidy(last.start),
                 tidy(end)
             );
@@ -301,7 +300,8 @@ impl Resolver<'_> {
             Profile::Gaussian { width, cut } => {
                 // The number of terms in a series of copies grows with the width of the cut.
                 if width.is_finite() && cut.is_finite() && cut > 10.0 * width {
-                    let allowed = "at most 10 widths: beyond 3.5 the Gaussian is below 1e-16";
+                    let allowed =
+                        "at most 10 widths: beyond 3.5 widths the Gaussian is below 1e-16";
                     self.faults.add(format!("{of}.cut"), number(cut), allowed);
                 }
             }
@@ -373,9 +373,9 @@ impl Resolver<'_> {
         if bytes > memory as f64 {
             self.faults.all.push(Fault {
                 field: "frequencies of all planes".to_owned(),
-                value: format!("{} of spectra over {batches} batches", gigabytes(bytes)),
+                value: format!("{} for the spectra of {batches} batches", gigabytes(bytes)),
                 allowed: format!(
-                    "at most the memory here, {}: lower frequencies, a smaller window, or lengths in metres",
+                    "at most the available memory, {}: use lower frequencies, a smaller window, or lengths in metres",
                     gigabytes(memory as f64)
                 ),
                 memory: true,

@@ -74,7 +74,10 @@ impl Resolver<'_> {
         };
         let Some(watts) = watts else {
             let why = format!("power in {}", set.unit.symbol());
-            return refused(why, "a file with power in W, or `flux`, the power in W");
+            return refused(
+                why,
+                "a file with power in W, or the field `flux` with the power in W",
+            );
         };
         let found = through_the_plane(&set, axes, watts);
         if found.is_none() {

@@ -45,7 +45,7 @@ impl Resolver<'_> {
             } else {
                 ("other", "blend")
             };
-            let allowed = format!("stated together with `{missing}`");
+            let allowed = format!("together with `{missing}` only");
             self.faults.add(format!("{of}.{stated}"), "alone", allowed);
         }
         let resolved = self.brdf(&format!("{of}.brdf"), brdf);
@@ -61,10 +61,7 @@ impl Resolver<'_> {
     fn sum(&mut self, of: &str, terms: &[TermFile]) -> Option<Reflectance> {
         let count = terms.len();
         if !(1..=MOST_TERMS).contains(&count) {
-            let (found, allowed) = (
-                format!("{count} terms"),
-                format!("1 to {MOST_TERMS} of them"),
-            );
+            let (found, allowed) = (format!("{count} terms"), format!("1 to {MOST_TERMS} terms"));
             self.faults.add(format!("{of}.terms"), found, allowed);
             return None;
         }

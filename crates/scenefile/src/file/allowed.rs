@@ -66,19 +66,19 @@ shared! {
     name: "a name in quotes, 1 to 64 characters", "\"floor\"";
     name_of_blockers: "a name in quotes, 1 to 64 characters", "\"bars\"";
     seed: "a whole number", "1", depends("0 to 2^64 − 1");
-    place: "a place in the world, metres", "(0, 0, 1)", any;
-    sides: "side lengths along X and Y, metres", "(0.2, 0.1)";
+    place: "a place in the world, in metres", "(0, 0, 1)", any;
+    sides: "side lengths along X and Y, in metres", "(0.2, 0.1)";
     length: "a length in metres", "0.2";
     factor: "a factor", "2";
-    radiance: "a radiance, W m⁻² sr⁻¹", "1";
-    intensity: "an intensity, W sr⁻¹", "1";
+    radiance: "a radiance, in W m⁻² sr⁻¹", "1";
+    intensity: "an intensity, in W sr⁻¹", "1";
     cycles: "cycles per metre", "5";
     modulation: "a contrast", "0.9", within(0.0, 1.0);
     phase: "an angle in radians", "0.3", any;
     albedo: "a share of the light", "0.5", within(0.0, 1.0);
-    factors_by_angle: "factors from 0 to 1, from the normal to 90 degrees", "[1, 0.7, 0]", within(0.0, 1.0);
+    factors_by_angle: "factors from 0 to 1, for angles from the normal to 90 degrees", "[1, 0.7, 0]", within(0.0, 1.0);
     profile_of_place: "a profile with its half-width in metres", "Hann(0.5)";
-    profile_of_slope: "a profile with its half-width in slope", "Hann(0.5)";
+    profile_of_slope: "a profile with its half-width as a slope", "Hann(0.5)";
 }
 
 fn bound(node: &mut Value, least: f64, most: f64) {

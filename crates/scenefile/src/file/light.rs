@@ -13,50 +13,51 @@ use serde::{Deserialize, Serialize};
 #[serde(rename = "Light", deny_unknown_fields)]
 #[schemars(transform = told("a light", "Rectangle(center: (0, 0, 0), size: (0.2, 0.2))"))]
 pub enum LightFile {
-    /// A Lambertian rectangle orthogonal to the central ray, edges along X and Y, dark on its back.
+    /// A Lambertian rectangle orthogonal to the central ray, with edges along X and Y and a dark back.
     Rectangle {
-        /// Centre, world coordinates.
+        /// Centre, in world coordinates.
         #[schemars(transform = place)]
         center: [f64; 3],
         /// Side lengths along X and Y.
         #[schemars(transform = sides)]
         size: [f64; 2],
-        /// Radiance, W m⁻² sr⁻¹.
+        /// Radiance, in W m⁻² sr⁻¹.
         #[serde(default = "one")]
         #[schemars(transform = radiance)]
         radiance: f64,
     },
-    /// A Lambertian disc orthogonal to the central ray, dark on its back.
+    /// A Lambertian disc orthogonal to the central ray, with a dark back.
     Disc {
-        /// Centre, world coordinates.
+        /// Centre, in world coordinates.
         #[schemars(transform = place)]
         center: [f64; 3],
         /// Radius.
         #[schemars(transform = length)]
         radius: f64,
-        /// Radiance, W m⁻² sr⁻¹.
+        /// Radiance, in W m⁻² sr⁻¹.
         #[serde(default = "one")]
         #[schemars(transform = radiance)]
         radiance: f64,
     },
     /// A point that emits uniformly in all directions.
     Point {
-        /// Position, world coordinates.
+        /// Position, in world coordinates.
         #[schemars(transform = place)]
         center: [f64; 3],
-        /// Intensity, W sr⁻¹.
+        /// Intensity, in W sr⁻¹.
         #[serde(default = "one")]
         #[schemars(transform = intensity)]
         intensity: f64,
     },
-    /// A flat bulb whose radiance falls off as cosⁿθ from the central ray.
+    /// A flat bulb whose radiance falls off as cosⁿθ, where θ is the angle to the central
+    /// ray.
     Spot {
-        /// Centre, world coordinates.
+        /// Centre, in world coordinates.
         #[schemars(transform = place)]
         center: [f64; 3],
         /// Shape of the bulb.
         bulb: BulbFile,
-        /// Radiance along the central ray, W m⁻² sr⁻¹.
+        /// Radiance along the central ray, in W m⁻² sr⁻¹.
         #[serde(default = "one")]
         #[schemars(transform = radiance)]
         radiance: f64,
@@ -66,7 +67,7 @@ pub enum LightFile {
     },
     /// A slide projector: a point whose intensity is a picture over slopes.
     Projector {
-        /// Position, world coordinates.
+        /// Position, in world coordinates.
         #[schemars(transform = place)]
         center: [f64; 3],
         /// Intensity, in W sr⁻¹, where the picture has the value 1.
@@ -78,27 +79,27 @@ pub enum LightFile {
     },
     /// A collimated beam along the central ray whose irradiance is a picture.
     Beam {
-        /// Start of the central ray, world coordinates.
+        /// Start of the central ray, in world coordinates.
         #[schemars(transform = place)]
         center: [f64; 3],
         /// Irradiance, in W m⁻², where the picture has the value 1.
         #[serde(default = "one")]
-        #[schemars(transform = told("an irradiance, W m⁻²", "1"))]
+        #[schemars(transform = told("an irradiance, in W m⁻²", "1"))]
         irradiance: f64,
         /// The picture, in metres along X and along Y.
         image: ImageFile,
     },
-    /// Light from an environment; only directions in front of the plane across `path.direction` at
-    /// the centre emit light.
+    /// Light from an environment. It starts in the plane through the centre that is orthogonal to
+    /// `path.direction`, and goes forward only.
     Environment {
-        /// Start of the central ray, world coordinates.
+        /// Start of the central ray, in world coordinates.
         #[schemars(transform = place)]
         center: [f64; 3],
-        /// Direction of the map's top, any length.
+        /// Direction, of any length, of the top of the map.
         #[serde(default = "along_y")]
         #[schemars(transform = direction("(0, 1, 0)"))]
         up: [f64; 3],
-        /// Direction of the middle of the map, any length; only the part orthogonal to `up` is
+        /// Direction, of any length, of the middle of the map; only the part orthogonal to `up` is
         /// used.
         #[serde(default = "along_z")]
         #[schemars(transform = direction("(0, 0, 1)"))]
@@ -113,24 +114,24 @@ pub enum LightFile {
     /// The rays of a file, at their intersections with the plane through the centre that is
     /// perpendicular to `path.direction`; rays that go backwards are omitted.
     Rays {
-        /// Position of the file's origin and start of the central ray, world coordinates.
+        /// Position of the file's origin and start of the central ray, in world coordinates.
         #[schemars(transform = place)]
         center: [f64; 3],
         /// IES TM-25, MCPL or NPY file; the path is relative to the scene file, and must stay
         /// inside its folder.
         #[schemars(transform = told("a ray file in quotes", r#""led.tm25ray""#))]
         file: String,
-        /// Direction of the file's Z axis, any length; `path.direction` by default.
+        /// Direction, of any length, of the file's Z axis; by default, `path.direction`.
         #[serde(default)]
         #[schemars(transform = direction("(0, 0, 1)"))]
         front: Option<[f64; 3]>,
-        /// Direction of the file's Y axis, any length; only the part orthogonal to `front` is used.
-        /// By default the Y axis of the central ray's frame.
+        /// Direction, of any length, of the file's Y axis; only the part orthogonal to `front` is
+        /// used. By default, the Y axis of the central ray's frame.
         #[serde(default)]
         #[schemars(transform = direction("(0, 1, 0)"))]
         up: Option<[f64; 3]>,
-        /// Flux of all rays of the file, W. By default the flux stated in the file, which must be
-        /// in W, or in lm with its total in W and lm.
+        /// Flux of all rays of the file, in W. By default, the flux stated in the file, which must be
+        /// in W, or in lm if the file states the total flux in both W and lm.
         #[serde(default)]
         #[schemars(transform = told("a flux in watts", "0.5"))]
         flux: Option<f64>,
@@ -162,23 +163,23 @@ impl LightFile {
 pub enum EnvironmentFile {
     /// A sum of lobes.
     Lobes(Vec<SphericalGaussianFile>),
-    /// An OpenEXR picture over latitude and longitude, W m⁻² sr⁻¹; the path is relative to the
+    /// An OpenEXR picture of the radiance, in W m⁻² sr⁻¹, over latitude and longitude; the path is relative to the
     /// scene file, and must stay inside its folder.
     File(String),
 }
 
-/// A lobe of light, radiance · exp((cos γ − 1)/width²), with the angle γ to `from`.
+/// A lobe of light, radiance · exp((cos γ − 1)/width²), where γ is the angle to `from`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "LightLobe", deny_unknown_fields)]
 #[schemars(transform = told("a lobe", "(from: (0, 0, -1), width: 0.3)"))]
 pub struct SphericalGaussianFile {
-    /// Direction from which most of the light comes, any length.
+    /// Direction, of any length, from which most of the light comes.
     #[schemars(transform = direction("(0, 0, -1)"))]
     pub from: [f64; 3],
-    /// Width of the lobe, radians.
+    /// Width of the lobe, in radians.
     #[schemars(transform = told("an angle in radians", "0.3"), transform = within(1e-4, 1e3))]
     pub width: f64,
-    /// Radiance from that direction, W m⁻² sr⁻¹.
+    /// Radiance from the direction `from`, in W m⁻² sr⁻¹.
     #[serde(default = "one")]
     #[schemars(transform = radiance)]
     pub radiance: f64,
@@ -205,14 +206,14 @@ pub struct ImageFile {
 pub struct GratingFile {
     /// The axis along which the grating varies.
     pub axis: AxisName,
-    /// Frequency f, cycles per unit of the picture, or per metre of a surface.
+    /// Frequency f, in cycles per unit of the picture, or per metre of a surface.
     #[schemars(transform = cycles)]
     pub frequency: f64,
     /// Modulation m.
     #[serde(default = "one")]
     #[schemars(transform = modulation)]
     pub modulation: f64,
-    /// Phase p, radians.
+    /// Phase p, in radians.
     #[serde(default)]
     #[schemars(transform = phase)]
     pub phase: f64,
@@ -223,7 +224,7 @@ pub struct GratingFile {
 #[serde(rename = "Bulb")]
 #[schemars(transform = told("a bulb", "Square(0.1)"))]
 pub enum BulbFile {
-    /// A square with this side, edges along X and Y.
+    /// A square with this side length and edges along X and Y.
     Square(f64),
     /// A disc with this radius.
     Disc(f64),

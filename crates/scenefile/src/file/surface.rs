@@ -18,13 +18,13 @@ pub enum MeshSource {
     File(String),
     /// A generated piece of the paraboloid z = −(k₁ x² + k₂ y²)/2 around the origin, facing along z.
     Paraboloid {
-        /// Curvatures k₁ and k₂, per metre; positive if convex.
-        #[schemars(transform = told("curvatures along X and Y, per metre", "(1, 0.5)"), transform = within(-1e6, 1e6))]
+        /// Curvatures k₁ and k₂ per metre, positive if convex.
+        #[schemars(transform = told("curvatures along X and Y per metre", "(1, 0.5)"), transform = within(-1e6, 1e6))]
         curvatures: [f64; 2],
-        /// Half-width: the piece extends to ± this along x and along y.
+        /// Half-width: the piece extends from −half to half along x and along y.
         #[schemars(transform = length, transform = within(1e-9, 1e8))]
         half: f64,
-        /// Number of cells along a side, of two triangles each.
+        /// Number of cells along a side; each cell consists of two triangles.
         #[serde(deserialize_with = "count")]
         #[schemars(transform = told("a whole number", "16"), transform = within(1.0, f64::from(CELLS)))]
         cells: u32,
@@ -55,22 +55,22 @@ pub enum MeshSource {
 pub enum SurfaceFile {
     /// A Lambertian rectangle, with edges along X and Y by default.
     Rectangle {
-        /// Name, for the path and the planes to refer to.
+        /// Name by which the path and the planes refer to the surface.
         #[schemars(transform = name)]
         name: String,
-        /// Centre, world coordinates.
+        /// Centre, in world coordinates.
         #[schemars(transform = place)]
         center: [f64; 3],
         /// Side lengths along X and Y.
         #[schemars(transform = sides)]
         size: [f64; 2],
-        /// Normal of the rectangle, any length; by default back along `path.direction`. One pair of
-        /// edges is along the part of the path's X axis that is orthogonal to the normal (of Y, if
-        /// X is along it), the other across.
+        /// Normal of the rectangle, of any length; by default, opposite to `path.direction`. One pair
+        /// of edges is along the part of the path's X axis that is orthogonal to the normal (of the Y
+        /// axis, if X is along the normal); the other pair is orthogonal to the first.
         #[serde(default)]
         #[schemars(transform = direction("(0, 0, -1)"))]
         facing: Option<[f64; 3]>,
-        /// Albedo: reflected over incident flux.
+        /// Albedo: the ratio of reflected to incident flux.
         #[serde(default = "half")]
         #[schemars(transform = albedo)]
         albedo: f64,
@@ -80,7 +80,7 @@ pub enum SurfaceFile {
         /// Name.
         #[schemars(transform = name)]
         name: String,
-        /// Position of the mesh's origin, world coordinates.
+        /// Position of the mesh's origin, in world coordinates.
         #[schemars(transform = place)]
         center: [f64; 3],
         /// The triangles.
@@ -89,7 +89,7 @@ pub enum SurfaceFile {
         #[serde(default = "one")]
         #[schemars(transform = factor)]
         scale: f64,
-        /// Albedo, reflected over incident flux, if the mesh is Lambertian.
+        /// Albedo (the ratio of reflected to incident flux), if the mesh is Lambertian.
         #[serde(default = "half")]
         #[schemars(transform = albedo)]
         albedo: f64,
@@ -102,16 +102,16 @@ pub enum SurfaceFile {
         /// Name.
         #[schemars(transform = name)]
         name: String,
-        /// Vertex of the surface, world coordinates.
+        /// Vertex of the surface, in world coordinates.
         #[schemars(transform = place)]
         center: [f64; 3],
-        /// Normal at the vertex, any length.
+        /// Normal at the vertex, of any length.
         #[schemars(transform = direction("(0, 0, -1)"))]
         facing: [f64; 3],
         /// Shape of the surface.
         form: FormFile,
-        /// Direction of the first curvature, any length; by default the path's X axis (Y, if the
-        /// surface faces along X). Only the part orthogonal to the normal is used.
+        /// Direction, of any length, of the first curvature; by default, the path's X axis (or Y, if
+        /// the surface faces along X). Only the part orthogonal to the normal is used.
         #[serde(default)]
         #[schemars(transform = direction("(1, 0, 0)"))]
         along: Option<[f64; 3]>,
@@ -135,8 +135,8 @@ impl SurfaceFile {
     }
 }
 
-/// The shape of a smooth surface around its vertex; curvatures per metre, positive if convex as
-/// seen from the side it faces.
+/// The shape of a smooth surface around its vertex. Curvatures are per metre, and positive if the
+/// surface is convex as seen from the side that it faces.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Form")]
 #[schemars(transform = told("a form with its curvature", "Sphere(0.5)"))]
@@ -145,7 +145,7 @@ pub enum FormFile {
     Plane,
     /// A sphere with this curvature, 1/R.
     Sphere(#[schemars(transform = within(-1e6, 1e6))] f64),
-    /// A circular cylinder with this curvature and its axis across `along`.
+    /// A circular cylinder with this curvature, whose axis is orthogonal to `along`.
     Cylinder(#[schemars(transform = within(-1e6, 1e6))] f64),
     /// A paraboloid with these curvatures at its vertex, the first along `along`.
     Paraboloid(
@@ -170,7 +170,7 @@ pub enum EventFile {
         #[schemars(transform = told("an index of refraction", "1.5"), transform = within(0.1, 10.0))]
         back: f64,
     },
-    /// A thin lens, flat, with this focal length.
+    /// A flat thin lens with this focal length.
     ThinLens(
         #[schemars(transform = depends("a focal length in metres, negative if the lens spreads light, not 0"))]
          f64,
@@ -182,7 +182,7 @@ pub enum EventFile {
         /// A second BRDF that is added, weighted by 1 − `blend`.
         #[serde(default)]
         other: Option<Box<BrdfFile>>,
-        /// Weight of the first BRDF where there is a second.
+        /// Weight of the first BRDF if there is a second BRDF.
         #[serde(default)]
         blend: Option<PatternFile>,
         /// Factor that multiplies the BRDF.
@@ -192,8 +192,8 @@ pub enum EventFile {
     /// Reflects by a weighted sum of BRDFs on the side that the surface faces; the other side is
     /// black.
     Sum {
-        /// The BRDFs with their weights, 1 to 8 of them. Where the path does not set the direction
-        /// of the central ray, the first one does.
+        /// 1 to 8 BRDFs with their weights. If the path does not set the direction in which the
+        /// central ray leaves, the first BRDF determines it.
         #[schemars(transform = told("a list of BRDFs with weights", "[(brdf: (lobe: Phong(100)), weight: Checkerboard(0.1))]"))]
         terms: Vec<TermFile>,
         /// Factor that multiplies the sum.
@@ -221,19 +221,19 @@ pub struct TermFile {
 pub struct BrdfFile {
     /// Lobe of the BRDF.
     pub lobe: LobeFile,
-    /// Factor on the lobe, 0 to 1.
+    /// Factor that multiplies the lobe, 0 to 1.
     #[serde(default = "one")]
     #[schemars(transform = albedo)]
     pub albedo: f64,
     /// Fresnel factor.
     #[serde(default)]
     pub fresnel: FresnelFile,
-    /// Factor by the angle of incidence: values at equal steps from the normal to 90 degrees,
-    /// linear in between; 1 by default.
+    /// Factor that depends on the angle of incidence: values at equal steps from the normal to 90
+    /// degrees, interpolated linearly; 1 by default.
     #[serde(default)]
     #[schemars(transform = factors_by_angle)]
     pub incoming: Option<Vec<f64>>,
-    /// Factor by the angle of the outgoing light, in the same form.
+    /// Factor that depends on the angle of the outgoing light, in the same form.
     #[serde(default)]
     #[schemars(transform = factors_by_angle)]
     pub outgoing: Option<Vec<f64>>,
@@ -246,7 +246,7 @@ pub struct BrdfFile {
 pub enum LobeFile {
     /// Uniform in all directions.
     Lambertian,
-    /// Phong lobe: cosⁿ of the angle to the mirror direction, with this n.
+    /// Phong lobe: cosⁿ of the angle to the mirror direction, with this exponent n.
     Phong(#[schemars(transform = within(0.0, 1e4))] f64),
     /// Microfacets with Beckmann's distribution of normals, with this roughness α.
     Beckmann(#[schemars(transform = within(1e-3, 1.0))] f64),
@@ -262,9 +262,9 @@ pub enum FresnelFile {
     /// All light is reflected.
     #[default]
     White,
-    /// At a dielectric with this index of refraction.
+    /// Reflection at a dielectric with this index of refraction.
     Dielectric(#[schemars(transform = within(0.05, 20.0))] f64),
-    /// At a conductor with index n + i k.
+    /// Reflection at a conductor with index n + i k.
     Conductor {
         /// Index of refraction n.
         #[schemars(transform = told("an index of refraction", "1.5"), transform = within(0.05, 20.0))]
@@ -280,32 +280,32 @@ pub enum FresnelFile {
 #[serde(rename = "Pattern", deny_unknown_fields)]
 #[schemars(transform = told("a pattern", "Checkerboard(0.1)"))]
 pub enum PatternFile {
-    /// ½ (1 + m cos(2π f t + p)), with t along `along` or across it.
+    /// ½ (1 + m cos(2π f t + p)), where t is measured along `along` or orthogonal to it.
     Cosine {
         /// The axis along which the pattern varies; X is `along`.
         axis: AxisName,
-        /// Frequency f, cycles per metre.
+        /// Frequency f, in cycles per metre.
         #[schemars(transform = cycles)]
         frequency: f64,
         /// Modulation m.
         #[serde(default = "one")]
         #[schemars(transform = modulation)]
         modulation: f64,
-        /// Phase p, radians.
+        /// Phase p, in radians.
         #[serde(default)]
         #[schemars(transform = phase)]
         phase: f64,
     },
-    /// A checkerboard of 1 and 0 with this period, two sides of a square.
+    /// A checkerboard of the values 1 and 0 with this period, which is twice the side of a square.
     Checkerboard(f64),
-    /// A picture around the vertex, 0 outside: X to its right, Y to its top, as seen from the side
-    /// that the surface faces.
+    /// A picture centred on the vertex, with the value 0 outside. X points to its right and Y to its
+    /// top, as seen from the side that the surface faces.
     Picture {
         /// An OpenEXR or PNG file of numbers from 0 to 1; the path is relative to the scene file,
         /// and must stay inside its folder.
         #[schemars(transform = told("a file in quotes", r#""picture.exr""#))]
         file: String,
-        /// Width along X and height along Y, metres.
+        /// Width along X and height along Y, in metres.
         #[schemars(transform = sides)]
         size: [f64; 2],
     },

@@ -73,7 +73,7 @@ impl Results {
             more => format!(" and {more} more"),
         };
         Err(Failure::cannot_run(format!(
-            "{} holds files that etendue did not write, or that were changed since: {}{more}; \
+            "{} holds files that etendue did not write, or that were changed after it wrote them: {}{more}; \
              choose another folder, or replace them with {}",
             self.shown.display(),
             told.join(", "),

@@ -71,11 +71,11 @@ impl Operator {
             }
             Self::Visibility { name, mask } => words::mask(&format!("{name}: "), mask),
             Self::Cosine { name } => {
-                format!("multiply  cosine at {name}: G = (1 + u² + v²)⁻²")
+                format!("multiply  by the cosine at {name}: G = (1 + u² + v²)⁻²")
             }
             Self::Diffuse { name, albedo } => {
                 format!(
-                    "convolve  diffuse reflection at {name}: albedo {albedo}, constant in slope"
+                    "convolve  with the diffuse reflection at {name}: albedo {albedo}, constant in slope"
                 )
             }
         }

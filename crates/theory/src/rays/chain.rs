@@ -275,7 +275,8 @@ impl Walk {
             self.curvature(shape, incidence.theta0);
         }
         if plane.quantity == Quantity::DifferentialIrradiance {
-            self.steps.push("multiply  cosine, cos⁺ θ cos² φ".into());
+            self.steps
+                .push("multiply  by the cosine, cos⁺ θ cos² φ".into());
         }
         if plane.orientation == Orientation::Mirrored {
             self.mirror();

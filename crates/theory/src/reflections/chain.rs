@@ -209,7 +209,7 @@ fn steps(
 }
 
 fn in_words(interaction: &Interaction) -> Vec<String> {
-    const COSINE: &str = "multiply  cosine, cos⁺ θ cos² φ";
+    const COSINE: &str = "multiply  by the cosine, cos⁺ θ cos² φ";
     const MIRROR: &str = "map  mirror: ℓ̂(Ωx, −Ωθ)";
     let words = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect();
     match interaction {
@@ -224,7 +224,9 @@ fn in_words(interaction: &Interaction) -> Vec<String> {
         }
         Interaction::Diffuse { albedo } => {
             let mut all: Vec<String> = words(&[COSINE]);
-            all.push(format!("convolve  diffuse reflection, albedo {albedo}"));
+            all.push(format!(
+                "convolve  with the diffuse reflection, albedo {albedo}"
+            ));
             all
         }
         Interaction::Reflects(reflectance) => {

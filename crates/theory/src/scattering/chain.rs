@@ -80,8 +80,8 @@ pub fn chain(view: &Observed<ScatteringSystem>) -> Option<ScatteringChain> {
     let mut steps = steps(system, plane, &incidence, distance, outgoing);
     if plane.quantity == Quantity::DifferentialIrradiance {
         let cosine = match plane.orientation {
-            Orientation::Orthogonal => "multiply  cosine, G = (1 + u² + v²)⁻²",
-            _ => "multiply  cosine, cos⁺ θ cos² φ",
+            Orientation::Orthogonal => "multiply  by the cosine, G = (1 + u² + v²)⁻²",
+            _ => "multiply  by the cosine, cos⁺ θ cos² φ",
         };
         steps.push(cosine.to_owned());
     }
@@ -156,7 +156,7 @@ fn steps(
     let shape = incidence.shape(&system.patch, DVec3::Z * distance);
     let curved = words::curvature(shape);
     steps.push(format!("map  curvature {curved}"));
-    steps.push("multiply  cosine, cos⁺ θ cos² φ".to_owned());
+    steps.push("multiply  by the cosine, cos⁺ θ cos² φ".to_owned());
     steps.push("map  mirror: ℓ̂(Ωx, −Ωθ)".to_owned());
     steps.extend(reflection(&system.reflectance));
     steps.extend(system.obstacles.iter().map(words::obstacle));
@@ -187,16 +187,16 @@ pub(crate) fn reflection(reflectance: &Reflectance) -> Vec<String> {
             .map(|[_, what]| what)
             .collect::<Vec<_>>();
         let (i, count) = (i + 1, terms.len());
-        format!("convolve  term {i} of {count}: {}", steps.join(", "))
+        format!("convolve  with term {i} of {count}: {}", steps.join(", "))
     });
     let mut words: Vec<String> = match &terms[..] {
         [one] => term_in_words(one)
-            .map(|[verb, what]| format!("{verb}  {what}"))
+            .map(|[verb, what]| format!("{verb} {what}"))
             .collect(),
         _ => sum.collect(),
     };
     if let Some(texture) = &reflectance.texture {
-        words.push(format!("multiply  texture {}", varies(texture)));
+        words.push(format!("multiply  by the texture {}", varies(texture)));
     }
     words
 }
@@ -224,20 +224,20 @@ fn term_in_words(term: &Term) -> impl Iterator<Item = [String; 2]> {
     let table = |angle: &str, table: &AngleTable| {
         let values = table.values.len();
         [
-            "multiply".to_owned(),
+            "multiply  by the".to_owned(),
             format!("factor of {angle}, {values} values"),
         ]
     };
     let fresnel = fresnel.map(|index| {
         [
-            "multiply".to_owned(),
+            "multiply  by the".to_owned(),
             format!("Fresnel factor of index {index}"),
         ]
     });
     let incoming = brdf.incoming.as_ref().map(|f| table("θi", f));
     let lobe = format!("BRDF {lobe}, albedo {}{weight}", number(brdf.albedo));
     let outgoing = brdf.outgoing.as_ref().map(|h| table("θo", h));
-    let convolved = Some(["convolve".to_owned(), lobe]);
+    let convolved = Some(["convolve  with the".to_owned(), lobe]);
     [fresnel, incoming, convolved, outgoing]
         .into_iter()
         .flatten()

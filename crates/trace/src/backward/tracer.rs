@@ -37,7 +37,7 @@ pub struct Backward {
 /// finds the source.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "no ray traced back from {plane} finds the light: it is a point there, or a point or a beam that a mirror, an interface or a lens deflects; measure it with photons"
+    "no ray traced back from {plane} finds the light: the plane lies at a point light, or a mirror, an interface or a lens deflects the light of a point or a beam; measure this plane with photons"
 )]
 pub struct LightNotFound {
     plane: String,

@@ -212,14 +212,14 @@ fn words(map: &Array2<MapPoint>) -> String {
     ratios.sort_unstable_by(f64::total_cmp);
     let all = ratios.len();
     let mut lines = vec![format!(
-        "{seen} of {} bandwidths measured, the rest are dark or too noisy; {all} are on a lobe and above the bandwidth of the window alone",
+        "{seen} of {} bandwidths were measured, the others are dark or too noisy; {all} are at surfaces with a lobe and above the bandwidth of the window alone",
         map.len()
     )];
     if all > 0 {
         let at = |tenths: usize| ratios[(all - 1) * tenths / 10];
         let above = ratios.iter().filter(|ratio| **ratio > 1.1).count();
         lines.push(format!(
-            "measured over criterion: median {:.3}, tenths {:.3} and {:.3}; under-predicted by more than a tenth: {:.1} %",
+            "measured bandwidth over criterion: median {:.3}, first and last decile {:.3} and {:.3}; more than 1.1 at {:.1} % of these pixels",
             at(5),
             at(1),
             at(9),

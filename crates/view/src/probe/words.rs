@@ -157,8 +157,8 @@ fn planes(found: &[&Found]) -> Vec<String> {
         "plane",
         "noise alone",
         "p",
-        "95 % of ν [cycles/slope]",
-        "95 % of ρ [cycles/m]",
+        "95 % below ν [cycles/slope]",
+        "95 % below ρ [cycles/m]",
         "verdict",
     ];
     let shown = |of: &Option<Widest<Uncertain>>| {
@@ -200,7 +200,7 @@ fn bandwidths(probe: &Probe<'_>, measured: Uncertain, arguments: ArgumentStyle) 
     let line = |what: &str, cycles: f64| {
         let samples = samples(cycles);
         format!(
-            "  {what:38}{cycles:10.3} cycles/slope  {samples:8.4} shading samples a pixel along a direction"
+            "  {what:38}{cycles:10.3} cycles/slope  {samples:8.4} shading samples per pixel along a direction"
         )
     };
     let half_width = probe.planes[0].window.u.half_width();
@@ -215,7 +215,7 @@ fn bandwidths(probe: &Probe<'_>, measured: Uncertain, arguments: ArgumentStyle) 
     });
     if is_own {
         lines.push(format!(
-            "  The measured bandwidth is that of the window: a wider one ({}) shows that of the light.",
+            "  The measured bandwidth is that of the window: a wider window ({}) shows the bandwidth of the light.",
             arguments.name("window")
         ));
     }

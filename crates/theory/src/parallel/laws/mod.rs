@@ -153,7 +153,7 @@ fn chain_in_words() {
         [
             "source  light: Lambertian rectangle 0.2 x 0.2 m, radiance 1 W m⁻² sr⁻¹",
             "map  travel 1 m, a to b: ℓ̂(Ωx, Ωu + 1 Ωx)",
-            "multiply  visibility of b: 4 opaque rectangles",
+            "multiply  by the visibility of b: 4 opaque rectangles",
             "map  travel -0.5 m, b to c: ℓ̂(Ωx, Ωu − 0.5 Ωx)",
         ]
     );
@@ -189,11 +189,11 @@ fn new_kinds_in_words() {
         others.collect::<Vec<_>>(),
         [
             "source  light: disc of radius 0.1 m, radiance 1 W m⁻² sr⁻¹ cosⁿθ, n = 20",
-            "multiply  visibility of b: 1 opaque rectangle, 1 disc, 1 half-plane",
-            "multiply  visibility of c: 1 opaque half-plane",
-            "multiply  grating d: ½(1 + 0.9 cos(2π 5 x + 0.3))",
-            "multiply  cosine at floor: G = (1 + u² + v²)⁻²",
-            "convolve  diffuse reflection at floor: albedo 0.5, constant in slope",
+            "multiply  by the visibility of b: 1 opaque rectangle, 1 disc, 1 half-plane",
+            "multiply  by the visibility of c: 1 opaque half-plane",
+            "multiply  by the grating d: ½(1 + 0.9 cos(2π 5 x + 0.3))",
+            "multiply  by the cosine at floor: G = (1 + u² + v²)⁻²",
+            "convolve  with the diffuse reflection at floor: albedo 0.5, constant in slope",
         ]
     );
     chain.source.light = Light::Point { intensity: 3.0 };
