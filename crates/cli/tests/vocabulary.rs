@@ -55,7 +55,7 @@ fn a_point_is_found_backwards_unless_a_mirror_turns_its_light() {
     let output = call(found.path(), run);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     let at_light = folder(&[(LIGHT, POINT)]);
-    refused(at_light.path(), run, &["it is a point there"]);
+    refused(at_light.path(), run, &["the plane lies at a point light"]);
     let mirror = scene("wild/ball_beyond_its_patch.ron");
     let arguments = format!("run {} --method backward --out other", mirror.display());
     refused(
