@@ -93,12 +93,12 @@ fn a_changed_index_is_refused() {
         (
             a,
             |t| t["version"] = json!("0.0.9"),
-            &["0.0.9", "one version"],
+            &["0.0.9", "the same version"],
         ),
         (
             p,
             |t| t["version"] = json!("9.0.0"),
-            &["9.0.0", "one version"],
+            &["9.0.0", "the same version"],
         ),
         (
             a,

@@ -64,7 +64,7 @@ fn curves_have_a_table() {
     let at_zero = |name: &str| {
         let mut rows = csv
             .lines()
-            .filter(|row| row.starts_with("transforms,") && row.contains(name));
+            .filter(|row| row.starts_with("(b) transforms,") && row.contains(name));
         rows.find_map(|row| {
             let cells: Vec<&str> = row.split(',').collect();
             let number = |i: usize| cells[cells.len() - i].parse::<f64>().ok();

@@ -96,7 +96,7 @@ impl ReceiverRegion {
     ///
     /// By Green's theorem this is the integral of A(u, v) = ∫ density du along the boundary over v:
     /// arcs of the circles, on which everything is smooth, and vertical edges of the rectangle
-    /// (docs/theory.md, Eq. 16).
+    /// (docs/theory.md, formula 16).
     pub(crate) fn integral(&self, density: &ReceiverDensity<'_>) -> f64 {
         let Some(first) = self.discs.first() else {
             return density.rectangle(self.sides);
