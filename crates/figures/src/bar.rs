@@ -3,9 +3,9 @@
 use crate::color::{NO_VALUE, Shading, hex};
 use crate::figure::Error;
 use crate::image::color_strip;
-use crate::sizes::{LABEL_TEXT, SOFT, TICK, TICK_TEXT};
+use crate::sizes::{LABEL_TEXT, LEAST_TEXT, SOFT, TICK, TICK_TEXT};
 use crate::svg::{Anchor, Area, Stroke, Svg, TextStyle};
-use crate::text::width;
+use crate::text::{plain, width};
 
 /// Width of the bar itself.
 pub(crate) const WIDTH: f64 = 12.0;
@@ -73,8 +73,13 @@ fn scale(svg: &mut Svg, shading: &Shading, area: Area, overhang: f64) {
     }
     let at = [area.right() + TICK + 3.0 + widest + 16.0, area.middle()[1]];
     let style = TextStyle::new(at, LABEL_TEXT, Anchor::Middle).upwards();
-    let label = axis.quantity.label(axis.exponent());
-    svg.fitted(style, &label, area.height + overhang);
+    let room = area.height + overhang;
+    let mut label = axis.quantity.label(axis.exponent());
+    // Beside a low picture the unit alone says more than the beginning of a name.
+    if !axis.quantity.unit.is_empty() && width(&plain(&label), LEAST_TEXT) > room {
+        label.clone_from(&axis.quantity.unit);
+    }
+    svg.fitted(style, &label, room);
 }
 
 /// A key for cells without a value, ending at `right` on the baseline `y`.

@@ -1,6 +1,6 @@
 //! A figure as SVG, PNG, PDF and CSV.
 
-use crate::image::raster;
+use crate::raster::raster;
 use crate::sizes::INCH;
 use crate::svg::Svg;
 use krilla::Document;
@@ -60,11 +60,9 @@ impl Figure {
         let mut pixels = tiny_skia::Pixmap::new(width, height).ok_or(Error::Size(width, height))?;
         let scale = tiny_skia::Transform::from_scale(PNG_SCALE, PNG_SCALE);
         resvg::render(&tree, scale, &mut pixels.as_mut());
-        raster(
-            [width, height],
-            f64::from(PNG_SCALE) * INCH,
-            &pixels.take_demultiplied(),
-        )
+        let per_inch = f64::from(PNG_SCALE) * INCH;
+        let pixels = pixels.take_demultiplied();
+        Ok(raster([width, height], per_inch, &pixels)?)
     }
 }
 

@@ -368,7 +368,7 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         let style = TextStyle::new(at, HEAD_TEXT, Anchor::Middle)
             .bold()
             .upwards();
-        svg.fitted(style, row.name, self.height());
+        svg.fitted(style, row.name, self.height() + ROW_GAPS[0]);
         Ok(bar)
     }
 

@@ -54,6 +54,7 @@ mod image;
 mod marks;
 mod panel;
 mod plate;
+mod raster;
 mod section;
 mod section_figure;
 mod sizes;

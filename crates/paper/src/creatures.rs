@@ -134,7 +134,7 @@ impl<'a> PicturePanel<'a> {
 }
 
 /// Pictures side by side.
-struct PictureRow<'a> {
+struct CreatureRow<'a> {
     title: &'a str,
     note: &'a str,
     panels: &'a [PicturePanel<'a>],
@@ -144,7 +144,7 @@ struct PictureRow<'a> {
     shared: bool,
 }
 
-impl PictureRow<'_> {
+impl CreatureRow<'_> {
     fn drawn(&self, scene: &CreatureScene, style: &Style) -> Result<Figure, Failure> {
         let pictures = self.panels.iter().map(|panel| scene.shown(panel.values));
         let heads = self.panels.iter().map(|panel| panel.head.to_owned());
@@ -177,7 +177,7 @@ pub(crate) fn criteria(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let up_to_one =
         |values: &[f64]| scene.picture(values.iter().map(|n| n.clamp(0.0, 1.0)).collect());
     let [density, dots] = [up_to_one(&layers.density)?, up_to_one(&layers.samples)?];
-    let above = PictureRow {
+    let above = CreatureRow {
         title: "Criteria and shading samples",
         note: "(a) 1/*d'*, the nearness of what is reflected. (b) The bandwidth by Eq. 21, corrected, in the direction where it is largest. Both squared, in decibels below the largest value of each picture.",
         panels: &[
@@ -188,7 +188,7 @@ pub(crate) fn criteria(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         scale: Scale::Decibel { floor: -50.0 },
         shared: false,
     };
-    let below = PictureRow {
+    let below = CreatureRow {
         title: "",
         note: "(c) Requested samples per pixel, shown up to one. (d) Pixels that have a sample.",
         panels: &[
@@ -303,7 +303,7 @@ pub(crate) fn pictures(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         scene.samples, scene.reference
     );
     let style = photographs(&taken.style);
-    let luminance = |title, note, panels| PictureRow {
+    let luminance = |title, note, panels| CreatureRow {
         title,
         note,
         panels,
@@ -311,7 +311,7 @@ pub(crate) fn pictures(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         scale: Scale::Linear,
         shared: true,
     };
-    let below = PictureRow {
+    let below = CreatureRow {
         title: "Difference from the reference, in relative luminance",
         note: "",
         panels: &differences,

@@ -32,8 +32,8 @@ impl Finer {
         };
         let of_azimuth = |azimuth| {
             let toward = libm::sincos(given.azimuth(azimuth));
-            let positions = Covariance::new([window.x, window.y], toward);
-            let slopes = Covariance::new([window.u, window.v], toward);
+            let positions = WindowCovariance::new([window.x, window.y], toward);
+            let slopes = WindowCovariance::new([window.u, window.v], toward);
             let rows = weights(&given.rho, &grid.rho, &positions)?;
             let columns = weights(&given.nu, &grid.nu, &slopes)?;
             let rows = rows.slice_axis(Axis(0), Slice::from(grid.rho.half..));
@@ -110,12 +110,12 @@ fn linear(from: &FrequencyAxis, to: &FrequencyAxis) -> Vec<[(usize, f64); 2]> {
 }
 
 /// The covariance, along a slice, of the spectrum of white noise behind a window.
-struct Covariance {
+struct WindowCovariance {
     /// Points of both profiles' squares, with their weights, along the slice.
     profiles: [Vec<(f64, f64)>; 2],
 }
 
-impl Covariance {
+impl WindowCovariance {
     fn new(profiles: [Profile; 2], (sin, cos): (f64, f64)) -> Self {
         const POINTS: u32 = 200;
         let points = |profile: Profile, toward: f64| {
@@ -152,7 +152,7 @@ impl Covariance {
 fn weights(
     from: &FrequencyAxis,
     to: &FrequencyAxis,
-    covariance: &Covariance,
+    covariance: &WindowCovariance,
 ) -> Option<Array2<f64>> {
     let count = from.count();
     let parts = (from.spacing / to.spacing).round();
