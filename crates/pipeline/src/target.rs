@@ -96,20 +96,22 @@ pub fn outlook(planes: &[PlaneReport], seconds: f64) -> Option<String> {
     ))
 }
 
-/// What the noise of `target` leaves out, in words.
+/// What `target` leaves out, in words.
 #[must_use]
 pub fn left_out(planes: &[PlaneReport], target: f64) -> String {
-    let errors = planes
+    let sampled = planes
         .iter()
-        .filter_map(|plane| Some((&plane.name, plane.quadrature_error?)));
-    let largest = errors.max_by(|(_, a), (_, b)| a.total_cmp(b));
-    let errors = match largest {
-        Some((name, error)) => format!("which are up to {} here ({name})", percent(Some(error))),
-        None => "of which there are none here, as all predictions are in closed form".to_owned(),
+        .filter(|plane| plane.quadrature_error.is_some_and(|error| error > 0.0));
+    let noise = sampled.filter_map(|plane| Some((&plane.name, plane.noise_limit?)));
+    let rest = match noise.max_by(|(_, a), (_, b)| a.total_cmp(b)) {
+        Some((name, noise)) => format!(
+            "with the errors of predictions it is up to {} (at {name})",
+            percent(Some(noise))
+        ),
+        None => "all predictions are in closed form".to_owned(),
     };
     format!(
-        "--target-error {} %: noise is at most this at each plane; it does not include errors of \
-         predictions, {errors}",
+        "--target-error {} %: the noise of the photons is at most this at each plane; {rest}",
         tidy(100.0 * target)
     )
 }

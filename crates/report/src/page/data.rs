@@ -84,7 +84,7 @@ struct Grids {
 
 impl Labelled {
     fn new(axis: &Axis, count: usize) -> Self {
-        let plain = |text: &str| text.replace('*', "");
+        let plain = |text: &str| text.replace('*', "").replace("^{2}", "²");
         Self {
             name: plain(&axis.quantity.name),
             unit: plain(&axis.quantity.unit),
@@ -192,7 +192,7 @@ impl<'a> PlaneData<'a> {
         .map(half);
         Self {
             report: &found.report,
-            words: verdict_line(found).replace('*', ""),
+            words: verdict_line(found).replace('*', "").replace("^{2}", "²"),
             on_chain: on_chain(&found.report),
             axes: PageAxes {
                 x: Labelled::new(&x, field.grid.bins),

@@ -110,8 +110,7 @@ const BOTH: &str = "at azimuth 0 below (*x*, *u*), and at 90° below (*y*, *v*).
     in (*y*, *v*) is the inverse transform of that spectrum; as the spectrum is cut off \
     at the highest frequencies, fringes accompany edges (Gibbs phenomenon)";
 /// The warning of a figure that shows the mean in their place.
-const MIXED: &str = ", although the light differs between azimuths 0 and 90°; `etendue run` \
-    draws both separately";
+const MIXED: &str = "; the light differs between azimuths 0 and 90°";
 
 /// A plane with its theory and its comparison.
 struct PlaneOnPath<'a> {
