@@ -136,6 +136,11 @@ impl Shading {
         }
     }
 
+    /// Values of both signs, up to `most` in modulus.
+    pub(crate) fn signed(name: &str, unit: &str, most: f64) -> Self {
+        Self::linear(Colors::Diverging, Axis::edges(name, unit, [-most, most]))
+    }
+
     /// Degrees, once around the circle.
     pub(crate) fn phase(name: &str) -> Self {
         Self::linear(

@@ -150,14 +150,10 @@ fn value_shading(comparison: &Comparison<'_>) -> Shading {
             let name = format!("{} {name}", comparison.quantity.name);
             Shading::decibel(Colors::MAGNITUDES, &name, floor, largest(predicted))
         }
-        Scale::Signed { most } => Shading::linear(
-            Colors::Diverging,
-            Axis::edges(
-                &comparison.quantity.name,
-                &comparison.quantity.unit,
-                [-most, most],
-            ),
-        ),
+        Scale::Signed { most } => {
+            let AxisQuantity { name, unit } = &comparison.quantity;
+            Shading::signed(name, unit, most)
+        }
         Scale::Phase => Shading::phase(&comparison.quantity.name),
     };
     shading.showing(measured).showing(predicted)

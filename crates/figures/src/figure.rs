@@ -1,6 +1,6 @@
 //! A figure as SVG, PNG, PDF and CSV.
 
-use crate::raster::raster;
+use crate::raster::encoded;
 use crate::sizes::INCH;
 use crate::svg::Svg;
 use krilla::Document;
@@ -62,7 +62,8 @@ impl Figure {
         resvg::render(&tree, scale, &mut pixels.as_mut());
         let per_inch = f64::from(PNG_SCALE) * INCH;
         let pixels = pixels.take_demultiplied();
-        Ok(raster([width, height], per_inch, &pixels)?)
+        let color = png::ColorType::Rgba;
+        Ok(encoded([width, height], color, Some(per_inch), &pixels)?)
     }
 }
 

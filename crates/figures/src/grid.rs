@@ -77,9 +77,7 @@ impl PictureRow<'_, '_> {
             Scale::Decibel { floor } => {
                 Shading::decibel(colors, name, style.floor.unwrap_or(floor), peak)
             }
-            Scale::Signed { most } => {
-                Shading::linear(Colors::Diverging, Axis::edges(name, unit, [-most, most]))
-            }
+            Scale::Signed { most } => Shading::signed(name, unit, most),
             Scale::Phase => Shading::phase(name),
         }
     }

@@ -3,6 +3,7 @@
 use crate::color::{Rgb, Shading};
 use crate::figure::Error;
 use crate::grey::level;
+use crate::raster::encoded;
 use base64::Engine;
 use ndarray::ArrayView2;
 
@@ -44,25 +45,9 @@ fn picture(
             pixels.extend(color(column, row));
         }
     }
-    let bytes = encoded(width, height, png::ColorType::Rgb, &pixels)?;
+    let bytes = encoded([width, height], png::ColorType::Rgb, None, &pixels)?;
     let text = base64::engine::general_purpose::STANDARD.encode(bytes);
     Ok(Some(format!("data:image/png;base64,{text}")))
-}
-
-fn encoded(
-    width: u32,
-    height: u32,
-    color: png::ColorType,
-    pixels: &[u8],
-) -> Result<Vec<u8>, Error> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, width, height);
-    encoder.set_color(color);
-    encoder.set_depth(png::BitDepth::Eight);
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(pixels)?;
-    writer.finish()?;
-    Ok(bytes)
 }
 
 /// A photograph as a grey PNG: radiance in rows from the top, with the transfer curve of sRGB (IEC 61966-2-1). The brightest hundredth of the pixels
@@ -81,5 +66,5 @@ pub fn photograph([width, height]: [usize; 2], radiance: &[f64]) -> Result<Vec<u
         .copied();
     let white = white.filter(|white| *white > 0.0).unwrap_or(1.0);
     let grey: Vec<u8> = radiance.iter().map(|x| level(x / white)).collect();
-    encoded(w, h, png::ColorType::Grayscale, &grey)
+    Ok(encoded([w, h], png::ColorType::Grayscale, None, &grey)?)
 }

@@ -41,7 +41,7 @@ const SPARSE: usize = 20;
 const PATHS_PER_SAMPLE: u32 = 128;
 
 /// The pixel difference, over white, at which the colors of differences saturate.
-const MOST: f64 = 0.2;
+const MAX_DIFFERENCE: f64 = 0.2;
 
 struct CreatureScene {
     paths: Paths,
@@ -316,7 +316,9 @@ pub(crate) fn pictures(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         note: "",
         panels: &differences,
         quantity: AxisQuantity::new("difference", ""),
-        scale: Scale::Signed { most: MOST },
+        scale: Scale::Signed {
+            most: MAX_DIFFERENCE,
+        },
         shared: true,
     };
     Ok(stacked(&[

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use tempfile::TempPath;
 
 /// The largest file that is read to see whether this program wrote it.
-const MOST_SEALED: u64 = 1 << 30;
+const MAX_SEALED_BYTES: u64 = 1 << 30;
 
 /// A file that only appears when it is complete.
 #[derive(Debug)]
@@ -40,7 +40,7 @@ impl OutputFile {
     ) -> Result<Self, Failure> {
         let is_file = fs::symlink_metadata(path).is_ok_and(|found| found.is_file());
         if is_file && !force {
-            let bytes = read_file(path, MOST_SEALED).unwrap_or_default();
+            let bytes = read_file(path, MAX_SEALED_BYTES).unwrap_or_default();
             force = kind.is_sealed(&bytes);
         }
         Self::of_kind(path, force, inputs, Some(kind))

@@ -1,6 +1,5 @@
 //! Statements about the sampling criteria of section 6.2.
 
-use super::number::ClaimNumber;
 use super::scene::{SeenScene, scene};
 use super::surfaces::{bandwidth, planes, surface};
 use super::{Claim, decreasing};
@@ -41,12 +40,7 @@ fn criteria(photons: u64) -> Claim {
         );
         let seen = SeenScene::of(scene(&format!("{text}, {planes}"), 4 * photons));
         let found = seen.number(0, |slices| bandwidth(slices, bandwidth_nu));
-        let of = criterion.blocker();
-        ClaimNumber {
-            value: found.value / of,
-            error: found.error / of,
-            predicted: found.predicted / of,
-        }
+        found.per(criterion.blocker())
     });
     let most = shares.iter().map(|share| share.value).fold(0.0, f64::max);
     Claim {
@@ -109,12 +103,7 @@ fn larger_curvature(photons: u64) -> Claim {
             let power = slices.half.mapv(|s| s.norm_sqr());
             widest(power.view(), &slices.grid, bandwidth_nu).map_or(f64::NAN, |most| most.value)
         });
-        let of = criterion.environment();
-        ClaimNumber {
-            value: found.value / of,
-            error: found.error / of,
-            predicted: found.predicted / of,
-        }
+        found.per(criterion.environment())
     });
     let [inside, across, sphere] = shares;
     // Across the plane of incidence curvature counts by cos θ₁, not by 1/cos θ₁.

@@ -23,6 +23,15 @@ impl ClaimNumber {
         format!("{} ({predicted})", uncertain(self.value, self.error))
     }
 
+    /// The number in another unit.
+    pub(super) fn per(&self, unit: f64) -> Self {
+        Self {
+            value: self.value / unit,
+            error: self.error / unit,
+            predicted: self.predicted / unit,
+        }
+    }
+
     /// The ratio of two independent numbers.
     pub(super) fn over(&self, other: &Self) -> Self {
         let value = self.value / other.value;

@@ -31,8 +31,10 @@ pub(super) struct FieldPaths<'a> {
 /// The sampling of the light's rays.
 #[derive(Debug)]
 enum Start<'a> {
-    /// By the Gaussian of the rays that reach the window.
-    Guided(Conditional),
+    /// Positions in a beam, by the Gaussian of the rays that reach the window.
+    Beam(Conditional),
+    /// Directions from points of the light, likewise.
+    Points(Conditional),
     Sky(Box<SkyRays<'a>>),
 }
 
@@ -57,8 +59,8 @@ impl<'a> Start<'a> {
                 let rays = SkyRays::new(environment, &guide, (first, has_lobe), aim)?;
                 Self::Sky(Box::new(rays))
             }
-            Light::Beam { .. } => Self::Guided(at_light()?.given([2, 3])?),
-            _ => Self::Guided(at_light()?.given([0, 1])?),
+            Light::Beam { .. } => Self::Beam(at_light()?.given([2, 3])?),
+            _ => Self::Points(at_light()?.given([0, 1])?),
         })
     }
 }
@@ -149,12 +151,12 @@ impl<'a> FieldPaths<'a> {
                 target = aimed;
                 (ray, density)
             }
-            Start::Guided(guide) if light.is_distant() => {
+            Start::Beam(guide) => {
                 let rays = HeavyTailedGaussian::new(&guide.at(outer))?;
                 let [x, y] = rays.draw([a, b]);
                 ([x, y, 0.0, 0.0], rays.density([x, y]))
             }
-            Start::Guided(guide) => {
+            Start::Points(guide) => {
                 let [x, y] = outer;
                 let targets = HeavyTailedGaussian::new(&aim.seen(&guide.at(outer), outer, map))?;
                 let at = targets.draw([a, b]);

@@ -14,13 +14,16 @@ use etendue_field::{Environment, Frame};
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
+/// The share of directions that follow the guide, if there is one.
+const GUIDED: f64 = 0.5;
+
 /// Samples rays of an environment.
 #[derive(Debug)]
 pub(super) struct SkyRays<'a> {
     environment: &'a Environment,
     radiance: SkyDensity<'a>,
-    /// Directions that reach the window, and their share of all directions.
-    guide: (HeavyTailedGaussian, f64),
+    /// Directions that reach the window, if the guide knows any.
+    guide: Option<HeavyTailedGaussian>,
     /// Positions that reach the window from a direction, and from all of them.
     positions: (Conditional, Option<Gaussian<2>>),
     coordinates: Coordinates,
@@ -50,7 +53,6 @@ impl<'a> SkyRays<'a> {
         (first, has_lobe): (&ScatteringSurface, bool),
         aim: DirectionCoordinates,
     ) -> Option<Self> {
-        let share = if has_lobe { 0.5 } else { 0.0 };
         let on_surface = matches!(aim, DirectionCoordinates::Patch { .. });
         let (coordinates, normal) = if on_surface {
             (Coordinates::Angles(first.frame), first.frame.d)
@@ -60,7 +62,9 @@ impl<'a> SkyRays<'a> {
         Some(Self {
             environment,
             radiance: SkyDensity::new(environment, normal)?,
-            guide: (HeavyTailedGaussian::new(&guide.marginal([2, 3]))?, share),
+            guide: has_lobe
+                .then(|| HeavyTailedGaussian::new(&guide.marginal([2, 3])))
+                .flatten(),
             positions: (
                 guide.given([2, 3])?,
                 (on_surface && has_lobe).then(|| guide.marginal([0, 1])),
@@ -72,12 +76,16 @@ impl<'a> SkyRays<'a> {
 
     /// Returns the ray for a point of the unit cube; `None` if it does not go forward.
     pub(super) fn draw(&self, [a, b, c, d]: [f64; 4]) -> Option<SkyRay> {
-        let (guide, guided) = self.guide;
-        let direction = if c < guided {
-            self.coordinates.direction(guide.draw([c / guided, d]))?
-        } else {
-            let from = self.radiance.draw([(c - guided) / (1.0 - guided), d]);
-            -self.environment.frame.vector_to_world(from)
+        let of_sky = |at| {
+            -self
+                .environment
+                .frame
+                .vector_to_world(self.radiance.draw(at))
+        };
+        let direction = match &self.guide {
+            Some(guide) if c < GUIDED => self.coordinates.direction(guide.draw([c / GUIDED, d]))?,
+            Some(_) => of_sky([(c - GUIDED) / (1.0 - GUIDED), d]),
+            None => of_sky([c, d]),
         };
         let forward = direction.z;
         if forward <= 0.0 {
@@ -86,8 +94,10 @@ impl<'a> SkyRays<'a> {
         let (at, steradians) = self.coordinates.of(direction);
         let from = self.environment.origin_of(direction);
         let radiance = self.environment.map.radiance(from);
-        let per_steradian = (1.0 - guided) * self.radiance.density(from, radiance)
-            + guided * guide.density(at) / steradians;
+        let by_radiance = self.radiance.density(from, radiance);
+        let per_steradian = self.guide.map_or(by_radiance, |guide| {
+            (1.0 - GUIDED) * by_radiance + GUIDED * guide.density(at) / steradians
+        });
         let (given, all) = &self.positions;
         let share = if all.is_some() { 0.5 } else { 1.0 };
         let counted = |positions: Gaussian<2>| self.aim.counted(&positions);

@@ -167,7 +167,9 @@ fn one_surface_is_that_of_scattering() {
             predicted(&scattering, &plane, &window),
             predicted(&reflections, &plane, &window),
         ];
-        assert!(other.error.unwrap() < 0.04, "{lobe:?} {:?}", other.error); // 2·10⁶ paths, a narrow lobe
+        // Errors of 2·10⁶ paths; a sky has a narrow lobe.
+        let most = if is_sky { 0.04 } else { 0.02 };
+        assert!(other.error.unwrap() < most, "{lobe:?} {:?}", other.error);
         let off = apart(&one, &other);
         assert!(off < CLOSE, "{lobe:?} {off}");
         // The chain of `scattering` takes a sky's directions at the surface, this one at the light.
