@@ -366,7 +366,11 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         let style = TextStyle::new(at, HEAD_TEXT, Anchor::Middle)
             .bold()
             .upwards();
-        svg.fitted(style, row.name, self.height() + ROW_GAPS[0]);
+        svg.fitted(
+            style,
+            row.name,
+            self.height() + ROW_GAPS[0] - 2.0 * TEXT_GAP,
+        );
         Ok(bar)
     }
 
