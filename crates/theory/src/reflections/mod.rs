@@ -25,6 +25,7 @@
 
 mod aim;
 mod chain;
+mod direction;
 mod guide;
 mod model;
 mod path;

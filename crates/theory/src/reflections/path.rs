@@ -2,7 +2,8 @@
 
 use super::aim::DirectionCoordinates;
 use super::chain::{ReflectionChain, ScatteringSurface, chain};
-use super::guide::{Conditional, Gaussian, GuideMixture, HeavyTailedGaussian};
+use super::direction::OutgoingDirections;
+use super::guide::{Conditional, Gaussian, HeavyTailedGaussian};
 use super::sky::SkyRays;
 use super::{PathSurface, ReflectionSystem};
 use crate::model::Observed;
@@ -226,18 +227,18 @@ impl<'a> FieldPaths<'a> {
             None => [-theta0, -phi0],
         };
         let (aim, map) = (&self.aims[number + 1], &self.chain.maps[number + 1]);
-        let seen = |angles: &Gaussian<2>| aim.seen(angles, [s, t], map);
-        let mut lobe = seen(&Gaussian::round(center, width));
-        if width.is_some() {
-            let mirrored = 2.0 * normal.dot(from) * normal - from;
-            lobe.mean = aim.end(point, mirrored).unwrap_or(lobe.mean);
-        }
-        let guide = seen(&self.guides[number].at([s, t]));
-        let both = guide.product(&lobe);
-        let targets = GuideMixture::new([(0.5, both), (0.25, Some(guide)), (0.25, Some(lobe))])?;
-        let target = targets.draw(r);
-        let (to, steradians) = aim.direction(point, target, Some((scatterer, normal)))?;
-        let per_density = steradians / targets.density(target);
+        let directions = OutgoingDirections {
+            aim,
+            map,
+            scatterer,
+            next: self.view.system.surfaces.get(scatterer.number + 1),
+            point,
+            normal,
+        };
+        let mirrored = width.map(|_| 2.0 * normal.dot(from) * normal - from);
+        let lobe = (Gaussian::round(center, width), mirrored);
+        let sampled = directions.draw(r, [s, t], &self.guides[number], lobe)?;
+        let (to, per_density) = (sampled.direction, 1.0 / sampled.density);
         let [.., longitude, latitude] = local(&scatterer.frame, point, normal, to);
         let value = surface.value(point, normal, [from, to]);
         going.flux *= value * normal.dot(to).max(0.0) * per_density;
@@ -245,7 +246,7 @@ impl<'a> FieldPaths<'a> {
             point,
             direction: to,
         };
-        going.target = aim.target(target);
+        going.target = sampled.target;
         let [s, t, from_theta, from_phi] = going.at;
         let cosine = libm::cos(from_theta).max(0.0) * libm::cos(from_phi).powi(2);
         let foot = scatterer.frame.to_world(DVec3::new(s, t, 0.0));
