@@ -4,7 +4,7 @@
 use super::draw::SceneDraw;
 use super::planted::planted;
 use super::scene;
-use super::small::{SmallEnding, SmallOptions, ending, keep, object, plane, sharpen};
+use super::small::{MORE_PHOTONS, SmallEnding, SmallOptions, ending, keep, object, plane, sharpen};
 use crate::progress::progress;
 use crate::report::{Check, ReportSection, Row};
 use etendue_compare::{Applicability, Class, Theory, Verdict};
@@ -155,7 +155,8 @@ fn section(options: &SmallOptions, tried: &[Option<Tried>]) -> ReportSection {
         title: format!("Several surfaces in a row, seed {}", options.seed),
         text: format!(
             "{} random scenes of two or three surfaces, with masks on any leg and a plane behind two \
-             surfaces or more, {} photons each. Required: photons reject no prediction with two seeds.",
+             surfaces or more, {} photons each. Required: photons reject no prediction twice, the second \
+             time with another seed and {MORE_PHOTONS} times as many photons.",
             tried.len(),
             options.photons
         ),
