@@ -26,7 +26,7 @@ use xml::{Xml, diffuse};
 pub enum NotInMitsuba {
     /// A spot light.
     #[error(
-        "Mitsuba has no area light whose radiance falls off as cosⁿθ: a spot with exponent {exponent} cannot be exported, one with exponent 0 can"
+        "Mitsuba has no area light whose radiance falls off as cosⁿθ: a spot with exponent {exponent} cannot be exported; allowed: exponent 0"
     )]
     Spot {
         /// Its exponent n.
@@ -167,7 +167,7 @@ impl Writer {
         }
         let mesh = patch::mesh(patch);
         self.xml.comment(&format!(
-            "smooth surface {name:?}: {} triangles, {:.1e} m from it at most",
+            "smooth surface {name:?}: {} triangles, at most {:.1e} m from the surface",
             mesh.faces.len(),
             mesh.error
         ));
@@ -269,7 +269,8 @@ fn reach(scene: &Scene) -> f64 {
         .as_flattened()
         .iter()
         .fold(0.0, |most: f64, end| most.max(end.abs()));
-    // The sky is infinite; light from farther away arrives within a thousandth of grazing.
+    // The sky is infinite, so the extent is cut off: light from beyond it arrives within a
+    // thousandth of a radian of grazing.
     let light = if light.is_finite() {
         light
     } else {

@@ -29,11 +29,11 @@ pub enum Scale {
 /// Red, green, blue.
 pub(crate) type Rgb = [u8; 3];
 
-/// Grey for cells without a value (NaN), which neither map contains.
+/// Grey for cells without a value (NaN). Neither color map contains this grey.
 pub(crate) const NO_VALUE: Rgb = [158, 158, 158];
 
-/// Colors of magnitudes, dark to pale; lightness increases evenly, so they remain distinct when
-/// printed in grey.
+/// Colors of magnitudes, dark to pale. Their lightness increases evenly, so the colors remain
+/// distinct when printed in grey.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Palette {
     /// Black, purple, orange, pale yellow.
@@ -121,7 +121,7 @@ pub(crate) struct Shading {
     pub(crate) axis: Axis,
     /// The power at 0 dB; `None` on linear scales.
     reference: Option<f64>,
-    /// Whether values fall below and above the colors.
+    /// Whether some values fall below, and above, the range of the colors.
     pub(crate) beyond: [bool; 2],
 }
 
@@ -182,7 +182,7 @@ impl Shading {
     fn level(&self, value: f64) -> f64 {
         match self.reference {
             None => value,
-            // A power may be negative after noise removal: it is below any floor.
+            // A power that is negative after noise removal is below any floor.
             Some(reference) => 10.0 * libm::log10((value / reference).max(0.0)),
         }
     }

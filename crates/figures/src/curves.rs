@@ -102,7 +102,7 @@ const SAMPLE: f64 = 30.0;
 /// # Errors
 /// If the numbers cannot be written.
 pub fn curves(curves: &Curves, style: &Style) -> Result<Figure, Error> {
-    // Long numbers beside an axis shift its name.
+    // Long numbers beside an axis shift the name of the axis outwards.
     let ticks = curves.panels.iter().flat_map(|panel| {
         let [_, y] = axes(panel, &curves.y);
         upright_ticks(&y, HEIGHT)
@@ -208,7 +208,7 @@ fn axes(panel: &CurvePanel, y: &AxisQuantity) -> [Axis; 2] {
         by_factors(around(|p| p[1], |p| p[1] + p[2]))
     } else {
         let [least, most] = around(|p| p[1] - p[2], |p| p[1] + p[2]);
-        // Values far from zero would be a flat line on an axis with zero.
+        // On an axis that includes zero, values far from zero would look like a flat line.
         let is_far = most - least < 0.3 * least.abs().max(most.abs());
         let [least, most] = if is_far {
             [least, most]
@@ -248,7 +248,7 @@ fn draw(svg: &mut Svg, panel: &CurvePanel, y: &AxisQuantity, area: Area) {
                 CurveKind::Rival => svg.polyline(&at, RIVAL),
                 CurveKind::Measured => {
                     for (p, at) in points.iter().zip(at) {
-                        // The bar ends below the frame if an error is as large as its value.
+                        // The error bar ends below the frame if an error is as large as its value.
                         let ends = [(p[1] - p[2]).max(y.min), p[1] + p[2]];
                         let ends = ends.map(|y| frame.point(p[0], y)[1]);
                         bar(svg, at, ends);

@@ -25,7 +25,7 @@ const HEADING_LINE: f64 = 16.0;
 
 /// The name of a plane in one line, or in two if it is too long for one.
 fn name_lines(name: &str, room: f64) -> Vec<String> {
-    // Bold letters are wider than estimated.
+    // Bold letters are wider than the estimate, so less room is assumed.
     let mut words = lines(name, 1.2 * SMALL_NAME, room).into_iter();
     let first = words.next().unwrap_or_default();
     if first.chars().count() <= NUMBER {
@@ -36,7 +36,7 @@ fn name_lines(name: &str, room: f64) -> Vec<String> {
     std::iter::once(first).chain(rest).collect()
 }
 
-/// Length of a number before a name, which has no line of its own.
+/// Characters that a number takes before the name of its plane, in the same line.
 const NUMBER: usize = 2;
 /// Smallest size of a plane's name in one line.
 const SMALL_NAME: f64 = 10.0;
@@ -134,7 +134,7 @@ impl<'a> SectionLayout<'a> {
         svg.polyline(&points, stroke);
     }
 
-    /// Height of the headings of some planes, each with its room.
+    /// Height of the headings of some planes, given the width of the room for each.
     pub(crate) fn heading_height(&self, rooms: impl Iterator<Item = (usize, f64)>) -> f64 {
         let more = rooms.filter_map(|(plane, room)| {
             let mark = self.section.planes.get(plane)?;

@@ -32,8 +32,8 @@ pub struct Ellipses<'a> {
     pub quantity: AxisQuantity,
     /// Lower end of the decibels, below 0.
     pub floor: f64,
-    /// Ellipses at two standard deviations, in the order of the key. A missing one leaves its color
-    /// and dashes unused.
+    /// Ellipses at two standard deviations, in the order of the key. The color and dashes of a
+    /// missing ellipse remain unused.
     pub ellipses: [Option<Ellipse>; 3],
 }
 
@@ -70,7 +70,7 @@ const LINE: f64 = 17.0;
 const DEVIATIONS: f64 = 2.0;
 /// The halo below each ellipse, for pale backgrounds.
 const HALO: &str = "#10304a";
-/// Color and dashes of the ellipses: all differ in both.
+/// Colors and dashes of the ellipses; no two ellipses share a color or dashes.
 const STROKES: [(&str, &str); 3] = [("#7fe0ff", "7 4"), ("#ffffff", ""), ("#8dff9c", "2 3")];
 
 /// Draws a spectrum with ellipses.

@@ -88,7 +88,7 @@ pub(crate) fn fit(text: &str, size: f64, room: f64) -> (String, f64) {
     (format!("{}…", kept.trim_end()), smallest)
 }
 
-/// Markup broken at spaces into lines no wider than `room`, unless a single word is wider.
+/// Breaks markup at spaces into lines no wider than `room`, unless a single word is wider.
 pub(crate) fn lines(markup: &str, size: f64, room: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in markup.split(' ').filter(|word| !word.is_empty()) {
@@ -111,7 +111,7 @@ fn is_open(markup: &str) -> bool {
     count('*') % 2 == 1 || count('{') != count('}')
 }
 
-/// The text with the characters special to XML, and those XML forbids, replaced.
+/// Replaces the characters that are special to XML and those that XML forbids.
 pub(crate) fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {

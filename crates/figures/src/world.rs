@@ -13,7 +13,8 @@ const HEAD: f64 = 30.0;
 
 /// Least distance of a plane's number from objects.
 const CLEAR: f64 = 2.0;
-/// Largest distance of a plane's number from its end, and, if there is no room, from the other one.
+/// Maximum distance of a plane's number from one end of the plane, and from the other end if there
+/// is no room at the first.
 const NEAR: u32 = 60;
 const FARTHEST: u32 = 200;
 

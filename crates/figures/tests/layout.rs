@@ -108,7 +108,8 @@ fn no_texts_overlap() {
     }
 }
 
-/// A page is 7 inches of 96 units wide, and all texts, including scripts, have at least 6 points.
+/// A page is at most 7 inches of 96 units wide. All texts, including sub- and superscripts, have at
+/// least 6 points.
 #[test]
 fn no_text_is_below_six_points() {
     for figure in gallery() {

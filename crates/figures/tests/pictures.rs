@@ -17,7 +17,7 @@ fn high_x_and_high_y_are_upper_right() {
     }
 }
 
-/// In the raster too, the cell fills its part of the panel with one color, without smoothing.
+/// In the raster too, one color fills the cell's part of the panel, without smoothing.
 #[test]
 fn the_raster_shows_cells_as_sharp_rectangles() {
     let values = corner();

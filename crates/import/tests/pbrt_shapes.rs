@@ -90,8 +90,8 @@ fn fronts_are_where_normals_point() {
             outward,
             "{plugin}"
         );
-        // pbrt flips normals after a mirror; those of meshes, whose corners it mirrors too, are
-        // flipped twice.
+        // pbrt flips normals after a mirror. It also mirrors the corners of meshes, so normals of
+        // meshes are flipped twice.
         let is_mesh = plugin.contains("mesh");
         let mirrored = if is_mesh { outward } else { -outward };
         assert_eq!(of("Scale 1 -1 1"), mirrored, "{plugin}");

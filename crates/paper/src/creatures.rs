@@ -140,7 +140,8 @@ struct CreatureRow<'a> {
     panels: &'a [PicturePanel<'a>],
     quantity: AxisQuantity,
     scale: Scale,
-    /// Whether the colors are those of the quantity; otherwise of each picture's largest value.
+    /// Whether the range of colors is that of the quantity; otherwise it is that of each picture's
+    /// values.
     shared: bool,
 }
 
@@ -242,7 +243,7 @@ impl ComparedPictures {
         scene.picture(both.map(|(x, r)| (x - r) / self.white).collect())
     }
 
-    /// The mean of squares over r² + ε², such as (x − r)².
+    /// The mean of `squares`, such as (x − r)², divided by r² + ε².
     fn relative(&self, squares: impl Iterator<Item = f64>) -> f64 {
         let reference = &self.reference.mean;
         let count = reference.len() as f64;
@@ -259,7 +260,7 @@ impl ComparedPictures {
         self.relative(both.map(|(x, r)| (x - r).powi(2)))
     }
 
-    /// The relative mean square error of the reference, by its noise.
+    /// The relative mean square error of the reference that its noise causes.
     fn noise(&self) -> f64 {
         self.relative(self.reference.variance.iter().copied())
     }

@@ -72,7 +72,7 @@ struct FigureIndex<'a> {
     /// The chosen style, if any.
     #[serde(skip_serializing_if = "Option::is_none")]
     style: Option<Style>,
-    /// The factor by which frequencies along each axis are finer than the scene's.
+    /// The factor by which the frequencies along each axis are denser than the scene's.
     finer: usize,
     /// The hash of each scene with the photons of this quality, at its own frequencies.
     scenes: BTreeMap<&'a str, String>,
@@ -131,7 +131,7 @@ pub fn make_all(
 /// undecided planes.
 #[expect(
     clippy::too_many_lines,
-    reason = "one figure from subject to result, in the order in which it goes"
+    reason = "the steps of one figure from subject to result, in order"
 )]
 pub(crate) fn make(
     request: &FigureRequest,

@@ -92,10 +92,12 @@ fn glows(light: &Light) -> Vec<Glow> {
     lobes.iter().map(glow).collect()
 }
 
-/// |spectrum ⊗ Ŵ| at some frequencies: back to positions, times the window, and forth again.
+/// |spectrum ⊗ Ŵ| at some frequencies. The spectrum is transformed to positions, multiplied by the
+/// window and transformed back.
 fn windowed(spectrum: &dyn Fn(f64) -> Complex, window: &Profile, rho: &[f64]) -> Vec<f64> {
     const STEPS: i32 = 400;
-    // Frequencies up to four times the last; lobes of a tenth of a radian have none beyond.
+    // Frequencies extend to four times the last one; lobes of a tenth of a radian have no power
+    // beyond.
     let last = 4.0 * rho.last().copied().unwrap_or(1.0);
     let along = |half: f64| (-STEPS..=STEPS).map(move |i| half * f64::from(i) / f64::from(STEPS));
     let values: Vec<(f64, Complex)> = along(last).map(|q| (q, spectrum(q))).collect();

@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 
 /// Width and height of a picture in pixels.
 const PIXELS: usize = 1024;
-/// Extent of a picture in widths, equal to that of our photons.
+/// Extent of a picture, in widths of the light's Gaussian; our photons use the same extent.
 const WIDTHS: f64 = 3.0;
 
 impl Writer {
@@ -23,7 +23,7 @@ impl Writer {
                 shape, radiance, ..
             } => {
                 self.xml
-                    .comment("the light shines along z, its back is dark");
+                    .comment("the light shines along z; its back is dark");
                 let looks = [emitter(*radiance), xml::black()].concat();
                 self.xml.flat("light", shape, 0.0, &looks);
             }

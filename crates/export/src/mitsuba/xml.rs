@@ -39,7 +39,7 @@ impl Xml {
         xml
     }
 
-    /// A comment. XML forbids double hyphens in comments: they are separated by spaces.
+    /// A comment. XML forbids double hyphens in comments, so spaces separate them.
     pub(super) fn comment(&mut self, text: &str) {
         let text = text.replace("--", "- -").replace("--", "- -");
         self.line(&format!("<!-- {text} -->"));
@@ -106,7 +106,7 @@ impl Xml {
         ));
     }
 
-    /// A point light at the origin.
+    /// Writes a point light at the origin.
     pub(super) fn point_light(&mut self, intensity: f64) {
         self.line(&format!(
             "<emitter type=\"point\" id=\"light\"><point name=\"position\" x=\"0\" y=\"0\" z=\"0\"/>{}</emitter>",

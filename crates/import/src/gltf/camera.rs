@@ -55,7 +55,7 @@ impl<'a> GltfReader<'a> {
         let aspect = match of.aspect_ratio {
             Some(aspect) => self.within(&format!("{path}.aspectRatio"), aspect, ASPECTS),
             None => {
-                self.note(path, "has no aspectRatio: an aspect ratio of 1 is used");
+                self.note(path, "has no aspectRatio: 1 is used");
                 Some(1.0)
             }
         };

@@ -27,7 +27,7 @@ pub(super) struct Document {
     pub(super) chunk: Option<Vec<u8>>,
 }
 
-/// Reads the bytes of a file; `None` after a cause.
+/// Reads the bytes of a file; `None` if a cause of refusal was reported.
 pub(super) fn read(bytes: &[u8], place: &SourcePlace, report: &Report) -> Option<Document> {
     let refuse = |message: String| report.cause(place, message);
     let (json, chunk) = match bytes.starts_with(MAGIC) {

@@ -115,7 +115,7 @@ impl<'a> GltfReader<'a> {
         }
     }
 
-    /// The local transform of a node; `None` after a cause.
+    /// The local transform of a node; `None` if a cause of refusal was reported.
     fn own(&self, node: &Node, path: &str) -> Option<DAffine3> {
         let is_split =
             node.translation.is_some() || node.rotation.is_some() || node.scale.is_some();
@@ -172,8 +172,8 @@ impl<'a> GltfReader<'a> {
 }
 
 impl PlacedNode<'_> {
-    /// The position and orientation of a camera or light, which look along −Z with Y up here and
-    /// along Z in a world. Scale and mirrors are left out.
+    /// The position and orientation of a camera or light. It looks along −Z with Y up in glTF, and
+    /// along Z in a world. Scales and mirrors are left out.
     pub(super) fn looking(&self) -> Option<DAffine3> {
         let linear = self.to_world.matrix3;
         let ahead = (-linear.z_axis).try_normalize()?;

@@ -55,7 +55,7 @@ impl Tree<'_> {
         }
         self.includes += 1;
         if self.includes > MAX_INCLUDES {
-            // Only the first excess file gives a cause.
+            // Only the first file beyond the limit gives a cause.
             return match self.includes == MAX_INCLUDES + 1 {
                 true => Err(format!("more than {MAX_INCLUDES} files are included")),
                 false => Ok(()),

@@ -64,10 +64,11 @@ impl<'a> MitsubaReader<'a> {
         })
     }
 
-    /// A vector, given directly or by a transform, but not both. The outer `None` is after a cause.
+    /// A vector, given directly or by a transform, but not both. The outer `None` means that a
+    /// cause of refusal was reported.
     #[expect(
         clippy::option_option,
-        reason = "neither is there; the outer none is a cause"
+        reason = "neither is there; the outer `None` means a reported cause"
     )]
     fn either(
         &self,
@@ -157,7 +158,7 @@ impl<'a> MitsubaReader<'a> {
         }))
     }
 
-    /// `to_world`, which must keep lengths and angles. `None` after a cause.
+    /// `to_world`, which must keep lengths and angles. `None` if a cause of refusal was reported.
     pub(super) fn rigid(&self, object: &'a MitsubaObject) -> Option<DAffine3> {
         if !self.has(object, "to_world") {
             return Some(DAffine3::IDENTITY);

@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// The mesh of a shape.
 pub(super) struct MitsubaMesh {
     pub(super) triangles: Arc<Triangles>,
-    /// Whether the front is on the opposite side.
+    /// Whether the front is on the side opposite to the normals.
     pub(super) is_flipped: bool,
 }
 
@@ -61,7 +61,7 @@ impl<'a> MitsubaReader<'a> {
                 return None;
             }
         };
-        // Mitsuba computes normals from placed triangles, which a mirror flips; it transforms
+        // Mitsuba computes normals from the placed triangles, so a mirror flips them. It transforms
         // normals of the file as normals.
         let is_mirrored = to_world.matrix3.determinant() < 0.0;
         Some(MitsubaMesh {

@@ -50,7 +50,7 @@ fn find(bytes: &[u8], number: u32) -> Result<(u16, usize), String> {
         .ok_or("ends before its table of meshes")?;
     if number >= count {
         return Err(format!(
-            "has {count} meshes; shape_index {number} is none of them"
+            "has {count} meshes, but shape_index is {number}"
         ));
     }
     let size = if version >= 4 { 8 } else { 4 };

@@ -23,7 +23,7 @@ pub(super) struct ObjReader<'a> {
     place: SourcePlace,
     folder: PathBuf,
     entries: HashMap<String, MtlEntry>,
-    /// Surfaces by material name; `None` after a cause.
+    /// Surfaces by material name; `None` if a cause of refusal was reported.
     surfaces: HashMap<Option<String>, Option<ObjSurface>>,
 }
 

@@ -87,7 +87,7 @@ impl<'a> Builder<'a> {
     pub(super) fn go_to_system(&mut self, name: &str, place: &SourcePlace) -> Result<(), String> {
         match self.systems.get(name) {
             Some(map) => self.state.to_world = *map,
-            // pbrt also only warns.
+            // pbrt too only warns here.
             None => {
                 let message = format!("coordinate system {} is not known", quoted(name));
                 self.report.note(place, format!("{message}: left out"));

@@ -39,8 +39,8 @@ impl PbrtReader<'_> {
         entity.float_within(self.report, "scale", 1.0, allowed)
     }
 
-    /// The factor that gives a light its required power or illuminance, if one above 0 is given:
-    /// pbrt ignores others.
+    /// The factor that gives a light its required power or illuminance. pbrt ignores values that
+    /// are not above 0.
     pub(super) fn wanted(&self, entity: &Entity, name: &str, now: f64) -> Read<f64> {
         let wanted = entity.float(self.report, name)?;
         let factor = wanted.filter(|w| *w > 0.0).map_or(1.0, |w| w / now);

@@ -71,7 +71,7 @@ impl PbrtReader<'_> {
         Err(entity.fault(self.report, name, message))
     }
 
-    /// One number; a varying texture is a cause.
+    /// Reads one number; a varying texture is a cause of refusal.
     pub(super) fn constant_or(
         &mut self,
         entity: &Entity,
@@ -112,7 +112,7 @@ impl PbrtReader<'_> {
         let found = self.scene.textures.get(&(is_spectrum, name.to_owned()));
         let Some(entity) = found else {
             let kind = if is_spectrum { "spectrum" } else { "float" };
-            return Err(fault(&format!("is not a known one of type {kind}")));
+            return Err(fault(&format!("is not a known texture of type {kind}")));
         };
         if self.depth >= MAX_DEPTH {
             return Err(fault("contains itself, or too many are nested"));
@@ -177,7 +177,7 @@ impl PbrtReader<'_> {
         ))
     }
 
-    /// The map from (u, v) of a world's surface to those of the texture.
+    /// The map from (u, v) of a surface in a world to (u, v) of the texture.
     pub(super) fn mapping(&self, entity: &Entity, uv: Uv) -> Read<DAffine2> {
         let report = self.report;
         entity.choice(report, "mapping", &[("uv", ())])?;

@@ -200,7 +200,7 @@ impl CuttingPlane<'_> {
         }
     }
 
-    /// The intervals in which a layer is opaque, or more opaque than open; gratings extend a little
+    /// The intervals in which a layer is opaque, or at least half opaque. Gratings extend slightly
     /// beyond the visible range.
     fn layer_extents(&self, layer: &BlockerLayer, half_width: f64) -> Vec<[f64; 2]> {
         let axis = self.axis;
@@ -293,7 +293,8 @@ fn labelled(
 
 /// The whole X axis.
 const ENDLESS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
-/// The largest number of periods of a grating on either side that can still be distinguished.
+/// The largest number of periods of a grating on either side at which they can still be
+/// distinguished.
 const MOST_PERIODS: f64 = 40.0;
 
 /// The bits of a point as a key.
