@@ -3,7 +3,7 @@
 use crate::report::Bound::AtLeast;
 use crate::report::{Check, EXACT, ReportSection, Row};
 
-/// A row of the paper's Table 1; rows of sections refer to the rows they apply to.
+/// A row of the paper's Table 1. Rows of sections refer to the rows of Table 1 to which they apply.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Line {
     Travel,

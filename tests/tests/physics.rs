@@ -23,7 +23,7 @@ fn scene(edits: &[(&str, &str)]) -> Scene {
     }
     let mut file = SceneFile::parse(&text).expect("the edited scene is a scene file");
     file.run.photons = PHOTONS;
-    // Unaimed emission leaves 16 % of noise, which is low enough here.
+    // Unaimed emission leaves noise of 16 %, which is low enough here.
     file.run.resolution = 0.5;
     resolve("test", file, ".".as_ref(), u64::MAX).expect("the edited scene is sound")
 }
@@ -132,7 +132,8 @@ fn other_scenes_agree() {
     }
 }
 
-/// A prediction without the surface beside the ray is rejected behind that surface, and only there.
+/// A prediction that omits the surface beside the ray is rejected behind that surface, and only
+/// there.
 #[test]
 fn a_forgotten_surface_is_noticed() {
     let fin = r#"surfaces: [Rectangle(name: "fin", center: (0.25, 0, 1.5), size: (0.3, 0.3)),"#;

@@ -109,7 +109,7 @@ fn allowed(why: &str, arguments: ArgumentStyle) -> String {
         }
         ArgumentStyle::Python => "'A..B:N', 'A..B:Nlog' (logarithmic spacing), or a sequence",
     };
-    format!("{why}; allowed: {forms}, with at most {MAX_POINTS} values, which are numbers")
+    format!("{why}; allowed: {forms}, with at most {MAX_POINTS} values, all of them numbers")
 }
 
 fn number(text: &str) -> Result<f64, String> {
@@ -117,7 +117,7 @@ fn number(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| format!("`{}` is not a number", text.trim()))
 }
 
-/// The values of a range, from the text before and after the dots.
+/// Parses the values of a range from the text before and after the dots.
 fn range(from: &str, rest: &str) -> Result<Vec<f64>, String> {
     let (to, count) = rest
         .split_once(':')
@@ -142,8 +142,8 @@ fn range(from: &str, rest: &str) -> Result<Vec<f64>, String> {
         .collect())
 }
 
-/// Value `i` of `count` from one end to the other, by equal steps or equal factors, rounded to a
-/// short decimal.
+/// Value `i` of `count` values from one end to the other, spaced by equal steps or equal factors.
+/// It is rounded to a short decimal.
 fn between([from, to]: [f64; 2], i: usize, count: usize, is_log: bool) -> f64 {
     let share = i as f64 / (count - 1) as f64;
     let value = if is_log {
@@ -191,7 +191,7 @@ pub fn points(sweeps: &[Sweep], together: bool) -> Result<Vec<SweepPoint>, Failu
     }))
 }
 
-/// A text with the name of the point it concerns.
+/// A message, and the name of the point that it concerns.
 pub fn message_at(point: &SweepPoint, text: String) -> String {
     if point.is_empty() || text.contains(&shown(point)) {
         text

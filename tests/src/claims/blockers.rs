@@ -149,8 +149,8 @@ fn jitter(photons: u64) -> Claim {
     }
 }
 
-/// Squares with fill one half, at pitches for which the light's image covers an odd number of half
-/// periods, where ripples are largest; with their number along each axis.
+/// Squares with fill one half, and their number along each axis. Ripples are largest at these
+/// pitches, for which the light's image covers an odd number of half periods.
 const PITCHES: [(f64, u32); 3] = [(0.2, 14), (0.2 / 3.0, 38), (0.04, 62)];
 
 fn ripples(at: &str, frequencies: &str, photons: u64) -> [ClaimNumber; 3] {
@@ -261,8 +261,8 @@ fn opaque(open: &Strips) -> String {
     format!("Shapes(name: \"blockers\", center: (0, 0, 1), shapes: [{shapes}])")
 }
 
-/// Maximum frequencies at which bounds are compared with spectra, and up to which they are summed,
-/// /m.
+/// The maximum frequency at which bounds are compared with spectra, and the maximum frequency of
+/// the sums in the bounds, /m.
 const HELD: usize = 12;
 const SUMMED: usize = 40;
 

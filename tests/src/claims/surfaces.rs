@@ -54,8 +54,8 @@ pub(super) fn planes(at: &str, orientation: &str, window: &str, frequencies: &st
     )
 }
 
-/// Light reflected by a glossy plane from one angle to another, over the irradiance; in both
-/// directions, and their ratio.
+/// Light that a glossy plane reflects from one angle to another, divided by the irradiance. It is
+/// measured in both directions; the number is their ratio.
 fn both_ways(brdf: &str, photons: u64) -> ClaimNumber {
     let angles = [20.0_f64, 50.0].map(f64::to_radians);
     let [there, back] = [angles, [angles[1], angles[0]]].map(|angles| {
@@ -359,7 +359,7 @@ fn diffuse(light: &str, (k, seed): (f64, u64), photons: u64) -> SeenScene {
         &format!("azimuths: 4, rho: (max: {}), nu: (max: 4)", 8.0 * k),
     );
     let mut scene = scene(&format!("{text}, {planes}"), photons);
-    // Without different seeds, photons of spheres of two sizes are equal up to scale.
+    // With one seed, photons of spheres of two sizes would be equal up to scale.
     scene.run.seed = seed;
     SeenScene::of(scene)
 }

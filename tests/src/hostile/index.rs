@@ -43,7 +43,7 @@ pub(crate) fn with_other_value(index: &str, dice: &mut Dice) -> Option<String> {
 pub(crate) fn with_scene(index: &str, scene: &Value) -> Option<String> {
     let mut tree: Value = serde_json::from_str(index).ok()?;
     tree["scene_file"] = scene.clone();
-    // Hashes the scene as the program does, if the program could have written it.
+    // Hashes the scene as the program does, if the program could have written that scene.
     if let Ok(file) = serde_json::from_value::<etendue_scene::SceneFile>(scene.clone()) {
         let text = serde_json::to_vec(&file).ok()?;
         tree["scene_hash"] = json!(blake3::hash(&text).to_hex().as_str());

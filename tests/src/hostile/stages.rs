@@ -12,7 +12,7 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-/// A scene that runs in a moment.
+/// A scene that runs in a fraction of a second.
 pub(crate) const SMALL: &str = r#"(
     light: Rectangle(center: (0.1, 0.2, 0.3), size: (0.2, 0.17)),
     blockers: [JitteredSquares(name: "blockers", center: (0.12, 0.2, 1.3),
@@ -104,7 +104,7 @@ fn attack(seed: &Seed, stage: &str, index: &str, dice: &mut Dice) -> io::Result<
         3 => change_scene(&mut files, dice),
         _ => change_file(&mut files, stage, &index, dice)?,
     };
-    // With changed hashes a fault may be undetectable; and a mutation may change nothing.
+    // A fault with changed hashes may be undetectable, and a mutation may have no effect.
     let summary = (!fits || files == seed.files).then(|| seed.summary.clone());
     Ok(Attack {
         files,

@@ -47,8 +47,8 @@ const NAMES: [&str; 14] = [
     "ä€𝄞",
 ];
 
-/// The text with one to three tokens replaced, removed, doubled or swapped, blocks of it repeated,
-/// or worse; `words` are tokens of its format.
+/// The text with one to three mutations: tokens are replaced, removed, doubled or swapped, blocks
+/// are repeated, or larger changes are made. `words` are tokens of the format.
 pub(crate) fn mutated(text: &str, words: &[&str], dice: &mut Dice) -> Vec<u8> {
     let mut tokens = split(text);
     let mut raw = false;
@@ -117,7 +117,7 @@ fn replace_name(tokens: &mut Vec<String>, dice: &mut Dice) {
     }
 }
 
-/// Repeats some tokens many times, up to a megabyte or so.
+/// Repeats some tokens many times, up to about a megabyte.
 fn repeat_block(tokens: &mut Vec<String>, at: usize, dice: &mut Dice) {
     let end = (at + dice.length(200)).min(tokens.len());
     let block = tokens[at..end].to_vec();

@@ -14,7 +14,7 @@ pub(crate) enum FullDisk {
 }
 
 impl FullDisk {
-    /// The better of the two methods available here.
+    /// The better of the two methods that is available here.
     pub(super) fn best() -> io::Result<Self> {
         let place = tempfile::tempdir()?;
         let mounted = Mount::new(place.path(), 1 << 20);

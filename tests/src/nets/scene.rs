@@ -1,5 +1,5 @@
-//! One random scene: the deviation of its prediction by nets from the truth, in units of its stated
-//! error.
+//! One random scene: the deviation of a prediction by nets from the truth, in units of the stated
+//! error of the prediction.
 
 use super::draw::{BlockerKind, SceneDice, scene};
 use etendue_compare::{Applicability, Theory};
@@ -15,7 +15,7 @@ pub(super) struct SceneOutcome {
     pub(super) number: u64,
     /// The stated ‖error‖/‖F‖.
     pub(super) stated: f64,
-    /// Error of the truth, over the stated error.
+    /// Error of the truth, divided by the stated error of the prediction.
     pub(super) of_truth: f64,
     /// The prediction compared with the truth.
     pub(super) sound: Measured,
@@ -25,7 +25,7 @@ pub(super) struct SceneOutcome {
 
 /// The deviation of a prediction from the truth.
 pub(super) struct Measured {
-    /// ‖F − truth‖/‖truth‖ over the stated error.
+    /// ‖F − truth‖/‖truth‖, divided by the stated error.
     pub(super) ratio: f64,
     /// The squared ratio for the means of adjacent pairs of nets, whose error is four times that of
     /// all nets.
@@ -57,7 +57,7 @@ pub(super) fn outcomes(each: impl Fn(&SceneOutcome)) -> (Vec<SceneOutcome>, usiz
     (outcomes, left_out)
 }
 
-/// The error that the truth is not known well enough.
+/// The error for a scene whose truth is not known well enough.
 struct Untold;
 
 /// The result of a prediction.
@@ -73,7 +73,8 @@ const OF_STATED: f64 = 0.1;
 const HUNDREDFOLD: f64 = 128.0;
 /// The factor of the planted fault in a density.
 const PLANTED: f64 = 1.02;
-/// Errors above this mean that there is hardly any light: the prediction depends on a few rays.
+/// Larger errors mean that there is hardly any light, and that the prediction depends on a few
+/// rays.
 const DARK: f64 = 0.3;
 
 /// The outcome; `None` if no theory applies or no light arrives.
@@ -185,7 +186,7 @@ fn truth(
     let enough = OF_STATED * stated;
     if let Theory::Parallel(chain) = theory {
         let window: &Window = &plane.window;
-        // A quadrature over the receiver uses more nodes for higher frequencies.
+        // A quadrature over the receiver uses more nodes if the frequencies are higher.
         for more in [1, 2, 4] {
             let mut grid = plane.grid;
             grid.rho.half *= more;

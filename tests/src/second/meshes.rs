@@ -181,8 +181,8 @@ fn curvatures(dice: &mut Dice, fault: &str) -> f64 {
         let tangent: DVec3 = hill.light.components(unit(tangent)).into();
         let [a, b] = [tangent.dot(x), tangent.dot(y)];
         let [k, l, _] = patch.curvature;
-        // Euler 1760, divided by the squared length of the tangent's projection into the fitted
-        // plane.
+        // The formula of Euler 1760, divided by the squared length of the tangent's projection onto
+        // the fitted plane.
         let fast = (k * a * a + l * b * b) / (a * a + b * b);
         (fast - second).abs() / largest
     });

@@ -47,8 +47,8 @@ pub(super) fn cosine(grating: &Grating, at: [f64; 2], fault: &str) -> f64 {
     0.5 + 0.5 * grating.modulation * angle.cos()
 }
 
-/// A checkerboard: squares of half a period are counted along both axes from the vertex; it is 1
-/// where the sum is even.
+/// A checkerboard. Squares of half a period are counted along both axes from the vertex, and the
+/// value is 1 where the sum of the counts is even.
 fn checkerboard(period: f64, at: [f64; 2], fault: &str) -> f64 {
     let side = match fault {
         "a side is a period" => period,
@@ -128,7 +128,7 @@ pub(super) struct Varied {
 
 impl Varied {
     /// The weight of each BRDF at a point: the blend for `brdf`, and the rest for `other`. The
-    /// texture multiplies both.
+    /// texture multiplies both weights.
     pub(super) fn at(&self, at: [f64; 2], fault: &str) -> [(f64, &Brdf); 2] {
         let share = self.blend.value(at, fault);
         let share = match fault {

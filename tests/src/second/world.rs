@@ -1,4 +1,4 @@
-//! A scene file in the terms of docs/scenes.md, with its central ray anywhere in the world, and the
+//! A scene file that follows docs/scenes.md, with its central ray anywhere in the world, and the
 //! resolved scene.
 
 use super::vector::{Axes, Vector, aside, between, direction};

@@ -257,7 +257,7 @@ fn listed() -> [OperatorComparison; 2] {
     ]
 }
 
-/// Two lobes with weights ½ (1 + 0.9 cos(2π 1.5 s + 0.4)) and its complement.
+/// Two lobes with the weight ½ (1 + 0.9 cos(2π 1.5 s + 0.4)) and the complement of this weight.
 fn weighted() -> OperatorComparison {
     let weight = |s: f64| 0.5 * (1.0 + 0.9 * (TAU * 1.5 * s + 0.4).cos());
     let both = |s: f64, d: f64| weight(s) * GLOSS.value(d) + (1.0 - weight(s)) * PHONG.value(d);

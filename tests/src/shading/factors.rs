@@ -122,7 +122,7 @@ fn fresnel() -> Vec<OperatorComparison> {
         let along = (theta - beyond).tan() / (theta + beyond).tan();
         0.5 * (across * across + along * along)
     };
-    // For metals, in real numbers (Born and Wolf 1999, section 14.2).
+    // The form for metals in real numbers (Born and Wolf 1999, section 14.2).
     let conductor = |theta: f64| {
         let (n, k, sine, cosine) = (0.96_f64, 6.69_f64, theta.sin(), theta.cos());
         let t0 = n * n - k * k - sine * sine;
@@ -167,7 +167,8 @@ fn fresnel() -> Vec<OperatorComparison> {
 }
 
 fn lobes() -> Vec<OperatorComparison> {
-    // Lobe shapes written out again, normalised by their own quadrature; end and scale.
+    // Lobe shapes, implemented again and normalised by a separate quadrature; with their ends and
+    // scales.
     let row = |operator,
                lobe: PlanarLobe,
                off: PlanarLobe,

@@ -4,7 +4,7 @@ use super::primal::{about, between, wave};
 use etendue_field::Complex;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Standard deviations up to which a Gaussian is summed: 2·10⁻¹⁶.
+/// Standard deviations up to which a Gaussian is summed; it is 2·10⁻¹⁶ there.
 const REACH: f64 = 8.5;
 
 /// A Gaussian component of a light field, A exp(−½ (z − μ)ᵀ C⁻¹ (z − μ)), z = (x, θ).
@@ -89,8 +89,8 @@ pub(super) struct PrimalSurface<'a> {
 }
 
 impl PrimalSurface<'_> {
-    /// Nodes up to an angle on both sides, with `count` on each side of the centre of each piece
-    /// between kinks.
+    /// Nodes between minus and plus an angle. Each piece between two kinks has `count` nodes on
+    /// either side of its centre.
     fn pieces(&self, end: f64, count: i32) -> Vec<(f64, f64)> {
         let ends = [&[-end], self.kinks, &[end]].concat();
         let pieces = ends

@@ -10,8 +10,8 @@ use etendue_scene::{Emission, LightFile, Scene, resolve};
 use etendue_trace::Tracer;
 use rayon::prelude::*;
 
-/// Beam widths in metres: that of the file, and one so narrow that its aberration is below its
-/// noise.
+/// Beam widths in metres: the width in the file, and a width so narrow that its aberration is below
+/// its noise.
 const WIDTHS: [f64; 2] = [0.1, 1e-5];
 /// Maximum deviation in standard errors.
 const MOST: f64 = 4.0;

@@ -13,7 +13,8 @@ use etendue_theory::geometry::Media;
 use etendue_theory::rays::SpecularSystem;
 use etendue_theory::{Model, Observed, Parameter};
 
-/// Permitted difference between two quadratures, each accurate to 10⁻⁴, where first order is exact.
+/// Permitted difference between two quadratures where first order is exact. Each quadrature is
+/// accurate to 10⁻⁴.
 const QUADRATURE: f64 = 2e-4;
 
 /// The 4D half of the table.

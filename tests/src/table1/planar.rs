@@ -150,8 +150,8 @@ impl MirrorPath {
         }
     }
 
-    /// The order known in advance: 1 if oblique, 2 along the normal, and also if only the tangent
-    /// slopes are approximated.
+    /// The order known in advance. It is 1 at oblique incidence. It is 2 along the normal, and also
+    /// if only the tangent slopes are approximated.
     fn known(&self, stage: PathStage) -> f64 {
         let flat_mirror = self.k == 0.0 && self.media.is_none();
         match stage {
