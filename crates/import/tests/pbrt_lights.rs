@@ -140,7 +140,7 @@ fn areas_shine_by_their_power() {
     let patch = "\"float power\" 8 Shape \"bilinearmesh\" \"point3 P\" [0 0 0 2 0 0 0 2 0 2 2 0]";
     assert_close(&[radiance(patch)], &[2.0 / PI], 1e-12);
     let two = "AreaLightSource \"diffuse\" \"float power\" 8 Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0] \"integer indices\" [0 1 2 1 3 2]";
-    assert!(causes(two)[0].contains("which pbrt gives to each triangle"));
+    assert!(causes(two)[0].contains("pbrt gives this power to each triangle"));
     let both = "AreaLightSource \"diffuse\" \"bool twosided\" true Shape \"sphere\"";
     assert!(
         causes(both)[0].starts_with("text:3:27: light from both sides"),

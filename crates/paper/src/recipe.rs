@@ -68,7 +68,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
     },
     Recipe {
         name: "3",
-        about: "the two parameterisations, by slopes and by angles, and the effect of travel",
+        about: "the two parameterisations, in slopes and in angles, and travel",
         scenes: &[("fig3", scene!("fig3"))],
         also: &[("fig8", scene!("fig8"))],
         has_table: true,
@@ -152,7 +152,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
     },
     Recipe {
         name: "11",
-        about: "a caustic: a beam on a hollow mirror, at normal incidence and at 40°",
+        about: "a caustic: a beam on a hollow mirror, met along its normal and at 40°",
         scenes: &[
             ("fig11", scene!("fig11")),
             ("solar_oven", scene!("table1/solar_oven")),

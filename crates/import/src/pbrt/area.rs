@@ -88,7 +88,7 @@ impl PbrtReader<'_> {
                 Ok(Some(Texture::Constant(radiance * factor)))
             }
             None if has_power => {
-                let message = "power of a mesh of several triangles, of which pbrt gives the whole power to each; allowed: a mesh of one triangle";
+                let message = "power of a mesh of several triangles: pbrt gives this power to each triangle; allowed: a mesh of one triangle";
                 Err(area.fault(self.report, "power", message.to_owned()))
             }
             None => Ok(emission),
