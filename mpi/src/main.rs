@@ -5,7 +5,8 @@
 //!
 //! Rank 0 does what `etendue` does. It also hands out pieces of work to the other ranks on request,
 //! and works on pieces itself. MPI carries bytes and sums nothing, so the result has the same bytes
-//! as that of `etendue run`. The arguments are those of `etendue`, parsed by its own crate.
+//! as that of `etendue run`. The arguments are those of `etendue`; the crate of `etendue` parses
+//! them.
 //!
 //! Reasons for `ferrompi`: it needs no libclang, its calls return errors instead of aborting, and
 //! it is tested with both MPICH and Open MPI. `mpi` (rsmpi) generates its bindings with libclang,

@@ -173,9 +173,9 @@ impl Watch for Tracing<'_> {
 }
 
 /// Runs work on the given number of threads, by default one for each core. Meanwhile other Python
-/// threads continue, `progress` receives the progress, and Ctrl-C is detected: then the work stops
-/// at the next block of photons or the next step. The function returns when the work has ended, or
-/// soon after. If the work is not counted, it returns at once.
+/// threads continue, `progress` receives the progress, and Ctrl-C is detected. After Ctrl-C the
+/// work stops at the next block of photons or the next step. The function returns when the work has
+/// ended, or soon after. If the work is not counted, it returns at once.
 pub(crate) fn alive<T: Send + 'static>(
     py: Python<'_>,
     threads: Option<usize>,

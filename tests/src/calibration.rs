@@ -43,8 +43,8 @@ const FAULTS: [(DependenceFault, &str); 2] = [
 
 /// Compares `fig9b` at `photons` photons over seeds, and checks the statistics.
 ///
-/// Then checks them again with σ 10 % too small and too large, and with dependent batches: all
-/// these faults must be detected.
+/// Then it checks them with planted faults: σ that is 10 % too small or too large, and dependent
+/// batches. All these faults must be detected.
 pub(crate) fn calibration(
     seeds: Range<u64>,
     photons: u64,

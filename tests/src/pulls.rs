@@ -286,7 +286,7 @@ fn row(name: &str, pulls: &[&Pull], is_judged: bool) -> Row {
     }
     let count = pulls.len() as f64;
     let total = |of: &dyn Fn(f64) -> f64| pulls.iter().map(|p| of(p.value)).sum::<f64>() / count;
-    // The pulls of a scene are dependent, so errors are computed over scenes.
+    // The pulls of a scene are dependent, so errors are computed from the scatter between scenes.
     let error = |of: &dyn Fn(f64) -> f64| {
         let all = total(of);
         let apart = scenes

@@ -135,7 +135,7 @@ fn two_parameterisations() {
     }
 }
 
-/// Fig. 14: on a sphere, before the lobes of its surface.
+/// Fig. 14: light on a sphere, before the lobes of its surface.
 #[test]
 #[ignore = "long: half a minute; .ci/long runs it"]
 fn the_steps_of_shading() {

@@ -1,4 +1,4 @@
-//! Mutated scene files: any file gives a scene or an error, never a panic.
+//! Mutated scene files. Any file gives a scene or an error, never a panic.
 
 use etendue_compare::{Applicability, Prediction, Test, compare};
 use etendue_field::Mask;

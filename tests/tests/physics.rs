@@ -52,8 +52,8 @@ fn verdicts(traced: &Scene, predicted: &Scene) -> Vec<Verdict> {
         .collect()
 }
 
-/// Scenes with objects beside or behind the light, large or small, distant, rotated or dark must
-/// agree as fig9b does.
+/// Variants of fig9b must agree as fig9b does: with objects beside or behind the light, large or
+/// small, distant, rotated or dark.
 #[test]
 fn other_scenes_agree() {
     let fin = r#"(name: "floor", center: (0, 0, 2), size: (6, 6), albedo: 0.5),
@@ -150,8 +150,8 @@ fn a_forgotten_surface_is_noticed() {
     );
 }
 
-/// The closed form assumes an infinite receiver: where a window contains its edge, paths are
-/// traced.
+/// The closed form assumes an infinite receiver. Where a window contains the receiver's edge, paths
+/// are traced.
 #[test]
 fn the_edge_of_the_receiver_is_left_to_paths() {
     let classes = |size: &str| -> Vec<Class> {

@@ -284,7 +284,7 @@ fn a_small_map_is_decided() {
     }
 }
 
-/// Widths beyond which the tail of a sky lobe was once treated as dark.
+/// Number of widths beyond which the tail of a sky lobe was once treated as dark.
 const CUT: f64 = 5.0;
 
 /// The tail of a wide lobe is light; a prediction without it is rejected.
@@ -336,7 +336,7 @@ fn a_hollow_met_twice_is_decided() {
     }
 }
 
-/// The same holds for light that the surface itself blocks from its other side.
+/// The other tracer is also used for light that the surface itself blocks with its other side.
 #[test]
 fn a_surface_in_its_own_shadow_is_decided() {
     let scene = scene("self_shadow");
@@ -387,7 +387,7 @@ fn darkness_behind_two_occluders_is_decided() {
     }
 }
 
-/// Enough rays for half a per cent in each of these scenes.
+/// Number of rays that gives an error of half a per cent in each of these scenes.
 const BUDGET: RayBudget = RayBudget {
     nodes: 1e6,
     error: 5e-3,
@@ -435,7 +435,7 @@ fn replaced(like: Prediction, slices: Slices, replicates: Vec<Slices>) -> Predic
     }
 }
 
-/// Squares that cover a window of the same size across the path leave light for a window on a
+/// Squares that cover a window across the path leave some light for a window of the same size on a
 /// surface.
 #[test]
 fn what_goes_by_squares_is_decided() {
@@ -451,7 +451,7 @@ fn a_low_sky_is_decided() {
     let scene = scene("low_sky");
     let declined = Applicability::new(&scene, &scene.planes[0]).declined;
     assert_eq!(declined, ["light that meets glass out of order"]);
-    // Paths over nets end where they meet the glass out of order.
+    // Paths that are drawn from nets end where they meet the glass out of order.
     holds_in(&scene, &[("p", Class::FirstOrder)]);
 }
 
@@ -478,8 +478,8 @@ fn meshes_unlike_their_patches_are_decided() {
     }
 }
 
-/// Blockers, or a mesh that light visits later, are at a place where only few rays of the window
-/// meet them.
+/// Scenes in which only few rays of the window meet the blockers, or a mesh that light visits
+/// later.
 #[test]
 #[ignore = "long: half a minute; .ci/long runs it"]
 fn what_stands_in_the_way_of_a_brdf_is_decided() {
@@ -535,8 +535,8 @@ fn is_followed_past(name: &str, obstacles: &[&str]) {
     assert!(measured.iter().any(wrong), "{name}");
 }
 
-/// A mirror extends to before the mask in front of it; no ray sampled from the light hits so narrow
-/// a window.
+/// Part of a mirror is before the mask that is in front of the mirror. No ray sampled from the
+/// light hits so narrow a window.
 #[test]
 fn a_sliver_of_slopes_is_decided() {
     is_followed_past("sliver_of_slopes", &["slit"]);
@@ -556,8 +556,8 @@ fn a_wall_that_reaches_behind_the_light_is_decided() {
     holds("beside_the_light", &[("p", Class::FirstOrder)]);
 }
 
-/// A surface that light visits later is in a corner of a window before the first surface; few
-/// projector rays sampled over the whole of a wide wall get there.
+/// A surface that light visits later is in a corner of a window before the first surface. Few
+/// projector rays that are sampled over the whole of a wide wall reach this corner.
 #[test]
 fn a_later_surface_beside_the_first_leg_is_decided() {
     let scene = scene("beside_the_beam");
@@ -577,8 +577,8 @@ fn angles_beyond_a_turn_are_decided() {
     }
 }
 
-/// A mirror so close to the light that a part of it is before the mask: rays sampled from the light
-/// to the mirror are unlikely to hit that part.
+/// A mirror is so close to the light that a part of it is before the mask. Rays sampled from the
+/// light to the mirror are unlikely to hit that part.
 #[test]
 fn a_mirror_close_to_the_light_is_decided() {
     is_followed_past("close_to_the_mirror", &["mask"]);
@@ -603,8 +603,8 @@ fn a_ridge_under_a_sky_is_decided() {
     assert_eq!(verdict(&scene, &photons(&scene), &reference), Verdict::Pass);
 }
 
-/// A discontinuous window cuts the light of a projector: quadratures with few rays may agree on it
-/// by chance.
+/// A discontinuous window cuts the light of a projector. Quadratures with few rays may agree by
+/// chance for such light.
 #[test]
 fn a_box_before_a_projector_is_decided() {
     let scene = scene("box_before_a_projector");
@@ -628,8 +628,8 @@ fn a_wall_in_the_way_is_decided() {
     decided_against_chain("wall_in_the_way", Class::Reference);
 }
 
-/// The chain after a floor uses the coordinates of the path, not those of the wall to which it
-/// leads.
+/// The chain after a floor uses the coordinates of the path, not those of the wall to which the
+/// path leads.
 #[test]
 fn a_plane_on_the_next_wall_is_decided() {
     decided_against_chain("on_the_next_wall", Class::FirstOrder);
@@ -686,7 +686,7 @@ fn a_dim_part_of_the_sky_is_found() {
         let batches = measured.at_plane(0).map(|batch| batch.slices.at_zero());
         batches.sum::<f64>()
     });
-    // Photons have a noise of 15 %; without cosine sampling they find 10⁻⁹ of the light.
+    // With cosine sampling photons have a noise of 15 %; without it they find 10⁻⁹ of the light.
     assert!((found / there - 1.0).abs() < 0.5, "{found} of {there}");
 }
 

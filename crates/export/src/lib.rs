@@ -10,7 +10,7 @@ mod mitsuba;
 
 pub use mitsuba::{NotInMitsuba, mitsuba};
 
-/// The files of a scene for another renderer; the same scene gives the same bytes.
+/// The files of a scene for another renderer. The same scene always gives the same bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Export {
     /// File names relative to one folder, and contents.

@@ -261,8 +261,8 @@ fn cut_off(half_plane: &HalfPlane, beyond: f64) -> Rectangle {
     Rectangle { center, size }
 }
 
-/// The largest coordinate across the central ray of light that reaches a window or a surface: it
-/// runs straight from the light to there.
+/// The largest coordinate, across the central ray, of light on its straight way to a window or a
+/// surface.
 fn reach(scene: &Scene) -> f64 {
     let ends = [0, 1].map(|axis| scene.light.extent(axis));
     let light = ends

@@ -284,7 +284,7 @@ fn step(least: f64, digits: &[f64]) -> f64 {
         .unwrap_or(10.0 * decade)
 }
 
-/// The power of ten n with 10ⁿ ≤ `value` < 10ⁿ⁺¹, up to rounding; 0 for zero.
+/// The exponent n with 10ⁿ ≤ `value` < 10ⁿ⁺¹, up to rounding errors; 0 for zero.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "the logarithm of a finite f64 is within ±324"

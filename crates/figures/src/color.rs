@@ -59,7 +59,7 @@ pub(crate) enum Colors {
     Cyclic,
 }
 
-/// Eight colors of the circle, between which the others are interpolated.
+/// Eight colors of the color circle; the others are interpolated between them.
 const CIRCLE: [[f64; 3]; 8] = [
     [226.0, 217.0, 226.0],
     [150.0, 182.0, 203.0],
@@ -90,7 +90,8 @@ impl Colors {
     }
 }
 
-/// The colors of magnitudes, dark to pale, and of differences, blue to red: 256 of each, as red, green and blue.
+/// The 256 colors of magnitudes, dark to pale, and the 256 colors of differences, blue to red. Each
+/// is given as red, green and blue.
 #[must_use]
 pub fn palettes() -> [Vec<u8>; 2] {
     [Colors::MAGNITUDES, Colors::Diverging].map(|colors| {
@@ -121,7 +122,7 @@ pub(crate) struct Shading {
     pub(crate) axis: Axis,
     /// The power at 0 dB; `None` on linear scales.
     reference: Option<f64>,
-    /// Whether some values fall below, and above, the range of the colors.
+    /// Whether some values are below the range of the colors, and whether some are above.
     pub(crate) beyond: [bool; 2],
 }
 

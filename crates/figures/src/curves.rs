@@ -54,7 +54,8 @@ pub struct CurvePanel {
     pub x: AxisQuantity,
     /// The curves in the frame.
     pub curves: Vec<Curve>,
-    /// Whether x and y are logarithmic; points not above 0 are left out then.
+    /// Whether x and y are logarithmic. On a logarithmic axis, points that are not above 0 are left
+    /// out.
     pub is_log: [bool; 2],
 }
 
@@ -79,7 +80,7 @@ const TITLE: f64 = 440.0;
 /// Height of a panel, and its maximum width.
 const HEIGHT: f64 = 136.0;
 const WIDEST: f64 = 262.0;
-/// Minimum width of a panel beside others.
+/// Minimum width of a panel that has other panels beside it.
 const NARROWEST: f64 = 100.0;
 const BETWEEN: [f64; 2] = [58.0, 74.0];
 /// Width reserved for numbers beside an axis.

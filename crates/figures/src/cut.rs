@@ -144,7 +144,8 @@ impl<'a> SectionLayout<'a> {
         Self::HEADING + HEADING_LINE * more.max().unwrap_or(0) as f64
     }
 
-    /// The distance of a plane, and its side of an element at the same place, in one line or two.
+    /// The distance of a plane, and the side of an element at the same place on which the plane is;
+    /// in one line or two.
     fn place(&self, mark: &PlaneMark, room: f64) -> Vec<String> {
         // Four significant digits, in the shortest form.
         let rounded = format!("{:.3e}", mark.distance).parse::<f64>();
@@ -223,7 +224,7 @@ impl<'a> SectionLayout<'a> {
         let mut hatching = Hatching::default();
         for segment in self.section.segments.iter().filter(|s| s.kind == kind) {
             let (start, end) = (self.point(segment.start), self.point(segment.end));
-            // A body is filled, so it has no second side.
+            // A body is filled, so its segments have no dark side.
             let bits = |point: &[f64; 2]| point.map(f64::to_bits);
             let mut edges = self.section.bodies.iter().flatten();
             let is_flat = edges.all(|edge| bits(edge) != bits(&segment.start));
@@ -252,8 +253,8 @@ impl<'a> SectionLayout<'a> {
         svg.polygon(&[[at, border], wings[0], wings[1]], color);
     }
 
-    /// The part of a line between heights just above and below the plot; a level line is kept
-    /// whole.
+    /// The part of a line between a height just above the plot and one just below it. A horizontal
+    /// line is kept whole.
     fn visible(&self, start: [f64; 2], end: [f64; 2]) -> [[f64; 2]; 2] {
         let rise = end[1] - start[1];
         let heights = [self.plot.y - HATCH, self.plot.bottom() + HATCH];

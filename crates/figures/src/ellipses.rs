@@ -1,4 +1,4 @@
-//! A spectrum with ellipses of covariances over it.
+//! A spectrum, over which ellipses of covariances are drawn.
 
 use crate::axis::AxisQuantity;
 use crate::bar;
@@ -141,7 +141,7 @@ pub fn ellipses(of: &Ellipses<'_>) -> Result<Figure, Error> {
     })
 }
 
-/// Points around the ellipse: a root of the covariance times points of a circle.
+/// Points around the ellipse. They are a matrix root of the covariance times points of a circle.
 fn points([xx, xy, yy]: [f64; 3]) -> impl Iterator<Item = [f64; 2]> {
     const CORNERS: u32 = 180;
     let a = xx.max(0.0).sqrt();
@@ -153,7 +153,7 @@ fn points([xx, xy, yy]: [f64; 3]) -> impl Iterator<Item = [f64; 2]> {
     })
 }
 
-/// Two tables: covariances, and cells, x slowest.
+/// Two tables: the covariances, and the cells with x varying slowest.
 fn numbers(of: &Ellipses<'_>) -> Result<String, Error> {
     let Picture { x, y, values } = &of.picture;
     let [a, b] = [x, y].map(|axis| axis.quantity.heading());

@@ -22,7 +22,7 @@ pub struct Figure {
     pub csv: String,
 }
 
-/// The reason why a figure could not be made: a fault of the drawing, not of the values.
+/// The reason why a figure could not be made. The fault is in the drawing, not in the values.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {

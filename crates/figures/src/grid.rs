@@ -34,11 +34,11 @@ impl Picture<'_> {
     }
 }
 
-/// A line over a spectrum, ν = ν₀ + slope · (ρ − ρ₀), along which theory predicts its content; only
-/// its two ends are drawn.
+/// A line over a spectrum, ν = ν₀ + slope · (ρ − ρ₀), along which theory predicts content. Only the
+/// two ends of the line are drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Guide {
-    /// The point (ρ₀, ν₀): the origin, or the centre of a replica.
+    /// The point (ρ₀, ν₀), which is the origin or the centre of a replica.
     pub through: [f64; 2],
     /// dν/dρ, in metres; −d for light that has travelled d.
     pub slope: f64,
@@ -132,7 +132,7 @@ pub(crate) struct PageGrid<'b, 'a> {
     pub(crate) side: f64,
     /// Gap between adjacent pictures, if the right one has no numbers beside its axis.
     near: f64,
-    /// Height of a picture over its width.
+    /// Height of a picture divided by its width.
     shape: f64,
     blocks: Vec<Vec<PlacedColumn>>,
 }
@@ -402,7 +402,8 @@ fn draw_guides(svg: &mut Svg, panel: &Panel<'_>, guides: &[Guide]) {
     }
 }
 
-/// The ends of the part of a line inside a picture; `None` where it passes beside it.
+/// The ends of the part of a line that is inside a picture; `None` if the line does not cross the
+/// picture.
 fn inside(panel: &Panel<'_>, guide: &Guide) -> Option<[[f64; 2]; 2]> {
     let [left, right] = panel.x.range();
     let [low, high] = panel.y.range();

@@ -7,7 +7,8 @@ use crate::raster::encoded;
 use base64::Engine;
 use ndarray::ArrayView2;
 
-/// The data URI of a picture of `values`, [x, y]: x to the right, y upwards. `None` without cells.
+/// The data URI of a picture of `values`, [x, y], with x to the right and y upwards. `None` without
+/// cells.
 pub(crate) fn heat_map(
     values: ArrayView2<'_, f64>,
     shading: &Shading,

@@ -43,7 +43,7 @@ pub struct Plate<'a> {
     pub feet: Vec<Vec<String>>,
     /// Bars with a number for each column, at the bottom.
     pub bars: Option<Bars>,
-    /// Largest width of a picture; `None`: as wide as the page allows.
+    /// Largest width of a picture; with `None`, pictures are as wide as the page allows.
     pub side: Option<f64>,
 }
 
@@ -68,7 +68,7 @@ pub(crate) const OWN_PEAK: &str = "relative to its peak";
 /// Height of the bar panel, and width of each bar.
 const BARS: f64 = 110.0;
 const BAR: f64 = 60.0;
-/// Minimum width of a picture: columns that do not fit go below.
+/// Minimum width of a picture. Columns that do not fit at this width go below the others.
 const MIN_WIDTH: f64 = 58.0;
 /// Minimum page width below a title, if the page is wide enough.
 const TITLE: f64 = 440.0;

@@ -172,12 +172,12 @@ impl StripRow {
 const CUT: f64 = 150.0;
 /// Height of the lines from the cut to the columns.
 const LEADERS: f64 = 34.0;
-/// Minimum width of a picture: columns that do not fit go below the others.
+/// Minimum width of a picture. Columns that do not fit at this width go below the others.
 const MIN_WIDTH: f64 = 48.0;
 
 /// Draws a strip, as wide as the page.
 ///
-/// The CSV has a row for each cell of each picture; the numbers of the cut are in that of
+/// The CSV has a row for each cell of each picture. The numbers of the cut are in the CSV of
 /// [`section`](crate::section()).
 ///
 /// # Errors
@@ -314,7 +314,8 @@ fn guide_keys(svg: &mut Svg, strip: &Strip<'_>, [x, y]: [f64; 2], style: &Style)
     }
 }
 
-/// The table: a row for each cell of each picture, the pictures in order, x slowest.
+/// The table, with a row for each cell of each picture. The pictures are in order, and x varies
+/// slowest.
 fn numbers(strip: &Strip<'_>) -> Result<String, Error> {
     let header = [
         "plane",

@@ -73,7 +73,8 @@ pub(crate) fn width(text: &str, size: f64) -> f64 {
     ems * size
 }
 
-/// `text` and a font size at which its width is at most `room`: it is shrunk first, then shortened.
+/// `text`, possibly shortened, and a font size at which its width is at most `room`. The size is
+/// reduced first; then the text is shortened.
 pub(crate) fn fit(text: &str, size: f64, room: f64) -> (String, f64) {
     let smallest = size.min(LEAST_TEXT);
     let fitting = (size * room / width(text, size).max(1e-9)).clamp(smallest, size);
@@ -162,7 +163,7 @@ fn push(runs: &mut Vec<TextRun>, text: &str) {
     }
 }
 
-/// The first complete mark: the text before it, its run, and what follows.
+/// The first complete mark: the text before it, its run, and the text after it.
 fn next_mark(text: &str) -> Option<(&str, TextRun, &str)> {
     let kinds = [
         ("*", "*", true, TextLevel::Line),
@@ -219,7 +220,7 @@ mod tests {
         assert_eq!(fit("name", 12.0, 0.0).0, "…");
     }
 
-    /// The estimated width compared with that of the font, for typical texts.
+    /// The estimated width of typical texts is compared with their width in the font.
     #[test]
     fn estimated_widths_are_near_the_true_ones() {
         for text in [

@@ -184,7 +184,7 @@ fn planes_at_one_place_are_drawn_apart_in_their_order() {
     assert!(places.windows(2).all(|p| p[1] - p[0] >= 16.0), "{places:?}");
 }
 
-/// A plane is drawn shifted only if its line would cover something.
+/// A plane is shifted in the drawing only if its line would cover something.
 #[test]
 fn planes_in_free_space_stand_where_they_are() {
     let places = |side| {

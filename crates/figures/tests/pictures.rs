@@ -112,7 +112,7 @@ fn the_png_states_its_resolution() {
     assert_eq!(png[chunk + 8], 1, "the unit is the metre");
 }
 
-/// Only the title is in its corner: ink there shows that the built-in fonts work.
+/// Only the title is in this corner, so ink there shows that the built-in fonts work.
 #[test]
 fn text_is_drawn() {
     let values = corner();

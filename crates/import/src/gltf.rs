@@ -13,7 +13,7 @@
 //!   (`specularFactor` 0, or index 1) is Lambertian.
 //! - Pictures of colours are sRGB, of other quantities linear. Their first row is at v = 0, as in a world.
 //!
-//! Limits: 2²⁰ shapes and lights, and the byte limit of an import.
+//! Limits: 2²⁰ shapes, 2²⁰ lights, and the byte limit of an import.
 
 mod accessor;
 mod alpha;

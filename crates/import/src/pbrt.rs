@@ -1,8 +1,8 @@
 //! Scenes of pbrt-v4.
 //!
 //! `token`, `parameter` and `directive` turn the files into a [`scene::Scene`]; `reader` and the
-//! modules below it turn it into a world. Each parameter that is read is marked, and each unmarked
-//! one becomes a note. Conventions are those of pbrt-v4's source.
+//! modules below it turn this scene into a world. Each parameter that is read is marked, and each
+//! unmarked one becomes a note. Conventions are those of pbrt-v4's source.
 //!
 //! # Light
 //!
@@ -23,9 +23,9 @@
 //!
 //! # Space
 //!
-//! pbrt's coordinates are left-handed. They are kept, and the camera's map mirrors instead: its X
-//! points to the left of the picture. A mirror does not change light transport. The front of a
-//! surface is where pbrt's normal points.
+//! pbrt's coordinates are left-handed. These coordinates are kept. The camera's map mirrors
+//! instead, so its X points to the left of the picture. A mirror does not change light transport.
+//! The front of a surface is where pbrt's normal points.
 //!
 //! # Limits
 //!

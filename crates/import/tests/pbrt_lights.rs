@@ -1,5 +1,5 @@
-//! Lights of pbrt-v4: a colour has the value that its own picture shows, a spectrum has luminance
-//! 1.
+//! Lights of pbrt-v4. A colour has the value that pbrt's own picture shows, and a spectrum has
+//! luminance 1.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -209,7 +209,7 @@ fn skies_are_squares_of_equal_area() {
         sum += light;
         toward += light * DVec3::new(sin * x, cos, -sin * z);
     }
-    // Means over pixels conserve light within a few hundredths of so small a spot.
+    // Means over pixels conserve the light of so small a spot to a few per cent.
     let pixel = 4.0 * PI / (side * side) as f64;
     assert!((sum / (4.0 * pixel) - 1.0).abs() < 0.1, "{sum}");
     // The centre of the pixel: u = 9/16, v = 1/16 of ±1, so that r = 10/16.

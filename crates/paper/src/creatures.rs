@@ -40,7 +40,7 @@ const SPARSE: usize = 20;
 /// Paths of each shading sample.
 const PATHS_PER_SAMPLE: u32 = 128;
 
-/// The pixel difference, over white, at which the colors of differences saturate.
+/// The pixel difference, relative to white, at which the colors of differences saturate.
 const MAX_DIFFERENCE: f64 = 0.2;
 
 struct CreatureScene {
@@ -232,12 +232,12 @@ impl ComparedPictures {
         }
     }
 
-    /// Relative luminance: radiance over that of white, at most 1.
+    /// Relative luminance: radiance divided by that of white, at most 1.
     fn luminance(&self, scene: &CreatureScene, of: &[f64]) -> Result<Array2<f64>, Failure> {
         scene.picture(of.iter().map(|x| (x / self.white).min(1.0)).collect())
     }
 
-    /// The difference from the reference over white.
+    /// The difference from the reference, relative to white.
     fn difference(&self, scene: &CreatureScene, of: &[f64]) -> Result<Array2<f64>, Failure> {
         let both = of.iter().zip(&self.reference.mean);
         scene.picture(both.map(|(x, r)| (x - r) / self.white).collect())

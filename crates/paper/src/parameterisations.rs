@@ -80,7 +80,7 @@ fn difference(slopes: &Slices, angles: &Slices) -> Array2<f64> {
     })
 }
 
-/// The norm of the difference over that of the spectrum.
+/// The norm of the difference divided by that of the spectrum.
 fn off(angles: &Seen<'_>) -> Vec<String> {
     let Some(first_order) = &angles.found.report.first_order else {
         return Vec::new();
@@ -117,8 +117,8 @@ mod tests {
     use crate::scene_run::Shot;
     use etendue_pipeline::Silent;
 
-    /// The difference of the two planes is that of the chain, which takes u for θ. It would be as
-    /// large as the spectra if different frequencies of the two planes were subtracted.
+    /// The difference of the two planes is the error of the chain, which treats u as θ. It would be
+    /// as large as the spectra if different frequencies of the two planes were subtracted.
     #[test]
     fn the_difference_of_the_planes_is_the_error_of_the_chain() {
         let subject = named("8").unwrap().subject().unwrap();

@@ -114,7 +114,7 @@ fn windowed(spectrum: &dyn Fn(f64) -> Complex, window: &Profile, rho: &[f64]) ->
     rho.iter().map(at).collect()
 }
 
-/// |S| at azimuth 0 along ν = 0, relative to that at zero, over ρ.
+/// |S| at azimuth 0 along ν = 0, as a function of ρ, relative to the value at zero.
 fn at_zero_nu(slices: &Slices) -> Vec<[f64; 3]> {
     let full = slices.full();
     let (grid, peak) = (&slices.grid, slices.at_zero());

@@ -31,7 +31,7 @@ pub(crate) fn fragment(file: &SceneFile) -> Option<String> {
 /// The precision, in inverse metres, of values derived from positions and sides of slats.
 const DIGITS: f64 = 1e12;
 
-/// Whether two layers are slats that differ only by rounding.
+/// Whether two layers are slats that differ only by rounding errors.
 fn are_near(a: &BlockersFile, b: &BlockersFile) -> bool {
     let of = |blockers: &BlockersFile| {
         let BlockersFile::Shapes { center, shapes, .. } = blockers else {

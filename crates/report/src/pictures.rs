@@ -196,7 +196,7 @@ pub fn verdict_line(plane: &PlaneComparison) -> String {
     verdict_lines(plane).join(", ")
 }
 
-/// The same in lines as narrow as a picture.
+/// The verdict and its reasons, in lines as narrow as a picture.
 pub fn verdict_lines(plane: &PlaneComparison) -> Vec<String> {
     let report = &plane.report;
     let verdict = word(report.verdict);

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 pub struct OutputOptions<'a> {
     /// The data saved beside the result.
     pub save: &'a [Save],
-    /// Whether to omit files whose content is also in pictures and arrays.
+    /// Whether to omit files whose content other files also hold.
     pub compact: bool,
 }
 

@@ -98,8 +98,9 @@ impl SweepPoints {
     }
 }
 
-/// The seed of a point, derived from its scene and the seed of the sweep, independently of other
-/// points. The seed is small enough for every reader of JSON to represent it exactly.
+/// The seed of a point. It is derived from the point's scene and the seed of the sweep, and does
+/// not depend on the other points. The seed is small enough for every reader of JSON to represent
+/// it exactly.
 fn seed_of(scene: &Scene) -> u64 {
     let hash = blake3::hash(scene.hash().as_bytes());
     let mut words = hash.as_bytes().chunks_exact(8).map(|word| {
@@ -150,7 +151,7 @@ fn check(
     }
 }
 
-/// The fields set to one value, and those swept.
+/// The fields set to one value, and the swept fields.
 fn settings(all: &[Setting]) -> (Vec<(String, String)>, Vec<Sweep>) {
     let (mut set, mut sweeps) = (Vec::new(), Vec::new());
     for setting in all {

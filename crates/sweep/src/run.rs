@@ -58,8 +58,8 @@ pub fn run(
     check_earlier(folder, SWEEP, base, request.force, arguments)?;
     check_fields(request, folder, sweeps)?;
     let inputs = load::inputs(&all.source, base);
-    // The folder is claimed before the work, and again for the table; each point claims a folder of
-    // its own.
+    // The folder is claimed before the work, and again for the table. Each point claims its own
+    // folder.
     drop(Results::claim(folder, plan(request, &inputs))?);
     unfinished::keeps(
         "interrupted: finished points are kept; the same command continues from them",
@@ -69,7 +69,7 @@ pub fn run(
     finish(request, all, &found, results, reporter)
 }
 
-/// Fails where the folder holds a sweep of other fields.
+/// Fails if the folder holds a sweep of other fields.
 fn check_fields(request: &SweepRequest, folder: &Path, sweeps: &[Sweep]) -> Result<(), Failure> {
     let earlier = read_file(&folder.join(SWEEP), MAX_INDEX_BYTES).ok();
     let earlier: Option<Value> = earlier.and_then(|bytes| serde_json::from_slice(&bytes).ok());

@@ -49,7 +49,8 @@ pub fn setting_of(path: &str, values: &str, arguments: ArgumentStyle) -> Result<
     Ok(Setting::Value(path, values))
 }
 
-/// Whether there is a comma outside of parentheses and quotes, which no single value contains.
+/// Whether there is a comma outside of parentheses and quotes. No single value contains such a
+/// comma.
 fn is_list(text: &str) -> bool {
     let (mut depth, mut quoted) = (0, false);
     text.chars().any(|c| {
@@ -63,7 +64,8 @@ fn is_list(text: &str) -> bool {
     })
 }
 
-/// `PATH=A..B:N`, evenly spaced, `PATH=A..B:Nlog`, by equal factors, or `PATH=A,B,C`.
+/// The forms are `PATH=A..B:N` (evenly spaced), `PATH=A..B:Nlog` (spaced by equal factors) and
+/// `PATH=A,B,C`.
 pub fn sweep(text: &str) -> Result<Sweep, String> {
     let (path, values) = text
         .split_once('=')
@@ -150,14 +152,15 @@ fn between([from, to]: [f64; 2], i: usize, count: usize, is_log: bool) -> f64 {
         from * libm::pow(to / from, share)
     } else {
         let value = (1.0 - share) * from + share * to;
-        // A step that is zero but for rounding.
+        // The step at which the value is zero except for rounding errors.
         let is_zero = value.abs() < 1e-12 * from.abs().max(to.abs());
         if is_zero { 0.0 } else { value }
     };
     tidy(value).parse().unwrap_or(value)
 }
 
-/// The points of all sweeps: in step, or all combinations, the last field fastest.
+/// The values at all points. Fields vary in step, or in all combinations with the last field
+/// varying fastest.
 pub fn points(sweeps: &[Sweep], together: bool) -> Result<Vec<SweepPoint>, Failure> {
     let counts: Vec<usize> = sweeps.iter().map(|sweep| sweep.values.len()).collect();
     let at = |sweep: &Sweep, i: usize| (sweep.path.clone(), sweep.values[i]);

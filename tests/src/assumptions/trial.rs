@@ -46,7 +46,7 @@ const BUDGET: RayBudget = RayBudget {
     error: 3e-3,
 };
 
-/// Tries the planes of a scene with a reported violation, each on its own.
+/// Tries each plane of a scene that has a reported violation, one plane at a time.
 pub(super) fn trials(scene: &Scene) -> Vec<Trial> {
     let alone = (0..scene.planes.len()).map(|plane| scene.seen_at(&[plane]));
     alone.filter_map(|scene| trial(&scene)).collect()

@@ -271,7 +271,7 @@ fn cosine(photons: u64) -> Claim {
             slices[0].relative_difference(&slices[1])
         })
     });
-    // Photons of one scene, weighted in two ways: there is no prediction of the difference.
+    // Photons of one scene, weighted in two ways. There is no prediction of the difference.
     let numbers: Vec<ClaimNumber> = apart
         .iter()
         .map(|n| ClaimNumber {

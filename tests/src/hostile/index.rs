@@ -59,8 +59,8 @@ pub(crate) fn other_scene(index: &str, dice: &mut Dice) -> Option<Value> {
     Some(scene)
 }
 
-/// An index in which `old`, the hash of a file, is replaced by that of the `new` bytes; its own
-/// hash matches again.
+/// An index in which `old`, the hash of a file, is replaced by the hash of the `new` bytes. The
+/// index's own hash is updated to match.
 pub(crate) fn with_hash_of(index: &str, old: &[u8], new: &[u8]) -> String {
     let [old, new] = [old, new].map(|bytes| blake3::hash(bytes).to_hex());
     sealed(&index.replace(old.as_str(), new.as_str()))

@@ -25,8 +25,8 @@ pub(crate) const SMALL: &str = r#"(
     run: (photons: 2000, seed: 1, batches: 32),
 )"#;
 
-/// The same scene with a mesh from a file: it has a reference instead of a prediction, and copies
-/// of the mesh.
+/// The same scene with a mesh from a file. It has a reference instead of a prediction, and its
+/// folders contain copies of the mesh.
 pub(crate) fn with_mesh() -> String {
     let mesh = r#"blockers: [Mesh(name: "tetra", center: (0.1, 0.2, 1), 
         mesh: File("meshes/tetra.obj"), scale: 0.1), "#;

@@ -66,7 +66,8 @@ fn succeeds(command: &mut Command) -> io::Result<()> {
     }
 }
 
-/// A command whose files are limited to this many blocks; writing more is an error, not a signal.
+/// A command whose files are limited to this number of blocks. Writing more gives an error and not
+/// a signal.
 pub(super) fn limited(program: &Path, blocks: usize) -> Command {
     let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$@\"");
     let mut command = Command::new("sh");

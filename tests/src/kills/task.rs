@@ -40,7 +40,7 @@ impl Verb {
         }
     }
 
-    /// The command line; another seed gives another result.
+    /// The command line for a seed; another seed gives another result.
     pub(super) fn arguments(self, seed: u64) -> Vec<String> {
         let ending = format!("--out out --quiet --threads 2 --seed {seed}");
         words(&match self {

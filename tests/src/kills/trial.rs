@@ -176,7 +176,8 @@ impl TrialBench<'_> {
         let own = [task.verb.index(), "timing.json"];
         let belongs = |name: &str| {
             own.contains(&name)
-                // Points of a sweep are kept for the next one, each as a separate result.
+                // Finished points of a killed sweep remain for the next sweep, each as a separate
+                // result.
                 || (task.verb == Verb::Sweep && name.starts_with("points/"))
                 || task.foreign.contains_key(name)
                 || listed.iter().any(|(known, _)| known == name)
@@ -221,7 +222,7 @@ fn is_unfinished(task: &KillTask, name: &str) -> bool {
     name.contains(".etendue") && !is_point
 }
 
-/// Size of a disk that holds the existing files and some, but not all, of the new files.
+/// Size of a disk that holds the existing files and a random part of the new files.
 fn room(task: &KillTask, dice: &mut Dice) -> u64 {
     // Each file and folder occupies whole pages.
     let pages = |bytes: &Option<Vec<u8>>| 1 + bytes.as_ref().map_or(0, Vec::len).div_ceil(4096);

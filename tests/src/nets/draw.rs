@@ -14,7 +14,7 @@ pub(super) enum BlockerKind {
     PointAcross,
     /// Irradiance at a receiver, with its cosine.
     Cosine,
-    /// Reflected by a diffuse receiver.
+    /// Light that a diffuse receiver reflects.
     Diffuse,
     /// The same with a point light.
     PointDiffuse,
@@ -24,11 +24,11 @@ pub(super) enum BlockerKind {
     Refraction,
     /// Behind a thin lens.
     Lens,
-    /// A projector or a beam before one of the others.
+    /// A projector or a beam, followed by the elements of another kind.
     Picture,
-    /// Reflected by a BRDF.
+    /// Light that a BRDF reflects.
     Brdf,
-    /// The same in an environment.
+    /// Light of an environment that a BRDF reflects.
     Sky,
 }
 
@@ -193,7 +193,7 @@ fn blockers(kind: BlockerKind, dice: &mut SceneDice) -> String {
     layers.join(", ")
 }
 
-/// Rectangles or discs in the cells of a board; some rows have four cells.
+/// One to four rectangles or discs, in the cells of a board of two by two.
 fn shapes(dice: &mut SceneDice, square: bool) -> String {
     let pitch = dice.between(0.1, 0.35);
     let count = 1 + dice.of(4);

@@ -27,8 +27,8 @@ pub(super) struct SceneOutcome {
 pub(super) struct Measured {
     /// ‖F − truth‖/‖truth‖, divided by the stated error.
     pub(super) ratio: f64,
-    /// The squared ratio for the means of adjacent pairs of nets, whose error is four times that of
-    /// all nets.
+    /// The squared ratio for the means of adjacent pairs of nets. The error of such a mean is four
+    /// times that of the mean of all nets.
     pub(super) pairs: Vec<f64>,
     /// (F − truth)/(standard error) at zero frequency.
     pub(super) zero: f64,
@@ -36,7 +36,8 @@ pub(super) struct Measured {
     pub(super) apart: Vec<f64>,
 }
 
-/// Scenes of each kind; those without a theory and those without light are replaced by new draws.
+/// The scenes of each kind. Scenes without a theory and scenes without light are replaced by new
+/// draws.
 pub(super) fn outcomes(each: impl Fn(&SceneOutcome)) -> (Vec<SceneOutcome>, usize) {
     let (mut outcomes, mut left_out, mut number) = (Vec::new(), 0, 0);
     for (kind, count) in BlockerKind::ALL {
@@ -69,7 +70,7 @@ struct PredictionFound {
 
 /// Permitted error of the truth relative to the stated error.
 const OF_STATED: f64 = 0.1;
-/// Factor in the number of nodes for the truth, if there is no closed form.
+/// Factor by which the number of nodes is increased for the truth, if there is no closed form.
 const HUNDREDFOLD: f64 = 128.0;
 /// The factor of the planted fault in a density.
 const PLANTED: f64 = 1.02;

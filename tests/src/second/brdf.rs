@@ -1,5 +1,5 @@
-//! BRDFs from their definitions: Fresnel's equations with complex indices, facets by their slopes,
-//! and Smith's masking as an integral.
+//! BRDFs from their definitions: Fresnel's equations with complex indices, microfacets described by
+//! their slopes, and Smith's masking as an integral.
 
 use super::vector::{Vector, angle, dot, plus, turned, unit};
 use etendue_field::{AngleTable, Brdf, Complex, Fresnel, Lobe};
@@ -28,7 +28,7 @@ pub(super) fn value(brdf: &Brdf, from: Vector, to: Vector, fault: &str) -> f64 {
     factors * lobe(brdf, incidence, [from, to], fault)
 }
 
-/// The straight line between two values of a list over 0 to 90°, at an angle.
+/// The value at an angle, interpolated linearly between two values of a list over 0 to 90°.
 fn by_angle(values: &[f64], angle: f64, fault: &str) -> f64 {
     let step = 90.0 / (values.len() - 1) as f64;
     let degrees = match fault {
@@ -183,7 +183,7 @@ fn reflected(fresnel: &Fresnel, angle: f64, fault: &str) -> f64 {
     }
 }
 
-/// The direction into which a microfacet reflects another one.
+/// The direction into which a microfacet reflects another direction.
 pub(super) fn mirrored(from: Vector, facet: Vector) -> Vector {
     plus(from.map(|c| -c), 2.0 * dot(from, facet), facet)
 }

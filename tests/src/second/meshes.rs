@@ -155,7 +155,7 @@ impl Hill {
     }
 
     /// The curvature of the normal section along (dx, dy, p dx + q dy): the second fundamental form
-    /// over the first, convex positive (do Carmo 1976, section 3.3).
+    /// divided by the first (do Carmo 1976, section 3.3). It is positive if the surface is convex.
     fn along(&self, [dx, dy]: [f64; 2]) -> (Vector, f64) {
         let [p, q] = self.slopes();
         let [k, l] = self.curvature;

@@ -68,8 +68,8 @@ impl Levels {
         self.values[row * self.width + column]
     }
 
-    /// A picture around the vertex, with its top along Y: bilinear between pixel centres, constant
-    /// beyond the outermost centres, 0 beyond its edge.
+    /// A picture around the vertex, with its top along Y. It is bilinear between pixel centres,
+    /// constant beyond the outermost centres, and 0 beyond its edge.
     fn picture(&self, [width, height]: [f64; 2], [s, t]: [f64; 2], fault: &str) -> f64 {
         if s.abs() > width / 2.0 || t.abs() > height / 2.0 {
             return 0.0;
@@ -99,8 +99,8 @@ impl Levels {
     }
 }
 
-/// The last of the ascending centres before a position, and the fraction of the way to the next;
-/// clamped beyond the outermost.
+/// The last of the ascending centres before a position, and the fraction of the way to the next
+/// centre. Positions beyond the outermost centres are clamped.
 fn between(centres: &[f64], at: f64, fault: &str) -> (usize, f64) {
     let last = centres.len() - 1;
     if at <= centres[0] {

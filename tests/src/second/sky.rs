@@ -102,8 +102,8 @@ fn mapped(dice: &mut Dice, fault: &str, folder: &Path, map: &Levels) -> f64 {
 impl Levels {
     /// Radiance from a direction (x, up, front). The centre of column i of w is at longitude π (1 −
     /// (2 i + 1)/w), counted from the front towards x. The centre of row j of h is at latitude π (½
-    /// − (j + ½)/h). Interpolation is bilinear and periodic in longitude; beyond the outermost rows
-    /// the value of the row is used up to the poles.
+    /// − (j + ½)/h). Interpolation is bilinear, and periodic in longitude. Between an outermost row
+    /// and its pole, the value of the row is used.
     fn radiance(&self, [x, up, front]: Vector, fault: &str) -> f64 {
         let longitude = angle([0.0, 0.0, 1.0], [x, 0.0, front]) * x.signum();
         let latitude = PI / 2.0 - angle([0.0, 1.0, 0.0], [x, up, front]);

@@ -12,7 +12,7 @@ use std::path::Path;
 pub(super) struct World {
     /// The frame at the light.
     pub(super) light: Axes,
-    /// X as in the file: not orthogonal to D.
+    /// X as in the file, where it need not be orthogonal to D.
     x_axis: Vector,
     pub(super) lamp: String,
     pub(super) blockers: String,

@@ -221,8 +221,8 @@ fn average() -> Vec<Statement> {
         let sine = |u: f64| (u - x) / (u - x).hypot(distance);
         sine(LIGHT) - sine(-LIGHT)
     };
-    // Pitches for which the light's image covers an odd number of half periods: there the first
-    // harmonic is largest.
+    // Pitches for which the light's image covers an odd number of half periods. The first harmonic
+    // is largest at these pitches.
     let image = 2.0 * LIGHT * AFTER / distance;
     let pitches = [4.5, 9.5, 18.5, 36.5].map(|count| image / count);
     let ripple = |pitch: f64| {

@@ -71,7 +71,7 @@ pub(super) const fn term(before: Factor<'_>, lobe: Option<PlanarLobe>) -> Separa
     }
 }
 
-/// cos θ (1 + 0.6 sin θ), which is not even: sin θ shifts a spectrum by ± 1/2π.
+/// cos θ (1 + 0.6 sin θ), which is not even. The factor sin θ shifts a spectrum by ± 1/2π.
 pub(super) fn lopsided(theta: f64) -> f64 {
     theta.cos() * (1.0 + 0.6 * theta.sin())
 }

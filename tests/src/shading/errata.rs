@@ -118,7 +118,7 @@ fn irradiance() -> Vec<Erratum> {
 fn brdf() -> Vec<Erratum> {
     let lobe = PlanarLobe::Gaussian { deviation: 0.12 };
     let fixed = |_: f64, d: f64| lobe.value(d);
-    // θ_o = θ_o' + k s: from the normal at the centre, not from that at s.
+    // θ_o = θ_o' + k s is the angle from the normal at the centre, not from the normal at s.
     let global = |s: f64, d: f64| lobe.value(d + K * s);
     let plain = primal(&surface(Some(&fixed)));
     let unprimed = primal(&surface(Some(&global)));

@@ -97,7 +97,7 @@ impl EyeScene {
 
     /// The frequency below which 99 % of the energy of an image lies, divided by the predicted one.
     /// The Gaussian lobe is narrow enough for the surface to be linear. The image is that of a
-    /// distant point, or the derivative of that of an edge.
+    /// distant point, or the derivative of the image of an edge.
     pub(super) fn image(&self, edge: bool, said: f64) -> f64 {
         const DEVIATION: f64 = 1e-4;
         const COUNT: i32 = 240;

@@ -174,8 +174,8 @@ impl GlossyBench {
     fn windows(&self, c: &Criterion) -> (Windows, f64) {
         let deviation = GAUSSIAN / c.lobe_cutoff;
         let finer = self.says(c)[0] / c.lobe_cutoff;
-        // In angles at the surface, the lobe's centre and edges are those of the first lobe times
-        // x/(seen slope).
+        // The window must contain the lobe's centre and edges, which are computed in angles at the
+        // surface.
         let nearness = match self.lit {
             Lit::Beam => 0.0,
             Lit::Point(d) | Lit::Slit(d) => c.incidence.cos() / d,
@@ -191,8 +191,8 @@ impl GlossyBench {
             (tails * deviation + self.aside.abs() + 0.7 * along.abs() * ACROSS) / finer.max(1e-6);
         let u = wanted.min(WIDEST);
         let floor = if wanted > WIDEST { BOX / u } else { 0.0 };
-        // The slice at zero integrates across; a lobe that is not a product gets a narrow window,
-        // so that the visible light is in the plane of incidence.
+        // The slice at azimuth 0 integrates over y and v. A lobe that is not a product gets a
+        // narrow window, so that the visible light is in the plane of incidence.
         let across = 1.0
             + self.distance
                 * (nearness / c.incidence.cos() + 2.0 * c.curvature * c.incidence.cos());
@@ -204,7 +204,7 @@ impl GlossyBench {
         let windows = Windows {
             slope: [u, v],
             most: [2.0 * along.abs() * c.lobe_cutoff + 2.0 / ACROSS, 2.5 * said],
-            // The window is seven times as wide as the lobe seen from the eye.
+            // The beam is seven times as wide as the lobe seen from the eye.
             beam: 18.0 * self.distance * (u / tails).max(deviation / finer.max(0.2)) + 2.0 * ACROSS,
         };
         (windows, floor)

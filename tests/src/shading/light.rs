@@ -78,9 +78,9 @@ pub(super) struct PrimalSurface<'a> {
     pub(super) horizon: f64,
     /// f(θ_i').
     pub(super) before: &'a dyn Fn(f64) -> f64,
-    /// ρ(s, δ); `None` is a Dirac.
+    /// ρ(s, δ); `None` means a Dirac.
     pub(super) lobe: Option<&'a dyn Fn(f64, f64) -> f64>,
-    /// h(θ_o'), on the half-circle; `None` is 1 on the whole circle.
+    /// h(θ_o'), on the half-circle; `None` means 1 on the whole circle.
     pub(super) after: Option<&'a dyn Fn(f64) -> f64>,
     /// Angles at which f or h has a kink, ascending.
     pub(super) kinks: &'a [f64],

@@ -318,8 +318,8 @@ fn texture(system: &mut ScatteringSystem, factor: f64) {
     }
 }
 
-/// Light of the environment that arrives at the sphere, times the cosine. The direction of the
-/// light is rotated about the normal in one fault, and not rotated in the other.
+/// Light of the environment that arrives at the sphere, times the cosine. In the two faults, the
+/// environment is rotated by a pixel.
 fn turned(photons: Option<u64>) -> (Bench, [(&'static str, Slices); 2]) {
     let scene = misprints::arriving(photons);
     let Light::Environment { environment } = &scene.light else {

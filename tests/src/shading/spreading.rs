@@ -143,7 +143,8 @@ fn cosine() -> Vec<Statement> {
         mean: 0.3,
         deviation: 0.3,
     };
-    // The positions extend over a pattern of frequency f along the surface.
+    // The relative error of the convolution if the light also varies along the surface, as
+    // `pattern`.
     let off = |pattern: &dyn Fn(f64) -> f64| {
         let pairs: Vec<[Complex; 2]> = (0..16)
             .map(|i| {

@@ -24,7 +24,7 @@ const REACH: f64 = 7.0;
 struct Circle {
     theta0: f64,
     k: f64,
-    /// Standard deviation of the lobe, relative to the size; `None` is a Dirac.
+    /// Standard deviation of the lobe, relative to the size; `None` means a Dirac.
     lobe: Option<f64>,
 }
 
@@ -289,8 +289,9 @@ impl Circle {
         }
     }
 
-    /// The position where the line through a point at an angle θ to a central direction crosses the
-    /// line perpendicular to that direction, from the origin along cos T − sin N.
+    /// The position where two lines cross. One goes through a point at an angle θ to a central
+    /// direction. The other is perpendicular to that direction, from the origin along cos T − sin
+    /// N.
     fn across(&self, central: f64, [t, n]: [f64; 2], theta: f64) -> f64 {
         let (sine, cosine) = central.sin_cos();
         t * cosine - n * sine - (t * sine + n * cosine) * theta.tan()

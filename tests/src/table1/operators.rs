@@ -153,8 +153,8 @@ fn operator(view: &Observed<SpecularSystem>) -> (&'static str, Option<Line>) {
     }
 }
 
-/// The 2D scene in the plane of incidence, for a scene with one surface whose principal axes are
-/// along it.
+/// The 2D scene in the plane of incidence, for a scene with one surface. A principal axis of the
+/// surface must lie in this plane.
 fn section(view: &Observed<SpecularSystem>) -> Option<(MirrorPath, PathStage)> {
     let Observed { system, plane } = view;
     let value = |p: Parameter| view.value(p);

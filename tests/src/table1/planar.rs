@@ -162,7 +162,8 @@ impl MirrorPath {
         }
     }
 
-    /// The operators' spectrum of a field of some size; the frequencies; the field.
+    /// The spectrum that the operators give for a field of some size, with the frequencies and the
+    /// field.
     fn said(&self, stage: PathStage, size: f64) -> (Vec<Complex>, Vec<[f64; 2]>, Matrix<2>) {
         let map = self.map(stage);
         let field = FIELD.map(|row| row.map(|s| s * size * size));

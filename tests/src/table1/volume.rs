@@ -130,7 +130,7 @@ fn defects(system: &SpecularSystem, plane: &Frame, at: [f64; 4], ratio: f64) -> 
         if slopes {
             z = with_slopes(z);
         }
-        // The index at the light is taken as one.
+        // The index of refraction at the light is taken as one.
         z[2] /= ratio;
         z[3] /= ratio;
         Some(z)

@@ -71,7 +71,7 @@ pub(super) fn shrink(
     serde_json::from_value(best).map_err(io::Error::other)
 }
 
-/// All scenes one step smaller, those with the largest removals first.
+/// All scenes that are one step smaller, those with the largest removals first.
 fn candidates(tree: &Value) -> Vec<Value> {
     let mut found = Vec::new();
     let places = places(tree, String::new());

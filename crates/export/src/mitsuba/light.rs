@@ -82,7 +82,7 @@ impl Writer {
     }
 }
 
-/// The interpolation error of a picture, linear between pixels, of a smooth function: an eighth of
+/// The error of a picture of a smooth function, interpolated linearly between pixels: an eighth of
 /// the second derivative times the squared pixel width.
 fn error_of(image: &Image, half: f64) -> String {
     let pixel = 2.0 * half / PIXELS as f64;

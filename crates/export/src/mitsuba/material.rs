@@ -132,7 +132,8 @@ impl Writer {
 /// A perfect reflector.
 const NO_METAL: &str = "<string name=\"material\" value=\"none\"/>";
 
-/// n and k: a dielectric reflects like a metal without absorption.
+/// Writes n and k. A dielectric is written as a metal without absorption, which reflects in the
+/// same way.
 fn index(fresnel: &Fresnel) -> Option<[f64; 2]> {
     match *fresnel {
         Fresnel::White => None,

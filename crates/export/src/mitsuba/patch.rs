@@ -174,7 +174,7 @@ mod tests {
         }
     }
 
-    /// A hemisphere: its edge is vertical, and its triangles are as accurate there.
+    /// A hemisphere. Its edge is vertical, and its triangles are as accurate there as elsewhere.
     #[test]
     fn half_a_ball_is_met_as_well() {
         let mesh = mesh(&patch([10.0 / 3.0; 3], 0.3));

@@ -26,7 +26,7 @@ struct RecordedPlane<'a> {
     distance: f64,
     side: Side,
     leg: usize,
-    /// Identifiers of the shapes from which the light was scattered before this plane, in order.
+    /// Identifiers of the shapes that the light has left before this plane, in order.
     visits: Vec<String>,
     /// Identifier of the shape that ends the leg, if there is one.
     ends: Option<String>,

@@ -88,8 +88,8 @@ impl Xml {
         ));
     }
 
-    /// Distant light, given by a picture of all directions; Y of the frame is up, D is at its
-    /// centre.
+    /// Distant light, given by a picture of all directions. In the picture, Y of the frame is up
+    /// and D is at the centre.
     pub(super) fn sky(&mut self, file: &str, frame: &Frame) {
         let axes = [frame.x, frame.y, frame.d, DVec3::ZERO];
         self.line(&format!(
@@ -137,7 +137,7 @@ pub(super) fn diffuse(albedo: f64) -> String {
     format!("<bsdf type=\"twosided\"><bsdf type=\"diffuse\">{albedo}</bsdf></bsdf>")
 }
 
-/// A black material; Mitsuba's default reflects half.
+/// A black material, because Mitsuba's default material reflects half of the light.
 pub(super) fn black() -> String {
     "<ref id=\"black\"/>".to_owned()
 }

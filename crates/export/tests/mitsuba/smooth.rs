@@ -247,7 +247,7 @@ fn lights_shine_through_pictures() {
     assert_eq!(of_type(&xml, "directionalarea").len(), 1);
 }
 
-/// The sky is dark where it would emit against the central ray.
+/// The sky is dark in directions from which light would travel against the central ray.
 #[test]
 fn environments_become_maps() {
     let sky =

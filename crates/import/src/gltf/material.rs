@@ -12,8 +12,8 @@ use etendue_world::{Material, Texture};
 use std::collections::BTreeSet;
 
 impl<'a> GltfReader<'a> {
-    /// A material by number; without a number, the default material of the specification. `None` if
-    /// a cause of refusal was reported.
+    /// A material by its number in the file; without a number, the default material of the
+    /// specification. `None` if a cause of refusal was reported.
     pub(super) fn material(&mut self, number: Option<usize>) -> Option<GltfSurface> {
         if let Some(known) = self.materials.get(&number) {
             return known.clone();

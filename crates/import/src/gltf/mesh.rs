@@ -8,7 +8,7 @@ use ::gltf::json::{Accessor, Index};
 use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
 
-/// Maximum number of corners; indices have 32 bits.
+/// Maximum number of corners, because indices have 32 bits.
 const MAX_CORNERS: usize = u32::MAX as usize;
 
 fn attribute(primitive: &Primitive, of: Semantic) -> Option<Index<Accessor>> {

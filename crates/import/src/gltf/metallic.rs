@@ -8,7 +8,7 @@ use etendue_world::{Conductor, Material, MicrofacetDistribution, Plastic, Roughn
 /// Default index of refraction.
 const INDEX: f64 = 1.5;
 
-/// The JSON field of the picture of metallic and roughness.
+/// The JSON field that holds the picture of base colour, and that of metallic and roughness.
 const PBR: &str = "pbrMetallicRoughness";
 
 /// The reflection at the surface of a dielectric.

@@ -69,7 +69,8 @@ impl<'a> GltfReader<'a> {
         scene.nodes.iter().map(|node| node.value()).collect()
     }
 
-    /// Notes nodes that are not visited. Without scenes, these are only nodes in cycles.
+    /// Notes nodes that are not visited. In a file without scenes, only nodes in cycles are not
+    /// visited.
     fn tell_unmet(&self, met: &[bool]) {
         let unmet = met.iter().filter(|met| !**met).count();
         match (met.iter().position(|met| !met), self.root.scenes.is_empty()) {

@@ -8,7 +8,8 @@ use crate::report::quoted;
 const MAX_DEPTH: usize = 8;
 
 impl<'a> MitsubaReader<'a> {
-    /// Reads the depth from the integrator; its other settings only affect how Mitsuba computes.
+    /// Reads the depth from the integrator; its other settings affect only how Mitsuba computes,
+    /// not the result.
     pub(super) fn integrator(&mut self, scene: &'a MitsubaObject) {
         let Some(mut object) = self.child(scene, ObjectKind::Integrator) else {
             return;

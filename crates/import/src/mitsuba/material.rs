@@ -33,7 +33,7 @@ impl<'a> MitsubaReader<'a> {
         number
     }
 
-    /// The material of shapes without one: diffuse, or black for emitters.
+    /// The material of shapes that specify none: diffuse, or black for emitters.
     pub(super) fn default_material(&mut self, shines: bool) -> usize {
         if let Some(known) = self.defaults[usize::from(shines)] {
             return known;

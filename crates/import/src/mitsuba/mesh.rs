@@ -107,7 +107,7 @@ impl<'a> MitsubaReader<'a> {
         to_world: DAffine3,
         is_new: bool,
     ) -> (Result<Arc<Triangles>, String>, bool) {
-        // A mesh with its own normals can be shared by all placements.
+        // All placements can share a mesh that has its own normals.
         let everywhere = MitsubaMeshKey {
             linear: None,
             is_flat: false,

@@ -17,7 +17,7 @@ pub(super) struct Parameters {
 #[derive(Debug)]
 struct MitsubaParameter {
     value: String,
-    /// Whether the caller set it, so that the file must use it.
+    /// Whether the caller set the parameter; the file must then use it.
     is_set: bool,
     is_used: bool,
 }

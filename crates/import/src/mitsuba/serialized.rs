@@ -139,7 +139,8 @@ impl<R: Read> UnpackedStream<R> {
         }
     }
 
-    /// Reads rows of numbers. Memory grows as they are read, since the count may be wrong.
+    /// Reads rows of numbers. Memory is allocated as the rows are read, since the stated count may
+    /// be wrong.
     fn rows<const N: usize>(
         &mut self,
         count: u64,

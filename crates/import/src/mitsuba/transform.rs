@@ -1,4 +1,4 @@
-//! The elements of a transform. Each is applied after those before it.
+//! The elements of a transform. Each element is applied after those before it.
 
 use super::value;
 use glam::{DAffine3, DMat3, DMat4, DVec3, DVec4};

@@ -150,8 +150,8 @@ impl ObjReader<'_> {
         Some((factor > 0.0).then_some(Texture::Constant(factor)))
     }
 
-    /// A picture times factors; levels are sRGB unless they are `raw`. `None` if a cause of refusal
-    /// was reported.
+    /// A picture times factors. Its levels are sRGB unless `raw` is set. `None` if a cause of
+    /// refusal was reported.
     fn bitmap(&mut self, map: &MtlMap, factor: [f64; 3], raw: bool) -> Option<Texture> {
         let read = self.pixels(map, factor, raw);
         let refuse = |error: String| {

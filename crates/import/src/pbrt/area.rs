@@ -70,8 +70,8 @@ impl PbrtReader<'_> {
         }))
     }
 
-    /// The emission scaled to the required power. pbrt uses the area of a shape before its scale,
-    /// but the area of each triangle after it.
+    /// The emission scaled to the required power. pbrt uses the area of a shape before its
+    /// transform is applied, but the area of a triangle after that.
     pub(super) fn powered(
         &self,
         area: Option<&Entity>,

@@ -17,7 +17,8 @@ pub(super) const DEEPEST_FILES: usize = 64;
 /// Maximum number of included files, counting repeats.
 pub(super) const MOST_FILES: usize = 1 << 14;
 
-/// Maximum number of `Attribute` parameters in effect at one place: each is checked for each shape.
+/// Maximum number of `Attribute` parameters in effect at one place. It is needed because each
+/// parameter is checked for each shape.
 const MOST_DEFAULTS: usize = 256;
 
 /// The targets of `Attribute`.

@@ -149,7 +149,8 @@ impl Entity {
         Ok(self.float(report, name)?.unwrap_or(default))
     }
 
-    /// A number in a range; a number out of range is a cause that states the range.
+    /// A number in a range. A number out of range is a cause of refusal, whose message states the
+    /// range.
     pub(super) fn float_within(
         &self,
         report: &Report,

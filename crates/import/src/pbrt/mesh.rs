@@ -180,7 +180,7 @@ impl PbrtReader<'_> {
         Ok((vertices, indices.chunks_exact(N).map(face).collect()))
     }
 
-    /// A vertex attribute; with a wrong number of values it is left out, as in pbrt.
+    /// A vertex attribute. If it has a wrong number of values, it is left out, as in pbrt.
     fn beside<T>(
         &self,
         entity: &Entity,

@@ -18,7 +18,7 @@ const MAX_DEPTH: usize = 16;
 /// Plugins supported as textures.
 const ALLOWED: &str = "constant, imagemap, checkerboard, scale, mix";
 
-/// The type of a texture: float textures have their own names.
+/// The type of a texture. Float textures and spectrum textures have separate names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ask {
     Float,

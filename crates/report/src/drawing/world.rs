@@ -8,7 +8,7 @@ use glam::DVec3;
 
 /// The length in metres at which infinite objects are cut off, beyond any picture.
 const ENDLESS_METRES: f64 = 1e4;
-/// A path that turns by less than this is straight.
+/// Angle of a turn below which a path counts as straight.
 const STRAIGHT: f64 = 1e-9;
 
 /// The scene to scale; `None` if the path stays on one line.

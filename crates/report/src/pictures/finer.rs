@@ -1,9 +1,9 @@
 //! Spectra between the frequencies of a scene, for pictures without visible cells.
 //!
 //! Light outside the window does not count, so neighbouring frequencies determine the spectrum
-//! between them. Of all windowed light fields W ℓ with the given spectrum, the one with the least
-//! ∫ ℓ² is drawn; its spectrum is a weighted sum of the given frequencies with the covariance of
-//! white noise behind the window, K(Ω) = ∫ W² e^(−2πi Ω z) dz / ∫ W².
+//! between them. Of all windowed light fields W ℓ with the given spectrum, the one with the least ∫
+//! ℓ² is drawn. Its spectrum is a weighted sum of the given values. The weights follow from the
+//! covariance of white noise behind the window, K(Ω) = ∫ W² e^(−2πi Ω z) dz / ∫ W².
 
 use etendue_field::{Complex, FrequencyAxis, Profile, SliceGrid, Slices, Window};
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis, Slice};
@@ -112,7 +112,7 @@ fn linear(from: &FrequencyAxis, to: &FrequencyAxis) -> Vec<[(usize, f64); 2]> {
 
 /// The covariance, along a slice, of the spectrum of white noise behind a window.
 struct WindowCovariance {
-    /// Points of both profiles' squares, with their weights, along the slice.
+    /// Points of the squares of both profiles along the slice, with their weights.
     profiles: [Vec<(f64, f64)>; 2],
 }
 

@@ -34,8 +34,8 @@ pub fn path(
 }
 
 /// Draws the planes in the order in which light meets them. In the style of a figure, their
-/// predicted spectra are below. `photons` is the number emitted: a partial measurement has fewer
-/// than the scene requests.
+/// predicted spectra are below. `photons` is the number emitted; in a partial measurement it is
+/// lower than the scene requests.
 pub fn strip_of(
     scene: &Scene,
     photons: u64,
