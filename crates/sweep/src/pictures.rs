@@ -14,7 +14,10 @@ const MAX_PANELS: usize = 24;
 
 /// Draws the pictures of [`NAMES`], unless they would have too many panels. In a grid of several
 /// fields, each combination of values of the fields after the first has a panel.
-#[expect(clippy::too_many_lines, reason = "the steps of one drawing, from panels to axes")]
+#[expect(
+    clippy::too_many_lines,
+    reason = "the steps of one drawing, from panels to axes"
+)]
 pub(crate) fn drawn(
     scene: &str,
     found: &[PointResult],

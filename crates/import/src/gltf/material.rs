@@ -84,7 +84,10 @@ impl<'a> GltfReader<'a> {
     }
 
     /// The emission of the front. The outer `None` means that a cause of refusal was reported.
-    #[expect(clippy::option_option, reason = "the outer `None` means a reported cause")]
+    #[expect(
+        clippy::option_option,
+        reason = "the outer `None` means a reported cause"
+    )]
     fn emission(&mut self, draft: &mut Draft<'_>) -> Option<Option<Texture>> {
         let path = format!("{}.emissiveFactor", draft.path);
         let factor = self.shares(&path, draft.source.emissive_factor.0)?;
@@ -111,7 +114,10 @@ impl<'a> GltfReader<'a> {
 
     /// The opacity; the inner `None` means opaque. The outer `None` means that a cause of refusal
     /// was reported.
-    #[expect(clippy::option_option, reason = "the outer `None` means a reported cause")]
+    #[expect(
+        clippy::option_option,
+        reason = "the outer `None` means a reported cause"
+    )]
     fn opacity(&mut self, draft: &mut Draft<'_>) -> Option<Option<Texture>> {
         let source = draft.source;
         let factor = f64::from(source.pbr_metallic_roughness.base_color_factor.0[3]);

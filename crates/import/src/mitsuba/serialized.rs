@@ -49,9 +49,7 @@ fn find(bytes: &[u8], number: u32) -> Result<(u16, usize), String> {
         .map(|(table, count)| (table, u32::from_le_bytes(*count)))
         .ok_or("ends before its table of meshes")?;
     if number >= count {
-        return Err(format!(
-            "has {count} meshes, but shape_index is {number}"
-        ));
+        return Err(format!("has {count} meshes, but shape_index is {number}"));
     }
     let size = if version >= 4 { 8 } else { 4 };
     let back = (count - number) as usize;

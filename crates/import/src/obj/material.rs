@@ -139,7 +139,10 @@ impl ObjReader<'_> {
     }
 
     /// The transparency. The outer `None` means that a cause of refusal was reported.
-    #[expect(clippy::option_option, reason = "the outer `None` means a reported cause")]
+    #[expect(
+        clippy::option_option,
+        reason = "the outer `None` means a reported cause"
+    )]
     fn emission(&mut self, entry: &MtlEntry) -> Option<Option<Texture>> {
         if let Some(map) = &entry.map_ke {
             return self

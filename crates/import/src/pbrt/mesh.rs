@@ -191,7 +191,9 @@ impl PbrtReader<'_> {
         let all = read(entity, self.report)?;
         if all.len() != vertices.len() && !all.is_empty() {
             let (found, count) = (all.len(), vertices.len());
-            let message = format!("{name} is left out: the mesh has {count} vertices, but {name} gives {found}");
+            let message = format!(
+                "{name} is left out: the mesh has {count} vertices, but {name} gives {found}"
+            );
             self.note_once(entity.place_of(name), &message);
             return Ok(None);
         }

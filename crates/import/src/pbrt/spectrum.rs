@@ -42,10 +42,16 @@ impl PbrtReader<'_> {
             (role, PbrtSpectrum::Sampled(samples)) => rgb(&samples, role),
             (_, PbrtSpectrum::Named(name)) => match named::index(&name) {
                 Some(rgb) => rgb,
-                None => return Err(fault("is the spectrum of a light; allowed: rgb, pairs of a wavelength and a value, or the name of a glass or metal")),
+                None => {
+                    return Err(fault(
+                        "is the spectrum of a light; allowed: rgb, pairs of a wavelength and a value, or the name of a glass or metal",
+                    ));
+                }
             },
             (_, PbrtSpectrum::Blackbody(_)) => {
-                return Err(fault("is the spectrum of a light; allowed: rgb, pairs of a wavelength and a value, or the name of a glass or metal"));
+                return Err(fault(
+                    "is the spectrum of a light; allowed: rgb, pairs of a wavelength and a value, or the name of a glass or metal",
+                ));
             }
         };
         Ok(Some(self.color.of(color)))
@@ -71,7 +77,9 @@ impl PbrtReader<'_> {
                     return Ok([1.0; 3]);
                 }
                 _ if named::is_illuminant(&name) => {
-                    return Err(fault("has no colour here; allowed: conversion of colours to luminance"));
+                    return Err(fault(
+                        "has no colour here; allowed: conversion of colours to luminance",
+                    ));
                 }
                 _ => {
                     return Err(fault(
