@@ -45,7 +45,7 @@ pub enum NotInMitsuba {
     },
     /// An object behind the plane in which an environment begins.
     #[error(
-        "distant light starts in the plane of `center` here, but surrounds the whole scene in Mitsuba: {name:?} reaches behind that plane and would block it, and cannot be exported"
+        "distant light starts in the plane of `center` here, but surrounds the whole scene in Mitsuba: {name:?} reaches behind that plane and would block the light, so it cannot be exported"
     )]
     BehindTheSky {
         /// Name of the object.

@@ -13,8 +13,8 @@
 //!
 //! * `rgb L [r g b]` is the colour (r, g, b) in linear sRGB, times `scale`: (1, 1, 1) shows 1 in each channel, and has luminance 1;
 //! * `blackbody` and `spectrum` have luminance 1, whatever their values, times `scale`: only their colour is that of the spectrum;
-//! * * without any of these, a light is white: (1, 1, 1);
-//! * * `power` and `illuminance` above 0 apply to white light: a colour of luminance 1 is
+//! * without any of these, a light is white: (1, 1, 1);
+//! * `power` and `illuminance` above 0 apply to white light: a colour of luminance 1 is
 //!   multiplied by the required value, divided by the value that the light has with radiance or
 //!   intensity 1.
 //!

@@ -174,8 +174,7 @@ impl GlossyBench {
     fn windows(&self, c: &Criterion) -> (Windows, f64) {
         let deviation = GAUSSIAN / c.lobe_cutoff;
         let finer = self.says(c)[0] / c.lobe_cutoff;
-        // The window must contain the lobe's centre and edges, which are computed in angles at the
-        // surface.
+        // The window contains the lobe, whose extent is computed in angles at the surface.
         let nearness = match self.lit {
             Lit::Beam => 0.0,
             Lit::Point(d) | Lit::Slit(d) => c.incidence.cos() / d,

@@ -35,7 +35,7 @@ pub(super) fn read(bytes: &[u8], place: &SourcePlace, report: &Report) -> Option
         false => (bytes, None),
     };
     let root = Root::from_slice(json)
-        .map_err(|error| refuse(format!("is no glTF: {error}")))
+        .map_err(|error| refuse(format!("is not glTF: {error}")))
         .ok()?;
     check(&root, place, report).then(|| Document {
         root,

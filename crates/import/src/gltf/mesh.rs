@@ -87,7 +87,7 @@ impl GltfReader<'_> {
         spent.map_err(|error| self.cause(path, error)).ok()?;
         parts.drop_empty();
         if parts.corners.is_empty() {
-            self.note(path, "has no triangle with an area: left out");
+            self.note(path, "has no triangle with an area above 0: left out");
             return None;
         }
         let mended = parts.mend_normals();

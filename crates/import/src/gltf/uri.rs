@@ -27,7 +27,7 @@ pub(super) fn source(uri: &str, most: u64) -> Result<BufferSource, String> {
         }
         // Four characters encode three bytes.
         if (text.len() as u64) / 4 * 3 > most {
-            return Err("is too much data".to_owned());
+            return Err("has more data than an import may read".to_owned());
         }
         let bytes = BASE64.decode(text);
         let bytes = bytes.map_err(|error| format!("is damaged base64 ({error})"))?;

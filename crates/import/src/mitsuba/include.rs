@@ -23,7 +23,7 @@ impl Tree<'_> {
     ) -> Result<(), String> {
         allow(attributes, &["value"])?;
         if parent != 0 {
-            return Err("not in the scene itself".to_owned());
+            return Err("<path> inside another element; allowed: directly in <scene>".to_owned());
         }
         let name = required(attributes, "value")?;
         let found = self.files.find(&source.folders, name);

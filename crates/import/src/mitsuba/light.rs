@@ -68,7 +68,7 @@ impl<'a> MitsubaReader<'a> {
     /// cause of refusal was reported.
     #[expect(
         clippy::option_option,
-        reason = "neither is there; the outer `None` means a reported cause"
+        reason = "the inner `None` means neither; the outer one, a reported cause"
     )]
     fn either(
         &self,
@@ -167,7 +167,7 @@ impl<'a> MitsubaReader<'a> {
         if is_rigid(map) {
             return Some(map);
         }
-        let message = "to_world scales or shears; allowed: turning, moving and mirroring";
+        let message = "to_world scales or shears; allowed: rotations, translations and reflections";
         self.report
             .cause(self.place_of(object, "to_world"), message);
         None

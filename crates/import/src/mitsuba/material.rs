@@ -65,7 +65,8 @@ impl<'a> MitsubaReader<'a> {
             return None;
         }
         if depth > MAX_DEPTH {
-            let message = format!("bsdfs nested more than {MAX_DEPTH} deep, or one in itself");
+            let message =
+                format!("bsdfs nested more than {MAX_DEPTH} deep, or a bsdf within itself");
             self.report.cause(&object.place, message);
             return None;
         }
@@ -207,7 +208,7 @@ impl<'a> MitsubaReader<'a> {
 
     #[expect(
         clippy::option_option,
-        reason = "none is smooth; the outer `None` means a reported cause"
+        reason = "the inner `None` means smooth; the outer one, a reported cause"
     )]
     fn roughness_if(
         &mut self,

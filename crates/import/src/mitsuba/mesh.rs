@@ -180,7 +180,7 @@ impl<'a> MitsubaReader<'a> {
             }
         }
         let made = parts.finish().map(Arc::new);
-        made.ok_or_else(|| "has no triangle with an area".to_owned())
+        made.ok_or_else(|| "has no triangle with an area above 0".to_owned())
     }
 }
 

@@ -116,7 +116,7 @@ impl<'a> ObjReader<'a> {
         let Some(mesh) = parts.finish() else {
             return self
                 .report
-                .note(&place, "no triangle with an area: left out");
+                .note(&place, "no triangle with an area above 0: left out");
         };
         self.world.shapes.push(Shape {
             name: part.material.clone().unwrap_or_default(),

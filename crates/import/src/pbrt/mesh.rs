@@ -220,7 +220,7 @@ impl PbrtReader<'_> {
         parts.face_normals();
         parts.mend_normals();
         let made = parts.finish().map(Arc::new);
-        made.ok_or_else(|| "has no triangle with an area".to_owned())
+        made.ok_or_else(|| "has no triangle with an area above 0".to_owned())
     }
 }
 

@@ -140,7 +140,7 @@ impl PbrtReader<'_> {
     /// rounded down, are both even or both odd.
     fn checkerboard(&mut self, entity: &Entity, ask: Ask, uv: Uv) -> Read<Texture> {
         if entity.integer_or(self.report, "dimension", 2)? != 2 {
-            let message = "a checkerboard in space; allowed: dimension 2".to_owned();
+            let message = "a checkerboard of dimension 3; allowed: 2".to_owned();
             return Err(entity.fault(self.report, "dimension", message));
         }
         let first = self.constant_or(entity, "tex1", ask, 1.0);
@@ -161,7 +161,8 @@ impl PbrtReader<'_> {
                 self.mapped(entity, other, |v| v * factor)
             }
             _ => {
-                let message = "a product of two textures that vary; allowed: one".to_owned();
+                let message =
+                    "a product of two textures that vary; allowed: one that varies".to_owned();
                 Err(entity.fault(self.report, "tex", message))
             }
         }
