@@ -724,7 +724,7 @@ fn a_surface_behind_the_plane_of_the_sky_is_decided() {
     assert_eq!(verdict(&scene, &photons(&scene), &reference), Verdict::Pass);
 }
 
-/// Normals of a mesh are interpolated: a coarse mesh is not a smooth surface.
+/// Normals of a mesh are interpolated, so a coarse mesh is not a smooth surface.
 #[test]
 fn a_coarse_mesh_is_decided() {
     let area = [

@@ -22,7 +22,7 @@ impl AxisQuantity {
         }
     }
 
-    /// The label "name (unit)", in units of 10 to the `exponent`; markup.
+    /// The label "name (unit)" as markup, where the unit includes 10 to the `exponent`.
     pub(crate) fn label(&self, exponent: i32) -> String {
         let power = match exponent {
             0 => String::new(),

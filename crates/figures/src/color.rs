@@ -179,7 +179,7 @@ impl Shading {
         self.colors.at(self.axis.fraction(self.level(value)))
     }
 
-    /// The value on the color bar's axis.
+    /// Converts a value to the axis of the color bar.
     fn level(&self, value: f64) -> f64 {
         match self.reference {
             None => value,

@@ -195,7 +195,7 @@ mod tests {
             assert!((square - 4.0).abs() < 1e-12); // rounding
             highest = highest.max(y);
         }
-        // Two standard deviations of y, up to the polygon's corners.
+        // The height is two standard deviations of y, up to the error of the polygon.
         assert!((highest - 6.0).abs() < 6.0 * 2e-4, "{highest}");
         // A spectrum without width gives a line.
         assert!(points([1.0, -2.0, 4.0]).all(|[x, y]| (y + 2.0 * x).abs() < 1e-12)); // rounding

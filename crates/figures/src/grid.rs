@@ -246,7 +246,7 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         right - LEFT
     }
 
-    /// Whether the pictures of a row share the x axes of those below.
+    /// Whether the pictures of a row share their x axes with the row below.
     fn shares_x(&self, row: usize) -> bool {
         self.rows.get(row + 1).is_some_and(|below| {
             let mut both = self.rows[row].cells.iter().zip(&below.cells);

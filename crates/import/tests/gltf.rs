@@ -98,7 +98,7 @@ fn the_front_is_where_corners_run_counterclockwise() {
     let etendue_world::Geometry::Mesh(first) = &world.shapes[0].geometry else {
         panic!("no mesh");
     };
-    // X to the right and Y up: the front is towards Z.
+    // X points to the right and Y up, so the front is towards Z.
     let [a, b, c] = first.corners()[0].map(|i| first.vertices()[i as usize]);
     assert!((b - a).cross(c - a).z > 0.0);
     // A mirrored surface keeps its front, because its normals are transformed by the inverse

@@ -1,4 +1,4 @@
-//! Cameras of pbrt-v4: X to the right, and the angle of view along the shorter side.
+//! Cameras of pbrt-v4: X points to the right, and the angle of view is along the shorter side.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 

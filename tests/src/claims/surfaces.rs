@@ -314,7 +314,7 @@ fn lobe(photons: u64) -> Claim {
         );
         let seen = SeenScene::of(scene(&format!("{text}, {planes}"), 4 * photons));
         seen.number(0, |slices| {
-            // A Hann window alone has half its peak at the first frequency.
+            // The spectrum of a Hann window alone has half of its peak at the first frequency.
             let [theta, phi] =
                 [0, 1].map(|k| (at(slices, k, [0.0, nu]) / slices.at_zero() - 0.5).norm());
             theta / phi

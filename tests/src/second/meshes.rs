@@ -1,5 +1,5 @@
-//! Triangles, and meshes as smooth surfaces, compared with linear equations and the paraboloid that
-//! a mesh is sampled from.
+//! Triangles are compared with linear equations, and meshes as smooth surfaces with the paraboloid
+//! from which they are sampled.
 
 use super::check::{SecondCheck, worse};
 use super::vector::{

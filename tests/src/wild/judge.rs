@@ -246,7 +246,7 @@ fn of_tracers(file: &SceneFile, folder: &Path, name: &str) -> Option<Tracers> {
     })
 }
 
-/// Whether a scene still has the same fault, beyond chance.
+/// Whether a scene still has the same fault, and not by chance.
 pub(super) fn persists(
     runner: &Runner,
     file: &SceneFile,

@@ -39,7 +39,7 @@ pub(super) fn source(uri: &str, most: u64) -> Result<BufferSource, String> {
     unescaped(uri).map(BufferSource::File)
 }
 
-/// A name with percent encoding decoded.
+/// Decodes the percent encoding of a name.
 fn unescaped(uri: &str) -> Result<String, String> {
     let mut bytes = Vec::with_capacity(uri.len());
     let mut rest = uri.as_bytes();

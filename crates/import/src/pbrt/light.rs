@@ -112,7 +112,8 @@ impl PbrtReader<'_> {
         }
         let [cutoff, beam] = [cutoff, cutoff - delta].map(f64::to_radians);
         let [end, start] = [cutoff, beam].map(libm::cos);
-        // pbrt's convention: the mean of the falloff over its cosines is a half.
+        // pbrt's convention: between the two cones, the mean of the falloff over the cosine is a
+        // half.
         let solid = 2.0 * PI * ((1.0 - start) + (start - end) / 2.0);
         let factor = self.wanted(entity, "power", solid)?;
         let along = way?;
