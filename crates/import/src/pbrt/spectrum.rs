@@ -83,7 +83,7 @@ impl PbrtReader<'_> {
                 }
                 _ => {
                     return Err(fault(
-                        "is an index of refraction; allowed: the name of a standard illuminant",
+                        "is an index of refraction; allowed: rgb, blackbody, pairs of a wavelength and a value, or the name of a standard illuminant",
                     ));
                 }
             },
