@@ -1,4 +1,5 @@
-//! How far measurement and prediction are apart, and what the difference means.
+//! Measures how far a measurement and its prediction are apart, and states what the difference
+//! means.
 
 use crate::prediction::Prediction;
 use crate::residuals::Residuals;

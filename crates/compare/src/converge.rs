@@ -1,4 +1,5 @@
-//! How the first-order chain becomes exact as the neighbourhood of the central ray shrinks.
+//! Measures how the first-order chain becomes exact as the neighbourhood of the central ray
+//! shrinks.
 
 use crate::applicability::Applicability;
 use crate::system::print;
@@ -22,7 +23,7 @@ pub struct Convergence {
     pub order: Option<f64>,
 }
 
-/// The rays of each step where no quadrature rule converges.
+/// The budget of rays of each step, for planes where no quadrature rule converges.
 const BUDGET: RayBudget = RayBudget {
     nodes: 4e6,
     error: 1e-4,
@@ -32,9 +33,9 @@ const SHARES: [f64; 5] = [1.0, 0.5, 0.25, 0.125, 0.0625];
 /// Errors below this many times the quadrature error are too small to judge the chain by.
 const CLEAR: f64 = 5.0;
 
-/// Shrinks the light and the window of a plane behind specular surfaces, and the lobes where
-/// several surfaces scatter, and widens the frequencies by the same factor. `None` for any other
-/// plane. No photons are traced.
+/// Shrinks the light and the window of a plane behind specular surfaces, or the lobes where several
+/// surfaces scatter. Widens the frequencies by the same factor. `None` for any other plane. No
+/// photons are traced.
 #[must_use]
 pub fn converge(
     scene: &Scene,

@@ -46,8 +46,9 @@ pub struct CovarianceReport {
     pub error: Option<Matrix<4>>,
     /// How much each measured variance grows from half of the band to all of it.
     pub growth: Option<[f64; 4]>,
-    /// The largest difference of `traced_in_band` from `measured`, over the geometric mean of the two variances; and the
-    /// error of `measured` by the same measure.
+    /// The largest difference between `traced_in_band` and `measured`, divided by the geometric
+    /// mean of the two variances. The second number is the error of `measured`, divided in the same
+    /// way.
     pub off: Option<[f64; 2]>,
     /// Moments ρρ, ρν and νν of the slice at azimuth 0, where positions and slopes along y have no frequency.
     pub slice: [SliceMoment; 3],
@@ -60,7 +61,7 @@ pub struct CovarianceReport {
 pub struct SliceMoment {
     /// By covariance tracing.
     pub traced: Option<f64>,
-    /// By the photons, and by the exact prediction.
+    /// The moment of the photons, and that of the exact prediction.
     #[serde(flatten)]
     pub found: Pair,
 }
@@ -213,7 +214,7 @@ pub const AXES: [&str; 4] = ["ρx", "ρy", "νu", "νv"];
 /// deviations, and by 3 % at six.
 const ENDLESS: f64 = 1.15;
 
-/// The largest of the entries over the geometric mean of the variances of a matrix.
+/// Returns the largest entry, each divided by the geometric mean of the two variances in a matrix.
 fn largest(of: &Matrix<4>, entry: &dyn Fn(usize, usize) -> f64) -> f64 {
     let pairs = (0..4).flat_map(|i| (0..4).map(move |j| (i, j)));
     let shares = pairs.map(|(i, j)| entry(i, j).abs() / (of[i][i] * of[j][j]).abs().sqrt());
@@ -269,8 +270,8 @@ fn slice(
     }))
 }
 
-/// |F|² of theory at azimuth 0, [ρ, ν]; replicates are crossed, as batches are. `None` where another tracer stands for
-/// theory.
+/// |F|² of theory at azimuth 0, [ρ, ν]; it is computed from pairs of replicates, as a measured
+/// power is from pairs of batches. `None` where the measurement of another tracer replaces theory.
 fn predicted_slice(prediction: &Prediction) -> Option<Array2<f64>> {
     if prediction.class == Class::Reference {
         return None;

@@ -92,7 +92,8 @@ impl PredictedField {
 }
 
 /// The largest number of products of a closed form, some ten seconds on one core. Nets of rays
-/// replace a closed form with more, such as that of a disc, which consists of many rectangles.
+/// replace a closed form with more products, such as that of a disc, which consists of many
+/// rectangles.
 const MAX_PRODUCTS: usize = 4_000_000_000;
 
 /// The closed form between parallel planes. `None` behind a receiver, for the rays of a file, and

@@ -30,12 +30,12 @@ pub struct FirstOrder {
 pub struct FirstOrderChain {
     /// ‖first order − exact‖/‖exact‖ as computed, by the corrected formulas.
     pub error: f64,
-    /// The error that remains as the neighbourhood of the central ray shrinks: zero but for
-    /// rounding if every map is right (see [`rays::defect`]). It is that of the printed formulas
-    /// where `slices` are.
+    /// The error that remains as the neighbourhood of the central ray shrinks. It is zero, apart
+    /// from rounding errors, if every map is right (see [`rays::defect`]). Where `slices` come from
+    /// the printed formulas, so does the defect.
     pub defect: f64,
-    /// The part of the defect that is in the factor of the chain: the radiance that the chain gives
-    /// the central ray, over the radiance that the ray has, less 1.
+    /// The relative error of the radiance that the chain assigns to the central ray. It is the part
+    /// of the defect that is due to the constant factor of the chain.
     #[serde(default)]
     pub radiance_defect: f64,
     /// The matrix A that takes rays from the light to the plane, z' = A z, by the corrected
@@ -72,8 +72,9 @@ pub struct FirstOrderReport {
     pub verdict: Verdict,
 }
 
-/// A chain with a larger defect has a wrong map. Finite differences leave 10⁻⁹; a first-order
-/// operator that is left out or wrong by a thousandth is detected.
+/// A chain with a larger defect has a wrong map. Finite differences alone cause a defect of 10⁻⁹,
+/// and a first-order operator that is missing or wrong by a thousandth causes a defect above this
+/// limit.
 const DEFECT: f64 = 1e-5;
 /// Above this error a first-order chain is useless as a prediction of the light field.
 const MAX_ERROR: f64 = 0.5;
@@ -198,8 +199,8 @@ fn propagated(system: &SpecularSystem, chain: &Matrix<4>, window: &Window) -> Op
         return None;
     }
     let window = [window.x, window.y, window.u, window.v].map(|profile| variance(&profile));
-    // A zero width is replaced by one that is narrow beside the window; an infinite one adds no
-    // inverse.
+    // A zero width is replaced by a width that is narrow beside the window. An infinite width adds
+    // no inverse covariance.
     let narrow = window.map(|v| 1e8 / v);
     let picture = |w: f64| TAU / (w * w);
     let light = &system.light;

@@ -40,8 +40,7 @@ pub struct FullRadialComparison {
     pub sigma: Array2<f64>,
 }
 
-/// The difference of measured and predicted power in a bin, in terms of the groups whose noise
-/// makes it.
+/// The difference of measured and predicted power in a bin, as a sum over the groups of photons.
 ///
 /// Group r of a measurement holds the share a_r of it, G_r, and the same share of the prediction,
 /// P_r, with the same expectation a_r F. Both powers are computed from pairs of groups, so their
@@ -60,8 +59,8 @@ struct BinDifference {
 }
 
 impl BinDifference {
-    /// From the products of the spectra in a bin: those of groups with the shares `a`, and those of
-    /// the prediction.
+    /// Computes the difference from the products of the spectra in a bin. The spectra are those of
+    /// the groups, which have the shares `a`, and those of the prediction.
     fn new(products: ArrayView2<'_, f64>, a: &[f64]) -> Self {
         let n = a.len();
         let is_exact = products.nrows() == n + 1;
@@ -90,7 +89,7 @@ impl BinDifference {
         }
     }
 
-    /// U with these signs of the D_r.
+    /// Returns U with these signs of the D_r.
     fn with_signs(&self, signs: &[f64]) -> f64 {
         let mut pairs = self.pairs.as_slice();
         let mut sum = 0.0;

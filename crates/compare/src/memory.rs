@@ -14,7 +14,7 @@ use etendue_transform::SliceTransform;
 pub struct Memory {
     /// The spectra of all batches, kept until the errors are known, including those of references.
     pub batches: f64,
-    /// The fine grids of each thread that photons are spread over.
+    /// The fine grids over which each thread spreads photons.
     pub threads: f64,
     /// Predictions with their derivatives, and the working memory of computing one.
     pub predictions: f64,
@@ -36,7 +36,8 @@ const TRIANGLE: f64 = 150.0;
 const NORMALS: f64 = 72.0;
 
 impl Memory {
-    /// The memory of a run of a scene on `threads` threads. `theories` are those of its planes.
+    /// The memory of a run of a scene on `threads` threads. `theories` are the theories of its
+    /// planes.
     #[must_use]
     pub fn new(scene: &Scene, theories: &[Applicability], threads: usize) -> Self {
         let batches = f64::from(scene.run.batches);

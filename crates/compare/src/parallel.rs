@@ -1,4 +1,4 @@
-//! What rules out the theory of light between parallel planes for a plane.
+//! Finds what rules out the theory of light between parallel planes.
 
 use etendue_field::{Frame, Light, Mask, Orientation, Profile, Quantity, Side, VirtualPlane};
 use etendue_scene::{BlockerLayer, Hit, Object, Scene, Surface};
@@ -51,7 +51,8 @@ pub(crate) fn obstacles_to_theory(scene: &Scene, plane: &VirtualPlane) -> Vec<St
 const ROUNDING: f64 = 1e-6;
 
 /// The objects that light for the plane may meet: meshes, smooth surfaces, and flat objects that do
-/// not lie across the path. On the way back, flat objects across the path count too.
+/// not lie across the path. Once a surface has reflected the light, flat objects across the path
+/// count too.
 fn in_the_way(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
     let mut found = Vec::new();
     // Objects that light visits later may block it earlier.
@@ -162,8 +163,8 @@ pub(crate) fn passes(
     (first..=plane.leg.min(1)).any(crosses)
 }
 
-/// Whether a box around points meets a tube along a frame, from depth 0 with half-widths `from` to
-/// depth `end` with `to`.
+/// Whether a box around points meets a tube along a frame. The tube has the half-widths `from` at
+/// depth 0 and `to` at depth `end`.
 fn overlaps(points: &[DVec3], frame: &Frame, from: [f64; 2], to: [f64; 2], end: f64) -> bool {
     let local = points.iter().map(|p| frame.to_local(*p));
     let (low, high) = local.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| {
@@ -180,7 +181,7 @@ fn overlaps(points: &[DVec3], frame: &Frame, from: [f64; 2], to: [f64; 2], end: 
     })
 }
 
-/// Whether four points of a plane lie in a plane that a tube, as for [`overlaps`], does not cross.
+/// Whether four points lie in one plane, and a tube as in [`overlaps`] does not cross that plane.
 fn is_beside(points: &[DVec3], frame: &Frame, from: [f64; 2], to: [f64; 2], end: f64) -> bool {
     let [a, b, c, d] = points else { return false };
     let normal = (b - a).cross(c - a);

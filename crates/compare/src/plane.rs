@@ -52,13 +52,14 @@ pub struct PlaneComparison {
 }
 
 /// A field with less than this share of the unblocked light is predicted to be dark. A closed form
-/// is a difference of transforms of that size, accurate to 10⁻¹⁵ of it.
+/// is a difference of transforms as large as the unblocked light, and has an error of 10⁻¹⁵ of that
+/// light.
 const DARK: f64 = 1e-12;
 
 /// Above this noise the residuals come from few photons and are not symmetric, as the p-value
 /// assumes.
 const MAX_HANDFUL_NOISE: f64 = 0.25;
-/// Photons per batch with which one in 3,000 batches is empty.
+/// The number of photons per batch at which one in 3,000 batches is empty.
 pub const MIN_PHOTONS_PER_BATCH: f64 = 8.0;
 
 /// Compares plane `index` of a measurement with its prediction.
@@ -252,8 +253,8 @@ impl ComparedSides<'_> {
         error.is_some_and(|error| self.agrees_within(error, test))
     }
 
-    /// Whether photons agree with some prediction within this relative error at each frequency,
-    /// plus the error of the photons' transform.
+    /// Whether photons agree with some spectrum near the prediction. At each frequency it may
+    /// differ from the prediction by this relative error, plus the error of the photons' transform.
     fn agrees_within(&self, error: f64, test: &Test) -> bool {
         let p = self
             .residuals
@@ -287,8 +288,9 @@ impl ComparedSides<'_> {
         }
     }
 
-    /// Where measurement and prediction disagree: the number of rays of equal weight that would
-    /// vary like those of a batch, or of a replicate of the prediction, if it is too small.
+    /// Returns the number of rays of equal weight that would vary like the rays of a batch, or of a
+    /// replicate of the prediction. Returns it only if the number is too small for a test, and
+    /// measurement and prediction disagree.
     fn uneven(&self, agrees: bool) -> Option<f64> {
         let batches = self.measurement.at_plane(self.index);
         let measured = too_few(batches.map(|batch| &batch.slices));
@@ -307,8 +309,8 @@ impl ComparedSides<'_> {
         self.measurement.tally(self.index).inside
     }
 
-    /// Whether a batch of photons, or a replicate of the prediction, found no light: with so few,
-    /// errors are not symmetric and allow no conclusion.
+    /// Whether a batch of photons, or a replicate of the prediction, found no light: with so few
+    /// rays, errors are not symmetric and allow no conclusion.
     fn is_sparse(&self) -> bool {
         let mut batches = self.measurement.at_plane(self.index);
         let mut replicates = self.prediction.replicates.iter();
@@ -539,9 +541,9 @@ fn warnings(predicted: &Array2<f64>, grid: &SliceGrid, blur: Option<(f64, f64)>)
 }
 
 impl PlaneComparison {
-    /// Adds the full radial spectrum. A plane that would pass fails where the p-value is below the
-    /// level of the test, unless the stated error of the prediction that no replicates show may be
-    /// visible above the noise.
+    /// Adds the full radial spectrum. A plane that would otherwise pass fails if the p-value is
+    /// below the level of the test. It does not fail if a systematic error of the prediction, which
+    /// its replicates do not show, may be visible above the noise.
     pub fn add_full_radial(
         &mut self,
         full_radial: FullRadialComparison,

@@ -70,7 +70,7 @@ impl Prediction {
         !self.replicates.is_empty()
     }
 
-    /// ‖error‖/‖slices‖ that no replicates show.
+    /// The part of ‖error‖/‖slices‖ that replicates do not show.
     pub(crate) fn systematic_error(&self) -> Option<f64> {
         let quadrature = self.quadrature_error.filter(|_| !self.is_statistical());
         both(quadrature, self.mesh_error)
@@ -157,7 +157,7 @@ impl Prediction {
         }
     }
 
-    /// The prediction of no light at all.
+    /// Returns a prediction in which no light arrives.
     fn darkness(scene: &Scene, plane: &VirtualPlane, applicability: &Applicability) -> Self {
         let grid = ProjectionGrid::new(&plane.window, PROJECTION_BINS);
         let values = Array2::zeros((grid.bins, grid.bins));
@@ -175,7 +175,7 @@ impl Prediction {
             parameters: Vec::new(),
             depth: depth(scene, plane),
             cuts: match class {
-                // Light that leaves a mirror or a lobe has no such border.
+                // The spectrum of light that leaves a mirror or a lobe has no such border.
                 Class::FirstOrder => Vec::new(),
                 Class::Exact | Class::Reference => cuts(scene, plane),
             },
@@ -204,7 +204,7 @@ impl Prediction {
         })
     }
 
-    /// A plane of a measurement, to compare another, independent measurement with.
+    /// A plane of a measurement, with which another, independent measurement is compared.
     ///
     /// # Errors
     /// When the measurement has too few batches.
@@ -235,8 +235,9 @@ fn both(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     }
 }
 
-/// Two main lobes of the transform of a Hann window, which end at 1/half-width each, and 1.5 times
-/// that, to show whether H depends on the cut. Empty where light does not leave a surface.
+/// Returns two cuts. The first is twice the end of the main lobe of a Hann window's transform,
+/// which lies at 1/half-width. The second is 1.5 times the first, to show whether H depends on the
+/// cut. Empty where light does not leave a surface.
 fn cuts(scene: &Scene, plane: &VirtualPlane) -> Vec<f64> {
     if plane.leg == 0 || scene.path.along(plane) > 0.0 {
         return Vec::new();

@@ -145,15 +145,15 @@ pub struct PlaneReport {
     pub covariance: Option<Covariance>,
     /// H at two cuts, on a plane that light leaves diffusely; empty for any other plane.
     pub high_frequency_share: Vec<HighFrequencyShare>,
-    /// The shares of power in wedges, for blockers on the way to a plane of the first leg: the
-    /// wedge between the nearest and the farthest blocker, and the one that reaches back to the
-    /// light, whose edges have frequencies too. Empty for any other plane.
+    /// The shares of power in two wedges, for blockers on the way to a plane of the first leg. The
+    /// first wedge lies between the nearest and the farthest blocker. The second reaches back to
+    /// the light, because the edges of the light have frequencies too. Empty for any other plane.
     pub wedge_share: Vec<WedgeShare>,
     /// The full radial spectrum, where the light field was put on a 4D grid (`--save field`).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub full_radial: Option<FullRadialReport>,
-    /// The photons compared with the first-order chain, on a plane of that class. All numbers above
-    /// compare them with the exact ray-space prediction.
+    /// The comparison of the photons with the first-order chain, on a plane that has such a chain.
+    /// All numbers above compare the photons with the exact ray-space prediction.
     pub first_order: Option<FirstOrderReport>,
     /// The verdict.
     pub verdict: Verdict,
@@ -167,7 +167,8 @@ pub struct PlaneReport {
 }
 
 impl PlaneReport {
-    /// The verdict on the exact prediction, whatever the verdict on a first-order chain.
+    /// The verdict on the exact prediction. It does not depend on the verdict on a first-order
+    /// chain.
     #[must_use]
     pub fn exact_verdict(&self) -> Verdict {
         let chain = self.first_order.as_ref();

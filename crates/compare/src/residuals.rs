@@ -9,9 +9,9 @@ use ndarray::{Array2, Array3, Axis};
 ///
 /// Against a prediction without statistical error there is a residual for each batch, r_b = S_b −
 /// F. Against a prediction that has replicates itself, batches and replicates are combined into
-/// groups of neighbours, as many as the smaller of the two numbers (docs/theory.md, section 6).
-/// Under the hypothesis each residual is an independent draw with mean zero, and their mean is S −
-/// F.
+/// groups of neighbours. There are as many groups as batches or as replicates, whichever are fewer
+/// (docs/theory.md, section 6). Under the hypothesis each residual is an independent draw with mean
+/// zero, and their mean is S − F.
 #[derive(Clone, Debug)]
 pub struct Residuals {
     grid: SliceGrid,
@@ -48,7 +48,8 @@ impl Residuals {
     /// none.
     ///
     /// Each group g of n = min(B, R) holds a share of B batches and R replicates, and r_g = n/B Σ_b
-    /// (S_b − F) − n/R Σ_j (F_j − F). Where all groups hold equally many of either, F drops out.
+    /// (S_b − F) − n/R Σ_j (F_j − F). F drops out where all groups hold the same number of batches
+    /// and the same number of replicates.
     ///
     /// # Panics
     /// When the plane was measured at other frequencies than the prediction's.
@@ -316,7 +317,7 @@ impl Residuals {
     }
 }
 
-/// Panics when slices have other frequencies than the prediction.
+/// Panics if the measured slices have other frequencies than the predicted slices.
 fn check(measured: &Slices, predicted: &Slices) {
     let (measured, predicted) = (measured.grid, predicted.grid);
     assert_eq!(measured, predicted, "frequencies measured and predicted");

@@ -52,7 +52,8 @@ pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<SpecularSy
     })
 }
 
-/// The event of a surface as if its front faced the light; `back` means that its back does.
+/// Returns the event of a surface, expressed as if the front of the surface faced the light; `back`
+/// states that the back faces the light.
 fn seen_from(event: Specular, back: bool) -> Specular {
     match event {
         Specular::Refraction {
@@ -263,7 +264,8 @@ fn as_obstacle(scene: &Scene, object: Object) -> Obstacle {
     }
 }
 
-/// A layer of blockers that light meets, from this leg on, where the central ray does not.
+/// Returns the obstacle for a layer of blockers that light meets from this leg on, although the
+/// central ray does not.
 pub(crate) fn in_the_way(layer: &BlockerLayer, from: usize) -> Obstacle {
     Obstacle {
         name: layer.name.clone(),

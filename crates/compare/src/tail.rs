@@ -9,8 +9,9 @@ const ROUNDING: f64 = 1e-16;
 
 /// Probability that χ² of `dof` degrees of freedom, any positive number, is above `x`.
 ///
-/// It is Q(dof/2, x/2), the upper regularised incomplete gamma function: by its series below
-/// x = dof + 2, by its continued fraction above (Abramowitz and Stegun 1964, 6.5.29 and 6.5.31).
+/// It is Q(dof/2, x/2), the upper regularised incomplete gamma function, computed from its series
+/// below x = dof + 2 and from its continued fraction above (Abramowitz and Stegun 1964, 6.5.29 and
+/// 6.5.31).
 pub(crate) fn chi_squared_above(x: f64, dof: f64) -> f64 {
     let (a, x) = (0.5 * dof, 0.5 * x);
     if x <= 0.0 {
@@ -64,8 +65,8 @@ fn upper_fraction(a: f64, x: f64) -> f64 {
 
 /// Probability that Student's t of `dof` degrees of freedom is at least as far from zero as `t`.
 ///
-/// Uses the normal deviate with about the same tail (Wallace 1959): within 1 % of the probability
-/// from 30 degrees of freedom on, down to 10⁻⁶.
+/// Uses the normal deviate with about the same tail (Wallace 1959). The error is below 1 % of the
+/// probability from 30 degrees of freedom on, for probabilities down to 10⁻⁶.
 pub(crate) fn student_beyond(t: f64, dof: f64) -> f64 {
     let shrink = (8.0 * dof + 1.0) / (8.0 * dof + 3.0);
     let normal = shrink * (dof * libm::log1p(t * t / dof)).sqrt();
@@ -91,7 +92,7 @@ mod tests {
             // of itself per unit.
             assert!((found / p - 1.0).abs() < 1e-4, "{x} {dof}: {found}");
         }
-        // Two degrees of freedom: an exponential.
+        // With two degrees of freedom the tail is exponential.
         assert!((chi_squared_above(9.0, 2.0) / (-4.5f64).exp() - 1.0).abs() < 1e-13); // rounding
         assert!(chi_squared_above(0.0, 5.0) > 1.0 - 1e-15 && chi_squared_above(1e9, 5.0) < 1e-300);
     }

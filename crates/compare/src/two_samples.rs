@@ -1,4 +1,4 @@
-//! Compares two measurements of one plane by the data that a result keeps of them.
+//! Compares two measurements of one plane, from the data that their results store.
 
 use crate::tail::{chi_squared_above, student_beyond};
 use etendue_field::{Complex, SliceGrid, modulus};

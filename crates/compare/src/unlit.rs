@@ -12,9 +12,9 @@ type Extent = [[f64; 2]; 2];
 const UNLIMITED: Extent = [[f64::NEG_INFINITY, f64::INFINITY]; 2];
 /// The largest slope of light that is considered.
 const MAX_SLOPE: f64 = 1e3;
-/// The share of the rays of a section that may be left by rounding.
+/// The share of the rays of a section that rounding errors may leave.
 const ROUNDING: f64 = 1e-12;
-/// The number of parts from which a layer is assumed to have holes.
+/// A layer of at least this many parts is assumed to have holes.
 const MOST_PARTS: usize = 4096;
 
 /// Why no light reaches a plane, in words; `None` where some may.
@@ -137,7 +137,7 @@ fn covers(
     let Mask::Opaque { shapes, .. } = &layer.mask else {
         return false;
     };
-    // A plane before the surface also sees light that passes beside it.
+    // A plane before the surface also sees light that passes beside the surface.
     let is_beyond = plane.leg > 0 || plane.orientation.is_local();
     let towards = if is_beyond {
         towards_surface(scene, sections, layer.distance)

@@ -14,9 +14,10 @@ pub struct Crossing {
     pub weight: f64,
 }
 
-/// The ledger of the emitted flux; sums over photons, in W times the number of emitted photons.
+/// The ledger of the emitted flux. Each entry is a sum over photons, in W times the number of
+/// emitted photons.
 ///
-/// Flux is conserved: emitted = absorbed + escaped + stopped, to rounding.
+/// Flux is conserved up to rounding errors: emitted = absorbed + escaped + stopped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Ledger {
     /// Flux that left the light.

@@ -136,8 +136,8 @@ impl Assignment {
     reason = "not negative; a number beyond usize becomes its largest"
 )]
 fn even_cells(spacings: f64) -> usize {
-    // By rounding, a product such as 0.7 · 2 · (5/1.4) may be above the whole number that it
-    // equals.
+    // Because of rounding, a product such as 0.7 · 2 · (5/1.4) may be above the whole number that
+    // it equals.
     let whole = (spacings * (1.0 - 1e-12)).ceil();
     (whole as usize).saturating_mul(2).max(8)
 }

@@ -1,4 +1,4 @@
-//! How far a ray's path, as theory assumes it, passes from objects that theory ignores.
+//! Measures how far a ray's path, as theory assumes it, passes from objects that theory ignores.
 
 use super::rays::CheckRay;
 use super::surroundings::{Meets, SurroundingForm, Surroundings};
@@ -44,8 +44,8 @@ pub(super) enum What {
 const AT_END: f64 = 1e-6;
 
 impl Suspect {
-    /// Everything that rays may meet on the legs of these paths. For a layer with many shapes, only
-    /// those nearest to where the rays cross it.
+    /// Everything that rays may meet on the legs of these paths. A layer with many shapes
+    /// contributes only the shapes nearest to where the rays cross it.
     pub(super) fn all(around: &Surroundings<'_>, paths: &[&[PathPiece]]) -> Vec<Self> {
         let legs = paths.first().map_or(0, |pieces| pieces.len());
         let on_leg = |leg: usize| {
@@ -107,7 +107,8 @@ impl Suspect {
         let off = if piece.leg > 0 || !around.is_known(layer) {
             beyond(t, [from, to])
         } else {
-            // Theory expects the surface here; the error would be to meet it earlier.
+            // Theory expects the ray to meet the layer at the end of the piece. It is unexpected
+            // only earlier.
             (to - t).max(0.0)
         };
         libm::hypot(off, outside(piece.ray.at(t)))
@@ -197,10 +198,10 @@ fn object_gap(around: &Surroundings<'_>, index: usize, piece: &PathPiece) -> f64
     let [from, to] = piece.extent;
     let own = |which: Option<Object>| which == Some(*object);
     let extent = match (own(piece.ends), own(piece.leaves), piece.is_last) {
-        // Theory expects it there.
+        // Theory expects the surface there.
         (true, _, true) => return f64::INFINITY,
         (true, _, false) => [from, to * (1.0 - AT_END)],
-        // Light that meets again the surface it has left is lost, wherever the plane is.
+        // Light that returns to the surface it has left is lost, wherever the plane is.
         (false, true, true) => [from, f64::INFINITY],
         _ => piece.extent,
     };
@@ -228,8 +229,8 @@ fn flat_gap(surface: &Surface, ray: &CheckRay, extent: [f64; 2]) -> f64 {
     )
 }
 
-/// How far a ray passes from a patch between two distances. It may meet the quadric outside the
-/// patch or outside the piece, or miss the quadric.
+/// How far a ray passes from a patch between two distances. The ray may meet the quadric outside
+/// the patch or outside the piece, or miss the quadric.
 fn patch_gap(patch: &Patch, ray: &CheckRay, extent: [f64; 2]) -> f64 {
     let CheckRay { point, direction } = ray.seen_from(&patch.frame);
     let off = |t: f64| {

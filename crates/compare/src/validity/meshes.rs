@@ -10,12 +10,13 @@ use etendue_transform::SliceTransform;
 use glam::DVec3;
 use ndarray::Array3;
 
-/// Rays that are drawn to find those with light in the window.
+/// The number of rays that are drawn to find rays with light in the window.
 const TRIES: u32 = 300_000;
 /// The smallest and the largest number of rays with light in the window that are followed.
 const MIN_RAYS: usize = 300;
 const MAX_RAYS: usize = 3000;
-/// The number of triangles tested for these rays, where more than the smallest number are followed.
+/// The number of tests of triangles that limits how many rays beyond the smallest number are
+/// followed.
 const LOOKED_AT: usize = 30_000_000;
 /// The distance, in edges of a triangle, within which the triangle counts as a neighbour of the
 /// point that a ray leaves.
@@ -28,7 +29,7 @@ const LOST: f64 = 1.0;
 struct Displaced {
     predicted: TwoPlane,
     by_triangles: Option<TwoPlane>,
-    /// The light of the ray before the window weights it.
+    /// The light of the ray before the window's weight is applied.
     before: f64,
 }
 
@@ -80,7 +81,8 @@ impl Follower<'_> {
         })
     }
 
-    /// The same for at most a given number of rays; `None` if none brings light into the window.
+    /// Measures how far smooth meshes send at most a given number of rays from where their patches
+    /// send them; `None` if no ray brings light into the window.
     fn displacement(
         &self,
         rays: impl Iterator<Item = (CheckRay, f64)>,

@@ -1,4 +1,4 @@
-//! Draws rays of the light for a check, the same in every run.
+//! Draws rays of the light for a check. The rays are the same in every run.
 
 use etendue_field::{EnvironmentMap, Frame, Light, Patch, Rectangle, Shape, Window};
 use glam::DVec3;
@@ -26,8 +26,8 @@ impl RayDraw {
 }
 
 /// The first `most` rays that carry light into the window, without those that are relatively dark.
-/// Only light inside the window determines what is dark: the strongest part of the sky may be
-/// behind it.
+/// Only light inside the window determines which rays count as dark, because the strongest part of
+/// the sky may lie outside it.
 pub(super) fn bright<T>(rays: impl Iterator<Item = (f64, T)>, most: usize) -> Vec<(f64, T)> {
     let mut strongest = 0.0;
     let mut found = Vec::new();
@@ -94,9 +94,10 @@ impl CheckRay {
         (s >= 0.0 && t >= 0.0 && s + t <= 1.0).then_some(at)
     }
 
-    /// The distance at which theory meets a surface: on the side of the quadric's extremum along
-    /// the ray on which the ray crosses the tangent plane at the vertex (`etendue_theory::rays`, by
-    /// Newton's method from there).
+    /// The distance at which theory finds the intersection of the ray with a surface. Theory uses
+    /// Newton's method from the point where the ray crosses the tangent plane at the vertex
+    /// (`etendue_theory::rays`). So the intersection lies on the same side of the quadric's
+    /// extremum along the ray as that point.
     pub(super) fn theory_hit(&self, patch: &Patch) -> Option<f64> {
         let Self { point, direction } = self.seen_from(&patch.frame);
         let from = if direction.z.abs() > 1e-3 {
@@ -106,7 +107,7 @@ impl CheckRay {
         };
         let curved = DVec3::from(patch.curvature) * direction;
         let (a, b) = (curved.dot(direction), curved.dot(point) + direction.z);
-        // Avoids cancellation: the other root is the constant over this one.
+        // This avoids cancellation: the other root is the constant term divided by q.
         let root = (b * b - a * patch.value(point)).sqrt();
         let q = -(b + root.copysign(b));
         let roots = [q / a, patch.value(point) / q];
@@ -189,7 +190,7 @@ pub(super) fn ray_to(
         Light::Environment { environment } => {
             let frame = &environment.frame;
             let direction = match &environment.map {
-                // The light far from a lobe's centre may be all that travels forward.
+                // Only the light far from a lobe's centre may travel forward.
                 EnvironmentMap::Lobes(lobes) if (index / 4).is_multiple_of(2) => {
                     let lobe = &lobes[(index / 8) as usize % lobes.len().max(1)];
                     let around = Frame::IDENTITY.turned_to(lobe.from);

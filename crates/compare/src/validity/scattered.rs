@@ -1,4 +1,4 @@
-//! Compares, for light scattered by a surface with a BRDF, what photons meet with what theory
+//! Checks, for light that a surface with a BRDF scatters, whether photons meet only what theory
 //! assumes.
 
 use super::clearance::PathPiece;
@@ -12,8 +12,8 @@ use etendue_theory::Observed;
 use etendue_theory::rays::Plane;
 use etendue_theory::scattering::ScatteringSystem;
 
-/// Descriptions of what light for a plane meets, before or behind a surface with a BRDF, that
-/// theory ignores; and the blockers that theory includes.
+/// Describes what light for a plane meets before or behind a surface with a BRDF although theory
+/// ignores it. Also returns the blockers that theory includes.
 pub(crate) fn unforeseen_by_scattering(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -171,8 +171,8 @@ impl CheckedScatterer<'_> {
         }
     }
 
-    /// Whether theory takes the ray to leave from this point: it looks back along the ray from far
-    /// away.
+    /// Whether theory assumes that the ray leaves from this point. Theory looks back along the ray
+    /// from far away.
     fn looks_at(&self, leaving: &CheckRay) -> bool {
         let back = leaving.back(&self.system.patch);
         let far = (back.point - leaving.point).length();

@@ -2,8 +2,9 @@
 //!
 //! A few thousand rays fill the window uniformly and find the occluders of much of the light. An
 //! object that occludes little of it may lie between these rays, at the edge or in the corner of
-//! the window. So for each such object the rays that pass it nearest are moved until they meet it
-//! or come no nearer: a distance that falls along a smooth path finds the smallest object.
+//! the window. So for each such object, the rays that pass nearest are moved until they meet the
+//! object or come no nearer. The distance falls along a smooth path, so even the smallest object is
+//! found.
 
 use super::clearance::{PathPiece, Suspect};
 use super::rays::{RayDraw, bright, lattice};
@@ -20,13 +21,14 @@ const MOVES: u32 = 300;
 /// Length of the first moves, the spacing of the rays: 3000 fill a window of four axes with seven
 /// on each.
 const FIRST_MOVE: f64 = 0.15;
-/// Factor by which a move that comes nearer lengthens the next. A move that does not shortens the
-/// next, by an amount that keeps the length at one success in twelve: in a corner most axes are at
-/// their ends.
+/// Factor by which a move that comes nearer lengthens the next. A move that comes no nearer
+/// shortens the next. The two factors keep the length constant at one success in twelve moves,
+/// because most moves fail in a corner, where most axes are at their ends.
 const LONGER: f64 = 1.5;
 const SHORTER: f64 = 0.964;
 /// An object is out of reach if its distance from the nearest ray exceeds this share of the range
-/// of distances: the nearest corner of a window of four axes lies a seventh of it beyond.
+/// of distances. The nearest corner of a window of four axes lies only a seventh of the range
+/// beyond the nearest ray.
 const REACH: f64 = 0.5;
 /// A shadow in light of this share of the strongest has 10⁻⁶ of the power of a shadow in the
 /// strongest, which 10⁹ photons cannot resolve.

@@ -1,4 +1,4 @@
-//! Compares, for rays through specular surfaces, what photons meet with what theory assumes.
+//! Checks, for rays through specular surfaces, whether photons meet only what theory assumes.
 
 use super::clearance::PathPiece;
 use super::coordinates::{coordinates, seen};
@@ -12,9 +12,9 @@ use etendue_theory::Observed;
 use etendue_theory::rays::{Plane, SpecularSystem};
 use glam::DVec3;
 
-/// Descriptions of what light for a plane meets, between or at the surfaces of a system, that
-/// theory ignores, and the blockers that theory includes. `off` is the displacement by meshes, see
-/// [`off_patches`].
+/// Describes what light for a plane meets between or at the surfaces of a system although theory
+/// ignores it. Also returns the blockers that theory includes. `off` is the displacement by meshes,
+/// see [`off_patches`].
 pub(crate) fn unforeseen_by_rays(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -182,7 +182,8 @@ impl Follower<'_> {
         self.follow(light, |_| {})
     }
 
-    /// The arrival of a ray as theory predicts it; `tell` receives its straight pieces in order.
+    /// The arrival of a ray as theory predicts it; `tell` receives the straight pieces of its path
+    /// in order.
     fn follow(&self, light: CheckRay, mut tell: impl FnMut(PathPiece)) -> PlaneArrival {
         let path = &self.scene.path;
         let piece = |leg: usize, ray: CheckRay, end: f64| PathPiece {
@@ -268,7 +269,7 @@ impl Follower<'_> {
     }
 
     /// The distance at which a photon meets the surface that ends its leg; `None` where it meets
-    /// another first.
+    /// another surface first.
     fn next(
         &self,
         ray: &CheckRay,
@@ -303,8 +304,8 @@ impl Follower<'_> {
         let end = self.end(ray);
         let nearer = self.around.first(ray, from, ends);
         let nearer = nearer.filter(|(t, object)| *t < end && Some(*object) != leaves);
-        // A photon that would meet again the surface it has left is lost, wherever the plane is and
-        // whatever stops the photon before.
+        // A photon that would return to the surface it has left is lost, wherever the plane is and
+        // whatever stops the photon earlier.
         let again = leaves.filter(|left| self.around.hit(ray, from, *left).is_some());
         let mut unforeseen = nearer
             .map(|(_, object)| Meets::OutOfTurn(object))
@@ -329,9 +330,9 @@ impl Follower<'_> {
         (seen, unforeseen)
     }
 
-    /// The point of a surface at which a plane on it counts a photon: where an arriving photon
-    /// meets its front or, for leaving light, the intersection of its line nearest to where the
-    /// central ray hits.
+    /// The point at which a plane on a surface counts a photon. An arriving photon counts where it
+    /// meets the front of the surface. The line of a leaving photon may intersect the surface
+    /// twice, and the photon counts at the intersection nearest to the hit of the central ray.
     fn counted(&self, patch: &Patch, ray: &CheckRay) -> Option<DVec3> {
         if self.at.arriving {
             return Some(ray.at(ray.front_hit(patch, self.at.frame.d)?));

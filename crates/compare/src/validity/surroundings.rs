@@ -36,8 +36,8 @@ impl Meets {
     }
 }
 
-/// Descriptions of what light meets and theory ignores, each once, and the blockers that light
-/// meets where the central ray does not, which theory then includes.
+/// Returns descriptions of what light meets and theory ignores, each once. Also returns the
+/// blockers that light meets although the central ray does not; theory then includes them.
 ///
 /// A ray reports only the first thing that it meets. So blockers are included in the theory and
 /// rays are traced again, until they meet no further blockers.
@@ -133,8 +133,8 @@ impl<'a> Surroundings<'a> {
         ROUNDING * (leg.start + leg.leaves.map_or(0.0, |Hit { point, .. }| point.length()))
     }
 
-    /// The distance to the plane along a ray of its leg; for a plane on a surface, to the plane
-    /// across the leg where the central ray hits.
+    /// The distance to the plane along a ray of its leg; for a plane on a surface, the distance to
+    /// the plane across the leg where the central ray hits.
     pub(super) fn to_plane(&self, ray: &CheckRay) -> f64 {
         let path = &self.scene.path;
         let leg = &path.legs[self.plane.leg];
@@ -245,7 +245,7 @@ impl<'a> Surroundings<'a> {
 }
 
 impl SurroundingForm<'_> {
-    /// The distances at which a ray meets it; NaN for none.
+    /// The distances at which a ray meets the form; NaN for none.
     fn hits(&self, ray: &CheckRay) -> [f64; 2] {
         match self {
             Self::Around([low, high]) => {
