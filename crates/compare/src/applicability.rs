@@ -31,7 +31,8 @@ pub struct Applicability {
 
 impl Theory {
     /// Describes in words which parts of a scene violate the assumptions of the theory. Adds an
-    /// obstacle to the theory for blockers that light meets although the central ray does not.
+    /// obstacle to the theory for blockers that light meets on a leg where the central ray does
+    /// not.
     fn obstacles(
         &mut self,
         scene: &Scene,

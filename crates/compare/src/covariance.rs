@@ -214,7 +214,8 @@ pub const AXES: [&str; 4] = ["ρx", "ρy", "νu", "νv"];
 /// deviations, and by 3 % at six.
 const ENDLESS: f64 = 1.15;
 
-/// Returns the largest entry, each divided by the geometric mean of the two variances in a matrix.
+/// Divides each entry by the geometric mean of the variances of its two axes in a matrix, and
+/// returns the largest result.
 fn largest(of: &Matrix<4>, entry: &dyn Fn(usize, usize) -> f64) -> f64 {
     let pairs = (0..4).flat_map(|i| (0..4).map(move |j| (i, j)));
     let shares = pairs.map(|(i, j)| entry(i, j).abs() / (of[i][i] * of[j][j]).abs().sqrt());

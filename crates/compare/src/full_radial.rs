@@ -158,7 +158,7 @@ pub(crate) fn compared(
     let n = shares.len();
     assert!(
         [n + 1, 2 * n].contains(&spectra.len()),
-        "groups of measurement and prediction"
+        "the groups of the prediction differ from those of the measurement"
     );
     let products = bins.products(&spectra);
     let each = || products.outer_iter();

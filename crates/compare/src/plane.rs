@@ -203,7 +203,7 @@ impl ComparedSides<'_> {
             // Theory may prove that no light arrives; finding no ray is no proof.
             self.prediction.is_statistical().then(|| {
                 format!(
-                    "no ray of the prediction reached the window; {inside} of {emitted} photons reached it (if none did, the share of such photons would be below 3 in {emitted}, with 95 % confidence)"
+                    "no ray of the prediction reached the window; {inside} of {emitted} photons reached it (if no photon reaches it, the share of photons that can reach it is below 3 in {emitted} with 95 % confidence)"
                 )
             })
         } else if inside == 0 {
@@ -215,7 +215,7 @@ impl ComparedSides<'_> {
             ))
         } else if let Some(each) = self.uneven(agrees) {
             Some(format!(
-                "a few photons, or a few rays of the prediction, carry most of the light: it varies as if each batch held only {each:.1} of them, too few for a test{needs}"
+                "a few photons, or a few rays of the prediction, carry most of the light: the light varies as if each batch held only {each:.1} of them, too few for a test{needs}"
             ))
         } else if agrees && error > test.resolution {
             let error = percent(error);

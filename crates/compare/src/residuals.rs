@@ -320,7 +320,7 @@ impl Residuals {
 /// Panics if the measured slices have other frequencies than the predicted slices.
 fn check(measured: &Slices, predicted: &Slices) {
     let (measured, predicted) = (measured.grid, predicted.grid);
-    assert_eq!(measured, predicted, "frequencies measured and predicted");
+    assert_eq!(measured, predicted, "the measured and the predicted frequencies differ");
 }
 
 /// Σ_b<c ε_b ε_c H_bc; the diagonal is the same for all signs.

@@ -264,8 +264,8 @@ fn as_obstacle(scene: &Scene, object: Object) -> Obstacle {
     }
 }
 
-/// Returns the obstacle for a layer of blockers that light meets from this leg on, although the
-/// central ray does not.
+/// Returns the obstacle for a layer of blockers that light meets from this leg on, at places where
+/// the central ray does not.
 pub(crate) fn in_the_way(layer: &BlockerLayer, from: usize) -> Obstacle {
     Obstacle {
         name: layer.name.clone(),

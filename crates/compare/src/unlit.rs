@@ -14,7 +14,7 @@ const UNLIMITED: Extent = [[f64::NEG_INFINITY, f64::INFINITY]; 2];
 const MAX_SLOPE: f64 = 1e3;
 /// The share of the rays of a section that rounding errors may leave.
 const ROUNDING: f64 = 1e-12;
-/// A layer of at least this many parts is assumed to have holes.
+/// A layer whose shapes leave more open parts than this is assumed to have holes.
 const MOST_PARTS: usize = 4096;
 
 /// Why no light reaches a plane, in words; `None` where some may.

@@ -133,7 +133,7 @@ impl Assignment {
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "not negative; a number beyond usize becomes its largest"
+    reason = "the number is not negative; a number too large for usize becomes usize::MAX"
 )]
 fn even_cells(spacings: f64) -> usize {
     // Because of rounding, a product such as 0.7 · 2 · (5/1.4) may be above the whole number that

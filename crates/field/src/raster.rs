@@ -76,7 +76,7 @@ impl Raster {
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "the number of a pixel, brought into range before"
+    reason = "the number of a pixel, already limited to the range"
 )]
 fn neighbours(place: f64, count: usize, wraps: bool) -> ([usize; 2], f64) {
     let last = count - 1;

@@ -30,8 +30,8 @@ pub struct RayLight {
 }
 
 impl RayLight {
-    /// Takes rays, and the flux of rays that are left out. Returns `None` if the rays carry no
-    /// flux, or if a number is not finite or a flux is negative.
+    /// Builds the light from rays, and from the flux of the rays that are left out. Returns `None`
+    /// if the rays carry no flux, or if a number is not finite or a flux is negative.
     #[must_use]
     pub fn new(rays: Vec<FluxRay>, behind: f64) -> Option<Self> {
         let mut flux = 0.0;

@@ -10,9 +10,9 @@ use rayon::prelude::*;
 
 /// Makes a failed plane undecided if its photons were aimed at other windows.
 ///
-/// Photons are aimed at all windows in equal shares. Where those aimed at a window rarely reach it,
-/// for example behind a curved mirror, the measurement may hold only the part of the light that
-/// other photons happen to bring, with an error that is far too small.
+/// Photons are aimed at all windows in equal shares. Where the photons aimed at a window rarely
+/// reach it, for example behind a curved mirror, the measurement may contain only the light that
+/// other photons happen to bring. The estimated error is then far too small.
 pub(crate) fn leave_open(case: &MeasuredScene, planes: &mut [PlaneComparison]) {
     let count = case.scene.planes.len() as u64;
     if count < 2 {

@@ -40,8 +40,8 @@ fn disagrees_with_theory(report: &PlaneReport) -> bool {
 const DETECTABLE: f64 = 3.6;
 
 impl Inquiry {
-    /// Compares the judge of plane `i`, where the plane has the number `at`, with photons and with
-    /// theory.
+    /// Compares the judge's measurement of plane `i` with photons and with theory. The plane has
+    /// the number `at` in that measurement.
     fn of(
         case: &MeasuredScene,
         (i, failed): (usize, &PlaneReport),
@@ -125,8 +125,8 @@ fn both_pass(
 
 /// Squared distances of a failed plane from its prediction, beyond noise: with all frequencies
 /// weighted equally, and weighted as in the test, where frequencies of less noise count more. The
-/// noise of another tracer is distributed differently, so it must be able to detect the smaller
-/// one.
+/// noise of another tracer is distributed differently, so that tracer must be able to detect the
+/// smaller of the two distances.
 fn disagreement(failed: &PlaneReport) -> [f64; 2] {
     let alike = failed.excess.map(|excess| excess * excess.abs());
     let tested = failed.chi2_per_dof.zip(failed.noise_limit);

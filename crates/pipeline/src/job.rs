@@ -39,7 +39,7 @@ pub struct Job {
 }
 
 impl Job {
-    /// The scene of a file, or of a text in its place.
+    /// Reads the scene of a file, or of a text that takes the place of the file.
     ///
     /// # Errors
     /// When the scene cannot be read or is not valid; the error lists all faults with their lines.

@@ -18,8 +18,8 @@ pub(crate) struct Judge {
 }
 
 impl Judge {
-    /// Measures some planes of a scene by the methods that judge `method` there, one measurement
-    /// for each method.
+    /// Measures some planes of a scene by the methods that judge `method` at these planes. Returns
+    /// one measurement for each method.
     pub(crate) fn all(
         scene: &Scene,
         planes: &[usize],

@@ -14,9 +14,10 @@ use std::path::{Path, PathBuf};
 pub struct SceneSource {
     /// The file, in RON or JSON. Its meshes and pictures are in the same folder.
     pub path: PathBuf,
-    /// The content in place of a file; `path` then only names the scene and its folder.
+    /// A text that takes the place of the file; `path` then only gives the name of the scene and
+    /// its folder.
     pub text: Option<String>,
-    /// Fields with the values they are set to, each as by [`SceneFile::with`].
+    /// Fields with the values they are set to, each set as [`SceneFile::with`] does.
     pub set: Vec<(String, String)>,
     /// The style in which messages name arguments.
     pub arguments: ArgumentStyle,

@@ -31,13 +31,14 @@ pub fn judge_of(method: Method, scene: &Scene, plane: &VirtualPlane) -> Method {
     }
 }
 
-/// The prediction step for measurements by a method in place of theory.
+/// The line that describes the step of a prediction in which the measurement by a method takes the
+/// place of theory.
 pub fn step(method: Method) -> String {
     let shared = match method {
         Method::Photons | Method::Backward => "",
         // Otherwise no ray finds the light.
         Method::Even => {
-            ", which after emission are traced as photons are: errors of this tracing are not detected"
+            ", which are traced after emission in the same way as photons: errors of this tracing are not detected"
         }
     };
     format!("instead of theory  {}{shared}", method.words())

@@ -52,8 +52,8 @@ pub fn names(save: Save) -> Vec<&'static str> {
         .collect()
 }
 
-/// The file of the photons of a plane, its prefix on the command line, and the bytes of a photon in
-/// it.
+/// The name of the file with the photons of a plane, the name of its format in commands, and the
+/// number of bytes of a photon in it.
 fn file_of(save: Save) -> Option<(&'static str, &'static str, u64)> {
     match save {
         Save::Photons => Some(("photons.npy", "photons", 40)),
@@ -94,8 +94,8 @@ fn size(bytes: u64) -> String {
 }
 
 /// Traces the same photons again, one plane after the other, and streams them to disk, so that
-/// memory holds only one block. A TM-25 file begins with the flux of the photons, for which they
-/// are traced once more.
+/// memory holds only one block. A TM-25 file begins with the flux of the photons, so they are
+/// traced once more to compute it.
 pub fn save(results: &mut Results, case: &MeasuredScene, save: Save) -> Result<(), Failure> {
     let Some((name, ..)) = file_of(save) else {
         return Ok(());

@@ -189,8 +189,8 @@ pub fn with_unit(name: &str, unit: &str) -> String {
 }
 
 /// The measured value and the smallest detectable change, the latter as a share of the parameter if
-/// it has a size, or with the parameter's unit. Both are – where even a change by the whole parameter would be undetectable, and
-/// the value is – where its error is larger than itself.
+/// it has a size, or with the parameter's unit. Both are – where even a change by the whole
+/// parameter would be undetectable, and the value is – where the error is larger than the value.
 fn measured(parameter: &ParameterReport) -> [String; 2] {
     let value = uncertain(parameter.measured, parameter.error);
     if parameter.scene.abs() < 1e-12 {

@@ -2,9 +2,9 @@
 //! pieces as others request them.
 //!
 //! A piece is a batch of a run, a plane to predict, or a point of a sweep. Processes exchange
-//! bytes, and pieces are identified by their numbers. So the result has the same bits however many
-//! processes there are and whichever is faster, on processors of one kind. The leading process
-//! works as well.
+//! bytes, and pieces are identified by their numbers. So on processors of one kind, the bits of the
+//! result depend neither on the number of processes nor on their speed. The leading process works
+//! as well.
 
 mod leader;
 mod link;

@@ -68,7 +68,7 @@ impl<'a> ByteCursor<'a> {
         self.array(what).map(f64::from_le_bytes)
     }
 
-    /// A number of 0 or 1.
+    /// Reads a number that must be 0 or 1.
     pub(crate) fn flag(&mut self, what: &str) -> Result<bool, Fault> {
         let at = self.at;
         match self.u32(what)? {

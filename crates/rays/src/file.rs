@@ -9,7 +9,7 @@ use std::fmt;
 /// unpacked, plus [`MEMORY_FREE`] bytes.
 ///
 /// The shortest record, 28 bytes, is kept once and becomes 64 bytes of a set. The output of gzip
-/// may take twice its length.
+/// may take twice its length in memory.
 pub const MEMORY: usize = 6;
 
 /// Bytes that reading may take regardless of the length of the file, for its texts and tables, at

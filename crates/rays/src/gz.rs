@@ -7,8 +7,8 @@ use flate2::write::GzEncoder;
 use std::borrow::Cow;
 use std::io::{Read, Write};
 
-/// The largest ratio of unpacked to packed length, apart from [`FREE`] bytes. Rays pack to a half
-/// or less; those of test files, which repeat, to a tenth.
+/// The largest ratio of unpacked to packed length, apart from [`FREE`] bytes. Packed rays have half
+/// of their length or less; in test files, where rays repeat, they have a tenth of it.
 pub const MOST_RATIO: usize = 64;
 
 /// Bytes that a packed file may unpack to regardless of its length.

@@ -4,7 +4,8 @@ use crate::scene::{Hit, MeshObject};
 use etendue_field::{Frame, Patch};
 use glam::DVec3;
 
-/// The radius, in longest edges of the triangle hit, within which vertices are used.
+/// The radius within which vertices are used, in units of the longest edge of the triangle that was
+/// hit.
 const EDGES: f64 = 6.0;
 
 impl MeshObject {

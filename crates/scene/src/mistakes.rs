@@ -196,7 +196,7 @@ fn reach(scene: &Scene, plane: &VirtualPlane, at: f64) -> Option<[f64; 2]> {
         let from_plane = x + (end - at) * u;
         match (plane.leg, &scene.light) {
             (_, Light::Beam { .. }) => hit,
-            // For light from an environment nothing is known, which leaves the other bound.
+            // An environment gives no bound, so the minimum is the other bound.
             (0, _) => from_plane.min(from_light),
             _ => from_light,
         }

@@ -30,9 +30,10 @@ pub enum ReadError {
 /// The bytes of a regular file, at most `most` of them.
 ///
 /// # Errors
-/// [`ReadError`]; a path outside of every folder is not an error here.
+/// [`ReadError`]; the file may be in any folder.
 pub fn read_file(path: &Path, most: u64) -> Result<Vec<u8>, ReadError> {
-    // Checked before opening: opening a pipe would wait for the other end.
+    // The kind of file is checked before opening, because opening a pipe would wait for the other
+    // end.
     if !fs::metadata(path)?.is_file() {
         return Err(ReadError::NotRegular);
     }

@@ -81,8 +81,8 @@ pub enum Object {
 
 impl Hit {
     /// The frame (T, B, N) at the hit, for light that arrives in a frame, and the longitude θ₀ of
-    /// the direction it comes from: T lies in the plane of incidence, and X is rotated to −T at
-    /// normal incidence (docs/conventions.md).
+    /// the direction from which the light comes: T lies in the plane of incidence, and X is rotated
+    /// to −T at normal incidence (docs/conventions.md).
     #[must_use]
     pub fn surface_frame(&self, arriving: &Frame) -> (Frame, f64) {
         let (n, from) = (self.normal, -arriving.d);
@@ -144,7 +144,7 @@ pub struct BlockerLayer {
     pub name: String,
     /// Distance of the layer's plane.
     pub distance: f64,
-    /// Distance between repetitions, if any: they replicate spectra at multiples of 1/pitch.
+    /// Distance between repetitions, if any. Repetitions replicate spectra at multiples of 1/pitch.
     pub pitch: Option<f64>,
     /// The mask that multiplies radiance.
     pub mask: Mask,
@@ -236,7 +236,7 @@ impl Surface {
     #[must_use]
     #[expect(
         clippy::float_cmp,
-        reason = "the very numbers of a rectangle that does not say where it faces"
+        reason = "a rectangle without a `facing` field has exactly these numbers"
     )]
     pub fn across(&self) -> Option<(f64, Rectangle)> {
         let Frame { origin, x, d, .. } = &self.frame;

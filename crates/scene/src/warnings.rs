@@ -9,7 +9,8 @@ use std::f64::consts::{PI, TAU};
 /// The difference of a spectrum between photons and backward rays above which a mesh causes a
 /// warning.
 const LEVEL: f64 = 0.01;
-/// The largest number of triangles examined; of finer meshes every second, every third, ….
+/// The largest number of triangles examined; in finer meshes only every second, every third, …
+/// triangle is examined.
 const MAX_TRIANGLES: usize = 20_000;
 /// The number of pieces of a window across which triangles are subdivided.
 const PIECES: f64 = 8.0;
@@ -24,12 +25,13 @@ impl Scene {
     /// Warnings in words: one for each likely mistake, and one for each smooth mesh on the path
     /// that is too coarse.
     ///
-    /// A mesh deflects light by its interpolated normal n and receives it by the normal t of the
-    /// triangle. Photons that come along d and leave along e then have (d·t / d·n) / (e·t / e·n)
-    /// times the radiance that backward rays find: interpolated normals do not conserve étendue.
-    /// The effect on a plane is the spectrum of the window times that factor less 1, over the
-    /// spectrum of the window, both where the mesh is hit, at the measured frequencies along x and
-    /// y: facets finer than those average out.
+    /// A mesh deflects light according to its interpolated normal n, but receives light according
+    /// to the normal t of the triangle. Photons that come along d and leave along e then have (d·t
+    /// / d·n) / (e·t / e·n) times the radiance that backward rays find: interpolated normals do not
+    /// conserve étendue. The effect on a plane is the ratio of two spectra at the measured
+    /// frequencies along x and y. The first is that of the window times the factor less 1, and the
+    /// second is that of the window, both where the mesh is hit. Facets finer than the waves of
+    /// these frequencies average out.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = mistakes(self);
@@ -119,7 +121,8 @@ struct WindowSums {
 /// A wave with frequency Ω, and the spectra at that frequency.
 struct Wave {
     frequency: [f64; 2],
-    /// 2 where the complex conjugate is a different wave.
+    /// The number of waves represented: 2 if the complex conjugate is a different wave, otherwise
+    /// 1.
     times: f64,
     difference: [f64; 2],
     whole: [f64; 2],
@@ -176,7 +179,7 @@ impl<'a> WindowView<'a> {
         }
     }
 
-    /// The root of the energy of the difference over that of the window.
+    /// The root of the ratio of the energy of the difference to the energy of the window.
     fn mismatch(&self) -> f64 {
         let mut waves = waves(self.plane);
         let stride = self.mesh.triangles.len().div_ceil(MAX_TRIANGLES);

@@ -70,7 +70,7 @@ fn vertices_whose_normals_cancel_are_named_as_the_file_counts() {
         file("a.obj", &both, "event: Mirror"),
         &[
             "surfaces[0].mesh, \"a.obj\": vertex 6 is without a normal",
-            "(2 more are not)",
+            "(2 more have this fault)",
         ],
     );
     told(
@@ -107,7 +107,7 @@ fn vertices_beyond_all_coordinates_are_named() {
         resolved(&far, ".".as_ref()),
         &[
             "surfaces[0].mesh, vertex 0 is at [",
-            "1000000000.0 (25 more are not)",
+            "1000000000.0 (25 more have this fault)",
         ],
     );
 }
@@ -127,7 +127,7 @@ fn triangles_too_thin_are_dropped_or_named() {
         &[
             "the triangle of vertices 1, 2 and 5 is",
             "m high; allowed: at least",
-            "(3 more are not)",
+            "(3 more have this fault)",
         ],
     );
 }
@@ -158,7 +158,7 @@ fn a_header_of_any_length_is_read_in_proportion() {
         assert!(fault.to_string().len() < 500, "{fault}");
         start.elapsed().as_secs_f64()
     };
-    // 60,000 took 6 s when each was compared with all previous ones.
+    // 60,000 names took 6 s when each name was compared with all previous ones.
     let properties = header(200_000, &|i| format!("property int p{i}\n"));
     let elements = header(200_000, &|i| format!("element e{i} 1\nproperty int p\n"));
     assert!(seconds(&properties) < 2.0);

@@ -70,9 +70,9 @@ pub enum SceneError {
 }
 
 impl SceneError {
-    /// The error in words, one line for each fault with its place: in the text of the scene file
-    /// or, for a field that was set elsewhere, such as by `--set run.photons=3`, the path it was
-    /// set at.
+    /// Returns the error in words, one line for each fault with its place. The place is a line and
+    /// column of the scene file or, for a field that was set elsewhere, what set it, such as
+    /// `--set run.photons=3`.
     #[must_use]
     pub fn in_text(&self, text: &str, set: &[(String, String)]) -> String {
         match self {

@@ -1,4 +1,4 @@
-//! Looks up, in the schema, what each field of a scene file is and an example of it.
+//! Looks up the description and an example of each field of a scene file in the schema.
 
 use crate::place::steps;
 use crate::schema::{element, referred, schema};

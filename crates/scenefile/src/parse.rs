@@ -22,7 +22,7 @@ impl SceneFile {
             return json(text);
         }
         if text.trim_start().starts_with('<') {
-            let message = "this is XML, such as a scene of Mitsuba 3, which render, import and probe read; allowed: a scene in RON or JSON";
+            let message = "this is XML, such as a scene of Mitsuba 3, which the commands render, import and probe read; allowed: a scene in RON or JSON";
             return Err(SceneError::Syntax {
                 line: 1,
                 column: 1,
@@ -165,7 +165,7 @@ fn unexpected(code: &Error, text: &str, [line, column]: [usize; 2]) -> String {
                 .into();
         }
         Error::ExpectedComma if rest.starts_with('^') => {
-            "a number without a power, such as 1_048_576 or 1e6"
+            "a number without the sign ^, such as 1_048_576 or 1e6"
         }
         Error::ExpectedComma if before.ends_with(is_digit) => "a number without a unit",
         Error::ExpectedComma => "a comma before it, or a closing bracket",

@@ -103,7 +103,7 @@ struct InnermostValue {
 
 /// The text between two brackets.
 struct OpenBracket<'a> {
-    /// The number of steps of the path that lead to it; `None` where they lead elsewhere.
+    /// The number of steps of the path that lead to it; `None` if the path leads elsewhere.
     at: Option<usize>,
     /// Whether a name precedes the bracket, as in `Hann(0.5)`: a value without a key is then not an
     /// element.

@@ -91,7 +91,7 @@ pub fn bandwidth(
         }
         inside += power;
     }
-    // Reached only by rounding, because the whole power exceeds any fraction of it.
+    // Only rounding errors lead here, because the whole power exceeds any fraction of it.
     Some(axis.max() + 0.5 * axis.spacing)
 }
 
@@ -107,7 +107,7 @@ mod tests {
 
     #[test]
     fn bandwidths_of_known_powers() {
-        // 81 cells of 0.25, 0.95 of which are inside.
+        // The power is uniform over 81 cells of width 0.25, and the share 0.95 is inside.
         let flat = bandwidth(Array1::ones(81).view(), &axis(40, 0.25), 0.95).unwrap();
         assert!((flat - 0.95 * 81.0 * 0.25 / 2.0).abs() < 1e-12); // rounding
         let of =

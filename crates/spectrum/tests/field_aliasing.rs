@@ -134,8 +134,9 @@ fn wrong_compensations_are_beyond_it() {
         };
         assert!(power(0) <= 1.0);
         assert!(power(-1) > 1.2, "{assignment:?}: {}", power(-1));
-        // Too little compensation: one power for TSC, two for CIC, whose bound is as wide as one;
-        // for the nearest cell the bound is so wide that it holds without any compensation.
+        // The spectrum is compensated too little: by one power for TSC, and by two for CIC, whose
+        // bound is as wide as the effect of one power. For the nearest cell the bound is so wide
+        // that it holds without any compensation.
         match assignment {
             Assignment::Nearest => assert!(power(1) <= 1.0),
             Assignment::Cic => assert!(power(2) > 1.2, "{}", power(2)),
@@ -228,7 +229,8 @@ fn what_is_not_shared_is_not_compared() {
         let field_grid = FieldGrid::new(&window, &slice_grid);
         gridded(&crossings, field_grid, Assignment::Tsc)
     };
-    // Twice as fine shares every other frequency. An odd number of azimuths shares one line.
+    // Slices with twice as fine a spacing share every other frequency. An odd number of azimuths
+    // shares one line.
     for (azimuths, fineness, compared) in [
         (3, 1.0, 7 * 7 / 2 + 1),
         (3, 2.0, 7 * 7 / 2 + 1),

@@ -50,7 +50,7 @@ impl ArgumentStyle {
         }
     }
 
-    /// The argument that allows replacing files of others.
+    /// The argument that allows replacing files that Étendue did not write.
     #[must_use]
     pub fn force(self) -> &'static str {
         match self {

@@ -168,7 +168,7 @@ struct StoredRows {
 }
 
 impl StoredRows {
-    /// Checks that they are those in the index.
+    /// Checks that the rows are the batches in the index.
     fn read(file: &mut NpzFile, held: &Held) -> Result<Self, Failure> {
         let Range { start, end } = held.batches;
         let count = end.saturating_sub(start) as usize;

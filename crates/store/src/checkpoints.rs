@@ -142,8 +142,8 @@ impl CheckpointStore {
     }
 
     /// Adds the finished batches that a measurement does not have yet. Returns those that are
-    /// begun, and the paths of damaged files, which are removed and measured again. `emitted`
-    /// returns the number of photons of a batch.
+    /// begun, and the paths of damaged files. These files are removed, and their batches are
+    /// measured again. `emitted` returns the number of photons of a batch.
     pub fn read(
         &self,
         all: &mut Measurement,

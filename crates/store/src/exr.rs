@@ -51,7 +51,7 @@ pub fn exr(
 
 /// A single attribute, since the order of several would be random.
 fn attribute(provenance: &Value) -> (Text, AttributeValue) {
-    // EXR holds Latin-1; other than ASCII characters are written as JSON escapes.
+    // EXR holds Latin-1; characters other than ASCII are written as JSON escapes.
     let mut ascii = String::new();
     for unit in provenance.to_string().encode_utf16() {
         match u8::try_from(unit).ok().filter(u8::is_ascii) {

@@ -16,7 +16,7 @@ pub trait Number: Copy {
     const DESCR: &'static str;
     /// Appends the bytes of the number.
     fn write(self, bytes: &mut Vec<u8>);
-    /// The number from exactly as many bytes as it has.
+    /// Decodes a number; `None` unless there are exactly as many bytes as a number has.
     fn read(bytes: &[u8]) -> Option<Self>;
     /// Whether the number is neither infinite nor NaN.
     fn is_finite(self) -> bool;
@@ -241,7 +241,7 @@ impl NpzFile {
     ) -> Result<(NpyHeader, Vec<A>), Failure> {
         let bytes = self.entry(name, bytes)?;
         let Some((header, start)) = NpyHeader::read(&bytes) else {
-            return Err(self.fault(name, "its header is not one of an array of numbers"));
+            return Err(self.fault(name, "its header does not describe an array of numbers"));
         };
         if header.descr != A::DESCR {
             let is = format!("its numbers are '{}'; must be '{}'", header.descr, A::DESCR);
@@ -294,8 +294,8 @@ impl NpzFile {
         Failure::bad_input(format!("{path}: array {name}: {what}"))
     }
 
-    /// The NPY file `name` in the archive. Compressed data are not unpacked beyond the bytes that
-    /// `numbers` need or that the whole archive holds.
+    /// The NPY file `name` in the archive. Unpacks at most as many bytes as `numbers`, the whole
+    /// archive and a header have together.
     fn entry(&mut self, name: &str, numbers: usize) -> Result<Vec<u8>, Failure> {
         let limit = numbers.saturating_add(self.length).saturating_add(HEADER);
         let mut bytes = Vec::new();

@@ -19,8 +19,8 @@ use std::path::PathBuf;
 /// The content of `prediction.json`, beside the scene.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct StoredPrediction {
-    /// Method of the measurement that the prediction is for; where there is no theory, the other
-    /// method took its place.
+    /// Method of the measurement that the prediction is for. Where there is no theory, a
+    /// measurement by another method takes its place.
     method: Method,
     /// A prediction for each plane of the scene.
     pub planes: Vec<PredictedPlane>,

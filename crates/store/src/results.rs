@@ -1,9 +1,9 @@
 //! A folder of results, which owns only the files that it wrote.
 //!
 //! New files wait in a subfolder until all are complete, so an earlier result stays until then. An
-//! index, such as `summary.json`, lists them by their hashes and comes last. Files that the index
-//! of an earlier result lists, and that still have the listed hash, are removed; anything else in
-//! the folder belongs to somebody else, and stays (docs/files.md).
+//! index, such as `summary.json`, lists the files with their hashes and is moved last. Files that
+//! the index of an earlier result lists, and that still have the listed hash, are removed; anything
+//! else in the folder belongs to somebody else, and stays (docs/files.md).
 
 mod claim;
 mod commit;
@@ -36,7 +36,8 @@ pub const PICTURE: &str = "picture.json";
 pub const PROBE: &str = "probe.json";
 /// The index of `etendue covariance`.
 pub const COVARIANCE: &str = "covariance.json";
-/// Seconds of a comparison. They are outside the index, since they differ in every run.
+/// The file with the seconds of a comparison. They are outside the index, since they differ in
+/// every run.
 pub const TIMING: &str = "timing.json";
 
 /// The largest number of bytes of an index.
@@ -140,8 +141,8 @@ impl Results {
         Ok(results)
     }
 
-    /// The same for a folder `name` inside `out`, which the user names: below `out` nothing is
-    /// written through a link.
+    /// Claims a folder `name` inside `out`. The user chooses `out`, and below it nothing is written
+    /// through a link.
     pub fn claim_below(out: &Path, name: &str, plan: Plan) -> Result<Self, Failure> {
         let folder = out.join(name);
         if inside(out, &format!("{name}/{}", plan.index)).is_none() {
@@ -150,7 +151,7 @@ impl Results {
         Self::claim(&folder, plan)
     }
 
-    /// The same, but waits while another process writes there, and warns if that takes long.
+    /// Claims a folder, but waits while another process writes there, and warns if that takes long.
     pub fn claim_in_turn(folder: &Path, plan: Plan, warn: &dyn Fn(&str)) -> Result<Self, Failure> {
         let mut begun = Some(Instant::now());
         loop {
@@ -177,7 +178,8 @@ impl Results {
         self.stream(name, &mut |file| file.write_all(bytes))
     }
 
-    /// The same for a file too large for memory, which `content` writes.
+    /// Writes a file that the index lists and that is too large for memory; `content` writes its
+    /// bytes.
     pub fn stream(
         &mut self,
         name: &str,
@@ -208,12 +210,13 @@ impl Results {
         if !self.planned().any(|planned| planned == name) {
             return Err(Failure::write(
                 &shown,
-                "it was not announced: a bug in etendue",
+                "this file was not planned: a bug in etendue",
             ));
         }
         let path = self.staged(name);
         let mut write = || {
-            // An interrupted process has removed the folder, and must not create it again.
+            // If this process is being interrupted, the folder is removed and must not be created
+            // again.
             let file = unfinished::undisturbed(|| {
                 if let Some(folder) = path.parent() {
                     fs::create_dir_all(folder)?;
@@ -288,7 +291,7 @@ impl Results {
 
 impl Drop for Results {
     fn drop(&mut self) {
-        // Files that have begun to move are moved on by the next process.
+        // If files have begun to move, the next process completes their moves.
         if self.ready_index().is_none() {
             let _ = fs::remove_dir_all(self.folder.join(UNFINISHED));
         }
@@ -300,7 +303,8 @@ impl Drop for Results {
     }
 }
 
-/// The path of a file of a folder; `None` if it leads out of it, by `..` or by a link.
+/// The path of a file of a folder; `None` if the path leads out of the folder, by `..` or by a
+/// link.
 pub fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
     let mut path = folder.to_owned();
     let mut components = Path::new(name).components().peekable();

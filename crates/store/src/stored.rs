@@ -86,7 +86,7 @@ impl<T: DeserializeOwned> Stored<T> {
             .map_err(|e| Failure::bad_input(format!("cannot read {shown}: {e}")))?;
         let fault = |what: String| Failure::bad_input(format!("{shown}: {what}"));
         let tree: Value = serde_json::from_slice(&bytes).unwrap_or_default();
-        // Checked before the rest, which another version may write differently.
+        // The version is checked before the rest, which another version may write differently.
         if let Some(version) = tree["version"].as_str().filter(|v| *v != VERSION) {
             return Err(fault(format!(
                 "written by version {version}, but this is version {VERSION}: all stages must be of the same version"

@@ -202,7 +202,7 @@ mod tests {
     }
 
     /// The mean of a product over all coordinates is unbiased and has less noise than with random
-    /// numbers; so is the mean over the coordinates of one block.
+    /// numbers; the same is true of the mean over the coordinates of one block.
     #[test]
     fn nets_beat_random_numbers() {
         const N: u32 = 1 << 12;
@@ -221,7 +221,7 @@ mod tests {
             let random = ((1.0_f64 + 0.25 / 12.0).powi(factors) - 1.0) / f64::from(N);
             assert!(power < less * random, "{from}..{to}: {:e}", power / random);
             let mean = errors.iter().sum::<f64>() / NETS as f64;
-            // Four of its standard errors.
+            // The limit is four of its standard errors.
             assert!(
                 mean.abs() < 4.0 * (power / NETS as f64).sqrt(),
                 "{from}..{to}"

@@ -107,8 +107,8 @@ impl Suspect {
         let off = if piece.leg > 0 || !around.is_known(layer) {
             beyond(t, [from, to])
         } else {
-            // Theory expects the ray to meet the layer at the end of the piece. It is unexpected
-            // only earlier.
+            // Theory expects the ray to meet the layer within the piece. The error would be that
+            // the piece ends earlier.
             (to - t).max(0.0)
         };
         libm::hypot(off, outside(piece.ray.at(t)))

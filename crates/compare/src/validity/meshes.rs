@@ -15,8 +15,8 @@ const TRIES: u32 = 300_000;
 /// The smallest and the largest number of rays with light in the window that are followed.
 const MIN_RAYS: usize = 300;
 const MAX_RAYS: usize = 3000;
-/// The number of tests of triangles that limits how many rays beyond the smallest number are
-/// followed.
+/// The largest number of triangles tested for all rays together; the smallest number of rays is
+/// followed in any case.
 const LOOKED_AT: usize = 30_000_000;
 /// The distance, in edges of a triangle, within which the triangle counts as a neighbour of the
 /// point that a ray leaves.

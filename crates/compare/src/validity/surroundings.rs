@@ -37,7 +37,7 @@ impl Meets {
 }
 
 /// Returns descriptions of what light meets and theory ignores, each once. Also returns the
-/// blockers that light meets although the central ray does not; theory then includes them.
+/// blockers that light meets at places where the central ray does not; theory then includes them.
 ///
 /// A ray reports only the first thing that it meets. So blockers are included in the theory and
 /// rays are traced again, until they meet no further blockers.

@@ -58,8 +58,8 @@ impl Diff {
         [slices.count(), parameters.sum()]
     }
 
-    /// The level of each test with which all tests together find a difference where there is none
-    /// with probability α.
+    /// The level of each test. With this level, the probability is α that any of the tests finds a
+    /// difference where there is none.
     pub(super) fn level(&self) -> f64 {
         let [slices, parameters] = self.tests();
         sidak(self.alpha, (slices + parameters).max(1))
@@ -74,7 +74,7 @@ impl Diff {
     }
 }
 
-/// Whether a field affects how a scene is run, and not what it is.
+/// Whether a field affects only how a scene is run.
 pub(super) fn is_of_run(change: &FieldChange) -> bool {
     change.field.starts_with("run.")
 }

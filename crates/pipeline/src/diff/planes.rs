@@ -186,7 +186,8 @@ impl ResultPair<'_> {
         Ok(PlaneDifference::Compared(Box::new(compared)))
     }
 
-    /// Whether both use the same photons, as far as the scenes allow it.
+    /// Whether both results have the same method, seed, photons and batches, and so share photons
+    /// as far as their scenes agree.
     fn has_one_seed(&self) -> bool {
         let [a, b] = [self.a, self.b].map(|result| {
             let index = &result.index;
@@ -273,7 +274,7 @@ impl ResultPair<'_> {
             }
             if let Some(each) = carried_by(&slices.sample, &slices.grid) {
                 return Some(format!(
-                    "a few photons carry most of the light of {folder}: it varies as if each batch held only {each:.1} of them"
+                    "a few photons carry most of the light of {folder}: the light varies as if each batch held only {each:.1} of them"
                 ));
             }
         }
@@ -292,11 +293,11 @@ impl ResultPair<'_> {
                 "they share photons, or their noise is overstated".to_owned()
             };
             return Some(format!(
-                "they differ by {apart}, but independent noise would differ by {noise}: {seeds}; run one with another seed"
+                "they differ by {apart}, but results with independent noise would differ by {noise}: {seeds}; run one of them with another seed"
             ));
         }
         let resolution = [a, b].map(|r| r.scene_file["run"]["resolution"].as_f64());
-        // Two results with this noise each differ by its root mean square sum.
+        // Two results that each have this noise differ by √2 times as much.
         let resolution = SQRT_2 * resolution.into_iter().flatten().fold(0.0, f64::max);
         (test.noise > resolution).then(|| {
             let resolution = percent(resolution, 3);
@@ -306,7 +307,7 @@ impl ResultPair<'_> {
 }
 
 /// The number of photons of equal weight per batch that would vary as much as the light of this
-/// sample, where it is so small that some batch would be empty; as for a single run
+/// sample. `None` if the number is large enough that no batch would be empty, as for a single run
 /// (`etendue_compare`).
 fn carried_by(sample: &Sample, grid: &SliceGrid) -> Option<f64> {
     let zero = [0, 0, grid.nu.half];

@@ -78,7 +78,7 @@ impl StoredNumber {
 }
 
 impl StoredParameter {
-    /// Whether the photons determine the parameter: a change by all of it would be detected.
+    /// Whether the photons determine the parameter: a change by its whole value would be detected.
     pub(super) fn is_determined(&self) -> bool {
         let (Some(scene), Some(detectable)) = (self.scene, self.detectable) else {
             return false;

@@ -62,7 +62,7 @@ impl<'a> Content<'a> {
     /// Photons of unknown energy, in f64.
     pub(super) fn mcpl(rays: &'a Rays, rows: u64) -> Self {
         let mut comments = vec![WATTS.as_bytes().to_vec(), rays.about.clone().into_bytes()];
-        // In the format, a number of photons is a sum.
+        // The format stores the number of emitted photons as a sum.
         comments.extend(stat_sum_comment("emitted_photons", rays.emitted as f64));
         let header = mcpl::McplHeader {
             universal_pdg: Some(PHOTON),

@@ -38,9 +38,9 @@ impl McplFile {
     /// Reads an unpacked file.
     ///
     /// # Errors
-    /// The first violation of the format. A file that was not closed (no particles according to its
-    /// header, and records after it) is refused too, as is one with enough bytes after the last
-    /// record for another.
+    /// The first violation of the format. Also refused are files that were not closed, whose header
+    /// states no particles although records follow, and files with enough bytes after the last
+    /// record for another record.
     pub fn read(bytes: &[u8]) -> Result<Self, Fault> {
         let (header, count, start) = McplHeader::read(bytes)?;
         let size = header.record_size();

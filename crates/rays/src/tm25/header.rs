@@ -109,7 +109,7 @@ pub struct Tm25Header {
 }
 
 impl Default for Tm25Header {
-    /// Simulated rays with a radiant flux, and no further information.
+    /// Returns the header of simulated rays with a radiant flux and no further information.
     fn default() -> Self {
         Self {
             version: 2013,

@@ -29,11 +29,11 @@ pub struct Tm25File {
     notes: Vec<String>,
 }
 
-/// The tolerance for the length of a direction, which should be 1, without a note: ten roundings of
+/// The largest deviation of the length of a direction from 1 that causes no note: ten roundings of
 /// f32.
 const LENGTH_SLACK: f64 = 1e-6;
-/// The relative tolerance for the flux of the header against the sum over rays, without a note: the
-/// error of f32 and four printed digits.
+/// The largest relative difference between the flux of the header and the sum over rays that causes
+/// no note: the error of f32 and of four printed digits.
 const FLUX_SLACK: f64 = 1e-3;
 
 impl Tm25File {

@@ -7,8 +7,8 @@ use glam::{DAffine3, DVec3};
 /// Triangles with shared vertices, in the file's units and frame.
 ///
 /// Valid by construction: at least one triangle, each with an area and with valid vertex indices;
-/// coordinates within ±10⁹. Corners run counterclockwise seen from outside, where the file has them
-/// so; the surface need not be closed. Unused vertices are allowed.
+/// coordinates within ±10⁹. Corners run counterclockwise as seen from outside if the file lists
+/// them in this order. The surface need not be closed. Unused vertices are allowed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     pub(super) vertices: Vec<DVec3>,

@@ -7,7 +7,8 @@ use etendue_scenefile::{
 };
 
 impl Resolver<'_> {
-    /// Adds a fault for everything that there is too much of, and returns whether there was none.
+    /// Adds a fault for each kind of object that is too numerous, and returns whether there was no
+    /// such fault.
     pub(super) fn counts(&mut self, file: &SceneFile) -> bool {
         let lobes = match &file.light {
             LightFile::Environment {

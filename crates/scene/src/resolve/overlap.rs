@@ -13,7 +13,7 @@ pub(super) enum Thing {
 
 /// The first two shapes or half-planes that overlap, given finite numbers.
 pub(super) fn overlap(shapes: &[Shape], half_planes: &[HalfPlane]) -> Option<[Thing; 2]> {
-    // Of any three half-planes two overlap, so no more need be tested.
+    // Of any three half-planes two overlap, so the first three suffice.
     let first = &half_planes[..half_planes.len().min(3)];
     let two = pairs(first.len()).find(|[i, j]| !facing_away(&first[*i], &first[*j]));
     if let Some(pair) = two {
@@ -32,8 +32,8 @@ fn pairs(count: usize) -> impl Iterator<Item = [usize; 2]> {
 
 /// The first shape that overlaps another, and the first that it overlaps.
 ///
-/// Bounds of disjoint shapes meet only where the shapes touch or in the corners of discs. At any
-/// point there are few of these for each order of magnitude of sizes, so few pairs are tested.
+/// Bounds of disjoint shapes meet only where the shapes touch, or in the corners of the bounds of
+/// discs. At any point few bounds of each order of magnitude meet, so few pairs are tested.
 fn overlap_of_shapes(shapes: &[Shape]) -> Option<[usize; 2]> {
     let indexed = shapes.iter().enumerate().map(|(i, shape)| {
         let [low, high] = corners(shape);

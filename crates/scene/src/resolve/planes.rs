@@ -66,7 +66,8 @@ impl Resolver<'_> {
         planes
     }
 
-    /// The frame of a plane, in the frame at the light, and the longitude of the central ray in it.
+    /// The frame of a plane, in the frame at the light, and the longitude of the central ray in the
+    /// plane's frame.
     fn view(
         &mut self,
         of: &str,
@@ -116,8 +117,8 @@ impl Resolver<'_> {
             Side::Before => (frame, arrives),
             Side::After => {
                 let d = path.legs[place.leg].frame.d;
-                // Transmitted light leaves on the other side; N points there, and T is rotated with
-                // it.
+                // Transmitted light leaves on the other side; N points to that side, and T is
+                // rotated with N.
                 let frame = if d.dot(frame.d) < 0.0 {
                     Frame {
                         x: -frame.x,

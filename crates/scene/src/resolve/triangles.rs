@@ -8,18 +8,18 @@ use etendue_scenefile::limits::MAX_NUMBER;
 use glam::DVec3;
 use std::path::Path;
 
-/// The height of a triangle over the largest coordinate below which it cannot be distinguished from
-/// a line.
+/// The ratio of a triangle's height to the largest coordinate below which the triangle cannot be
+/// distinguished from a line.
 ///
 /// A coordinate in the frame of a leg is rounded by up to 4e-16 of the largest. At this height a
 /// normal is tilted by 4e-4 of a radian, and the barycentric shares of a point are off by as much;
-/// below it rounding dominates.
+/// below this height rounding dominates.
 const THIN: f64 = 1e-12;
 /// The smallest height in metres: the smallest size of a scene times the smallest scale. Products
 /// of six such lengths stay within f64.
 const LEAST_HEIGHT: f64 = 1e-18;
-/// The share of a mesh's area that thin triangles may hold and be dropped; the missing light is far
-/// below the noise.
+/// The largest share of a mesh's area up to which thin triangles are dropped; the missing light is
+/// far below the noise.
 const MAX_DROPPED_SHARE: f64 = 1e-6;
 /// The placement of a mesh, and how its faults are reported.
 pub(super) struct MeshPlacement<'a> {
@@ -131,10 +131,10 @@ fn height([a, b, c]: [DVec3; 3]) -> [f64; 2] {
     [twice / longest, twice]
 }
 
-/// The words that count the others after the first.
+/// Returns words that count the faults after the first.
 pub(super) fn others(count: usize) -> String {
     match count {
         0 | 1 => String::new(),
-        more => format!(" ({} more are not)", more - 1),
+        more => format!(" ({} more have this fault)", more - 1),
     }
 }

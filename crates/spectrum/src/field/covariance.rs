@@ -49,8 +49,9 @@ fn pairs() -> impl Iterator<Item = (usize, usize)> {
     (0..4).flat_map(|i| (i..4).map(move |j| (i, j)))
 }
 
-/// The frequencies that moments are over: those of a 4D grid within the largest ones of a plane's slices, |Ωx| and
-/// |Ωy| ≤ ρ_max, |Ωu| and |Ωv| ≤ ν_max. None at Nyquist is among them.
+/// The frequencies over which moments are taken: those of a 4D grid within the largest ones of a
+/// plane's slices, |Ωx| and |Ωy| ≤ ρ_max, |Ωu| and |Ωv| ≤ ν_max. Frequencies at Nyquist are
+/// excluded.
 #[derive(Clone, Debug)]
 pub struct Moments {
     grid: FieldGrid,
@@ -115,7 +116,7 @@ impl Moments {
     /// Returns indices and frequencies of the band along an axis.
     fn along(&self, axis: usize) -> Vec<(usize, f64)> {
         let (n, spacing) = (self.grid.cells[axis], self.grid.spacing(axis));
-        // The largest frequency may be a multiple of the spacing up to rounding.
+        // The largest frequency may be a multiple of the spacing apart from rounding errors.
         let most = self.band[axis] * (1.0 + 1e-9);
         let all = (0..n).map(|i| (i, self.grid.harmonic(axis, i)));
         let inside = all.filter(|(_, harmonic)| 2 * harmonic.unsigned_abs() < n);

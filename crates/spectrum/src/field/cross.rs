@@ -25,7 +25,7 @@ pub struct FullRadial {
     /// leaves out.
     pub shot_noise: Array2<f64>,
     /// The standard error of `power` by the delete-one jackknife over groups of batches: about √2
-    /// too large where there is only noise.
+    /// times too large where there is only noise.
     pub sigma: Array2<f64>,
 }
 

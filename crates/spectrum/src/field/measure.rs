@@ -33,7 +33,8 @@ pub struct FieldOptions {
 }
 
 impl Default for FieldOptions {
-    /// Triangular shaped clouds, 16 groups, not kept, no spectra of groups, no covariance.
+    /// Returns the default options: triangular shaped clouds, 16 groups, which are not kept, no
+    /// spectra of groups and no covariance.
     fn default() -> Self {
         Self {
             assignment: Assignment::Tsc,

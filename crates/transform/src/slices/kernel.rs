@@ -93,7 +93,7 @@ impl Kernel {
     /// cycles per cell.
     ///
     /// It is the transform of the polynomials that are used for spreading, by a Gauss–Legendre rule
-    /// on each cell, exact to rounding for |ξ| ≤ 1/2.
+    /// on each cell, exact apart from rounding errors for |ξ| ≤ 1/2.
     pub(crate) fn transform(&self, xi: f64) -> f64 {
         let mut sum = 0.0;
         for (x, weight) in gauss_legendre(16) {
