@@ -54,8 +54,8 @@ fn sharpest_cutoff(reflectance: &Reflectance) -> f64 {
     lobes.filter_map(lobe_cutoff).fold(0.0, f64::max)
 }
 
-/// Ω_ρ, the frequency below which a lobe has [`BANDWIDTH_FRACTION`] of its energy, cycles per
-/// radian. `None` for a lobe centred on the normal.
+/// Returns Ω_ρ, the frequency below which a lobe has [`BANDWIDTH_FRACTION`] of its energy, cycles
+/// per radian. `None` for a lobe centred on the normal.
 #[must_use]
 pub fn lobe_cutoff(lobe: Lobe) -> Option<f64> {
     let lobe = match lobe {

@@ -51,8 +51,8 @@ pub fn chain(scene: &Scene, plane: &VirtualPlane) -> Chain {
     }
 }
 
-/// Names, distances and masks of the objects across the path, including surfaces beside the central
-/// ray, which stop light too.
+/// Returns the names, distances and masks of the objects across the path, including surfaces beside
+/// the central ray, which stop light too.
 fn obstacles(scene: &Scene) -> Vec<(&str, f64, Mask)> {
     let blockers = scene.blockers.iter();
     let blockers = blockers.map(|layer| (layer.name.as_str(), layer.distance, layer.mask.clone()));

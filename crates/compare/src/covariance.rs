@@ -271,8 +271,9 @@ fn slice(
     }))
 }
 
-/// |F|² of theory at azimuth 0, [ρ, ν]; it is computed from pairs of replicates, as a measured
-/// power is from pairs of batches. `None` where the measurement of another tracer replaces theory.
+/// Returns |F|² of theory at azimuth 0, [ρ, ν]. It is computed from pairs of replicates, as a
+/// measured power is from pairs of batches. `None` where the measurement of another tracer replaces
+/// theory.
 fn predicted_slice(prediction: &Prediction) -> Option<Array2<f64>> {
     if prediction.class == Class::Reference {
         return None;

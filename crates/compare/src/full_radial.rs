@@ -109,7 +109,7 @@ impl BinDifference {
     }
 }
 
-/// Σ_r |G_r − a_r G|², by the products of the groups.
+/// Returns Σ_r |G_r − a_r G|², from the products of the groups.
 fn spread(product: &dyn Fn(usize, usize) -> f64, a: &[f64]) -> f64 {
     let n = a.len();
     let row = |r: usize| (0..n).map(|s| product(r, s)).sum::<f64>();
@@ -234,7 +234,7 @@ mod tests {
     use super::*;
     use ndarray::Array2;
 
-    /// Pseudo-random numbers about zero.
+    /// Returns pseudo-random numbers about zero.
     fn noise(count: usize, seed: f64) -> Vec<f64> {
         let each = (0..count).map(|i| libm::sin(1e4 * (seed + 1.7 * i as f64)));
         each.collect()

@@ -92,7 +92,8 @@ fn in_the_way(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
     found
 }
 
-/// Corners of rectangles that hold every part of a layer that light for a plane may meet.
+/// Returns the corners of rectangles that contain every part of a layer that light for a plane may
+/// meet.
 fn parts(layer: &BlockerLayer, scene: &Scene, plane: &VirtualPlane) -> Vec<[DVec3; 4]> {
     // A half-plane or grating is cut off at a thousand times the extent of the light.
     let lengths = tube(scene, plane).into_iter().flatten();
@@ -121,8 +122,8 @@ fn parts(layer: &BlockerLayer, scene: &Scene, plane: &VirtualPlane) -> Vec<[DVec
     }
 }
 
-/// Half-widths of the regions where light for a plane leaves the source and where it reaches each
-/// surface.
+/// Returns the half-widths of the regions where light for a plane leaves the source and where it
+/// reaches each surface.
 fn tube(scene: &Scene, plane: &VirtualPlane) -> [[f64; 2]; 2] {
     let window = [&plane.window.x, &plane.window.y].map(Profile::half_width);
     let slope = [&plane.window.u, &plane.window.v].map(Profile::half_width);

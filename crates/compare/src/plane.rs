@@ -374,7 +374,7 @@ impl ComparedSides<'_> {
             .collect()
     }
 
-    /// ‖error‖ of a prediction by quadrature, over the independent frequencies.
+    /// Returns ‖error‖ of a prediction by quadrature, over the independent frequencies.
     fn numerical_error(&self) -> f64 {
         let half = &self.predicted.half;
         let size = self.residuals.sum(half, half, |f, _| f.norm_sqr()).sqrt();

@@ -76,12 +76,12 @@ impl Prediction {
         both(quadrature, self.mesh_error)
     }
 
-    /// ‖error‖/‖slices‖ of theory's own replicates. It does not shrink with more photons.
+    /// Returns ‖error‖/‖slices‖ of theory's own replicates. It does not shrink with more photons.
     pub(crate) fn statistical_error(&self) -> Option<f64> {
         self.quadrature_error.filter(|_| self.is_statistical())
     }
 
-    /// ‖error‖/‖slices‖ of all kinds combined.
+    /// Returns ‖error‖/‖slices‖ of all kinds combined.
     pub(crate) fn error(&self) -> Option<f64> {
         both(self.quadrature_error, self.mesh_error)
     }

@@ -113,12 +113,12 @@ impl Residuals {
         self.parts.len()
     }
 
-    /// Each residual, [azimuth, ρ ≥ 0, ν].
+    /// Returns each residual, [azimuth, ρ ≥ 0, ν].
     pub(crate) fn each(&self) -> impl Iterator<Item = &Array3<Complex>> {
         self.parts.iter()
     }
 
-    /// S − F, [azimuth, ρ ≥ 0, ν].
+    /// Returns S − F, [azimuth, ρ ≥ 0, ν].
     #[must_use]
     pub fn mean(&self) -> Array3<Complex> {
         let mut sum = Array3::zeros(self.grid.half_shape());
@@ -150,13 +150,13 @@ impl Residuals {
             .map(|(_, value)| value)
     }
 
-    /// Number of independent frequencies.
+    /// Returns the number of independent frequencies.
     #[must_use]
     pub fn frequencies(&self) -> usize {
         self.cells(&self.parts[0]).count()
     }
 
-    /// Sum of `term` over the independent frequencies of two arrays.
+    /// Returns the sum of `term` over the independent frequencies of two arrays.
     pub(crate) fn sum<A, B>(
         &self,
         a: &Array3<A>,
@@ -169,8 +169,8 @@ impl Residuals {
             .sum()
     }
 
-    /// χ² per degree of freedom: the mean of |S − F|²/σ² over the independent frequencies where σ >
-    /// 0.
+    /// Returns χ² per degree of freedom: the mean of |S − F|²/σ² over the independent frequencies
+    /// where σ > 0.
     ///
     /// σ² is itself estimated from R batches. For complex normal residuals this raises the mean by
     /// (R − 1)/(R − 2), which is divided out. `None` when no photon arrived.
@@ -187,8 +187,8 @@ impl Residuals {
         Some(sum / resolved as f64 * (r - 2.0) / (r - 1.0))
     }
 
-    /// Standard deviation, [ρ, ν], of the measured radial power around the predicted one, if F is
-    /// true.
+    /// Returns the standard deviation, [ρ, ν], of the measured radial power around the predicted
+    /// one, if F is true.
     ///
     /// |S|² − σ² − |F|² = 2 Re F*(S − F) + (|S − F|² − σ²), averaged over the azimuths. The first
     /// term is a mean over residuals, whose spread gives its variance. The second has the variance
@@ -247,8 +247,8 @@ impl Residuals {
         products
     }
 
-    /// ‖mean residual‖² without its noise, Σ_{b≠c} H_bc / (R (R − 1)), and its delete-one jackknife
-    /// error (docs/theory.md, section 6).
+    /// Returns ‖mean residual‖² without its noise, Σ_{b≠c} H_bc / (R (R − 1)), and its delete-one
+    /// jackknife error (docs/theory.md, section 6).
     pub(crate) fn squared(&self) -> (f64, f64) {
         let products = self.products(false);
         let r = self.count() as f64;
@@ -266,8 +266,8 @@ impl Residuals {
         (total / (r * (r - 1.0)), ((r - 1.0) / r * spread).sqrt())
     }
 
-    /// Standard error of [`Self::squared`] if every residual has mean zero: its terms are then
-    /// uncorrelated, and each pair occurs twice.
+    /// Returns the standard error of [`Self::squared`] if every residual has mean zero: its terms
+    /// are then uncorrelated, and each pair occurs twice.
     pub(crate) fn squared_error(&self) -> f64 {
         let products = self.products(false);
         let r = self.count() as f64;
@@ -276,7 +276,8 @@ impl Residuals {
         (2.0 * (all - diagonal)).max(0.0).sqrt() / (r * (r - 1.0))
     }
 
-    /// Real and imaginary parts of the independent cells of azimuth `k`, over the root of `scale`.
+    /// Returns the real and imaginary parts of the independent cells of azimuth `k`, divided by the
+    /// root of `scale`.
     fn row(&self, residual: &Array3<Complex>, scale: &Array3<f64>, k: usize) -> Vec<f64> {
         let plane = residual.index_axis(Axis(0), k);
         let scale = scale.index_axis(Axis(0), k);
@@ -323,7 +324,7 @@ fn check(measured: &Slices, predicted: &Slices) {
     assert_eq!(measured, predicted, "the measured and the predicted frequencies differ");
 }
 
-/// Σ_b<c ε_b ε_c H_bc; the diagonal is the same for all signs.
+/// Returns Σ_b<c ε_b ε_c H_bc; the diagonal is the same for all signs.
 fn signed_sum(products: &Array2<f64>, signs: &[f64]) -> f64 {
     let mut sum = 0.0;
     for (b, row) in products.outer_iter().enumerate() {
@@ -333,7 +334,7 @@ fn signed_sum(products: &Array2<f64>, signs: &[f64]) -> f64 {
     sum
 }
 
-/// Random signs for the batches of one round.
+/// Returns random signs for the batches of one round.
 pub(crate) fn signs(seed: u64, round: u64, count: usize) -> Vec<f64> {
     let mut signs = Vec::with_capacity(count + 128);
     for block in 0.. {
@@ -353,8 +354,8 @@ pub(crate) fn largest(slices: &Array3<Complex>) -> f64 {
     slices.iter().map(|s| modulus(*s)).fold(0.0, f64::max)
 }
 
-/// Σ a b in eight parallel sums. The matrix products of libraries round differently on each
-/// processor; these sums round the same on every one.
+/// Computes Σ a b in eight parallel sums. The matrix products of libraries round differently on
+/// each processor; these sums round the same on every one.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     const LANES: usize = 8;
     let (a, a_rest) = a.as_chunks::<LANES>();

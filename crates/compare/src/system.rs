@@ -277,7 +277,7 @@ pub(crate) fn in_the_way(layer: &BlockerLayer, from: usize) -> Obstacle {
     }
 }
 
-/// Descriptions of the objects beside the path that no ray is tested against.
+/// Returns descriptions of the objects beside the path that no ray is tested against.
 pub(crate) fn too_fine(scene: &Scene) -> Vec<String> {
     let fine = unvisited(scene).filter(|object| is_too_fine(scene, *object));
     fine.map(|object| {

@@ -7,7 +7,7 @@ const MAX_TERMS: u32 = 1_000_000;
 /// The precision at which a series or a continued fraction ends: the rounding of f64.
 const ROUNDING: f64 = 1e-16;
 
-/// Probability that χ² of `dof` degrees of freedom, any positive number, is above `x`.
+/// Returns the probability that χ² of `dof` degrees of freedom, any positive number, is above `x`.
 ///
 /// It is Q(dof/2, x/2), the upper regularised incomplete gamma function, computed from its series
 /// below x = dof + 2 and from its continued fraction above (Abramowitz and Stegun 1964, 6.5.29 and
@@ -29,7 +29,7 @@ pub(crate) fn chi_squared_above(x: f64, dof: f64) -> f64 {
     above.clamp(0.0, 1.0)
 }
 
-/// Σ xⁿ/(a (a + 1) … (a + n)).
+/// Returns Σ xⁿ/(a (a + 1) … (a + n)).
 fn lower_series(a: f64, x: f64) -> f64 {
     let mut term = 1.0 / a;
     let mut sum = term;
@@ -43,7 +43,7 @@ fn lower_series(a: f64, x: f64) -> f64 {
     sum
 }
 
-/// 1/(x + 1 − a − 1(1 − a)/(x + 3 − a − …)) by Lentz's method.
+/// Computes 1/(x + 1 − a − 1(1 − a)/(x + 3 − a − …)) by Lentz's method.
 fn upper_fraction(a: f64, x: f64) -> f64 {
     let mut b = x + 1.0 - a;
     let mut c = f64::INFINITY;
@@ -63,7 +63,8 @@ fn upper_fraction(a: f64, x: f64) -> f64 {
     fraction
 }
 
-/// Probability that Student's t of `dof` degrees of freedom is at least as far from zero as `t`.
+/// Returns the probability that Student's t of `dof` degrees of freedom is at least as far from
+/// zero as `t`.
 ///
 /// Uses the normal deviate with about the same tail (Wallace 1959). The error is below 1 % of the
 /// probability from 30 degrees of freedom on, for probabilities down to 10⁻⁶.

@@ -99,7 +99,7 @@ impl RaySection {
         }
     }
 
-    /// Twice the area, or the length of a degenerate polygon.
+    /// Returns twice the area, or the length of a degenerate polygon.
     fn measure(&self) -> f64 {
         let [positions, slopes] = [0, 1].map(|k| {
             let [low, high] = extent(self.0.iter().map(|corner| corner[k]));

@@ -23,7 +23,7 @@ pub fn power(x: f64, y: f64) -> f64 {
     }
 }
 
-/// |z|, without overflow or underflow on the way.
+/// Returns |z|, without overflow or underflow on the way.
 #[must_use]
 pub fn modulus(z: Complex) -> f64 {
     libm::hypot(z.re, z.im)

@@ -123,10 +123,10 @@ fn both_pass(
     }
 }
 
-/// Squared distances of a failed plane from its prediction, beyond noise: with all frequencies
-/// weighted equally, and weighted as in the test, where frequencies of less noise count more. The
-/// noise of another tracer is distributed differently, so that tracer must be able to detect the
-/// smaller of the two distances.
+/// Returns the squared distances of a failed plane from its prediction, beyond noise. In the first
+/// all frequencies are weighted equally; in the second they are weighted as in the test, where
+/// frequencies of less noise count more. The noise of another tracer is distributed differently, so
+/// that tracer must be able to detect the smaller of the two distances.
 fn disagreement(failed: &PlaneReport) -> [f64; 2] {
     let alike = failed.excess.map(|excess| excess * excess.abs());
     let tested = failed.chi2_per_dof.zip(failed.noise_limit);

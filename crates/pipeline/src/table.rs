@@ -311,7 +311,7 @@ pub fn percent(value: Option<f64>) -> String {
     value.map_or("–".to_owned(), |share| etendue_field::percent(share, 3))
 }
 
-/// 10000000 as 10 000 000.
+/// Formats 10000000 as 10 000 000.
 pub fn grouped(n: u64) -> String {
     let digits = n.to_string();
     let groups: Vec<&str> = digits

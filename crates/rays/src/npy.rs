@@ -23,7 +23,7 @@ pub(crate) fn write(set: &RaySet) -> Result<Vec<u8>, Fault> {
     Ok(bytes)
 }
 
-/// Why a row is not a valid ray.
+/// Checks a row; the error states why the row is not a valid ray.
 fn check(row: &[f64; 8]) -> Result<(), String> {
     let [.., kx, ky, kz, power, wavelength] = *row;
     if let Some(value) = row[..7].iter().find(|v| !v.is_finite()) {

@@ -63,8 +63,8 @@ impl MeshObject {
     }
 }
 
-/// h, ∂h/∂s, ∂h/∂t, ∂²h/∂s², ∂²h/∂s∂t and ∂²h/∂t² at the origin of a frame, for the least-squares
-/// quadratic in (s, t) through points (s, t, h).
+/// Returns h, ∂h/∂s, ∂h/∂t, ∂²h/∂s², ∂²h/∂s∂t and ∂²h/∂t² at the origin of a frame, for the
+/// least-squares quadratic in (s, t) through points (s, t, h).
 fn quadric(frame: &Frame, points: &[DVec3], unit: f64) -> Option<[f64; 6]> {
     let rows = points.iter().map(|point| {
         let DVec3 { x, y, z } = frame.to_local(*point) / unit;

@@ -257,7 +257,7 @@ fn stops<'a>(path: &CentralRay, things: Things<'a>) -> Vec<PathStop<'a>> {
     stops
 }
 
-/// Smallest and largest distance of points.
+/// Returns the smallest and largest distance of points.
 fn extent(points: &[DVec3]) -> [f64; 2] {
     let low = points.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
     let high = points.iter().map(|p| p.z).fold(f64::NEG_INFINITY, f64::max);

@@ -104,7 +104,7 @@ impl Hit {
 }
 
 impl CentralRay {
-    /// Distance at which the central ray meets its first surface.
+    /// Returns the distance at which the central ray meets its first surface.
     #[must_use]
     pub fn first_hit(&self) -> f64 {
         self.legs[0].length
@@ -123,7 +123,7 @@ impl CentralRay {
         hits.any(|hit| hit.object == object)
     }
 
-    /// Distance of a plane along its leg.
+    /// Returns the distance of a plane along its leg.
     #[must_use]
     pub fn along(&self, plane: &VirtualPlane) -> f64 {
         plane.distance - self.legs[plane.leg].start
@@ -231,8 +231,8 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Distance and rectangle, if the surface lies across the first leg with its edges along X and
-    /// Y.
+    /// Returns the distance and the rectangle, if the surface lies across the first leg with its
+    /// edges along X and Y.
     #[must_use]
     #[expect(
         clippy::float_cmp,
@@ -268,8 +268,9 @@ impl Scene {
         }
     }
 
-    /// BLAKE3 hash of everything that defines the scene: its file, defaults and overrides included,
-    /// as JSON, followed by the name and hash of each mesh and picture it names.
+    /// Returns the BLAKE3 hash of everything that defines the scene: its file, defaults and
+    /// overrides included, as JSON, followed by the name and hash of each mesh and picture it
+    /// names.
     #[must_use]
     pub fn hash(&self) -> String {
         scene_hash(&self.file, &self.inputs)
@@ -305,7 +306,7 @@ pub struct Run {
     pub sampling: Sampling,
 }
 
-/// [`Scene::hash`] of a file and of the hashes of the files it names.
+/// Returns [`Scene::hash`] of a file and of the hashes of the files it names.
 #[must_use]
 pub fn scene_hash(file: &SceneFile, inputs: &BTreeMap<String, String>) -> String {
     let mut hasher = blake3::Hasher::new();

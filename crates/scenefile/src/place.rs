@@ -185,7 +185,7 @@ impl Iterator for RonTokens<'_> {
     }
 }
 
-/// Length in bytes of white space and comments.
+/// Returns the length in bytes of white space and comments.
 fn blank(text: &str) -> usize {
     let mut rest = text.trim_start();
     loop {
@@ -200,7 +200,8 @@ fn blank(text: &str) -> usize {
     }
 }
 
-/// Length in bytes of a comment that may be nested, or of all the text where it is not closed.
+/// Returns the length in bytes of a comment that may be nested, or of all the text where it is not
+/// closed.
 fn block(text: &str) -> usize {
     let mut depth = 0;
     let bytes = text.as_bytes();
@@ -222,7 +223,7 @@ fn block(text: &str) -> usize {
     text.len()
 }
 
-/// Length in bytes of a string, plain or raw.
+/// Returns the length in bytes of a string, plain or raw.
 fn string(text: &str) -> Option<usize> {
     let plain = text.strip_prefix('"');
     if let Some(inside) = plain {

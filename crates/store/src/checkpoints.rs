@@ -73,7 +73,7 @@ impl CheckpointStore {
         )
     }
 
-    /// For each batch, the file with the most parts.
+    /// Returns the file with the most parts for each batch.
     fn furthest(&self) -> BTreeMap<u32, CheckpointName> {
         let mut furthest = BTreeMap::new();
         for name in self.names() {

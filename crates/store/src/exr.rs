@@ -49,7 +49,7 @@ pub fn exr(
     Ok(bytes.into_inner())
 }
 
-/// A single attribute, since the order of several would be random.
+/// Returns a single attribute, since the order of several would be random.
 fn attribute(provenance: &Value) -> (Text, AttributeValue) {
     // EXR holds Latin-1; characters other than ASCII are written as JSON escapes.
     let mut ascii = String::new();

@@ -107,7 +107,7 @@ impl Compared {
         self.parameters.iter().filter(|_| self.invalid.is_none())
     }
 
-    /// Descriptions of what differs beyond noise.
+    /// Returns descriptions of what differs beyond noise.
     pub(super) fn differing(&self, level: f64) -> Vec<String> {
         let mut differing = Vec::new();
         if self.invalid.is_none() && self.test.p_value.is_some_and(|p| p < level) {
@@ -317,7 +317,7 @@ fn carried_by(sample: &Sample, grid: &SliceGrid) -> Option<f64> {
     (sigma > 0.0 && each < libm::log(batches)).then_some(each)
 }
 
-/// ‖a − b‖ over the larger norm; 0 if both are dark.
+/// Returns ‖a − b‖ over the larger norm; 0 if both are dark.
 fn apart(grid: &SliceGrid, a: &Array3<Complex>, b: &Array3<Complex>) -> f64 {
     let sample = |mean: &Array3<Complex>| Sample {
         mean: mean.clone(),

@@ -17,9 +17,10 @@ pub(super) fn check(d: [f64; 3]) -> Result<(), String> {
     }
 }
 
-/// Version 3, adaptive projection (Kittelmann et al. 2017, section 3.2): the component of largest
-/// modulus is omitted except for its sign. If the omitted component is x or y, 1/z takes its place.
-/// Since 1/z is larger than 1 in modulus, it shows which component was omitted.
+/// Packs a unit vector as version 3 does, by adaptive projection (Kittelmann et al. 2017, section
+/// 3.2): the component of largest modulus is omitted except for its sign. If the omitted component
+/// is x or y, 1/z takes its place. Since 1/z is larger than 1 in modulus, it shows which component
+/// was omitted.
 pub(super) fn pack(d: [f64; 3]) -> ([f64; 2], bool) {
     let [x, y, z] = d;
     if z.abs() >= x.abs().max(y.abs()) {
@@ -31,7 +32,7 @@ pub(super) fn pack(d: [f64; 3]) -> ([f64; 2], bool) {
     }
 }
 
-/// 1/z, and +∞ for either zero.
+/// Returns 1/z, and +∞ for either zero.
 fn inverse(z: f64) -> f64 {
     if z == 0.0 { f64::INFINITY } else { 1.0 / z }
 }
@@ -59,8 +60,8 @@ pub(super) fn unpack([a, b]: [f64; 2], negative: bool) -> Result<[f64; 3], Strin
     }
 }
 
-/// Version 2: a point of the octahedron |x| + |y| + |z| = 1, with its lower half folded out. `flat`
-/// means that z is 0.
+/// Unpacks a direction of version 2: a point of the octahedron |x| + |y| + |z| = 1, with its lower
+/// half folded out. `flat` means that z is 0.
 pub(super) fn unpack_octahedral([a, b]: [f64; 2], flat: bool) -> Result<[f64; 3], String> {
     // Both are coordinates in a square; rounding to f32 may move them outside the square by this
     // much.

@@ -34,7 +34,8 @@ pub struct McplHeader {
 }
 
 impl Default for McplHeader {
-    /// Version 3, little-endian, f64, with a PDG code and a weight for each particle.
+    /// Returns a header of version 3, little-endian, f64, with a PDG code and a weight for each
+    /// particle.
     fn default() -> Self {
         Self {
             version: 3,
@@ -201,7 +202,7 @@ fn texts(cursor: &mut ByteCursor<'_>, what: &str) -> Result<u32, Fault> {
     Ok(count)
 }
 
-/// Bytes preceded by their number.
+/// Reads bytes preceded by their number.
 fn text(cursor: &mut ByteCursor<'_>, what: &str) -> Result<Vec<u8>, Fault> {
     let length = cursor.u32(what)?;
     cursor.take(length as usize, what).map(<[u8]>::to_vec)

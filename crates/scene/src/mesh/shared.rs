@@ -65,19 +65,19 @@ impl Mesh {
         &self.vertices
     }
 
-    /// Corners of each triangle, as indices of [`Mesh::vertices`].
+    /// Returns the corners of each triangle, as indices of [`Mesh::vertices`].
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
 
-    /// Corner points of each triangle in turn.
+    /// Returns the corner points of each triangle in turn.
     pub fn corners(&self) -> impl ExactSizeIterator<Item = [DVec3; 3]> {
         let point = |i: u32| self.vertices[i as usize];
         self.triangles.iter().map(move |corners| corners.map(point))
     }
 
-    /// Lowest and highest coordinates of the triangles.
+    /// Returns the lowest and highest coordinates of the triangles.
     #[must_use]
     pub fn bounds(&self) -> [DVec3; 2] {
         let nothing = [DVec3::INFINITY, DVec3::NEG_INFINITY];

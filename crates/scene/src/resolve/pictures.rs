@@ -18,8 +18,8 @@ use std::sync::Arc;
 const REACH: f64 = 6.0;
 
 impl Resolver<'_> {
-    /// Light from an environment. The axes are directions of the world; `light` is the frame at the
-    /// light.
+    /// Returns the light from an environment. The axes are directions of the world; `light` is the
+    /// frame at the light.
     pub(super) fn environment(
         &mut self,
         [up, front]: [&[f64; 3]; 2],

@@ -141,8 +141,8 @@ fn edges(grid: &FieldGrid, [a, b]: [usize; 2]) -> Vec<f64> {
     std::iter::once(0.0).chain(outer).collect()
 }
 
-/// |F|² of a prediction as a full radial spectrum: its mean over the frequencies that a measurement on `grid`
-/// has in each bin of [`RadialBins`], [|Ωxy|, |Ωuv|].
+/// Returns |F|² of a prediction as a full radial spectrum: its mean over the frequencies that a
+/// measurement on `grid` has in each bin of [`RadialBins`], [|Ωxy|, |Ωuv|].
 ///
 /// `of` is the spectrum of a real field at (Ωx, Ωy, Ωu, Ωv); it is called for Ωv ≥ 0 only.
 #[must_use]
