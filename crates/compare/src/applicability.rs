@@ -134,7 +134,7 @@ impl Applicability {
         }
     }
 
-    /// The kind of prediction.
+    /// Returns the kind of prediction.
     #[must_use]
     pub fn class(&self) -> Class {
         match self.theory {
@@ -146,8 +146,8 @@ impl Applicability {
         }
     }
 
-    /// The chain of affine maps that leads to a plane behind specular surfaces, by the paper's
-    /// printed formulas where the scene asks for those.
+    /// Returns the chain of affine maps that leads to a plane behind specular surfaces, by the
+    /// paper's printed formulas where the scene asks for those.
     #[must_use]
     pub fn affine_chain(&self, scene: &Scene) -> Option<rays::AffineChain> {
         match &self.theory {
@@ -156,8 +156,8 @@ impl Applicability {
         }
     }
 
-    /// The steps that make the spectrum of the plane, one line each: the chain, anything that no
-    /// theory describes, and the window last.
+    /// Returns the steps that make the spectrum of the plane, one line each: the chain, anything
+    /// that no theory describes, and the window last.
     #[must_use]
     pub fn steps(&self, scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
         let Window { x, y, u, v } = &plane.window;

@@ -48,7 +48,7 @@ pub fn criterion(
     })
 }
 
-/// The largest cutoff of the lobes of a sum; 0 if all lobes are centred on the normal.
+/// Returns the largest cutoff of the lobes of a sum; 0 if all lobes are centred on the normal.
 fn sharpest_cutoff(reflectance: &Reflectance) -> f64 {
     let lobes = reflectance.terms.iter().map(|term| term.brdf.lobe);
     lobes.filter_map(lobe_cutoff).fold(0.0, f64::max)
@@ -67,8 +67,8 @@ pub fn lobe_cutoff(lobe: Lobe) -> Option<f64> {
     Some(lobe.cutoff(BANDWIDTH_FRACTION))
 }
 
-/// The bandwidth along ν of the exact prediction of such a plane, by the same estimator as for
-/// photons.
+/// Returns the bandwidth along ν of the exact prediction of such a plane, by the same estimator as
+/// for photons.
 #[must_use]
 pub fn exact_bandwidth(
     scene: &Scene,
@@ -86,8 +86,8 @@ pub fn exact_bandwidth(
     Some(power.bandwidth(bandwidth_nu)?.value.value)
 }
 
-/// The bandwidth along ν as measured at plane `index`, with its error. `None` where no light
-/// arrived.
+/// Returns the bandwidth along ν as measured at plane `index`, with its error. `None` where no
+/// light arrived.
 ///
 /// # Errors
 /// When the measurement has too few batches.

@@ -74,8 +74,8 @@ pub fn converge(
     })
 }
 
-/// The error of a first-order chain behind specular surfaces at the scale e, and the error of the
-/// sums over rays that it is computed from.
+/// Returns the error of a first-order chain behind specular surfaces at the scale e, and the error
+/// of the sums over rays that it is computed from.
 fn by_rays(
     scene: &Scene,
     whole: &Observed<rays::SpecularSystem>,
@@ -94,8 +94,8 @@ fn by_rays(
     Some([error, own(&exact).max(own(&linear))])
 }
 
-/// The error of the chain where several surfaces scatter. It is a difference of sums over the same
-/// paths, with an error of its own of a few per cent.
+/// Returns the error of the chain where several surfaces scatter. It is a difference of sums over
+/// the same paths, with an error of its own of a few per cent.
 fn by_paths(
     whole: &Observed<reflections::ReflectionSystem>,
     e: f64,
@@ -111,7 +111,7 @@ fn by_paths(
     Some(linear.independent_relative_difference(&exact.slices))
 }
 
-/// The slope of ln error over ln e.
+/// Returns the slope of ln error over ln e.
 fn order(steps: &[[f64; 2]]) -> f64 {
     let logs: Vec<[f64; 2]> = steps.iter().map(|step| step.map(libm::log)).collect();
     let n = logs.len() as f64;

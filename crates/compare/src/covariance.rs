@@ -76,7 +76,7 @@ pub struct TracedPlane {
 }
 
 impl TracedPlane {
-    /// The covariance traced to a plane, the window included as the last step.
+    /// Returns the covariance traced to a plane, the window included as the last step.
     ///
     /// # Errors
     /// The reason, where covariance tracing gives no result.
@@ -98,7 +98,7 @@ impl TracedPlane {
         })
     }
 
-    /// The moments of the Gaussian over a band.
+    /// Returns the moments of the Gaussian over a band.
     fn in_band(&self, moments: &Moments) -> Option<Matrix<4>> {
         let field = self.field.as_ref()?;
         moments
@@ -106,7 +106,7 @@ impl TracedPlane {
             .covariance()
     }
 
-    /// The power of the Gaussian at the frequencies of a slice.
+    /// Returns the power of the Gaussian at the frequencies of a slice.
     fn on_slice(&self, grid: &SliceGrid) -> Option<Array2<f64>> {
         let field = self.field.as_ref()?;
         let shape = (grid.rho.count(), grid.nu.count());
@@ -117,8 +117,8 @@ impl TracedPlane {
 }
 
 impl CovarianceReport {
-    /// The covariances of plane `index` of a measurement, whose light field was also measured on
-    /// the grid `grid`.
+    /// Returns the covariances of plane `index` of a measurement, whose light field was also
+    /// measured on the grid `grid`.
     ///
     /// # Errors
     /// When the measurement has too few batches for errors.
@@ -222,8 +222,8 @@ fn largest(of: &Matrix<4>, entry: &dyn Fn(usize, usize) -> f64) -> f64 {
     shares.fold(0.0, f64::max)
 }
 
-/// The covariance of the exact spectrum, where theory has the spectrum at any frequency in closed
-/// form.
+/// Returns the covariance of the exact spectrum, where theory has the spectrum at any frequency in
+/// closed form.
 fn exact(
     applicability: &Applicability,
     plane: &VirtualPlane,
@@ -246,7 +246,7 @@ fn exact(
     }))
 }
 
-/// The moments of the slice at azimuth 0.
+/// Returns the moments of the slice at azimuth 0.
 fn slice(
     measurement: &Measurement,
     index: usize,

@@ -82,8 +82,8 @@ const MAX_ERROR: f64 = 0.5;
 const NINETY_FIVE: f64 = 1.645;
 
 impl FirstOrderChain {
-    /// The verdict on the chain: it fails if a map is wrong, and is undecided where its error is
-    /// too large for a useful prediction.
+    /// Returns the verdict on the chain: it fails if a map is wrong, and is undecided where its
+    /// error is too large for a useful prediction.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
         if self.defect > DEFECT {
@@ -135,9 +135,9 @@ impl FirstOrder {
         })
     }
 
-    /// The chain past surfaces that scatter light, with its defect and the matrix of its rays along
-    /// the mirror directions. Its noise is that of the exact prediction, because the difference of
-    /// the two has little noise of its own.
+    /// Returns the chain past surfaces that scatter light, with its defect and the matrix of its
+    /// rays along the mirror directions. Its noise is that of the exact prediction, because the
+    /// difference of the two has little noise of its own.
     pub(crate) fn of_reflection(exact: &Predicted, defect: f64, matrix: Matrix<4>) -> Option<Self> {
         let difference = exact.to_first_order.as_ref();
         let difference = difference.filter(|_| !exact.slices.is_dark())?;
@@ -191,9 +191,9 @@ impl FirstOrder {
     }
 }
 
-/// The covariance after the chain and the window, for a Gaussian as wide as the light. Inverse
-/// covariances add in a product of Gaussians, and a map A takes S⁻¹ to A⁻ᵀ S⁻¹ A⁻¹. `None` for an
-/// environment, which has no width.
+/// Returns the covariance after the chain and the window, for a Gaussian as wide as the light.
+/// Inverse covariances add in a product of Gaussians, and a map A takes S⁻¹ to A⁻ᵀ S⁻¹ A⁻¹. `None`
+/// for an environment, which has no width.
 fn propagated(system: &SpecularSystem, chain: &Matrix<4>, window: &Window) -> Option<Matrix<4>> {
     if matches!(system.light, Light::Environment { .. }) {
         return None;
@@ -226,8 +226,8 @@ fn propagated(system: &SpecularSystem, chain: &Matrix<4>, window: &Window) -> Op
     Some(AffineMap::linear(inverse).inverse()?.matrix)
 }
 
-/// The variance of the Gaussian with the profile's curvature at its centre; for a box, the variance
-/// of the box.
+/// Returns the variance of the Gaussian with the profile's curvature at its centre; for a box, the
+/// variance of the box.
 fn variance(profile: &Profile) -> f64 {
     match *profile {
         Profile::Hann(h) => 2.0 * (h / PI).powi(2),

@@ -102,7 +102,7 @@ impl BinDifference {
         sum
     }
 
-    /// The variance of U over all signs; it does not depend on the signs.
+    /// Returns the variance of U over all signs; it does not depend on the signs.
     fn variance(&self) -> f64 {
         let terms = self.linear.iter().chain(&self.pairs);
         terms.map(|term| term * term).sum()
@@ -118,7 +118,7 @@ fn spread(product: &dyn Fn(usize, usize) -> f64, a: &[f64]) -> f64 {
     each.sum::<f64>().max(0.0)
 }
 
-/// The mean product of two groups, from number `first` on: the power without noise.
+/// Returns the mean product of two groups, from number `first` on: the power without noise.
 fn crossed(products: ArrayView2<'_, f64>, first: usize) -> f64 {
     let all = products.indexed_iter();
     let pairs = all.filter(|((r, s), _)| first <= *r.min(s) && r != s);
@@ -145,7 +145,8 @@ impl FullRadialComparison {
     }
 }
 
-/// The report, the predicted power and σ of the difference, for the groups of a measurement.
+/// Returns the report, the predicted power and σ of the difference, for the groups of a
+/// measurement.
 pub(crate) fn compared(
     bins: &RadialBins,
     groups: &[FieldGroup],
@@ -240,7 +241,8 @@ mod tests {
         each.collect()
     }
 
-    /// The products of groups of a measurement and of a prediction, for two frequencies in one bin.
+    /// Returns the products of groups of a measurement and of a prediction, for two frequencies in
+    /// one bin.
     fn products(exact: bool) -> (Array2<f64>, Vec<f64>, f64) {
         let shares = vec![0.25, 0.25, 0.3, 0.2];
         let truth = [1.5, -0.4];

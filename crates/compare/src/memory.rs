@@ -36,8 +36,8 @@ const TRIANGLE: f64 = 150.0;
 const NORMALS: f64 = 72.0;
 
 impl Memory {
-    /// The memory of a run of a scene on `threads` threads. `theories` are the theories of its
-    /// planes.
+    /// Returns the memory of a run of a scene on `threads` threads. `theories` are the theories of
+    /// its planes.
     #[must_use]
     pub fn new(scene: &Scene, theories: &[Applicability], threads: usize) -> Self {
         let batches = f64::from(scene.run.batches);
@@ -79,7 +79,7 @@ impl Memory {
         }
     }
 
-    /// The sum of the parts.
+    /// Returns the sum of the parts.
     #[must_use]
     pub fn total(&self) -> f64 {
         let Self {
@@ -109,7 +109,7 @@ fn cells(grid: &SliceGrid) -> f64 {
     grid.half_shape().iter().map(|n| *n as f64).product()
 }
 
-/// The replicates that a prediction by nets holds, of itself and of the first-order chain.
+/// Returns the replicates that a prediction by nets holds, of itself and of the first-order chain.
 fn replicates(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> f64 {
     let each = etendue_theory::REPLICATES as f64;
     let picture = ProjectionGrid::new(&plane.window, PROJECTION_BINS);

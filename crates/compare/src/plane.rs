@@ -185,7 +185,7 @@ impl ComparedSides<'_> {
         }
     }
 
-    /// Why the comparison is undecided, in words; `None` where it is decided.
+    /// Returns why the comparison is undecided, in words; `None` where it is decided.
     fn open_question(
         &self,
         agreement: &Agreement,
@@ -246,15 +246,16 @@ impl ComparedSides<'_> {
         }
     }
 
-    /// Whether the possible error of a quadrature explains the whole disagreement, for example
-    /// where the photons have almost no noise.
+    /// Checks whether the possible error of a quadrature explains the whole disagreement, for
+    /// example where the photons have almost no noise.
     fn is_excused(&self, test: &Test) -> bool {
         let error = self.prediction.systematic_error();
         error.is_some_and(|error| self.agrees_within(error, test))
     }
 
-    /// Whether photons agree with some spectrum near the prediction. At each frequency it may
-    /// differ from the prediction by this relative error, plus the error of the photons' transform.
+    /// Checks whether photons agree with some spectrum near the prediction. At each frequency it
+    /// may differ from the prediction by this relative error, plus the error of the photons'
+    /// transform.
     fn agrees_within(&self, error: f64, test: &Test) -> bool {
         let p = self
             .residuals
@@ -263,8 +264,8 @@ impl ComparedSides<'_> {
         p.is_none_or(|p| p >= test.level)
     }
 
-    /// The number of photons that would decide; `None` where that is not known, or where more
-    /// photons do not help.
+    /// Returns the number of photons that would decide; `None` where that is not known, or where
+    /// more photons do not help.
     fn photons_needed(&self, agreement: &Agreement, agrees: bool, test: &Test) -> Option<f64> {
         let (inside, emitted) = (self.inside(), self.measurement.emitted());
         if self.predicted.is_dark() || inside == 0 {
@@ -299,8 +300,8 @@ impl ComparedSides<'_> {
         fewest.min_by(f64::total_cmp).filter(|_| !agrees)
     }
 
-    /// Whether photons brought no light, or so little that it cannot be distinguished from the
-    /// rounding of the prediction.
+    /// Checks whether photons brought no light, or so little that it cannot be distinguished from
+    /// the rounding of the prediction.
     fn is_dark(&self) -> bool {
         largest(&self.residuals.mean()) <= self.prediction.unblocked * DARK
     }
@@ -309,8 +310,8 @@ impl ComparedSides<'_> {
         self.measurement.tally(self.index).inside
     }
 
-    /// Whether a batch of photons, or a replicate of the prediction, found no light: with so few
-    /// rays, errors are not symmetric and allow no conclusion.
+    /// Checks whether a batch of photons, or a replicate of the prediction, found no light: with so
+    /// few rays, errors are not symmetric and allow no conclusion.
     fn is_sparse(&self) -> bool {
         let mut batches = self.measurement.at_plane(self.index);
         let mut replicates = self.prediction.replicates.iter();
@@ -381,8 +382,8 @@ impl ComparedSides<'_> {
         self.prediction.systematic_error().unwrap_or(0.0) * size
     }
 
-    /// The shear slope s = Σ P ρν / Σ P ρ². An error ‖dF‖ = ε ‖F‖ of the spectrum moves it by no
-    /// more than 2ε √(Σ P · Σ g² P), where g = ∂s/∂P = (ρν − s ρ²) / Σ P ρ² (Cauchy–Schwarz).
+    /// Returns the shear slope s = Σ P ρν / Σ P ρ². An error ‖dF‖ = ε ‖F‖ of the spectrum moves it
+    /// by no more than 2ε √(Σ P · Σ g² P), where g = ∂s/∂P = (ρν − s ρ²) / Σ P ρ² (Cauchy–Schwarz).
     fn slope(&self, grid: &SliceGrid) -> Pair {
         let pair = self.pair(|p| shear_slope(p, grid));
         let epsilon = self.prediction.systematic_error();
@@ -424,7 +425,7 @@ impl ComparedSides<'_> {
         vec![share(farthest), share(plane.distance)]
     }
 
-    /// The bandwidth of both powers, each in the azimuth where it is largest.
+    /// Returns the bandwidth of both powers, each in the azimuth where it is largest.
     fn bandwidth(&self, of: SliceBandwidth) -> DirectedPair {
         let grid = &self.predicted.grid;
         let measured = self.power.bandwidth(of);
@@ -453,7 +454,7 @@ impl ComparedSides<'_> {
         }
     }
 
-    /// A number computed from both radial powers by the same estimator.
+    /// Returns a number computed from both radial powers by the same estimator.
     fn pair(&self, of: impl Fn(ArrayView2<'_, f64>) -> Option<f64>) -> Pair {
         let measured = self.power.statistic(&of);
         let predicted = self.replicates.and_then(|power| power.statistic(&of));
@@ -466,7 +467,7 @@ impl ComparedSides<'_> {
     }
 }
 
-/// The second moments of the photons, and their prediction.
+/// Returns the second moments of the photons, and their prediction.
 fn covariance(
     measurement: &Measurement,
     index: usize,
@@ -493,7 +494,7 @@ fn rounded(photons: f64) -> f64 {
     (wanted / unit).ceil() * unit
 }
 
-/// The predicted slices, set to zero where they are the rounding errors of a dark field.
+/// Returns the predicted slices, set to zero where they are the rounding errors of a dark field.
 fn without_rounding(prediction: &Prediction) -> Slices {
     let least = prediction.unblocked * DARK;
     if largest(&prediction.slices.half) <= least {

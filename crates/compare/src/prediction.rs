@@ -65,12 +65,12 @@ pub struct PredictedParameter {
 }
 
 impl Prediction {
-    /// Whether the slices have a statistical error, which their replicates show.
+    /// Checks whether the slices have a statistical error, which their replicates show.
     pub(crate) fn is_statistical(&self) -> bool {
         !self.replicates.is_empty()
     }
 
-    /// The part of ‖error‖/‖slices‖ that replicates do not show.
+    /// Returns the part of ‖error‖/‖slices‖ that replicates do not show.
     pub(crate) fn systematic_error(&self) -> Option<f64> {
         let quadrature = self.quadrature_error.filter(|_| !self.is_statistical());
         both(quadrature, self.mesh_error)
@@ -86,7 +86,7 @@ impl Prediction {
         both(self.quadrature_error, self.mesh_error)
     }
 
-    /// The prediction of theory for a plane of a scene. `None` where no theory applies and
+    /// Returns the prediction of theory for a plane of a scene. `None` where no theory applies and
     /// [`Self::reference`] takes its place.
     #[must_use]
     pub fn new(scene: &Scene, plane: &VirtualPlane, applicability: &Applicability) -> Self {
@@ -125,7 +125,7 @@ impl Prediction {
         }
     }
 
-    /// The prediction of a model, with the first-order chain beside it.
+    /// Returns the prediction of a model, with the first-order chain beside it.
     fn by<M: Model>(
         self,
         model: &M,
@@ -182,8 +182,8 @@ impl Prediction {
         }
     }
 
-    /// The prediction from another, independent measurement of plane `index`, where no theory
-    /// applies.
+    /// Returns the prediction from another, independent measurement of plane `index`, where no
+    /// theory applies.
     ///
     /// # Errors
     /// When that measurement has too few batches.
@@ -204,7 +204,7 @@ impl Prediction {
         })
     }
 
-    /// A plane of a measurement, with which another, independent measurement is compared.
+    /// Returns a plane of a measurement, with which another, independent measurement is compared.
     ///
     /// # Errors
     /// When the measurement has too few batches.
@@ -227,7 +227,7 @@ impl Prediction {
     }
 }
 
-/// The root of the sum of squares of two errors.
+/// Returns the root of the sum of squares of two errors.
 fn both(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     match (a, b) {
         (Some(a), Some(b)) => Some(libm::hypot(a, b)),

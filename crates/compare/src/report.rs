@@ -167,8 +167,8 @@ pub struct PlaneReport {
 }
 
 impl PlaneReport {
-    /// The verdict on the exact prediction. It does not depend on the verdict on a first-order
-    /// chain.
+    /// Returns the verdict on the exact prediction. It does not depend on the verdict on a
+    /// first-order chain.
     #[must_use]
     pub fn exact_verdict(&self) -> Verdict {
         let chain = self.first_order.as_ref();

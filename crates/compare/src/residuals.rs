@@ -28,7 +28,8 @@ const TRANSFORM: f64 = 2e-7;
 const ROUNDING: f64 = 1e-9;
 
 impl Residuals {
-    /// The residuals of plane `plane` of a measurement from slices without statistical error.
+    /// Returns the residuals of plane `plane` of a measurement from slices without statistical
+    /// error.
     ///
     /// # Panics
     /// When the plane was measured at other frequencies than the prediction's.
@@ -44,8 +45,8 @@ impl Residuals {
         }
     }
 
-    /// The residuals from slices that are the mean of replicates, or that are exact if there are
-    /// none.
+    /// Returns the residuals from slices that are the mean of replicates, or that are exact if
+    /// there are none.
     ///
     /// Each group g of n = min(B, R) holds a share of B batches and R replicates, and r_g = n/B Σ_b
     /// (S_b − F) − n/R Σ_j (F_j − F). F drops out where all groups hold the same number of batches
@@ -88,8 +89,8 @@ impl Residuals {
         Self { grid, parts }
     }
 
-    /// The residuals from the prediction closest to the measurement, among those within `error`|F|
-    /// of F at each frequency plus the fast transform's error relative to the largest F.
+    /// Returns the residuals from the prediction closest to the measurement, among those within
+    /// `error`|F| of F at each frequency plus the fast transform's error relative to the largest F.
     #[must_use]
     pub fn forgiving(&self, prediction: &Slices, error: f64) -> Self {
         let mut moved = self.mean();
@@ -107,7 +108,7 @@ impl Residuals {
         }
     }
 
-    /// The number of residuals R.
+    /// Returns the number of residuals R.
     #[must_use]
     pub fn count(&self) -> usize {
         self.parts.len()
@@ -128,7 +129,7 @@ impl Residuals {
         sum / Complex::from(self.count() as f64)
     }
 
-    /// The variance of [`Self::mean`] from the spread of the batches (docs/theory.md (12)).
+    /// Returns the variance of [`Self::mean`] from the spread of the batches (docs/theory.md (12)).
     pub(crate) fn variance(&self) -> Array3<f64> {
         let mean = self.mean();
         let mut variance = Array3::zeros(self.grid.half_shape());
@@ -141,7 +142,8 @@ impl Residuals {
         variance / (self.count() * (self.count() - 1)) as f64
     }
 
-    /// The independent cells of an array on the half-plane, in the same order for all arrays.
+    /// Returns the independent cells of an array on the half-plane, in the same order for all
+    /// arrays.
     fn cells<'a, T>(&self, array: &'a Array3<T>) -> impl Iterator<Item = &'a T> {
         let grid = self.grid;
         array
@@ -295,7 +297,7 @@ impl Residuals {
         row
     }
 
-    /// The p-value of the hypothesis that every residual has mean zero.
+    /// Returns the p-value of the hypothesis that every residual has mean zero.
     ///
     /// The statistic is Σ |Σ_b r_b|² / Σ_b |r_b|² over the frequencies. Under the hypothesis a
     /// residual is as likely as its negative, so the statistic under random signs is a draw from
@@ -349,7 +351,7 @@ pub(crate) fn signs(seed: u64, round: u64, count: usize) -> Vec<f64> {
     signs
 }
 
-/// The largest modulus of some slices.
+/// Returns the largest modulus of some slices.
 pub(crate) fn largest(slices: &Array3<Complex>) -> f64 {
     slices.iter().map(|s| modulus(*s)).fold(0.0, f64::max)
 }

@@ -26,8 +26,8 @@ pub struct ParameterReport {
 /// the normal quantiles 2.576 + 1.282.
 const DETECTABLE: f64 = 3.858;
 
-/// The score test of one parameter (docs/theory.md, section 6): projects S − F on ∂F/∂parameter,
-/// weighted by 1/σ².
+/// Returns the score test of one parameter (docs/theory.md, section 6): projects S − F on
+/// ∂F/∂parameter, weighted by 1/σ².
 ///
 /// The step δ = Re Σ conj(D)(S − F)/σ² / Σ|D|²/σ² is the least-squares change of the parameter; the
 /// error of δ is its spread over the residuals. This error includes correlations between

@@ -17,7 +17,7 @@ const ROUNDING: f64 = 1e-12;
 /// A layer whose shapes leave more open parts than this is assumed to have holes.
 const MOST_PARTS: usize = 4096;
 
-/// Why no light reaches a plane, in words; `None` where some may.
+/// Returns why no light reaches a plane, in words; `None` where some may.
 ///
 /// Half-planes cut the rays of a section, (position at the light, slope), to a convex polygon,
 /// which is empty if no ray passes. No ray passes either if a layer covers every place where these
@@ -115,7 +115,7 @@ impl RaySection {
             .abs()
     }
 
-    /// The interval where the rays cross a plane at a distance from the light.
+    /// Returns the interval where the rays cross a plane at a distance from the light.
     fn at(&self, distance: f64) -> [f64; 2] {
         extent(self.0.iter().map(|[s, u]| s + distance * u))
     }
@@ -127,7 +127,7 @@ fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
     })
 }
 
-/// Whether a layer stops all rays of both sections on their way to the first surface.
+/// Checks whether a layer stops all rays of both sections on their way to the first surface.
 fn covers(
     layer: &BlockerLayer,
     sections: &[RaySection; 2],
@@ -158,7 +158,8 @@ fn covers(
     open.is_empty()
 }
 
-/// The region where lines from the light to the first surface, if it is smooth, cross a plane.
+/// Returns the region where lines from the light to the first surface, if it is smooth, cross a
+/// plane.
 fn towards_surface(scene: &Scene, sections: &[RaySection; 2], distance: f64) -> Extent {
     let Some(Object::Patch(i)) = scene.path.ends_at(0).map(|hit| hit.object) else {
         return UNLIMITED;
@@ -177,7 +178,7 @@ fn towards_surface(scene: &Scene, sections: &[RaySection; 2], distance: f64) -> 
     })
 }
 
-/// The parts of a rectangle that a shape leaves uncovered.
+/// Returns the parts of a rectangle that a shape leaves uncovered.
 fn without(part: &Extent, shape: &Shape) -> Vec<Extent> {
     let [[x0, x1], [y0, y1]] = *part;
     match shape {

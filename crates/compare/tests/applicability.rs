@@ -10,7 +10,7 @@ use etendue_theory::ObstacleForm;
 const LIGHT: &str = "Rectangle(center: (0, 0, 0), size: (0.2, 0.2))";
 const PROJECTOR: &str = "Projector(center: (0, 0, 0), image: (width: (0.3, 0.3)))";
 
-/// A scene with one plane, whose window has the given width in metres and slope.
+/// Returns a scene with one plane, whose window has the given width in metres and slope.
 fn scene(light: &str, blockers: &str, surfaces: &str, visits: &str, at: &str, half: f64) -> Scene {
     let text = format!(
         r#"(
@@ -48,7 +48,7 @@ fn applies_only(narrow: f64, wide: f64, reason: &str, scene: impl Fn(f64) -> Sce
     assert!(steps.contains(&format!("without theory  {reason}")));
 }
 
-/// The obstacles that a theory tests rays against.
+/// Returns the obstacles that a theory tests rays against.
 fn obstacles(theory: Theory) -> Vec<String> {
     let obstacles = match theory {
         Theory::Specular(view) => view.system.obstacles,

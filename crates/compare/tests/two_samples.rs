@@ -14,7 +14,7 @@ use ndarray::Array3;
 const BATCHES: usize = 32;
 const SEEDS: u64 = 200;
 
-/// A smooth spectrum.
+/// Returns a smooth spectrum.
 fn truth() -> Array3<Complex> {
     let grid = plane().grid;
     Array3::from_shape_fn(grid.half_shape(), |(_, m, n)| {
@@ -40,7 +40,7 @@ fn batch(seed: u64, index: usize, size: f64) -> Slices {
     Slices { grid, half }
 }
 
-/// The mean of this many batches and its noise.
+/// Returns the mean of this many batches and its noise.
 fn sample(seed: u64, batches: usize, size: f64) -> Sample {
     let plane = plane();
     let mut measurement = Measurement::new(vec![plane.clone()]);
@@ -92,8 +92,8 @@ fn p_values(pairs: &[(Sample, Sample)]) -> Vec<f64> {
     p.map(|test| test.p_value.unwrap()).collect()
 }
 
-/// The largest distance of the distribution of `values` from uniform, in units of 1/√n: 1.63 is
-/// exceeded once in a hundred times (Smirnov 1948).
+/// Returns the largest distance of the distribution of `values` from uniform, in units of 1/√n:
+/// 1.63 is exceeded once in a hundred times (Smirnov 1948).
 fn distance(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);

@@ -41,8 +41,8 @@ pub(crate) fn leave_open(case: &MeasuredScene, planes: &mut [PlaneComparison]) {
     }
 }
 
-/// The number of photons, out of `photons`, that reach the window of a plane when all are aimed at
-/// it.
+/// Returns the number of photons, out of `photons`, that reach the window of a plane when all are
+/// aimed at it.
 fn reached(scene: &Scene, plane: usize, photons: u64) -> u64 {
     let mut alone = scene.seen_at(&[plane]);
     alone.run.photons = photons;

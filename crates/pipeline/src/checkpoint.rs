@@ -95,13 +95,13 @@ pub fn measured(
     Ok(Some(all))
 }
 
-/// The approximate number of photons of a batch that are traced.
+/// Returns the approximate number of photons of a batch that are traced.
 fn photons_of(source: &dyn PhotonSource, batch: &PartialBatch) -> u64 {
     let parts = u64::from(source.parts(batch.index));
     source.emitted(batch.index) / parts * u64::from(batch.parts)
 }
 
-/// The error of a run that exceeded its time limit, stating what is stored.
+/// Returns the error of a run that exceeded its time limit, stating what is stored.
 fn time_is_up(kept: &CheckpointStore, batches: usize) -> Failure {
     let [done, begun] = kept.count();
     let begun = match begun {
@@ -161,7 +161,7 @@ impl Keeper<'_> {
         Ok(missing)
     }
 
-    /// Whether enough time has passed for storing anything.
+    /// Checks whether enough time has passed for storing anything.
     fn keeps(&self) -> bool {
         let Checkpointing {
             resume,
@@ -191,7 +191,7 @@ impl Keeper<'_> {
         );
     }
 
-    /// Whether an unfinished batch has not been stored for a while; marks it as stored now.
+    /// Checks whether an unfinished batch has not been stored for a while; marks it as stored now.
     fn is_due(&self, batch: u32) -> bool {
         let mut partial = self.partial.lock().unwrap_or_else(PoisonError::into_inner);
         let last = partial.entry(batch).or_insert(self.begun);

@@ -30,7 +30,8 @@ pub(crate) fn inquire(
     failed.into_iter().filter_map(judged).collect()
 }
 
-/// Whether a plane fails against its prediction, and not only against its chain of affine maps.
+/// Checks whether a plane fails against its prediction, and not only against its chain of affine
+/// maps.
 fn disagrees_with_theory(report: &PlaneReport) -> bool {
     report.class != Class::Reference && report.exact_verdict() == Verdict::Fail
 }
@@ -94,8 +95,8 @@ impl Inquiry {
     }
 }
 
-/// The conclusion where another tracer with `rays` rays agrees with both a measurement and its
-/// prediction, which disagree with each other.
+/// Returns the conclusion where another tracer with `rays` rays agrees with both a measurement and
+/// its prediction, which disagree with each other.
 fn both_pass(
     [this, other]: [&str; 2],
     failed: &PlaneReport,
@@ -155,7 +156,8 @@ mod tests {
         resolve("test", file, ".".as_ref(), u64::MAX).unwrap()
     }
 
-    /// A plane whose photons, backward rays and prediction come from lights with these radiances.
+    /// Returns a plane whose photons, backward rays and prediction come from lights with these
+    /// radiances.
     fn compared(photons: f64, rays: f64, predicted: f64) -> (MeasuredScene, PlaneComparison) {
         let of = |radiance| scene(radiance);
         let prediction = |scene: &Scene| {
@@ -176,7 +178,7 @@ mod tests {
         (case, compared)
     }
 
-    /// The findings for such a plane.
+    /// Returns the findings for such a plane.
     fn found(photons: f64, rays: f64, predicted: f64) -> Vec<String> {
         let (case, compared) = compared(photons, rays, predicted);
         let inquiries = inquire(&case, &[compared], &Silent).unwrap();

@@ -45,7 +45,7 @@ impl Judge {
         judged.map(judge).collect()
     }
 
-    /// The judge of a plane of the scene, and the plane's number in its measurement.
+    /// Returns the judge of a plane of the scene, and the plane's number in its measurement.
     pub(crate) fn of(all: &[Self], plane: usize) -> Option<(&Self, usize)> {
         all.iter().find_map(|judge| {
             let at = judge.planes.binary_search(&plane).ok()?;

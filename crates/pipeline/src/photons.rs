@@ -27,7 +27,7 @@ pub enum Save {
 }
 
 impl Save {
-    /// The name in commands.
+    /// Returns the name in commands.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -42,7 +42,7 @@ impl Save {
 /// The index of a plane's NPY file.
 const INDEX: &str = "photons.json";
 
-/// The file names of a plane.
+/// Returns the file names of a plane.
 pub fn names(save: Save) -> Vec<&'static str> {
     let index = (save == Save::Photons).then_some(INDEX);
     file_of(save)
@@ -52,8 +52,8 @@ pub fn names(save: Save) -> Vec<&'static str> {
         .collect()
 }
 
-/// The name of the file with the photons of a plane, the name of its format in commands, and the
-/// number of bytes of a photon in it.
+/// Returns the name of the file with the photons of a plane, the name of its format in commands,
+/// and the number of bytes of a photon in it.
 fn file_of(save: Save) -> Option<(&'static str, &'static str, u64)> {
     match save {
         Save::Photons => Some(("photons.npy", "photons", 40)),
@@ -73,7 +73,7 @@ struct PhotonsIndex {
     emitted: Vec<u64>,
 }
 
-/// The largest possible size of the files, reached if every photon crosses every plane.
+/// Returns the largest possible size of the files, reached if every photon crosses every plane.
 pub fn announcement(scene: &Scene, save: Save) -> Option<String> {
     let (_, option, row) = file_of(save)?;
     let planes = scene.planes.len();

@@ -81,8 +81,8 @@ pub fn reached(
     }
 }
 
-/// The noise of the run, and the noise of a run a hundred times as long, in words; `None` where
-/// there is no light.
+/// Returns the noise of the run, and the noise of a run a hundred times as long, in words; `None`
+/// where there is no light.
 pub fn outlook(planes: &[PlaneReport], seconds: f64) -> Option<String> {
     let noise = |plane: &PlaneReport| plane.noise_limit;
     let lit = planes
@@ -97,7 +97,7 @@ pub fn outlook(planes: &[PlaneReport], seconds: f64) -> Option<String> {
     ))
 }
 
-/// What `target` leaves out, in words.
+/// Returns what `target` leaves out, in words.
 #[must_use]
 pub fn left_out(planes: &[PlaneReport], target: f64) -> String {
     let sampled = planes
@@ -117,7 +117,7 @@ pub fn left_out(planes: &[PlaneReport], target: f64) -> String {
     )
 }
 
-/// The lit plane with the most noise, and its noise as a share of the spectrum.
+/// Returns the lit plane with the most noise, and its noise as a share of the spectrum.
 fn noisiest(measurement: &Measurement) -> Option<(&str, f64)> {
     let planes = measurement.planes().iter().enumerate();
     let lit = planes.filter_map(|(i, plane)| {

@@ -14,13 +14,13 @@ pub const MOST_RATIO: usize = 64;
 /// Bytes that a packed file may unpack to regardless of its length.
 pub const FREE: usize = 1 << 20;
 
-/// Whether a file begins like a gzip file.
+/// Checks whether a file begins like a gzip file.
 #[must_use]
 pub fn is_packed(bytes: &[u8]) -> bool {
     bytes.starts_with(&[0x1f, 0x8b])
 }
 
-/// The unpacked bytes; those of a file that is not packed are unchanged.
+/// Returns the unpacked bytes; those of a file that is not packed are unchanged.
 ///
 /// # Errors
 /// When gzip cannot read the bytes, or there are more of them than [`MOST_RATIO`] and [`FREE`]

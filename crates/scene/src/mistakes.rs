@@ -13,7 +13,7 @@ const NEAR: f64 = 10.0;
 /// Larger slopes, beyond 79° from the central ray, are rarely meant.
 const STEEP: f64 = 5.0;
 
-/// A description of each likely mistake.
+/// Returns a description of each likely mistake.
 pub(crate) fn mistakes(scene: &Scene) -> Vec<String> {
     let planes = scene.file.planes.iter().zip(&scene.planes).enumerate();
     let mut told = BTreeSet::new();
@@ -158,8 +158,8 @@ fn pair([x, y]: [f64; 2]) -> String {
     format!("({}, {})", brief(x), brief(y))
 }
 
-/// The extent of an array from the central ray, along X and along Y: to half a pitch beyond the
-/// centres of its last squares.
+/// Returns the extent of an array from the central ray, along X and along Y: to half a pitch beyond
+/// the centres of its last squares.
 fn edges(layer: &BlockerLayer) -> Option<[f64; 2]> {
     let Mask::Opaque { shapes, .. } = &layer.mask else {
         return None;
@@ -174,8 +174,8 @@ fn edges(layer: &BlockerLayer) -> Option<[f64; 2]> {
     }))
 }
 
-/// The distance from the central ray at which light seen by a plane passes a place on the first
-/// leg.
+/// Returns the distance from the central ray at which light seen by a plane passes a place on the
+/// first leg.
 fn reach(scene: &Scene, plane: &VirtualPlane, at: f64) -> Option<[f64; 2]> {
     let w = &plane.window;
     let windows = [(&w.x, &w.u), (&w.y, &w.v)].map(|(x, u)| [x.half_width(), u.half_width()]);

@@ -36,7 +36,7 @@ pub struct Channels {
 }
 
 impl Channels {
-    /// The picture as one number for each pixel.
+    /// Returns the picture as one number for each pixel.
     ///
     /// # Errors
     /// When the picture has no pixels.
@@ -162,7 +162,8 @@ fn exr(bytes: &[u8]) -> Result<Channels, Fault> {
     ))
 }
 
-/// The number of values per pixel of a layer, and the values; `None` if the channels are missing.
+/// Returns the number of values per pixel of a layer, and the values; `None` if the channels are
+/// missing.
 fn colours(channels: &AnyChannels<FlatSamples>) -> Option<(usize, Vec<f64>)> {
     let channel = |name: &str| {
         let mut list = channels.list.iter();

@@ -27,7 +27,7 @@ pub enum ReadError {
     },
 }
 
-/// The bytes of a regular file, at most `most` of them.
+/// Returns the bytes of a regular file, at most `most` of them.
 ///
 /// # Errors
 /// [`ReadError`]; the file may be in any folder.
@@ -51,7 +51,8 @@ pub fn read_file(path: &Path, most: u64) -> Result<Vec<u8>, ReadError> {
     }
 }
 
-/// The bytes of the regular file `name`, which must be below `folder` after all links are followed.
+/// Returns the bytes of the regular file `name`, which must be below `folder` after all links are
+/// followed.
 ///
 /// # Errors
 /// [`ReadError`].
@@ -71,7 +72,7 @@ pub fn read_below(folder: &Path, name: &str, most: u64) -> Result<Vec<u8>, ReadE
     read_file(&path, most)
 }
 
-/// Whether a path, as written, never leads upwards.
+/// Checks whether a path, as written, never leads upwards.
 pub(crate) fn leads_down(path: &str) -> bool {
     let mut components = Path::new(path).components();
     components.all(|c| matches!(c, Component::Normal(_)))

@@ -131,7 +131,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// The bytes of a file named in the scene.
+    /// Returns the bytes of a file named in the scene.
     fn named_file(&mut self, of: &str, name: &str) -> Option<Vec<u8>> {
         match read_below(self.folder, name, INPUT_BYTES) {
             Ok(bytes) => {
@@ -221,7 +221,7 @@ impl PathStop<'_> {
     }
 }
 
-/// All objects of a scene, sorted by distance.
+/// Returns all objects of a scene, sorted by distance.
 fn stops<'a>(path: &CentralRay, things: Things<'a>) -> Vec<PathStop<'a>> {
     let ends = |object: Object| {
         let mut legs = 0..path.legs.len();

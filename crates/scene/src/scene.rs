@@ -80,9 +80,9 @@ pub enum Object {
 }
 
 impl Hit {
-    /// The frame (T, B, N) at the hit, for light that arrives in a frame, and the longitude θ₀ of
-    /// the direction from which the light comes: T lies in the plane of incidence, and X is rotated
-    /// to −T at normal incidence (docs/conventions.md).
+    /// Returns the frame (T, B, N) at the hit, for light that arrives in a frame, and the longitude
+    /// θ₀ of the direction from which the light comes: T lies in the plane of incidence, and X is
+    /// rotated to −T at normal incidence (docs/conventions.md).
     #[must_use]
     pub fn surface_frame(&self, arriving: &Frame) -> (Frame, f64) {
         let (n, from) = (self.normal, -arriving.d);
@@ -110,13 +110,13 @@ impl CentralRay {
         self.legs[0].length
     }
 
-    /// The hit at which the leg ends; `None` for the last leg.
+    /// Returns the hit at which the leg ends; `None` for the last leg.
     #[must_use]
     pub fn ends_at(&self, leg: usize) -> Option<&Hit> {
         self.legs.get(leg + 1)?.leaves.as_ref()
     }
 
-    /// Whether the path visits an object.
+    /// Checks whether the path visits an object.
     #[must_use]
     pub fn visits(&self, object: Object) -> bool {
         let mut hits = self.legs.iter().filter_map(|leg| leg.leaves);
@@ -129,7 +129,7 @@ impl CentralRay {
         plane.distance - self.legs[plane.leg].start
     }
 
-    /// The frame at a distance along the path, on a leg, in the frame at the light.
+    /// Returns the frame at a distance along the path, on a leg, in the frame at the light.
     #[must_use]
     pub fn frame_at(&self, distance: f64, leg: usize) -> Frame {
         let Leg { frame, start, .. } = &self.legs[leg];
@@ -177,7 +177,7 @@ pub struct SmoothMesh {
 }
 
 impl MeshObject {
-    /// Whether the mesh is neither Lambertian nor smooth.
+    /// Checks whether the mesh is neither Lambertian nor smooth.
     #[must_use]
     pub fn is_black(&self) -> bool {
         self.albedo.is_none() && self.smooth.is_none()
@@ -205,8 +205,8 @@ pub enum Event {
 }
 
 impl Event {
-    /// Whether light leaves the surface in or near the mirror direction, unlike Lambertian light.
-    /// For a sum of BRDFs the first one decides.
+    /// Checks whether light leaves the surface in or near the mirror direction, unlike Lambertian
+    /// light. For a sum of BRDFs the first one decides.
     #[must_use]
     pub fn mirrors(&self) -> bool {
         match self {
@@ -249,7 +249,7 @@ impl Surface {
         ))
     }
 
-    /// The four corners of the surface, in the frame at the light.
+    /// Returns the four corners of the surface, in the frame at the light.
     #[must_use]
     pub fn corners(&self) -> [DVec3; 4] {
         let [x, y] = self.size.map(|side| 0.5 * side);
@@ -259,7 +259,7 @@ impl Surface {
 }
 
 impl Scene {
-    /// The same scene with only some of its planes, given by index.
+    /// Returns the same scene with only some of its planes, given by index.
     #[must_use]
     pub fn seen_at(&self, planes: &[usize]) -> Self {
         Self {
@@ -276,7 +276,7 @@ impl Scene {
         scene_hash(&self.file, &self.inputs)
     }
 
-    /// The name of a surface.
+    /// Returns the name of a surface.
     #[must_use]
     pub fn name_of(&self, object: Object) -> &str {
         match object {

@@ -58,7 +58,7 @@ impl Scene {
         warnings
     }
 
-    /// A warning about the rays of a ray file that are omitted.
+    /// Returns a warning about the rays of a ray file that are omitted.
     fn rays_behind(&self) -> Option<String> {
         let Light::Rays { rays } = &self.light else {
             return None;
@@ -73,9 +73,9 @@ impl Scene {
         })
     }
 
-    /// The possible difference between photons and backward rays at a plane because a smooth mesh
-    /// before it is too coarse, as a share of the spectrum (see [`warnings`](Self::warnings)).
-    /// `None` without such a mesh.
+    /// Returns the possible difference between photons and backward rays at a plane because a
+    /// smooth mesh before it is too coarse, as a share of the spectrum (see
+    /// [`warnings`](Self::warnings)). `None` without such a mesh.
     #[must_use]
     pub fn mesh_mismatch(&self, plane: &VirtualPlane) -> Option<f64> {
         let legs = 1..=plane.leg;
@@ -83,7 +83,7 @@ impl Scene {
         all.max_by(f64::total_cmp)
     }
 
-    /// The smooth mesh at the beginning of a leg, and the difference it causes at a plane.
+    /// Returns the smooth mesh at the beginning of a leg, and the difference it causes at a plane.
     fn mismatch(&self, leg: usize, plane: &VirtualPlane) -> Option<(&MeshObject, f64)> {
         let legs = [&self.path.legs[leg - 1], &self.path.legs[leg]];
         let Object::Mesh(mesh) = legs[1].leaves?.object else {
@@ -138,7 +138,7 @@ impl Wave {
     }
 }
 
-/// The waves of a plane's frequencies along x and y.
+/// Returns the waves of a plane's frequencies along x and y.
 fn waves(plane: &VirtualPlane) -> Vec<Wave> {
     let axis = &plane.grid.rho;
     let orders = 0..=axis.half.min(WAVES);
@@ -179,7 +179,7 @@ impl<'a> WindowView<'a> {
         }
     }
 
-    /// The root of the ratio of the energy of the difference to the energy of the window.
+    /// Returns the root of the ratio of the energy of the difference to the energy of the window.
     fn mismatch(&self) -> f64 {
         let mut waves = waves(self.plane);
         let stride = self.mesh.triangles.len().div_ceil(MAX_TRIANGLES);

@@ -17,7 +17,7 @@ pub struct Fault {
     pub memory: bool,
 }
 
-/// A fault of a file: the place in it, the text found, and what is allowed.
+/// Returns a fault of a file: the place in it, the text found, and what is allowed.
 #[must_use]
 pub fn fault(place: impl Into<String>, value: impl ToString, allowed: impl Into<String>) -> Fault {
     Fault {
@@ -98,7 +98,7 @@ fn list(faults: &[Fault]) -> String {
     lines(faults, Fault::to_string).join("\n")
 }
 
-/// The first faults in words, and the number of further ones.
+/// Returns the first faults in words, and the number of further ones.
 fn lines(faults: &[Fault], told: impl Fn(&Fault) -> String) -> Vec<String> {
     let first = faults.iter().take(limits::FAULTS);
     let mut lines: Vec<String> = first.map(told).collect();

@@ -14,8 +14,8 @@ pub(crate) struct ScenePlace<'a> {
     pub(crate) value: &'a str,
 }
 
-/// The names and indices of a path such as `blockers[0].fill` or `blockers.0.fill`, as far as it is
-/// valid, without names of variants.
+/// Returns the names and indices of a path such as `blockers[0].fill` or `blockers.0.fill`, as far
+/// as it is valid, without names of variants.
 pub(crate) fn steps(path: &str) -> Vec<&str> {
     let in_path = |c: char| c.is_alphanumeric() || "_.[]".contains(c);
     let end = path.find(|c| !in_path(c)).unwrap_or(path.len());
@@ -24,7 +24,7 @@ pub(crate) fn steps(path: &str) -> Vec<&str> {
     steps.filter(is_step).collect()
 }
 
-/// The value at a path, or the innermost enclosing value that is written.
+/// Returns the value at a path, or the innermost enclosing value that is written.
 pub(crate) fn find<'a>(text: &'a str, path: &str) -> Option<ScenePlace<'a>> {
     let steps = steps(path);
     let mut found: Option<InnermostValue> = None;
@@ -125,7 +125,7 @@ impl OpenBracket<'_> {
         }
     }
 
-    /// The number of steps that lead to the next value.
+    /// Returns the number of steps that lead to the next value.
     fn child(&self, steps: &[&str]) -> Option<usize> {
         let at = self.at?;
         let step = steps.get(at);
@@ -243,8 +243,8 @@ fn string(text: &str) -> Option<usize> {
     Some(end.map_or(text.len(), |end| open + end + 1 + fence.len()))
 }
 
-/// The number of bytes before the next bracket, comma, colon, quote, blank or comment; at least one
-/// character if there is one.
+/// Returns the number of bytes before the next bracket, comma, colon, quote, blank or comment; at
+/// least one character if there is one.
 pub(crate) fn word(text: &str) -> usize {
     let ends = |c: char| c.is_whitespace() || "()[]{},:\"/".contains(c);
     let first = text.chars().next().map_or(0, char::len_utf8);

@@ -9,7 +9,7 @@ use etendue_spectrum::field::{
 };
 use std::f64::consts::{PI, TAU};
 
-/// A window that is a Gaussian of variance w²/2π.
+/// Returns a window that is a Gaussian of variance w²/2π.
 fn window() -> Window {
     let gaussian = |width: f64, cut: f64| Profile::Gaussian { width, cut };
     Window {

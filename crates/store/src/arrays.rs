@@ -48,7 +48,7 @@ pub struct SliceArrays {
 }
 
 impl SliceArrays {
-    /// The slices of a plane.
+    /// Returns the slices of a plane.
     #[must_use]
     pub fn of(plane: &PlaneComparison) -> Self {
         let grid = plane.measured.grid;
@@ -110,7 +110,7 @@ pub fn z(measured: &Array2<f64>, predicted: &Array2<f64>, sigma: &Array2<f64>) -
     z
 }
 
-/// A file of four parts, with ρ to the right and ν upwards.
+/// Returns a file of four parts, with ρ to the right and ν upwards.
 fn radial_exr(mut made_from: Value, plane: &PlaneComparison) -> Result<Vec<u8>, Failure> {
     let power = &plane.radial.power;
     let difference = power - &plane.predicted_radial;

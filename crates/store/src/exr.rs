@@ -17,7 +17,7 @@ pub struct Part {
     pub samples: Vec<f32>,
 }
 
-/// The bytes of a file; `provenance` is an attribute of each part.
+/// Returns the bytes of a file; `provenance` is an attribute of each part.
 pub fn exr(
     [width, height]: [usize; 2],
     parts: Vec<Part>,

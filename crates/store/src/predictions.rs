@@ -49,7 +49,7 @@ fn file_of(plane: &VirtualPlane) -> String {
     format!("{}/prediction.npz", plane.name)
 }
 
-/// The names of the files of a prediction.
+/// Returns the names of the files of a prediction.
 pub fn names(planes: &[VirtualPlane]) -> Vec<String> {
     planes.iter().map(file_of).collect()
 }
@@ -71,20 +71,20 @@ pub fn write(
     Ok(StoredPrediction { method, planes })
 }
 
-/// A prediction as bytes, for another process.
+/// Returns a prediction as bytes, for another process.
 pub fn packed(plane: &VirtualPlane, prediction: &Prediction) -> Result<Vec<u8>, Failure> {
     let (words, bytes) = stored(plane, prediction)?;
     Ok(joined(&words, &bytes))
 }
 
-/// The prediction of a plane from bytes of [`packed`].
+/// Returns the prediction of a plane from bytes of [`packed`].
 pub fn unpacked(plane: &VirtualPlane, bytes: &[u8]) -> Result<Prediction, Failure> {
     let (words, bytes): (PredictedPlane, _) = split(bytes).map_err(Failure::cannot_run)?;
     let file = NpzFile::new(PathBuf::from(file_of(plane)), bytes.to_vec())?;
     read_plane(file, plane, &words)
 }
 
-/// The text of a prediction, and the bytes of its file of arrays.
+/// Returns the text of a prediction, and the bytes of its file of arrays.
 fn stored(
     plane: &VirtualPlane,
     prediction: &Prediction,

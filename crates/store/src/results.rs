@@ -98,7 +98,7 @@ pub struct Finished {
 }
 
 impl Finished {
-    /// A message that lists the replaced files of somebody else, if any.
+    /// Returns a message that lists the replaced files of somebody else, if any.
     #[must_use]
     pub fn replaced_message(&self) -> Option<String> {
         let names = self.replaced.join(", ");
@@ -255,23 +255,23 @@ impl Results {
         })
     }
 
-    /// The names of all files to be written.
+    /// Returns the names of all files to be written.
     fn planned(&self) -> impl Iterator<Item = &str> {
         let files = self.plan.files.iter().map(String::as_str);
         files.chain([self.plan.index])
     }
 
-    /// The temporary path of a new file.
+    /// Returns the temporary path of a new file.
     fn staged(&self, name: &str) -> PathBuf {
         self.folder.join(UNFINISHED).join("new").join(name)
     }
 
-    /// The temporary path of a new index, once all files are complete and begin to move.
+    /// Returns the temporary path of a new index, once all files are complete and begin to move.
     fn ready(&self, index: &str) -> PathBuf {
         self.folder.join(UNFINISHED).join(index)
     }
 
-    /// The index whose files have begun to move.
+    /// Returns the index whose files have begun to move.
     fn ready_index(&self) -> Option<&'static str> {
         let mut indices = [
             SUMMARY,
@@ -303,8 +303,8 @@ impl Drop for Results {
     }
 }
 
-/// The path of a file of a folder; `None` if the path leads out of the folder, by `..` or by a
-/// link.
+/// Returns the path of a file of a folder; `None` if the path leads out of the folder, by `..` or
+/// by a link.
 pub fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
     let mut path = folder.to_owned();
     let mut components = Path::new(name).components().peekable();
@@ -324,8 +324,8 @@ pub fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
     Some(path)
 }
 
-/// The files that an index lists, with their hashes; `None` unless the index is exactly as Étendue
-/// wrote it.
+/// Returns the files that an index lists, with their hashes; `None` unless the index is exactly as
+/// Étendue wrote it.
 fn listed(index: &Path) -> Option<BTreeMap<String, String>> {
     let bytes = sealed_bytes(index)?;
     let tree: serde_json::Value = serde_json::from_slice(&bytes).ok()?;
@@ -334,17 +334,17 @@ fn listed(index: &Path) -> Option<BTreeMap<String, String>> {
     files.collect()
 }
 
-/// The hash of a file in the index of a complete result.
+/// Returns the hash of a file in the index of a complete result.
 pub fn hash_of(folder: &Path, index: &str, name: &str) -> Option<String> {
     listed(&folder.join(index))?.remove(name)
 }
 
-/// Whether a path is itself a regular file, and not a link to one.
+/// Checks whether a path is itself a regular file, and not a link to one.
 fn is_regular(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok_and(|found| found.is_file())
 }
 
-/// Whether a path is a regular file with this hash.
+/// Checks whether a path is a regular file with this hash.
 fn has_hash(path: &Path, hash: &str) -> bool {
     let hashed = || {
         let mut hasher = blake3::Hasher::new();
@@ -354,14 +354,14 @@ fn has_hash(path: &Path, hash: &str) -> bool {
     is_regular(path) && hashed().is_some_and(|found| found.as_str() == hash)
 }
 
-/// The content of a regular file that ends with its own hash.
+/// Returns the content of a regular file that ends with its own hash.
 fn sealed_bytes(path: &Path) -> Option<Vec<u8>> {
     let bytes = || read_file(path, MAX_INDEX_BYTES).ok();
     let bytes = is_regular(path).then(bytes).flatten();
     bytes.filter(|bytes| sealed::is_sealed(bytes))
 }
 
-/// The folders, below the results folder, that hold these files.
+/// Returns the folders, below the results folder, that hold these files.
 fn parents<'a>(names: impl Iterator<Item = &'a String>) -> BTreeSet<&'a Path> {
     let ancestors = names.flat_map(|name| Path::new(name).ancestors().skip(1));
     ancestors

@@ -26,7 +26,7 @@ pub fn sealed(json: &[u8]) -> Vec<u8> {
     [body, BEFORE.as_bytes(), hash.as_bytes(), AFTER.as_bytes()].concat()
 }
 
-/// Whether bytes end with their own hash.
+/// Checks whether bytes end with their own hash.
 pub fn is_sealed(bytes: &[u8]) -> bool {
     let hash_of = || {
         let rest = bytes.strip_suffix(AFTER.as_bytes())?;

@@ -34,7 +34,8 @@ struct Displaced {
 }
 
 impl Follower<'_> {
-    /// How far smooth meshes send light from where their patches send it; `None` without a mesh.
+    /// Returns how far smooth meshes send light from where their patches send it; `None` without a
+    /// mesh.
     pub(super) fn off_patches(&self) -> Option<OffPatches> {
         let legs = &self.scene.path.legs[1..=self.plane.leg];
         let objects = legs.iter().filter_map(|leg| Some(leg.leaves?.object));
@@ -57,7 +58,7 @@ impl Follower<'_> {
         }
     }
 
-    /// A ray of the light, and the relative amount of light that it represents.
+    /// Returns a ray of the light, and the relative amount of light that it represents.
     fn weighted(&self, draw: &RayDraw) -> Option<(CheckRay, f64)> {
         let (ray, strength) = self.ray(draw)?;
         let patch = &self.system.elements.first()?.patch;
@@ -112,8 +113,8 @@ impl Follower<'_> {
         })
     }
 
-    /// The distance between the two arrivals of a ray, in half-widths of the window along the axis
-    /// where it is largest.
+    /// Returns the distance between the two arrivals of a ray, in half-widths of the window along
+    /// the axis where it is largest.
     fn apart(&self, ray: &Displaced) -> f64 {
         let window = &self.plane.window;
         let half = [window.x, window.y, window.u, window.v].map(|p| Profile::half_width(&p));
@@ -125,8 +126,8 @@ impl Follower<'_> {
         })
     }
 
-    /// How much the slices change when rays arrive by triangles: the mean of two halves of the
-    /// rays, and half of their difference, which is its standard error.
+    /// Returns how much the slices change when rays arrive by triangles: the mean of two halves of
+    /// the rays, and half of their difference, which is its standard error.
     fn change(&self, lit: &[(f64, Displaced)]) -> f64 {
         let transform = SliceTransform::new(&self.plane.grid);
         let mut sum = transform.accumulator();
@@ -149,8 +150,8 @@ impl Follower<'_> {
         norm(&a + &b) + norm(a - b)
     }
 
-    /// The arrival of a ray by the triangles of smooth meshes; `None` if it misses a mesh or meets
-    /// one again.
+    /// Returns the arrival of a ray by the triangles of smooth meshes; `None` if it misses a mesh
+    /// or meets one again.
     fn by_triangles(&self, light: CheckRay) -> PlaneArrival {
         let mut ray = light;
         let mut share = 1.0;
@@ -180,7 +181,7 @@ impl Follower<'_> {
     }
 }
 
-/// The distances at which a ray meets triangles of a mesh, beyond a given distance, and the
+/// Returns the distances at which a ray meets triangles of a mesh, beyond a given distance, and the
 /// triangles' numbers.
 fn hits<'a>(
     mesh: &'a MeshObject,

@@ -36,19 +36,19 @@ const FAINT: f64 = 1e-3;
 
 /// Rays that theory follows from the light to a plane.
 pub(super) trait Followed {
-    /// The amount of light that a ray brings into the window, and the first thing it meets that
-    /// theory ignores, if any; `None` if it brings none.
+    /// Returns the amount of light that a ray brings into the window, and the first thing it meets
+    /// that theory ignores, if any; `None` if it brings none.
     fn check(&self, draw: &RayDraw) -> Option<(f64, Option<Meets>)>;
 
-    /// The amount of light that a ray brings along theory's path, and the pieces of that path;
-    /// `None` if it brings none.
+    /// Returns the amount of light that a ray brings along theory's path, and the pieces of that
+    /// path; `None` if it brings none.
     fn pieces(&self, draw: &RayDraw) -> Option<(f64, Vec<PathPiece>)>;
 
-    /// The surroundings of the path.
+    /// Returns the surroundings of the path.
     fn around(&self) -> &Surroundings<'_>;
 }
 
-/// Everything that rays meet and theory ignores.
+/// Returns everything that rays meet and theory ignores.
 pub(super) fn found(rays: &impl Followed) -> Vec<Meets> {
     let checked = (0..TRIED_RAYS).filter_map(|index| {
         let draw = RayDraw::new(index);
@@ -97,7 +97,8 @@ impl<R: Followed> Search<'_, R> {
             .gap(self.rays.around(), &pieces[self.suspect.leg])
     }
 
-    /// The rays that pass the object nearest, with their distances; empty if it is out of reach.
+    /// Returns the rays that pass the object nearest, with their distances; empty if it is out of
+    /// reach.
     fn starts(&self, paths: &[(RayDraw, Vec<PathPiece>)]) -> Vec<(f64, RayDraw)> {
         let gaps = paths.iter().map(|(draw, pieces)| (self.gap(pieces), *draw));
         let mut gaps: Vec<(f64, RayDraw)> = gaps.filter(|(gap, _)| gap.is_finite()).collect();
@@ -136,8 +137,8 @@ impl<R: Followed> Search<'_, R> {
     }
 }
 
-/// A draw that differs from another by at most `length` along each axis. Two of three moves go
-/// along one axis, since in a corner of the window few other moves stay inside.
+/// Returns a draw that differs from another by at most `length` along each axis. Two of three moves
+/// go along one axis, since in a corner of the window few other moves stay inside.
 fn moved(from: &RayDraw, length: f64, number: u32) -> RayDraw {
     let step = lattice(number);
     let mut numbers = from.numbers;

@@ -38,8 +38,8 @@ pub(crate) fn unforeseen_by_rays(
     (found, later)
 }
 
-/// How far smooth meshes send rays from where their osculating patches send them; `None` without a
-/// mesh.
+/// Returns how far smooth meshes send rays from where their osculating patches send them; `None`
+/// without a mesh.
 pub(crate) fn off_patches(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -110,8 +110,8 @@ impl<'a> Follower<'a> {
 }
 
 impl Follower<'_> {
-    /// The amount of light that a ray brings into the window, and the first thing it meets that
-    /// theory ignores, if any; `None` if it brings none.
+    /// Returns the amount of light that a ray brings into the window, and the first thing it meets
+    /// that theory ignores, if any; `None` if it brings none.
     fn check(&self, (ray, emitted): (CheckRay, f64)) -> Option<(f64, Option<Meets>)> {
         let (arrival, meets) = self.photon(ray);
         let brought = [arrival, self.theory(ray)].into_iter().flatten();
@@ -120,7 +120,7 @@ impl Follower<'_> {
         (light > 0.0).then_some((light, meets))
     }
 
-    /// A ray of the light towards the first surface, and its strength.
+    /// Returns a ray of the light towards the first surface, and its strength.
     pub(super) fn ray(&self, draw: &RayDraw) -> Option<(CheckRay, f64)> {
         let RayDraw { index, numbers: r } = *draw;
         let hit = self.scene.path.ends_at(0)?;
@@ -147,9 +147,10 @@ impl Follower<'_> {
         ray_to(&self.system.light, target, index, [r[2], r[3]])
     }
 
-    /// A ray that theory predicts to arrive in the window. It is needed because few rays of the
-    /// light itself may reach a narrow window, or a part of a wide one that is close to the light.
-    /// Light without extent is aimed at places in the window if no surface deflects it first.
+    /// Returns a ray that theory predicts to arrive in the window. It is needed because few rays of
+    /// the light itself may reach a narrow window, or a part of a wide one that is close to the
+    /// light. Light without extent is aimed at places in the window if no surface deflects it
+    /// first.
     pub(super) fn ray_of_window(&self, draw: &RayDraw) -> Option<(CheckRay, f64)> {
         let light = &self.system.light;
         let coordinates = within(&self.plane.window, draw.numbers);
@@ -177,13 +178,13 @@ impl Follower<'_> {
         (begins && ray.direction.z > 0.0).then(|| (ray, strength(light, &ray)))
     }
 
-    /// The arrival of a ray as theory predicts it.
+    /// Returns the arrival of a ray as theory predicts it.
     pub(super) fn theory(&self, light: CheckRay) -> PlaneArrival {
         self.follow(light, |_| {})
     }
 
-    /// The arrival of a ray as theory predicts it; `tell` receives the straight pieces of its path
-    /// in order.
+    /// Returns the arrival of a ray as theory predicts it; `tell` receives the straight pieces of
+    /// its path in order.
     fn follow(&self, light: CheckRay, mut tell: impl FnMut(PathPiece)) -> PlaneArrival {
         let path = &self.scene.path;
         let piece = |leg: usize, ray: CheckRay, end: f64| PathPiece {
@@ -206,7 +207,8 @@ impl Follower<'_> {
         Some((coordinates(self.at, &ray, self.counted_at(&ray)?)?, share))
     }
 
-    /// The length of a ray of the last leg: to the plane, or to the surface that the plane is on.
+    /// Returns the length of a ray of the last leg: to the plane, or to the surface that the plane
+    /// is on.
     fn end(&self, ray: &CheckRay) -> f64 {
         let across = self.around.to_plane(ray);
         let ends = self.scene.path.ends_at(self.plane.leg);
@@ -215,7 +217,7 @@ impl Follower<'_> {
         hit.unwrap_or(across)
     }
 
-    /// The share of a ray that passes the blockers that theory includes on the first leg.
+    /// Returns the share of a ray that passes the blockers that theory includes on the first leg.
     pub(super) fn passed(&self, leg: usize, ray: &CheckRay, end: f64) -> f64 {
         if leg == 0 {
             self.around.first_leg(ray, end).0[1]
@@ -224,8 +226,9 @@ impl Follower<'_> {
         }
     }
 
-    /// The point of the plane's surface at which theory counts a ray of the last leg, and the unit
-    /// normal there, if the plane is on a surface. `None` where the ray does not meet the surface.
+    /// Returns the point of the plane's surface at which theory counts a ray of the last leg, and
+    /// the unit normal there, if the plane is on a surface. `None` where the ray does not meet the
+    /// surface.
     pub(super) fn counted_at(&self, ray: &CheckRay) -> Option<Option<[DVec3; 2]>> {
         let Some(patch) = self.at.patch.as_ref() else {
             return Some(None);
@@ -238,7 +241,7 @@ impl Follower<'_> {
         Some(Some(on(patch, point)))
     }
 
-    /// The arrival of a photon, and the first thing it meets that theory ignores.
+    /// Returns the arrival of a photon, and the first thing it meets that theory ignores.
     fn photon(&self, light: CheckRay) -> (PlaneArrival, Option<Meets>) {
         let mut ray = light;
         let mut share = 1.0;
@@ -268,8 +271,8 @@ impl Follower<'_> {
         (seen.map(|z| (z, share)), unforeseen.or(meets))
     }
 
-    /// The distance at which a photon meets the surface that ends its leg; `None` where it meets
-    /// another surface first.
+    /// Returns the distance at which a photon meets the surface that ends its leg; `None` where it
+    /// meets another surface first.
     fn next(
         &self,
         ray: &CheckRay,
@@ -294,7 +297,7 @@ impl Follower<'_> {
         }
     }
 
-    /// The coordinates at the plane of a photon that has met all surfaces before the plane.
+    /// Returns the coordinates at the plane of a photon that has met all surfaces before the plane.
     fn last_leg(&self, ray: &CheckRay) -> (Option<TwoPlane>, Option<Meets>) {
         let path = &self.scene.path;
         let leg = self.plane.leg;
@@ -330,9 +333,10 @@ impl Follower<'_> {
         (seen, unforeseen)
     }
 
-    /// The point at which a plane on a surface counts a photon. An arriving photon counts where it
-    /// meets the front of the surface. The line of a leaving photon may intersect the surface
-    /// twice, and the photon counts at the intersection nearest to the hit of the central ray.
+    /// Returns the point at which a plane on a surface counts a photon. An arriving photon counts
+    /// where it meets the front of the surface. The line of a leaving photon may intersect the
+    /// surface twice, and the photon counts at the intersection nearest to the hit of the central
+    /// ray.
     fn counted(&self, patch: &Patch, ray: &CheckRay) -> Option<DVec3> {
         if self.at.arriving {
             return Some(ray.at(ray.front_hit(patch, self.at.frame.d)?));
@@ -344,7 +348,7 @@ impl Follower<'_> {
         points.min_by(|a, b| a.distance(center).total_cmp(&b.distance(center)))
     }
 
-    /// The ray that leaves the surface at the end of a leg.
+    /// Returns the ray that leaves the surface at the end of a leg.
     pub(super) fn turned(&self, leg: usize, at: [DVec3; 2], ray: &CheckRay) -> Option<CheckRay> {
         let [point, normal] = at;
         let element = &self.system.elements[leg];
@@ -355,7 +359,7 @@ impl Follower<'_> {
     }
 }
 
-/// A point of a surface and the unit normal there.
+/// Returns a point of a surface and the unit normal there.
 pub(super) fn on(patch: &Patch, point: DVec3) -> [DVec3; 2] {
     [point, patch.normal(point)]
 }

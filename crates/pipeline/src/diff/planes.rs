@@ -86,7 +86,7 @@ impl PlaneDiff {
             .map_or(Verdict::Undecided, |compared| compared.verdict(level))
     }
 
-    /// Why the plane is undecided.
+    /// Returns why the plane is undecided.
     pub(super) fn undecided(&self, level: f64) -> Option<String> {
         match &self.found {
             PlaneDifference::Missing(0) => Some("only the second result has this plane".to_owned()),
@@ -102,7 +102,7 @@ impl PlaneDiff {
 }
 
 impl Compared {
-    /// The tested parameters with their pulls.
+    /// Returns the tested parameters with their pulls.
     pub(super) fn pulls(&self) -> impl Iterator<Item = &ParameterDiff> {
         self.parameters.iter().filter(|_| self.invalid.is_none())
     }
@@ -130,7 +130,7 @@ impl Compared {
     }
 }
 
-/// All planes of two results, in the order of the first.
+/// Returns all planes of two results, in the order of the first.
 pub(super) fn of_results(
     a: &StoredResult,
     b: &StoredResult,
@@ -186,8 +186,8 @@ impl ResultPair<'_> {
         Ok(PlaneDifference::Compared(Box::new(compared)))
     }
 
-    /// Whether both results have the same method, seed, photons and batches, and so share photons
-    /// as far as their scenes agree.
+    /// Checks whether both results have the same method, seed, photons and batches, and so share
+    /// photons as far as their scenes agree.
     fn has_one_seed(&self) -> bool {
         let [a, b] = [self.a, self.b].map(|result| {
             let index = &result.index;
@@ -196,7 +196,7 @@ impl ResultPair<'_> {
         a == b
     }
 
-    /// Why the slices of the two results cannot be subtracted.
+    /// Returns why the slices of the two results cannot be subtracted.
     fn unlike(&self, name: &str, a: &StoredSlices, b: &StoredSlices) -> Option<String> {
         let [left, right] = [self.a, self.b].map(|result| view(&result.index.scene_file, name));
         if let Some(FieldChange { field, values }) = differences(&left, &right).into_iter().next() {
@@ -251,7 +251,7 @@ impl ResultPair<'_> {
         }
     }
 
-    /// Why the tests are invalid for these photons, whatever they find.
+    /// Returns why the tests are invalid for these photons, whatever they find.
     fn invalid(&self, planes: [&StoredPlane; 2], slices: [&StoredSlices; 2]) -> Option<String> {
         let results = [self.a, self.b];
         for ((plane, slices), result) in planes.into_iter().zip(slices).zip(results) {
@@ -281,7 +281,7 @@ impl ResultPair<'_> {
         None
     }
 
-    /// Why a test without a detected difference does not prove that there is none.
+    /// Returns why a test without a detected difference does not prove that there is none.
     fn unresolved(&self, test: &TwoSamples) -> Option<String> {
         let [a, b] = [self.a, self.b].map(|result| &result.index);
         let [apart, noise] = [test.difference, test.noise].map(|share| percent(share, 3));
@@ -306,9 +306,9 @@ impl ResultPair<'_> {
     }
 }
 
-/// The number of photons of equal weight per batch that would vary as much as the light of this
-/// sample. `None` if the number is large enough that no batch would be empty, as for a single run
-/// (`etendue_compare`).
+/// Returns the number of photons of equal weight per batch that would vary as much as the light of
+/// this sample. `None` if the number is large enough that no batch would be empty, as for a single
+/// run (`etendue_compare`).
 fn carried_by(sample: &Sample, grid: &SliceGrid) -> Option<f64> {
     let zero = [0, 0, grid.nu.half];
     let batches = sample.batches as f64;
@@ -328,7 +328,7 @@ fn apart(grid: &SliceGrid, a: &Array3<Complex>, b: &Array3<Complex>) -> f64 {
     TwoSamples::new(grid, &sample(a), &sample(b)).difference
 }
 
-/// The definition of a plane's slices: its window, quantity and coordinates.
+/// Returns the definition of a plane's slices: its window, quantity and coordinates.
 fn view(scene_file: &Value, name: &str) -> Value {
     let planes = scene_file["planes"].as_array();
     let mut planes = planes.into_iter().flatten();

@@ -17,7 +17,7 @@ pub(super) struct Rays {
 }
 
 impl Rays {
-    /// The rays of a plane; `None` if there is no such plane.
+    /// Returns the rays of a plane; `None` if there is no such plane.
     pub(super) fn of(case: &MeasuredScene, plane: usize) -> Option<Self> {
         let VirtualPlane { name, distance, .. } = case.scene.planes.get(plane)?;
         let emitted = case.measurement.batches().map(|batch| batch.emitted).sum();
@@ -31,7 +31,7 @@ impl Rays {
         })
     }
 
-    /// The power of a photon, W.
+    /// Returns the power of a photon, W.
     pub(super) fn watts(&self, crossing: &Crossing) -> f64 {
         self.world.flux(crossing) / self.emitted as f64
     }

@@ -53,7 +53,7 @@ impl Default for McplHeader {
 }
 
 impl McplHeader {
-    /// The header, the number of particles, and the offset of the first.
+    /// Returns the header, the number of particles, and the offset of the first.
     pub(super) fn read(bytes: &[u8]) -> Result<(Self, u64, usize), Fault> {
         let (version, little_endian) = signature(bytes)?;
         let mut cursor = ByteCursor::new(bytes, 8, little_endian);
@@ -115,14 +115,14 @@ impl McplHeader {
         stat::sums(&self.comments).map(|_| ())
     }
 
-    /// The sums stored in comments.
+    /// Returns the sums stored in comments.
     #[must_use]
     pub fn stat_sums(&self) -> Vec<StatSum> {
         // Comments are checked when the header is read or written.
         stat::sums(&self.comments).unwrap_or_default()
     }
 
-    /// The number of bytes of a particle.
+    /// Returns the number of bytes of a particle.
     #[must_use]
     pub fn record_size(&self) -> usize {
         let number = if self.single_precision { 4 } else { 8 };
@@ -132,7 +132,7 @@ impl McplHeader {
         number * numbers + 4 * codes
     }
 
-    /// The bytes before the first particle, for files that are written incrementally.
+    /// Returns the bytes before the first particle, for files that are written incrementally.
     #[must_use]
     pub fn bytes(&self, count: u64) -> Vec<u8> {
         let little = self.little_endian;
@@ -164,7 +164,7 @@ impl McplHeader {
     }
 }
 
-/// The version and the byte order.
+/// Returns the version and the byte order.
 fn signature(bytes: &[u8]) -> Result<(u32, bool), Fault> {
     let mut cursor = ByteCursor::new(bytes, 0, true);
     let start = cursor.take(8, "the signature of MCPL")?;
@@ -191,7 +191,7 @@ fn signature(bytes: &[u8]) -> Result<(u32, bool), Fault> {
 /// bytes of the file.
 const MOST_TEXTS: u32 = 65_536;
 
-/// The number of comments or blobs.
+/// Returns the number of comments or blobs.
 fn texts(cursor: &mut ByteCursor<'_>, what: &str) -> Result<u32, Fault> {
     let at = cursor.at();
     let count = cursor.u32(what)?;
@@ -208,7 +208,7 @@ fn text(cursor: &mut ByteCursor<'_>, what: &str) -> Result<Vec<u8>, Fault> {
     cursor.take(length as usize, what).map(<[u8]>::to_vec)
 }
 
-/// The bytes of a number, given lowest first, in the byte order of a file.
+/// Returns the bytes of a number, given lowest first, in the byte order of a file.
 pub(super) fn ordered<const N: usize>(mut bytes: [u8; N], little: bool) -> [u8; N] {
     if !little {
         bytes.reverse();

@@ -18,8 +18,8 @@ pub struct StatSum {
     pub value: Option<f64>,
 }
 
-/// The comment that holds a sum. The value is written as the shortest decimal number that reads as
-/// the same f64.
+/// Returns the comment that holds a sum. The value is written as the shortest decimal number that
+/// reads as the same f64.
 ///
 /// # Errors
 /// When the key is not an identifier of at most 64 characters, or the value is negative or not
@@ -37,7 +37,7 @@ pub fn stat_sum_comment(key: &str, value: f64) -> Result<Vec<u8>, Fault> {
     Ok(comment)
 }
 
-/// The sums among comments.
+/// Returns the sums among comments.
 pub(super) fn sums(comments: &[Vec<u8>]) -> Result<Vec<StatSum>, Fault> {
     let mut keys = BTreeSet::new();
     let mut sums = Vec::new();

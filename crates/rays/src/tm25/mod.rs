@@ -70,7 +70,8 @@ impl Tm25File {
         Ok(file)
     }
 
-    /// A file with these rays, each of `columns` numbers, as counted by [`Tm25Header::columns`].
+    /// Returns a file with these rays, each of `columns` numbers, as counted by
+    /// [`Tm25Header::columns`].
     ///
     /// # Errors
     /// When the header or the rays are invalid.
@@ -93,7 +94,7 @@ impl Tm25File {
         Ok(file)
     }
 
-    /// The header, which applies to all rays.
+    /// Returns the header, which applies to all rays.
     #[must_use]
     pub fn header(&self) -> &Tm25Header {
         &self.header
@@ -105,24 +106,24 @@ impl Tm25File {
         &self.notes
     }
 
-    /// The number of rays.
+    /// Returns the number of rays.
     #[must_use]
     pub fn len(&self) -> usize {
         self.numbers.len() / self.header.columns()
     }
 
-    /// Whether the file has no rays.
+    /// Checks whether the file has no rays.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.numbers.is_empty()
     }
 
-    /// The numbers of each ray.
+    /// Returns the numbers of each ray.
     fn rows(&self) -> impl Iterator<Item = &[f32]> {
         self.numbers.chunks_exact(self.header.columns())
     }
 
-    /// The bytes of the file.
+    /// Returns the bytes of the file.
     #[must_use]
     pub fn write(&self) -> Vec<u8> {
         let mut bytes = self.header.bytes(self.len() as u64);
@@ -131,8 +132,8 @@ impl Tm25File {
         bytes
     }
 
-    /// The rays of the file in metres; power is in W where rays state radiant flux, otherwise in
-    /// lm. A wavelength of 0 is unknown.
+    /// Returns the rays of the file in metres; power is in W where rays state radiant flux,
+    /// otherwise in lm. A wavelength of 0 is unknown.
     #[must_use]
     pub fn rays(&self) -> RaySet {
         let flags = self.header.flags;
@@ -174,7 +175,7 @@ impl Tm25File {
         }
     }
 
-    /// The radiant flux of 1 lm, W, where the header states both fluxes.
+    /// Returns the radiant flux of 1 lm, W, where the header states both fluxes.
     #[must_use]
     pub fn watts_per_lumen(&self) -> Option<f64> {
         let Tm25Header {
@@ -186,7 +187,7 @@ impl Tm25File {
         stated.then(|| f64::from(radiant_flux) / f64::from(luminous_flux))
     }
 
-    /// The first spectral table, in metres.
+    /// Returns the first spectral table, in metres.
     fn spectrum(&self) -> Vec<[f64; 2]> {
         let table = self.header.spectra.first().into_iter().flatten();
         let row =

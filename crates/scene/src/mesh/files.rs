@@ -27,7 +27,8 @@ impl Mesh {
         })
     }
 
-    /// The mesh as a binary little-endian PLY file, exact: coordinates as `double`, indices as `uint`.
+    /// Returns the mesh as a binary little-endian PLY file, exact: coordinates as `double`, indices
+    /// as `uint`.
     #[must_use]
     pub fn ply(&self) -> Vec<u8> {
         ply::write(&self.vertices, &self.triangles)

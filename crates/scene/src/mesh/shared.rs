@@ -16,8 +16,8 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// The mesh of these triangles without those of zero area (in f64), which occur in real files.
-    /// A scene may drop or refuse further triangles depending on where it places them.
+    /// Returns the mesh of these triangles without those of zero area (in f64), which occur in real
+    /// files. A scene may drop or refuse further triangles depending on where it places them.
     ///
     /// # Errors
     /// When a coordinate or an index is out of range, or no triangle has an area.
@@ -46,8 +46,8 @@ impl Mesh {
         })
     }
 
-    /// The mesh under an affine map. A map that mirrors also reverses the order of corners, so that
-    /// outside stays outside.
+    /// Returns the mesh under an affine map. A map that mirrors also reverses the order of corners,
+    /// so that outside stays outside.
     ///
     /// # Errors
     /// When coordinates exceed ±10⁹, or no triangle has an area after the map.
@@ -87,7 +87,7 @@ impl Mesh {
     }
 }
 
-/// Whether the triangle's area, in f64, is more than zero.
+/// Checks whether the triangle's area, in f64, is more than zero.
 fn has_area(vertices: &[DVec3], corners: [u32; 3]) -> bool {
     let [a, b, c] = corners.map(|i| vertices[i as usize]);
     (b - a).cross(c - a) != DVec3::ZERO

@@ -6,8 +6,9 @@ use glam::DVec3;
 use std::f64::consts::PI;
 
 impl Mesh {
-    /// A smooth closed surface about the origin, star-shaped and with lobes about the z axis:
-    /// r(θ, φ) = `radius` · (1 + `relief` · sinˡθ · cos lφ) with l = `lobes`, a sphere plus its sectoral harmonic.
+    /// Returns a smooth closed surface about the origin, star-shaped and with lobes about the z
+    /// axis: r(θ, φ) = `radius` · (1 + `relief` · sinˡθ · cos lφ) with l = `lobes`, a sphere plus
+    /// its sectoral harmonic.
     ///
     /// θ steps through `rings` bands and φ through 2 `rings` segments. The poles are
     /// one vertex each and no vertex is doubled at φ = 0, so the surface is watertight:

@@ -70,7 +70,8 @@ fn meshes(file: &SceneFile) -> impl Iterator<Item = &MeshSource> {
     blockers.chain(surfaces)
 }
 
-/// The approximate number of triangles of a generated mesh; zero for one that will be refused.
+/// Returns the approximate number of triangles of a generated mesh; zero for one that will be
+/// refused.
 fn triangles(mesh: &MeshSource) -> u64 {
     let square = |n: u32| u64::from(if n > limits::CELLS { 0 } else { n }).pow(2);
     match mesh {

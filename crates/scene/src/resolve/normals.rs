@@ -19,8 +19,8 @@ use glam::DVec3;
 const MIN_NORMAL: f64 = 0.01;
 
 impl Resolver<'_> {
-    /// The normals of all vertices: the area-weighted mean over the triangles around each; zero at
-    /// vertices without a triangle.
+    /// Returns the normals of all vertices: the area-weighted mean over the triangles around each;
+    /// zero at vertices without a triangle.
     pub(super) fn normals(&mut self, at: &MeshPlacement<'_>, mesh: &Mesh) -> Option<Vec<DVec3>> {
         let mut sums = vec![(DVec3::ZERO, 0.0); mesh.vertices().len()];
         for (corners, indices) in mesh.corners().zip(mesh.triangles()) {
@@ -95,7 +95,7 @@ impl Resolver<'_> {
     }
 }
 
-/// A vector along the normal of a triangle, with the length of twice its area.
+/// Returns a vector along the normal of a triangle, with the length of twice its area.
 fn across([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }

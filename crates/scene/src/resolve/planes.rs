@@ -66,8 +66,8 @@ impl Resolver<'_> {
         planes
     }
 
-    /// The frame of a plane, in the frame at the light, and the longitude of the central ray in the
-    /// plane's frame.
+    /// Returns the frame of a plane, in the frame at the light, and the longitude of the central
+    /// ray in the plane's frame.
     fn view(
         &mut self,
         of: &str,
@@ -180,7 +180,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// The object that the place of a plane names.
+    /// Returns the object that the place of a plane names.
     fn stop<'a>(
         &mut self,
         of: &str,
@@ -224,7 +224,7 @@ impl Resolver<'_> {
         distance
     }
 
-    /// The place on the leg that holds this distance along the path.
+    /// Returns the place on the leg that holds this distance along the path.
     fn at_distance(
         &mut self,
         of: &str,
@@ -389,7 +389,7 @@ fn gigabytes(bytes: f64) -> String {
     format!("{:.1} GB", bytes / 1e9)
 }
 
-/// Whether a frame lies across the first leg.
+/// Checks whether a frame lies across the first leg.
 fn is_across(frame: &Frame) -> bool {
     libm::hypot(frame.d.x, frame.d.y) <= SAME_PLANE
 }

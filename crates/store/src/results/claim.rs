@@ -10,13 +10,13 @@ use std::path::{Path, PathBuf};
 const MAX_NAMES: usize = 10;
 
 impl Results {
-    /// The files of the earlier result, as listed in its index.
+    /// Returns the files of the earlier result, as listed in its index.
     pub(super) fn earlier(&self) -> BTreeMap<String, String> {
         listed(&self.folder.join(self.plan.index)).unwrap_or_default()
     }
 
-    /// The path of a file of the folder; `None` if the path leads out of the folder, by `..` or by
-    /// a link.
+    /// Returns the path of a file of the folder; `None` if the path leads out of the folder, by
+    /// `..` or by a link.
     pub(super) fn inside(&self, name: &str) -> Option<PathBuf> {
         inside(&self.folder, name)
     }
@@ -82,7 +82,7 @@ impl Results {
         )))
     }
 
-    /// Whether a file belongs to an earlier result, and is unchanged.
+    /// Checks whether a file belongs to an earlier result, and is unchanged.
     fn is_own(&self, name: &str, path: &Path, earlier: &BTreeMap<String, String>) -> bool {
         match earlier.get(name) {
             Some(hash) => has_hash(path, hash),

@@ -166,7 +166,7 @@ impl Results {
         moved.file(from, to)
     }
 
-    /// The path to which an earlier file is moved before it is removed.
+    /// Returns the path to which an earlier file is moved before it is removed.
     fn aside(&self, name: &str) -> PathBuf {
         self.folder.join(UNFINISHED).join("old").join(name)
     }

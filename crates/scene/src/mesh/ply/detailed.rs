@@ -59,8 +59,8 @@ pub(in super::super) fn read(bytes: &[u8], has_shading: bool) -> Result<Detailed
     Ok(mesh)
 }
 
-/// The positions of these names among the properties; `None` unless all are present as single
-/// numbers.
+/// Returns the positions of these names among the properties; `None` unless all are present as
+/// single numbers.
 fn columns<const N: usize>(element: &PlyElement, names: [&str; N]) -> Option<[usize; N]> {
     let found = names.map(|name| {
         let mut properties = element.properties.iter();
