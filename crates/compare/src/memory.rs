@@ -72,7 +72,8 @@ impl Memory {
                 let work = work::of(scene, plane, of);
                 work.bytes + threads as f64 * work.bytes_each
             }),
-            // Residuals of all batches, means, variances, powers, and the sums for p-values.
+            // The comparison holds residuals of all batches, means, variances, powers, and the sums
+            // for p-values.
             comparison: largest(&|plane, _| (batches + 8.0) * spectra(plane))
                 + sum(&|plane, _| 4.0 * spectra(plane)),
             meshes: meshes(scene),

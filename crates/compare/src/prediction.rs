@@ -175,7 +175,7 @@ impl Prediction {
             parameters: Vec::new(),
             depth: depth(scene, plane),
             cuts: match class {
-                // The spectrum of light that leaves a mirror or a lobe has no such border.
+                // No cut separates high frequencies in light that leaves a mirror or a lobe.
                 Class::FirstOrder => Vec::new(),
                 Class::Exact | Class::Reference => cuts(scene, plane),
             },

@@ -89,8 +89,9 @@ impl Residuals {
         Self { grid, parts }
     }
 
-    /// Returns the residuals from the prediction closest to the measurement, among those within
-    /// `error`|F| of F at each frequency plus the fast transform's error relative to the largest F.
+    /// Returns the residuals from the spectrum closest to the measurement among those near the
+    /// prediction. At each frequency such a spectrum is within `error`|F| of F, plus the fast
+    /// transform's error relative to the largest F.
     #[must_use]
     pub fn forgiving(&self, prediction: &Slices, error: f64) -> Self {
         let mut moved = self.mean();
@@ -301,8 +302,8 @@ impl Residuals {
     ///
     /// The statistic is Σ |Σ_b r_b|² / Σ_b |r_b|² over the frequencies. Under the hypothesis a
     /// residual is as likely as its negative, so the statistic under random signs is a draw from
-    /// its own distribution, correlations between neighbouring frequencies included. The p-value is
-    /// the share of rounds, the observed one included, that reach the observed value.
+    /// its own distribution. This includes correlations between neighbouring frequencies. The
+    /// p-value is the share of rounds, the observed one included, that reach the observed value.
     ///
     /// `None` when all residuals are zero: nothing measured and nothing predicted.
     #[must_use]

@@ -115,7 +115,7 @@ pub(crate) fn reflected(
     let hits: Vec<Hit> = legs.filter_map(|leg| leg.leaves).collect();
     let visited = plane.leg;
     let surfaces = hits.iter().map(|hit| visited_surface(scene, hit));
-    // A mesh that ends the last leg, or stands beside the path, does not count as a surface of the
+    // A mesh does not count as a surface of the path if it ends the last leg or stands beside the
     // path.
     let surfaces: Vec<reflections::PathSurface> = surfaces.map_while(|surface| surface).collect();
     let scatterers = surfaces

@@ -80,7 +80,7 @@ mod tests {
 
     #[test]
     fn chi_squared_has_its_tabulated_quantiles() {
-        // Abramowitz and Stegun 1964, table 26.8: Q(χ²|ν).
+        // These values are from Abramowitz and Stegun 1964, table 26.8: Q(χ²|ν).
         for (x, dof, p) in [
             (3.84146, 1.0, 0.05),
             (18.3070, 10.0, 0.05),
@@ -89,8 +89,8 @@ mod tests {
             (77.9295, 100.0, 0.95),
         ] {
             let found = chi_squared_above(x, dof);
-            // The table gives x to six digits, an error of 5e-4 at most, and the tail falls by 0.2
-            // of itself per unit.
+            // The table gives x to six digits, with an error of 5e-4 at most, and the tail falls by
+            // a fifth per unit of x.
             assert!((found / p - 1.0).abs() < 1e-4, "{x} {dof}: {found}");
         }
         // With two degrees of freedom the tail is exponential.
@@ -114,7 +114,7 @@ mod tests {
 
     #[test]
     fn student_has_its_tabulated_quantiles() {
-        // Abramowitz and Stegun 1964, table 26.10: two-sided.
+        // These two-sided values are from Abramowitz and Stegun 1964, table 26.10.
         for (t, dof, p) in [
             (2.042, 30.0, 0.05),
             (3.646, 30.0, 0.001),

@@ -65,7 +65,7 @@ impl RaySection {
         let window = &plane.window;
         let [position, slope] =
             [[&window.x, &window.u], [&window.y, &window.v]][axis].map(Profile::half_width);
-        // An infinite light shines from beyond this position at steeper slopes only.
+        // Light from beyond this position arrives only at larger slopes than those considered.
         let far = MAX_SLOPE * (plane.distance + position);
         let ends = scene.light.extent(axis);
         let [low, high] = ends.map(|x| if x.is_finite() { x } else { far.copysign(x) });

@@ -109,7 +109,7 @@ fn rays_that_found_nothing_decide_nothing() {
         let compared = compare(&measurement, 0, prediction, &TEST).unwrap();
         compared.report.verdict
     };
-    // A closed form that is dark is certain of it.
+    // A closed form that is dark proves that no light arrives.
     assert_eq!(verdict(&nothing), Verdict::Fail);
     nothing.replicates = vec![Slices::zeros(plane().grid); 32];
     assert_eq!(verdict(&nothing), Verdict::Undecided);
@@ -194,7 +194,7 @@ fn two_samples_are_compared_with_the_noise_of_both() {
             // nothing undecided.
             assert_ne!(report.verdict, Verdict::Undecided);
         }
-        // 15 ± 3.2 of 50: four standard deviations.
+        // The expected number is 15 ± 3.2 of 50; the limits are four standard deviations.
         assert!(
             (3..=27).contains(&below),
             "{count}: {below} of 50 below 0.3"
@@ -289,7 +289,7 @@ fn a_wrong_parameter_is_rejected_and_measured() {
     assert_eq!(report.verdict, Verdict::Fail, "{report:?}");
     let width = &report.parameters[0];
     assert!(width.measured > 1.0 + width.detectable, "{width:?}");
-    // Four errors, plus the second-order effect of a step of 2 %.
+    // The limit is four errors, plus the second-order effect of a step of 2 %.
     assert!(
         (width.measured - 1.02).abs() < 4.0 * width.error + 0.002,
         "{width:?}"
@@ -430,7 +430,7 @@ fn p_is_uniform_where_the_truth_is_predicted() {
         .map(|seed| Residuals::new(&measurement(&truth, 0.02, seed + 10), 0, &truth))
         .filter(|residuals| residuals.p_value(1).unwrap() < 0.3)
         .count();
-    // 15 ± 3.2 of 50: four standard deviations.
+    // The expected number is 15 ± 3.2 of 50; the limits are four standard deviations.
     assert!((3..=27).contains(&below), "{below} of 50 below 0.3");
 }
 

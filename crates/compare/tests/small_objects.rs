@@ -1,4 +1,4 @@
-//! A small object beside the central ray that stops light is found: theory takes blockers as
+//! A small object that stops light beside the central ray is found. Theory then treats blockers as
 //! obstacles, and does not apply to a plane whose light meets a surface out of turn.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]

@@ -178,7 +178,7 @@ mod tests {
             (90.0, 0.7),
         ] {
             let value = table.value(libm::cos(degrees.to_radians()));
-            // For 0.26 rad, the cosine loses 10⁻¹⁵ of the angle.
+            // At 0.26 rad, the angle from the cosine has an error of 10⁻¹⁵.
             assert!((value - expected).abs() < 1e-14, "{degrees}: {value}");
         }
     }

@@ -207,7 +207,7 @@ mod tests {
             (DVec3::Z, [4.0, 2.0]),
             (DVec3::NEG_X, [6.0, 2.0]),
         ] {
-            // Rounding of angles.
+            // The limit is the rounding error of angles.
             assert!((map.direction(place) - direction).length() < 1e-15);
             let [column, row] = map.place(direction);
             assert!((column - place[0]).abs() + (row - place[1]).abs() < 1e-14); // likewise
@@ -221,7 +221,8 @@ mod tests {
         let radiance = |d: DVec3| 2.0 + d.x + 0.5 * d.y;
         let map = LatLong::from_fn(64, 32, radiance);
         let d = DVec3::new(0.3, -0.8, 0.4).normalize();
-        // An eighth of the square of a pixel's side, 0.1, times the second derivatives.
+        // The error is an eighth of the square of a pixel's side, 0.1, times the second
+        // derivatives.
         assert!((map.radiance(d) - radiance(d)).abs() < 3e-3);
     }
 

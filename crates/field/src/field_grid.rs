@@ -5,9 +5,10 @@ use serde::{Deserialize, Serialize};
 
 /// A 4D grid over the support of a window, axes in the order x, y, u, v.
 ///
-/// Along an axis of half-width h and n cells the box is periodic, with period 2h; cell i is centred at
-/// (i − n/2) · 2h/n, so the plane's origin is the centre of cell n/2, and cell 0 lies half at either
-/// edge. The frequencies of its transform are the multiples of 1/(2h) up to the Nyquist frequency n/(4h).
+/// Along an axis of half-width h and n cells the box is periodic, with period 2h; cell i is centred
+/// at (i − n/2) · 2h/n. So the plane's origin is the centre of cell n/2, and half of cell 0 lies at
+/// either edge. The frequencies of its transform are the multiples of 1/(2h) up to the Nyquist
+/// frequency n/(4h).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FieldGrid {
     /// Number n of cells along each axis: even, at least 8.

@@ -86,7 +86,7 @@ impl RayLight {
     pub fn at_share(&self, share: f64) -> &FluxRay {
         let flux = share * self.flux();
         let index = self.upto.partition_point(|upto| *upto <= flux);
-        // The last ray with non-zero flux, in case rounding leads beyond it.
+        // The last ray with non-zero flux is used if rounding leads beyond it.
         let last = || self.upto.partition_point(|upto| *upto < self.flux());
         self.rays.get(index).unwrap_or_else(|| &self.rays[last()])
     }

@@ -203,7 +203,8 @@ mod tests {
         for i in -1000..=1000 {
             let s = f64::from(i) / 1000.0;
             let exact = libm::cos(std::f64::consts::FRAC_PI_2 * s).powi(2);
-            // Twice two roundings of numbers up to 1.3, in steps of 2.2·10⁻¹⁶.
+            // The limit is twice the error of two roundings of numbers up to 1.3, in steps of
+            // 2.2·10⁻¹⁶.
             assert!((hann([0.5, s])[1] - exact).abs() < 8e-16, "at {s}");
         }
     }

@@ -112,7 +112,7 @@ fn both_pass(
     let cannot = format!("{other} cannot decide which is wrong: their noise is {noise}");
     let positive = squares.into_iter().filter(|square| *square > 0.0);
     let least = positive.fold(f64::INFINITY, f64::min);
-    // The standard error of a square falls at least as fast as the number of rays grows.
+    // The standard error of a square falls at least as fast as one over the number of rays.
     let needed = rays * DETECTABLE * error / least;
     if needed > rays && needed.is_finite() {
         let apart = percent(Some(least.sqrt()));

@@ -38,7 +38,7 @@ impl NpyHeader {
             shape,
         } = self;
         let order = if *fortran_order { "True" } else { "False" };
-        // A tuple of one needs its comma.
+        // A tuple of one element needs a comma.
         let shape = match shape.as_slice() {
             [one] => format!("{one},"),
             all => all
@@ -152,7 +152,7 @@ mod tests {
             ..NpyHeader::new("<f8", &[2, 3])
         };
         assert_eq!(read(numpy), Some(header));
-        // The notation of other programs.
+        // Other programs write this notation.
         let other = r#"{"shape": (5,), "fortran_order": False, "descr": "<f8"}"#;
         assert_eq!(read(other), Some(NpyHeader::new("<f8", &[5])));
     }

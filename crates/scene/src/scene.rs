@@ -268,9 +268,8 @@ impl Scene {
         }
     }
 
-    /// Returns the BLAKE3 hash of everything that defines the scene: its file, defaults and
-    /// overrides included, as JSON, followed by the name and hash of each mesh and picture it
-    /// names.
+    /// Returns the BLAKE3 hash of everything that defines the scene. Its input is the scene file as
+    /// JSON, with defaults and overrides, followed by the name and hash of each mesh and picture.
     #[must_use]
     pub fn hash(&self) -> String {
         scene_hash(&self.file, &self.inputs)

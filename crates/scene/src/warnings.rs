@@ -73,8 +73,8 @@ impl Scene {
         })
     }
 
-    /// Returns the possible difference between photons and backward rays at a plane because a
-    /// smooth mesh before it is too coarse, as a share of the spectrum (see
+    /// Returns the possible difference between photons and backward rays at a plane, as a share of
+    /// the spectrum. The cause is a smooth mesh before the plane that is too coarse (see
     /// [`warnings`](Self::warnings)). `None` without such a mesh.
     #[must_use]
     pub fn mesh_mismatch(&self, plane: &VirtualPlane) -> Option<f64> {
@@ -230,7 +230,7 @@ impl<'a> WindowView<'a> {
         let flat = (q - p).cross(r - p).normalize();
         let area = (b - a).cross(c - a).z.abs();
         let mut sums = WindowSums::default();
-        // Three points of a triangle that integrate squares exactly.
+        // The sum over three points of a triangle integrates squares exactly.
         for corner in piece {
             let point = (a + b + c + 3.0 * *corner) / 6.0;
             let normal = interpolated_normal(whole, normals, point);

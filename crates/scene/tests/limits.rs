@@ -86,7 +86,7 @@ fn the_last_pair_that_overlaps_is_found() {
             i => format!("Disc(center: ({}, {}), radius: 0.5)", i % 122, i / 122),
         })
     };
-    // A disc in the gap between four discs, and a slightly larger one.
+    // The first disc fits in the gap between four discs; the second is slightly larger.
     for (radius, told) in [(0.207, None), (0.208, Some("shapes[17] and shapes[14999]"))] {
         let shapes = apart(&format!("Disc(center: (17.5, 0.5), radius: {radius})"));
         let text = text().replacen(BLOCKERS, &shapes, 1);
@@ -332,7 +332,7 @@ fn a_value_that_is_set_is_nested_no_deeper_than_a_scene() {
         open("(") + &close,
         open("a(") + &close,
         open("(a:") + &close,
-        // Brackets closed one by one, and all at the end.
+        // The brackets are closed one by one, or all at the end.
         open("(a)") + &close,
     ] {
         let told = quickly("a nested value", || {

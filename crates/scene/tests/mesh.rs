@@ -143,9 +143,9 @@ fn written_ply_reads_back_here_and_elsewhere() {
     assert_eq!(counts, [mesh.vertices().len(), mesh.triangles().len()]);
 }
 
-/// The triangles of an OBJ file as points agree with tobj's. The `l` line, which tobj takes for a
-/// triangle, the color, which it requires on all vertices or none, and the continued line, which it
-/// refuses, are left out.
+/// The triangles of an OBJ file as points agree with tobj's. Three things that tobj reads
+/// differently are left out: the `l` line, which tobj takes for a triangle, the colour, which tobj
+/// requires on all vertices or none, and the continued line, which tobj refuses.
 #[test]
 fn obj_agrees_with_an_independent_reader() {
     let text = std::str::from_utf8(CUBE_OBJ).unwrap();

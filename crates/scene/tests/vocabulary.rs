@@ -254,7 +254,7 @@ fn a_mesh_that_cannot_be_read_is_a_fault_of_its_field() {
         let error = resolved(&text().replacen(from, to, 1))
             .unwrap_err()
             .to_string();
-        // Planes and visits that refer to it are not reported too.
+        // Planes and visits that refer to this object are not reported too.
         assert!(
             error.starts_with(told) && error.lines().count() == 1,
             "{error}"

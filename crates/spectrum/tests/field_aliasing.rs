@@ -43,7 +43,7 @@ fn over_bound(spectrum: &FieldSpectrum, crossings: &[Crossing]) -> f64 {
                         std::array::from_fn(|axis| harmonics[axis] as f64 * grid.spacing(axis));
                     let plain = direct::at(crossings, |_| 1.0, frequency);
                     let off = (spectrum.at(harmonics) - plain).norm();
-                    // 1e-13: rounding of both sums.
+                    // The rounding error of both sums is 1e-13.
                     let bound = spectrum.alias_bound(harmonics) + 1e-13 * spectrum.at_zero();
                     largest = largest.max(off / bound);
                 }
@@ -202,15 +202,15 @@ fn the_slices_tell_the_aliasing() {
         for assignment in ALL {
             let spectrum = gridded(&crossings, field_grid, assignment);
             let aliasing = spectrum.aliasing(&slices, 1.0).unwrap();
-            // Two lines of one half of 15 × 19 frequencies, zero being in both.
+            // Each of two lines has one half of 15 × 19 frequencies, and both contain zero.
             assert_eq!(aliasing.compared, 15 * 19 + 1);
             let ratio = aliasing.difference / aliasing.expected;
             if smooth {
                 assert!(aliasing.difference < aliasing.bound);
                 assert!(ratio < 1.5, "{ratio}");
             } else {
-                // 286 frequencies, few of which have most of it; the power beyond is estimated from
-                // 150.
+                // A few of 286 frequencies have most of the difference, and the power beyond
+                // Nyquist is estimated from 150 frequencies.
                 assert!((0.6..1.5).contains(&ratio), "{assignment:?}: {ratio}");
             }
             assert!(aliasing.difference < last, "{assignment:?}"); // a smoother spline aliases less

@@ -6,8 +6,8 @@ use etendue_scene::{Scene, SceneFile, resolve};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Returns the memory that this process may still allocate without swapping, in bytes, limited by
-/// the machine, by the control groups of the process, and by its own limits (`ulimit -v`,
+/// Returns the memory that this process may still allocate without swapping, in bytes. The machine
+/// limits it, and so do the control groups of the process and its own limits (`ulimit -v`,
 /// `ulimit -d`).
 pub fn available_memory() -> u64 {
     let machine = kilobytes("/proc/meminfo", "MemAvailable:");

@@ -229,8 +229,8 @@ mod tests {
         }
     }
 
-    /// Points 5, 16 and 32, times 64, as in `scipy.stats.qmc.Sobol(8, scramble=False)` of SciPy
-    /// 1.17, which counts in Gray code, where they are points 6, 31 and 63.
+    /// These are points 5, 16 and 32, times 64, as `scipy.stats.qmc.Sobol(8, scramble=False)` of
+    /// SciPy 1.17 returns them. SciPy counts in Gray code, where they are points 6, 31 and 63.
     #[test]
     fn points_are_those_of_sobol() {
         let point = |[low, high]: [usize; 2]| -> Vec<u32> {

@@ -126,8 +126,8 @@ impl Follower<'_> {
         })
     }
 
-    /// Returns how much the slices change when rays arrive by triangles: the mean of two halves of
-    /// the rays, and half of their difference, which is its standard error.
+    /// Returns how much the slices change when rays arrive by triangles: the mean of the changes
+    /// from two halves of the rays, plus its standard error, which is half of their difference.
     fn change(&self, lit: &[(f64, Displaced)]) -> f64 {
         let transform = SliceTransform::new(&self.plane.grid);
         let mut sum = transform.accumulator();

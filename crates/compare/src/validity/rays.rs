@@ -257,7 +257,7 @@ pub(super) fn offset_of(shape: &Shape, point: DVec3) -> (f64, [f64; 2]) {
         }
         Shape::Disc(disc) => {
             let [x, y] = [point.x - disc.center[0], point.y - disc.center[1]];
-            // The circle of radius r is the image of the square of side 2 r/R.
+            // The map takes the square of side 2 r/R to the circle of radius r.
             let wide = x.abs().max(y.abs()).max(f64::MIN_POSITIVE);
             let share = wide / libm::hypot(x, y).max(f64::MIN_POSITIVE);
             let scale = disc.radius * share;

@@ -147,10 +147,10 @@ impl Follower<'_> {
         ray_to(&self.system.light, target, index, [r[2], r[3]])
     }
 
-    /// Returns a ray that theory predicts to arrive in the window. It is needed because few rays of
-    /// the light itself may reach a narrow window, or a part of a wide one that is close to the
-    /// light. Light without extent is aimed at places in the window if no surface deflects it
-    /// first.
+    /// Returns a ray that theory predicts to arrive in the window. Such rays are needed because few
+    /// rays drawn at the light may reach a narrow window, or the part of a wide window that is
+    /// close to the light. Light without extent is aimed at places in the window if no surface
+    /// deflects it first.
     pub(super) fn ray_of_window(&self, draw: &RayDraw) -> Option<(CheckRay, f64)> {
         let light = &self.system.light;
         let coordinates = within(&self.plane.window, draw.numbers);

@@ -82,6 +82,7 @@ pub(super) fn is_of_run(change: &FieldChange) -> bool {
 /// Checks whether two scenes with equal files use different meshes or pictures.
 pub(super) fn has_other_inputs(a: &StoredResult, b: &StoredResult, scene: &[FieldChange]) -> bool {
     let [a, b] = [a, b].map(|result| &result.index);
-    // The name is not part of any hash; another version may have other defaults.
+    // The name of the scene is not part of its hash. Results of different versions are not compared
+    // by hash, because the versions may have other defaults.
     scene.is_empty() && a.version == b.version && a.scene_hash != b.scene_hash
 }

@@ -40,7 +40,7 @@ fn inverse(z: f64) -> f64 {
 /// Returns the vector that [`pack`] encoded as two numbers and a sign.
 pub(super) fn unpack([a, b]: [f64; 2], negative: bool) -> Result<[f64; 3], String> {
     let signed = |v: f64| if negative { -v } else { v };
-    // The omitted component; for a valid unit vector it is not smaller than the others.
+    // Computes the omitted component; for a valid unit vector it is not smaller than the others.
     let missing = |c: f64, d: f64| {
         let squared = 1.0 - (c * c + d * d);
         if squared >= -SLACK {
@@ -98,8 +98,8 @@ mod tests {
                     let (packed, negative) = pack(d);
                     let again = unpack(packed, negative).unwrap();
                     for (a, b) in again.iter().zip(d) {
-                        // Two roundings of numbers up to 1; the root of a sum of at least 1/3 at
-                        // most doubles them.
+                        // The limit covers two rounding errors of numbers up to 1, which the root
+                        // of a sum of at least 1/3 at most doubles.
                         assert!((a - b).abs() < 1e-15, "{d:?} {again:?}");
                     }
                 }

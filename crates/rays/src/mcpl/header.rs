@@ -140,7 +140,7 @@ impl McplHeader {
             format!("MCPL{:03}{}", self.version, if little { 'L' } else { 'B' }).into_bytes();
         bytes.extend(ordered(count.to_le_bytes(), little));
         let mut number = |value: u32| bytes.extend(ordered(value.to_le_bytes(), little));
-        // A length that does not fit cannot come from a file, since no file is longer.
+        // No file contains a length that does not fit into 32 bits, since no file is that long.
         let short = |length: usize| u32::try_from(length).unwrap_or(u32::MAX);
         number(short(self.comments.len()));
         number(short(self.blobs.len()));

@@ -38,9 +38,9 @@ impl McplFile {
     /// Reads an unpacked file.
     ///
     /// # Errors
-    /// The first violation of the format. Also refused are files that were not closed, whose header
-    /// states no particles although records follow, and files with enough bytes after the last
-    /// record for another record.
+    /// The first violation of the format. Files that were not closed are refused too: their header
+    /// states no particles although records follow. Files with enough bytes after the last record
+    /// for another record are also refused.
     pub fn read(bytes: &[u8]) -> Result<Self, Fault> {
         let (header, count, start) = McplHeader::read(bytes)?;
         let size = header.record_size();

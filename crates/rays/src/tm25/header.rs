@@ -387,7 +387,7 @@ impl Tm25Header {
     /// Returns the bytes before the first ray, for files that are written incrementally.
     #[must_use]
     pub fn bytes(&self, rays: u64) -> Vec<u8> {
-        // A length that does not fit cannot come from a file, since no file is longer.
+        // No file contains a length that does not fit into 32 bits, since no file is that long.
         let short = |length: usize| u32::try_from(length).unwrap_or(u32::MAX).to_le_bytes();
         let mut bytes = b"TM25".to_vec();
         bytes.extend(self.version.to_le_bytes());

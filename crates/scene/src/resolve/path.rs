@@ -183,7 +183,7 @@ impl Resolver<'_> {
     }
 }
 
-/// Returns the frame in which light leaves a hit along `d`: the frame of a mirror, (−X, Y)
+/// Returns the frame in which light leaves a hit along `d`. It is the frame of a mirror, (−X, Y)
 /// reflected, rotated by the smallest angle until it faces along `d`. For light that goes straight
 /// back at normal incidence, the frame is (−X, Y, −D) (Durand et al. 2005, section 4.1, steps 1 and
 /// 7, at θ = 0). For light in the plane of incidence, it is the frame of docs/conventions.md.

@@ -364,8 +364,9 @@ impl Resolver<'_> {
     pub(super) fn memory(&mut self, planes: &[VirtualPlane], batches: u32, memory: u64) {
         let cells =
             |grid: &SliceGrid| -> f64 { grid.half_shape().iter().map(|n| *n as f64).product() };
-        // Batches and their residuals, plus prediction, derivatives and errors, and the transform's
-        // fine grids, seven for each thread: 100 copies suffice for a dozen threads.
+        // Memory holds batches and their residuals. A hundred copies more suffice for the
+        // prediction, its derivatives and errors, and for seven fine grids of the transform on each
+        // of a dozen threads.
         let copies = 2.0 * f64::from(batches) + 100.0;
         let bytes: f64 = planes
             .iter()

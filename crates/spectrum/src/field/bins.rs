@@ -167,7 +167,7 @@ mod tests {
         ] {
             let bins = RadialBins::new(&grid);
             let mut counts = Array2::<u64>::zeros(bins.counts.raw_dim());
-            // The direct way, with far more harmonics than the grid has.
+            // Computes the mean directly, with far more harmonics than the grid has.
             let around =
                 |axis: usize| (-20_i32..=20).map(move |m| f64::from(m) * grid.spacing(axis));
             let rings = |a: usize, b: usize| {

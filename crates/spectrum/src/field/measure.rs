@@ -26,9 +26,9 @@ pub struct FieldOptions {
     pub keep: bool,
     /// Whether to return the spectra of all groups, which are then in memory together.
     pub spectra: bool,
-    /// Whether to compute the covariance of the spectrum too, over the frequencies of the plane, on
-    /// a grid that extends to 1.5 times these: the alias at the highest frequencies is then an
-    /// eighth of the spectrum at twice those frequencies.
+    /// Whether to compute the covariance of the spectrum too, over the frequencies of the plane.
+    /// The grid then extends to 1.5 times these frequencies, and the alias at the highest of them
+    /// is an eighth of the spectrum at twice that frequency.
     pub covariance: bool,
 }
 

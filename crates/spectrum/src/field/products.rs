@@ -92,7 +92,7 @@ mod tests {
                 [(a * b.conj()).re]
             });
             for ((r, c), mean) in mean.indexed_iter() {
-                // Rounding of sums of about a hundred numbers around 1.
+                // The limit is the rounding error of sums of about a hundred numbers around 1.
                 assert!((products[[r * bins.counts.ncols() + c, i, j]] - mean).abs() < 1e-13);
             }
         }

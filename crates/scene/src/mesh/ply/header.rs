@@ -64,7 +64,7 @@ impl PlyHeader {
         }
         let mut encoding = None;
         let mut elements: Vec<PlyElement> = Vec::new();
-        // Names of all elements, and of the properties of the last one, in hash sets so that
+        // Hash sets hold the names of all elements, and of the properties of the last one, so
         // reading takes time linear in the length of the header.
         let (mut known, mut properties) = (HashSet::new(), HashSet::new());
         for (at, line) in lines.by_ref() {
