@@ -164,7 +164,7 @@ impl CovarianceReport {
         Ok(report)
     }
 
-    /// Remarks on what the numbers do not decide.
+    /// Returns remarks on what the numbers do not decide.
     fn remarks_of(&self) -> Vec<String> {
         let mut remarks: Vec<String> = self.untraced.iter().cloned().collect();
         if self.untraced.is_none() && self.traced.is_none() {

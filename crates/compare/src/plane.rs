@@ -56,8 +56,8 @@ pub struct PlaneComparison {
 /// light.
 const DARK: f64 = 1e-12;
 
-/// Above this noise the residuals come from few photons and are not symmetric, as the p-value
-/// assumes.
+/// Above this noise the residuals come from few photons and are not symmetric, although the p-value
+/// assumes that they are.
 const MAX_HANDFUL_NOISE: f64 = 0.25;
 /// The number of photons per batch at which one in 3,000 batches is empty.
 pub const MIN_PHOTONS_PER_BATCH: f64 = 8.0;
@@ -253,9 +253,9 @@ impl ComparedSides<'_> {
         error.is_some_and(|error| self.agrees_within(error, test))
     }
 
-    /// Checks whether photons agree with some spectrum near the prediction. At each frequency it
-    /// may differ from the prediction by this relative error, plus the error of the photons'
-    /// transform.
+    /// Checks whether photons agree with some spectrum near the prediction. At each frequency this
+    /// spectrum may differ from the prediction by the relative error `error`, plus the error of the
+    /// photons' transform.
     fn agrees_within(&self, error: f64, test: &Test) -> bool {
         let p = self
             .residuals
@@ -290,7 +290,7 @@ impl ComparedSides<'_> {
     }
 
     /// Returns the number of rays of equal weight that would vary like the rays of a batch, or of a
-    /// replicate of the prediction. Returns it only if the number is too small for a test, and
+    /// replicate of the prediction. Returns `None` unless this number is too small for a test, and
     /// measurement and prediction disagree.
     fn uneven(&self, agrees: bool) -> Option<f64> {
         let batches = self.measurement.at_plane(self.index);
@@ -507,7 +507,7 @@ fn without_rounding(prediction: &Prediction) -> Slices {
 /// The share of the peak above which predicted power on the border of the grid causes a warning.
 const BORDER: f64 = 1e-2;
 
-/// Limits of the measurement, in words.
+/// Returns the limits of the measurement, in words.
 fn warnings(predicted: &Array2<f64>, grid: &SliceGrid, blur: Option<(f64, f64)>) -> Vec<String> {
     let mut warnings = Vec::new();
     if let Some((error, noise)) = blur.filter(|(error, noise)| *error > UNSEEN * noise) {

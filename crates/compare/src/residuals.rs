@@ -221,8 +221,8 @@ impl Residuals {
         self.grid.unfold_radial(sigma.view())
     }
 
-    /// Products of residuals, summed over frequencies: H_bc = Σ Re(r_b conj r_c) / s, [R, R], with
-    /// s = 1 or s = Σ_b |r_b|² at each frequency.
+    /// Returns products of residuals, summed over frequencies: H_bc = Σ Re(r_b conj r_c) / s, [R,
+    /// R], with s = 1 or s = Σ_b |r_b|² at each frequency.
     pub(crate) fn products(&self, normalised: bool) -> Array2<f64> {
         let r = self.count();
         let mut scale = Array3::from_elem(self.grid.half_shape(), 1.0);

@@ -31,7 +31,7 @@ const TEST: Test = Test {
     seed: 1,
 };
 
-/// Batches around `truth` with noise of the given size on each.
+/// Returns batches around `truth` with noise of the given size on each.
 fn measurement(truth: &Slices, size: f64, seed: u64) -> Measurement {
     noisy(truth, seed, |_| size)
 }
@@ -141,7 +141,7 @@ fn a_reference_is_judged_with_its_own_noise() {
     assert!((chi2 / seeds - 1.0).abs() < 0.11, "{}", chi2 / seeds);
 }
 
-/// Replicates of a prediction around `truth`, with noise of the given size on each.
+/// Returns replicates of a prediction around `truth`, with noise of the given size on each.
 fn replicates(truth: &Slices, size: f64, count: u32, seed: u64) -> Vec<Slices> {
     let replicate = |index: u32| {
         let mut slices = truth.clone();

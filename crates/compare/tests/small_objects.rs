@@ -68,7 +68,7 @@ fn in_plane(x: f64, y: f64) -> DVec3 {
     frame.to_world(DVec3::new(HALF * x, HALF * y, 0.0))
 }
 
-/// Places in the window, as shares of its size: middle, edges and corners.
+/// Returns places in the window, as shares of its size: middle, edges and corners.
 fn places() -> impl Iterator<Item = [f64; 2]> {
     const SHARES: [f64; 4] = [-0.995, -0.4, 0.3, 0.995];
     SHARES.into_iter().flat_map(|x| SHARES.map(|y| [x, y]))

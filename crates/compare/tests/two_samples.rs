@@ -23,8 +23,8 @@ fn truth() -> Array3<Complex> {
     })
 }
 
-/// Slices of one batch: the truth plus noise. As with a Hann window, the noise has the shares 1/2,
-/// 1, 1/2 in three neighbours along ν, and it falls with ρ.
+/// Returns slices of one batch: the truth plus noise. As with a Hann window, the noise has the
+/// shares 1/2, 1, 1/2 in three neighbours along ν, and it falls with ρ.
 fn batch(seed: u64, index: usize, size: f64) -> Slices {
     let grid = plane().grid;
     let [azimuths, rho, nu] = grid.half_shape();
@@ -76,7 +76,7 @@ fn sample(seed: u64, batches: usize, size: f64) -> Sample {
 
 const SIZE: f64 = 0.2;
 
-/// Pairs of independent samples; the noise of the second may differ.
+/// Returns pairs of independent samples; the noise of the second may differ.
 fn pairs(batches: usize, size: f64) -> Vec<(Sample, Sample)> {
     (0..SEEDS)
         .map(|seed| {

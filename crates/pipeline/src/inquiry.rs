@@ -83,7 +83,9 @@ impl Inquiry {
             }
             (Verdict::Pass, Verdict::Pass) => both_pass([this, other], failed, theory, rays),
             (Verdict::Undecided, _) | (_, Verdict::Undecided) => {
-                format!("{other} are too few to decide which is wrong; use more photons")
+                format!(
+                    "{other} are too few to decide whether {this} or the prediction is wrong; use more photons"
+                )
             }
         };
         Self {
@@ -109,7 +111,9 @@ fn both_pass(
         return format!("{other} agree with both: the failure may be chance; use another seed");
     }
     let noise = percent(theory.noise_limit);
-    let cannot = format!("{other} cannot decide which is wrong: their noise is {noise}");
+    let cannot = format!(
+        "{other} cannot decide whether {this} or the prediction is wrong: their noise is {noise}"
+    );
     let positive = squares.into_iter().filter(|square| *square > 0.0);
     let least = positive.fold(f64::INFINITY, f64::min);
     // The standard error of a square falls at least as fast as one over the number of rays.
@@ -228,7 +232,7 @@ mod tests {
         let chance = "agree with both: the failure may be chance";
         assert!(found(1.25, 8.4e-6).contains(chance), "3.6 standard errors");
         let open = found(1.25, 8.5e-6);
-        assert!(open.contains("cannot decide which is wrong"), "{open}");
+        assert!(open.contains("cannot decide whether photons or"), "{open}");
         let open = found(1.25, 3e-5);
         for words in [
             "differ by 0.550 %",

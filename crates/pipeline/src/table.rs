@@ -213,7 +213,8 @@ fn measured(parameter: &ParameterReport) -> [String; 2] {
     }
 }
 
-/// Columns as wide as their widest cell, two spaces apart; text to the left, numbers to the right.
+/// Aligns columns that are as wide as their widest cell and two spaces apart, with text to the left
+/// and numbers to the right.
 pub fn aligned(rows: Vec<Vec<String>>) -> Vec<String> {
     let width = |column: usize| {
         let cells = rows.iter().map(|row| row[column].chars().count());

@@ -37,7 +37,7 @@ pub fn unpack(bytes: &[u8]) -> Result<Cow<'_, [u8]>, Fault> {
     read.map_err(|e| Fault::file(format!("gzip: {e}")))?;
     if unpacked.len() > most {
         let message = format!(
-            "gzip: it unpacks to more than {most} bytes, {MOST_RATIO} times its length plus {FREE} bytes"
+            "gzip: the file unpacks to more than {most} bytes, which is {MOST_RATIO} times its length plus {FREE} bytes"
         );
         return Err(Fault::file(message));
     }

@@ -25,7 +25,7 @@ pub(crate) fn mistakes(scene: &Scene) -> Vec<String> {
     long(scene).into_iter().chain(steep).chain(told).collect()
 }
 
-/// Lengths that seem to be in millimetres.
+/// Warns of lengths that seem to be in millimetres.
 fn long(scene: &Scene) -> Option<String> {
     let file = serde_json::to_value(&scene.file).ok()?;
     let mut lengths = Vec::new();
@@ -59,7 +59,7 @@ fn long(scene: &Scene) -> Option<String> {
     })
 }
 
-/// Slopes that seem to be angles in degrees.
+/// Warns of slopes that seem to be angles in degrees.
 fn steep(window: &WindowFile) -> Option<String> {
     let axes = [("u", Some(&window.u)), ("v", window.v.as_ref())];
     let (name, slope) = axes
@@ -73,7 +73,7 @@ fn steep(window: &WindowFile) -> Option<String> {
     ))
 }
 
-/// All lengths below a node, each with the path of its field.
+/// Collects all lengths below a node, each with the path of its field.
 fn collect(node: &Value, path: &str, is_length: bool, lengths: &mut Vec<(String, f64)>) {
     const LENGTHS: [&str; 9] = [
         "center", "size", "radius", "pitch", "edge", "aperture", "half", "Distance", "x",
@@ -104,7 +104,7 @@ fn collect(node: &Value, path: &str, is_length: bool, lengths: &mut Vec<(String,
     }
 }
 
-/// Frequencies that end before the first step that the window resolves.
+/// Warns of frequencies that end before the first step that the window resolves.
 fn coarse(
     i: usize,
     file: &PlaneFile,
@@ -134,7 +134,7 @@ fn coarse(
     told.collect()
 }
 
-/// Arrays beyond whose edges a plane receives light.
+/// Warns of arrays that let light pass beyond their edges to a plane.
 fn past_edges(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
     let arrays = scene.blockers.iter().filter(|layer| layer.pitch.is_some());
     let told = arrays.filter_map(|layer| {

@@ -15,7 +15,7 @@ pub enum ReadError {
     #[error("not a regular file")]
     NotRegular,
     /// The path, with links followed, leads out of the folder.
-    #[error("outside of the folder it must be in, after links are followed")]
+    #[error("outside of the required folder, after links are followed")]
     Outside,
     /// The file is longer than allowed.
     #[error("{length} bytes long; allowed: at most {most}")]

@@ -22,8 +22,8 @@ const WAVES: usize = 8;
 const SLOPES: [f64; 3] = [-0.5, 0.0, 0.5];
 
 impl Scene {
-    /// Warnings in words: one for each likely mistake, and one for each smooth mesh on the path
-    /// that is too coarse.
+    /// Returns warnings in words: one for each likely mistake, and one for each smooth mesh on the
+    /// path that is too coarse.
     ///
     /// A mesh deflects light according to its interpolated normal n, but receives light according
     /// to the normal t of the triangle. Photons that come along d and leave along e then have (d·t

@@ -60,7 +60,7 @@ fn singles(values: &[f64]) -> FlatSamples {
     FlatSamples::F32(values.collect())
 }
 
-/// Levels of two rows of three pixels, of 8 bits.
+/// Writes levels of two rows of three pixels.
 fn write_png(file: &Path, color: png::ColorType, depth: png::BitDepth, bytes: &[u8]) {
     let mut encoder = png::Encoder::new(BufWriter::new(File::create(file).unwrap()), 3, 2);
     encoder.set_color(color);

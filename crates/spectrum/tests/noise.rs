@@ -5,7 +5,8 @@ use etendue_field::{Ledger, PhotonSource, SliceGrid, VirtualPlane};
 use etendue_spectrum::{CrossPower, Measurement, estimate, measure, moments};
 use ndarray::{Axis, Slice};
 
-/// Photons uniform in a box one period wide, at azimuth 0: no structure, only noise.
+/// Measures photons that are uniform in a box one period wide, at azimuth 0: they have no
+/// structure, only noise.
 fn white(seed: u64, photons: u64, batches: u32, fineness: f64) -> Measurement {
     let window = boxed();
     let plane = plane("white", window, grid(&window, 1, [12, 16], fineness));

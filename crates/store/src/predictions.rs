@@ -150,7 +150,7 @@ fn stored(
     Ok((words, bytes))
 }
 
-/// Slices as one array, [slices, azimuth, ρ ≥ 0, ν].
+/// Returns slices as one array, [slices, azimuth, ρ ≥ 0, ν].
 fn stacked(grid: &SliceGrid, all: &[Slices]) -> Array4<Complex> {
     let [azimuths, rho, nu] = grid.half_shape();
     let mut stacked = Array4::zeros([all.len(), azimuths, rho, nu]);

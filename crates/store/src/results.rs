@@ -47,7 +47,7 @@ pub const MAX_INDEX_BYTES: u64 = 1 << 26;
 const UNFINISHED: &str = ".etendue-unfinished";
 const LOCK: &str = ".etendue.lock";
 
-/// Why nothing is written below a folder.
+/// The reason why nothing is written below a folder.
 pub const LINKED: &str = "a link or a file is in the place of a folder";
 
 /// How long another process may hold a folder before a message is given.

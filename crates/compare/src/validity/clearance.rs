@@ -30,7 +30,7 @@ pub(super) struct Suspect {
 /// The object, or the part of a layer of blockers, that a ray may meet.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum What {
-    /// A shape of a layer, both by index.
+    /// A shape of a layer; the layer and the shape are given by index.
     Shape { layer: usize, shape: usize },
     /// A half-plane of a layer.
     HalfPlane { layer: usize, half: usize },

@@ -139,7 +139,7 @@ pub(super) fn lattice(index: u32) -> [f64; 6] {
     })
 }
 
-/// Coordinates at a plane, uniform in its window.
+/// Returns coordinates at a plane, uniform in its window.
 pub(super) fn within(window: &Window, r: [f64; 6]) -> [f64; 4] {
     let Window { x, y, u, v } = window;
     let profiles = [x, y, u, v];

@@ -1,10 +1,10 @@
 //! Searches for light in the window that meets objects theory ignores.
 //!
 //! A few thousand rays fill the window uniformly and find the occluders of much of the light. An
-//! object that occludes little of it may lie between these rays, at the edge or in the corner of
-//! the window. So for each such object, the rays that pass nearest are moved until they meet the
-//! object or come no nearer. The distance falls along a smooth path, so even the smallest object is
-//! found.
+//! object that occludes little of the light may lie between these rays, at the edge or in the
+//! corner of the window. So for each such object, the rays that pass nearest are moved until they
+//! meet the object or come no nearer. The distance falls along a smooth path, so even the smallest
+//! object is found.
 
 use super::clearance::{PathPiece, Suspect};
 use super::rays::{RayDraw, bright, lattice};

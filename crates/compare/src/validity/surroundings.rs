@@ -103,8 +103,8 @@ pub(super) enum SurroundingForm<'a> {
 const ROUNDING: f64 = 1e-9;
 
 impl<'a> Surroundings<'a> {
-    /// Meshes that the plane's light has left are excluded: theory represents them by the surface
-    /// that osculates them where the central ray hits.
+    /// Collects the surroundings. Meshes that the plane's light has left are excluded: theory
+    /// represents each by the surface that osculates it where the central ray hits.
     pub(super) fn new(scene: &'a Scene, plane: &'a VirtualPlane) -> Self {
         let mut objects: Vec<(Object, SurroundingForm<'a>)> = Vec::new();
         for (leg, hit) in scene.path.legs.iter().map(|leg| leg.leaves).enumerate() {
@@ -198,7 +198,7 @@ impl<'a> Surroundings<'a> {
         (shares, meets)
     }
 
-    /// Blockers that a ray of a later leg meets between `from` and `end`.
+    /// Returns the blockers that a ray of a later leg meets between `from` and `end`.
     pub(super) fn later_leg(
         &self,
         ray: &CheckRay,

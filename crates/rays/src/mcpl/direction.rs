@@ -47,7 +47,7 @@ pub(super) fn unpack([a, b]: [f64; 2], negative: bool) -> Result<[f64; 3], Strin
             Ok(signed(squared.max(0.0).sqrt()))
         } else {
             Err(format!(
-                "packed direction {a}, {b}; it is not a unit vector"
+                "packed direction {a}, {b} is not a unit vector"
             ))
         }
     };

@@ -187,7 +187,7 @@ fn shared(each: Vec<f64>) -> Wavelengths {
 fn wrong_length(start: usize, count: u64, size: usize, found: usize) -> Fault {
     let message = if count == 0 {
         format!(
-            "the header says 0 particles, and {found} bytes follow it: the file was not closed (`mcpltool --repair` counts its particles)"
+            "the header states 0 particles, but {found} bytes follow the header: the file was not closed (`mcpltool --repair` counts its particles)"
         )
     } else {
         format!("{count} particles of {size} bytes should follow, but {found} bytes do")

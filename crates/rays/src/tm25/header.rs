@@ -310,7 +310,7 @@ impl Tm25Header {
             "padding after spectra",
         )?;
         if filling.iter().any(|&b| b != 0) {
-            notes.push("the padding after spectra is not zero; dropped".to_owned());
+            notes.push("the padding after spectra is not zero; it is dropped".to_owned());
         }
         Ok(())
     }
@@ -342,7 +342,7 @@ impl Tm25Header {
         )?;
         refuse(
             (kind == SpectrumType::SpectrumPerRay) != flags.spectrum,
-            "rays must name a spectrum exactly when the type of spectra is \"spectrum of each ray\"",
+            "rays must refer to a spectrum if, and only if, the type of spectra is \"spectrum of each ray\"",
         )?;
         refuse(
             flags.stokes && !radiant,

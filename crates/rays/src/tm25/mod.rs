@@ -100,7 +100,7 @@ impl Tm25File {
         &self.header
     }
 
-    /// Notes on anything unusual, in the order of the file.
+    /// Returns notes on anything unusual, in the order of the file.
     #[must_use]
     pub fn notes(&self) -> &[String] {
         &self.notes

@@ -42,12 +42,13 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, Fault> {
     Mesh::new(vertices, triangles)
 }
 
-/// Windows editors begin UTF-8 files with a byte order mark.
+/// Removes the byte order mark with which Windows editors begin UTF-8 files.
 fn without_mark(bytes: &[u8]) -> &[u8] {
     bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
 }
 
-/// Statements with the number of their first line: comments removed, continued lines joined.
+/// Returns statements with the number of their first line; comments are removed, and continued
+/// lines are joined.
 fn statements(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, [u8]>)> {
     let mut lines = Lines::new(bytes).map(|(number, line)| {
         let end = line.iter().position(|b| *b == b'#');

@@ -59,7 +59,7 @@ impl Mesh {
         Self::new(vertices.collect(), triangles.collect())
     }
 
-    /// Vertices; triangles refer to them by index.
+    /// Returns the vertices; triangles refer to them by index.
     #[must_use]
     pub fn vertices(&self) -> &[DVec3] {
         &self.vertices
@@ -115,7 +115,7 @@ pub(super) fn check_coordinate(value: f64, place: impl FnOnce() -> String) -> Re
     }
 }
 
-/// Triangles of a face: the fan about its first corner.
+/// Returns the triangles of a face: the fan about its first corner.
 pub(super) fn fan(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     let pairs = corners.get(1..).unwrap_or_default().windows(2);
     pairs.map(|pair| [corners[0], pair[0], pair[1]])

@@ -50,7 +50,7 @@ impl Mesh {
     }
 }
 
-/// Caps about the two poles, and two triangles for each cell between.
+/// Returns triangles: caps about the two poles, and two for each cell between.
 fn triangles(rings: u32, segments: u32) -> Vec<[u32; 3]> {
     let at = |ring: u32, segment: u32| 1 + (ring - 1) * segments + segment % segments;
     let (north, south) = (0, at(rings, 0));

@@ -216,7 +216,7 @@ impl Resolver<'_> {
     fn beyond_light(&mut self, of: &str, place: &Place, distance: f64) -> f64 {
         if distance < 0.0 {
             let allowed = format!(
-                "a place on the path, which begins at the light; this one lies {} m behind it",
+                "a place on the path, which begins at the light; this place lies {} m behind the light",
                 tidy(-distance)
             );
             self.faults.add_on_path(of, show(place), allowed);

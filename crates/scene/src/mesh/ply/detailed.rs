@@ -11,7 +11,7 @@ use glam::{DVec2, DVec3};
 /// Property names of texture coordinates.
 const UVS: [[&str; 2]; 3] = [["u", "v"], ["s", "t"], ["texture_u", "texture_v"]];
 
-/// Vertices and faces, with the normals and texture coordinates if they are asked for.
+/// Reads vertices and faces, and with `has_shading` also normals and texture coordinates.
 pub(in super::super) fn read(bytes: &[u8], has_shading: bool) -> Result<DetailedMesh, Fault> {
     let (header, data) = PlyHeader::read(bytes)?;
     let element = header.element("vertex")?;
