@@ -324,7 +324,10 @@ impl Residuals {
 /// Panics if the measured slices have other frequencies than the predicted slices.
 fn check(measured: &Slices, predicted: &Slices) {
     let (measured, predicted) = (measured.grid, predicted.grid);
-    assert_eq!(measured, predicted, "the measured and the predicted frequencies differ");
+    assert_eq!(
+        measured, predicted,
+        "the measured and the predicted frequencies differ"
+    );
 }
 
 /// Returns Σ_b<c ε_b ε_c H_bc; the diagonal is the same for all signs.

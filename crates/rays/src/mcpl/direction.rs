@@ -46,9 +46,7 @@ pub(super) fn unpack([a, b]: [f64; 2], negative: bool) -> Result<[f64; 3], Strin
         if squared >= -SLACK {
             Ok(signed(squared.max(0.0).sqrt()))
         } else {
-            Err(format!(
-                "packed direction {a}, {b} is not a unit vector"
-            ))
+            Err(format!("packed direction {a}, {b} is not a unit vector"))
         }
     };
     match [a.abs() > 1.0, b.abs() > 1.0] {
