@@ -95,7 +95,7 @@ fn by_rays(
 }
 
 /// Returns the error of the chain where several surfaces scatter. It is a difference of sums over
-/// the same paths, with an error of its own of a few per cent.
+/// the same paths, and this difference has an error of a few per cent.
 fn by_paths(
     whole: &Observed<reflections::ReflectionSystem>,
     e: f64,

@@ -4,8 +4,9 @@ use crate::residuals::Residuals;
 use etendue_spectrum::Measurement;
 use etendue_spectrum::estimate::{self, TooFewBatches};
 
-/// Returns the number of independent normal real numbers whose mean square fluctuates as much as
-/// that of the noise of plane `plane`, with each frequency in units of its own σ.
+/// Returns the effective number of independent real numbers in the noise of plane `plane`. The mean
+/// square of that many normal numbers fluctuates as much as the mean square of the noise, with each
+/// frequency in units of its own σ.
 ///
 /// The window correlates neighbouring frequencies. With C the covariance of the noise over its σ,
 /// the mean of |S − E S|²/σ² over m frequencies has the variance 2 tr C²/m², like the mean square of

@@ -16,8 +16,8 @@ pub struct Pair {
     pub measured: Option<f64>,
     /// The value of the prediction, by the same estimator.
     pub predicted: Option<f64>,
-    /// Standard error of the difference: that of the measured value, combined with that of the
-    /// predicted one where the prediction has replicates. For a shear slope it includes the
+    /// Standard error of the difference. It combines the error of the measured value with that of
+    /// the predicted value where the prediction has replicates. For a shear slope it includes the
     /// possible error of the prediction's quadrature.
     pub error: Option<f64>,
 }

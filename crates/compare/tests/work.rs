@@ -173,7 +173,8 @@ fn a_thousand_lobes() {
     assert_eq!(too_much(&scene), None);
 }
 
-/// Each plane is within the limit but their sum is not; the plane that takes most is named.
+/// Each plane is within the limit but the sum of the planes is not; the error names the plane that
+/// takes most.
 #[test]
 fn many_planes() {
     let plane = r#"(name: "on_its_way", at: Distance(2.5)),"#;

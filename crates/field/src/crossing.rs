@@ -87,8 +87,8 @@ pub trait PhotonSource: Sync {
     /// Returns the number of photons emitted in `batch`, including those that end with zero weight.
     fn emitted(&self, batch: u32) -> u64;
 
-    /// Emits the photons of `batch`. `record` is called with the index of a plane and crossings of
-    /// it, a block at a time, in an order that is always the same; `progress` is called with the
+    /// Emits the photons of `batch`. `record` receives the index of a plane and crossings of this
+    /// plane, a block at a time, in an order that is always the same. `progress` receives the
     /// number of photons of each block.
     fn emit(
         &self,

@@ -12,8 +12,9 @@ pub struct FluxRay {
     pub flux: f64,
 }
 
-/// Rays through the plane of the light, all of which go forward. On both sides of that plane they
-/// are straight lines: a ray of a file that begins beyond the plane is extended back to it.
+/// Rays through the plane of the light, all of which go forward. The rays are straight lines on
+/// both sides of the plane: a ray of a file that begins beyond the plane is extended back to the
+/// plane.
 ///
 /// The light field is a sum of deltas. A ray of flux Φ adds Φ (1 + u² + v²)² to radiance space.
 #[derive(Clone, Debug, PartialEq)]

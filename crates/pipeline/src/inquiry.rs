@@ -98,7 +98,7 @@ impl Inquiry {
 }
 
 /// Returns the conclusion where another tracer with `rays` rays agrees with both a measurement and
-/// its prediction, which disagree with each other.
+/// its prediction, although these disagree with each other.
 fn both_pass(
     [this, other]: [&str; 2],
     failed: &PlaneReport,

@@ -20,7 +20,7 @@ pub enum Save {
     Photons,
     /// The same photons as rays in world coordinates, in MCPL.
     Mcpl,
-    /// The same in IES TM-25.
+    /// The same rays in IES TM-25.
     Tm25,
     /// The light field on a 4D grid, and its full radial spectrum.
     Field,

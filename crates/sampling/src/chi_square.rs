@@ -56,8 +56,8 @@ impl ChiSquare {
     /// Checks against four and a half standard deviations of χ², which are exceeded in one
     /// comparison of 300,000.
     ///
-    /// The integral is that of the midpoint rule over cells of 32 × 32 points, some of which are
-    /// cut by edges of the density, and the share is that of some 100,000 samples.
+    /// The integral comes from the midpoint rule over cells of 32 × 32 points, some of which are
+    /// cut by edges of the density. The share comes from some 100,000 samples.
     #[must_use]
     pub fn agrees(&self) -> bool {
         self.chi2 < self.cells + 4.5 * (2.0 * self.cells).sqrt() && self.excess.abs() < 5e-3

@@ -29,9 +29,9 @@ impl Scene {
     /// to the normal t of the triangle. Photons that come along d and leave along e then have (d·t
     /// / d·n) / (e·t / e·n) times the radiance that backward rays find: interpolated normals do not
     /// conserve étendue. The effect on a plane is the ratio of two spectra at the measured
-    /// frequencies along x and y. The first is that of the window times the factor less 1, and the
-    /// second is that of the window, both where the mesh is hit. Facets finer than the waves of
-    /// these frequencies average out.
+    /// frequencies along x and y. The first is the spectrum of the window times the factor less 1,
+    /// and the second is the spectrum of the window, both where the mesh is hit. Facets finer than
+    /// the waves of these frequencies average out.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = mistakes(self);

@@ -126,8 +126,8 @@ mod tests {
         }
     }
 
-    /// Each field that is written in a scene accepts the example instead, and is named in the error
-    /// when it holds an impossible value.
+    /// Each field that is written in a scene accepts the example instead, and the error names the
+    /// field when it holds an impossible value.
     #[test]
     fn examples_can_be_read_where_they_are_told() {
         let mut tried = BTreeSet::new();

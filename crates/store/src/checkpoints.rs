@@ -234,7 +234,7 @@ pub fn unpacked(bytes: &[u8], held: &Held, planes: &[VirtualPlane]) -> Result<Ba
 /// The progress of a batch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BatchProgress {
-    /// This number of its first parts are summed.
+    /// The sum contains this number of the batch's first parts.
     Parts(u32),
     /// The batch is complete.
     Done,

@@ -40,8 +40,8 @@ pub struct PredictedPlane {
     parameters: Vec<[String; 2]>,
     cuts: Vec<f64>,
     depth: Option<[f64; 2]>,
-    /// Numbers of independent replicates of the slices, and of those of the chain of affine maps;
-    /// zero where they have no statistical error.
+    /// Numbers of independent replicates of the slices, and of the slices of the chain of affine
+    /// maps; zero where the slices have no statistical error.
     replicates: [usize; 2],
 }
 

@@ -1,9 +1,9 @@
 //! A folder of results, which owns only the files that it wrote.
 //!
 //! New files wait in a subfolder until all are complete, so an earlier result stays until then. An
-//! index, such as `summary.json`, lists the files with their hashes and is moved last. Files that
-//! the index of an earlier result lists, and that still have the listed hash, are removed; anything
-//! else in the folder belongs to somebody else, and stays (docs/files.md).
+//! index, such as `summary.json`, lists the files with their hashes and is moved last. A file of an
+//! earlier result is removed if the index of that result lists it and it still has the listed hash.
+//! Anything else in the folder belongs to somebody else, and stays (docs/files.md).
 
 mod claim;
 mod commit;
@@ -108,9 +108,9 @@ impl Finished {
 }
 
 impl Results {
-    /// Claims a folder, before any work is done: creates it, locks it, removes the remains of a
-    /// dead process, and refuses when a file of somebody else, or an input, is in the place of a
-    /// file to be written.
+    /// Claims a folder, before any work is done. Creates and locks the folder, and removes the
+    /// remains of a dead process. Refuses if a file of somebody else, or an input, is in the place
+    /// of a file to be written.
     pub fn claim(folder: &Path, plan: Plan) -> Result<Self, Failure> {
         let failure = |e| Failure::write(folder, e);
         if folder.symlink_metadata().is_ok() && !folder.is_dir() {

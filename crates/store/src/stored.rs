@@ -230,9 +230,9 @@ pub fn summary_of(folder: &Path, scene: &Scene, method: Method) -> Option<Value>
     (sealed::is_sealed(&bytes) && same).then_some(summary)
 }
 
-/// Fails where a folder holds a result of another scene, so that no result replaces one that only
-/// shares its name. Settings of the measurement are ignored. `arguments` is the style in which the
-/// message names `force`.
+/// Fails where a folder holds a result of another scene, so that no result replaces another that
+/// only has the same name. Settings of the measurement are ignored. `arguments` is the style in
+/// which the message names `force`.
 pub fn check_earlier(
     folder: &Path,
     index: &str,

@@ -175,8 +175,9 @@ mod tests {
             .count()
     }
 
-    /// Each coordinate has one of 2ᵐ points in every interval of length 2⁻ᵐ, and the first two of a
-    /// block have one in every box of volume 2⁻ᵐ that halves their sides.
+    /// Each coordinate has one of 2ᵐ points in every interval of length 2⁻ᵐ. The first two
+    /// coordinates of a block have one point in every box of volume 2⁻ᵐ that is formed by halving
+    /// sides.
     #[test]
     fn boxes_hold_one_point_each() {
         const N: u32 = 256;

@@ -50,8 +50,8 @@ pub(crate) fn off_patches(
 }
 
 /// The largest accepted distance between the arrivals of rays by a mesh and by its osculating
-/// patch, in half-widths of the window. Such rays change a spectrum by some ten times as much,
-/// which is reported.
+/// patch, in half-widths of the window. Such rays change a spectrum by some ten times this
+/// distance, and the change is reported.
 const OFF_PATCHES: f64 = 1e-4;
 
 pub(super) struct Follower<'a> {

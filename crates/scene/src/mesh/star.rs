@@ -10,12 +10,11 @@ impl Mesh {
     /// axis: r(θ, φ) = `radius` · (1 + `relief` · sinˡθ · cos lφ) with l = `lobes`, a sphere plus
     /// its sectoral harmonic.
     ///
-    /// θ steps through `rings` bands and φ through 2 `rings` segments. The poles are
-    /// one vertex each and no vertex is doubled at φ = 0, so the surface is watertight:
-    /// 2 `rings`(`rings` − 1) + 2 vertices, 4 `rings`(`rings` − 1) triangles (50 624
-    /// for 113 rings), facing outward. Vertices lie on the surface; because of the
-    /// facets the volume falls short of R³(4π/3 + 2π relief² (2l)!!/(2l+1)!!), l ≥ 1,
-    /// by a part proportional to rings⁻².
+    /// θ steps through `rings` bands and φ through 2 `rings` segments. Each pole is one vertex and
+    /// no vertex is doubled at φ = 0, so the surface is watertight. It has 2 `rings`(`rings` − 1) +
+    /// 2 vertices and 4 `rings`(`rings` − 1) triangles (50 624 for 113 rings), which face outward.
+    /// Vertices lie on the surface; because of the facets the volume falls short of R³(4π/3 + 2π
+    /// relief² (2l)!!/(2l+1)!!), l ≥ 1, by a part proportional to rings⁻².
     ///
     /// # Errors
     /// When there are fewer than four segments per lobe, or [`Self::new`] refuses the mesh.

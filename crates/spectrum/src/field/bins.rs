@@ -92,7 +92,8 @@ impl RadialBins {
     /// Returns means over the bins of numbers that are even in Ω, such as powers. `of` is called
     /// with indices [x, y, u, v] of the spectrum.
     ///
-    /// Sums are over each Ωx, then over these in order: bitwise identical on any number of threads.
+    /// Sums are over each Ωx, then over these in order, so the result is bitwise identical on any
+    /// number of threads.
     #[must_use]
     pub fn means<const N: usize>(
         &self,

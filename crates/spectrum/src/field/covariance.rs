@@ -81,7 +81,8 @@ impl Moments {
     /// Returns the moments of a power that is even in Ω, given at indices of a transform, with
     /// those along v from zero on.
     ///
-    /// Sums are over each Ωx, then over these in order: bitwise identical on any number of threads.
+    /// Sums are over each Ωx, then over these in order, so the result is bitwise identical on any
+    /// number of threads.
     #[must_use]
     pub fn of(&self, power: impl Fn([usize; 4]) -> f64 + Sync) -> PowerMoments {
         let [xs, ys, us, vs] = [0, 1, 2, 3].map(|axis| self.along(axis));

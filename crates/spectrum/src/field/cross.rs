@@ -5,8 +5,8 @@ use super::spectrum::FieldSpectrum;
 use crate::jackknife::Jackknife;
 use ndarray::Array2;
 
-/// The full radial spectrum of a plane: the mean of |ℓ̂|² over both azimuths, that of (Ωx, Ωy) and
-/// that of (Ωu, Ωv), independently.
+/// The full radial spectrum of a plane: the mean of |ℓ̂|² over the azimuth of (Ωx, Ωy) and,
+/// independently, over the azimuth of (Ωu, Ωv).
 ///
 /// Arrays are [|Ωxy|, |Ωuv|]; the bins are those of [`RadialBins`]. Unit: that of ℓ̂, squared. The sign of a shear
 /// is lost; the slices keep it.

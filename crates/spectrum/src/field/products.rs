@@ -10,7 +10,7 @@ impl RadialBins {
     /// bins of a row-major [|Ωxy|, |Ωuv|].
     ///
     /// All pairs are computed together to read each spectrum once. Each ring of (Ωx, Ωy) is summed
-    /// separately, in order: bitwise identical on any number of threads.
+    /// separately, in order, so the result is bitwise identical on any number of threads.
     ///
     /// # Panics
     /// If a spectrum is on another grid.
