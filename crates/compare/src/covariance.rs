@@ -20,8 +20,8 @@ use serde::Serialize;
 /// The covariance of the power spectrum of a plane, ∫ P Ω Ωᵀ/∫ P over (ρx, ρy, νu, νv), by every
 /// available method.
 ///
-/// Entries are in cycles² over the units of their coordinates. Second moments of a field with edges
-/// do not exist, so all but `traced` are taken over the same band of frequencies.
+/// Entries are in cycles² over the units of their coordinates. The spectrum of a field with edges
+/// has no second moments, so all matrices but `traced` are taken over the same band of frequencies.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CovarianceReport {
     /// Name of the plane.

@@ -51,7 +51,7 @@ pub struct FirstOrderChain {
     pub as_printed: bool,
 }
 
-/// The photons compared with the first-order chain, as in `summary.json`.
+/// The comparison of the photons with the first-order chain, as in `summary.json`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FirstOrderReport {
     /// The numbers of the chain.

@@ -53,7 +53,7 @@ impl fmt::Display for TooMuchWork {
 
 /// Returns the plane that takes most of the work if the predictions of a scene would take more than
 /// about ten minutes. Returns the first plane whose prediction would not fit into a gigabyte, if
-/// there is one. `theories` are those of the scene's planes.
+/// there is one. `theories` are the theories of the scene's planes.
 #[must_use]
 pub fn too_much_work(scene: &Scene, theories: &[Applicability]) -> Option<TooMuchWork> {
     let mut total = 0.0;

@@ -32,8 +32,8 @@ pub struct CosineTerm {
     pub weight: f64,
 }
 
-/// Number of terms of the power series of a cosine, whose error is 2·10⁻¹⁷ at a quarter of its
-/// period.
+/// Number of terms of the power series of a cosine. The error of the series is 2·10⁻¹⁷ at a quarter
+/// of the cosine's period.
 const TERMS: usize = 11;
 
 /// (−1)ᵏ (π/2)²ᵏ/(2k)!.

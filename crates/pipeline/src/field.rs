@@ -124,8 +124,8 @@ fn on_grid(
     reporter: &dyn Reporter,
 ) -> Result<FieldMeasurement, Failure> {
     let scene = case.scene.seen_at(&[index]);
-    // Photons are aimed at all planes of a scene. Only the whole scene gives the same photons as
-    // the measurement, with which they are compared.
+    // Photons are aimed at all planes of a scene. The photons on the grid must be those of the
+    // measurement, so the whole scene is traced.
     let (source, at) = if method == case.method {
         (source(&case.scene, method)?, index)
     } else {

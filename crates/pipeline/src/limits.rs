@@ -7,7 +7,7 @@ use etendue_store::Failure;
 use etendue_store::machine;
 
 /// Fails where a run of the scene on `threads` threads would take too long, or not fit into this
-/// machine. `theories` are those of the scene's planes.
+/// machine. `theories` are the theories of the scene's planes.
 pub fn check(scene: &Scene, theories: &[Applicability], threads: usize) -> Result<(), Failure> {
     check_work(scene, theories)?;
     check_memory(scene, theories, threads)

@@ -15,7 +15,7 @@ pub struct Converted {
     pub notes: Vec<String>,
 }
 
-/// Writes a file in a format. A file in its own format is preserved completely.
+/// Writes a file in a format. A file that is converted to its own format is preserved completely.
 ///
 /// # Errors
 /// When the format cannot represent some rays, such as negative weights in TM-25 and NPY; every

@@ -58,7 +58,7 @@ pub fn resolve(
     }
 }
 
-/// Ten times the smallest possible p-value.
+/// The lowest allowed level of a test: ten times the smallest possible p-value.
 const LEAST_LEVEL: f64 = 5e-4;
 /// Relative distance below which two planes across the path count as the same.
 const SAME_PLANE: f64 = 1e-9;
@@ -184,7 +184,7 @@ impl Resolver<'_> {
     }
 
     fn run(&mut self, run: &RunFile) {
-        // A batch of one photon has a spread, an empty batch has none.
+        // A batch of one photon has a spread, but an empty batch has none.
         let least = u64::from(run.batches);
         if !(least..=1_000_000_000_000).contains(&run.photons) {
             let allowed = format!("{least} (one for each batch) to 10^12");

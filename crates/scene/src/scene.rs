@@ -6,11 +6,11 @@ use glam::DVec3;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// A checked experiment. Distances are along the central ray from the light, blockers lie across its first leg, and
-/// all coordinates are those of the frame at the light.
+/// A checked experiment. Distances are along the central ray from the light, and blockers lie
+/// across the first leg of this ray. All coordinates are those of the frame at the light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// Name of the scene: the file's, without its extension.
+    /// Name of the scene: the name of its file, without the extension.
     pub name: String,
     /// The file that the scene was resolved from, defaults and overrides included.
     pub file: SceneFile,
@@ -56,7 +56,7 @@ pub struct Leg {
     pub leaves: Option<Hit>,
 }
 
-/// Where the central ray meets a surface.
+/// A point where the central ray meets a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// The object that the ray meets.
@@ -161,7 +161,7 @@ pub struct MeshObject {
     pub triangles: Triangles,
     /// The nearest and the farthest distance of the corners.
     pub extent: [f64; 2],
-    /// Reflected over incident flux; `None` if the mesh is not Lambertian.
+    /// The ratio of reflected to incident flux; `None` if the mesh is not Lambertian.
     pub albedo: Option<f64>,
     /// The smooth surface, if the mesh is one.
     pub smooth: Option<SmoothMesh>,
@@ -226,7 +226,7 @@ pub struct Surface {
     pub frame: Frame,
     /// Side lengths along X and Y of the frame.
     pub size: [f64; 2],
-    /// Reflected over incident flux.
+    /// The ratio of reflected to incident flux.
     pub albedo: f64,
 }
 

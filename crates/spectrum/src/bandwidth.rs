@@ -77,7 +77,7 @@ pub fn bandwidth(
     let wanted = fraction * total;
     let mut inside = 0.0;
     for step in 0..=axis.half {
-        // Both cells at this distance from zero; the cell of zero extends to both sides.
+        // Adds both cells at this distance from zero; the cell of zero extends to both sides.
         let (power, inner, width) = match step {
             0 => (marginal[axis.half], 0.0, 0.5),
             _ => (

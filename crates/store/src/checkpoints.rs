@@ -2,7 +2,7 @@
 //!
 //! Each batch is a file below `batches/` and the key of the run, in the folder of its results. It
 //! is moved there as a whole, and its name holds the hash of its content. A batch has the same
-//! bytes whichever process measures it (but for rounding on another kind of processor). So
+//! bytes whichever process measures it, except for rounding errors on another kind of processor. So
 //! processes share the work without a lock, and one that dies does not delay the others. An
 //! unfinished batch is a file too, the sum of its first parts, and is replaced by the next one.
 

@@ -1,4 +1,4 @@
-//! Why a command stops, and its exit code.
+//! The reason why a command stops, and its exit code.
 
 use etendue_scene::SceneError;
 use std::fmt::Display;

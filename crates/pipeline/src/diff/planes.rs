@@ -64,8 +64,8 @@ pub(super) struct PredictionDiff {
 
 /// Smaller relative differences count as the rounding of sums.
 pub(super) const ROUNDING: f64 = 1e-12;
-/// The difference of closed forms in two versions, which may order their sums differently: rounding
-/// of the largest terms.
+/// The largest difference of closed forms in two versions, which may order their sums differently.
+/// It is the rounding error of the largest terms.
 const CLOSED_FORM: f64 = 1e-9;
 /// The number of combined standard errors beyond which two predictions differ. The error is a norm
 /// over all frequencies, which hardly fluctuates.
