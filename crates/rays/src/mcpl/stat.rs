@@ -77,11 +77,7 @@ fn parse(comment: &[u8]) -> Result<StatSum, Fault> {
     let value = match number {
         v if v.to_bits() == (-1.0_f64).to_bits() => None,
         v if v.is_finite() && v >= 0.0 => Some(v),
-        _ => {
-            return Err(refused(
-                "a value must be 0 or more, or −1 if it is not known",
-            ));
-        }
+        _ => return Err(refused("a value must be 0 or more, or −1 if not known")),
     };
     let key = key.to_owned();
     Ok(StatSum { key, value })
