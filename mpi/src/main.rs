@@ -3,9 +3,10 @@
 //!
 //! `mpirun -n 32 etendue-mpi run scenes/fig9b.ron --photons 2^36 --threads 4 --resume`
 //!
-//! Rank 0 does the same as `etendue`, works as well, and hands out pieces to other ranks on
-//! request. MPI sums nothing: it carries bytes, and the result has the same bytes as that of
-//! `etendue run`. The arguments are those of `etendue`, parsed by its own crate.
+//! Rank 0 does what `etendue` does. It also hands out pieces of work to the other ranks on request,
+//! and works on pieces itself. MPI carries bytes and sums nothing, so the result has the same bytes
+//! as that of `etendue run`. The arguments are those of `etendue`; the crate of `etendue` parses
+//! them.
 //!
 //! Reasons for `ferrompi`: it needs no libclang, its calls return errors instead of aborting, and
 //! it is tested with both MPICH and Open MPI. `mpi` (rsmpi) generates its bindings with libclang,
@@ -62,7 +63,7 @@ impl Workers for Ranks {
 }
 
 fn main() -> ExitCode {
-    // Rank 0 sends and receives from a thread of its own, one call at a time.
+    // Rank 0 sends and receives from a separate thread, one call at a time.
     let mpi = match Mpi::init_thread(ThreadLevel::Serialized) {
         Ok(mpi) => mpi,
         Err(error) => {

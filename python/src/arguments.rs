@@ -7,7 +7,7 @@ use std::fmt::Display;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
-/// The keyword arguments of a caller. One that is left out or `None` keeps its default.
+/// The keyword arguments of a caller. An argument that is left out or `None` keeps its default.
 pub(crate) struct Arguments<'a, 'py>(pub(crate) &'a Bound<'py, PyDict>);
 
 /// The exception for a value that is not allowed.
@@ -18,7 +18,7 @@ fn wrong(name: &str, value: &Bound<'_, PyAny>, allowed: impl Display) -> PyErr {
     PyValueError::new_err(format!("{name} is {shown}; allowed: {allowed}"))
 }
 
-/// A whole number, also if Python has it as 1e6.
+/// A whole number, which may be a Python float such as 1e6.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -64,7 +64,7 @@ impl<'py> Arguments<'_, 'py> {
         })
     }
 
-    /// A number of rays, also as 1e6.
+    /// A number of rays, which may be a float such as 1e6.
     pub(crate) fn count(
         &self,
         name: &str,

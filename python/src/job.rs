@@ -131,8 +131,8 @@ impl Job {
         found.map(Outcome)
     }
 
-    /// Photons at a plane, with columns x, y, u, v and weight, in the order of their batches; for
-    /// each batch the number of them, and of emitted photons.
+    /// Photons at a plane, with columns x, y, u, v and weight, in the order of their batches; and,
+    /// for each batch, the number of these photons and of emitted photons.
     #[expect(clippy::type_complexity, reason = "a tuple of Python")]
     fn crossings<'py>(
         &self,

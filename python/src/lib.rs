@@ -1,5 +1,5 @@
 //! The Rust side of the Python package: a scene, its measurements and predictions, and arrays that
-//! become NumPy's without a copy.
+//! become NumPy arrays without a copy.
 //!
 //! The user's interface is in `etendue/*.py`, which builds on this module.
 

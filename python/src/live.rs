@@ -44,7 +44,7 @@ struct Counted {
     done: AtomicU64,
 }
 
-/// The payload that unwinds a thread that is to stop.
+/// The payload that unwinds a thread that must stop.
 struct Stopped;
 
 impl Live {
@@ -52,7 +52,7 @@ impl Live {
         self.works.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Unwinds if the work is to stop. It is not a panic, and prints nothing.
+    /// Unwinds if the work is to stop. The unwinding is not a panic, and prints nothing.
     fn check(&self) {
         if self.is_stopped.load(Ordering::Relaxed) {
             resume_unwind(Box::new(Stopped));
@@ -72,8 +72,8 @@ impl Live {
         }
     }
 
-    /// Reports the progress of the innermost work to `progress`; that of the last one, if there is
-    /// none.
+    /// Reports the progress of the innermost work to `progress`. If no work is in progress, the
+    /// last finished work is reported.
     fn report(&self, progress: &Bound<'_, PyAny>) -> PyResult<()> {
         let works = self.works();
         let counted = works.in_hand.last().or(works.ended.as_ref()).cloned();
@@ -173,9 +173,9 @@ impl Watch for Tracing<'_> {
 }
 
 /// Runs work on the given number of threads, by default one for each core. Meanwhile other Python
-/// threads continue, `progress` receives the progress, and Ctrl-C is detected: then the work stops
-/// at the next block of photons or the next step. The function returns when the work has ended, or
-/// soon after; at once if the work is not counted.
+/// threads continue, `progress` receives the progress, and Ctrl-C is detected. After Ctrl-C the
+/// work stops at the next block of photons or the next step. The function returns when the work has
+/// ended, or soon after. If the work is not counted, it returns at once.
 pub(crate) fn alive<T: Send + 'static>(
     py: Python<'_>,
     threads: Option<usize>,

@@ -37,12 +37,9 @@ fn request(scene: PathBuf, arguments: &Arguments<'_, '_>) -> PyResult<ProbeReque
         window.start(),
         window.end()
     );
-    arguments.number(
-        "window",
-        &allowed,
-        |x| window.contains(x),
-        &mut request.window,
-    )?;
+    let mut across = f64::NAN;
+    arguments.number("window", &allowed, |x| window.contains(x), &mut across)?;
+    request.window = (!across.is_nan()).then_some(across);
     arguments.count("rays", &ranges::RAYS, &mut request.rays)?;
     arguments.count("photons", &ranges::RAYS, &mut request.photons)?;
     arguments.whole("seed", &(0..=u64::MAX), &mut request.seed)?;

@@ -15,7 +15,7 @@ create_exception!(
     etendue,
     CannotRun,
     PyRuntimeError,
-    "The request cannot be carried out here: too little memory or disk space, or a folder that contains something else."
+    "The request cannot be carried out here: for example, there is too little memory or disk space, or a folder contains something else."
 );
 
 /// The exception for a failure. Exit code 2 of the command is bad input.

@@ -26,7 +26,8 @@ impl SceneArgument {
                     .file_name()
                     .is_none_or(|whole| whole != file.as_str())
                 {
-                    let message = format!("name is {name:?}; allowed: the name of a file");
+                    let message =
+                        format!("name is {name:?}; allowed: a file name without a folder");
                     return Err(PyValueError::new_err(message));
                 }
                 (folder.join(file), Some(text))

@@ -166,7 +166,7 @@ def test_imports(alone, tmp_path):
         ({"method": "best"}, "method is 'best'; allowed: 'reference', 'uniform'"),
         ({"color": "pink"}, "color is 'pink'; allowed: 'luminance', 'red'"),
         ({"sky": -1}, "sky is -1; allowed: a number from 0 to 1e9"),
-        ({"look_from": (0, 0, 1)}, "look_from and look_at go together"),
+        ({"look_from": (0, 0, 1)}, "look_from and look_at must be given together"),
         ({"look_from": (0, 0, 1), "look_at": (0, 0, 1)}, "look_from= and look_at= are the same point, or up= is parallel to"),
         ({"look_from": "0,0,1", "look_at": (0, 0, 0)}, "look_from is '0,0,1'; allowed: three numbers"),
         ({"fov": 30}, "up and fov need look_from and look_at"),

@@ -19,7 +19,8 @@ use etendue_transform::random::Stream;
 use std::hint::black_box;
 use std::path::Path;
 
-/// Photons per batch: one net, large enough for the cost of its first block to be negligible.
+/// Photons per batch. A batch is one net, and is large enough that the cost of its first block is
+/// negligible.
 const PHOTONS: u64 = 1 << 16;
 
 /// A scene of the repository, in batches of [`PHOTONS`].

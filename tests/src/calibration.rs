@@ -43,15 +43,14 @@ const FAULTS: [(DependenceFault, &str); 2] = [
 
 /// Compares `fig9b` at `photons` photons over seeds, and checks the statistics.
 ///
-/// Then checks them again with σ 10 % too small and too large, and with dependent batches: all
-/// these faults must be detected.
+/// Then it checks them with planted faults: σ that is 10 % too small or too large, and dependent
+/// batches. All these faults must be detected.
 pub(crate) fn calibration(
     seeds: Range<u64>,
     photons: u64,
     sampling: Sampling,
 ) -> Vec<ReportSection> {
-    // With fewer seeds 3 % of variance cannot be resolved, and later ones only repeat the
-    // calibration.
+    // With fewer seeds, 3 % of the variance cannot be resolved.
     let count = seeds.end - seeds.start;
     let plants = count >= 1000 && seeds.start == 1;
     let faults = FAULTS.iter().filter(|_| plants);
@@ -126,7 +125,7 @@ fn sample(
     (0..faults.len()).map(planes).collect()
 }
 
-/// The planes of one seed with each of the faults.
+/// The reports on the planes of one seed, with each of the faults.
 fn reports(
     mut scene: Scene,
     seed: u64,
@@ -155,9 +154,10 @@ fn judge(planes: &[CalibratedPlane], seeds: u64, scene: &Scene, scale: f64) -> R
         .iter()
         .flat_map(|p| p.p_values.iter().copied())
         .collect();
-    // Binomial standard deviation at a plane. Planes of a seed share photons, so their total
-    // spreads less than one plane and more than as many independent ones: it is bounded by two
-    // deviations of one plane, and each plane by three.
+    // The binomial standard deviation of the share of one plane. Planes of a seed share photons, so
+    // the share of all planes varies less than that of one plane, and more than that of as many
+    // independent planes. It may deviate by two standard deviations of one plane, and the share of
+    // each plane by three.
     let deviation = (0.1 * 0.9 / seeds as f64).sqrt();
     let [allowed, allowed_each] = [2.0, 3.0].map(|n| n * deviation);
     let below = |p: &[f64]| p.iter().filter(|p| **p < 0.1).count() as f64 / p.len() as f64;

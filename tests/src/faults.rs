@@ -209,7 +209,7 @@ fn elsewhere() -> Vec<(&'static str, PlantedFaults)> {
     ]
 }
 
-/// Moves the `nth` layer away from the light by `by` metres, and nothing else.
+/// Moves only the `nth` layer, away from the light, by `by` metres.
 fn move_layer(chain: &mut Chain, nth: usize, by: f64) {
     let is_layer = |o: &Operator| matches!(o, Operator::Visibility { .. });
     let places: Vec<usize> = (0..chain.operators.len())
@@ -387,7 +387,8 @@ fn shifted(mut slices: Slices, shift: f64) -> Slices {
     slices
 }
 
-/// A tracer that modifies crossings before they are recorded; the number counts them in a block.
+/// A tracer that modifies crossings before they are recorded. The function also receives the index
+/// of the crossing in its block.
 struct TamperedBlock<'a, F> {
     tracer: &'a Tracer,
     crossing: F,

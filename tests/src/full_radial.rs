@@ -148,7 +148,7 @@ fn over_seeds(case: &Case, seeds: u64, photons: u64) -> (String, Vec<FullRadialR
     )
 }
 
-/// Compares photons with backward rays, as where no theory applies.
+/// Compares photons with backward rays, as a run does where no theory applies.
 fn against_rays(case: &Case, seeds: u64, photons: u64) -> (String, Vec<FullRadialReport>) {
     let title = format!("{} {}: backward rays", case.scene, case.plane);
     (

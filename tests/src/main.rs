@@ -1,13 +1,13 @@
 //! Statistical validation of Étendue.
 //!
-//! `short` takes a few minutes, for every change; `suite` runs all scenes without smooth surfaces
-//! and writes `results/suite.md`; `table1` checks the operators of the paper, `shading` the reflection
-//! of light at surfaces, `claims` the statements in the paper's text, and `main` all results of the
-//! main scene: each writes its part of `results/validation.md`; `all` writes the whole of it, with
-//! every row of the paper's Table 1. `second` compares the code shared by theory and tracers with a
-//! second implementation. `hostile` and `kills` attack the program `etendue` from outside; `wild`
-//! searches for scenes on which it is wrong. `assumptions` disables the checks of a scene that
-//! precede a prediction.
+//! `short` takes a few minutes and is run after every change. `suite` runs all scenes without
+//! smooth surfaces and writes `results/suite.md`. `table1` checks the operators of the paper,
+//! `shading` the reflection of light at surfaces, `claims` the statements in the paper's text, and
+//! `main` all results of the main scene. Each of these four writes its part of
+//! `results/validation.md`. `all` writes the whole page, with every row of the paper's Table 1.
+//! `second` compares the code shared by theory and tracers with a second implementation. `hostile`
+//! and `kills` attack the program `etendue` from outside; `wild` searches for scenes on which it is
+//! wrong. `assumptions` disables the checks of a scene that precede a prediction.
 
 #![allow(clippy::too_many_lines, reason = "checks are lists of rows")]
 
@@ -165,7 +165,7 @@ enum ValidationCommand {
     All,
 }
 
-/// The seed of every single run: fixed in advance, and not chosen by its results.
+/// The seed of every single run. It was fixed in advance, and not chosen by its results.
 const SEED: u64 = 1;
 
 #[expect(
@@ -265,8 +265,8 @@ fn printed(outcome: std::io::Result<Vec<ReportSection>>) -> ExitCode {
     }
 }
 
-/// The page that a command writes a part of: its file, the title of the part, the command's name
-/// and a description.
+/// The page of which a command writes a part: the file of the page, the title of the part, the name
+/// of the command and a description.
 fn page(command: &ValidationCommand) -> Option<[&'static str; 4]> {
     Some(match command {
         ValidationCommand::Main => [

@@ -108,7 +108,7 @@ pub(crate) fn gain(photons: u64, batches: u32) -> ReportSection {
             .to_vec();
         row.insert(0, name.clone());
         row.push(format!("{:.2} %", 100.0 * worse));
-        // 1000 independent frequencies and 64 batches determine a total to 0.03 dB.
+        // With 1000 independent frequencies and 64 batches, a total is accurate to 0.03 dB.
         let check = Check::new("total", total, Below(-0.1), "three of its errors, dB");
         Row::new(row, vec![check])
     };
@@ -148,7 +148,8 @@ pub(crate) fn floor(photons: &[u64], seed: u64) -> ReportSection {
         }
         let [random, net] = floors;
         let last = rows.len() - 1;
-        // 64 batches at about 1000 uncorrelated frequencies determine a mean σ² to 0.4 %, 0.017 dB.
+        // With 64 batches and about 1000 uncorrelated frequencies, a mean σ² is accurate to 0.4 %,
+        // or 0.017 dB.
         let reason = "four of the errors of a difference, dB";
         let off = net - random;
         rows[last]
@@ -208,7 +209,7 @@ fn row(scene: &Scene, report: &PlaneReport) -> Row {
 /// All planes of a scene, measured and compared.
 ///
 /// # Panics
-/// If the scene has too few batches, which resolving excludes.
+/// If the scene has too few batches. A resolved scene always has enough.
 fn reports(scene: &Scene) -> Vec<PlaneReport> {
     let measurement = traced(scene);
     let test = Test::of(scene);

@@ -5,7 +5,7 @@ use etendue_theory::geometry::SpectrumMap;
 use etendue_theory::scattering::{self, ScatteringChain};
 use etendue_theory::{Model, Observed, Predicted, RayBudget, rays};
 
-/// Rays of a prediction: their error is a fifth of the photons' noise.
+/// Budget of rays for a prediction, whose error is then a fifth of the photons' noise.
 const BUDGET: RayBudget = RayBudget {
     nodes: 5e6,
     error: 5e-4,

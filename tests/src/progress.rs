@@ -1,4 +1,5 @@
-//! Progress of long work: a bar on a terminal, and elsewhere a line for each twentieth of the work.
+//! Progress of long work. A terminal shows a bar; otherwise a line is written after each twentieth
+//! of the work.
 
 use indicatif::{ProgressBar, ProgressStyle};
 use std::time::Duration;

@@ -1,9 +1,9 @@
 //! Pulls of measured parameters and slopes, and the cost of predictions, over random scenes.
 //!
-//! A pull is the deviation of a measured value from the scene's, or of a measured slope from the
-//! predicted one, divided by its stated error and converted from Student's distribution to the
-//! normal one. If the errors are right, pulls have mean 0 and standard deviation 1, and the tails
-//! of a normal distribution.
+//! A pull is a deviation divided by its stated error, converted from Student's distribution to the
+//! normal one. The deviation is that of a measured value from the scene's value, or of a measured
+//! slope from the predicted one. If the errors are right, pulls have mean 0 and standard deviation
+//! 1, and the tails of a normal distribution.
 
 use crate::progress::progress;
 use crate::report::Bound::Below;
@@ -45,11 +45,11 @@ const NORMAL: [(f64, f64); 3] = [(2.0, 0.0455), (3.0, 0.0027), (4.0, 6.3e-5)];
 /// Permitted deviation of the mean from 0 and of the standard deviation from 1, in addition to
 /// their standard errors.
 const MAX_DEVIATION: f64 = 0.05;
-/// Permitted standard errors of a deviation: one figure in 400 exceeds them by chance.
+/// Permitted deviation in standard errors. One figure in 400 exceeds it by chance.
 const MAX_ERRORS: f64 = 3.0;
 /// Maximum noise relative to the spectrum of a plane that is judged.
 const MAX_NOISE: f64 = 0.25;
-/// Minimum number of scenes of a group that is judged: errors over fewer scenes are uncertain.
+/// Minimum number of scenes of a group that is judged. Errors over fewer scenes are uncertain.
 const MIN_SCENES: usize = 10;
 /// Maximum number of rows in the tables of single pulls and scenes.
 const LISTED: usize = 12;
@@ -117,8 +117,7 @@ fn drawn(options: &PullOptions, number: u64) -> io::Result<Option<Scene>> {
         return Ok(None);
     };
     file.run.photons = options.photons;
-    // Different seeds, because photons of one seed are the same in all scenes, and so is their
-    // noise.
+    // The seeds differ because photons of one seed, and their noise, are the same in all scenes.
     file.run.seed = options.seed + number;
     file.run.resolution = MAX_NOISE;
     if let Some(kept) = &options.keep {
@@ -207,8 +206,9 @@ fn judged(scene: &Scene, number: u64, pulls: &mut Vec<Pull>) -> io::Result<Optio
 }
 
 /// The normal quantile that corresponds to the quantile `t` of Student's distribution with this
-/// many degrees of freedom, to 0.01 for 30 or more (Abramowitz and Stegun 1964, 26.7.8): an error
-/// comes from the spread of a few dozen batches.
+/// number of degrees of freedom. It is accurate to 0.01 for 30 or more (Abramowitz and Stegun 1964,
+/// 26.7.8). Stated errors follow this distribution because they come from the spread of a few dozen
+/// batches.
 fn normal(t: f64, freedom: usize) -> f64 {
     let freedom = freedom as f64;
     t * (1.0 - 0.25 / freedom) / (1.0 + t * t / (2.0 * freedom)).sqrt()
@@ -286,7 +286,7 @@ fn row(name: &str, pulls: &[&Pull], is_judged: bool) -> Row {
     }
     let count = pulls.len() as f64;
     let total = |of: &dyn Fn(f64) -> f64| pulls.iter().map(|p| of(p.value)).sum::<f64>() / count;
-    // The pulls of a scene are dependent, so errors are computed over scenes.
+    // The pulls of a scene are dependent, so errors are computed from the scatter between scenes.
     let error = |of: &dyn Fn(f64) -> f64| {
         let all = total(of);
         let apart = scenes

@@ -12,7 +12,7 @@ pub(crate) enum Bound {
     Above(f64),
 }
 
-/// A figure, the requirement on it, and the reason for that.
+/// A figure, the requirement on it, and the reason for the requirement.
 #[derive(Clone, Debug)]
 pub(crate) struct Check {
     pub(crate) id: &'static str,
@@ -45,8 +45,9 @@ impl Check {
         Self::new(id, p.unwrap_or(0.0), bound, "α over all planes")
     }
 
-    /// A check of photons against the exact prediction, judged as in a run: by p, or because the
-    /// stated error of the prediction is below the resolution and may explain the difference.
+    /// A check of photons against the exact prediction, judged as in a run. It passes by p. It also
+    /// passes if the stated error of the prediction is below the resolution and may explain the
+    /// difference.
     pub(crate) fn exact(report: &PlaneReport, level: f64) -> Self {
         let check = Self::p(EXACT, report.p_value, level);
         if check.passes() || report.exact_verdict() != Verdict::Pass {
@@ -140,7 +141,8 @@ pub(crate) struct ReportSection {
     pub(crate) title: String,
     /// A description of the procedure and the requirements.
     pub(crate) text: String,
-    /// The column headings; if rows have one cell less, the last column is for their verdicts.
+    /// The column headings. If rows have one cell less than there are headings, the last column
+    /// shows their verdicts.
     pub(crate) header: Vec<&'static str>,
     pub(crate) rows: Vec<Row>,
     /// Checks in addition to those of the rows.
@@ -152,7 +154,7 @@ impl ReportSection {
         self.failures().is_empty()
     }
 
-    /// The section with a planted fault: now at least one of its checks must fail, although all
+    /// The section with a planted fault. At least one of its checks must fail, although all of them
     /// pass without the fault.
     pub(crate) fn planted(mut self, title: String, text: &str, is_sound: bool) -> Self {
         let is_seen = !self.passes();

@@ -3,7 +3,7 @@
 use crate::report::Bound::AtLeast;
 use crate::report::{Check, EXACT, ReportSection, Row};
 
-/// A row of the paper's Table 1; rows of sections refer to the rows they apply to.
+/// A row of the paper's Table 1. Rows of sections refer to the rows of Table 1 to which they apply.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Line {
     Travel,
@@ -95,7 +95,7 @@ pub(crate) fn rows(sections: &[ReportSection]) -> ReportSection {
 fn row(line: Line, sections: &[ReportSection]) -> Row {
     let all = sections.iter().flat_map(|section| &section.rows);
     let of_line = all.filter(|row| row.lines.contains(&line));
-    // Rows with a p are those checked with photons.
+    // Rows that have a p are checked with photons.
     let (planes, others): (Vec<&Row>, Vec<&Row>) = of_line.partition(|row| exact(row).is_some());
     let mut cells = line.words().map(str::to_owned).to_vec();
     let mut checks = Vec::new();

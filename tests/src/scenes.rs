@@ -79,8 +79,8 @@ pub(crate) fn words(sampling: Sampling) -> &'static str {
     }
 }
 
-/// Changes the number of photons of a run, and scales its resolution accordingly: noise decreases
-/// with their root.
+/// Changes the number of photons of a run. The resolution is scaled by the inverse root of this
+/// number, as noise is.
 pub(crate) fn emit(run: &mut RunFile, photons: Option<u64>) {
     let Some(photons) = photons else { return };
     let more_noise = (run.photons as f64 / photons as f64).sqrt();

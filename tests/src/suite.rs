@@ -117,7 +117,8 @@ fn outcome<'a>(outcomes: &'a [SuiteRun], name: &str) -> Option<&'a SuiteRun> {
     outcomes.iter().find(|o| o.scene.name == name)
 }
 
-/// Two occluders that block everything together, but little alone (Durand et al. 2005, Fig. 7).
+/// Two occluders that together block all light, but each alone blocks little (Durand et al. 2005,
+/// Fig. 7).
 fn occluders(outcomes: &[SuiteRun]) -> ReportSection {
     let mut rows = Vec::new();
     let at = |name: &str| {
@@ -150,8 +151,8 @@ fn occluders(outcomes: &[SuiteRun]) -> ReportSection {
         outcome(outcomes, "fig7_two"),
     ) {
         (Some(one), Some(other), Some(both)) => {
-            // Open minus the light that each occluder blocks: F − (F − F₁) − (F − F₂) = F₁ + F₂ −
-            // F.
+            // The open light minus the light that each occluder blocks: F − (F − F₁) − (F − F₂) =
+            // F₁ + F₂ − F.
             let open = etendue_compare::chain(&both.scene, &both.scene.planes[2]);
             let open = etendue_theory::Chain {
                 operators: open.operators.into_iter().filter(travels).collect(),
@@ -283,7 +284,8 @@ fn furnace(outcomes: &[SuiteRun]) -> ReportSection {
                 known += factor * hann(x) * hann(y);
             }
         }
-        // The sum over cells, and the window over slopes: (half-width)².
+        // The integral is the sum over cells times the integral of the window over slopes,
+        // (half-width)².
         known *= (2.0 * half / f64::from(nodes)).powi(2) * plane.window.u.half_width().powi(2);
         let zero = [0, 0, plane.grid.nu.half];
         let (measured, error) = (compared.measured.half[zero].re, compared.sigma[zero]);

@@ -13,7 +13,8 @@ use etendue_theory::{Model, Observed, Predicted, RayBudget};
 use etendue_trace::Tracer;
 use glam::{DQuat, DVec3};
 
-/// The budget of a prediction: its error is a few times that of the photons in these tests.
+/// The budget of a prediction. In these tests, the error of the prediction is a few times that of
+/// the photons.
 const BUDGET: RayBudget = RayBudget {
     nodes: 2e6,
     error: 1e-3,
@@ -134,7 +135,7 @@ fn two_parameterisations() {
     }
 }
 
-/// Fig. 14: on a sphere, before the lobes of its surface.
+/// Fig. 14: light on a sphere, before the lobes of its surface.
 #[test]
 #[ignore = "long: half a minute; .ci/long runs it"]
 fn the_steps_of_shading() {

@@ -1,4 +1,4 @@
-//! Mutated scene files: any file gives a scene or an error, never a panic.
+//! Mutated scene files. Any file gives a scene or an error, never a panic.
 
 use etendue_compare::{Applicability, Prediction, Test, compare};
 use etendue_field::Mask;
@@ -111,7 +111,7 @@ fn no_mutated_scene_file_panics() {
     let found: Vec<[bool; 2]> = (0..8_000).into_par_iter().map(tried).collect();
     let count = |k: usize| found.iter().filter(|found| found[k]).count();
     let [sound, run] = [count(0), count(1)];
-    // The mutations are useful: neither all refused nor all harmless.
+    // The mutations are useful: not all of them are refused, and not all are harmless.
     assert!(sound > 400 && run > 24, "{sound} sound scenes, {run} run");
 }
 
@@ -139,8 +139,8 @@ fn tried(index: u64) -> [bool; 2] {
     [true, is_run]
 }
 
-/// Few photons, frequencies and blockers: the values of fields may break something, rather than the
-/// number of items.
+/// There are few photons, frequencies and blockers, because the test is about values of fields and
+/// not about the number of items.
 fn make_small(scene: &mut Scene) {
     scene.run.photons = 200;
     scene.run.batches = 32;

@@ -23,8 +23,8 @@ fn attack(arguments: &[&str]) {
     assert_eq!(output.status.code(), Some(0), "{report}\n{message}");
 }
 
-/// The program in the same folder as the validation. It belongs to another package, which tests of
-/// this one alone do not build.
+/// The program in the same folder as the validation. The program belongs to another package, which
+/// is not built if only this package is tested.
 fn program() -> PathBuf {
     let path = Path::new(VALIDATION).with_file_name("etendue");
     let built = fs::metadata(&path).and_then(|file| file.modified());
@@ -68,6 +68,6 @@ fn mutated_input_is_borne() {
 #[test]
 #[ignore = "long: half a minute; .ci/long runs it"]
 fn kills_leave_whole_results_or_none() {
-    // An ordinary test mounts nothing.
+    // The simulated disk is not mounted, because an ordinary test must not mount anything.
     attack(&["kills", "--count", "12", "--full-disk", "limit"]);
 }

@@ -23,7 +23,7 @@ fn scene(edits: &[(&str, &str)]) -> Scene {
     }
     let mut file = SceneFile::parse(&text).expect("the edited scene is a scene file");
     file.run.photons = PHOTONS;
-    // Unaimed emission leaves 16 % of noise, which is low enough here.
+    // Unaimed emission leaves noise of 16 %, which is low enough here.
     file.run.resolution = 0.5;
     resolve("test", file, ".".as_ref(), u64::MAX).expect("the edited scene is sound")
 }
@@ -52,8 +52,8 @@ fn verdicts(traced: &Scene, predicted: &Scene) -> Vec<Verdict> {
         .collect()
 }
 
-/// Scenes with objects beside or behind the light, large or small, distant, rotated or dark must
-/// agree as fig9b does.
+/// Variants of fig9b must agree as fig9b does: with objects beside or behind the light, large or
+/// small, distant, rotated or dark.
 #[test]
 fn other_scenes_agree() {
     let fin = r#"(name: "floor", center: (0, 0, 2), size: (6, 6), albedo: 0.5),
@@ -132,7 +132,8 @@ fn other_scenes_agree() {
     }
 }
 
-/// A prediction without the surface beside the ray is rejected behind that surface, and only there.
+/// A prediction that omits the surface beside the ray is rejected behind that surface, and only
+/// there.
 #[test]
 fn a_forgotten_surface_is_noticed() {
     let fin = r#"surfaces: [Rectangle(name: "fin", center: (0.25, 0, 1.5), size: (0.3, 0.3)),"#;
@@ -149,8 +150,8 @@ fn a_forgotten_surface_is_noticed() {
     );
 }
 
-/// The closed form assumes an infinite receiver: where a window contains its edge, paths are
-/// traced.
+/// The closed form assumes an infinite receiver. Where a window contains the receiver's edge, paths
+/// are traced.
 #[test]
 fn the_edge_of_the_receiver_is_left_to_paths() {
     let classes = |size: &str| -> Vec<Class> {

@@ -1,4 +1,5 @@
-//! Two results of one scene, photons against photons: the test of `etendue diff` over many seeds.
+//! The test of `etendue diff` over many seeds: two results of one scene, both measured with
+//! photons.
 
 use crate::statistics::uniformity;
 use etendue_compare::{Sample, TwoSamples, noise_dof};

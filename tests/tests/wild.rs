@@ -39,7 +39,7 @@ fn scene(name: &str) -> Scene {
     edited(name, &[])
 }
 
-/// Enough rays for many of each batch to hit a bright pixel through the lobe.
+/// Enough rays that, in each batch, many hit a bright pixel through the lobe.
 const MORE: (&str, &str) = ("photons: 200_000", "photons: 2_000_000");
 
 fn measured(scene: &Scene, source: &dyn PhotonSource) -> Measurement {
@@ -60,7 +60,7 @@ fn report(
     plane: usize,
     prediction: &Prediction,
 ) -> PlaneReport {
-    // Noise of a half is low enough to detect predictions with an error of that size.
+    // Noise of 50 % is low enough to detect predictions with an error of 50 %.
     let test = Test {
         resolution: 0.5,
         ..Test::of(scene)
@@ -105,8 +105,9 @@ fn row(scene: &Scene, class: Class, by: &str, seconds: f64, report: &PlaneReport
     );
 }
 
-/// Checks that every plane of a scene has its class, and that no verdict is a failure: by photons,
-/// and by backward rays where photons are undecided and a backward tracer exists.
+/// Checks that every plane of a scene has its class, and that no verdict is a failure. Photons
+/// judge each plane; backward rays judge it where photons are undecided and a backward tracer
+/// exists.
 fn holds(name: &str, planes: &[(&str, Class)]) {
     holds_in(&scene(name), planes);
 }
@@ -161,8 +162,8 @@ fn scenes_that_took_long_have_an_answer() {
     holds("big_map", &on_and_off);
 }
 
-/// The noise of photon nets is lower than the deviation of a fine mesh from its osculating patch:
-/// the stated error of the prediction includes it, and without it this scene failed.
+/// The deviation of a fine mesh from its osculating patch exceeds the noise of photon nets. The
+/// stated error of the prediction includes this deviation; when it did not, this scene failed.
 #[test]
 fn a_mesh_beside_its_patch_is_no_disagreement() {
     let folder = Path::new(FOLDER).join("../table1");
@@ -196,8 +197,8 @@ fn triangles_are_as_far_off_as_is_stated() {
     assert_eq!(judged.verdict, Verdict::Pass);
     let [stated, seen] = [prediction.mesh_error, judged.excess].map(Option::unwrap);
     let ratio = stated / seen;
-    // The stated error is a sample plus its standard error, and the observed one has a noise of a
-    // fifth of itself.
+    // The stated error is a sampled value plus its standard error. The observed error has a noise
+    // of a fifth of its value.
     assert!(
         (1.0..1.3).contains(&ratio),
         "{stated:e} stated, {seen:e} seen"
@@ -247,7 +248,8 @@ fn the_chain_of_a_small_map_does_not_fail() {
     holds_in(&edited("small_map_phong", &[MORE]), &planes);
 }
 
-/// Nets resolve a grating that nodes of a receiver do not, and those nodes are still wrong.
+/// Nets of rays resolve a grating that the quadrature nodes on a receiver do not resolve. A
+/// prediction with these nodes is still wrong.
 #[test]
 fn a_fine_grating_is_decided() {
     let scene = scene("fine_grating_floor");
@@ -266,8 +268,8 @@ fn a_fine_grating_is_decided() {
     assert_eq!(verdict(&scene, &photons, &by_nodes), Verdict::Fail);
 }
 
-/// A small map under a narrow lobe, on the surface and off it; a lobe a fifth wider is
-/// distinguished from it.
+/// An environment map with few pixels under a narrow lobe, at planes on the surface and after it. A
+/// lobe that is a fifth wider is distinguished from it.
 #[test]
 fn a_small_map_is_decided() {
     let scene = edited("small_map_phong", &[MORE]);
@@ -282,7 +284,7 @@ fn a_small_map_is_decided() {
     }
 }
 
-/// Widths beyond which the tail of a sky lobe was once treated as dark.
+/// Number of widths beyond which the tail of a sky lobe was once treated as dark.
 const CUT: f64 = 5.0;
 
 /// The tail of a wide lobe is light; a prediction without it is rejected.
@@ -323,7 +325,7 @@ fn a_small_disc_in_a_later_leg_is_decided() {
     is_followed_past("corner_disc", &["disc"]);
 }
 
-/// Light that meets a surface twice is left to the other tracer; theory's rays meet it once.
+/// Theory's rays meet a surface once. For light that meets it twice, the other tracer is used.
 #[test]
 fn a_hollow_met_twice_is_decided() {
     let scene = edited("hollow_twice", &[MORE]);
@@ -334,7 +336,7 @@ fn a_hollow_met_twice_is_decided() {
     }
 }
 
-/// The same holds for light that the surface itself blocks from its other side.
+/// The other tracer is also used for light that the surface itself blocks with its other side.
 #[test]
 fn a_surface_in_its_own_shadow_is_decided() {
     let scene = scene("self_shadow");
@@ -363,7 +365,7 @@ fn decided_by_reference(
     assert_eq!(wrong.verdict, Verdict::Fail);
 }
 
-/// Two half-planes without a gap are reported as a cause of darkness; with a gap they are not.
+/// Two half-planes without a gap are reported as the cause of a dark plane; two with a gap are not.
 #[test]
 fn darkness_behind_two_occluders_is_decided() {
     let scene = scene("projector_two_occluders");
@@ -385,7 +387,7 @@ fn darkness_behind_two_occluders_is_decided() {
     }
 }
 
-/// Enough rays for half a per cent in each of these scenes.
+/// Number of rays that gives an error of half a per cent in each of these scenes.
 const BUDGET: RayBudget = RayBudget {
     nodes: 1e6,
     error: 5e-3,
@@ -433,7 +435,7 @@ fn replaced(like: Prediction, slices: Slices, replicates: Vec<Slices>) -> Predic
     }
 }
 
-/// Squares that cover a window of the same size across the path leave light for a window on a
+/// Squares that cover a window across the path leave some light for a window of the same size on a
 /// surface.
 #[test]
 fn what_goes_by_squares_is_decided() {
@@ -443,18 +445,18 @@ fn what_goes_by_squares_is_decided() {
     assert!(photons(&scene).tally(0).inside > 1000);
 }
 
-/// Where most light of a sky arrives at low elevation, light from above is sampled nevertheless.
+/// Light from above is sampled even if most light of a sky arrives at low elevation.
 #[test]
 fn a_low_sky_is_decided() {
     let scene = scene("low_sky");
     let declined = Applicability::new(&scene, &scene.planes[0]).declined;
     assert_eq!(declined, ["light that meets glass out of order"]);
-    // Paths over nets end where they meet the glass out of order.
+    // Paths that are drawn from nets end where they meet the glass out of order.
     holds_in(&scene, &[("p", Class::FirstOrder)]);
 }
 
-/// Rays continue differently from the triangles of a mesh and from its osculating patch: in one
-/// scene they meet the mesh again, in the other it is round.
+/// Rays continue differently from the triangles of a mesh and from its osculating patch. In one
+/// scene they meet the mesh again; in the other scene the mesh is round.
 #[test]
 fn meshes_unlike_their_patches_are_decided() {
     let glass = scene("glass_star");
@@ -476,8 +478,8 @@ fn meshes_unlike_their_patches_are_decided() {
     }
 }
 
-/// Blockers, or a mesh that light visits later, are at a place where only few rays of the window
-/// meet them.
+/// Scenes in which only few rays of the window meet the blockers, or a mesh that light visits
+/// later.
 #[test]
 #[ignore = "long: half a minute; .ci/long runs it"]
 fn what_stands_in_the_way_of_a_brdf_is_decided() {
@@ -490,7 +492,8 @@ fn what_stands_in_the_way_of_a_brdf_is_decided() {
     });
 }
 
-/// Checks that obstacles met by only some rays are in the prediction, which is wrong without them.
+/// Checks that the prediction includes obstacles that only some rays meet, and that it would be
+/// wrong without them.
 fn is_followed_past(name: &str, obstacles: &[&str]) {
     let scene = scene(name);
     let plane = scene.planes.len() - 1;
@@ -532,8 +535,8 @@ fn is_followed_past(name: &str, obstacles: &[&str]) {
     assert!(measured.iter().any(wrong), "{name}");
 }
 
-/// A mirror extends to before the mask in front of it; no ray sampled from the light hits so narrow
-/// a window.
+/// Part of a mirror is before the mask that is in front of the mirror. No ray sampled from the
+/// light hits so narrow a window.
 #[test]
 fn a_sliver_of_slopes_is_decided() {
     is_followed_past("sliver_of_slopes", &["slit"]);
@@ -553,8 +556,8 @@ fn a_wall_that_reaches_behind_the_light_is_decided() {
     holds("beside_the_light", &[("p", Class::FirstOrder)]);
 }
 
-/// A surface that light visits later is in a corner of a window before the first surface; few
-/// projector rays sampled over the whole of a wide wall get there.
+/// A surface that light visits later is in a corner of a window before the first surface. Few
+/// projector rays that are sampled over the whole of a wide wall reach this corner.
 #[test]
 fn a_later_surface_beside_the_first_leg_is_decided() {
     let scene = scene("beside_the_beam");
@@ -563,8 +566,8 @@ fn a_later_surface_beside_the_first_leg_is_decided() {
     });
 }
 
-/// Backward rays sampled at angles beyond a right angle find no light, although there is some a
-/// full turn further.
+/// Backward rays at angles beyond a right angle find no light, although the same directions, less a
+/// full turn, have light.
 #[test]
 fn angles_beyond_a_turn_are_decided() {
     let scene = scene("angles_beyond_a_turn");
@@ -574,8 +577,8 @@ fn angles_beyond_a_turn_are_decided() {
     }
 }
 
-/// A mirror so close to the light that a part of it is before the mask: rays sampled from the light
-/// to the mirror are unlikely to hit that part.
+/// A mirror is so close to the light that a part of it is before the mask. Rays sampled from the
+/// light to the mirror are unlikely to hit that part.
 #[test]
 fn a_mirror_close_to_the_light_is_decided() {
     is_followed_past("close_to_the_mirror", &["mask"]);
@@ -600,8 +603,8 @@ fn a_ridge_under_a_sky_is_decided() {
     assert_eq!(verdict(&scene, &photons(&scene), &reference), Verdict::Pass);
 }
 
-/// A discontinuous window cuts the light of a projector: quadratures with few rays may agree on it
-/// by chance.
+/// A discontinuous window cuts the light of a projector. Quadratures with few rays may agree by
+/// chance for such light.
 #[test]
 fn a_box_before_a_projector_is_decided() {
     let scene = scene("box_before_a_projector");
@@ -625,8 +628,8 @@ fn a_wall_in_the_way_is_decided() {
     decided_against_chain("wall_in_the_way", Class::Reference);
 }
 
-/// The chain after a floor uses the coordinates of the path, not those of the wall to which it
-/// leads.
+/// The chain after a floor uses the coordinates of the path, not those of the wall to which the
+/// path leads.
 #[test]
 fn a_plane_on_the_next_wall_is_decided() {
     decided_against_chain("on_the_next_wall", Class::FirstOrder);
@@ -643,8 +646,8 @@ fn decided_against_chain(name: &str, class: Class) {
     });
 }
 
-/// Light that a blocker keeps from meeting a hollow surface again does not count before the
-/// blocker; light stopped by a floor inside the surface continues from the floor.
+/// Light whose line meets a hollow surface again does not count, even if a blocker stops it first.
+/// Light that a floor inside the surface stops continues from the floor.
 #[test]
 fn light_that_would_meet_its_surface_again_is_decided() {
     for name in ["stopped_in_a_hollow", "floor_in_a_hollow"] {
@@ -655,8 +658,8 @@ fn light_that_would_meet_its_surface_again_is_decided() {
     }
 }
 
-/// A window so narrow that hardly any ray aimed by the affine chain lands in it: exact rays traced
-/// back from it have almost no noise.
+/// Hardly any ray aimed by the affine chain lands in so narrow a window. Exact rays traced back
+/// from the window have almost no noise.
 #[test]
 fn a_narrow_window_is_decided() {
     for name in ["pinhole_beyond_glass", "pinhole_on_a_mirror"] {
@@ -669,9 +672,9 @@ fn a_narrow_window_is_decided() {
     }
 }
 
-/// Photons sampled by the sky alone rarely come from the direction of a lobe: some are sampled by
-/// the cosine, and as long as only a few of these carry the light they do not contradict the other
-/// tracer.
+/// Photons sampled in proportion to the sky rarely come from the direction of a lobe, so some are
+/// sampled by the cosine. While only a few of these carry the light, they do not contradict the
+/// other tracer.
 #[test]
 fn a_dim_part_of_the_sky_is_found() {
     let few = scene("dim_lobe_of_a_sky");
@@ -683,7 +686,7 @@ fn a_dim_part_of_the_sky_is_found() {
         let batches = measured.at_plane(0).map(|batch| batch.slices.at_zero());
         batches.sum::<f64>()
     });
-    // Photons have a noise of 15 %; without cosine sampling they find 10⁻⁹ of the light.
+    // With cosine sampling photons have a noise of 15 %; without it they find 10⁻⁹ of the light.
     assert!((found / there - 1.0).abs() < 0.5, "{found} of {there}");
 }
 
@@ -721,7 +724,7 @@ fn a_surface_behind_the_plane_of_the_sky_is_decided() {
     assert_eq!(verdict(&scene, &photons(&scene), &reference), Verdict::Pass);
 }
 
-/// Normals of a mesh are interpolated: a coarse mesh is not a smooth surface.
+/// Normals of a mesh are interpolated, so a coarse mesh is not a smooth surface.
 #[test]
 fn a_coarse_mesh_is_decided() {
     let area = [
@@ -734,7 +737,8 @@ fn a_coarse_mesh_is_decided() {
     );
 }
 
-/// On a thin lens there is no affine chain, beyond it there is one; rays are right in both cases.
+/// On a thin lens there is no affine chain; beyond the lens there is one. Rays are right in both
+/// cases.
 #[test]
 fn a_plane_on_a_lens_is_decided() {
     let scene = scene("on_a_lens");

@@ -36,6 +36,7 @@ mod theories;
 mod two_samples;
 mod unlit;
 mod validity;
+mod variation;
 mod verdict;
 mod work;
 

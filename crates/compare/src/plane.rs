@@ -7,18 +7,15 @@ use crate::full_radial::FullRadialComparison;
 use crate::heavy_rays::too_few;
 use crate::noise::noise_dof;
 use crate::prediction::Prediction;
-use crate::report::{
-    Azimuths, Bandwidth, Covariance, DirectedPair, HighFrequencyShare, Pair, PlaneReport,
-    WedgeShare,
-};
+use crate::report::{Covariance, HighFrequencyShare, Pair, PlaneReport, WedgeShare};
 use crate::residuals::{Residuals, largest};
 use crate::score::{ParameterReport, score};
+use crate::variation::{bandwidth, variation};
 use crate::verdict::{Test, Verdict};
 use etendue_field::{SliceGrid, Slices, VirtualPlane, brief, percent};
-use etendue_spectrum::bandwidth::{SliceBandwidth, Widest, bandwidth_nu, bandwidth_rho, widest};
 use etendue_spectrum::estimate::{self, ProjectionEstimate, TooFewBatches};
 use etendue_spectrum::moments::{high_frequency_share, second_moment, shear_slope, wedge_share};
-use etendue_spectrum::{CrossPower, Measurement, RadialPower, Uncertain};
+use etendue_spectrum::{CrossPower, Measurement, RadialPower};
 use ndarray::{Array2, Array3, ArrayView2, Axis};
 
 /// The comparison of a plane: the report, and the arrays behind it.
@@ -347,10 +344,8 @@ impl ComparedSides<'_> {
             slope: self.slope(grid),
             spectral_moments: [[2, 0], [1, 1], [0, 2]]
                 .map(|powers| self.pair(|p| second_moment(p, grid, powers))),
-            bandwidth_95: Bandwidth {
-                rho: self.bandwidth(bandwidth_rho),
-                nu: self.bandwidth(bandwidth_nu),
-            },
+            bandwidth_95: bandwidth(self.power, self.replicates, self.predicted),
+            variation_95: variation(self.measurement, self.index, prediction, self.predicted)?,
             covariance: covariance(self.measurement, self.index, prediction)?,
             full_radial: None,
             wedge_share: self.wedge_shares(plane),
@@ -423,35 +418,6 @@ impl ComparedSides<'_> {
             share: self.pair(|p| wedge_share(p, &plane.grid, &plane.window, [nearest, farthest])),
         };
         vec![share(farthest), share(plane.distance)]
-    }
-
-    /// Returns the bandwidth of both powers, each in the azimuth where it is largest.
-    fn bandwidth(&self, of: SliceBandwidth) -> DirectedPair {
-        let grid = &self.predicted.grid;
-        let measured = self.power.bandwidth(of);
-        let predicted = match self.replicates {
-            Some(power) => power.bandwidth(of),
-            None => {
-                let power = self.predicted.half.mapv(|s| s.norm_sqr());
-                widest(power.view(), grid, of).map(|exact| Widest {
-                    azimuth: exact.azimuth,
-                    value: Uncertain {
-                        value: exact.value,
-                        error: 0.0,
-                    },
-                })
-            }
-        };
-        let noise = predicted.map_or(0.0, |p| p.value.error);
-        DirectedPair {
-            measured: measured.map(|m| m.value.value),
-            predicted: predicted.map(|p| p.value.value),
-            error: measured.map(|m| libm::hypot(m.value.error, noise)),
-            azimuth: Azimuths {
-                measured: measured.map(|m| m.azimuth),
-                predicted: predicted.map(|p| p.azimuth),
-            },
-        }
     }
 
     /// Returns a number computed from both radial powers by the same estimator.

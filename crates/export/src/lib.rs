@@ -1,15 +1,16 @@
 //! Export of Étendue scenes to other renderers, for viewing and for checks.
 //!
 //! [`mitsuba`] writes a [`Scene`](etendue_scene::Scene) for [Mitsuba
-//! 3](https://www.mitsuba-renderer.org): light, blockers, surfaces with their BRDFs, and beside
-//! them the virtual planes, so that a script can record the same local light fields with an
-//! independent tracer (`docs/mitsuba.md`). Anything Mitsuba cannot represent is refused by name.
+//! 3](https://www.mitsuba-renderer.org): the light, the blockers, and the surfaces with their
+//! BRDFs. It also writes the virtual planes, so that a script can record the same local light
+//! fields with an independent tracer (`docs/mitsuba.md`). The export refuses anything that Mitsuba
+//! cannot represent, and names it.
 
 mod mitsuba;
 
 pub use mitsuba::{NotInMitsuba, mitsuba};
 
-/// The files of a scene for another renderer; the same scene gives the same bytes.
+/// The files of a scene for another renderer. The same scene always gives the same bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Export {
     /// File names relative to one folder, and contents.

@@ -26,7 +26,7 @@ use xml::{Xml, diffuse};
 pub enum NotInMitsuba {
     /// A spot light.
     #[error(
-        "Mitsuba has no area light whose radiance falls off as cosⁿθ: a spot with exponent {exponent} cannot be exported, one with exponent 0 can"
+        "Mitsuba has no area light whose radiance falls off as cosⁿθ: a spot with exponent {exponent} cannot be exported; allowed: exponent 0"
     )]
     Spot {
         /// Its exponent n.
@@ -45,7 +45,7 @@ pub enum NotInMitsuba {
     },
     /// An object behind the plane in which an environment begins.
     #[error(
-        "distant light starts in the plane of `center` here, but surrounds the whole scene in Mitsuba: {name:?} reaches behind that plane and would block it, and cannot be exported"
+        "distant light starts in the plane of `center` here, but surrounds the whole scene in Mitsuba: {name:?} reaches behind that plane and would block the light, so it cannot be exported"
     )]
     BehindTheSky {
         /// Name of the object.
@@ -167,7 +167,7 @@ impl Writer {
         }
         let mesh = patch::mesh(patch);
         self.xml.comment(&format!(
-            "smooth surface {name:?}: {} triangles, {:.1e} m from it at most",
+            "smooth surface {name:?}: {} triangles, at most {:.1e} m from the surface",
             mesh.faces.len(),
             mesh.error
         ));
@@ -261,15 +261,16 @@ fn cut_off(half_plane: &HalfPlane, beyond: f64) -> Rectangle {
     Rectangle { center, size }
 }
 
-/// The largest coordinate across the central ray of light that reaches a window or a surface: it
-/// runs straight from the light to there.
+/// The largest coordinate, across the central ray, of light on its straight way to a window or a
+/// surface.
 fn reach(scene: &Scene) -> f64 {
     let ends = [0, 1].map(|axis| scene.light.extent(axis));
     let light = ends
         .as_flattened()
         .iter()
         .fold(0.0, |most: f64, end| most.max(end.abs()));
-    // The sky is infinite; light from farther away arrives within a thousandth of grazing.
+    // The sky is infinite, so the extent is cut off: light from beyond it arrives within a
+    // thousandth of a radian of grazing.
     let light = if light.is_finite() {
         light
     } else {

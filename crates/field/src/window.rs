@@ -104,6 +104,21 @@ impl Profile {
         }
     }
 
+    /// Returns the Fourier transform ∫ W(t) e^(−2πi f t) dt at a frequency, which is real.
+    #[must_use]
+    pub fn transform(&self, frequency: f64) -> f64 {
+        let width = 2.0 * self.half_width();
+        let sinc = |cycles: f64| match std::f64::consts::PI * cycles {
+            x if x.abs() < 1e-9 => 1.0,
+            x => libm::sin(x) / x,
+        };
+        let of_term = |term: &CosineTerm| {
+            let sides = [frequency - term.frequency, frequency + term.frequency];
+            0.5 * term.weight * sides.map(|f| sinc(width * f)).iter().sum::<f64>()
+        };
+        width * self.cosine_terms().iter().map(of_term).sum::<f64>()
+    }
+
     /// Returns the profile inside its support as a sum of cosines (docs/theory.md (3)).
     ///
     /// Exact for Hann and Box. A Gaussian is approximated by the sum of its copies a period 2L
@@ -206,6 +221,30 @@ mod tests {
             // The limit is twice the error of two roundings of numbers up to 1.3, in steps of
             // 2.2·10⁻¹⁶.
             assert!((hann([0.5, s])[1] - exact).abs() < 8e-16, "at {s}");
+        }
+    }
+
+    #[test]
+    fn transforms_are_midpoint_sums() {
+        const POINTS: u32 = 20_000;
+        let profiles = [
+            Profile::Hann(0.7),
+            Profile::Box(0.3),
+            Profile::Gaussian {
+                width: 0.5,
+                cut: 0.6,
+            },
+        ];
+        for (profile, frequency) in profiles.into_iter().zip([0.0, 1.3, 2.1]) {
+            let half = profile.half_width();
+            let at = |i: u32| {
+                let t = half * (2.0 * (f64::from(i) + 0.5) / f64::from(POINTS) - 1.0);
+                profile.value(t) * libm::cos(std::f64::consts::TAU * frequency * t)
+            };
+            let sum: f64 = (0..POINTS).map(at).sum();
+            let sum = sum * 2.0 * half / f64::from(POINTS);
+            let off = (profile.transform(frequency) - sum).abs();
+            assert!(off < 1e-8, "{profile:?} {off:e}"); // the midpoint rule
         }
     }
 

@@ -22,7 +22,7 @@ impl AxisQuantity {
         }
     }
 
-    /// The label "name (unit)", in units of 10 to the `exponent`; markup.
+    /// The label "name (unit)" as markup, where the unit includes 10 to the `exponent`.
     pub(crate) fn label(&self, exponent: i32) -> String {
         let power = match exponent {
             0 => String::new(),
@@ -61,8 +61,8 @@ pub struct Axis {
     pub max: f64,
     /// Whether the axis is logarithmic; both edges are above 0 then.
     pub is_log: bool,
-    /// Whether its numbers descend to the right, or upwards: rows of a photograph count from the
-    /// top. The first cell of an array is then at the high edge.
+    /// Whether the numbers descend to the right, or upwards, as for rows of a photograph, which
+    /// count from the top. The first cell of an array is then at the high edge.
     pub is_reversed: bool,
 }
 
@@ -143,7 +143,7 @@ impl Axis {
             return 0;
         }
         let decade = order(min.abs().max(max.abs()));
-        // Plain numbers are shorter up to 9999 and down to 0.01.
+        // From 0.01 to 9999, plain numbers are shorter.
         if (-2..=3).contains(&decade) {
             0
         } else {
@@ -210,9 +210,9 @@ impl Axis {
     }
 }
 
-/// Length of an axis below which its texts are kept from those of the next panel.
+/// Minimum length of an axis whose texts may come near those of the next panel.
 pub(crate) const COMFORTABLE: f64 = 64.0;
-/// The length by which tick texts may exceed such an axis.
+/// The length by which tick texts may exceed a shorter axis.
 const OVERHANG: f64 = 7.0;
 
 /// First digits of the steps between ticks.
@@ -220,8 +220,8 @@ const USUAL: [f64; 3] = [1.0, 2.0, 5.0];
 /// First digits used if the usual ones leave fewer than three ticks.
 const MORE: [f64; 7] = [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 8.0];
 
-/// The most ticks whose texts do not overlap along `length`, and their font size. If there would be
-/// fewer than three, the texts are smaller, or the steps less usual.
+/// The most ticks whose texts do not overlap along `length`, and their font size. If fewer than
+/// three ticks fit, smaller texts or less usual steps are tried.
 pub(crate) fn spaced_ticks(axis: &Axis, length: f64) -> (Vec<Tick>, f64) {
     const SIZES: [f64; 3] = [TICK_TEXT, 9.5, LEAST_TEXT];
     let [min, max] = axis.range();
@@ -248,8 +248,8 @@ pub(crate) fn spaced_ticks(axis: &Axis, length: f64) -> (Vec<Tick>, f64) {
     enough.chain(others).next().unwrap_or(first)
 }
 
-/// Whether tick texts at a font `size` do not overlap, nor, along a short axis, come near those of
-/// the next panel.
+/// Whether tick texts at a font `size` do not overlap. Along a short axis they must not come near
+/// those of the next panel either.
 fn fit(axis: &Axis, ticks: &[Tick], length: f64, size: f64) -> bool {
     let beyond = |tick: &Tick| {
         let at = axis.fraction(tick.value) * length;
@@ -265,8 +265,8 @@ fn fit(axis: &Axis, ticks: &[Tick], length: f64, size: f64) -> bool {
     })
 }
 
-/// Ticks along a vertical axis: one per 36 units of its height, or denser if there would be fewer
-/// than three.
+/// Ticks along a vertical axis: one per 36 units of its height, or more densely if fewer than three
+/// would fit.
 pub(crate) fn upright_ticks(axis: &Axis, height: f64) -> Vec<Tick> {
     let most = (height / 36.0).max(2.0);
     let closer = (0..7).map(|more| axis.ticks(most + f64::from(more)));
@@ -277,14 +277,14 @@ pub(crate) fn upright_ticks(axis: &Axis, height: f64) -> Vec<Tick> {
 /// The smallest of `digits` × 10ⁿ that is not below `least` > 0.
 fn step(least: f64, digits: &[f64]) -> f64 {
     let decade = 10_f64.powi(order(least));
-    // The slack keeps 0.2, computed as 0.20000000000000004, from becoming 0.5.
+    // The tolerance prevents 0.2, computed as 0.20000000000000004, from becoming 0.5.
     let mut steps = digits.iter().map(|digit| digit * decade);
     steps
         .find(|candidate| *candidate >= least * (1.0 - 1e-9))
         .unwrap_or(10.0 * decade)
 }
 
-/// The power of ten n with 10ⁿ ≤ `value` < 10ⁿ⁺¹, up to rounding; 0 for zero.
+/// The exponent n with 10ⁿ ≤ `value` < 10ⁿ⁺¹, up to rounding errors; 0 for zero.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "the logarithm of a finite f64 is within ±324"

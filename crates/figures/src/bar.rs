@@ -75,7 +75,7 @@ fn scale(svg: &mut Svg, shading: &Shading, area: Area, overhang: f64) {
     let style = TextStyle::new(at, LABEL_TEXT, Anchor::Middle).upwards();
     let room = area.height + overhang;
     let mut label = axis.quantity.label(axis.exponent());
-    // Beside a low picture the unit alone says more than the beginning of a name.
+    // If the name does not fit beside a low picture, only the unit is written.
     if !axis.quantity.unit.is_empty() && width(&plain(&label), LEAST_TEXT) > room {
         label.clone_from(&axis.quantity.unit);
     }

@@ -29,11 +29,11 @@ pub enum Scale {
 /// Red, green, blue.
 pub(crate) type Rgb = [u8; 3];
 
-/// Grey for cells without a value (NaN), which neither map contains.
+/// Grey for cells without a value (NaN). Neither color map contains this grey.
 pub(crate) const NO_VALUE: Rgb = [158, 158, 158];
 
-/// Colors of magnitudes, dark to pale; lightness increases evenly, so they remain distinct when
-/// printed in grey.
+/// Colors of magnitudes, dark to pale. Their lightness increases evenly, so the colors remain
+/// distinct when printed in grey.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Palette {
     /// Black, purple, orange, pale yellow.
@@ -59,7 +59,7 @@ pub(crate) enum Colors {
     Cyclic,
 }
 
-/// Eight colors of the circle, between which the others are interpolated.
+/// Eight colors of the color circle; the others are interpolated between them.
 const CIRCLE: [[f64; 3]; 8] = [
     [226.0, 217.0, 226.0],
     [150.0, 182.0, 203.0],
@@ -90,7 +90,8 @@ impl Colors {
     }
 }
 
-/// The colors of magnitudes, dark to pale, and of differences, blue to red: 256 of each, as red, green and blue.
+/// The 256 colors of magnitudes, dark to pale, and the 256 colors of differences, blue to red. Each
+/// is given as red, green and blue.
 #[must_use]
 pub fn palettes() -> [Vec<u8>; 2] {
     [Colors::MAGNITUDES, Colors::Diverging].map(|colors| {
@@ -121,7 +122,7 @@ pub(crate) struct Shading {
     pub(crate) axis: Axis,
     /// The power at 0 dB; `None` on linear scales.
     reference: Option<f64>,
-    /// Whether values fall below and above the colors.
+    /// Whether some values are below the range of the colors, and whether some are above.
     pub(crate) beyond: [bool; 2],
 }
 
@@ -178,11 +179,11 @@ impl Shading {
         self.colors.at(self.axis.fraction(self.level(value)))
     }
 
-    /// The value on the color bar's axis.
+    /// Converts a value to the axis of the color bar.
     fn level(&self, value: f64) -> f64 {
         match self.reference {
             None => value,
-            // A power may be negative after noise removal: it is below any floor.
+            // A power that is negative after noise removal is below any floor.
             Some(reference) => 10.0 * libm::log10((value / reference).max(0.0)),
         }
     }

@@ -9,7 +9,8 @@ use crate::sizes::{HEAD_TEXT, LABEL_BASELINE};
 use crate::svg::{Anchor, Area, Svg, TextStyle};
 use ndarray::ArrayView2;
 
-/// One quantity, measured and expected on the same cells, [x, y], both axes ascending. NaN: no value.
+/// One quantity, measured and expected on the same cells, as arrays [x, y] with both axes
+/// ascending. NaN: no value.
 #[derive(Clone, Debug)]
 pub struct Comparison<'a> {
     /// The quantity and plane shown; markup.
@@ -24,7 +25,7 @@ pub struct Comparison<'a> {
     pub quantity: AxisQuantity,
     /// The color scale of measured and predicted.
     pub scale: Scale,
-    /// What the two sides are, such as "measured" and "predicted".
+    /// The names of the two sides, such as "measured" and "predicted".
     pub sides: [&'a str; 2],
     /// Measured values; may be negative after subtraction of the shot noise.
     pub measured: ArrayView2<'a, f64>,
@@ -32,8 +33,8 @@ pub struct Comparison<'a> {
     pub predicted: ArrayView2<'a, f64>,
     /// (measured − predicted) / σ.
     pub z: ArrayView2<'a, f64>,
-    /// Both sides on finer cells over the same axes, drawn in place of the values; the table keeps
-    /// the values.
+    /// Both sides on finer cells over the same axes. They are drawn in place of the values; the
+    /// table keeps the values.
     pub finer: Option<[ArrayView2<'a, f64>; 2]>,
 }
 
@@ -44,7 +45,7 @@ const PANEL: f64 = 240.0;
 /// Left edges of the three panels and of the two color bars; the shared bar belongs to the first two panels.
 const PANELS_X: [f64; 3] = [66.0, 66.0 + PANEL + 18.0, 66.0 + 2.0 * PANEL + 118.0];
 const BARS_X: [f64; 2] = [PANELS_X[1] + PANEL + 10.0, PANELS_X[2] + PANEL + 10.0];
-/// The length by which a label may exceed its bar.
+/// The length by which the label of a color bar may exceed the bar.
 const OVERHANG: f64 = 12.0;
 const WIDTH: f64 = BARS_X[1] + bar::WIDTH + 52.0;
 
@@ -114,7 +115,7 @@ impl<'a> Comparison<'a> {
         self.finer.unwrap_or([self.measured, self.predicted])
     }
 
-    /// The difference of the two sides over its standard deviation.
+    /// The difference of the two sides divided by its standard deviation.
     fn difference(&self, sigma: &str) -> String {
         let [one, other] = self.sides;
         format!("({one} − {other}) / {sigma}")
@@ -159,7 +160,7 @@ fn value_shading(comparison: &Comparison<'_>) -> Shading {
     shading.showing(measured).showing(predicted)
 }
 
-/// The table: a row for each cell, x slowest.
+/// The table: a row for each cell, with x varying slowest.
 fn numbers(comparison: &Comparison<'_>) -> Result<String, Error> {
     let Comparison { x, y, quantity, .. } = comparison;
     let of = |side: usize| format!("{} {}", comparison.sides[side], quantity.heading());

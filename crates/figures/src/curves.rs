@@ -54,7 +54,8 @@ pub struct CurvePanel {
     pub x: AxisQuantity,
     /// The curves in the frame.
     pub curves: Vec<Curve>,
-    /// Whether x and y are logarithmic; points not above 0 are left out then.
+    /// Whether x and y are logarithmic. On a logarithmic axis, points that are not above 0 are left
+    /// out.
     pub is_log: [bool; 2],
 }
 
@@ -79,7 +80,7 @@ const TITLE: f64 = 440.0;
 /// Height of a panel, and its maximum width.
 const HEIGHT: f64 = 136.0;
 const WIDEST: f64 = 262.0;
-/// Minimum width of a panel beside others.
+/// Minimum width of a panel that has other panels beside it.
 const NARROWEST: f64 = 100.0;
 const BETWEEN: [f64; 2] = [58.0, 74.0];
 /// Width reserved for numbers beside an axis.
@@ -102,7 +103,7 @@ const SAMPLE: f64 = 30.0;
 /// # Errors
 /// If the numbers cannot be written.
 pub fn curves(curves: &Curves, style: &Style) -> Result<Figure, Error> {
-    // Long numbers beside an axis shift its name.
+    // Long numbers beside an axis shift the name of the axis outwards.
     let ticks = curves.panels.iter().flat_map(|panel| {
         let [_, y] = axes(panel, &curves.y);
         upright_ticks(&y, HEIGHT)
@@ -208,7 +209,7 @@ fn axes(panel: &CurvePanel, y: &AxisQuantity) -> [Axis; 2] {
         by_factors(around(|p| p[1], |p| p[1] + p[2]))
     } else {
         let [least, most] = around(|p| p[1] - p[2], |p| p[1] + p[2]);
-        // Values far from zero would be a flat line on an axis with zero.
+        // On an axis that includes zero, values far from zero would look like a flat line.
         let is_far = most - least < 0.3 * least.abs().max(most.abs());
         let [least, most] = if is_far {
             [least, most]
@@ -248,7 +249,7 @@ fn draw(svg: &mut Svg, panel: &CurvePanel, y: &AxisQuantity, area: Area) {
                 CurveKind::Rival => svg.polyline(&at, RIVAL),
                 CurveKind::Measured => {
                     for (p, at) in points.iter().zip(at) {
-                        // The bar ends below the frame if an error is as large as its value.
+                        // The error bar ends below the frame if an error is as large as its value.
                         let ends = [(p[1] - p[2]).max(y.min), p[1] + p[2]];
                         let ends = ends.map(|y| frame.point(p[0], y)[1]);
                         bar(svg, at, ends);

@@ -25,7 +25,7 @@ const HEADING_LINE: f64 = 16.0;
 
 /// The name of a plane in one line, or in two if it is too long for one.
 fn name_lines(name: &str, room: f64) -> Vec<String> {
-    // Bold letters are wider than estimated.
+    // Bold letters are wider than the estimate, so less room is assumed.
     let mut words = lines(name, 1.2 * SMALL_NAME, room).into_iter();
     let first = words.next().unwrap_or_default();
     if first.chars().count() <= NUMBER {
@@ -36,7 +36,7 @@ fn name_lines(name: &str, room: f64) -> Vec<String> {
     std::iter::once(first).chain(rest).collect()
 }
 
-/// Length of a number before a name, which has no line of its own.
+/// Characters that a number takes before the name of its plane, in the same line.
 const NUMBER: usize = 2;
 /// Smallest size of a plane's name in one line.
 const SMALL_NAME: f64 = 10.0;
@@ -134,7 +134,7 @@ impl<'a> SectionLayout<'a> {
         svg.polyline(&points, stroke);
     }
 
-    /// Height of the headings of some planes, each with its room.
+    /// Height of the headings of some planes, given the width of the room for each.
     pub(crate) fn heading_height(&self, rooms: impl Iterator<Item = (usize, f64)>) -> f64 {
         let more = rooms.filter_map(|(plane, room)| {
             let mark = self.section.planes.get(plane)?;
@@ -144,7 +144,8 @@ impl<'a> SectionLayout<'a> {
         Self::HEADING + HEADING_LINE * more.max().unwrap_or(0) as f64
     }
 
-    /// The distance of a plane, and its side of an element at the same place, in one line or two.
+    /// The distance of a plane, and the side of an element at the same place on which the plane is;
+    /// in one line or two.
     fn place(&self, mark: &PlaneMark, room: f64) -> Vec<String> {
         // Four significant digits, in the shortest form.
         let rounded = format!("{:.3e}", mark.distance).parse::<f64>();
@@ -223,7 +224,7 @@ impl<'a> SectionLayout<'a> {
         let mut hatching = Hatching::default();
         for segment in self.section.segments.iter().filter(|s| s.kind == kind) {
             let (start, end) = (self.point(segment.start), self.point(segment.end));
-            // A body is filled, so it has no second side.
+            // A body is filled, so its segments have no dark side.
             let bits = |point: &[f64; 2]| point.map(f64::to_bits);
             let mut edges = self.section.bodies.iter().flatten();
             let is_flat = edges.all(|edge| bits(edge) != bits(&segment.start));
@@ -252,8 +253,8 @@ impl<'a> SectionLayout<'a> {
         svg.polygon(&[[at, border], wings[0], wings[1]], color);
     }
 
-    /// The part of a line between heights just above and below the plot; a level line is kept
-    /// whole.
+    /// The part of a line between a height just above the plot and one just below it. A horizontal
+    /// line is kept whole.
     fn visible(&self, start: [f64; 2], end: [f64; 2]) -> [[f64; 2]; 2] {
         let rise = end[1] - start[1];
         let heights = [self.plot.y - HATCH, self.plot.bottom() + HATCH];

@@ -1,4 +1,4 @@
-//! A spectrum with ellipses of covariances over it.
+//! A spectrum, over which ellipses of covariances are drawn.
 
 use crate::axis::AxisQuantity;
 use crate::bar;
@@ -32,8 +32,8 @@ pub struct Ellipses<'a> {
     pub quantity: AxisQuantity,
     /// Lower end of the decibels, below 0.
     pub floor: f64,
-    /// Ellipses at two standard deviations, in the order of the key. A missing one leaves its color
-    /// and dashes unused.
+    /// Ellipses at two standard deviations, in the order of the key. The color and dashes of a
+    /// missing ellipse remain unused.
     pub ellipses: [Option<Ellipse>; 3],
 }
 
@@ -70,7 +70,7 @@ const LINE: f64 = 17.0;
 const DEVIATIONS: f64 = 2.0;
 /// The halo below each ellipse, for pale backgrounds.
 const HALO: &str = "#10304a";
-/// Color and dashes of the ellipses: all differ in both.
+/// Colors and dashes of the ellipses; no two ellipses share a color or dashes.
 const STROKES: [(&str, &str); 3] = [("#7fe0ff", "7 4"), ("#ffffff", ""), ("#8dff9c", "2 3")];
 
 /// Draws a spectrum with ellipses.
@@ -141,7 +141,7 @@ pub fn ellipses(of: &Ellipses<'_>) -> Result<Figure, Error> {
     })
 }
 
-/// Points around the ellipse: a root of the covariance times points of a circle.
+/// Points around the ellipse. They are a matrix root of the covariance times points of a circle.
 fn points([xx, xy, yy]: [f64; 3]) -> impl Iterator<Item = [f64; 2]> {
     const CORNERS: u32 = 180;
     let a = xx.max(0.0).sqrt();
@@ -153,7 +153,7 @@ fn points([xx, xy, yy]: [f64; 3]) -> impl Iterator<Item = [f64; 2]> {
     })
 }
 
-/// Two tables: covariances, and cells, x slowest.
+/// Two tables: the covariances, and the cells with x varying slowest.
 fn numbers(of: &Ellipses<'_>) -> Result<String, Error> {
     let Picture { x, y, values } = &of.picture;
     let [a, b] = [x, y].map(|axis| axis.quantity.heading());
@@ -195,7 +195,7 @@ mod tests {
             assert!((square - 4.0).abs() < 1e-12); // rounding
             highest = highest.max(y);
         }
-        // Two standard deviations of y, up to the polygon's corners.
+        // The height is two standard deviations of y, up to the error of the polygon.
         assert!((highest - 6.0).abs() < 6.0 * 2e-4, "{highest}");
         // A spectrum without width gives a line.
         assert!(points([1.0, -2.0, 4.0]).all(|[x, y]| (y + 2.0 * x).abs() < 1e-12)); // rounding

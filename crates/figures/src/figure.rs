@@ -16,13 +16,13 @@ const PNG_SCALE: f32 = 2.0;
 /// A drawing with its numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Figure {
-    /// The drawing. Texts stay texts, heat maps are embedded PNGs with one pixel per cell.
+    /// The drawing. Texts are kept as text; heat maps are embedded PNGs with one pixel per cell.
     pub svg: String,
     /// The numbers drawn: a header with names and units, then a row for each cell or line.
     pub csv: String,
 }
 
-/// The reason why a figure could not be made: a fault of the drawing, not of the values.
+/// The reason why a figure could not be made. The fault is in the drawing, not in the values.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {

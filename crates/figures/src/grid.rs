@@ -22,7 +22,8 @@ pub struct Picture<'a> {
 }
 
 impl Picture<'_> {
-    /// The ratio of height to width: 1, unless both axes count pixels, which are square.
+    /// The ratio of height to width. It is 1, unless both axes count pixels, which are drawn
+    /// square.
     fn shape(&self) -> f64 {
         let counts_pixels = |axis: &Axis| axis.quantity.unit == "pixels";
         if counts_pixels(&self.x) && counts_pixels(&self.y) {
@@ -33,11 +34,11 @@ impl Picture<'_> {
     }
 }
 
-/// A line over a spectrum, ν = ν₀ + slope · (ρ − ρ₀), along which theory predicts its content; only
-/// its two ends are drawn.
+/// A line over a spectrum, ν = ν₀ + slope · (ρ − ρ₀), along which theory predicts content. Only the
+/// two ends of the line are drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Guide {
-    /// The point (ρ₀, ν₀): the origin, or the centre of a replica.
+    /// The point (ρ₀, ν₀), which is the origin or the centre of a replica.
     pub through: [f64; 2],
     /// dν/dρ, in metres; −d for light that has travelled d.
     pub slope: f64,
@@ -87,24 +88,25 @@ impl PictureRow<'_, '_> {
 pub(crate) const LEFT: f64 = 75.0;
 /// Width to the right of the last picture, for the color bars.
 pub(crate) const RIGHT: f64 = 81.0;
-/// Gap between adjacent pictures, if the right one has no numbers beside its axis, and if it has.
+/// Gaps between adjacent pictures: if the right picture has no numbers beside its axis, and if it
+/// has them.
 pub(crate) const GAPS: [f64; 2] = [26.0, 56.0];
-/// The former gap, where there are many pictures side by side.
+/// The first of [`GAPS`], where there are many pictures side by side.
 const CLOSE: f64 = 16.0;
-/// Gap between a picture and the one below, if they share the x axis, and if not.
+/// Gaps between a picture and the one below: if they share the x axis, and if they do not.
 const ROW_GAPS: [f64; 2] = [14.0, LABEL_BASELINE + 18.0];
 /// Distance from the left edge of the first picture to the row name.
 const ROW_NAME: f64 = 63.0;
 
-/// Strokes of the lines over spectra: visible by themselves on dark colors, and by the stroke below
-/// on pale ones.
+/// Strokes of the lines over spectra. The upper stroke is visible on dark colors, and the lower
+/// stroke makes the line visible on pale ones.
 pub(crate) fn guide_strokes(is_across: bool) -> [Stroke; 2] {
     let color = if is_across { "#8dff9c" } else { "#7fe0ff" };
     [Stroke::solid("#10304a", 3.2), Stroke::solid(color, 1.4)]
 }
 
-/// The part of a picture's side along which a line is drawn at each of its ends: between them the
-/// ridge that it predicts stays visible.
+/// The length of the strokes at both ends of a line, as a fraction of the picture's side. Between
+/// them the predicted ridge stays visible.
 const GUIDE_END: f64 = 0.1;
 /// Least distance of the texts below two adjacent pictures.
 const TEXT_GAP: f64 = 4.0;
@@ -130,14 +132,14 @@ pub(crate) struct PageGrid<'b, 'a> {
     pub(crate) side: f64,
     /// Gap between adjacent pictures, if the right one has no numbers beside its axis.
     near: f64,
-    /// Height of a picture over its width.
+    /// Height of a picture divided by its width.
     shape: f64,
     blocks: Vec<Vec<PlacedColumn>>,
 }
 
 impl<'b, 'a> PageGrid<'b, 'a> {
-    /// Lays out rows of `columns` pictures of the least and largest width, if one fits. All have the
-    /// shape of the first.
+    /// Lays out rows of `columns` pictures. Their width is from `least` to `largest`, if such a
+    /// width fits. All pictures have the shape of the first.
     ///
     /// # Panics
     /// If a row does not have a picture for each column.
@@ -147,7 +149,8 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         [least, largest]: [f64; 2],
         style: &Style,
     ) -> Self {
-        // Maximum picture width for one block, and for several, which would make a long page.
+        // Maximum picture widths: for one block, and for several blocks, which would make a long
+        // page.
         const MAX_SIDES: [f64; 2] = [190.0, 112.0];
         for row in &rows {
             assert_eq!(row.cells.len(), columns, "pictures of {}", row.name);
@@ -243,7 +246,7 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         right - LEFT
     }
 
-    /// Whether the pictures of a row share the x axes of those below.
+    /// Whether the pictures of a row share their x axes with the row below.
     fn shares_x(&self, row: usize) -> bool {
         self.rows.get(row + 1).is_some_and(|below| {
             let mut both = self.rows[row].cells.iter().zip(&below.cells);
@@ -251,8 +254,9 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         })
     }
 
-    /// The width that the x label of a picture is for: that of all pictures of a block, if they are
-    /// narrow and have the same axis; `None` where it is written to the left.
+    /// The width below which the x label of a picture is centred. It is that of the whole block if
+    /// the pictures are narrow and have the same axis. `None` if a label further to the left
+    /// applies.
     fn labelled_across(&self, row: usize, places: &[PlacedColumn], i: usize) -> Option<f64> {
         let x = |place: &PlacedColumn| &self.rows[row].cells[place.column].0.x;
         let is_same = places.iter().all(|place| x(place) == x(&places[0]));
@@ -263,8 +267,8 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         Some(last.left + self.side - places[0].left)
     }
 
-    /// The height that the y label of a picture is for: that of the pictures below it with the same
-    /// axes too; `None` where it is written above.
+    /// The height beside which the y label of a picture is centred. It includes the pictures below
+    /// that have the same axes. `None` if a label further up applies.
     fn labelled_down(&self, row: usize, column: usize) -> Option<f64> {
         let y = |row: usize| &self.rows[row].cells[column].0.y;
         let is_same = |above: usize| self.shares_x(above) && y(above) == y(above + 1);
@@ -398,7 +402,8 @@ fn draw_guides(svg: &mut Svg, panel: &Panel<'_>, guides: &[Guide]) {
     }
 }
 
-/// The ends of the part of a line inside a picture; `None` where it passes beside it.
+/// The ends of the part of a line that is inside a picture; `None` if the line does not cross the
+/// picture.
 fn inside(panel: &Panel<'_>, guide: &Guide) -> Option<[[f64; 2]; 2]> {
     let [left, right] = panel.x.range();
     let [low, high] = panel.y.range();

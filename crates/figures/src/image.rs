@@ -7,7 +7,8 @@ use crate::raster::encoded;
 use base64::Engine;
 use ndarray::ArrayView2;
 
-/// The data URI of a picture of `values`, [x, y]: x to the right, y upwards. `None` without cells.
+/// The data URI of a picture of `values`, [x, y], with x to the right and y upwards. `None` without
+/// cells.
 pub(crate) fn heat_map(
     values: ArrayView2<'_, f64>,
     shading: &Shading,
@@ -54,7 +55,7 @@ fn picture(
 /// is white.
 ///
 /// # Errors
-/// If there are no pixels, more than a PNG holds, or a different number of values.
+/// If there are no pixels, more pixels than a PNG can hold, or a different number of values.
 pub fn photograph([width, height]: [usize; 2], radiance: &[f64]) -> Result<Vec<u8>, Error> {
     let (Ok(w), Ok(h)) = (u32::try_from(width), u32::try_from(height)) else {
         return Err(Error::Size(u32::MAX, u32::MAX));

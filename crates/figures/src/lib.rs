@@ -5,9 +5,10 @@
 //! neither disk nor system fonts: the same values give the same bytes.
 //!
 //! * [`comparison()`]: one quantity from two sources, such as measured | predicted | difference in σ;
-//! * [`strip()`]: the scene cut along the central ray and, under each virtual plane, its light field and spectrum;
+//! * [`strip()`]: the scene cut along the central ray and, under each virtual plane, its light
+//!   field and spectrum;
 //! * [`plate()`]: pictures in rows and columns;
-//! * [`section()`]: that cut alone;
+//! * [`section()`]: the cut of `strip()` alone;
 //! * [`ellipses()`]: a spectrum with covariances over it;
 //! * [`curves()`]: curves and measured points, panel beside panel;
 //! * [`stacked()`]: several of these on one page;

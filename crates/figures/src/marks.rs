@@ -40,7 +40,7 @@ pub(crate) struct Hatching {
 }
 
 impl Hatching {
-    /// Hatches a piece on the side that light goes to.
+    /// Hatches a piece on the side towards which light goes.
     pub(crate) fn draw(&mut self, svg: &mut Svg, [start, end]: [[f64; 2]; 2], light: [f64; 2]) {
         const STEP: f64 = 6.0;
         let along = [end[0] - start[0], end[1] - start[1]];

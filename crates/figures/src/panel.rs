@@ -11,7 +11,7 @@ use ndarray::ArrayView2;
 
 /// The length by which an axis label may exceed its panel, along x and y.
 const OVERHANG: [f64; 2] = [24.0, 13.0];
-/// The former along x beside a close panel.
+/// The length along x beside a close panel.
 const CLOSE_OVERHANG: f64 = 10.0;
 
 /// The position of a heat map and the texts around it.
@@ -23,8 +23,8 @@ pub(crate) struct Panel<'a> {
     /// Whether tick texts and labels are written; ticks are always drawn.
     pub(crate) label_x: bool,
     pub(crate) label_y: bool,
-    /// The length that each label is for, from the left and from the top of the panel, if it is
-    /// written: panels to the right and below may share it.
+    /// The lengths along which the x and y labels are centred, from the left and from the top of
+    /// the panel. They may include panels to the right and below. `None` if a label is not written.
     pub(crate) labelled: [Option<f64>; 2],
 }
 

@@ -35,7 +35,7 @@ pub struct Plate<'a> {
     pub title: &'a str,
     /// A line below the title, markup; may be empty.
     pub note: &'a str,
-    /// Headings of the columns. What follows a line break is a second line, markup.
+    /// Headings of the columns. The text after a line break becomes a second line, markup.
     pub heads: Vec<String>,
     /// The rows, from top to bottom.
     pub rows: Vec<PlateRow<'a>>,
@@ -43,7 +43,7 @@ pub struct Plate<'a> {
     pub feet: Vec<Vec<String>>,
     /// Bars with a number for each column, at the bottom.
     pub bars: Option<Bars>,
-    /// Largest width of a picture; `None`: as wide as the page allows.
+    /// Largest width of a picture; with `None`, pictures are as wide as the page allows.
     pub side: Option<f64>,
 }
 
@@ -68,9 +68,9 @@ pub(crate) const OWN_PEAK: &str = "relative to its peak";
 /// Height of the bar panel, and width of each bar.
 const BARS: f64 = 110.0;
 const BAR: f64 = 60.0;
-/// Minimum width of a picture: columns that do not fit go below.
+/// Minimum width of a picture. Columns that do not fit at this width go below the others.
 const MIN_WIDTH: f64 = 58.0;
-/// Minimum width below a title, if the page is wide enough.
+/// Minimum page width below a title, if the page is wide enough.
 const TITLE: f64 = 440.0;
 
 /// Draws a plate, at most as wide as the page.

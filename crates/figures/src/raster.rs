@@ -2,8 +2,8 @@
 
 use etendue_field::whole;
 
-/// Rows of pixels from the top, one byte to a channel, as a PNG; with its resolution in pixels per
-/// inch, if that is given.
+/// Encodes rows of pixels, from the top, one byte per channel, as a PNG. The PNG states the
+/// resolution in pixels per inch if it is given.
 pub(crate) fn encoded(
     [width, height]: [u32; 2],
     color: png::ColorType,

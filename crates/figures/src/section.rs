@@ -9,11 +9,11 @@ pub enum SegmentKind {
     Light,
     /// A blocker, which stops light and scatters none.
     Blocker,
-    /// A surface that receives and reflects; it has a dark side.
+    /// A surface that receives and reflects light on one side; its other side is dark.
     Surface,
     /// A surface that transmits light.
     Glass,
-    /// A distant light, wherever it is drawn.
+    /// A distant light, regardless of where it is drawn.
     Sky,
 }
 
@@ -61,7 +61,7 @@ pub struct Section {
     pub planes: Vec<PlaneMark>,
     /// Outlines (z, x) of filled bodies; segments draw their edges.
     pub bodies: Vec<Vec<[f64; 2]>>,
-    /// The cut through y, if it differs; drawn above.
+    /// The cut through y, drawn above, if it differs from this one.
     pub other: Option<Box<Self>>,
     /// The scene to scale; drawn at the top.
     pub world: Option<DrawnWorld>,

@@ -47,7 +47,7 @@ pub struct AcrossPictures<'a> {
     pub light_field: Picture<'a>,
     /// The power spectrum at azimuth 90°.
     pub spectrum: Picture<'a>,
-    /// The same on finer cells, drawn in its place.
+    /// The same spectrum on finer cells, drawn in place of it.
     pub finer: Option<Picture<'a>>,
     /// Lines at the edges of that spectrum.
     pub guides: Vec<Guide>,
@@ -68,7 +68,7 @@ pub struct Strip<'a> {
     pub light_field: AxisQuantity,
     /// The quantity of the spectra, shown in decibels below the largest value of each.
     pub spectrum: AxisQuantity,
-    /// The quantity of the full radial spectra, shown likewise.
+    /// The quantity of the full radial spectra, shown in the same way.
     pub full_radial: AxisQuantity,
     /// Lower end of the decibels, below 0.
     pub floor: f64,
@@ -147,7 +147,7 @@ impl StripRow {
         })
     }
 
-    /// The picture that is drawn in its place.
+    /// The finer picture that is drawn in place of that one.
     fn drawn<'a, 'b>(self, column: &'b StripColumn<'a>) -> &'b Picture<'a> {
         let finer = match self {
             Self::Spectrum => column.finer.as_ref(),
@@ -172,12 +172,12 @@ impl StripRow {
 const CUT: f64 = 150.0;
 /// Height of the lines from the cut to the columns.
 const LEADERS: f64 = 34.0;
-/// Minimum width of a picture: columns that do not fit go below the others.
+/// Minimum width of a picture. Columns that do not fit at this width go below the others.
 const MIN_WIDTH: f64 = 48.0;
 
 /// Draws a strip, as wide as the page.
 ///
-/// The CSV has a row for each cell of each picture; the numbers of the cut are in that of
+/// The CSV has a row for each cell of each picture. The numbers of the cut are in the CSV of
 /// [`section`](crate::section()).
 ///
 /// # Errors
@@ -198,7 +198,8 @@ pub fn strip(strip: &Strip<'_>, style: &Style) -> Result<Figure, Error> {
     let verdicts = verdicts.map(|column| column.verdict.clone());
     let verdicts: Vec<Vec<String>> = verdicts.collect();
     for block in 0..grid.blocks() {
-        // Leaders to lower columns would cross those above: these columns have only numbers.
+        // Leaders to lower columns would cross the columns above, so lower columns have only
+        // numbers.
         let heads = bottom
             + if grid.blocks() == 1 && style.scene {
                 LEADERS
@@ -282,7 +283,8 @@ fn keys(
     y
 }
 
-/// Draws the key of dashed lines. The plane of incidence is named where lines differ by it.
+/// Draws the key of dashed lines. If the lines in and across the plane of incidence differ, the key
+/// distinguishes them.
 fn guide_keys(svg: &mut Svg, strip: &Strip<'_>, [x, y]: [f64; 2], style: &Style) {
     let mut guides = strip.columns.iter().flat_map(|column| &column.guides);
     let names: &[&str] = if guides.any(|guide| guide.is_across) {
@@ -312,7 +314,8 @@ fn guide_keys(svg: &mut Svg, strip: &Strip<'_>, [x, y]: [f64; 2], style: &Style)
     }
 }
 
-/// The table: a row for each cell of each picture, the pictures in order, x slowest.
+/// The table, with a row for each cell of each picture. The pictures are in order, and x varies
+/// slowest.
 fn numbers(strip: &Strip<'_>) -> Result<String, Error> {
     let header = [
         "plane",

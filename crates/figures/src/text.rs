@@ -73,7 +73,8 @@ pub(crate) fn width(text: &str, size: f64) -> f64 {
     ems * size
 }
 
-/// `text` and a font size at which its width is at most `room`: it is shrunk first, then shortened.
+/// `text`, possibly shortened, and a font size at which its width is at most `room`. The size is
+/// reduced first; then the text is shortened.
 pub(crate) fn fit(text: &str, size: f64, room: f64) -> (String, f64) {
     let smallest = size.min(LEAST_TEXT);
     let fitting = (size * room / width(text, size).max(1e-9)).clamp(smallest, size);
@@ -88,7 +89,7 @@ pub(crate) fn fit(text: &str, size: f64, room: f64) -> (String, f64) {
     (format!("{}…", kept.trim_end()), smallest)
 }
 
-/// Markup broken at spaces into lines no wider than `room`, unless a single word is wider.
+/// Breaks markup at spaces into lines no wider than `room`, unless a single word is wider.
 pub(crate) fn lines(markup: &str, size: f64, room: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in markup.split(' ').filter(|word| !word.is_empty()) {
@@ -111,7 +112,7 @@ fn is_open(markup: &str) -> bool {
     count('*') % 2 == 1 || count('{') != count('}')
 }
 
-/// The text with the characters special to XML, and those XML forbids, replaced.
+/// Replaces the characters that are special to XML and those that XML forbids.
 pub(crate) fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -162,7 +163,7 @@ fn push(runs: &mut Vec<TextRun>, text: &str) {
     }
 }
 
-/// The first complete mark: the text before it, its run, and what follows.
+/// The first complete mark: the text before it, its run, and the text after it.
 fn next_mark(text: &str) -> Option<(&str, TextRun, &str)> {
     let kinds = [
         ("*", "*", true, TextLevel::Line),
@@ -219,7 +220,7 @@ mod tests {
         assert_eq!(fit("name", 12.0, 0.0).0, "…");
     }
 
-    /// The estimated width compared with that of the font, for typical texts.
+    /// The estimated width of typical texts is compared with their width in the font.
     #[test]
     fn estimated_widths_are_near_the_true_ones() {
         for text in [

@@ -13,7 +13,8 @@ const HEAD: f64 = 30.0;
 
 /// Least distance of a plane's number from objects.
 const CLEAR: f64 = 2.0;
-/// Largest distance of a plane's number from its end, and, if there is no room, from the other one.
+/// Maximum distance of a plane's number from one end of the plane, and from the other end if there
+/// is no room at the first.
 const NEAR: u32 = 60;
 const FARTHEST: u32 = 200;
 
@@ -83,8 +84,8 @@ impl DrawnWorld {
         )
     }
 
-    /// A position for the number of a plane: beyond an end of it, clear of objects and other
-    /// numbers.
+    /// A position for the number of a plane. It is beyond one end of the plane, and clear of
+    /// objects and other numbers.
     fn free(
         &self,
         [from, to]: [[f64; 2]; 2],

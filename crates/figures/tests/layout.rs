@@ -108,7 +108,8 @@ fn no_texts_overlap() {
     }
 }
 
-/// A page is 7 inches of 96 units wide, and all texts, including scripts, have at least 6 points.
+/// A page is at most 7 inches of 96 units wide. All texts, including sub- and superscripts, have at
+/// least 6 points.
 #[test]
 fn no_text_is_below_six_points() {
     for figure in gallery() {
@@ -183,7 +184,7 @@ fn planes_at_one_place_are_drawn_apart_in_their_order() {
     assert!(places.windows(2).all(|p| p[1] - p[0] >= 16.0), "{places:?}");
 }
 
-/// A plane is drawn shifted only if its line would cover something.
+/// A plane is shifted in the drawing only if its line would cover something.
 #[test]
 fn planes_in_free_space_stand_where_they_are() {
     let places = |side| {

@@ -17,7 +17,7 @@ fn high_x_and_high_y_are_upper_right() {
     }
 }
 
-/// In the raster too, the cell fills its part of the panel with one color, without smoothing.
+/// In the raster too, one color fills the cell's part of the panel, without smoothing.
 #[test]
 fn the_raster_shows_cells_as_sharp_rectangles() {
     let values = corner();
@@ -112,7 +112,7 @@ fn the_png_states_its_resolution() {
     assert_eq!(png[chunk + 8], 1, "the unit is the metre");
 }
 
-/// Only the title is in its corner: ink there shows that the built-in fonts work.
+/// Only the title is in this corner, so ink there shows that the built-in fonts work.
 #[test]
 fn text_is_drawn() {
     let values = corner();

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 /// Maximum number of bytes that one import reads or unpacks, over all files.
 const MOST_BYTES: u64 = 4 << 30;
 
-/// The files that a scene may refer to: all within one folder, after following links.
+/// The files that a scene may refer to. All must lie within one folder after links are followed.
 #[derive(Debug)]
 pub(crate) struct Files {
     root: PathBuf,
@@ -30,7 +30,7 @@ impl Files {
 
     /// Returns the path of the file or folder `name`, searching the folders in order.
     ///
-    /// The name may contain `..`: only the resolved path must lie below the root.
+    /// The name may contain `..`, because only the resolved path must lie below the root.
     pub(crate) fn find(&self, folders: &[PathBuf], name: &str) -> Result<PathBuf, String> {
         let mut is_outside = false;
         for folder in folders {

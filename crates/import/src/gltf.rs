@@ -1,15 +1,19 @@
 //! Scenes of glTF 2.0: `.gltf`, which is JSON, and `.glb`, which holds JSON and a buffer.
 //!
-//! - Both are right-handed with Y up, and stay so. Angles are radians, lengths metres.
+//! - Coordinates are right-handed with Y up, and are kept. Angles are in radians and lengths in
+//!   metres.
 //! - Light is radiometric: a candela is read as 1 W/sr, a lux as 1 W/m², a nit of emission as 1 W m⁻² sr⁻¹.
-//! - Cameras look along −Z of their node, lights shine along it. Scale of the node changes neither.
-//! - The front of a triangle is where its corners run counterclockwise; on nodes that mirror, clockwise. Normals do not tell the front.
+//! - Cameras look, and lights shine, along −Z of their node. The scale of the node affects neither.
+//! - The front of a triangle is the side from which its corners run counterclockwise, or clockwise
+//!   if the node mirrors. Normals do not determine the front.
 //! - Surfaces scatter on their front alone unless they are `doubleSided`.
-//! - Roughness r is α = r² of GGX. Metallic 0 is a diffuse base below a dielectric coat, metallic 1 a metal that reflects its base colour at
-//!   all angles, what lies between a mixture of both. Without specular reflection (`specularFactor` 0, or index 1) it is Lambertian.
+//! - Roughness r becomes GGX with α = r². Metallic 0 is a diffuse base below a dielectric coat.
+//!   Metallic 1 is a metal that reflects its base colour at all angles. Values between 0 and 1 are
+//!   a mixture of both. A material with metallic 0 and without specular reflection
+//!   (`specularFactor` 0, or index 1) is Lambertian.
 //! - Pictures of colours are sRGB, of other quantities linear. Their first row is at v = 0, as in a world.
 //!
-//! Limits: 2²⁰ shapes and lights, and the byte limit of an import.
+//! Limits: 2²⁰ shapes, 2²⁰ lights, and the byte limit of an import.
 
 mod accessor;
 mod alpha;

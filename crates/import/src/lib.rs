@@ -1,8 +1,8 @@
 //! Reads scenes of other programs into a [`World`](etendue_world::World).
 //!
 //! Supported are Mitsuba 3's XML; pbrt-v4's files; glTF 2.0, as JSON or binary; OBJ with MTL; PLY.
-//! Content that a world cannot represent is a cause, and the scene is refused with all causes at
-//! once; minor omissions and approximations are notes. Nothing is dropped silently.
+//! Content that a world cannot represent is a *cause of refusal*; a scene is refused with all
+//! causes at once. Minor omissions and approximations are *notes*. Nothing is dropped silently.
 
 mod cie;
 mod files;
@@ -29,8 +29,10 @@ use std::path::Path;
 ///
 /// - `xml`: Mitsuba 3.
 /// - `pbrt`: pbrt-v4.
-/// - `gltf`, `glb`: glTF 2.0. Right-handed with Y up; cameras look along −Z, and have no number of pixels: 512 across. The numbers of lights are
-///   taken as radiometric: 1 cd as 1 W/sr, 1 lx as 1 W/m², 1 nit as 1 W m⁻² sr⁻¹. Surfaces that are not `doubleSided` are black behind.
+/// - `gltf`, `glb`: glTF 2.0. Right-handed with Y up; cameras look along −Z. They have no number of
+///   pixels, so pictures are 512 pixels wide. The numbers of lights are taken as radiometric: 1 cd
+///   as 1 W/sr, 1 lx as 1 W/m², 1 nit as 1 W m⁻² sr⁻¹. Surfaces that are not `doubleSided` are
+///   black on their back.
 /// - `obj`: surfaces with the materials of MTL files, on both sides, and `Ke` as radiance on their front. No camera.
 /// - `ply`: one diffuse surface, 0.5 on both sides. No camera.
 ///
@@ -46,7 +48,7 @@ pub fn import(file: &Path, options: &Options) -> Result<Imported, Refused> {
         "pbrt" => pbrt::import(file, options),
         "ron" | "json" => Err(Refused::because(
             file,
-            "a scene of Étendue, for run and check. Allowed here: gltf, glb (glTF 2.0), obj, ply, pbrt (pbrt-v4), xml (Mitsuba 3)".to_owned(),
+            "a scene of Étendue: use run or check for it. Allowed here: gltf, glb (glTF 2.0), obj, ply, pbrt (pbrt-v4), xml (Mitsuba 3)".to_owned(),
         )),
         other => Err(Refused::because(
             file,

@@ -20,7 +20,7 @@ pub(crate) struct MainFile<'a> {
 }
 
 impl<'a> MainFile<'a> {
-    /// Opens the file at a path. The user chose it, so it need not be below the root.
+    /// Opens the file at a path. The user chose this file, so it need not be below the root.
     pub(crate) fn open(path: &'a Path, options: &Options) -> Result<Self, Refused> {
         let folder = path.parent().unwrap_or(Path::new(""));
         let name = path.file_name().unwrap_or_default().to_string_lossy();

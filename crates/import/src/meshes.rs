@@ -39,8 +39,8 @@ impl MeshParts {
             .retain(|corners| across(vertices, *corners) != DVec3::ZERO);
     }
 
-    /// Computes vertex normals as the normals of adjacent triangles, weighted by their angles at
-    /// the vertex (Thürmer and Wüthrich 1998).
+    /// Computes vertex normals as sums of the normals of adjacent triangles, weighted by the angles
+    /// of the triangles at the vertex (Thürmer and Wüthrich 1998).
     ///
     /// Angles are measured after applying `linear`, the placement of the mesh.
     pub(crate) fn smooth(&mut self, linear: DMat3) {
@@ -63,7 +63,7 @@ impl MeshParts {
         self.normals = Some(normals.collect());
     }
 
-    /// Flips triangles that face away from their normals: the normals define the front.
+    /// Flips triangles that face away from their normals, because the normals define the front.
     pub(crate) fn face_normals(&mut self) {
         let Some(normals) = &self.normals else {
             return;
@@ -76,7 +76,8 @@ impl MeshParts {
         }
     }
 
-    /// Uses the triangle normal where a vertex has none; returns whether that happened.
+    /// Uses the normal of the triangle where a vertex has none; returns whether any vertex had
+    /// none.
     pub(crate) fn mend_normals(&mut self) -> bool {
         let Some(normals) = &mut self.normals else {
             return false;

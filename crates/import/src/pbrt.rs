@@ -1,29 +1,31 @@
 //! Scenes of pbrt-v4.
 //!
 //! `token`, `parameter` and `directive` turn the files into a [`scene::Scene`]; `reader` and the
-//! modules below it turn it into a world. Each parameter that is read is marked, and each unmarked
-//! one becomes a note. Conventions are those of pbrt-v4's source.
+//! modules below it turn this scene into a world. Each parameter that is read is marked, and each
+//! unmarked one becomes a note. Conventions are those of pbrt-v4's source.
 //!
 //! # Light
 //!
-//! A light has the value that a pixel of pbrt's own picture shows of it with the default sensor and
-//! an imaging ratio of 1. pbrt divides each light by the integral of its spectrum with the eye's
-//! sensitivity ȳ, and for an `rgb` by that of the white of its colour space; its sensor does not
-//! divide again. So
+//! The value of a light is that of a pixel in which pbrt shows the light, with the default sensor
+//! and an imaging ratio of 1. pbrt divides each light by the integral of its spectrum with the
+//! eye's sensitivity ȳ, and for an `rgb` by that of the white of its colour space; its sensor does
+//! not divide again. So
 //!
 //! * `rgb L [r g b]` is the colour (r, g, b) in linear sRGB, times `scale`: (1, 1, 1) shows 1 in each channel, and has luminance 1;
 //! * `blackbody` and `spectrum` have luminance 1, whatever their values, times `scale`: only their colour is that of the spectrum;
-//! * nothing is white: (1, 1, 1);
-//! * `power` and `illuminance` above 0 are those of white light: a number of luminance 1 is multiplied with them over what the light sends out for 1.
+//! * without any of these, a light is white: (1, 1, 1);
+//! * `power` and `illuminance` above 0 apply to white light: a colour of luminance 1 is
+//!   multiplied by the required value, divided by the value that the light has with radiance or
+//!   intensity 1.
 //!
-//! Reflectances and indices are colours in linear sRGB too; their spectra are converted, weighted
-//! with D65, as described at [`Color`](crate::Color).
+//! Reflectances and indices are colours in linear sRGB too. Their spectra are weighted with D65 and
+//! converted as described at [`Color`](crate::Color).
 //!
 //! # Space
 //!
-//! pbrt's coordinates are left-handed. They are kept, and the camera's map mirrors instead: its X
-//! points to the left of the picture. A mirror does not change light transport. The front of a
-//! surface is where pbrt's normal points.
+//! pbrt's coordinates are left-handed. These coordinates are kept. The camera's map mirrors
+//! instead, so its X points to the left of the picture. A mirror does not change light transport.
+//! The front of a surface is where pbrt's normal points.
 //!
 //! # Limits
 //!

@@ -25,7 +25,7 @@ pub(crate) enum TransferCurve {
     Srgb,
     /// Levels are proportional to light.
     Linear,
-    /// Light is this power of the level.
+    /// Light is the level raised to this power.
     Gamma(f64),
 }
 
@@ -89,7 +89,7 @@ fn read(files: &Files, path: &Path, color: Color, curve: TransferCurve) -> Resul
         _ => v,
     };
     let grey = channels.count == 1;
-    // Rounding would make the luminance of three equal numbers differ from them.
+    // Three equal numbers are not converted: rounding would make their luminance differ from them.
     let number = |rgb: [f64; 3]| match grey {
         true => linear(rgb[0]),
         false => color.of(rgb.map(linear)),

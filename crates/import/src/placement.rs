@@ -4,8 +4,8 @@ use crate::range::{MAX_NUMBER, holds};
 use etendue_world::Geometry;
 use glam::{DAffine3, DVec3};
 
-/// Maximum relative difference between the axes of a sphere: transforms are products of rounded
-/// numbers.
+/// Maximum relative difference between the axes of a sphere. Transforms are products of rounded
+/// numbers, so the axes differ slightly.
 const ALIKE: f64 = 1e-4;
 
 /// The reason why a geometry cannot be placed like this, if there is one.

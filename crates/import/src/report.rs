@@ -5,8 +5,8 @@ use etendue_world::World;
 use std::cell::RefCell;
 use std::rc::Rc;
 
-/// Maximum number of causes that are kept, and of notes; there may be as many as elements in a
-/// file.
+/// Maximum number of causes, and of notes, that are kept. A file could give one for each of its
+/// elements.
 const MAX_MESSAGES: usize = 100;
 
 /// Maximum number of bytes of a value in a message.

@@ -24,7 +24,8 @@ fn includes_bring_their_objects_and_see_defaults() {
         .unwrap()
         .world;
     let radii = world.shapes.iter().map(|s| s.to_world.matrix3.x_axis.x);
-    // The first default counts, in all files; defaults of an included file stay in effect after it.
+    // The first default of a name counts, over all files. Defaults of an included file remain in
+    // effect after the include.
     common::assert_close(&radii.collect::<Vec<f64>>(), &[2.0, 1.0, 7.0], 0.0);
 }
 

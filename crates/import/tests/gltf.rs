@@ -98,10 +98,11 @@ fn the_front_is_where_corners_run_counterclockwise() {
     let etendue_world::Geometry::Mesh(first) = &world.shapes[0].geometry else {
         panic!("no mesh");
     };
-    // X to the right and Y up: the front is towards Z.
+    // X points to the right and Y up, so the front is towards Z.
     let [a, b, c] = first.corners()[0].map(|i| first.vertices()[i as usize]);
     assert!((b - a).cross(c - a).z > 0.0);
-    // A mirror keeps the front of the mirrored surface, by the inverse transpose of its normals.
+    // A mirrored surface keeps its front, because its normals are transformed by the inverse
+    // transpose.
     let mirrored = &world.shapes[1];
     assert!(!mirrored.is_flipped && mirrored.to_world.matrix3.determinant() < 0.0);
     let etendue_world::Geometry::Mesh(second) = &mirrored.geometry else {

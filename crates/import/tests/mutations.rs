@@ -1,4 +1,4 @@
-//! Damaged scenes: each is read or refused, none causes a panic.
+//! Damaged scenes. Each is read or refused, and none causes a panic.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 

@@ -1,4 +1,4 @@
-//! Cameras of pbrt-v4: X to the right, and the angle of view along the shorter side.
+//! Cameras of pbrt-v4: X points to the right, and the angle of view is along the shorter side.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -35,7 +35,7 @@ fn x_is_to_the_right() {
         &[-2.0 / 5_f64.sqrt(), 0.0, -1.0 / 5_f64.sqrt()],
         1e-12,
     );
-    // A mirror before the camera, as exporters write it.
+    // A mirroring transform before the camera, as exporters write it.
     let mirrored = format!("Scale -1 1 1 {placed}");
     let look = camera(&mirrored).look([40.0, 10.0], [0.0; 2]);
     assert_close(

@@ -1,5 +1,5 @@
-//! Lights of pbrt-v4: a colour has the value that its own picture shows, a spectrum has luminance
-//! 1.
+//! Lights of pbrt-v4. A colour has the value that pbrt's own picture shows, and a spectrum has
+//! luminance 1.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -140,7 +140,7 @@ fn areas_shine_by_their_power() {
     let patch = "\"float power\" 8 Shape \"bilinearmesh\" \"point3 P\" [0 0 0 2 0 0 0 2 0 2 2 0]";
     assert_close(&[radiance(patch)], &[2.0 / PI], 1e-12);
     let two = "AreaLightSource \"diffuse\" \"float power\" 8 Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0] \"integer indices\" [0 1 2 1 3 2]";
-    assert!(causes(two)[0].contains("which pbrt gives to each triangle"));
+    assert!(causes(two)[0].contains("pbrt gives this power to each triangle"));
     let both = "AreaLightSource \"diffuse\" \"bool twosided\" true Shape \"sphere\"";
     assert!(
         causes(both)[0].starts_with("text:3:27: light from both sides"),
@@ -209,7 +209,7 @@ fn skies_are_squares_of_equal_area() {
         sum += light;
         toward += light * DVec3::new(sin * x, cos, -sin * z);
     }
-    // Means over pixels conserve light within a few hundredths of so small a spot.
+    // Means over pixels conserve the light of so small a spot to a few per cent.
     let pixel = 4.0 * PI / (side * side) as f64;
     assert!((sum / (4.0 * pixel) - 1.0).abs() < 0.1, "{sum}");
     // The centre of the pixel: u = 9/16, v = 1/16 of ±1, so that r = 10/16.

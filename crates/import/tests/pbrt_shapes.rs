@@ -90,8 +90,8 @@ fn fronts_are_where_normals_point() {
             outward,
             "{plugin}"
         );
-        // pbrt flips normals after a mirror; those of meshes, whose corners it mirrors too, are
-        // flipped twice.
+        // pbrt flips normals after a mirror. It also mirrors the corners of meshes, so normals of
+        // meshes are flipped twice.
         let is_mesh = plugin.contains("mesh");
         let mirrored = if is_mesh { outward } else { -outward };
         assert_eq!(of("Scale 1 -1 1"), mirrored, "{plugin}");
@@ -194,7 +194,7 @@ fn unsound_meshes_are_refused() {
         assert!(found[0].contains(what), "{found:?}");
     }
     let many = "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"normal N\" [0 0 1]";
-    assert!(notes(many)[0].contains("N is left out: 1 of 3 vertices"));
+    assert!(notes(many)[0].contains("N is left out: the mesh has 3 vertices, but N gives 1"));
 }
 
 #[test]

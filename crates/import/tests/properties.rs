@@ -63,7 +63,10 @@ fn all_causes_are_listed() {
 #[test]
 fn ids_are_there_once() {
     let twice = "<bsdf type=\"diffuse\" id=\"a\"/>\n<bsdf type=\"diffuse\" id=\"a\"/>";
-    assert_eq!(causes(twice), ["text:3:1: id `a` is in line 2 already"]);
+    assert_eq!(
+        causes(twice),
+        ["text:3:1: id `a` is already used in line 2"]
+    );
     let twice = "<shape type=\"sphere\"><float name=\"radius\" value=\"1\"/><float name=\"radius\" value=\"1\"/></shape>";
     assert_eq!(
         causes(twice),

@@ -281,7 +281,7 @@ fn serialized_files_hold_several_meshes() {
     assert_close(&shading_normal(&world.shapes[1], 1), &[0.0, 0.0, 1.0], 0.0);
     let causes = read_in(&shape(2), files.path(), Color::Luminance).unwrap_err();
     assert!(
-        causes[0].contains("has 2 meshes; shape_index 2 is none of them"),
+        causes[0].contains("has 2 meshes, but shape_index is 2"),
         "{causes:?}"
     );
 }

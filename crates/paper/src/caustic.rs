@@ -1,4 +1,4 @@
-//! Fig. 11: a beam on a hollow mirror, met along its normal and obliquely.
+//! Fig. 11: a beam on a hollow mirror, at normal and at oblique incidence.
 
 use crate::rows::{DECIBEL, Seen, feet, row};
 use crate::subject::FigureData;

@@ -40,7 +40,7 @@ const SPARSE: usize = 20;
 /// Paths of each shading sample.
 const PATHS_PER_SAMPLE: u32 = 128;
 
-/// The pixel difference, over white, at which the colors of differences saturate.
+/// The pixel difference, relative to white, at which the colors of differences saturate.
 const MAX_DIFFERENCE: f64 = 0.2;
 
 struct CreatureScene {
@@ -140,7 +140,8 @@ struct CreatureRow<'a> {
     panels: &'a [PicturePanel<'a>],
     quantity: AxisQuantity,
     scale: Scale,
-    /// Whether the colors are those of the quantity; otherwise of each picture's largest value.
+    /// Whether the range of colors is that of the quantity; otherwise it is that of each picture's
+    /// values.
     shared: bool,
 }
 
@@ -231,18 +232,18 @@ impl ComparedPictures {
         }
     }
 
-    /// Relative luminance: radiance over that of white, at most 1.
+    /// Relative luminance: radiance divided by that of white, at most 1.
     fn luminance(&self, scene: &CreatureScene, of: &[f64]) -> Result<Array2<f64>, Failure> {
         scene.picture(of.iter().map(|x| (x / self.white).min(1.0)).collect())
     }
 
-    /// The difference from the reference over white.
+    /// The difference from the reference, relative to white.
     fn difference(&self, scene: &CreatureScene, of: &[f64]) -> Result<Array2<f64>, Failure> {
         let both = of.iter().zip(&self.reference.mean);
         scene.picture(both.map(|(x, r)| (x - r) / self.white).collect())
     }
 
-    /// The mean of squares over r² + ε², such as (x − r)².
+    /// The mean of `squares`, such as (x − r)², divided by r² + ε².
     fn relative(&self, squares: impl Iterator<Item = f64>) -> f64 {
         let reference = &self.reference.mean;
         let count = reference.len() as f64;
@@ -259,7 +260,7 @@ impl ComparedPictures {
         self.relative(both.map(|(x, r)| (x - r).powi(2)))
     }
 
-    /// The relative mean square error of the reference, by its noise.
+    /// The relative mean square error of the reference that its noise causes.
     fn noise(&self) -> f64 {
         self.relative(self.reference.variance.iter().copied())
     }

@@ -72,9 +72,10 @@ struct FigureIndex<'a> {
     /// The chosen style, if any.
     #[serde(skip_serializing_if = "Option::is_none")]
     style: Option<Style>,
-    /// The factor by which frequencies along each axis are finer than the scene's.
+    /// The factor by which the frequencies along each axis are denser than the scene's.
     finer: usize,
-    /// The hash of each scene with the photons of this quality, at its own frequencies.
+    /// The hash of each scene, with the number of photons for this quality and the scene's own
+    /// frequencies.
     scenes: BTreeMap<&'a str, String>,
     photons: BTreeMap<&'a str, u64>,
     /// The user's scenes as they were run, except for the frequencies.
@@ -131,7 +132,7 @@ pub fn make_all(
 /// undecided planes.
 #[expect(
     clippy::too_many_lines,
-    reason = "one figure from subject to result, in the order in which it goes"
+    reason = "the steps of one figure from subject to result, in order"
 )]
 pub(crate) fn make(
     request: &FigureRequest,
@@ -239,7 +240,8 @@ fn write(results: &mut Results, subject: &Subject, taken: &FigureData<'_>) -> Re
     results.write("figure.pdf", &pdf)?;
     results.write("figure.png", &png)?;
     results.write("figure.svg", figure.svg.as_bytes())?;
-    // The table of a strip would have a row for each cell, which the arrays store more compactly.
+    // No table is written for a strip. It would have a row for each cell, and the arrays store the
+    // cells more compactly.
     if subject.has_table {
         results.write("figure.csv", figure.csv.as_bytes())?;
     }

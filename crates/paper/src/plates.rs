@@ -121,7 +121,7 @@ pub(crate) fn occluders(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     })
 }
 
-/// ∫ L W of a plane without blockers; `None` where light does not travel between parallel planes.
+/// ∫ L W of a plane without blockers; `None` if light does not travel between parallel planes.
 fn unblocked(shot: &Shot, plane: &VirtualPlane) -> Option<f64> {
     let index = shot
         .scene

@@ -12,7 +12,7 @@ pub enum Quality {
     /// The scenes' photons, and four times as many frequencies
     #[default]
     Print,
-    /// The least work with which all texts are in place
+    /// The least work that still draws all texts
     #[cfg(test)]
     Sketch,
 }
@@ -29,7 +29,7 @@ impl Quality {
         }
     }
 
-    /// The number of photons for a scene with this number.
+    /// The number of photons for a scene that specifies `photons`.
     pub(crate) fn photons(self, photons: u64) -> u64 {
         match self {
             Self::Draft => photons / 8,
@@ -39,9 +39,9 @@ impl Quality {
         }
     }
 
-    /// The number of frequencies for each one of the scene, along each axis. Because the window is
-    /// bounded the intermediate frequencies are determined too: the picture shows actual values
-    /// between the scene's, not larger cells.
+    /// The number of frequencies along each axis for each frequency of the scene. The window is
+    /// bounded, so values between the scene's frequencies are meaningful: the picture shows them
+    /// instead of larger cells.
     pub(crate) fn finer(self) -> usize {
         match self {
             Self::Draft => 2,

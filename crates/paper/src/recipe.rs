@@ -266,8 +266,8 @@ mod tests {
     use etendue_figures::Style;
     use etendue_pipeline::Silent;
 
-    /// Pages are at most seven inches wide, at 96 units of the drawing each, and not longer than A4;
-    /// texts, including indices, have at least 6 points.
+    /// Pages are at most seven inches wide and not longer than A4; an inch has 96 units of the
+    /// drawing. Texts, including sub- and superscripts, have at least 6 points.
     #[test]
     #[ignore = "minutes: every figure is measured; .ci/pages runs it"]
     fn every_figure_fits_its_page_and_can_be_read() {

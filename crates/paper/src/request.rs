@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 pub enum Wanted {
     /// A figure of the paper (1, 3 to 17, or table1), or all of them.
     PaperFigure(String),
-    /// A scene; all scenes make one figure.
+    /// A scene of the user; all requested scenes make one figure.
     Scene(SceneSource),
 }
 
@@ -41,8 +41,8 @@ pub struct FigureRequest {
     /// Fields of the scenes set to values, for the command in `figure.json`; the scenes already
     /// include them.
     pub set: Vec<(String, String)>,
-    /// The plane at which scenes are shown; by default the last plane of each of several scenes,
-    /// and all planes of a single one.
+    /// The plane at which scenes are shown. The default is the last plane of each of several
+    /// scenes, or all planes of a single scene.
     pub plane: Option<String>,
     /// A file with the style of figures.
     pub style: Option<PathBuf>,

@@ -49,7 +49,7 @@ impl<'a> Seen<'a> {
     }
 }
 
-/// The slice of a spectrum at azimuth 0, [ρ, ν]: by its power, or its phase.
+/// The power, or the phase, of the slice of a spectrum at azimuth 0, [ρ, ν].
 pub(crate) fn slice(slices: &Slices, of: &dyn Fn(Complex, f64) -> f64) -> Array2<f64> {
     let full = slices.full();
     let slice = full.index_axis(Along(0), 0);

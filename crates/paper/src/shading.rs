@@ -92,10 +92,12 @@ fn glows(light: &Light) -> Vec<Glow> {
     lobes.iter().map(glow).collect()
 }
 
-/// |spectrum ⊗ Ŵ| at some frequencies: back to positions, times the window, and forth again.
+/// |spectrum ⊗ Ŵ| at some frequencies. The spectrum is transformed to positions, multiplied by the
+/// window and transformed back.
 fn windowed(spectrum: &dyn Fn(f64) -> Complex, window: &Profile, rho: &[f64]) -> Vec<f64> {
     const STEPS: i32 = 400;
-    // Frequencies up to four times the last; lobes of a tenth of a radian have none beyond.
+    // Frequencies extend to four times the last one; lobes of a tenth of a radian have no power
+    // beyond.
     let last = 4.0 * rho.last().copied().unwrap_or(1.0);
     let along = |half: f64| (-STEPS..=STEPS).map(move |i| half * f64::from(i) / f64::from(STEPS));
     let values: Vec<(f64, Complex)> = along(last).map(|q| (q, spectrum(q))).collect();
@@ -112,7 +114,7 @@ fn windowed(spectrum: &dyn Fn(f64) -> Complex, window: &Profile, rho: &[f64]) ->
     rho.iter().map(at).collect()
 }
 
-/// |S| at azimuth 0 along ν = 0, relative to that at zero, over ρ.
+/// |S| at azimuth 0 along ν = 0, as a function of ρ, relative to the value at zero.
 fn at_zero_nu(slices: &Slices) -> Vec<[f64; 3]> {
     let full = slices.full();
     let (grid, peak) = (&slices.grid, slices.at_zero());

@@ -1,4 +1,4 @@
-//! Figs. 3 and 13: coordinates of rays, and the error of taking one kind for another.
+//! Figs. 3 and 13: coordinates of rays, and the error of treating one kind as another.
 
 use crate::rows::{Seen, compared, feet, lettered, row};
 use crate::scene_run::resolved;

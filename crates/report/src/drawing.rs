@@ -1,5 +1,5 @@
-//! Draws the scene in cross-section along the central ray, by the plane of X, where y = 0, and by
-//! that of Y, where x = 0.
+//! Draws the scene in two cross-sections along the central ray: in the plane of X, where y = 0, and
+//! in that of Y, where x = 0.
 
 mod cut;
 mod world;
@@ -25,7 +25,7 @@ pub(crate) fn cross_section<'a>(
     }
 }
 
-/// Whether two cuts are the same, but for jitter.
+/// Whether two cuts are the same except for jitter.
 fn alike(a: &Section, b: &Section) -> bool {
     const JITTER: f64 = 0.05;
     let width = a.half_width.max(b.half_width);

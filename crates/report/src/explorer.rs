@@ -14,7 +14,7 @@ pub(crate) const PAGE: &[u8] = include_bytes!("../../../docs/explorer.html");
 /// The part after # in the address of the page that shows a scene; `None` if the explorer does not
 /// support it.
 ///
-/// A scene is supported if it is the one the explorer would save for these numbers; planes, names
+/// A scene is supported if the explorer would save the same scene for these numbers. Planes, names
 /// and the extent of surfaces may differ.
 pub(crate) fn fragment(file: &SceneFile) -> Option<String> {
     let setup = setup(file)?;
@@ -31,7 +31,7 @@ pub(crate) fn fragment(file: &SceneFile) -> Option<String> {
 /// The precision, in inverse metres, of values derived from positions and sides of slats.
 const DIGITS: f64 = 1e12;
 
-/// Whether two layers are slats that differ only by rounding.
+/// Whether two layers are slats that differ only by rounding errors.
 fn are_near(a: &BlockersFile, b: &BlockersFile) -> bool {
     let of = |blockers: &BlockersFile| {
         let BlockersFile::Shapes { center, shapes, .. } = blockers else {
@@ -178,7 +178,7 @@ fn reflection(surface: &SurfaceFile, setup: &mut Setup) -> Option<()> {
 
 #[expect(
     clippy::cast_precision_loss,
-    reason = "seeds and counts beyond what the explorer has are not its scenes"
+    reason = "scenes with seeds and counts beyond the explorer's range are not supported"
 )]
 fn stopped(blockers: &BlockersFile, setup: &mut Setup) -> Option<()> {
     let mut set = |distance: f64, count: usize, pitch: f64, fill: f64| {

@@ -18,7 +18,7 @@ pub const NAME: &str = "report.html";
 /// The largest number of bytes of a page that is read.
 const MAX_PAGE_BYTES: u64 = 1 << 28;
 
-/// The text around the data of a run in a page; before the data, the marker where the explorer is.
+/// The text before and after the data of a run in a page.
 const BEFORE: &str = "class=\"run-data\">";
 const AFTER: &str = "</script>";
 
@@ -42,8 +42,8 @@ pub fn stored_data(folder: &Path) -> Result<String, Failure> {
     let inside = text
         .split_once(BEFORE)
         .and_then(|(_, rest)| rest.split_once(AFTER));
-    let (data, _) = inside.ok_or_else(|| fault("it has no data of a run"))?;
-    // A new index can be written for any page, so what is read from it is checked to be data.
+    let (data, _) = inside.ok_or_else(|| fault("it does not contain the data of a run"))?;
+    // Anyone can write a new index for a changed page, so the content is checked to be data.
     serde_json::from_str::<IgnoredAny>(data).map_err(|e| fault(&e.to_string()))?;
     Ok(data.to_owned())
 }
@@ -52,7 +52,8 @@ pub fn stored_data(folder: &Path) -> Result<String, Failure> {
 pub fn page(title: &str, blocks: &[(String, String)]) -> String {
     let block = |(folder, data): &(String, String)| {
         let folder = escaped(folder).replace('"', "&quot;");
-        // In JSON this character occurs in strings only, so no name in a scene can end the data.
+        // In JSON this character occurs only in strings. It is escaped, so that no name in a scene
+        // can end the data.
         let data = data.replace('<', "\\u003c");
         format!("<script type=\"application/json\" data-folder=\"{folder}\" {BEFORE}{data}{AFTER}")
     };

@@ -43,7 +43,7 @@ pub const NAMES: [&str; 6] = [
 /// The picture files of the path, and the numbers behind them.
 pub const PATH_NAMES: [&str; 3] = ["path.png", "path.svg", "path.csv"];
 
-/// The two sides of the pictures of a run's plane: where no theory applies, the other is a
+/// The two sides of the pictures of a run's plane: where no theory applies, the other side is a
 /// measurement by the other tracer.
 pub fn sides(plane: &PlaneComparison) -> [&'static str; 2] {
     match plane.report.class {
@@ -108,9 +108,9 @@ fn primal(
     .map_err(Failure::cannot_run)
 }
 
-/// The radial spectrum of a plane, measured and predicted drawn without visible cells where the
-/// window determines what is between the frequencies; the difference and the numbers are those of
-/// the scene's frequencies.
+/// The radial spectrum of a plane. Where the window determines the values between the frequencies,
+/// measured and predicted are drawn without visible cells. The difference and the numbers are those
+/// at the scene's frequencies.
 fn spectrum(
     (note, sides): (&str, [&str; 2]),
     at: &VirtualPlane,
@@ -196,7 +196,7 @@ pub fn verdict_line(plane: &PlaneComparison) -> String {
     verdict_lines(plane).join(", ")
 }
 
-/// The same in lines as narrow as a picture.
+/// The verdict and its reasons, in lines as narrow as a picture.
 pub fn verdict_lines(plane: &PlaneComparison) -> Vec<String> {
     let report = &plane.report;
     let verdict = word(report.verdict);
@@ -216,7 +216,7 @@ pub fn verdict_lines(plane: &PlaneComparison) -> Vec<String> {
     lines.extend(chi2.map(|t| format!("*χ*^{{2}}/dof = {t:.3}")));
     let full_radial = report.full_radial.and_then(|full| full.p_value);
     lines.extend(full_radial.map(|p| format!("full radial *p* = {p:.3}")));
-    // The disagreement is within that error, which is why the plane passes.
+    // The disagreement is within that error, so the plane passes.
     let is_excused = report.exact_verdict() == Verdict::Pass && report.p_value < Some(0.001);
     let error = report.quadrature_error.filter(|_| is_excused);
     lines.extend(error.map(|error| format!("quadrature ± {}", percent(error, 3))));

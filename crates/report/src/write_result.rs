@@ -12,9 +12,9 @@ use std::path::{Path, PathBuf};
 /// The user's options for a result folder.
 #[derive(Debug)]
 pub struct OutputOptions<'a> {
-    /// What is saved beside the result.
+    /// The data saved beside the result.
     pub save: &'a [Save],
-    /// Whether to omit files whose content is also in pictures and arrays.
+    /// Whether to omit files whose content other files also hold.
     pub compact: bool,
 }
 

@@ -15,6 +15,7 @@
 pub mod bandwidth;
 mod batch;
 mod covariance;
+pub mod directional;
 pub mod estimate;
 pub mod field;
 mod histogram;
@@ -24,6 +25,7 @@ mod measurement;
 pub mod moments;
 mod radial;
 mod ray_moments;
+mod variation;
 
 pub use batch::{Batch, PartialBatch, PlaneBatch};
 pub use covariance::{CovarianceEstimate, covariance};
@@ -33,3 +35,4 @@ pub use measure::{PROJECTION_BINS, Watch, measure, measure_watched};
 pub use measurement::{Measurement, MergeError};
 pub use radial::{CrossPower, RadialPower};
 pub use ray_moments::RayMoments;
+pub use variation::WindowedMean;

@@ -161,13 +161,29 @@ impl<'m> CrossPower<'m> {
     #[must_use]
     pub fn without(&self, left_out: usize) -> Array2<f64> {
         let r = self.batches.len() as f64;
-        let mut row = Array3::zeros(self.sum.raw_dim());
-        ndarray::Zip::from(&mut row)
-            .and(at(&self.batches[left_out].half, &self.azimuths))
-            .and(&self.sum)
-            .for_each(|row: &mut f64, s, sum| *row = (s.conj() * (sum - s)).re);
+        let row = self.row(left_out);
         let power = (mean(&self.pairs) - mean(&row) * 2.0) / ((r - 1.0) * (r - 2.0));
         self.grid.unfold_radial(power.view())
+    }
+
+    /// Returns Σ_(s≠r) Re(S_r conj S_s) for a batch r.
+    fn row(&self, batch: usize) -> Array3<f64> {
+        let mut row = Array3::zeros(self.sum.raw_dim());
+        ndarray::Zip::from(&mut row)
+            .and(at(&self.batches[batch].half, &self.azimuths))
+            .and(&self.sum)
+            .for_each(|row: &mut f64, s, sum| *row = (s.conj() * (sum - s)).re);
+        row
+    }
+
+    /// Returns the power at each azimuth, [azimuth, ρ ≥ 0, ν], from all batches and then with each
+    /// batch left out.
+    pub(crate) fn at_azimuths(&self) -> impl Iterator<Item = Array3<f64>> {
+        let r = self.batches.len() as f64;
+        let without = (0..self.batches.len()).map(move |left_out| {
+            (&self.pairs - self.row(left_out) * 2.0) / ((r - 1.0) * (r - 2.0))
+        });
+        std::iter::once(&self.pairs / (r * (r - 1.0))).chain(without)
     }
 
     /// Returns power, shot noise and standard error.

@@ -1,4 +1,4 @@
-//! Draws the curves of a sweep: each plane's numbers over the first field.
+//! Draws the curves of a sweep: each plane's numbers as functions of the first field.
 
 use crate::table::{BANDWIDTHS, PointResult, SLOPE, TableNumber, numbers};
 use crate::values::{SweepPoint, short, shown};
@@ -6,15 +6,18 @@ use etendue_figures::{AxisQuantity, Curve, CurveKind, CurvePanel, Curves, Figure
 use etendue_pipeline::table::spaced;
 use etendue_store::Failure;
 
-/// Names of the pictures, without extensions.
+/// Names of the picture files, without extensions.
 pub(crate) const NAMES: [&str; 3] = ["bandwidth_rho", "bandwidth_nu", "slope"];
 
 /// The largest useful number of panels in a picture.
 const MAX_PANELS: usize = 24;
 
-/// The pictures of [`NAMES`], unless they would have too many panels. In a grid of several fields
-/// there is a panel for each combination of values of all but the first.
-#[expect(clippy::too_many_lines, reason = "one drawing, from panels to axes")]
+/// Draws the pictures of [`NAMES`], unless they would have too many panels. In a grid of several
+/// fields, each combination of values of the fields after the first has a panel.
+#[expect(
+    clippy::too_many_lines,
+    reason = "the steps of one drawing, from panels to axes"
+)]
 pub(crate) fn drawn(
     scene: &str,
     found: &[PointResult],

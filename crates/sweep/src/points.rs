@@ -66,14 +66,14 @@ impl SweepPoints {
         &self.scenes
     }
 
-    /// Warnings about the scenes, each once, with the first point it concerns.
+    /// Warnings about the scenes. Each is shown once, with the first point that it concerns.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut told: Vec<String> = Vec::new();
         let mut warnings = Vec::new();
         for (point, scene) in self.points.iter().zip(&self.scenes) {
             for warning in scene.warnings() {
-                // A message that differs only in its numbers is shown once.
+                // Messages that differ only in their numbers are shown once.
                 let words: String = warning
                     .chars()
                     .filter(|c| !c.is_ascii_digit() && *c != '.')
@@ -98,8 +98,9 @@ impl SweepPoints {
     }
 }
 
-/// The seed of a point, derived from its scene and the seed of the sweep, independently of other
-/// points. Every reader of JSON represents the number exactly.
+/// The seed of a point. It is derived from the point's scene and the seed of the sweep, and does
+/// not depend on the other points. The seed is small enough for every reader of JSON to represent
+/// it exactly.
 fn seed_of(scene: &Scene) -> u64 {
     let hash = blake3::hash(scene.hash().as_bytes());
     let mut words = hash.as_bytes().chunks_exact(8).map(|word| {
@@ -109,7 +110,7 @@ fn seed_of(scene: &Scene) -> u64 {
     words.next().unwrap_or(0) >> 24
 }
 
-/// Fails where nothing is swept, or where a field is given values twice.
+/// Fails if no field is swept, or if values for one field are given twice.
 fn check(
     request: &SweepRequest,
     set: &[(String, String)],
@@ -150,7 +151,7 @@ fn check(
     }
 }
 
-/// The fields set to one value, and those swept.
+/// The fields set to one value, and the swept fields.
 fn settings(all: &[Setting]) -> (Vec<(String, String)>, Vec<Sweep>) {
     let (mut set, mut sweeps) = (Vec::new(), Vec::new());
     for setting in all {

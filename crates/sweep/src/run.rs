@@ -58,8 +58,8 @@ pub fn run(
     check_earlier(folder, SWEEP, base, request.force, arguments)?;
     check_fields(request, folder, sweeps)?;
     let inputs = load::inputs(&all.source, base);
-    // The folder is claimed before the work, and again for the table; each point claims a folder of
-    // its own.
+    // The folder is claimed before the work, and again for the table. Each point claims its own
+    // folder.
     drop(Results::claim(folder, plan(request, &inputs))?);
     unfinished::keeps(
         "interrupted: finished points are kept; the same command continues from them",
@@ -69,7 +69,7 @@ pub fn run(
     finish(request, all, &found, results, reporter)
 }
 
-/// Fails where the folder holds a sweep of other fields.
+/// Fails if the folder holds a sweep of other fields.
 fn check_fields(request: &SweepRequest, folder: &Path, sweeps: &[Sweep]) -> Result<(), Failure> {
     let earlier = read_file(&folder.join(SWEEP), MAX_INDEX_BYTES).ok();
     let earlier: Option<Value> = earlier.and_then(|bytes| serde_json::from_slice(&bytes).ok());
@@ -107,7 +107,7 @@ fn plan(request: &SweepRequest, inputs: &[PathBuf]) -> Plan {
     }
 }
 
-/// The result of each point, run now or before.
+/// The result of each point, from this or an earlier run.
 fn run_all(
     request: &SweepRequest,
     folder: &Path,
@@ -176,7 +176,7 @@ fn run_all(
     found.collect()
 }
 
-/// The folders of the points, checked to be inside that of the sweep.
+/// The folders of the points. They are checked to be inside the folder of the sweep.
 fn folders(
     request: &SweepRequest,
     folder: &Path,
@@ -283,8 +283,8 @@ fn undecided(at: &PointResult) -> Vec<String> {
 /// The table for the terminal: a row for each plane at each point.
 fn rows(paths: &[String], found: &[PointResult]) -> Vec<Vec<String>> {
     let shown = [
-        (BANDWIDTHS[0], "95 % below ρ [cycles/m]"),
-        (BANDWIDTHS[1], "95 % below ν [cycles/slope]"),
+        (BANDWIDTHS[0], "95 % bandwidth in ρ [cycles/m]"),
+        (BANDWIDTHS[1], "95 % bandwidth in ν [cycles/slope]"),
         (SLOPE, "shear slope [m]"),
     ];
     let mut header = paths.to_vec();

@@ -94,7 +94,7 @@ fn columns(paths: &[String], found: &[PointResult]) -> Vec<(String, Column)> {
     let swept = swept.map(|(i, path)| (path.clone(), values(&|row| Some(row.at.point[i].1))));
     let rest = [
         ("point", words(&|row| row.at.folder.clone())),
-        // Written as text, since not every seed is exact as a double.
+        // Texts. Seeds are among them, since a double does not represent every seed exactly.
         ("seed", words(&|row| row.at.summary["seed"].to_string())),
         ("plane", text("name")),
         ("class", text("class")),

@@ -49,7 +49,8 @@ pub fn setting_of(path: &str, values: &str, arguments: ArgumentStyle) -> Result<
     Ok(Setting::Value(path, values))
 }
 
-/// Whether there is a comma outside of parentheses and quotes, which no single value contains.
+/// Whether there is a comma outside of parentheses and quotes. No single value contains such a
+/// comma.
 fn is_list(text: &str) -> bool {
     let (mut depth, mut quoted) = (0, false);
     text.chars().any(|c| {
@@ -63,7 +64,8 @@ fn is_list(text: &str) -> bool {
     })
 }
 
-/// `PATH=A..B:N`, evenly spaced, `PATH=A..B:Nlog`, by equal factors, or `PATH=A,B,C`.
+/// The forms are `PATH=A..B:N` (evenly spaced), `PATH=A..B:Nlog` (spaced by equal factors) and
+/// `PATH=A,B,C`.
 pub fn sweep(text: &str) -> Result<Sweep, String> {
     let (path, values) = text
         .split_once('=')
@@ -109,7 +111,7 @@ fn allowed(why: &str, arguments: ArgumentStyle) -> String {
         }
         ArgumentStyle::Python => "'A..B:N', 'A..B:Nlog' (logarithmic spacing), or a sequence",
     };
-    format!("{why}; allowed: {forms}, with at most {MAX_POINTS} values, which are numbers")
+    format!("{why}; allowed: {forms}, with at most {MAX_POINTS} values, all of them numbers")
 }
 
 fn number(text: &str) -> Result<f64, String> {
@@ -117,7 +119,7 @@ fn number(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| format!("`{}` is not a number", text.trim()))
 }
 
-/// The values of a range, from the text before and after the dots.
+/// Parses the values of a range from the text before and after the dots.
 fn range(from: &str, rest: &str) -> Result<Vec<f64>, String> {
     let (to, count) = rest
         .split_once(':')
@@ -142,22 +144,23 @@ fn range(from: &str, rest: &str) -> Result<Vec<f64>, String> {
         .collect())
 }
 
-/// Value `i` of `count` from one end to the other, by equal steps or equal factors, rounded to a
-/// short decimal.
+/// Value `i` of `count` values from one end to the other, spaced by equal steps or equal factors.
+/// It is rounded to a short decimal.
 fn between([from, to]: [f64; 2], i: usize, count: usize, is_log: bool) -> f64 {
     let share = i as f64 / (count - 1) as f64;
     let value = if is_log {
         from * libm::pow(to / from, share)
     } else {
         let value = (1.0 - share) * from + share * to;
-        // A step that is zero but for rounding.
+        // The step at which the value is zero except for rounding errors.
         let is_zero = value.abs() < 1e-12 * from.abs().max(to.abs());
         if is_zero { 0.0 } else { value }
     };
     tidy(value).parse().unwrap_or(value)
 }
 
-/// The points of all sweeps: in step, or all combinations, the last field fastest.
+/// The values at all points. Fields vary in step, or in all combinations with the last field
+/// varying fastest.
 pub fn points(sweeps: &[Sweep], together: bool) -> Result<Vec<SweepPoint>, Failure> {
     let counts: Vec<usize> = sweeps.iter().map(|sweep| sweep.values.len()).collect();
     let at = |sweep: &Sweep, i: usize| (sweep.path.clone(), sweep.values[i]);
@@ -191,7 +194,7 @@ pub fn points(sweeps: &[Sweep], together: bool) -> Result<Vec<SweepPoint>, Failu
     }))
 }
 
-/// A text with the name of the point it concerns.
+/// A message, and the name of the point that it concerns.
 pub fn message_at(point: &SweepPoint, text: String) -> String {
     if point.is_empty() || text.contains(&shown(point)) {
         text

@@ -34,7 +34,7 @@ pub(crate) fn render(
             ArgumentStyle::Python => "method='reference'",
         };
         return Err(Failure::bad_input(format!(
-            "the camera has a lens, and the criteria of few shading samples assume a pinhole; allowed: {allowed}"
+            "the camera has a lens, but rendering from few shading samples assumes a pinhole; allowed: {allowed}"
         )));
     }
     let pixels = camera.size[0] * camera.size[1];

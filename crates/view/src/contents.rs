@@ -5,7 +5,7 @@ use etendue_pipeline::table::aligned;
 use etendue_store::{ArgumentStyle, Failure};
 use etendue_world::{Camera, Geometry, Light, Projection, World};
 
-/// The content of a scene, and what was omitted from it or approximated.
+/// The content of a scene, with its omissions and approximations.
 #[derive(Clone, Debug)]
 pub struct Contents {
     /// The number of each kind of content, such as `triangles`.

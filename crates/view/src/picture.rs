@@ -23,7 +23,7 @@ const FILES: [&str; 3] = ["picture.exr", "picture.npz", "picture.png"];
 pub struct RenderedPicture {
     /// Number of pixels across and down.
     pub size: [usize; 2],
-    /// What was omitted from the scene or approximated.
+    /// Omissions from the scene and approximations.
     pub notes: Vec<String>,
     /// The number of samples and the time they took, in words; empty for a reference.
     pub effort: String,
@@ -32,7 +32,7 @@ pub struct RenderedPicture {
 /// Renders a picture into a folder.
 #[expect(
     clippy::too_many_lines,
-    reason = "one picture from file to result, in the order in which it goes"
+    reason = "the steps of one picture from file to result, in order"
 )]
 pub fn render(
     request: &PictureRequest,

@@ -3,6 +3,7 @@
 mod covariance;
 mod found;
 mod map;
+mod picture;
 mod pixel;
 mod scene;
 mod words;

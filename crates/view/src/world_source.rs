@@ -97,7 +97,7 @@ pub(crate) fn load(source: &WorldSource) -> Result<Imported, Failure> {
     Ok(imported)
 }
 
-/// What was omitted from the scene or approximated, for result files and the terminal.
+/// Omissions and approximations of the scene, for result files and the terminal.
 pub(crate) fn notes(imported: &Imported) -> Vec<String> {
     imported.notes.iter().map(ToString::to_string).collect()
 }

@@ -38,8 +38,8 @@ const PHRASES: [(&str, &str); 15] = [
 
 const ACROSS: &str = "the plane is across the path";
 
-/// A further reason of a check: the assumption is not needed for a right prediction, only for a
-/// fast one.
+/// A phrase from a further reason that `check` gives. This assumption is needed only for fast
+/// predictions, not for correct ones.
 pub(super) const DARK: &str = "some light comes";
 
 /// The name for reasons with unknown wording, and for panics of a check.

@@ -1,7 +1,7 @@
 //! Tests whether each checked assumption of theory is needed.
 //!
-//! If only one assumption is violated, theory predicts nevertheless, and photons judge the
-//! prediction.
+//! If a plane violates exactly one assumption, theory predicts it nevertheless, and photons judge
+//! the prediction.
 
 mod kind;
 mod tally;

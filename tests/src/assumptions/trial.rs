@@ -12,20 +12,20 @@ use etendue_theory::{Model, Predicted, RayBudget};
 use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// A plane that a check reports as outside theory, or as dark.
+/// A plane that `check` reports as outside theory, or as dark.
 pub(super) struct Trial {
     pub(super) plane: String,
     /// The violated assumptions, each once.
     pub(super) broken: BTreeSet<&'static str>,
-    /// The outcome of theory without the check; `None` if more than one assumption is violated,
-    /// which would be inconclusive.
+    /// The outcome of theory without the check. `None` if more than one assumption is violated,
+    /// because the outcome would be inconclusive.
     pub(super) ending: Option<TrialEnding>,
 }
 
 /// The outcome of an unchecked prediction.
 #[derive(Debug)]
 pub(super) enum TrialEnding {
-    /// Compared with photons, with their number in the window.
+    /// The prediction was compared with photons; with the number of photons in the window.
     Judged { verdict: Verdict, inside: u64 },
     /// No theory can describe the surfaces on the central ray.
     Speechless,
@@ -35,7 +35,8 @@ pub(super) enum TrialEnding {
     Panicked(#[expect(dead_code, reason = "what it said is printed")] String),
 }
 
-/// Both seeds must find the same fault: one correct plane in a hundred fails with one of them.
+/// Both seeds must find the same fault, because one correct plane in a hundred fails with a single
+/// seed.
 const SEEDS: [u64; 2] = [1, 2];
 /// Maximum seconds of one core for a prediction with its derivatives.
 const LONGEST: f64 = 60.0;
@@ -45,7 +46,7 @@ const BUDGET: RayBudget = RayBudget {
     error: 3e-3,
 };
 
-/// Tries the planes of a scene with a reported violation, each on its own.
+/// Tries each plane of a scene that has a reported violation, one plane at a time.
 pub(super) fn trials(scene: &Scene) -> Vec<Trial> {
     let alone = (0..scene.planes.len()).map(|plane| scene.seen_at(&[plane]));
     alone.filter_map(|scene| trial(&scene)).collect()
@@ -124,8 +125,8 @@ fn unchecked(scene: &Scene, plane: &VirtualPlane, checked: &Applicability) -> Tr
     }
 }
 
-/// Whether a theory can describe the surfaces on the central ray. Between parallel planes this is
-/// one Lambertian surface lit by a lamp.
+/// Whether a theory can describe the surfaces on the central ray. Between parallel planes a theory
+/// describes one Lambertian surface lit by a lamp.
 fn has_words(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> bool {
     let Theory::Parallel(_) = theory else {
         return true;

@@ -149,8 +149,8 @@ fn jitter(photons: u64) -> Claim {
     }
 }
 
-/// Squares with fill one half, at pitches for which the light's image covers an odd number of half
-/// periods, where ripples are largest; with their number along each axis.
+/// Squares with fill one half, and their number along each axis. Ripples are largest at these
+/// pitches, for which the light's image covers an odd number of half periods.
 const PITCHES: [(f64, u32); 3] = [(0.2, 14), (0.2 / 3.0, 38), (0.04, 62)];
 
 fn ripples(at: &str, frequencies: &str, photons: u64) -> [ClaimNumber; 3] {
@@ -261,12 +261,13 @@ fn opaque(open: &Strips) -> String {
     format!("Shapes(name: \"blockers\", center: (0, 0, 1), shapes: [{shapes}])")
 }
 
-/// Maximum frequencies at which bounds are compared with spectra, and up to which they are summed,
-/// /m.
+/// The maximum frequency at which bounds are compared with spectra, and the maximum frequency of
+/// the sums in the bounds, /m.
 const HELD: usize = 12;
 const SUMMED: usize = 40;
 
-/// The 90 % bandwidth of |S(ρ, 0)|, and of Σ|V̂(m)||S(ρ − m, 0)| of one mask alone; and the largest ratio of the two.
+/// The 90 % bandwidth of |S(ρ, 0)| and that of Σ|V̂(m)||S(ρ − m, 0)|, for one mask alone; and the
+/// largest ratio of the two functions.
 fn bounded(slices: &[Slices], other: &[Complex]) -> [f64; 3] {
     let [one, both] = [0, 1].map(|i| line(&slices[i], 0));
     let size = |n: usize| one.get(n).map_or(0.0, |(_, s)| s.norm());
@@ -373,8 +374,8 @@ fn soft_shadows(photons: u64) -> Claim {
             bench.seen(photons)
         };
         let [plus, minus] = [0.0, PI].map(seen);
-        // Gratings half a period apart: their difference is the shadow, their sum is the light
-        // without it.
+        // Gratings half a period apart. The difference of their light is the shadow, and the sum is
+        // the light without a shadow.
         let contrast = number(&[(&plus, 0), (&minus, 0)], &|slices| {
             let [a, b] = [0, 1].map(|i| at(&slices[i], 0, [rho, 0.0]));
             let all = slices[0].at_zero() + slices[1].at_zero();

@@ -12,7 +12,7 @@ pub(super) fn claims(photons: u64) -> Vec<Claim> {
     vec![criteria(photons), larger_curvature(photons)]
 }
 
-/// Lights of increasing size: the criterion assumes that they contain all frequencies.
+/// Lights of increasing size. The criterion assumes that the light contains all frequencies.
 fn criteria(photons: u64) -> Claim {
     let lobe = 1000.0;
     let criterion = Criterion {
@@ -106,7 +106,7 @@ fn larger_curvature(photons: u64) -> Claim {
         found.per(criterion.environment())
     });
     let [inside, across, sphere] = shares;
-    // Across the plane of incidence curvature counts by cos θ₁, not by 1/cos θ₁.
+    // Across the plane of incidence, curvature is multiplied by cos θ₁, not by 1/cos θ₁.
     let [shear, cosine] = [
         2.0 * criterion.curvature * criterion.distance,
         0.7_f64.cos(),

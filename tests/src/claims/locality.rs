@@ -14,7 +14,7 @@ pub(super) fn claims(photons: u64) -> Vec<Claim> {
     all
 }
 
-/// Light past a small square and without it, in a window that contains the whole shadow.
+/// Light with and without a small square in its way, in a window that contains the whole shadow.
 fn shadow(
     light: &str,
     floor: f64,
@@ -148,8 +148,8 @@ fn narrowed(photons: u64) -> [Claim; 2] {
     ]
 }
 
-/// The share of the power between 15 and 25 /m for an array that ends at ± 2 m, centred off the
-/// central ray.
+/// The share of the power between 15 and 25 /m, for an array that ends at ± 2 m and is not centred
+/// on the central ray.
 fn share(offset: f64, half: f64, photons: u64) -> super::number::ClaimNumber {
     let blockers = squares([80, 80], 0.05, "fill: 0.5")
         .replace("center: (0, 0, 1)", &format!("center: ({offset}, 0, 1)"));

@@ -1,4 +1,4 @@
-//! Statements in the paper's text, measured with photons: a row for each statement.
+//! Statements in the paper's text, measured with photons. Each statement has a row.
 
 mod blockers;
 mod criteria;

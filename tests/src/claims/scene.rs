@@ -102,7 +102,7 @@ pub(super) fn number(planes: &[(&SeenScene, usize)], of: &dyn Fn(&[Slices]) -> f
     let said = each.map(|(seen, i)| &seen.predictions[*i]);
     let replicates: Batches = said.clone().map(|p| p.replicates.clone()).collect();
     let count = replicates[0].len();
-    // Closed forms have no replicates.
+    // Closed forms have no replicates, so their error is 0.
     let [predicted, error] = if count > 0 && replicates.iter().all(|r| r.len() == count) {
         jackknife(&replicates, of)
     } else {

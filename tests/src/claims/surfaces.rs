@@ -54,8 +54,8 @@ pub(super) fn planes(at: &str, orientation: &str, window: &str, frequencies: &st
     )
 }
 
-/// Light reflected by a glossy plane from one angle to another, over the irradiance; in both
-/// directions, and their ratio.
+/// Light that a glossy plane reflects from one angle to another, divided by the irradiance. It is
+/// measured in both directions; the number is their ratio.
 fn both_ways(brdf: &str, photons: u64) -> ClaimNumber {
     let angles = [20.0_f64, 50.0].map(f64::to_radians);
     let [there, back] = [angles, [angles[1], angles[0]]].map(|angles| {
@@ -271,7 +271,7 @@ fn cosine(photons: u64) -> Claim {
             slices[0].relative_difference(&slices[1])
         })
     });
-    // Photons of one scene, weighted in two ways: there is no prediction of the difference.
+    // Photons of one scene, weighted in two ways. There is no prediction of the difference.
     let numbers: Vec<ClaimNumber> = apart
         .iter()
         .map(|n| ClaimNumber {
@@ -314,7 +314,7 @@ fn lobe(photons: u64) -> Claim {
         );
         let seen = SeenScene::of(scene(&format!("{text}, {planes}"), 4 * photons));
         seen.number(0, |slices| {
-            // A Hann window alone has half its peak at the first frequency.
+            // The spectrum of a Hann window alone has half of its peak at the first frequency.
             let [theta, phi] =
                 [0, 1].map(|k| (at(slices, k, [0.0, nu]) / slices.at_zero() - 0.5).norm());
             theta / phi
@@ -359,7 +359,7 @@ fn diffuse(light: &str, (k, seed): (f64, u64), photons: u64) -> SeenScene {
         &format!("azimuths: 4, rho: (max: {}), nu: (max: 4)", 8.0 * k),
     );
     let mut scene = scene(&format!("{text}, {planes}"), photons);
-    // Without different seeds, photons of spheres of two sizes are equal up to scale.
+    // With one seed, photons of spheres of two sizes would be equal up to scale.
     scene.run.seed = seed;
     SeenScene::of(scene)
 }

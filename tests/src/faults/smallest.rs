@@ -78,8 +78,8 @@ fn widened(space: f64, slope: f64) -> Box<Predict> {
     })
 }
 
-/// Tries faults of 1 % and repeated halves of it, and finds the smallest size such that it and all
-/// larger ones are rejected.
+/// Tries faults of 1 %, halved repeatedly, and finds the smallest size that is rejected together
+/// with all larger ones.
 pub(crate) fn smallest(photons: u64, seed: u64) -> ReportSection {
     let kinds = [Sampling::Net, Sampling::Random];
     let scenes = kinds.map(|kind| sampled(fig9b(photons, seed), kind));

@@ -1,4 +1,4 @@
-//! One case: input, the command run on it, and the faults of the outcome.
+//! One case: the input, the commands run on it, and the faults of the outcome.
 
 use super::child::{self, Ended, LARGEST, LONGEST};
 use super::folder::{self, Folder};
@@ -45,7 +45,8 @@ pub(crate) struct Attack {
     pub(crate) arguments: Vec<String>,
     /// A second command, run on the input if the first accepts it.
     pub(crate) then: Option<Vec<String>>,
-    /// The files before the mutation, if these may take long too: slowness is no fault then.
+    /// The files before the mutation, if running these may take long too. Slowness is not a fault
+    /// then.
     pub(crate) sound: Option<Folder>,
     /// The expected summary if the input is accepted; `None` if it may differ.
     pub(crate) summary: Option<Vec<u8>>,
@@ -56,15 +57,16 @@ pub(crate) struct Attack {
 pub(crate) enum HostileFault {
     /// A panic, or an undefined exit code.
     Panic,
-    /// Ended by a signal, or for lack of memory.
+    /// The process ended by a signal, or for lack of memory.
     Abort,
     Slow,
     Large,
-    /// Wrote something outside the results, or anything with exit code 2.
+    /// The process wrote something outside the results, or wrote anything although its exit code is
+    /// 2.
     Wrote,
-    /// No message, a long one, or one with control characters.
+    /// There is no message, or it is long or has control characters.
     Message,
-    /// Accepted a damaged input, with a different result.
+    /// The process accepted a damaged input, and its result is different.
     Changed,
 }
 
@@ -181,7 +183,7 @@ fn faults(ended: &Ended) -> Vec<HostileFault> {
     let slow = ended.hung || ended.seconds > LONGEST.as_secs_f64();
     let large = ended.peak > LARGEST;
     let panicked = message.contains("panicked");
-    // Processes killed by this test did not abort.
+    // Processes that this test killed did not abort.
     let aborted = ended.signal.is_some() && !slow && !large;
     let aborted = aborted || message.contains("memory allocation of");
     let known = matches!(ended.code, None | Some(0..=4));
@@ -203,8 +205,8 @@ fn faults(ended: &Ended) -> Vec<HostileFault> {
     .collect()
 }
 
-/// Names of files that were wrongly changed: only results may change, of a command that makes them
-/// and accepts the input.
+/// Names of files that were wrongly changed. Only results may change, and only if the command makes
+/// results and accepts the input.
 fn wrote(
     attack: &Attack,
     arguments: &[String],
@@ -234,7 +236,8 @@ fn is_syntax(stderr: &[u8]) -> bool {
     message.contains(": line ") && message.contains(", column ")
 }
 
-/// Maximum number of frequencies of a scene that is run: slowness through size is no fault.
+/// Maximum number of frequencies of a scene that is run. A scene that is slow because of its size
+/// is not a fault.
 const MOST_FREQUENCIES: u64 = 200_000;
 
 /// Whether `check` reports few enough frequencies, as azimuths x rho x nu at each plane.

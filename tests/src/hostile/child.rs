@@ -40,13 +40,13 @@ pub(crate) struct Ended {
     pub(crate) stderr: Vec<u8>,
 }
 
-/// The program to attack: the given one, or the one in the folder of this program.
+/// The program to attack: the given program, or the one in the folder of this program.
 pub(crate) fn program(given: Option<&Path>) -> io::Result<PathBuf> {
     let path = match given {
         Some(path) => path.to_owned(),
         None => std::env::current_exe()?.with_file_name("etendue"),
     };
-    // The children run in other folders.
+    // The path is absolute because the children run in other folders.
     path.canonicalize().map_err(|error| {
         let shown = path.display();
         io::Error::other(format!(
@@ -101,7 +101,8 @@ pub(crate) fn call_within(
     })
 }
 
-/// Waits for the end or kills the child; returns the peak of memory, and whether it took too long.
+/// Waits for the child to end, or kills it; returns the peak of its memory, and whether it took too
+/// long.
 fn watch(child: &mut Child, start: Instant, limit: Limit) -> io::Result<(u64, bool)> {
     let status = format!("/proc/{}/status", child.id());
     let stat = format!("/proc/{}/stat", child.id());
@@ -120,7 +121,7 @@ fn watch(child: &mut Child, start: Instant, limit: Limit) -> io::Result<(u64, bo
             child.kill()?;
             return Ok((peak, hung));
         }
-        // Most end within a few milliseconds.
+        // Most children end within a few milliseconds.
         let early = start.elapsed() < Duration::from_millis(20);
         std::thread::sleep(Duration::from_millis(if early { 1 } else { 5 }));
     }

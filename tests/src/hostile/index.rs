@@ -43,7 +43,7 @@ pub(crate) fn with_other_value(index: &str, dice: &mut Dice) -> Option<String> {
 pub(crate) fn with_scene(index: &str, scene: &Value) -> Option<String> {
     let mut tree: Value = serde_json::from_str(index).ok()?;
     tree["scene_file"] = scene.clone();
-    // Hashes the scene as the program does, if the program could have written it.
+    // Hashes the scene as the program does, if the program could have written that scene.
     if let Ok(file) = serde_json::from_value::<etendue_scene::SceneFile>(scene.clone()) {
         let text = serde_json::to_vec(&file).ok()?;
         tree["scene_hash"] = json!(blake3::hash(&text).to_hex().as_str());
@@ -59,8 +59,8 @@ pub(crate) fn other_scene(index: &str, dice: &mut Dice) -> Option<Value> {
     Some(scene)
 }
 
-/// An index in which `old`, the hash of a file, is replaced by that of the `new` bytes; its own
-/// hash matches again.
+/// An index in which `old`, the hash of a file, is replaced by the hash of the `new` bytes. The
+/// index's own hash is updated to match.
 pub(crate) fn with_hash_of(index: &str, old: &[u8], new: &[u8]) -> String {
     let [old, new] = [old, new].map(|bytes| blake3::hash(bytes).to_hex());
     sealed(&index.replace(old.as_str(), new.as_str()))

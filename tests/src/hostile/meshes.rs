@@ -1,5 +1,5 @@
-//! Mutated meshes: OBJ, and PLY as text and in both byte orders, as a blocker and as a curved
-//! mirror.
+//! Mutated meshes: Mutated meshes, as a blocker and as a curved mirror: OBJ, and PLY as text and in
+//! both byte orders.
 
 use super::case::Attack;
 use super::dice::Dice;

@@ -1,5 +1,5 @@
-//! Attacks on the program from outside: mutated input of every kind, given to it as a child
-//! process.
+//! Attacks on the program from outside: it runs as a child process and is given mutated input of
+//! every kind.
 //!
 //! A case is a function of the seed and its number, so that it can be repeated alone.
 

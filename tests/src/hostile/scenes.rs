@@ -77,8 +77,8 @@ pub(crate) fn attack(seeds: &[String], dice: &mut Dice) -> Attack {
 /// The name of a scene file.
 pub(crate) const SCENE: &str = "scene.ron";
 
-/// An attack on the scene file among these files: it is checked, and once in eight times run,
-/// swept, or drawn as a figure.
+/// An attack on the scene file among these files. The scene is always checked; in one of eight
+/// cases it is also run, swept or drawn as a figure.
 pub(crate) fn on_scene(files: Folder, dice: &mut Dice) -> Attack {
     let words = |line: &str| line.split_whitespace().map(str::to_owned).collect();
     let run = *dice.pick(&[
@@ -87,7 +87,8 @@ pub(crate) fn on_scene(files: Folder, dice: &mut Dice) -> Attack {
         "sweep scene.ron --photons 2000 --set run.seed=1,2 --out out",
         "figure scene.ron --set run.photons=16000 --quality draft --out out",
     ]);
-    // Few azimuths: the values of fields may break something, rather than the number of azimuths.
+    // There are few azimuths, because the test is about values of fields and not about the number
+    // of azimuths.
     let run = format!("{run} --quiet --threads 2 --set frequencies.azimuths=2");
     Attack {
         files,

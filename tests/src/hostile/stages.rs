@@ -12,7 +12,7 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-/// A scene that runs in a moment.
+/// A scene that runs in a fraction of a second.
 pub(crate) const SMALL: &str = r#"(
     light: Rectangle(center: (0.1, 0.2, 0.3), size: (0.2, 0.17)),
     blockers: [JitteredSquares(name: "blockers", center: (0.12, 0.2, 1.3),
@@ -25,8 +25,8 @@ pub(crate) const SMALL: &str = r#"(
     run: (photons: 2000, seed: 1, batches: 32),
 )"#;
 
-/// The same scene with a mesh from a file: it has a reference instead of a prediction, and copies
-/// of the mesh.
+/// The same scene with a mesh from a file. It has a reference instead of a prediction, and its
+/// folders contain copies of the mesh.
 pub(crate) fn with_mesh() -> String {
     let mesh = r#"blockers: [Mesh(name: "tetra", center: (0.1, 0.2, 1), 
         mesh: File("meshes/tetra.obj"), scale: 0.1), "#;
@@ -104,7 +104,7 @@ fn attack(seed: &Seed, stage: &str, index: &str, dice: &mut Dice) -> io::Result<
         3 => change_scene(&mut files, dice),
         _ => change_file(&mut files, stage, &index, dice)?,
     };
-    // With changed hashes a fault may be undetectable; and a mutation may change nothing.
+    // A fault with changed hashes may be undetectable, and a mutation may have no effect.
     let summary = (!fits || files == seed.files).then(|| seed.summary.clone());
     Ok(Attack {
         files,

@@ -90,7 +90,7 @@ fn row(kind: InputKind, tally: &CaseTally) -> Row {
         tally.cases.to_string(),
         share(reached(Reached::Syntax)),
         share(reached(Reached::Values)),
-        // Cases that were run had been accepted before.
+        // Cases that were run had also been accepted.
         share(reached(Reached::Sound) + reached(Reached::Ran)),
         share(reached(Reached::Ran)),
     ];

@@ -7,7 +7,7 @@ use serde_json::Value;
 /// The state of a folder according to its index.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum IndexState {
-    /// There is no index: the folder does not claim to hold a result.
+    /// There is no index, so the folder does not claim to hold a result.
     Absent,
     Whole,
     /// The folder claims to hold a result, but is broken.

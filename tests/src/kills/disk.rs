@@ -14,7 +14,7 @@ pub(crate) enum FullDisk {
 }
 
 impl FullDisk {
-    /// The better of the two methods available here.
+    /// The better of the two methods that is available here.
     pub(super) fn best() -> io::Result<Self> {
         let place = tempfile::tempdir()?;
         let mounted = Mount::new(place.path(), 1 << 20);
@@ -66,7 +66,8 @@ fn succeeds(command: &mut Command) -> io::Result<()> {
     }
 }
 
-/// A command whose files are limited to this many blocks; writing more is an error, not a signal.
+/// A command whose files are limited to this number of blocks. Writing more gives an error and not
+/// a signal.
 pub(super) fn limited(program: &Path, blocks: usize) -> Command {
     let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$@\"");
     let mut command = Command::new("sh");

@@ -1,5 +1,5 @@
-//! Kills at random moments, two writers at once and full disks: each must leave a whole result or
-//! none.
+//! Kills at random moments, two writers at once, and full disks. Each must leave a complete result
+//! or no result.
 
 mod check;
 mod disk;
@@ -33,7 +33,7 @@ pub(crate) struct KillOptions {
     etendue: Option<PathBuf>,
 }
 
-/// The number of times each finding occurred, for each command.
+/// The number of occurrences of each finding, for each command.
 type Counts = [[u64; Finding::COUNT]; Verb::ALL.len()];
 
 /// Runs all trials.

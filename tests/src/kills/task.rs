@@ -1,4 +1,4 @@
-//! The commands to kill, and their folder: an earlier result among the user's files.
+//! The commands to kill, and their folder, which contains an earlier result among the user's files.
 
 use crate::hostile::child;
 use crate::hostile::folder::{self, Folder};
@@ -40,7 +40,7 @@ impl Verb {
         }
     }
 
-    /// The command line; another seed gives another result.
+    /// The command line for a seed; another seed gives another result.
     pub(super) fn arguments(self, seed: u64) -> Vec<String> {
         let ending = format!("--out out --quiet --threads 2 --seed {seed}");
         words(&match self {
@@ -68,7 +68,7 @@ pub(super) struct KillTask {
     pub(super) verb: Verb,
     /// The earlier result and the user's files, in `out`.
     pub(super) before: Folder,
-    /// The user's files among them.
+    /// The user's files in `out`.
     pub(super) foreign: Folder,
     /// The inputs of `compare`.
     pub(super) inputs: Folder,

@@ -1,4 +1,4 @@
-//! One trial: a command starts in a folder, is disturbed, and the folder is checked.
+//! One trial: a command starts in a folder and is disturbed, and then the folder is checked.
 
 use super::check::{self, IndexState, NO_HASH};
 use super::disk::{FullDisk, Mount, limited};
@@ -20,7 +20,7 @@ pub(super) enum KillTrouble {
     FullDisk(FullDisk),
 }
 
-/// A finding that is counted.
+/// A kind of finding, whose occurrences are counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Finding {
     TwoWriters,
@@ -30,7 +30,7 @@ pub(super) enum Finding {
     Between,
     After,
     Whole,
-    /// A writer was refused because of the other.
+    /// A writer was refused because the other one was writing.
     Refused,
     // From here on, findings are faults.
     Broken,
@@ -176,7 +176,8 @@ impl TrialBench<'_> {
         let own = [task.verb.index(), "timing.json"];
         let belongs = |name: &str| {
             own.contains(&name)
-                // Points of a sweep are kept for the next one, each as a separate result.
+                // Finished points of a killed sweep remain for the next sweep, each as a separate
+                // result.
                 || (task.verb == Verb::Sweep && name.starts_with("points/"))
                 || task.foreign.contains_key(name)
                 || listed.iter().any(|(known, _)| known == name)
@@ -214,14 +215,14 @@ impl TrialBench<'_> {
     }
 }
 
-/// Whether this file is a remnant of a killed writer. A point of a sweep is cleared when it is run
-/// again.
+/// Whether this file is a remnant of a killed writer. Remnants in a point of a sweep are allowed:
+/// they are removed when the point is run again.
 fn is_unfinished(task: &KillTask, name: &str) -> bool {
     let is_point = task.verb == Verb::Sweep && name.starts_with("points/");
     name.contains(".etendue") && !is_point
 }
 
-/// Size of a disk that holds the existing files, and some of the new ones.
+/// Size of a disk that holds the existing files and a random part of the new files.
 fn room(task: &KillTask, dice: &mut Dice) -> u64 {
     // Each file and folder occupies whole pages.
     let pages = |bytes: &Option<Vec<u8>>| 1 + bytes.as_ref().map_or(0, Vec::len).div_ceil(4096);

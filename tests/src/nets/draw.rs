@@ -1,6 +1,7 @@
 //! Generator of random scenes from the features of scene files, as text.
 //!
-//! A scene is a function of its number. Sizes are metres, slopes tangents, as in any scene file.
+//! A scene is a function of its number. Sizes are in metres and slopes are tangents, as in any
+//! scene file.
 
 use etendue_transform::random::{self, Stream};
 
@@ -13,7 +14,7 @@ pub(super) enum BlockerKind {
     PointAcross,
     /// Irradiance at a receiver, with its cosine.
     Cosine,
-    /// Reflected by a diffuse receiver.
+    /// Light that a diffuse receiver reflects.
     Diffuse,
     /// The same with a point light.
     PointDiffuse,
@@ -23,11 +24,11 @@ pub(super) enum BlockerKind {
     Refraction,
     /// Behind a thin lens.
     Lens,
-    /// A projector or a beam before one of the others.
+    /// A projector or a beam, followed by the elements of another kind.
     Picture,
-    /// Reflected by a BRDF.
+    /// Light that a BRDF reflects.
     Brdf,
-    /// The same in an environment.
+    /// Light of an environment that a BRDF reflects.
     Sky,
 }
 
@@ -78,7 +79,7 @@ pub(super) struct SceneDice {
     next: u32,
 }
 
-/// The seed of all scenes: fixed in advance, and not chosen by its results.
+/// The seed of all scenes. It was fixed in advance, and not chosen by its results.
 const SEED: u64 = 1;
 
 impl SceneDice {
@@ -160,8 +161,8 @@ fn light(kind: BlockerKind, dice: &mut SceneDice) -> String {
     }
 }
 
-/// None to three masks before z = 0.9. Pictures have at least one opaque mask: otherwise they are
-/// predicted by a rule without nets. The same holds for points.
+/// Up to three masks before z = 0.9. Pictures have at least one opaque mask, because without it a
+/// quadrature rule predicts them and not nets. The same holds for point lights.
 fn blockers(kind: BlockerKind, dice: &mut SceneDice) -> String {
     if kind == BlockerKind::Sky {
         return String::new();
@@ -192,7 +193,7 @@ fn blockers(kind: BlockerKind, dice: &mut SceneDice) -> String {
     layers.join(", ")
 }
 
-/// Rectangles or discs in the cells of a board, including some of four.
+/// One to four rectangles or discs, in the cells of a board of two by two.
 fn shapes(dice: &mut SceneDice, square: bool) -> String {
     let pitch = dice.between(0.1, 0.35);
     let count = 1 + dice.of(4);

@@ -6,9 +6,9 @@ use crate::report::Bound::{AtLeast, Below};
 use crate::report::{Check, ReportSection, Row, worse};
 use crate::statistics::{mean, uniformity};
 
-/// Permitted standard errors of fractions and means.
+/// Permitted deviation of fractions and means, in standard errors.
 const BORNE: f64 = 3.0;
-/// Maximum permitted L2 ratio: one real number exceeds it in 3·10⁻⁵ of all scenes.
+/// Maximum permitted L2 ratio. With a single real number, 3·10⁻⁵ of all scenes would exceed it.
 const LARGEST: f64 = 5.0;
 /// The mean square of a Student's t with 31 degrees of freedom.
 const OF_ONE: f64 = 31.0 / 29.0;
@@ -22,7 +22,7 @@ fn beyond(distance: f64) -> f64 {
     (1.0 + 2.0 * distance.powi(2) / 31.0).powi(-15)
 }
 
-/// The measured quantity of a scene that is judged.
+/// The quantity of a scene's outcome that is judged.
 type Reading = fn(&SceneOutcome) -> &Measured;
 
 /// All tables, including those of planted faults.
@@ -136,8 +136,8 @@ fn row(name: &str, of_group: &[&Measured], scale: f64) -> Row {
     row
 }
 
-/// The standard error of a mean square over scenes: all scenes use the same nets, so it is
-/// estimated from the scatter over pairs of nets.
+/// The standard error of a mean square over scenes. It is estimated from the scatter over pairs of
+/// nets, because all scenes use the same nets.
 fn common(of_group: &[&Measured], scale: f64) -> f64 {
     let count = of_group[0].pairs.len();
     let squares = (0..count).map(|pair| {
@@ -151,7 +151,7 @@ fn common(of_group: &[&Measured], scale: f64) -> f64 {
 /// Adds a fraction to a row, with a check against the expectation for this many numbers.
 fn put(row: &mut Row, shares: &[f64], expected: f64, numbers: f64) {
     let [share, error] = mean(shares);
-    // With few distant values, their scatter over the scenes is a poor estimate.
+    // If few values are that far away, their scatter over the scenes is a poor estimate.
     let error = error.max((expected * (1.0 - expected) / numbers).sqrt());
     let cell = format!("{:.2} ± {:.2} %", 100.0 * share, 100.0 * error);
     row.cells.push(cell);

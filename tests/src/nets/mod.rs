@@ -1,5 +1,5 @@
-//! Checks that stated errors equal actual errors: predictions by nets of rays compared with the
-//! truth, over random scenes.
+//! Checks that the stated errors of predictions by nets of rays equal the actual errors, over
+//! random scenes.
 
 mod draw;
 mod judge;

@@ -1,5 +1,5 @@
-//! One random scene: the deviation of its prediction by nets from the truth, in units of its stated
-//! error.
+//! One random scene: the deviation of a prediction by nets from the truth, in units of the stated
+//! error of the prediction.
 
 use super::draw::{BlockerKind, SceneDice, scene};
 use etendue_compare::{Applicability, Theory};
@@ -15,7 +15,7 @@ pub(super) struct SceneOutcome {
     pub(super) number: u64,
     /// The stated ‖error‖/‖F‖.
     pub(super) stated: f64,
-    /// Error of the truth, over the stated error.
+    /// Error of the truth, divided by the stated error of the prediction.
     pub(super) of_truth: f64,
     /// The prediction compared with the truth.
     pub(super) sound: Measured,
@@ -25,10 +25,10 @@ pub(super) struct SceneOutcome {
 
 /// The deviation of a prediction from the truth.
 pub(super) struct Measured {
-    /// ‖F − truth‖/‖truth‖ over the stated error.
+    /// ‖F − truth‖/‖truth‖, divided by the stated error.
     pub(super) ratio: f64,
-    /// The squared ratio for the means of adjacent pairs of nets, whose error is four times that of
-    /// all nets.
+    /// The squared ratio for the means of adjacent pairs of nets. The error of such a mean is four
+    /// times that of the mean of all nets.
     pub(super) pairs: Vec<f64>,
     /// (F − truth)/(standard error) at zero frequency.
     pub(super) zero: f64,
@@ -36,7 +36,8 @@ pub(super) struct Measured {
     pub(super) apart: Vec<f64>,
 }
 
-/// Scenes of each kind; those without a theory and those without light are replaced by new draws.
+/// The scenes of each kind. Scenes without a theory and scenes without light are replaced by new
+/// draws.
 pub(super) fn outcomes(each: impl Fn(&SceneOutcome)) -> (Vec<SceneOutcome>, usize) {
     let (mut outcomes, mut left_out, mut number) = (Vec::new(), 0, 0);
     for (kind, count) in BlockerKind::ALL {
@@ -57,7 +58,7 @@ pub(super) fn outcomes(each: impl Fn(&SceneOutcome)) -> (Vec<SceneOutcome>, usiz
     (outcomes, left_out)
 }
 
-/// The error that the truth is not known well enough.
+/// The error for a scene whose truth is not known well enough.
 struct Untold;
 
 /// The result of a prediction.
@@ -69,11 +70,12 @@ struct PredictionFound {
 
 /// Permitted error of the truth relative to the stated error.
 const OF_STATED: f64 = 0.1;
-/// Factor in the number of nodes for the truth, if there is no closed form.
+/// Factor by which the number of nodes is increased for the truth, if there is no closed form.
 const HUNDREDFOLD: f64 = 128.0;
 /// The factor of the planted fault in a density.
 const PLANTED: f64 = 1.02;
-/// Errors above this mean that there is hardly any light: the prediction depends on a few rays.
+/// Larger errors mean that there is hardly any light, and that the prediction depends on a few
+/// rays.
 const DARK: f64 = 0.3;
 
 /// The outcome; `None` if no theory applies or no light arrives.
@@ -185,7 +187,7 @@ fn truth(
     let enough = OF_STATED * stated;
     if let Theory::Parallel(chain) = theory {
         let window: &Window = &plane.window;
-        // A quadrature over the receiver uses more nodes for higher frequencies.
+        // A quadrature over the receiver uses more nodes if the frequencies are higher.
         for more in [1, 2, 4] {
             let mut grid = plane.grid;
             grid.rho.half *= more;

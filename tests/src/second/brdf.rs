@@ -1,5 +1,5 @@
-//! BRDFs from their definitions: Fresnel's equations with complex indices, facets by their slopes,
-//! and Smith's masking as an integral.
+//! BRDFs from their definitions: Fresnel's equations with complex indices, microfacets described by
+//! their slopes, and Smith's masking as an integral.
 
 use super::vector::{Vector, angle, dot, plus, turned, unit};
 use etendue_field::{AngleTable, Brdf, Complex, Fresnel, Lobe};
@@ -28,7 +28,7 @@ pub(super) fn value(brdf: &Brdf, from: Vector, to: Vector, fault: &str) -> f64 {
     factors * lobe(brdf, incidence, [from, to], fault)
 }
 
-/// The straight line between two values of a list over 0 to 90°, at an angle.
+/// The value at an angle, interpolated linearly between two values of a list over 0 to 90°.
 fn by_angle(values: &[f64], angle: f64, fault: &str) -> f64 {
     let step = 90.0 / (values.len() - 1) as f64;
     let degrees = match fault {
@@ -102,8 +102,8 @@ fn facets(density: f64, mask: impl Fn(Vector) -> f64, [from, to]: [Vector; 2], f
     density * masks / (4.0 * from[2] * to[2])
 }
 
-/// Slopes of microfacets are normally distributed with variance α²/2 each; per solid angle this
-/// gains 1/cos⁴ (Beckmann and Spizzichino 1963).
+/// Each slope of the microfacets is normally distributed with variance α²/2. The density per solid
+/// angle has a further factor of 1/cos⁴ (Beckmann and Spizzichino 1963).
 fn beckmann(roughness: f64, facet: Vector, fault: &str) -> f64 {
     let squared = match fault {
         "α² is the variance along an axis" => 2.0 * roughness * roughness,
@@ -128,9 +128,9 @@ fn ggx(roughness: f64, facet: Vector, fault: &str) -> f64 {
     1.0 / (PI * squared * stretched.powf(power))
 }
 
-/// Smith's Λ (Smith 1967; Heitz 2014, *Understanding the masking-shadowing function*): the mean
-/// excess of slopes s along a direction over its cotangent μ, divided by μ: ∫ (s − μ) p(s) ds / μ
-/// over s > μ. Here p = exp(−s²/α²)/(α√π), and s = α w.
+/// Smith's Λ (Smith 1967; Heitz 2014, *Understanding the masking-shadowing function*): ∫ (s − μ)
+/// p(s) ds / μ over s > μ. Here s is the slope of a microfacet along a direction, and μ is the
+/// cotangent of the angle of that direction. Here p = exp(−s²/α²)/(α√π), and s = α w.
 fn masked_beckmann(roughness: f64, angle: f64) -> f64 {
     let from = 1.0 / (angle.tan() * roughness);
     if from > 6.0 {
@@ -156,10 +156,10 @@ fn integral([from, to]: [f64; 2], pairs: u32, value: impl Fn(f64) -> f64) -> f64
     step / 3.0 * (at(0) + inner.sum::<f64>() + at(2 * pairs))
 }
 
-/// The reflectance of unpolarised light: the mean of |r|² across (s) and along (p) the plane of
-/// incidence (Fresnel 1823; Born and Wolf 1999, 1.5.2 and 14.2), with the angle of refraction of
-/// Snell's law, complex if the index is. The mean is unchanged if s and p are swapped, so a fault
-/// affects only one of them.
+/// The reflectance of unpolarised light: the mean of |r|² for polarisation across (s) and along (p)
+/// the plane of incidence (Fresnel 1823; Born and Wolf 1999, 1.5.2 and 14.2). The angle of
+/// refraction follows Snell's law, and is complex if the index is complex. Swapping s and p would
+/// not change the mean, so the fault affects only one of them.
 fn reflected(fresnel: &Fresnel, angle: f64, fault: &str) -> f64 {
     let index = match *fresnel {
         Fresnel::White => return 1.0,
@@ -183,7 +183,7 @@ fn reflected(fresnel: &Fresnel, angle: f64, fault: &str) -> f64 {
     }
 }
 
-/// The direction into which a microfacet reflects another one.
+/// The direction into which a microfacet reflects another direction.
 pub(super) fn mirrored(from: Vector, facet: Vector) -> Vector {
     plus(from.map(|c| -c), 2.0 * dot(from, facet), facet)
 }

@@ -1,5 +1,5 @@
 //! Comparison of a function with its second implementation, without and with faults planted in the
-//! second.
+//! second implementation.
 
 use super::SEED;
 use crate::hostile::dice::Dice;
@@ -16,7 +16,7 @@ type Difference = dyn Fn(&mut Dice, &str) -> f64;
 /// A comparison of two implementations.
 pub(super) struct SecondCheck {
     pub(super) name: &'static str,
-    /// Number of rounds, and of points in each.
+    /// Number of rounds, and number of points in each round.
     pub(super) rounds: [u32; 2],
     /// Maximum permitted difference, with the reason for it.
     pub(super) tolerance: (f64, &'static str),
@@ -25,7 +25,7 @@ pub(super) struct SecondCheck {
     pub(super) difference: Box<Difference>,
 }
 
-/// The result: differences without a fault and with each.
+/// The result: the differences without a fault and with each fault.
 pub(super) struct Outcome {
     pub(super) difference: f64,
     pub(super) planted: Vec<f64>,
@@ -48,8 +48,8 @@ impl SecondCheck {
         self.rounds[0] * self.rounds[1]
     }
 
-    /// Checks that the two agree, and differ with a fault: by a finite number, so that no fault is
-    /// detected merely through NaN.
+    /// Checks that the two implementations agree without a fault, and differ with a fault. The
+    /// difference must be finite, so that NaN does not count as a detected fault.
     pub(super) fn required(&self, difference: f64, planted: f64) -> Vec<report::Check> {
         let (most, reason) = self.tolerance;
         vec![

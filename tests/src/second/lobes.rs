@@ -126,7 +126,7 @@ fn difference(fast: Fast, lobe: fn(&mut Dice) -> Lobe, dice: &mut Dice, fault: &
     compared(fast, &brdf, dice, fault)
 }
 
-/// The same for a Phong lobe between lists of factors of both angles.
+/// The same for a Phong lobe times lists of factors of both angles.
 fn separable(fast: Fast, dice: &mut Dice, fault: &str) -> f64 {
     let exponent = scale(dice, 0.1, 1e3);
     let mut list = || {

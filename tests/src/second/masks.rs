@@ -1,5 +1,5 @@
-//! Blockers, slides and windows, compared with their definitions; blockers and slides as written in
-//! scene files.
+//! Blockers, slides and windows, compared with their definitions. Blockers and slides are written
+//! in scene files.
 
 use super::check::{SecondCheck, relative, worse};
 use super::pattern::cosine;
@@ -46,7 +46,7 @@ pub(super) fn checks() -> Vec<SecondCheck> {
     ]
 }
 
-/// The center of a layer: along X and Y, and the world's.
+/// The center of a layer: its coordinates along X and Y, and those in the world.
 fn layer(dice: &mut Dice, world: &World) -> ([f64; 2], Vector) {
     let [x, y] = [between(dice, -0.5, 0.5), between(dice, -0.5, 0.5)];
     ([x, y], world.light.point([x, y, 0.5]))
@@ -69,7 +69,8 @@ fn against(
     each.fold(0.0, worse)
 }
 
-/// A rectangle to the left, a disc to the right, and a half-plane beyond them on any side.
+/// A rectangle to the left, a disc to the right, and a half-plane beyond both, on any of the four
+/// sides.
 fn shapes(dice: &mut Dice, fault: &str) -> f64 {
     let mut world = World::new(dice).with_wall(1.0);
     let (center, origin) = layer(dice, &world);
@@ -246,7 +247,7 @@ fn window(dice: &mut Dice, fault: &str) -> f64 {
         if t.abs() < end { inside } else { 0.0 }
     };
     let each = (0..EACH).map(|_| {
-        // Most rays are inside the window, some beyond.
+        // Most rays are inside the window, and some are outside.
         let at = profiles.map(|profile| profile.half_width() * between(dice, -1.05, 1.05));
         let second: f64 = profiles.iter().zip(at).map(|(p, t)| value(p, t)).product();
         let [x, y, u, v] = at;

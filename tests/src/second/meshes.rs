@@ -1,5 +1,5 @@
-//! Triangles, and meshes as smooth surfaces, compared with linear equations and the paraboloid that
-//! a mesh is sampled from.
+//! Triangles are compared with linear equations, and meshes as smooth surfaces with the paraboloid
+//! from which they are sampled.
 
 use super::check::{SecondCheck, worse};
 use super::vector::{
@@ -155,7 +155,7 @@ impl Hill {
     }
 
     /// The curvature of the normal section along (dx, dy, p dx + q dy): the second fundamental form
-    /// over the first, convex positive (do Carmo 1976, section 3.3).
+    /// divided by the first (do Carmo 1976, section 3.3). It is positive if the surface is convex.
     fn along(&self, [dx, dy]: [f64; 2]) -> (Vector, f64) {
         let [p, q] = self.slopes();
         let [k, l] = self.curvature;
@@ -181,8 +181,8 @@ fn curvatures(dice: &mut Dice, fault: &str) -> f64 {
         let tangent: DVec3 = hill.light.components(unit(tangent)).into();
         let [a, b] = [tangent.dot(x), tangent.dot(y)];
         let [k, l, _] = patch.curvature;
-        // Euler 1760, divided by the squared length of the tangent's projection into the fitted
-        // plane.
+        // The formula of Euler 1760, divided by the squared length of the tangent's projection onto
+        // the fitted plane.
         let fast = (k * a * a + l * b * b) / (a * a + b * b);
         (fast - second).abs() / largest
     });

@@ -34,8 +34,7 @@ pub(super) enum Turn {
 pub(super) struct Legs {
     pub(super) before: Axes,
     pub(super) after: Axes,
-    /// T, B, N for light that arrives, and for light that leaves; with the longitudes of the
-    /// central ray.
+    /// T, B, N for arriving and for leaving light, with the longitude of the central ray in each.
     pub(super) arriving: (Axes, f64),
     pub(super) leaving: (Axes, f64),
 }
@@ -65,11 +64,11 @@ impl Legs {
             origin: hit,
             ..*light
         };
-        // On the side that light comes from.
+        // The normal, on the side from which light comes.
         let normal = times(-dot(facing, light.d).signum(), facing);
         let after = Self::after(&before, normal, turn, fault);
         let t = across(light.d, normal);
-        // Along −X at normal incidence.
+        // The tangent, along −X at normal incidence.
         let t = times(-dot(t, light.x).signum(), t);
         let t = if fault == "T turned over" {
             times(-1.0, t)
@@ -104,8 +103,8 @@ impl Legs {
         }
     }
 
-    /// The frame after an event: that of a mirror, with X reversed, or that of the arriving ray;
-    /// rotated by the smallest angle to the new direction.
+    /// The frame after an event. It is the frame of a mirror with X reversed, or the frame of the
+    /// arriving ray, rotated by the smallest angle to the new direction.
     fn after(before: &Axes, normal: Vector, turn: Turn, fault: &str) -> Axes {
         let mirrored = |a: Vector| plus(a, -2.0 * dot(a, normal), normal);
         let x_sign = if fault == "X not turned round" {
@@ -190,7 +189,8 @@ fn frames(dice: &mut Dice, fault: &str) -> f64 {
     apart.fold(0.0, worse)
 }
 
-/// A rectangle's edges are along the component of X orthogonal to its normal, and across it.
+/// A rectangle's edges are along the component of X that is orthogonal to its normal, and across
+/// this component.
 fn rectangle(dice: &mut Dice, fault: &str) -> f64 {
     let mut world = World::new(dice);
     let center = world.light.point([0.0, 0.0, 2.0]);

@@ -100,10 +100,10 @@ fn mapped(dice: &mut Dice, fault: &str, folder: &Path, map: &Levels) -> f64 {
 }
 
 impl Levels {
-    /// Radiance from a direction (x, up, front): the centre of column i of w is at longitude π (1 −
-    /// (2 i + 1)/w), from the front towards x, that of row j of h at latitude π (½ − (j + ½)/h).
-    /// Interpolation is bilinear and periodic in longitude; beyond the outermost rows the value of
-    /// the row is used up to the poles.
+    /// Radiance from a direction (x, up, front). The centre of column i of w is at longitude π (1 −
+    /// (2 i + 1)/w), counted from the front towards x. The centre of row j of h is at latitude π (½
+    /// − (j + ½)/h). Interpolation is bilinear, and periodic in longitude. Between an outermost row
+    /// and its pole, the value of the row is used.
     fn radiance(&self, [x, up, front]: Vector, fault: &str) -> f64 {
         let longitude = angle([0.0, 0.0, 1.0], [x, 0.0, front]) * x.signum();
         let latitude = PI / 2.0 - angle([0.0, 1.0, 0.0], [x, up, front]);
@@ -174,7 +174,7 @@ fn lobed(dice: &mut Dice, fault: &str, folder: &Path) -> f64 {
         let second: f64 = lobes
             .iter()
             .map(|(middle, width, radiance)| {
-                // The fault uses the numbers in the file as world directions.
+                // The fault: the numbers in the file are used as directions of the world.
                 let middle = match fault {
                     "axes of the world" => seen(&axes, *middle, ""),
                     _ => *middle,

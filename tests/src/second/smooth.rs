@@ -23,8 +23,8 @@ pub(super) struct Smooth {
 }
 
 impl Smooth {
-    /// A surface with its vertex on the central ray, tilted by up to `most`, and its text without
-    /// the event.
+    /// A surface with its vertex on the central ray, tilted by up to `most` radians, and its text
+    /// in a scene file without the event.
     pub(super) fn new(dice: &mut Dice, world: &World, most: f64) -> (Self, String) {
         let tilt = between(dice, 0.1, most);
         let facing = aside(dice, times(-1.0, world.light.d), tilt);
@@ -144,8 +144,8 @@ impl Smooth {
         met
     }
 
-    /// Whether a point of the solid's surface is within the aperture, and on the half around the
-    /// vertex.
+    /// Whether a point of the solid's surface is within the aperture, and on the half of the solid
+    /// around the vertex.
     fn holds(&self, point: Vector) -> bool {
         let [s, t, _] = self.axes.coordinates(point);
         s.hypot(t) <= self.aperture && dot(self.normal(point), self.axes.d) > 0.0

@@ -85,7 +85,8 @@ fn points(dice: &mut Dice, fault: &str) -> f64 {
     each.fold(0.0, worse)
 }
 
-/// If only one of the two is a miss, the difference is one metre.
+/// Compares hits of rays. If a ray hits only one of the two surfaces, the difference counts as one
+/// metre.
 fn hits(dice: &mut Dice, fault: &str) -> f64 {
     let (world, smooth, patch) = surface(dice);
     let smooth = smooth.wrong(fault);

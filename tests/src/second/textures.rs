@@ -67,8 +67,8 @@ fn blended(dice: &mut Dice, fault: &str) -> f64 {
     apart(&reflectance.at(at[0], at[1]), varied.at(at, fault))
 }
 
-/// The difference of the weights in two sums; a BRDF in only one of them counts with its full
-/// weight.
+/// The difference of the weights in two sums. The full weight of a BRDF counts if it is in only one
+/// of the sums.
 pub(super) fn apart(mixture: &Mixture<'_>, varied: [(f64, &Brdf); 2]) -> f64 {
     let weight = |brdf: &Brdf| {
         let weights = mixture.weighted().filter(|(_, of)| *of == brdf);

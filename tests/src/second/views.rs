@@ -1,5 +1,5 @@
-//! Coordinates of planes on surfaces: photons that cross a plane across the central ray, compared
-//! with the same photons at planes on the surface.
+//! Coordinates of planes on surfaces: photons at a plane across the central ray are compared with
+//! the same photons at planes on the surface.
 
 use super::check::{SecondCheck, relative, worse};
 use super::paths::{Legs, Turn};
@@ -23,7 +23,7 @@ const VIEWS: &[&str] = &[
     "cosines left out",
 ];
 
-/// Planes, each with a flag for arriving light, and its orientation.
+/// Planes, each with its orientation and a flag that is set for arriving light.
 pub(super) const PLANES: [(&str, bool, View); 7] = [
     ("Orthogonal", true, View::Across),
     ("Tangent", true, View::Tangent),
@@ -148,7 +148,8 @@ impl Looking<'_> {
         } else {
             cosines
         };
-        // Flux Φ has weight Φ (1 + u² + v²)² across the leg, Φ/(cos θ cos² φ) on the surface.
+        // Flux Φ has weight Φ (1 + u² + v²)² at the plane across the leg, and Φ/(cos θ cos² φ) on
+        // the surface.
         let weight = across.weight / (secant_squared * secant_squared) / per_flux;
         let TwoPlane { x, y, u, v } = seen.ray;
         let z = [x, y, u, v].into_iter().zip(second);

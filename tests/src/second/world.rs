@@ -1,4 +1,4 @@
-//! A scene file in the terms of docs/scenes.md, with its central ray anywhere in the world, and the
+//! A scene file that follows docs/scenes.md, with its central ray anywhere in the world, and the
 //! resolved scene.
 
 use super::vector::{Axes, Vector, aside, between, direction};
@@ -12,7 +12,7 @@ use std::path::Path;
 pub(super) struct World {
     /// The frame at the light.
     pub(super) light: Axes,
-    /// X as in the file: not orthogonal to D.
+    /// X as in the file, where it need not be orthogonal to D.
     x_axis: Vector,
     pub(super) lamp: String,
     pub(super) blockers: String,

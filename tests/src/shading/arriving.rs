@@ -6,8 +6,8 @@ use etendue_scene::Scene;
 use glam::DVec3;
 use std::f64::consts::TAU;
 
-/// Nodes of the midpoint rule along x and y, and along θ and φ: over four per cycle of the highest
-/// frequency.
+/// Nodes of the midpoint rule along x and y, and along θ and φ. There are more than four nodes per
+/// cycle of the highest frequency.
 const NODES: [usize; 2] = [40, 36];
 
 /// A sphere in an unoccluded environment.
@@ -21,8 +21,8 @@ pub(super) struct Sphere<'a> {
 impl Sphere<'_> {
     /// The windowed spectrum at the scene's plane on the sphere, in local normals.
     ///
-    /// `turn` is −1 if (θ, φ) are those of the direction that light comes from, rotated about the
-    /// normal, and +1 if they are not rotated.
+    /// `turn` is −1 if (θ, φ) are the angles of the direction from which light comes, rotated about
+    /// the normal. It is +1 if they are not rotated.
     pub(super) fn slices(&self, turn: f64) -> Slices {
         let plane = &self.scene.planes[0];
         let w = &plane.window;
@@ -48,7 +48,7 @@ impl Sphere<'_> {
                 .collect();
             for k in 0..grid.azimuths {
                 let (sin, cos) = grid.azimuth(k).sin_cos();
-                // Along one azimuth position and angle are one number each.
+                // Along one azimuth, the position and the angle are one number each.
                 let place = x * cos + y * sin;
                 for (n, nu) in grid.nu.values().into_iter().enumerate() {
                     let terms = directions.iter().zip(&values).map(|([u, v], value)| {
@@ -75,7 +75,7 @@ impl Sphere<'_> {
         let local = plane.frame.turned_to(plane.frame.vector_to_world(normal));
         let from = local.vector_to_world(DVec3::new(across * sin, up, across * cos));
         let along = self.scene.path.frame.vector_to_local(-from);
-        // Converts to an integral over the area of the sphere.
+        // The division by the cosine converts the integral to one over the area of the sphere.
         self.environment.radiance(along) / normal.z
     }
 }

@@ -100,7 +100,7 @@ pub(super) fn bandwidths() -> ReportSection {
         let (said, said_edge) = (criterion.environment(), criterion.blocker());
         let images = [scene.image(false, said), scene.image(true, said_edge)];
         let bound = criterion.combined();
-        // The bound is reached if both parts have the same sign.
+        // The bound is reached if both terms have the same sign.
         let reached =
             1.0 + 2.0 * criterion.curvature * criterion.distance / criterion.outgoing.cos() > 0.0;
         let digits = |id, figure| Check::new(id, figure, Below(DIGITS), "six digits");

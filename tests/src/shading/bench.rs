@@ -27,7 +27,7 @@ impl Bench {
         Self::of(scene, sound)
     }
 
-    /// Creates a bench with a prediction from elsewhere.
+    /// Creates a bench with a given prediction.
     pub(super) fn of(scene: Scene, sound: Slices) -> Self {
         let photons = traced(&scene);
         Self {
@@ -59,7 +59,7 @@ impl Bench {
     /// p of photons against a prediction.
     ///
     /// # Panics
-    /// If there is neither light nor a prediction of any.
+    /// If there is no light and no light is predicted.
     pub(super) fn p_value(&self, photons: &Measurement, said: &Slices) -> f64 {
         let p = Residuals::new(photons, 0, said).p_value(self.scene.run.seed);
         p.expect("light")

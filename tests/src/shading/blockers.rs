@@ -24,7 +24,7 @@ pub(super) fn statements() -> Vec<Statement> {
     all
 }
 
-/// Light through strips, windowed: the off-centre peaks of its spectrum.
+/// The off-centre peaks of the spectrum of windowed light through strips.
 fn replicas() -> Statement {
     let mut worst = 0.0_f64;
     for pitch in [0.2, 0.1, 0.05] {
@@ -68,7 +68,7 @@ fn replicas() -> Statement {
     }
 }
 
-/// 90 % bandwidth of coefficients: the smallest |n| below which this much of the energy lies.
+/// The 90 % bandwidth of coefficients: the smallest |n| below which 90 % of the energy lies.
 fn bandwidth(coefficients: &[Complex]) -> usize {
     let middle = coefficients.len() / 2;
     let energy =
@@ -83,8 +83,8 @@ fn bandwidth(coefficients: &[Complex]) -> usize {
         .unwrap_or(middle)
 }
 
-/// Pairs of patterns in one plane: the spectrum of their product, and its estimate from magnitudes
-/// alone.
+/// Pairs of patterns in one plane: the spectrum of their product, and the estimate of this spectrum
+/// from magnitudes alone.
 fn combined() -> Vec<Statement> {
     let (mut largest, mut under, mut over) = (0.0_f64, 0, 0);
     let pairs: u32 = 200;
@@ -144,8 +144,8 @@ fn combined() -> Vec<Statement> {
 fn complementary() -> f64 {
     let [a, b] = [[0.0, 0.5], [0.5, 1.0]].map(|half| coefficients(&vec![half], SUMMED));
     let middle = a.len() / 2;
-    // Σ c_m d_(n−m), and the sum of magnitudes, including the tail of 1/m²: opposite phases for n =
-    // 0.
+    // Σ c_m d_(n−m), and the sum of magnitudes. Both include the tail of 1/m², with opposite phases
+    // for n = 0.
     let product: Complex = (0..a.len()).map(|m| a[m] * b[2 * middle - m]).sum();
     let size: f64 = (0..a.len())
         .map(|m| a[m].norm() * b[2 * middle - m].norm())
@@ -221,8 +221,8 @@ fn average() -> Vec<Statement> {
         let sine = |u: f64| (u - x) / (u - x).hypot(distance);
         sine(LIGHT) - sine(-LIGHT)
     };
-    // Pitches for which the light's image covers an odd number of half periods: there the first
-    // harmonic is largest.
+    // Pitches for which the light's image covers an odd number of half periods. The first harmonic
+    // is largest at these pitches.
     let image = 2.0 * LIGHT * AFTER / distance;
     let pitches = [4.5, 9.5, 18.5, 36.5].map(|count| image / count);
     let ripple = |pitch: f64| {

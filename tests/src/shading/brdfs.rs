@@ -71,7 +71,7 @@ pub(super) const fn term(before: Factor<'_>, lobe: Option<PlanarLobe>) -> Separa
     }
 }
 
-/// cos θ (1 + 0.6 sin θ), which is not even: sin θ shifts a spectrum by ± 1/2π.
+/// cos θ (1 + 0.6 sin θ), which is not even. The factor sin θ shifts a spectrum by ± 1/2π.
 pub(super) fn lopsided(theta: f64) -> f64 {
     theta.cos() * (1.0 + 0.6 * theta.sin())
 }
@@ -257,7 +257,7 @@ fn listed() -> [OperatorComparison; 2] {
     ]
 }
 
-/// Two lobes with weights ½ (1 + 0.9 cos(2π 1.5 s + 0.4)) and its complement.
+/// Two lobes with the weight ½ (1 + 0.9 cos(2π 1.5 s + 0.4)) and the complement of this weight.
 fn weighted() -> OperatorComparison {
     let weight = |s: f64| 0.5 * (1.0 + 0.9 * (TAU * 1.5 * s + 0.4).cos());
     let both = |s: f64, d: f64| weight(s) * GLOSS.value(d) + (1.0 - weight(s)) * PHONG.value(d);

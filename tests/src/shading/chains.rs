@@ -65,7 +65,7 @@ pub(super) fn chains(photons: Option<u64>) -> ReportSection {
         let sound = Prediction::new(&scene, place, &Applicability::new(&scene, place));
         let view = scattered(&scene, place).expect("a plane behind a BRDF");
         for (name, fault) in faults() {
-            // On the surface, maps off it have no effect yet.
+            // At a plane on the surface, the maps after the surface have no effect yet.
             if plane == "texture" && name.starts_with("off") {
                 continue;
             }

@@ -19,21 +19,21 @@ use etendue_theory::shading::{
 };
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Maximum error of corrected formulas: both sides are quadratures accurate to 10⁻¹², or traced to
-/// six digits.
+/// Maximum error of corrected formulas. Both sides are quadratures accurate to 10⁻¹², or are traced
+/// with six digits.
 const QUADRATURE: f64 = 1e-9;
 const TRACED: f64 = 1e-6;
-/// Minimum error of a misprint without a known figure: far above [`QUADRATURE`].
+/// Minimum error of a misprint whose error is not known in advance. It is far above [`QUADRATURE`].
 const BY_FAR: f64 = 0.02;
 
 struct Erratum {
     place: &'static str,
     printed: String,
     corrected: String,
-    /// Relative error of the printed formula, and the required minimum.
+    /// Relative error of the printed formula, and its required minimum.
     off: f64,
     at_least: f64,
-    /// Relative error of the corrected formula, and the permitted maximum.
+    /// Relative error of the corrected formula, and its permitted maximum.
     mended: f64,
     at_most: f64,
 }
@@ -118,7 +118,7 @@ fn irradiance() -> Vec<Erratum> {
 fn brdf() -> Vec<Erratum> {
     let lobe = PlanarLobe::Gaussian { deviation: 0.12 };
     let fixed = |_: f64, d: f64| lobe.value(d);
-    // θ_o = θ_o' + k s: from the normal at the centre, not from that at s.
+    // θ_o = θ_o' + k s is the angle from the normal at the centre, not from the normal at s.
     let global = |s: f64, d: f64| lobe.value(d + K * s);
     let plain = primal(&surface(Some(&fixed)));
     let unprimed = primal(&surface(Some(&global)));
@@ -255,7 +255,7 @@ fn criteria() -> Vec<Erratum> {
             let traced = EyeScene { criterion }.traced()[usize::from(edge)];
             let [printed, corrected, traced] =
                 [printed, corrected, traced].map(|b| b / criterion.lobe_cutoff);
-            // Known figures (docs/theory.md, section 9), to their stated digits.
+            // Errors known from docs/theory.md, section 9, to their stated digits.
             let unlike = (printed - known[0]).abs() > 0.01 || (traced - known[1]).abs() > 0.01;
             Erratum {
                 place,

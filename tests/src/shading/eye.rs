@@ -42,8 +42,8 @@ impl EyeScene {
         }
     }
 
-    /// The origin of the mirrored light of a ray: its direction, and its crossing with the plane of
-    /// the blocker.
+    /// The origin of the light that is mirrored into a ray: its direction, and the point where it
+    /// crosses the plane of the blocker.
     fn origin(&self, slope: f64) -> [f64; 2] {
         let hit = self.hit(slope);
         self.from(&hit, self.aside() - hit.local)
@@ -66,8 +66,9 @@ impl EyeScene {
         [angle, across + (distance - along) * tangent]
     }
 
-    /// The rates at which phases of the environment and at the blocker change with the slope at the
-    /// eye, relative to their rates with the local angle of the mirrored light at one point.
+    /// The rates at which the phases in the environment and at the blocker change with the slope at
+    /// the eye. They are relative to the rates of change with the local angle of the mirrored light
+    /// at one point.
     pub(super) fn ratios(&self) -> [f64; 2] {
         let seen = derivative(&|slope| self.origin(slope));
         let center = self.hit(0.0);
@@ -75,15 +76,16 @@ impl EyeScene {
         [0, 1].map(|i: usize| (seen[i] / there[i]).abs())
     }
 
-    /// The bandwidths at the eye: B, B', and the largest for content at both, cut off at Ω_ρ and Ω_e.
+    /// The bandwidths at the eye: B, B', and the largest one for content in the environment and at
+    /// the blocker, cut off at Ω_ρ and Ω_e.
     pub(super) fn traced(&self) -> [f64; 3] {
         let c = &self.criterion;
         let seen = derivative(&|slope| self.origin(slope));
         let center = self.hit(0.0);
         let there = derivative(&|angle| self.from(&center, angle + self.aside() - center.local));
         let [environment, blocker] = self.ratios();
-        // A wave g in the environment and f at the blocker whose sum on the surface is at its
-        // limit.
+        // The frequencies of a wave g in the environment and a wave f at the blocker whose sum on
+        // the surface is at its limit.
         let mut most = 0.0_f64;
         for (limit, g) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
             let g = g * c.environment_cutoff;
@@ -93,9 +95,9 @@ impl EyeScene {
         [c.lobe_cutoff * environment, c.lobe_cutoff * blocker, most]
     }
 
-    /// The frequency below which 99 % of the energy of an image lies, divided by the predicted one,
-    /// for a Gaussian lobe narrow enough for the surface to be linear. The image is that of a
-    /// distant point, or the derivative of that of an edge.
+    /// The frequency below which 99 % of the energy of an image lies, divided by the predicted one.
+    /// The Gaussian lobe is narrow enough for the surface to be linear. The image is that of a
+    /// distant point, or the derivative of the image of an edge.
     pub(super) fn image(&self, edge: bool, said: f64) -> f64 {
         const DEVIATION: f64 = 1e-4;
         const COUNT: i32 = 240;

@@ -122,7 +122,7 @@ fn fresnel() -> Vec<OperatorComparison> {
         let along = (theta - beyond).tan() / (theta + beyond).tan();
         0.5 * (across * across + along * along)
     };
-    // For metals, in real numbers (Born and Wolf 1999, section 14.2).
+    // The form for metals in real numbers (Born and Wolf 1999, section 14.2).
     let conductor = |theta: f64| {
         let (n, k, sine, cosine) = (0.96_f64, 6.69_f64, theta.sin(), theta.cos());
         let t0 = n * n - k * k - sine * sine;
@@ -167,7 +167,8 @@ fn fresnel() -> Vec<OperatorComparison> {
 }
 
 fn lobes() -> Vec<OperatorComparison> {
-    // Lobe shapes written out again, normalised by their own quadrature; end and scale.
+    // Lobe shapes, implemented again and normalised by a separate quadrature; with their ends and
+    // scales.
     let row = |operator,
                lobe: PlanarLobe,
                off: PlanarLobe,
@@ -265,7 +266,7 @@ fn differential_irradiance() -> OperatorComparison {
                 .sum()
         })
         .collect();
-    // g decays as 1/v³ without end: copies 3000 apart add 10⁻¹⁰.
+    // g decays as 1/v³ and has no end, so copies 3000 apart add an error of 10⁻¹⁰.
     let lattice = Lattice {
         spacing: 1.0 / 3000.0,
         reach: 6.0,
@@ -309,7 +310,8 @@ fn environments() -> Vec<OperatorComparison> {
         let omegas: Vec<[f64; 2]> = (0..12)
             .map(|i| [0.05 * f64::from(i) - 0.2, 0.3 * f64::from(i % 5) - 0.5])
             .collect();
-        // dE'_r(s, θ_r') = env(k s − θ_r') cos θ_r': over s it has the Gaussians' width over |k|.
+        // dE'_r(s, θ_r') = env(k s − θ_r') cos θ_r'. Its width over s is that of the Gaussians
+        // divided by |k|.
         let primal = |[x, t]: [f64; 2]| -> Complex {
             let mirrored = between([-FRAC_PI_2, FRAC_PI_2], 60).into_iter();
             mirrored

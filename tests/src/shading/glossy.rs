@@ -1,5 +1,5 @@
-//! The sampling criteria of section 6.2 compared with photons: sweeps of all their lengths and
-//! angles.
+//! The sampling criteria of section 6.2 compared with photons, in sweeps of all lengths and angles
+//! in the criteria.
 
 use crate::report::Bound::{Above, Below};
 use crate::report::{Check, ReportSection, Row};
@@ -33,7 +33,7 @@ enum Lit {
     Beam,
     /// A point light at this distance.
     Point(f64),
-    /// A slit at this distance, in front of a light that fills it.
+    /// A slit at this distance, in front of a light that is wider than the slit.
     Slit(f64),
 }
 
@@ -101,7 +101,7 @@ impl GlossyBench {
             }
             Lit::Point(d) => (format!("Point(center: (0, 0, {}))", -d), String::new(), d),
             Lit::Slit(d) => {
-                // Its width of 2 % of the distance is less than half of the lobe's standard
+                // The width of 2 % of the distance is less than half of the lobe's standard
                 // deviation.
                 let (half, from) = (0.01 * d, 1.01 * d);
                 (
@@ -174,7 +174,7 @@ impl GlossyBench {
     fn windows(&self, c: &Criterion) -> (Windows, f64) {
         let deviation = GAUSSIAN / c.lobe_cutoff;
         let finer = self.says(c)[0] / c.lobe_cutoff;
-        // The lobe's centre and edges are at x/(seen slope) of the first, in angles at the surface.
+        // The window contains the lobe, whose extent is computed in angles at the surface.
         let nearness = match self.lit {
             Lit::Beam => 0.0,
             Lit::Point(d) | Lit::Slit(d) => c.incidence.cos() / d,
@@ -190,8 +190,8 @@ impl GlossyBench {
             (tails * deviation + self.aside.abs() + 0.7 * along.abs() * ACROSS) / finer.max(1e-6);
         let u = wanted.min(WIDEST);
         let floor = if wanted > WIDEST { BOX / u } else { 0.0 };
-        // The slice at zero integrates across; a lobe that is not a product gets a narrow window,
-        // so that the visible light is in the plane of incidence.
+        // The slice at azimuth 0 integrates over y and v. A lobe that is not a product gets a
+        // narrow window, so that the visible light is in the plane of incidence.
         let across = 1.0
             + self.distance
                 * (nearness / c.incidence.cos() + 2.0 * c.curvature * c.incidence.cos());
@@ -203,7 +203,7 @@ impl GlossyBench {
         let windows = Windows {
             slope: [u, v],
             most: [2.0 * along.abs() * c.lobe_cutoff + 2.0 / ACROSS, 2.5 * said],
-            // Wide enough for the lobe, seen from the eye, to be a seventh of it.
+            // The beam is seven times as wide as the lobe seen from the eye.
             beam: 18.0 * self.distance * (u / tails).max(deviation / finer.max(0.2)) + 2.0 * ACROSS,
         };
         (windows, floor)
@@ -411,7 +411,7 @@ pub(crate) fn glossy(photons: Option<u64>) -> (ReportSection, Curves) {
             panels.push(panel(&sweep, points));
         }
     }
-    // Two-sided, for normal errors.
+    // The bound is two-sided, for normal errors.
     let one = libm::erfc(worst / SQRT_2);
     let all = 1.0 - (1.0 - one).powi(count);
     let section = ReportSection {
@@ -456,7 +456,8 @@ pub(crate) fn glossy(photons: Option<u64>) -> (ReportSection, Curves) {
     (section, picture)
 }
 
-/// The range of measurements for a criterion of `bandwidth`, if the window widens the spectrum by at most `floor`.
+/// The range of measurements that agree with a criterion's `bandwidth`, if the window widens the
+/// spectrum by at most `floor`.
 fn range(bandwidth: f64, floor: f64) -> [f64; 2] {
     let error = ERROR * bandwidth;
     [bandwidth - error, bandwidth.hypot(floor) + error]

@@ -4,7 +4,7 @@ use super::primal::{about, between, wave};
 use etendue_field::Complex;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Standard deviations up to which a Gaussian is summed: 2·10⁻¹⁶.
+/// Standard deviations up to which a Gaussian is summed; it is 2·10⁻¹⁶ there.
 const REACH: f64 = 8.5;
 
 /// A Gaussian component of a light field, A exp(−½ (z − μ)ᵀ C⁻¹ (z − μ)), z = (x, θ).
@@ -78,9 +78,9 @@ pub(super) struct PrimalSurface<'a> {
     pub(super) horizon: f64,
     /// f(θ_i').
     pub(super) before: &'a dyn Fn(f64) -> f64,
-    /// ρ(s, δ); `None` is a Dirac.
+    /// ρ(s, δ); `None` means a Dirac.
     pub(super) lobe: Option<&'a dyn Fn(f64, f64) -> f64>,
-    /// h(θ_o'), on the half-circle; `None` is 1 on the whole circle.
+    /// h(θ_o'), on the half-circle; `None` means 1 on the whole circle.
     pub(super) after: Option<&'a dyn Fn(f64) -> f64>,
     /// Angles at which f or h has a kink, ascending.
     pub(super) kinks: &'a [f64],
@@ -89,8 +89,8 @@ pub(super) struct PrimalSurface<'a> {
 }
 
 impl PrimalSurface<'_> {
-    /// Nodes up to an angle on both sides, with `count` on each side of the centre of each piece
-    /// between kinks.
+    /// Nodes between minus and plus an angle. Each piece between two kinks has `count` nodes on
+    /// either side of its centre.
     fn pieces(&self, end: f64, count: i32) -> Vec<(f64, f64)> {
         let ends = [&[-end], self.kinks, &[end]].concat();
         let pieces = ends

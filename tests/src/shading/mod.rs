@@ -1,5 +1,5 @@
-//! Shading: the effect of cosines, BRDFs, textures and environments on spectra, in 2D compared with
-//! plain quadrature and traced rays, in 4D with photons.
+//! The effect of cosines, BRDFs, textures and environments on spectra. In 2D, theory is compared
+//! with plain quadrature and traced rays; in 4D, with photons.
 
 mod arriving;
 mod bandwidth;
@@ -31,8 +31,8 @@ pub(crate) use glossy::glossy;
 
 use crate::report::ReportSection;
 
-/// All sections. The 2D sections need no photons; the others use those of their files, or `photons`
-/// for each scene.
+/// All sections. The 2D sections need no photons. The others use the number of photons of each
+/// scene file, or `photons` if it is given.
 pub(crate) fn shading(photons: Option<u64>) -> Vec<ReportSection> {
     let mut sections = vec![
         operators::operators(),

@@ -18,16 +18,16 @@ use std::f64::consts::TAU;
 const ALPHA: f64 = 0.01;
 /// Default number of photons of a bench, enough to detect the subtlest faults.
 const PHOTONS: u64 = 1 << 22;
-/// The width of a pixel in an environment of 256 pixels around, radians.
+/// The width of a pixel in an environment with 256 pixels per row, radians.
 const PIXEL: f64 = TAU / 256.0;
 
 /// A planted fault.
 enum Plant {
-    /// In the prediction, by a modified system.
+    /// Changes the prediction, through a modified system.
     ScatteringSystem(fn(&mut ScatteringSystem)),
-    /// In the prediction, by a factor.
+    /// Changes the prediction, by a factor.
     Factor(f64),
-    /// In the photons, by a modified scene and modified crossings.
+    /// Changes the photons, through a modified scene and modified crossings.
     Photons(fn(&mut Scene), fn(&Scene, Crossing) -> Crossing),
 }
 
@@ -42,7 +42,7 @@ struct Stand {
 /// Returns the section.
 pub(super) fn planted(photons: Option<u64>) -> ReportSection {
     let stands = stands();
-    // Plus the bench in the arriving light.
+    // One more, for the bench in the arriving light.
     let count = stands.len() + 1;
     let level = sidak(ALPHA, count);
     let mut rows = Vec::new();
@@ -294,7 +294,7 @@ fn turned_round(reflectance: &mut Reflectance) {
     }
 }
 
-/// The weights of the first two BRDFs swapped.
+/// Swaps the weights of the first two BRDFs.
 pub(super) fn swapped(reflectance: &mut Reflectance) {
     if let [one, two, ..] = &mut reflectance.terms[..] {
         std::mem::swap(&mut one.weight, &mut two.weight);
@@ -318,8 +318,8 @@ fn texture(system: &mut ScatteringSystem, factor: f64) {
     }
 }
 
-/// Light of the environment arriving at the sphere, times the cosine: with its direction unrotated,
-/// and rotated.
+/// Light of the environment that arrives at the sphere, times the cosine. In the two faults, the
+/// environment is rotated by a pixel.
 fn turned(photons: Option<u64>) -> (Bench, [(&'static str, Slices); 2]) {
     let scene = misprints::arriving(photons);
     let Light::Environment { environment } = &scene.light else {

@@ -1,5 +1,5 @@
-//! The semi-convolution in 4D: the spectrum after a sum of BRDFs computed from that before it, for
-//! photons and for rays.
+//! The semi-convolution in 4D: it computes the spectrum after a sum of BRDFs from the spectrum
+//! before it, for photons and for rays.
 
 use super::bench::reflectance;
 use super::planted::swapped;
@@ -91,8 +91,8 @@ impl Sides {
         }
     }
 
-    /// ‖operator(before) − after‖ beyond noise, and the noise, relative to ‖after‖: for the slice
-    /// along x, at all frequencies whose shifts stay within the grid.
+    /// ‖operator(before) − after‖ beyond noise, and the noise, both relative to ‖after‖. They are
+    /// computed for the slice along x, at all frequencies whose shifts stay within the grid.
     fn apart(&self, reflectance: &Reflectance, axes: [[f64; 2]; 2]) -> [f64; 2] {
         let grid = &self.after.grid;
         let (before, after) = (self.before.full(), self.after.full());

@@ -22,7 +22,7 @@ pub(super) fn statements() -> Vec<Statement> {
 
 /// cosⁿ on the half-circle has a discontinuous n-th derivative.
 fn discontinuity(n: i32) -> Statement {
-    // |sin(π²Ω)| or |cos(π²Ω)| is one at these.
+    // |sin(π²Ω)| or |cos(π²Ω)| is one at these frequencies.
     let shift = if n % 2 == 0 { 0.5 } else { 0.0 };
     let points: Vec<[f64; 2]> = [20, 28, 40, 56, 80, 113, 160]
         .map(|m| {
@@ -143,7 +143,8 @@ fn cosine() -> Vec<Statement> {
         mean: 0.3,
         deviation: 0.3,
     };
-    // Positions up to a pattern of frequency f along the surface.
+    // The relative error of the convolution if the light also varies along the surface, as
+    // `pattern`.
     let off = |pattern: &dyn Fn(f64) -> f64| {
         let pairs: Vec<[Complex; 2]> = (0..16)
             .map(|i| {
@@ -173,7 +174,7 @@ fn cosine() -> Vec<Statement> {
                 "irradiance of an environment on a convex surface against env ⊗ cos⁺, as spectra"
                     .to_owned(),
             number: off(&|_| 1.0),
-            // The trapezoid rule across the kink of the cosine: step²/12.
+            // The error of the trapezoid rule across the kink of the cosine: step²/12.
             expected: [0.0, 2e-4],
             holds: "holds for light that depends on direction alone",
         },

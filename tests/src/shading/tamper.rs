@@ -26,8 +26,8 @@ pub(super) fn polarised(cosine: f64) -> [f64; 2] {
     [s, p].map(|share| 2.0 * share / (s + p))
 }
 
-/// The texture of `textured_glossy` at the position of the light, with 1/cos θ₁ for positions along
-/// the surface.
+/// The texture of `textured_glossy` at the position of the light. The factor 1/cos θ₁ gives
+/// positions along the surface.
 pub(super) fn textured_here(scene: &Scene, crossing: Crossing) -> Crossing {
     const MIRROR: f64 = 0.796_083_799;
     let etendue_scene::Event::Reflects(reflectance) = &scene.patches[0].event else {

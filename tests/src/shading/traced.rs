@@ -16,7 +16,7 @@ use std::f64::consts::TAU;
 
 /// Sizes of the neighbourhood.
 const SIZES: [f64; 4] = [0.02, 0.01, 0.005, 0.0025];
-/// The error of an exact step: that of the trapezoid rule up to seven standard deviations.
+/// The error of an exact step, which is that of the trapezoid rule up to seven standard deviations.
 const ROUNDING: f64 = 1e-9;
 const REACH: f64 = 7.0;
 
@@ -24,7 +24,7 @@ const REACH: f64 = 7.0;
 struct Circle {
     theta0: f64,
     k: f64,
-    /// Standard deviation of the lobe, relative to the size; `None` is a Dirac.
+    /// Standard deviation of the lobe, relative to the size; `None` means a Dirac.
     lobe: Option<f64>,
 }
 
@@ -271,7 +271,8 @@ impl Circle {
         sums
     }
 
-    /// Where light that leaves at arc length s in a local direction is, and how areas of its coordinates exceed ds dθ.
+    /// The position of light that leaves at arc length s in a local direction, and the ratio of its
+    /// coordinates' area to ds dθ.
     fn leaves(&self, step: ReflectionStep, s: f64, local: f64) -> ([f64; 2], f64) {
         let turn = self.k * s;
         match step {
@@ -288,8 +289,9 @@ impl Circle {
         }
     }
 
-    /// The position where the line through a point at an angle θ to a central direction crosses the
-    /// line perpendicular to that direction, from the origin along cos T − sin N.
+    /// The position where two lines cross. One goes through a point at an angle θ to a central
+    /// direction. The other is perpendicular to that direction, from the origin along cos T − sin
+    /// N.
     fn across(&self, central: f64, [t, n]: [f64; 2], theta: f64) -> f64 {
         let (sine, cosine) = central.sin_cos();
         t * cosine - n * sine - (t * sine + n * cosine) * theta.tan()

@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 /// Permitted difference between a chain composed here and the one derived from the scene.
 const SAME: f64 = 1e-8;
 
-/// Modifies the steps, given θ₀ and the shape operator.
+/// A function that modifies the steps, given θ₀ and the shape operator.
 type StepMisprint = Box<dyn Fn(&mut Steps, f64, Matrix<2>)>;
 
 fn all() -> Vec<(&'static str, &'static str, StepMisprint)> {
@@ -30,7 +30,7 @@ fn all() -> Vec<(&'static str, &'static str, StepMisprint)> {
     };
     let cosine = |cosine: fn(f64) -> f64, sign: f64| -> StepMisprint {
         Box::new(move |steps, theta0, shape| {
-            // The shear by M alone has cosine 1 beside M, with the right sign.
+            // Without its cosines, the shear is M alone, with the right sign.
             let longitude = cosine(theta0);
             steps.curvature =
                 AffineMap::<4>::curvature(shape.map(|r| r.map(|m| sign * m)), longitude)
@@ -112,8 +112,8 @@ fn all() -> Vec<(&'static str, &'static str, StepMisprint)> {
     ]
 }
 
-/// A row for each misprint alone: all of them on a hollow sphere, and on a plane mirror those that
-/// concern it.
+/// A row for each misprint alone. All of them are tested on a hollow sphere, and those that concern
+/// a plane mirror also on a plane mirror.
 fn rows(outcome: &TableRun) -> Vec<Row> {
     let bench = MirrorBench::new(outcome);
     let mut rows = Vec::new();

@@ -10,8 +10,8 @@ use etendue_scene::{Emission, LightFile, Scene, resolve};
 use etendue_trace::Tracer;
 use rayon::prelude::*;
 
-/// Beam widths in metres: that of the file, and one so narrow that its aberration is below its
-/// noise.
+/// Beam widths in metres: the width in the file, and a width so narrow that its aberration is below
+/// its noise.
 const WIDTHS: [f64; 2] = [0.1, 1e-5];
 /// Maximum deviation in standard errors.
 const MOST: f64 = 4.0;
@@ -116,7 +116,7 @@ fn sums(scene: &Scene) -> Vec<Vec<CrossingSums>> {
     (0..scene.run.batches).into_par_iter().map(batch).collect()
 }
 
-/// The sums over all batches, or all but one.
+/// The sums over all batches, or over all but one.
 fn total(batches: &[Vec<CrossingSums>], without: Option<usize>) -> Vec<[f64; 2]> {
     let planes = batches[0].len();
     let variance = |plane: usize| {

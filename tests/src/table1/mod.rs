@@ -1,5 +1,5 @@
-//! Table 1 of Durand et al. 2005, line by line: theory compared with quadrature in 2D, and photons
-//! with theory in 4D.
+//! Table 1 of Durand et al. 2005, line by line. In 2D, theory is compared with quadrature; in 4D,
+//! photons are compared with theory.
 
 mod bench;
 mod errata;

@@ -13,7 +13,8 @@ use etendue_theory::geometry::Media;
 use etendue_theory::rays::SpecularSystem;
 use etendue_theory::{Model, Observed, Parameter};
 
-/// Permitted difference between two quadratures, each accurate to 10⁻⁴, where first order is exact.
+/// Permitted difference between two quadratures where first order is exact. Each quadrature is
+/// accurate to 10⁻⁴.
 const QUADRATURE: f64 = 2e-4;
 
 /// The 4D half of the table.
@@ -152,8 +153,8 @@ fn operator(view: &Observed<SpecularSystem>) -> (&'static str, Option<Line>) {
     }
 }
 
-/// The 2D scene in the plane of incidence, for a scene with one surface whose principal axes are
-/// along it.
+/// The 2D scene in the plane of incidence, for a scene with one surface. A principal axis of the
+/// surface must lie in this plane.
 fn section(view: &Observed<SpecularSystem>) -> Option<(MirrorPath, PathStage)> {
     let Observed { system, plane } = view;
     let value = |p: Parameter| view.value(p);

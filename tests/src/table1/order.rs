@@ -21,7 +21,7 @@ pub(crate) fn check(fitted: f64, known: f64) -> Check {
     Check::new("order", off, AtMost(ORDER), "a fit of four sizes")
 }
 
-/// Smaller angles of incidence count as 0, radians.
+/// Angle of incidence below which an angle counts as 0, radians.
 const NORMAL: f64 = 1e-6;
 
 /// The order known in advance (docs/theory.md, section 7).

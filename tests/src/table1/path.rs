@@ -74,7 +74,7 @@ impl MirrorPath {
         if stage == Travel {
             return [x, theta];
         }
-        // (T, N) axes: D comes from ω(θ₀), X = −c₀ T + sin θ₀ N.
+        // Light comes from ω(θ₀), against D; in axes (T, N), X = −c₀ T + sin θ₀ N.
         let (sin, cos) = self.theta0.sin_cos();
         let point = [-cos * x, sin * x];
         let along = -omega(self.theta0 + theta);

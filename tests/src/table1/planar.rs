@@ -150,8 +150,8 @@ impl MirrorPath {
         }
     }
 
-    /// The order known in advance: 1 if oblique, 2 along the normal, and also if only the tangent
-    /// slopes are approximated.
+    /// The order known in advance. It is 1 at oblique incidence. It is 2 along the normal, and also
+    /// if only the tangent slopes are approximated.
     fn known(&self, stage: PathStage) -> f64 {
         let flat_mirror = self.k == 0.0 && self.media.is_none();
         match stage {
@@ -162,7 +162,8 @@ impl MirrorPath {
         }
     }
 
-    /// The operators' spectrum of a field of some size; the frequencies; the field.
+    /// The spectrum that the operators give for a field of some size, with the frequencies and the
+    /// field.
     fn said(&self, stage: PathStage, size: f64) -> (Vec<Complex>, Vec<[f64; 2]>, Matrix<2>) {
         let map = self.map(stage);
         let field = FIELD.map(|row| row.map(|s| s * size * size));

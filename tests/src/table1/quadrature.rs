@@ -4,8 +4,7 @@ use etendue_field::Complex;
 use etendue_theory::geometry::{AffineMap, Matrix};
 use std::f64::consts::TAU;
 
-/// Half the number of nodes along each axis, for traced rays and for the mapped field, and the
-/// half-width in standard deviations.
+/// Half the number of nodes along each axis, for traced rays and for the mapped field.
 const NODES: i32 = 60;
 const FINE: i32 = 200;
 const REACH: f64 = 8.5;

@@ -1,4 +1,4 @@
-//! Étendue along real rays, and their way back.
+//! Conservation of étendue along real rays, and reversibility of the rays.
 
 use super::TableRun;
 use crate::report::Bound::Below;
@@ -11,7 +11,7 @@ use glam::DVec3;
 
 /// Step of the differences, metres and direction cosines; their error is of sixth order.
 const STEP: f64 = 2e-3;
-/// The error left by rounding, 10⁻¹⁶ over the step, and by the sixth order.
+/// The remaining error, from rounding (10⁻¹⁶ divided by the step) and from the sixth order.
 const ROUNDING: f64 = 1e-10;
 
 /// A straight leg of a ray.
@@ -96,7 +96,7 @@ fn index_ratio(system: &SpecularSystem) -> f64 {
     ratio
 }
 
-/// Ratio of the index before to that after.
+/// Ratio of the index before a surface to the index after it.
 fn crossed(element: &SpecularSurface, direction: DVec3) -> f64 {
     let etendue_field::Specular::Refraction { front, back } = element.event else {
         return 1.0;
@@ -130,7 +130,7 @@ fn defects(system: &SpecularSystem, plane: &Frame, at: [f64; 4], ratio: f64) -> 
         if slopes {
             z = with_slopes(z);
         }
-        // The index at the light is taken as one.
+        // The index of refraction at the light is taken as one.
         z[2] /= ratio;
         z[3] /= ratio;
         Some(z)
@@ -167,8 +167,8 @@ fn defects(system: &SpecularSystem, plane: &Frame, at: [f64; 4], ratio: f64) -> 
     ])
 }
 
-/// Whether there is an ideal lens: it bends slopes, and preserves the volume of positions and
-/// slopes; no real lens does.
+/// Whether there is an ideal lens. It changes slopes and preserves the volume of positions and
+/// slopes, unlike real lenses.
 fn has_lens(system: &SpecularSystem) -> bool {
     let events = system.elements.iter().map(|e| e.event);
     events

@@ -14,7 +14,7 @@ const MOST: f64 = 3e4;
 /// Number of rectangles that a disc counts as.
 const STRIPS: f64 = 64.0;
 
-/// None to three layers before the first surface, whose distance is given.
+/// Up to three layers before the first surface, whose distance is given.
 pub(super) fn blockers(
     draw: &mut SceneDraw,
     light: &LightFile,

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 /// The choices of one scene, in order of use.
 pub(super) struct SceneDraw {
     dice: Dice,
-    /// One value in this many is extreme; none if it is 0.
+    /// One value in this number of values is extreme; if it is 0, none is.
     rarity: usize,
     /// The scale of all lengths in the scene, metres.
     pub(super) unit: f64,
@@ -21,7 +21,7 @@ pub(super) struct SceneDraw {
     pub(super) inputs: usize,
 }
 
-/// Units that make all lengths of a scene tiny or huge: results must not depend on them.
+/// Units that make all lengths of a scene tiny or huge. Results must not depend on the unit.
 const UNITS: [f64; 4] = [1e-3, 1e-2, 1e2, 1e4];
 /// The range of lengths permitted in a scene file, metres.
 const LENGTHS: [f64; 2] = [1e-9, 1e9];

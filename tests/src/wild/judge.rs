@@ -26,13 +26,13 @@ pub(super) enum SceneTrouble {
 /// The cause of a failed plane.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Culprit {
-    /// The prediction: both tracers agree, but not with it.
+    /// The prediction is wrong: both tracers agree, but disagree with it.
     Theory,
-    /// A tracer: the two disagree.
+    /// A tracer is wrong: the two tracers disagree.
     Tracer,
-    /// The verdict, which is based on too few rays.
+    /// The verdict is wrong, because it is based on too few rays.
     Handful,
-    /// One of these, undetermined.
+    /// It is not determined which of these is wrong.
     Unknown,
 }
 
@@ -54,7 +54,7 @@ pub(super) struct JudgedScene {
     pub(super) refused: Option<String>,
     /// The verdicts of the scene.
     pub(super) verdicts: Vec<String>,
-    /// Number of runs with a verdict, of those with a failed plane, and of failures that do not
+    /// The numbers of runs with a verdict, of runs with a failed plane, and of failures that do not
     /// repeat.
     pub(super) runs: usize,
     pub(super) fails: usize,
@@ -63,7 +63,8 @@ pub(super) struct JudgedScene {
     pub(super) troubles: Vec<(SceneTrouble, String)>,
 }
 
-/// Minimum number of rays in the window for the spread of 64 batches: about ten in each.
+/// Minimum number of rays in the window that makes the spread of 64 batches reliable: about ten in
+/// each batch.
 pub(crate) const HANDFUL: u64 = 640;
 
 /// The seed of the scene for its first run, and those of two more runs.
@@ -245,7 +246,7 @@ fn of_tracers(file: &SceneFile, folder: &Path, name: &str) -> Option<Tracers> {
     })
 }
 
-/// Whether a scene still has the same fault, beyond chance.
+/// Whether a scene still has the same fault, and not by chance.
 pub(super) fn persists(
     runner: &Runner,
     file: &SceneFile,

@@ -98,7 +98,8 @@ fn environment(draw: &mut SceneDraw, center: [f64; 3]) -> io::Result<LightFile> 
         EnvironmentFile::File(sky(draw)?)
     } else {
         let count = 1 + draw.below(3);
-        // Lobes are in the axes of the map; plain ones are in world axes.
+        // Lobes are given in the axes of the map if the environment has axes, and otherwise in
+        // world axes.
         EnvironmentFile::Lobes((0..count).map(|_| lobe(draw, plain)).collect())
     };
     Ok(LightFile::Environment {

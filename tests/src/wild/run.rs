@@ -26,13 +26,13 @@ pub(super) struct Runner {
     pub(super) folder: PathBuf,
     /// A folder for results.
     pub(super) scratch: PathBuf,
-    /// Limit of processor time, whatever the load of the machine.
+    /// Limit of processor time, which does not depend on the load of the machine.
     pub(super) limit: Duration,
 }
 
 /// The outcome of a run.
 pub(super) enum RunEnding {
-    /// With a verdict on each plane.
+    /// Completed, with a verdict on each plane.
     Done(Vec<PlaneSummary>),
     /// Refused, for this reason.
     Refused(String),

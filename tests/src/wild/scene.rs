@@ -16,7 +16,7 @@ use std::path::Path;
 /// Maximum number of attempts to place a surface on the central ray.
 const TRIES: usize = 8;
 
-/// The scene with this index for a seed. Its pictures and meshes are written to the folder.
+/// The scene with an index, for a seed. Its pictures and meshes are written to the folder.
 pub(crate) fn scene(seed: u64, index: u64, photons: u64, folder: &Path) -> io::Result<SceneFile> {
     let mut draw = SceneDraw::new(seed, index, folder);
     let mut file = empty(&mut draw, photons)?;
@@ -37,7 +37,7 @@ pub(crate) fn scene(seed: u64, index: u64, photons: u64, folder: &Path) -> io::R
     if draw.one_in(4) {
         file.run.sampling = Sampling::Random;
     }
-    // With a common seed, scenes would fail together by chance.
+    // With a common seed, chance failures would occur in many scenes together.
     file.run.seed = u64::from(draw.whole(1, 1 << 30));
     Ok(file)
 }
@@ -126,8 +126,8 @@ fn surfaces(draw: &mut SceneDraw, file: &mut SceneFile) -> io::Result<CentralRay
     Ok(path)
 }
 
-/// The leg for the next surface: along the central ray after a specular surface, and in any
-/// direction in front of another.
+/// The leg for the next surface. After a specular surface it is along the central ray; after
+/// another surface it is in any direction in front of that surface.
 fn onwards(draw: &mut SceneDraw, file: &SceneFile, path: &CentralRay) -> Frame {
     let last = &path.legs[path.legs.len() - 1];
     let specular = file.surfaces.last().is_some_and(is_specular);
@@ -180,7 +180,7 @@ mod tests {
                 refused.push(format!("{number}: {error}"));
             }
         }
-        // One scene in twenty may be refused: the generator need not know all rules.
+        // One scene in twenty may be refused, because the generator does not know all rules.
         assert!(20 * refused.len() as u64 <= SCENES, "{refused:#?}");
     }
 }

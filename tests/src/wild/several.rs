@@ -1,5 +1,5 @@
-//! Random scenes with several surfaces that scatter or redirect light, and masks on any leg:
-//! photons must reject no prediction.
+//! Random scenes with several surfaces that scatter or redirect light, and masks on any leg.
+//! Photons must not reject any prediction.
 
 use super::draw::SceneDraw;
 use super::planted::planted;
@@ -14,7 +14,7 @@ use std::io;
 use std::path::Path;
 use std::time::Instant;
 
-/// Cycles across the window at the highest frequencies: few, because few photons arrive.
+/// Cycles across the window at the highest frequencies. There are few, because few photons arrive.
 const CYCLES: f64 = 3.0;
 /// Maximum number of scattering surfaces that are counted separately.
 const MAX_SCATTERERS: usize = 3;

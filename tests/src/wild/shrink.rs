@@ -71,7 +71,7 @@ pub(super) fn shrink(
     serde_json::from_value(best).map_err(io::Error::other)
 }
 
-/// All scenes one step smaller, those with the largest removals first.
+/// All scenes that are one step smaller, those with the largest removals first.
 fn candidates(tree: &Value) -> Vec<Value> {
     let mut found = Vec::new();
     let places = places(tree, String::new());
@@ -136,7 +136,7 @@ fn rounder(tree: &Value, places: &[(String, &Value)]) -> Vec<Value> {
     };
     let mut found: Vec<Value> = [2, 1].map(all).into_iter().filter(|t| t != tree).collect();
     for (place, x) in &numbers {
-        // An object whose centre becomes 0 moves into the light.
+        // Otherwise an object whose centre becomes 0 would move into the light.
         let moved = place.contains("/center/");
         let round = [0.0, 1.0].into_iter().filter(|_| !moved);
         for y in round.chain([short(*x, 0), short(*x, 1)]) {

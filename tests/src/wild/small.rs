@@ -1,5 +1,5 @@
-//! Small objects at random positions in the light of random scenes: theory must either include them
-//! or not apply to the plane.
+//! Small objects at random positions in the light of random scenes: theory must either include the
+//! object or not apply to the plane.
 
 use super::draw::SceneDraw;
 use super::run::text;
@@ -46,10 +46,11 @@ pub(crate) struct SmallOptions {
 
 /// Maximum seconds of one core for a prediction.
 const LONGEST_PREDICTION: f64 = 120.0;
-/// Seeds of the first and of a second comparison: one correct plane in a hundred fails the first.
+/// Seeds of the first and of a second comparison. One correct plane in a hundred fails the first
+/// comparison.
 const SEEDS: [u64; 2] = [1, 2];
-/// Photons of the second comparison over those of the first: its prediction has noise of its own
-/// only if it sums over more rays.
+/// Number of photons of the second comparison, divided by that of the first. The noise of the
+/// second prediction is independent only if the prediction sums over more rays.
 pub(super) const MORE_PHOTONS: u64 = 8;
 /// Maximum number of attempts to place an object.
 const TRIES: usize = 10;
@@ -146,8 +147,8 @@ fn drawn(options: &SmallOptions, number: u64, folder: &Path) -> Option<(Scene, u
 /// Cycles across the window at the highest frequencies, enough for a shadow an eighth as wide.
 const CYCLES: f64 = 8.0;
 
-/// Gives a scene a window with sharp edges, so that a small object near its border has full weight,
-/// and frequencies up to `cycles` across it.
+/// Gives a scene a window with sharp edges, so that a small object near the edge of the window has
+/// full weight. The frequencies go up to `cycles` across the window.
 pub(super) fn sharpen(file: &mut SceneFile, cycles: f64) {
     let WindowFile { x, y, u, v } = &mut file.window;
     let halves = [*x, y.unwrap_or(*x), *u, v.unwrap_or(*u)].map(|profile| profile.half_width());

@@ -17,7 +17,7 @@ const DIRECTIONS: [&str; 7] = [
 
 /// The scene in the frame at its light; `None` if it is already in it.
 ///
-/// Meshes are not rotated: a run must show whether such a scene still has its fault.
+/// Meshes are not rotated, so a run must show whether such a scene still has its fault.
 pub(super) fn straightened(tree: &Value) -> Option<Value> {
     let vector = |value: &Value| -> Option<DVec3> { serde_json::from_value(value.clone()).ok() };
     let light = tree.get("light")?.as_object()?.values().next()?;

@@ -24,7 +24,7 @@ pub(super) fn surface(
     }
 }
 
-/// A normal facing the arriving light, at normal or oblique incidence, occasionally grazing.
+/// A normal that faces the arriving light, at normal or oblique, and sometimes grazing, incidence.
 fn facing(draw: &mut SceneDraw, leg: &Frame) -> DVec3 {
     if draw.one_in(3) {
         return -leg.d;

@@ -1,4 +1,4 @@
-//! Functions above sixty lines need a reason: clippy finds those that have none.
+//! Functions of more than sixty lines need a stated reason; clippy finds those without one.
 
 use super::{crates, root};
 use std::fs;
@@ -7,7 +7,7 @@ use std::process::Command;
 /// The length of a planted function, in lines: above the threshold in clippy.toml.
 const PLANTED: usize = 70;
 
-/// Every crate takes the lints of the workspace, which ask for the reason.
+/// Every crate uses the lints of the workspace, which require the reason.
 #[test]
 fn crates_take_the_lints_of_the_workspace() {
     let read = |path: &str| fs::read_to_string(root().join(path)).unwrap();

@@ -1,5 +1,5 @@
-//! Checks of the rules in ARCHITECTURE.md: which crate may use which, no cycles of modules, a first
-//! sentence in each file that describes it.
+//! Checks of the rules in ARCHITECTURE.md: crates use only permitted crates, modules have no
+//! cycles, and each file begins with a sentence that describes it.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -174,7 +174,7 @@ fn crates_use_those_below_them() {
         let forbidden = forbidden(&name, &found);
         assert!(forbidden.is_empty(), "{name} may not use {forbidden:?}");
     }
-    // Each row comes after those it uses.
+    // Each row comes after the rows of the crates that it uses.
     for (i, (name, uses)) in MAY_USE.iter().enumerate() {
         let place =
             |other: &&&str| MAY_USE.iter().position(|(known, _)| known == *other) >= Some(i);
@@ -234,7 +234,7 @@ fn a_planted_circle_is_found() {
         ]),
         1
     );
-    // Through re-exports of the root, and in nested groups.
+    // Imports through re-exports of the root, and in nested groups.
     assert_eq!(
         of(&[
             root,

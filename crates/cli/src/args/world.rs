@@ -255,8 +255,8 @@ cannot connect through a mirror or to a sky; planes that need such photons stay 
 Writes to out/NAME-X-Y, or to the folder of --out: probe.json, and for each plane the arrays and pictures \
 of `run`.
 Exit codes are those of run.
-With --map, writes map.exr and map.npz with the arrays measured, error, criterion, window and samples (per \
-pixel and direction), and map.png, .svg and .csv.")]
+With --map, writes map.exr and map.npz with the arrays measured, error, azimuth, across, criterion, window, \
+pixels (width of the window) and samples (per pixel along a direction), and map.png, .svg and .csv.")]
 pub(crate) struct ProbeArgs {
     #[command(flatten)]
     pub(crate) scene: WorldArgs,
@@ -277,9 +277,10 @@ pub(crate) struct ProbeArgs {
     #[arg(long = "depth", value_name = "N", default_value_t = ProbeRequest::SURFACES, value_parser = within::<u16>(ranges::SURFACES))]
     pub(crate) surfaces: u16,
 
-    /// Width of the window, in pixels
-    #[arg(long, value_name = "PIXELS", default_value_t = ProbeRequest::WINDOW, value_parser = window)]
-    pub(crate) window: f64,
+    /// Width of the window, in pixels [default: the narrowest of 16, 32, 64 and so on that shows the
+    /// bandwidth of the picture]
+    #[arg(long, value_name = "PIXELS", value_parser = window)]
+    pub(crate) window: Option<f64>,
 
     /// Backward rays per plane [default: 2^20; for a map, 2^15]
     #[arg(long, value_name = "N", value_parser = enough)]

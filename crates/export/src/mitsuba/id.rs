@@ -2,7 +2,7 @@
 
 use etendue_scene::Object;
 
-/// Names in the scene file may contain any character, identifiers may not.
+/// Names in the scene file may contain any character. Identifiers may not.
 pub(super) fn id(object: Object) -> String {
     match object {
         Object::Surface(i) => format!("surface_{i}"),

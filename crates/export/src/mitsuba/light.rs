@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 
 /// Width and height of a picture in pixels.
 const PIXELS: usize = 1024;
-/// Extent of a picture in widths, equal to that of our photons.
+/// Extent of a picture, in widths of the light's Gaussian; our photons use the same extent.
 const WIDTHS: f64 = 3.0;
 
 impl Writer {
@@ -23,7 +23,7 @@ impl Writer {
                 shape, radiance, ..
             } => {
                 self.xml
-                    .comment("the light shines along z, its back is dark");
+                    .comment("the light shines along z; its back is dark");
                 let looks = [emitter(*radiance), xml::black()].concat();
                 self.xml.flat("light", shape, 0.0, &looks);
             }
@@ -82,7 +82,7 @@ impl Writer {
     }
 }
 
-/// The interpolation error of a picture, linear between pixels, of a smooth function: an eighth of
+/// The error of a picture of a smooth function, interpolated linearly between pixels: an eighth of
 /// the second derivative times the squared pixel width.
 fn error_of(image: &Image, half: f64) -> String {
     let pixel = 2.0 * half / PIXELS as f64;

@@ -24,8 +24,8 @@ impl Writer {
         }
     }
 
-    /// A BRDF that may vary over a surface within `aperture` of its vertex. All BRDFs are black on
-    /// the back.
+    /// Writes a BRDF that may vary over the part of a surface within `aperture` of its vertex. All
+    /// BRDFs are black on the back.
     pub(super) fn reflects(
         &mut self,
         reflectance: &Reflectance,
@@ -93,8 +93,8 @@ impl Writer {
                     format!("<bsdf type=\"diffuse\">{albedo}</bsdf>"),
                 )
             }
-            // A plugin of Mitsuba 0.6, which tests/peers/etendue_bsdfs.py adds to Mitsuba 3. Its
-            // lobe is (n + 2)/2π cosⁿ, ours (n + 1)/2π cosⁿ.
+            // `tests/peers/etendue_bsdfs.py` adds this plugin of Mitsuba 0.6 to Mitsuba 3. Its lobe
+            // is (n + 2)/2π cosⁿ, ours (n + 1)/2π cosⁿ.
             Lobe::Phong { exponent } => {
                 let share = (exponent + 1.0) / (exponent + 2.0);
                 let albedo = self.varied("specular_reflectance", &albedo.times(share));
@@ -132,7 +132,8 @@ impl Writer {
 /// A perfect reflector.
 const NO_METAL: &str = "<string name=\"material\" value=\"none\"/>";
 
-/// n and k: a dielectric reflects like a metal without absorption.
+/// Writes n and k. A dielectric is written as a metal without absorption, which reflects in the
+/// same way.
 fn index(fresnel: &Fresnel) -> Option<[f64; 2]> {
     match *fresnel {
         Fresnel::White => None,

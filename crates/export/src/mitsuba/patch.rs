@@ -7,12 +7,14 @@ use std::f64::consts::TAU;
 
 /// Minimum and maximum number of rings of triangles.
 const RINGS: [usize; 2] = [16, 256];
-/// Maximum distance of triangles from the surface relative to the aperture, unless this takes too
-/// many.
+/// Maximum distance of the triangles from the surface, relative to the aperture. It is exceeded if
+/// it would require more than the maximum number of rings.
 const NEAR: f64 = 1e-5;
-/// Corners of a ring, per ring index: edge triangles are about as long as wide, 2π/6 for 1.
+/// Corners of ring i, divided by i. With 6, triangles at the edge are about as long as wide: 2π/6 ≈
+/// 1.
 const SECTORS: usize = 6;
-/// Corners of the edge of a flat patch, which deviates by (π/512)²/2 = 2·10⁻⁵ of its radius.
+/// Corners of the edge of a flat patch. The edge deviates from a circle by (π/512)²/2 = 2·10⁻⁵ of
+/// its radius.
 const EDGE: usize = 512;
 
 /// A patch as triangles.
@@ -59,8 +61,8 @@ fn rings(patch: &Patch, rings: usize, sectors: usize) -> PatchMesh {
         let normal = patch.normal(point);
         MeshVertex { point, normal, uv }
     };
-    // The edge of a hemisphere is steep: there rings are closer together, as if evenly spaced on
-    // the ball.
+    // A hemisphere is steep at its edge. Rings are closer together there: they are evenly spaced on
+    // the sphere.
     let steep = (patch.aperture * patch.curvature[2].abs()).min(1.0);
     let radius = |share: f64| {
         if steep > 0.0 {
@@ -172,7 +174,7 @@ mod tests {
         }
     }
 
-    /// A hemisphere: its edge is vertical, and its triangles are as accurate there.
+    /// A hemisphere. Its edge is vertical, and its triangles are as accurate there as elsewhere.
     #[test]
     fn half_a_ball_is_met_as_well() {
         let mesh = mesh(&patch([10.0 / 3.0; 3], 0.3));

@@ -21,12 +21,12 @@ struct RecordedPlane<'a> {
     /// The frame in the exported coordinates; on a surface X, Y and D are T, B and N.
     frame: Frame,
     orientation: Orientation,
-    /// θ of the central ray on a surface.
+    /// θ of the central ray, if the plane is on a surface.
     longitude: f64,
     distance: f64,
     side: Side,
     leg: usize,
-    /// Identifiers of the shapes that light has left on its way, in order.
+    /// Identifiers of the shapes that the light has left before this plane, in order.
     visits: Vec<String>,
     /// Identifier of the shape that ends the leg, if there is one.
     ends: Option<String>,

@@ -11,7 +11,8 @@ pub(super) fn ply(triangles: &[[DVec3; 3]]) -> Vec<u8> {
     written(&["x", "y", "z"], &vertices, &faces)
 }
 
-/// A mesh with normals at the corners of its triangles; corners that are the same in both become one vertex.
+/// A mesh with normals at the corners of its triangles; corners with the same coordinates and
+/// normal become one vertex.
 pub(super) fn shaded(triangles: &[[DVec3; 3]], normals: &[[DVec3; 3]]) -> Vec<u8> {
     let corners = triangles.iter().zip(normals).map(|(points, normals)| {
         [0, 1, 2].map(|i| {
@@ -63,7 +64,7 @@ fn written<const N: usize>(
     bytes
 }
 
-/// Vertices in order of first use, and the triangles over them.
+/// The vertices in order of first use, and the triangles as indices of vertices.
 fn indexed<const N: usize>(
     triangles: impl Iterator<Item = [[f64; N]; 3]>,
 ) -> (Vec<[f64; N]>, Vec<[u32; 3]>) {

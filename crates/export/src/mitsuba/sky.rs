@@ -1,13 +1,13 @@
 //! Environments as Mitsuba's environment pictures.
 //!
-//! In both, columns are areas of longitude. Rows are areas in ours, but nodes in Mitsuba's: its
-//! first row is the upper pole, its last the lower.
+//! Columns are intervals of longitude in both formats. Rows are intervals of latitude in ours but
+//! samples in Mitsuba's: its first row is the upper pole, and its last row is the lower pole.
 
 use etendue_field::{Environment, EnvironmentMap};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// Minimum number of pixels around. Lobes are interpolated linearly, with an error of
+/// Minimum number of pixels in a row. Lobes are interpolated linearly, with an error of
 /// (2π/4096/σ)²/8 of the peak: 2·10⁻⁶ at σ = 0.4, 2·10⁻⁴ at σ = 0.04.
 const AROUND: usize = 4096;
 
@@ -53,7 +53,8 @@ fn finer(width: usize) -> usize {
     if width >= AROUND / 2 { 1 } else { least | 1 }
 }
 
-/// The direction at a fraction of the full azimuth, and of the way down from the upper pole.
+/// The direction at a fraction `around` of the full azimuth and a fraction `down` of the way from
+/// the upper to the lower pole.
 fn toward(around: f64, down: f64) -> DVec3 {
     let (sin, cos) = libm::sincos(TAU * (0.5 - around));
     let (across, up) = libm::sincos(PI * down);

@@ -14,7 +14,7 @@ const PERIOD: usize = 512;
 /// A number that follows a pattern.
 #[derive(Clone, Copy)]
 pub(super) struct VariedTexture<'a> {
-    /// The pattern; `None` for a constant, the second of the range.
+    /// The pattern; `None` for a constant, which is the second value of the range.
     pub(super) pattern: Option<&'a Pattern>,
     /// The values where the pattern is 0 and 1.
     pub(super) range: [f64; 2],
@@ -81,7 +81,8 @@ impl Writer {
         self.bitmap(name, picture, "bilinear", "repeat", &scaled(scale, offset))
     }
 
-    /// 1 within a picture and 0 beyond its edge: the middle one of nine pixels.
+    /// A picture that is 1 within another picture and 0 beyond its edge. Only the middle one of its
+    /// nine pixels is 1.
     pub(super) fn within(&mut self, name: &str, picture: &Picture) -> String {
         let middle = sampled([3, 3], |column, row| {
             let is_middle = |at: f64| (1.0..2.0).contains(&at);
@@ -113,7 +114,8 @@ impl Writer {
     }
 }
 
-/// The map from (s, t) to a picture, from its top left to (1, 1): a factor and an offset.
+/// The map from (s, t) to the coordinates of a picture, which go from (0, 0) at its top left to (1,
+/// 1): a factor and an offset.
 fn placed(picture: &Picture) -> [[f64; 2]; 2] {
     let [width, height] = picture.size;
     [[1.0 / width, -1.0 / height], [0.5; 2]]

@@ -39,7 +39,7 @@ impl Xml {
         xml
     }
 
-    /// A comment. XML forbids double hyphens in comments: they are separated by spaces.
+    /// A comment. XML forbids double hyphens in comments, so spaces separate them.
     pub(super) fn comment(&mut self, text: &str) {
         let text = text.replace("--", "- -").replace("--", "- -");
         self.line(&format!("<!-- {text} -->"));
@@ -88,8 +88,8 @@ impl Xml {
         ));
     }
 
-    /// Distant light, given by a picture of all directions; Y of the frame is up, D is at its
-    /// centre.
+    /// Distant light, given by a picture of all directions. In the picture, Y of the frame is up
+    /// and D is at the centre.
     pub(super) fn sky(&mut self, file: &str, frame: &Frame) {
         let axes = [frame.x, frame.y, frame.d, DVec3::ZERO];
         self.line(&format!(
@@ -106,7 +106,7 @@ impl Xml {
         ));
     }
 
-    /// A point light at the origin.
+    /// Writes a point light at the origin.
     pub(super) fn point_light(&mut self, intensity: f64) {
         self.line(&format!(
             "<emitter type=\"point\" id=\"light\"><point name=\"position\" x=\"0\" y=\"0\" z=\"0\"/>{}</emitter>",
@@ -137,7 +137,7 @@ pub(super) fn diffuse(albedo: f64) -> String {
     format!("<bsdf type=\"twosided\"><bsdf type=\"diffuse\">{albedo}</bsdf></bsdf>")
 }
 
-/// A black material; Mitsuba's default reflects half.
+/// A black material, because Mitsuba's default material reflects half of the light.
 pub(super) fn black() -> String {
     "<ref id=\"black\"/>".to_owned()
 }

@@ -161,8 +161,8 @@ fn patterns_become_pictures() {
     let cosine = texture("Cosine(axis: Y, frequency: 15, modulation: 0.9, phase: 1.5)");
     let ([width, rows], values) = picture(&cosine, "smooth_0_reflectance.pfm");
     assert_eq!([width, rows], [2, 512]);
-    // The lowest row of the file is the last: half a pixel before the end of a period the cosine is
-    // nearly 1.
+    // The last row is the lowest. It is half a pixel before the end of a period, where the cosine
+    // is nearly 1.
     let expected = 0.25 * (1.0 + 0.9 * f64::cos(std::f64::consts::TAU * 0.5 / 512.0));
     assert!((f64::from(values[0]) - expected).abs() < 1e-7); // 32 bits
     let xml = Document::parse(text(&cosine, "scene.xml")).unwrap();
@@ -182,7 +182,7 @@ fn blends_are_of_two_lobes() {
     );
     let xml = Document::parse(text(&tiles, "scene.xml")).unwrap();
     let [blend] = of_type(&xml, "blendbsdf").try_into().unwrap();
-    // Weight 0 selects the first, which is the other lobe.
+    // Weight 0 selects the first BRDF, which is the other lobe.
     let lobes: Vec<f64> = of_type(&xml, "phong")
         .iter()
         .map(|n| number(n, "exponent"))
@@ -247,7 +247,7 @@ fn lights_shine_through_pictures() {
     assert_eq!(of_type(&xml, "directionalarea").len(), 1);
 }
 
-/// The sky is dark where it would emit against the central ray.
+/// The sky is dark in directions from which light would travel against the central ray.
 #[test]
 fn environments_become_maps() {
     let sky =
@@ -258,8 +258,8 @@ fn environments_become_maps() {
     let most = values.iter().copied().fold(0.0_f32, f32::max);
     assert!((most - 3.0).abs() < 1e-4); // half a pixel beside the peak
     let dark = values.iter().filter(|v| **v == 0.0).count();
-    // Half of all directions; longitude is uniform, so this is half of the pixels too, within a
-    // column or two.
+    // Half of all directions are dark. Longitude is uniform, so half of the pixels are dark too,
+    // within a column or two.
     assert!(dark.abs_diff(values.len() / 2) < 3 * rows, "{dark}");
     let xml = Document::parse(text(&export, "scene.xml")).unwrap();
     assert_eq!(of_type(&xml, "envmap").len(), 1);

@@ -6,7 +6,7 @@ use png::{BitDepth, ColorType, Decoder, Transformations};
 use std::io::Cursor;
 use std::path::Path;
 
-/// Reads a number from the alpha of each pixel; alpha is 1 in pictures without it.
+/// Converts the alpha of each pixel to a number; alpha is 1 in pictures without an alpha channel.
 pub(super) fn read(
     extension: &str,
     bytes: &[u8],
@@ -28,7 +28,7 @@ pub(super) fn read(
     Raster::new(width, height, values).ok_or_else(|| "has no pixels".to_owned())
 }
 
-/// The alpha values of a PNG picture whose size was checked; `None` if it has none.
+/// The alpha values of a PNG picture whose size was checked; `None` if the picture has no alpha.
 fn alphas(bytes: &[u8]) -> Result<Option<Vec<f64>>, String> {
     let damaged = |error: png::DecodingError| format!("is damaged ({error})");
     let mut decoder = Decoder::new(Cursor::new(bytes));

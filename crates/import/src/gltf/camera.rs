@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 /// Width of pictures in pixels; files do not state a resolution.
 const ACROSS: usize = 512;
 
-/// Range of aspect ratios that give at least one pixel, and not too many.
+/// Range of aspect ratios that give at least one pixel and at most the allowed number.
 const ASPECTS: [f64; 2] = [1.0 / 32.0, 512.0];
 
 impl<'a> GltfReader<'a> {
@@ -55,7 +55,7 @@ impl<'a> GltfReader<'a> {
         let aspect = match of.aspect_ratio {
             Some(aspect) => self.within(&format!("{path}.aspectRatio"), aspect, ASPECTS),
             None => {
-                self.note(path, "has no aspectRatio: an aspect ratio of 1 is used");
+                self.note(path, "has no aspectRatio: 1 is used");
                 Some(1.0)
             }
         };

@@ -27,7 +27,7 @@ pub(super) struct Document {
     pub(super) chunk: Option<Vec<u8>>,
 }
 
-/// Reads the bytes of a file; `None` after a cause.
+/// Reads the bytes of a file; `None` if a cause of refusal was reported.
 pub(super) fn read(bytes: &[u8], place: &SourcePlace, report: &Report) -> Option<Document> {
     let refuse = |message: String| report.cause(place, message);
     let (json, chunk) = match bytes.starts_with(MAGIC) {
@@ -35,7 +35,7 @@ pub(super) fn read(bytes: &[u8], place: &SourcePlace, report: &Report) -> Option
         false => (bytes, None),
     };
     let root = Root::from_slice(json)
-        .map_err(|error| refuse(format!("is no glTF: {error}")))
+        .map_err(|error| refuse(format!("is not glTF: {error}")))
         .ok()?;
     check(&root, place, report).then(|| Document {
         root,

@@ -6,7 +6,8 @@ use super::surface::Draft;
 use etendue_world::{Dielectric, Material, Texture};
 
 impl GltfReader<'_> {
-    /// A material that transmits a share of light, and otherwise is `opaque`. `None` after a cause.
+    /// A material that transmits a share of the light and otherwise behaves like `opaque`. `None`
+    /// if a cause of refusal was reported.
     pub(super) fn with_glass(
         &mut self,
         draft: &mut Draft<'_>,

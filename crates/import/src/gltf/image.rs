@@ -19,7 +19,7 @@ fn extension(bytes: &[u8]) -> Option<&'static str> {
 }
 
 impl GltfReader<'_> {
-    /// The pixels of an image as one number each; `None` after a cause.
+    /// The pixels of an image as one number each; `None` if a cause of refusal was reported.
     pub(super) fn raster(&mut self, image: usize, level: TextureChannel) -> Option<Arc<Raster>> {
         let key = RasterKey::new(image, level);
         if let Some(known) = self.rasters.get(&key) {
@@ -62,7 +62,8 @@ impl GltfReader<'_> {
         let color = self.color;
         let is_grey = channels.count == 1;
         let raster = channels.raster(|rgb| match level {
-            // Rounding would make the luminance of three equal numbers differ from them.
+            // Three equal numbers are not converted: rounding would make their luminance differ
+            // from them.
             TextureChannel::Color(factor) if is_grey => pictures::linear(rgb[0]) * color.of(factor),
             TextureChannel::Color(factor) => {
                 let linear = rgb.map(pictures::linear);

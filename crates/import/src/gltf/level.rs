@@ -9,7 +9,7 @@ pub(super) enum TextureChannel {
     GreenSquared(f64),
     /// The third channel times a factor.
     Blue(f64),
-    /// Alpha times a factor; with a cutoff, 0 or 1.
+    /// Alpha times a factor; with a cutoff, the value is 0 or 1.
     Alpha { factor: f64, cutoff: Option<f64> },
 }
 

@@ -20,7 +20,7 @@ impl<'a> GltfReader<'a> {
             return self.cause(&placed.path, format!("more than {MAX_SHAPES} lights"));
         }
         if light.range.is_some() {
-            let message = "left out: light has no maximum range";
+            let message = "left out: lights have no maximum range here";
             self.note(&format!("{path}.range"), message);
         }
         if let Some(light) = self.light(light, placed, &path) {

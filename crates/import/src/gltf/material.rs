@@ -12,8 +12,8 @@ use etendue_world::{Material, Texture};
 use std::collections::BTreeSet;
 
 impl<'a> GltfReader<'a> {
-    /// A material by number; without a number, the default material of the specification. `None`
-    /// after a cause.
+    /// A material by its number in the file; without a number, the default material of the
+    /// specification. `None` if a cause of refusal was reported.
     pub(super) fn material(&mut self, number: Option<usize>) -> Option<GltfSurface> {
         if let Some(known) = self.materials.get(&number) {
             return known.clone();
@@ -69,7 +69,8 @@ impl<'a> GltfReader<'a> {
     fn scatter(&mut self, draft: &mut Draft<'_>) -> Option<Material> {
         let metallic_roughness = self.metallic_roughness(draft)?;
         let opaque = match draft.source.double_sided {
-            // A surface that emits on both sides becomes two surfaces, each with its front.
+            // A surface that emits on both sides becomes two surfaces, each of which emits on its
+            // front.
             true if !is_lit(draft.source) => {
                 Material::TwoSided(Box::new([metallic_roughness.clone(), metallic_roughness]))
             }
@@ -82,8 +83,11 @@ impl<'a> GltfReader<'a> {
         self.with_glass(draft, opaque)
     }
 
-    /// The emission of the front. The outer `None` is after a cause.
-    #[expect(clippy::option_option, reason = "the outer none is a cause")]
+    /// The emission of the front. The outer `None` means that a cause of refusal was reported.
+    #[expect(
+        clippy::option_option,
+        reason = "the outer `None` means a reported cause"
+    )]
     fn emission(&mut self, draft: &mut Draft<'_>) -> Option<Option<Texture>> {
         let path = format!("{}.emissiveFactor", draft.path);
         let factor = self.shares(&path, draft.source.emissive_factor.0)?;
@@ -108,8 +112,12 @@ impl<'a> GltfReader<'a> {
         }
     }
 
-    /// The opacity; the inner `None` means opaque. The outer `None` is after a cause.
-    #[expect(clippy::option_option, reason = "the outer none is a cause")]
+    /// The opacity; the inner `None` means opaque. The outer `None` means that a cause of refusal
+    /// was reported.
+    #[expect(
+        clippy::option_option,
+        reason = "the outer `None` means a reported cause"
+    )]
     fn opacity(&mut self, draft: &mut Draft<'_>) -> Option<Option<Texture>> {
         let source = draft.source;
         let factor = f64::from(source.pbr_metallic_roughness.base_color_factor.0[3]);

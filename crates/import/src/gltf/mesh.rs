@@ -8,7 +8,7 @@ use ::gltf::json::{Accessor, Index};
 use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
 
-/// Maximum number of corners; indices have 32 bits.
+/// Maximum number of corners, because indices have 32 bits.
 const MAX_CORNERS: usize = u32::MAX as usize;
 
 fn attribute(primitive: &Primitive, of: Semantic) -> Option<Index<Accessor>> {
@@ -17,7 +17,7 @@ fn attribute(primitive: &Primitive, of: Semantic) -> Option<Index<Accessor>> {
 
 impl GltfReader<'_> {
     /// The triangles of a primitive, with the texture coordinates that its material uses; `None` if
-    /// there are none, or after a cause.
+    /// there are none, or if a cause of refusal was reported.
     pub(super) fn parts(
         &mut self,
         primitive: &Primitive,
@@ -87,7 +87,7 @@ impl GltfReader<'_> {
         spent.map_err(|error| self.cause(path, error)).ok()?;
         parts.drop_empty();
         if parts.corners.is_empty() {
-            self.note(path, "has no triangle with an area: left out");
+            self.note(path, "has no triangle with an area above 0: left out");
             return None;
         }
         let mended = parts.mend_normals();
@@ -142,7 +142,8 @@ fn corners(listed: &[u32], mode: Mode) -> Vec<[u32; 3]> {
     }
 }
 
-/// The same triangles flipped, `gap` behind the originals. Corners at one place move together.
+/// The same triangles flipped, `gap` behind the originals. Corners at the same position move
+/// together.
 pub(super) fn back_of(parts: &etendue_world::Triangles, gap: f64) -> MeshParts {
     let bits = |v: DVec3| v.to_array().map(|x| (x + 0.0).to_bits());
     let mut sums: BTreeMap<[u64; 3], DVec3> = BTreeMap::new();

@@ -8,7 +8,7 @@ use etendue_world::{Conductor, Material, MicrofacetDistribution, Plastic, Roughn
 /// Default index of refraction.
 const INDEX: f64 = 1.5;
 
-/// The JSON field that holds both pictures.
+/// The JSON field that holds the picture of base colour, and that of metallic and roughness.
 const PBR: &str = "pbrMetallicRoughness";
 
 /// The reflection at the surface of a dielectric.
@@ -18,7 +18,8 @@ struct DielectricCoat {
 }
 
 impl GltfReader<'_> {
-    /// The scattering at the front of an opaque material; `None` after a cause.
+    /// The scattering at the front of an opaque material; `None` if a cause of refusal was
+    /// reported.
     pub(super) fn metallic_roughness(&mut self, draft: &mut Draft<'_>) -> Option<Material> {
         let color = self.base_color(draft);
         let metallic = self.share(draft, "metallicFactor");
@@ -127,7 +128,7 @@ impl GltfReader<'_> {
         }))
     }
 
-    /// The index of refraction; `None` after a cause.
+    /// The index of refraction; `None` if a cause of refusal was reported.
     pub(super) fn index(&self, draft: &Draft<'_>) -> Option<f64> {
         let ior = draft
             .source

@@ -69,7 +69,8 @@ impl<'a> GltfReader<'a> {
         scene.nodes.iter().map(|node| node.value()).collect()
     }
 
-    /// Notes nodes that are not visited. Without scenes, these are only nodes in cycles.
+    /// Notes nodes that are not visited. In a file without scenes, only nodes in cycles are not
+    /// visited.
     fn tell_unmet(&self, met: &[bool]) {
         let unmet = met.iter().filter(|met| !**met).count();
         match (met.iter().position(|met| !met), self.root.scenes.is_empty()) {
@@ -115,7 +116,7 @@ impl<'a> GltfReader<'a> {
         }
     }
 
-    /// The local transform of a node; `None` after a cause.
+    /// The local transform of a node; `None` if a cause of refusal was reported.
     fn own(&self, node: &Node, path: &str) -> Option<DAffine3> {
         let is_split =
             node.translation.is_some() || node.rotation.is_some() || node.scale.is_some();
@@ -172,8 +173,8 @@ impl<'a> GltfReader<'a> {
 }
 
 impl PlacedNode<'_> {
-    /// The position and orientation of a camera or light, which look along −Z with Y up here and
-    /// along Z in a world. Scale and mirrors are left out.
+    /// The position and orientation of a camera or light. It looks along −Z with Y up in glTF, and
+    /// along Z in a world. Scales and mirrors are left out.
     pub(super) fn looking(&self) -> Option<DAffine3> {
         let linear = self.to_world.matrix3;
         let ahead = (-linear.z_axis).try_normalize()?;

@@ -26,13 +26,15 @@ pub(super) struct GltfReader<'a> {
     pub(super) folder: PathBuf,
     pub(super) color: Color,
     pub(super) world: World,
-    /// Bytes of the buffers read so far; `None` after a cause.
+    /// Bytes of the buffers read so far; `None` if a cause of refusal was reported.
     pub(super) buffers: HashMap<usize, Option<Arc<[u8]>>>,
-    /// Meshes by mesh and primitive number; `None` if there are no triangles, or after a cause.
+    /// Meshes by mesh and primitive number; `None` if there are no triangles, or if a cause of
+    /// refusal was reported.
     pub(super) meshes: HashMap<(usize, usize), Option<Arc<Triangles>>>,
     /// The same meshes flipped and moved back.
     pub(super) backs: HashMap<(usize, usize), Option<Arc<Triangles>>>,
-    /// Materials by number; `None` after a cause. The default material has no number.
+    /// Materials by number; `None` if a cause of refusal was reported. The default material has no
+    /// number.
     pub(super) materials: HashMap<Option<usize>, Option<GltfSurface>>,
     pub(super) rasters: HashMap<RasterKey, Result<Arc<Raster>, String>>,
     /// Notes that are given only once.
@@ -91,7 +93,7 @@ impl<'a> GltfReader<'a> {
         }
     }
 
-    /// Checks that a number is within range; `None` after a cause.
+    /// Checks that a number is within range; `None` if a cause of refusal was reported.
     pub(super) fn within(&self, path: &str, value: f32, [low, high]: [f64; 2]) -> Option<f64> {
         let value = f64::from(value);
         if (low..=high).contains(&value) && value.is_finite() {
@@ -101,7 +103,7 @@ impl<'a> GltfReader<'a> {
         None
     }
 
-    /// Checks that numbers are from 0 to 1; `None` after a cause.
+    /// Checks that numbers are from 0 to 1; `None` if a cause of refusal was reported.
     pub(super) fn shares<const N: usize>(&self, path: &str, values: [f32; N]) -> Option<[f64; N]> {
         for value in values {
             self.within(path, value, [0.0, 1.0])?;

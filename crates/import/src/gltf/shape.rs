@@ -51,7 +51,7 @@ impl<'a> GltfReader<'a> {
     ) {
         let path = format!("meshes[{}].primitives[{}]", key[0], key[1]);
         if self.world.shapes.len() >= MAX_SHAPES {
-            // Only the first excess shape gives a cause.
+            // Only the first shape beyond the limit gives a cause.
             if !self.report.has_causes() {
                 self.cause(&placed.path, format!("more than {MAX_SHAPES} shapes"));
             }
@@ -110,7 +110,8 @@ impl<'a> GltfReader<'a> {
         });
     }
 
-    /// Adds the second surface of one that emits on both sides: each emits on its front.
+    /// Adds the second of the two surfaces that represent a surface with emission on both sides.
+    /// Each emits on its front.
     fn add_back(
         &mut self,
         key: (usize, usize),

@@ -27,7 +27,7 @@ pub(super) fn source(uri: &str, most: u64) -> Result<BufferSource, String> {
         }
         // Four characters encode three bytes.
         if (text.len() as u64) / 4 * 3 > most {
-            return Err("is too much data".to_owned());
+            return Err("has more data than an import may read".to_owned());
         }
         let bytes = BASE64.decode(text);
         let bytes = bytes.map_err(|error| format!("is damaged base64 ({error})"))?;
@@ -39,7 +39,7 @@ pub(super) fn source(uri: &str, most: u64) -> Result<BufferSource, String> {
     unescaped(uri).map(BufferSource::File)
 }
 
-/// A name with percent encoding decoded.
+/// Decodes the percent encoding of a name.
 fn unescaped(uri: &str) -> Result<String, String> {
     let mut bytes = Vec::with_capacity(uri.len());
     let mut rest = uri.as_bytes();

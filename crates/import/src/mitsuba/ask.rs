@@ -24,7 +24,8 @@ impl<'a> MitsubaReader<'a> {
         object.properties.iter().any(|p| p.name == name)
     }
 
-    /// The value of a property, as converted by `read`; `None` if it is missing, or after a cause.
+    /// The value of a property, as converted by `read`; `None` if it is missing, or if a cause of
+    /// refusal was reported.
     fn ask<T>(
         &self,
         object: &'a MitsubaObject,
@@ -50,7 +51,8 @@ impl<'a> MitsubaReader<'a> {
         })
     }
 
-    /// A number in a range; a number out of range is a cause that states the range.
+    /// A number in a range. A number out of range is a cause of refusal, whose message states the
+    /// range.
     pub(super) fn number_within(
         &self,
         object: &'a MitsubaObject,
@@ -160,7 +162,7 @@ impl<'a> MitsubaReader<'a> {
         found
     }
 
-    /// The only child of a kind, if there is one; more than one is a cause.
+    /// The only child of a kind, if there is one; more than one is a cause of refusal.
     pub(super) fn child(
         &self,
         object: &'a MitsubaObject,

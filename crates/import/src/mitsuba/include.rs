@@ -23,7 +23,7 @@ impl Tree<'_> {
     ) -> Result<(), String> {
         allow(attributes, &["value"])?;
         if parent != 0 {
-            return Err("not in the scene itself".to_owned());
+            return Err("<path> inside another element; allowed: directly in <scene>".to_owned());
         }
         let name = required(attributes, "value")?;
         let found = self.files.find(&source.folders, name);
@@ -55,7 +55,7 @@ impl Tree<'_> {
         }
         self.includes += 1;
         if self.includes > MAX_INCLUDES {
-            // Only the first excess file gives a cause.
+            // Only the first file beyond the limit gives a cause.
             return match self.includes == MAX_INCLUDES + 1 {
                 true => Err(format!("more than {MAX_INCLUDES} files are included")),
                 false => Ok(()),

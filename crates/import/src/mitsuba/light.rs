@@ -64,10 +64,11 @@ impl<'a> MitsubaReader<'a> {
         })
     }
 
-    /// A vector, given directly or by a transform, but not both. The outer `None` is after a cause.
+    /// A vector, given directly or by a transform, but not both. The outer `None` means that a
+    /// cause of refusal was reported.
     #[expect(
         clippy::option_option,
-        reason = "neither is there; the outer none is a cause"
+        reason = "the inner `None` means neither; the outer one, a reported cause"
     )]
     fn either(
         &self,
@@ -157,7 +158,7 @@ impl<'a> MitsubaReader<'a> {
         }))
     }
 
-    /// `to_world`, which must keep lengths and angles. `None` after a cause.
+    /// `to_world`, which must keep lengths and angles. `None` if a cause of refusal was reported.
     pub(super) fn rigid(&self, object: &'a MitsubaObject) -> Option<DAffine3> {
         if !self.has(object, "to_world") {
             return Some(DAffine3::IDENTITY);
@@ -166,7 +167,7 @@ impl<'a> MitsubaReader<'a> {
         if is_rigid(map) {
             return Some(map);
         }
-        let message = "to_world scales or shears; allowed: turning, moving and mirroring";
+        let message = "to_world scales or shears; allowed: rotations, translations and reflections";
         self.report
             .cause(self.place_of(object, "to_world"), message);
         None

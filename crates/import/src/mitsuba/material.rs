@@ -21,7 +21,7 @@ const MAX_MATERIALS: usize = 1 << 20;
 const ALLOWED: &str = "diffuse, conductor, roughconductor, dielectric, thindielectric, roughdielectric, plastic, roughplastic, phong, twosided, mask, blendbsdf, null";
 
 impl<'a> MitsubaReader<'a> {
-    /// The index of a material; `None` after a cause.
+    /// The index of a material; `None` if a cause of refusal was reported.
     pub(super) fn material(&mut self, object: &'a MitsubaObject) -> Option<usize> {
         let at = object.number;
         if let Some(known) = self.materials.get(&at) {
@@ -33,7 +33,7 @@ impl<'a> MitsubaReader<'a> {
         number
     }
 
-    /// The material of shapes without one: diffuse, or black for emitters.
+    /// The material of shapes that specify none: diffuse, or black for emitters.
     pub(super) fn default_material(&mut self, shines: bool) -> usize {
         if let Some(known) = self.defaults[usize::from(shines)] {
             return known;
@@ -65,7 +65,8 @@ impl<'a> MitsubaReader<'a> {
             return None;
         }
         if depth > MAX_DEPTH {
-            let message = format!("bsdfs nested more than {MAX_DEPTH} deep, or one in itself");
+            let message =
+                format!("bsdfs nested more than {MAX_DEPTH} deep, or a bsdf within itself");
             self.report.cause(&object.place, message);
             return None;
         }
@@ -106,7 +107,8 @@ impl<'a> MitsubaReader<'a> {
         }))
     }
 
-    /// n and k, or `None` for a perfect reflector. The outer `None` is after a cause.
+    /// n and k, or `None` for a perfect reflector. The outer `None` means that a cause of refusal
+    /// was reported.
     fn metal(&mut self, object: &'a MitsubaObject) -> Option<Option<[f64; 2]>> {
         let name = match self.has(object, "material") {
             true => self.text(object, "material")?,
@@ -206,7 +208,7 @@ impl<'a> MitsubaReader<'a> {
 
     #[expect(
         clippy::option_option,
-        reason = "none is smooth; the outer none is a cause"
+        reason = "the inner `None` means smooth; the outer one, a reported cause"
     )]
     fn roughness_if(
         &mut self,

@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// The mesh of a shape.
 pub(super) struct MitsubaMesh {
     pub(super) triangles: Arc<Triangles>,
-    /// Whether the front is on the opposite side.
+    /// Whether the front is on the side opposite to the normals.
     pub(super) is_flipped: bool,
 }
 
@@ -61,7 +61,7 @@ impl<'a> MitsubaReader<'a> {
                 return None;
             }
         };
-        // Mitsuba computes normals from placed triangles, which a mirror flips; it transforms
+        // Mitsuba computes normals from the placed triangles, so a mirror flips them. It transforms
         // normals of the file as normals.
         let is_mirrored = to_world.matrix3.determinant() < 0.0;
         Some(MitsubaMesh {
@@ -107,7 +107,7 @@ impl<'a> MitsubaReader<'a> {
         to_world: DAffine3,
         is_new: bool,
     ) -> (Result<Arc<Triangles>, String>, bool) {
-        // A mesh with its own normals can be shared by all placements.
+        // All placements can share a mesh that has its own normals.
         let everywhere = MitsubaMeshKey {
             linear: None,
             is_flat: false,
@@ -180,7 +180,7 @@ impl<'a> MitsubaReader<'a> {
             }
         }
         let made = parts.finish().map(Arc::new);
-        made.ok_or_else(|| "has no triangle with an area".to_owned())
+        made.ok_or_else(|| "has no triangle with an area above 0".to_owned())
     }
 }
 

@@ -9,6 +9,6 @@ pub(super) struct MitsubaMeshKey {
     pub(super) number: u32,
     pub(super) is_flat: bool,
     pub(super) is_flipped: bool,
-    /// The linear part of the placement: smooth normals depend on it.
+    /// The linear part of the placement, on which smooth normals depend.
     pub(super) linear: Option<[u64; 9]>,
 }

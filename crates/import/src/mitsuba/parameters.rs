@@ -3,8 +3,8 @@
 use crate::report::quoted;
 use std::collections::BTreeMap;
 
-/// Maximum number of bytes that substitution may produce for a file, over all values: defaults may
-/// contain others, and grow without limit.
+/// Maximum number of bytes that substitution may produce for a file, over all values. Defaults may
+/// contain other parameters, so values could grow without limit.
 const MOST_BYTES: usize = 16 << 20;
 
 /// Parameters by name, set by the caller or by `<default>`.
@@ -17,7 +17,7 @@ pub(super) struct Parameters {
 #[derive(Debug)]
 struct MitsubaParameter {
     value: String,
-    /// Whether the caller set it, so that the file must use it.
+    /// Whether the caller set the parameter; the file must then use it.
     is_set: bool,
     is_used: bool,
 }

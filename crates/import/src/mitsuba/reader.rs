@@ -11,7 +11,7 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Maximum number of shapes of a world: instances may repeat groups.
+/// Maximum number of shapes of a world; it is needed because instances may repeat groups.
 pub(super) const MOST_SHAPES: usize = 1 << 20;
 
 /// Converts objects to a world.
@@ -94,7 +94,7 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// Refuses media: a world has no volumetric scattering.
+    /// Refuses media, because a world has no volumetric scattering.
     fn refuse_media(&self) {
         for object in self.objects {
             // Only the outermost medium is reported.

@@ -49,9 +49,7 @@ fn find(bytes: &[u8], number: u32) -> Result<(u16, usize), String> {
         .map(|(table, count)| (table, u32::from_le_bytes(*count)))
         .ok_or("ends before its table of meshes")?;
     if number >= count {
-        return Err(format!(
-            "has {count} meshes; shape_index {number} is none of them"
-        ));
+        return Err(format!("has {count} meshes, but shape_index is {number}"));
     }
     let size = if version >= 4 { 8 } else { 4 };
     let back = (count - number) as usize;
@@ -139,7 +137,8 @@ impl<R: Read> UnpackedStream<R> {
         }
     }
 
-    /// Reads rows of numbers. Memory grows as they are read, since the count may be wrong.
+    /// Reads rows of numbers. Memory is allocated as the rows are read, since the stated count may
+    /// be wrong.
     fn rows<const N: usize>(
         &mut self,
         count: u64,

@@ -13,7 +13,8 @@ use glam::{DAffine2, DAffine3, DMat2, DVec2};
 const ALLOWED: &str = "bitmap, checkerboard, uniform, srgb, rawconstant, d65";
 
 impl<'a> MitsubaReader<'a> {
-    /// The texture of a property, or a constant if it is missing. `None` after a cause.
+    /// The texture of a property, or a constant if it is missing. `None` if a cause of refusal was
+    /// reported.
     pub(super) fn texture_or(
         &mut self,
         object: &'a MitsubaObject,
@@ -240,7 +241,8 @@ impl<'a> MitsubaReader<'a> {
             .cause(self.place_of(object, "filename"), message);
     }
 
-    /// One of several keywords; the first is the default. `None` after a cause.
+    /// One of several keywords; the first is the default. `None` if a cause of refusal was
+    /// reported.
     pub(super) fn choice<T: Copy>(
         &self,
         object: &'a MitsubaObject,

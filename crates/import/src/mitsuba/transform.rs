@@ -1,4 +1,4 @@
-//! The elements of a transform. Each is applied after those before it.
+//! The elements of a transform. Each element is applied after those before it.
 
 use super::value;
 use glam::{DAffine3, DMat3, DMat4, DVec3, DVec4};
@@ -6,10 +6,10 @@ use glam::{DAffine3, DMat3, DMat4, DVec3, DVec4};
 /// The attributes of an element, after substitution.
 pub(super) type Attributes = Vec<(String, String)>;
 
-/// Maximum deviation of the length of an axis from 1: its components are rounded.
+/// Maximum deviation of the length of an axis from 1; the components in a file are rounded.
 const UNIT: f64 = 1e-3;
 
-/// Maximum deviation of a transform from a rigid one: it is a product of rounded numbers.
+/// Maximum deviation of a transform from a rigid one; a transform is a product of rounded numbers.
 const RIGID: f64 = 1e-3;
 
 /// The map of one element; `Err` is the fault.
@@ -30,7 +30,7 @@ pub(super) fn step(name: &str, attributes: &Attributes) -> Result<DAffine3, Stri
             let length = axis.length();
             if (length - 1.0).abs() > UNIT {
                 return Err(format!(
-                    "an axis of length {length}; allowed: 1, as Mitsuba 3 does not normalise it, and other lengths give no rotation"
+                    "a rotation axis of length {length}; allowed: 1. Mitsuba 3 does not normalise the axis, so another length also distorts shapes"
                 ));
             }
             Ok(rotation(axis / length, angle))
@@ -85,7 +85,7 @@ fn rotation(axis: DVec3, angle: f64) -> DAffine3 {
     ))
 }
 
-/// Whether a map is rigid, within rounding of few digits.
+/// Whether a map is rigid, within the rounding of numbers with few digits.
 pub(super) fn is_rigid(map: DAffine3) -> bool {
     let gram = map.matrix3.transpose() * map.matrix3;
     gram.abs_diff_eq(DMat3::IDENTITY, RIGID)
@@ -128,7 +128,7 @@ pub(super) fn required<'a>(attributes: &'a Attributes, name: &str) -> Result<&'a
     find(attributes, name).ok_or_else(|| format!("no attribute {name}"))
 }
 
-/// Refuses other attributes than these.
+/// Refuses attributes other than these.
 pub(super) fn allow(attributes: &Attributes, names: &[&str]) -> Result<(), String> {
     let mut all = attributes.iter();
     match all.find(|(name, _)| !names.contains(&name.as_str())) {

@@ -27,7 +27,7 @@ pub(super) fn words(text: &str) -> impl Iterator<Item = &str> {
 
 pub(super) fn whole(text: &str) -> Result<i64, String> {
     let parsed = text.trim().parse();
-    parsed.map_err(|_| format!("{} is no integer", quoted(text)))
+    parsed.map_err(|_| format!("{} is not an integer", quoted(text)))
 }
 
 pub(super) fn truth(text: &str) -> Result<bool, String> {
@@ -66,7 +66,7 @@ pub(super) fn spectrum(text: &str) -> Result<Value, String> {
     let pairs = all.into_iter().map(|word| {
         let (wavelength, value) = word
             .split_once(':')
-            .ok_or_else(|| format!("{} is no pair WAVELENGTH:VALUE", quoted(word)))?;
+            .ok_or_else(|| format!("{} is not a pair WAVELENGTH:VALUE", quoted(word)))?;
         Ok([number(wavelength)?, number(value)?])
     });
     sampled(pairs.collect::<Result<_, String>>()?)

@@ -189,7 +189,7 @@ impl<'a> Tree<'a> {
         Ok(made)
     }
 
-    #[expect(clippy::too_many_arguments, reason = "an element and where it stands")]
+    #[expect(clippy::too_many_arguments, reason = "an element and its place")]
     fn object(
         &mut self,
         node: Node<'_, '_>,
@@ -234,7 +234,7 @@ impl<'a> Tree<'a> {
             }
             Some(first) => {
                 let line = self.objects[*first].place.line;
-                let message = format!("id {} is in line {line} already", quoted(&id));
+                let message = format!("id {} is already used in line {line}", quoted(&id));
                 self.report.cause(place, message);
             }
         }

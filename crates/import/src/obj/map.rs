@@ -36,7 +36,7 @@ const OPTIONS: [(&str, usize); 13] = [
 ];
 
 impl MtlMap {
-    /// Parses the text after the keyword; `None` after a cause.
+    /// Parses the text after the keyword; `None` if a cause of refusal was reported.
     pub(super) fn read(
         text: &str,
         place: SourcePlace,
@@ -48,7 +48,7 @@ impl MtlMap {
         while rest.starts_with('-') {
             let (word, after) = cut(rest);
             let Some((option, most)) = OPTIONS.iter().find(|(known, _)| *known == word) else {
-                // A file name may look like this.
+                // A file name may look like an option.
                 break;
             };
             let (values, after) = arguments(after, *most, option);
@@ -93,8 +93,8 @@ fn cut(text: &str) -> (&str, &str) {
     (&text[..end], text[end..].trim_start())
 }
 
-/// Up to so many values of an option. Options with several values take only numbers, since a file
-/// name follows.
+/// Reads at most this number of values of an option. Options with several values take only numbers,
+/// since a file name follows.
 fn arguments<'a>(mut rest: &'a str, most: usize, option: &str) -> (Vec<&'a str>, &'a str) {
     let mut values = Vec::new();
     let takes_words = most == 1;

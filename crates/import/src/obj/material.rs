@@ -25,7 +25,7 @@ impl ObjReader<'_> {
         }
     }
 
-    /// The surface of a material; `None` after a cause.
+    /// The surface of a material; `None` if a cause of refusal was reported.
     pub(super) fn surface(&mut self, entry: &MtlEntry) -> Option<ObjSurface> {
         let scatter = self.scatter(entry);
         let emission = self.emission(entry);
@@ -105,7 +105,7 @@ impl ObjReader<'_> {
             note("Ks without Ns: Ns = 1 is used");
         }
         note(
-            "approximated: Ks and Ns are the modified Phong lobe ks (n + 2)/(2π) cosⁿ α about the mirror direction",
+            "approximated: Ks and Ns become the modified Phong lobe ks (n + 2)/(2π) cosⁿ α about the mirror direction",
         );
         let share = diffuse.largest() + ks;
         if share > MAX_SHARE {
@@ -138,8 +138,11 @@ impl ObjReader<'_> {
         })
     }
 
-    /// The transparency. The outer `None` is after a cause.
-    #[expect(clippy::option_option, reason = "the outer none is a cause")]
+    /// The transparency. The outer `None` means that a cause of refusal was reported.
+    #[expect(
+        clippy::option_option,
+        reason = "the outer `None` means a reported cause"
+    )]
     fn emission(&mut self, entry: &MtlEntry) -> Option<Option<Texture>> {
         if let Some(map) = &entry.map_ke {
             return self
@@ -150,7 +153,8 @@ impl ObjReader<'_> {
         Some((factor > 0.0).then_some(Texture::Constant(factor)))
     }
 
-    /// A picture times factors; levels are sRGB unless they are `raw`. `None` after a cause.
+    /// A picture times factors. Its levels are sRGB unless `raw` is set. `None` if a cause of
+    /// refusal was reported.
     fn bitmap(&mut self, map: &MtlMap, factor: [f64; 3], raw: bool) -> Option<Texture> {
         let read = self.pixels(map, factor, raw);
         let refuse = |error: String| {

@@ -21,7 +21,7 @@ pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused
     parts.face_normals();
     let mended = parts.mend_normals();
     let mesh = parts.finish();
-    let mesh = mesh.ok_or_else(|| unsound("no triangle with an area".to_owned()))?;
+    let mesh = mesh.ok_or_else(|| unsound("no triangle with an area above 0".to_owned()))?;
     let (report, place) = (Report::default(), scene.place());
     if mended {
         let message = "approximated: vertices without a normal use the normal of a triangle";

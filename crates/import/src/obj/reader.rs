@@ -23,7 +23,7 @@ pub(super) struct ObjReader<'a> {
     place: SourcePlace,
     folder: PathBuf,
     entries: HashMap<String, MtlEntry>,
-    /// Surfaces by material name; `None` after a cause.
+    /// Surfaces by material name; `None` if a cause of refusal was reported.
     surfaces: HashMap<Option<String>, Option<ObjSurface>>,
 }
 
@@ -116,7 +116,7 @@ impl<'a> ObjReader<'a> {
         let Some(mesh) = parts.finish() else {
             return self
                 .report
-                .note(&place, "no triangle with an area: left out");
+                .note(&place, "no triangle with an area above 0: left out");
         };
         self.world.shapes.push(Shape {
             name: part.material.clone().unwrap_or_default(),

@@ -70,8 +70,8 @@ impl PbrtReader<'_> {
         }))
     }
 
-    /// The emission scaled to the required power. pbrt uses the area of a shape before its scale,
-    /// but the area of each triangle after it.
+    /// The emission scaled to the required power. pbrt uses the area of a shape before its
+    /// transform is applied, but the area of a triangle after that.
     pub(super) fn powered(
         &self,
         area: Option<&Entity>,
@@ -88,7 +88,7 @@ impl PbrtReader<'_> {
                 Ok(Some(Texture::Constant(radiance * factor)))
             }
             None if has_power => {
-                let message = "power of a mesh, which pbrt gives to each triangle; allowed: a mesh of one triangle";
+                let message = "power of a mesh of several triangles: pbrt gives this power to each triangle; allowed: a mesh of one triangle";
                 Err(area.fault(self.report, "power", message.to_owned()))
             }
             None => Ok(emission),

@@ -17,7 +17,8 @@ pub(super) const DEEPEST_FILES: usize = 64;
 /// Maximum number of included files, counting repeats.
 pub(super) const MOST_FILES: usize = 1 << 14;
 
-/// Maximum number of `Attribute` parameters in effect at one place: each is checked for each shape.
+/// Maximum number of `Attribute` parameters in effect at one place. It is needed because each
+/// parameter is checked for each shape.
 const MOST_DEFAULTS: usize = 256;
 
 /// The targets of `Attribute`.
@@ -87,7 +88,7 @@ impl<'a> Builder<'a> {
     pub(super) fn go_to_system(&mut self, name: &str, place: &SourcePlace) -> Result<(), String> {
         match self.systems.get(name) {
             Some(map) => self.state.to_world = *map,
-            // pbrt also only warns.
+            // pbrt too only warns here.
             None => {
                 let message = format!("coordinate system {} is not known", quoted(name));
                 self.report.note(place, format!("{message}: left out"));

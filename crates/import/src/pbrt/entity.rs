@@ -10,7 +10,7 @@ use std::rc::Rc;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct CauseGiven;
 
-/// The value read, or an error after a cause.
+/// The value read, or an error if a cause of refusal was reported.
 pub(super) type Read<T> = Result<T, CauseGiven>;
 
 /// An entity that is a plugin in pbrt.
@@ -30,7 +30,7 @@ pub(super) struct Entity {
 }
 
 impl Entity {
-    /// pbrt's default if a file names no plugin.
+    /// pbrt's default plugin, used if a file names none.
     pub(super) fn default(kind: &'static str, plugin: &str, place: SourcePlace) -> Self {
         Self {
             kind,
@@ -149,7 +149,8 @@ impl Entity {
         Ok(self.float(report, name)?.unwrap_or(default))
     }
 
-    /// A number in a range; a number out of range is a cause that states the range.
+    /// A number in a range. A number out of range is a cause of refusal, whose message states the
+    /// range.
     pub(super) fn float_within(
         &self,
         report: &Report,

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-/// The relation between (u, v) of a world's surface and of pbrt's.
+/// The relation between (u, v) of a surface in a world and in pbrt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Uv {
     /// Both are equal.

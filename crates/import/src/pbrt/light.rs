@@ -39,8 +39,8 @@ impl PbrtReader<'_> {
         entity.float_within(self.report, "scale", 1.0, allowed)
     }
 
-    /// The factor that gives a light its required power or illuminance, if one above 0 is given:
-    /// pbrt ignores others.
+    /// The factor that gives a light its required power or illuminance. pbrt ignores values that
+    /// are not above 0.
     pub(super) fn wanted(&self, entity: &Entity, name: &str, now: f64) -> Read<f64> {
         let wanted = entity.float(self.report, name)?;
         let factor = wanted.filter(|w| *w > 0.0).map_or(1.0, |w| w / now);
@@ -112,7 +112,8 @@ impl PbrtReader<'_> {
         }
         let [cutoff, beam] = [cutoff, cutoff - delta].map(f64::to_radians);
         let [end, start] = [cutoff, beam].map(libm::cos);
-        // pbrt's convention: the mean of the falloff over its cosines is a half.
+        // pbrt's convention: between the two cones, the mean of the falloff over the cosine is a
+        // half.
         let solid = 2.0 * PI * ((1.0 - start) + (start - end) / 2.0);
         let factor = self.wanted(entity, "power", solid)?;
         let along = way?;

@@ -44,7 +44,7 @@ impl PbrtReader<'_> {
                 }
             },
         };
-        // A material that is invalid on one surface is invalid on all.
+        // A material that is invalid on one surface is invalid on all surfaces.
         let all = [Uv::Own, Uv::Ball, Uv::Disc].map(|uv| self.materials.get(&(number, uv)));
         if all.contains(&Some(&Err(CauseGiven))) {
             return Err(CauseGiven);
@@ -125,7 +125,7 @@ impl PbrtReader<'_> {
         })
     }
 
-    /// n and k; a reflectance is that of a metal with n = 1 at normal incidence.
+    /// n and k. A given reflectance is that of a metal with n = 1 at normal incidence.
     fn metal(&mut self, entity: &Entity) -> Read<[f64; 2]> {
         let number = Ask::Spectrum(Role::Number);
         if entity.has("reflectance") {
@@ -149,7 +149,7 @@ impl PbrtReader<'_> {
         self.note_once(&entity.place, message);
         let albedo = self.constant_or(entity, "albedo", ALBEDO, 0.0);
         for name in ["thickness", "maxdepth", "nsamples", "g"] {
-            // They were already noted above.
+            // The note above already covers these parameters, so they are marked as read.
             entity.has(name);
         }
         if albedo? > 0.0 {
@@ -280,7 +280,7 @@ pub(super) fn reads_uv(material: &Material) -> bool {
     let varies = |texture: &Texture| !matches!(texture, Texture::Constant(_));
     let rough = |roughness: &Option<Roughness>| {
         roughness.as_ref().is_some_and(|r| match &r.alpha {
-            #[expect(clippy::float_cmp, reason = "the same number or not")]
+            #[expect(clippy::float_cmp, reason = "checks for the same number")]
             [Texture::Constant(u), Texture::Constant(v)] => u != v,
             _ => true,
         })

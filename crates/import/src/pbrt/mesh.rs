@@ -115,7 +115,7 @@ impl PbrtReader<'_> {
         for patch in patches {
             let at = patch.map(|i| i as usize);
             self.check_patch(entity, at.map(|i| vertices[i]), needs_uv)?;
-            // There are fewer than 2³² vertices: each index of the file makes one.
+            // There are fewer than 2³² vertices, since there is one for each index of the file.
             let first = u32::try_from(parts.vertices.len()).map_err(|_| CauseGiven)?;
             parts.vertices.extend(at.map(|i| vertices[i]));
             if let (Some(to), Some(of)) = (&mut parts.normals, &normals) {
@@ -134,14 +134,14 @@ impl PbrtReader<'_> {
         self.made(entity, parts, needs_uv)
     }
 
-    /// Checks a patch: one that is not planar is a cause; one that is no parallelogram has other
-    /// texture coordinates inside.
+    /// Checks a patch. A patch that is not planar is a cause of refusal. A patch that is not a
+    /// parallelogram has other texture coordinates inside, which gives a note.
     fn check_patch(&self, entity: &Entity, [a, b, c, d]: [DVec3; 4], needs_uv: bool) -> Read<()> {
         let (along, across, diagonal) = (b - a, c - a, d - a);
         let size = along.length().max(across.length()).max(diagonal.length());
         let volume = along.cross(across).dot(diagonal).abs();
         if volume > FLAT * size * size * size {
-            let message = "a patch that is not flat; allowed: planes".to_owned();
+            let message = "a patch that is not flat; allowed: flat patches".to_owned();
             return Err(entity.fault(self.report, "P", message));
         }
         if needs_uv && (along + across - diagonal).length() > FLAT * size {
@@ -180,7 +180,7 @@ impl PbrtReader<'_> {
         Ok((vertices, indices.chunks_exact(N).map(face).collect()))
     }
 
-    /// A vertex attribute; with a wrong number of values it is left out, as in pbrt.
+    /// A vertex attribute. If it has a wrong number of values, it is left out, as in pbrt.
     fn beside<T>(
         &self,
         entity: &Entity,
@@ -191,7 +191,9 @@ impl PbrtReader<'_> {
         let all = read(entity, self.report)?;
         if all.len() != vertices.len() && !all.is_empty() {
             let (found, count) = (all.len(), vertices.len());
-            let message = format!("{name} is left out: {found} of {count} vertices");
+            let message = format!(
+                "{name} is left out: the mesh has {count} vertices, but {name} gives {found}"
+            );
             self.note_once(entity.place_of(name), &message);
             return Ok(None);
         }
@@ -218,7 +220,7 @@ impl PbrtReader<'_> {
         parts.face_normals();
         parts.mend_normals();
         let made = parts.finish().map(Arc::new);
-        made.ok_or_else(|| "has no triangle with an area".to_owned())
+        made.ok_or_else(|| "has no triangle with an area above 0".to_owned())
     }
 }
 

@@ -22,7 +22,7 @@ pub(super) struct PbrtSurface {
     pub(super) geometry: Geometry,
     /// The map from the geometry's coordinates to those of the shape.
     pub(super) placement: DAffine3,
-    /// The area that pbrt uses for a given power; `None` for many surfaces at once.
+    /// The area by which pbrt divides a given power; `None` for a shape of many surfaces.
     pub(super) area: Option<f64>,
 }
 
@@ -61,7 +61,7 @@ impl PbrtReader<'_> {
         }
     }
 
-    /// Adds a shape; returns whether there may be more.
+    /// Adds a shape; returns whether further shapes are allowed.
     fn add(&mut self, shape: etendue_world::Shape, place: &SourcePlace) -> bool {
         if self.world.shapes.len() >= MOST_SHAPES {
             let message = format!("more than {MOST_SHAPES} shapes, counting instances");
@@ -77,7 +77,8 @@ impl PbrtReader<'_> {
         true
     }
 
-    /// A shape placed by its own transform; `None` after a cause, or if there is no surface.
+    /// A shape placed by its own transform; `None` if a cause of refusal was reported, or if there
+    /// is no surface.
     fn shape(&mut self, shape: &PbrtShape, is_in_object: bool) -> Option<etendue_world::Shape> {
         let entity = &shape.entity;
         entity.is_used.set(true);

@@ -14,8 +14,8 @@ use std::sync::Arc;
 /// Maximum number of pixels along a side: the converted map has eight times as many pixels.
 const MAX_PIXELS: usize = 2048;
 
-/// Samples along each side of a pixel, for a map of one pixel: larger maps use fewer, to bound the
-/// time.
+/// Samples along each side of a pixel in a map of one pixel. Larger maps use fewer samples per
+/// pixel, to bound the time.
 const WITHIN: usize = 4096;
 
 impl PbrtReader<'_> {
@@ -149,7 +149,7 @@ mod tests {
         for i in 0..64 {
             let at = [f64::from(i % 8) / 8.0 + 0.07, f64::from(i / 8) / 8.0 + 0.03];
             let back = place(direction(at));
-            // The difference is rounding.
+            // The difference is only rounding.
             assert!(
                 (back[0] - at[0]).abs() + (back[1] - at[1]).abs() < 1e-12,
                 "{at:?}"
@@ -166,7 +166,8 @@ mod tests {
     #[test]
     fn an_even_sky_has_its_illuminance() {
         let square = Raster::new(64, 64, vec![2.0; 4096]).unwrap();
-        // π times the radiance, up to the size of pixels, about 1/64².
+        // The illuminance is π times the radiance, with an error of the size of a pixel, about
+        // 1/64².
         assert!((illuminance(&square) - TAU).abs() < 1e-2);
     }
 }

@@ -42,10 +42,16 @@ impl PbrtReader<'_> {
             (role, PbrtSpectrum::Sampled(samples)) => rgb(&samples, role),
             (_, PbrtSpectrum::Named(name)) => match named::index(&name) {
                 Some(rgb) => rgb,
-                None => return Err(fault("is the spectrum of a light; allowed: other spectra")),
+                None => {
+                    return Err(fault(
+                        "is the spectrum of a light; allowed: rgb, pairs of a wavelength and a value, or the name of a glass or metal",
+                    ));
+                }
             },
             (_, PbrtSpectrum::Blackbody(_)) => {
-                return Err(fault("is the spectrum of a light; allowed: other spectra"));
+                return Err(fault(
+                    "is the spectrum of a light; allowed: rgb, pairs of a wavelength and a value, or the name of a glass or metal",
+                ));
             }
         };
         Ok(Some(self.color.of(color)))
@@ -71,11 +77,13 @@ impl PbrtReader<'_> {
                     return Ok([1.0; 3]);
                 }
                 _ if named::is_illuminant(&name) => {
-                    return Err(fault("has no colour here; allowed: luminance only"));
+                    return Err(fault(
+                        "has no colour here; allowed: conversion of colours to luminance",
+                    ));
                 }
                 _ => {
                     return Err(fault(
-                        "is an index of refraction; allowed: the spectrum of a light",
+                        "is an index of refraction; allowed: rgb, blackbody, pairs of a wavelength and a value, or the name of a standard illuminant",
                     ));
                 }
             },
@@ -150,7 +158,7 @@ fn sampled(numbers: &[f64]) -> Result<Vec<[f64; 2]>, String> {
 
 /// Planck's law, normalised to a maximum of 1.
 fn blackbody(kelvin: f64) -> Vec<[f64; 2]> {
-    // Computed relative to 560 nm, to avoid overflow in the ratio.
+    // The logarithms are taken relative to 560 nm, to avoid overflow in the ratio.
     let log = |nm: f64| {
         let x = PLANCK / (nm * kelvin);
         -5.0 * libm::log(nm) - x - libm::log1p(-libm::exp(-x))

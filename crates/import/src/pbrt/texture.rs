@@ -18,7 +18,7 @@ const MAX_DEPTH: usize = 16;
 /// Plugins supported as textures.
 const ALLOWED: &str = "constant, imagemap, checkerboard, scale, mix";
 
-/// The type of a texture: float textures have their own names.
+/// The type of a texture. Float textures and spectrum textures have separate names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ask {
     Float,
@@ -71,7 +71,7 @@ impl PbrtReader<'_> {
         Err(entity.fault(self.report, name, message))
     }
 
-    /// One number; a varying texture is a cause.
+    /// Reads one number; a varying texture is a cause of refusal.
     pub(super) fn constant_or(
         &mut self,
         entity: &Entity,
@@ -112,7 +112,7 @@ impl PbrtReader<'_> {
         let found = self.scene.textures.get(&(is_spectrum, name.to_owned()));
         let Some(entity) = found else {
             let kind = if is_spectrum { "spectrum" } else { "float" };
-            return Err(fault(&format!("is not a known one of type {kind}")));
+            return Err(fault(&format!("is not a known texture of type {kind}")));
         };
         if self.depth >= MAX_DEPTH {
             return Err(fault("contains itself, or too many are nested"));
@@ -140,7 +140,7 @@ impl PbrtReader<'_> {
     /// rounded down, are both even or both odd.
     fn checkerboard(&mut self, entity: &Entity, ask: Ask, uv: Uv) -> Read<Texture> {
         if entity.integer_or(self.report, "dimension", 2)? != 2 {
-            let message = "a checkerboard in space; allowed: dimension 2".to_owned();
+            let message = "a checkerboard of dimension 3; allowed: 2".to_owned();
             return Err(entity.fault(self.report, "dimension", message));
         }
         let first = self.constant_or(entity, "tex1", ask, 1.0);
@@ -161,7 +161,8 @@ impl PbrtReader<'_> {
                 self.mapped(entity, other, |v| v * factor)
             }
             _ => {
-                let message = "a product of two textures that vary; allowed: one".to_owned();
+                let message =
+                    "a product of two textures that vary; allowed: one that varies".to_owned();
                 Err(entity.fault(self.report, "tex", message))
             }
         }
@@ -177,7 +178,7 @@ impl PbrtReader<'_> {
         ))
     }
 
-    /// The map from (u, v) of a world's surface to those of the texture.
+    /// The map from (u, v) of a surface in a world to (u, v) of the texture.
     pub(super) fn mapping(&self, entity: &Entity, uv: Uv) -> Read<DAffine2> {
         let report = self.report;
         entity.choice(report, "mapping", &[("uv", ())])?;

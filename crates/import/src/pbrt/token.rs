@@ -168,7 +168,7 @@ fn escape(c: char) -> Option<char> {
     })
 }
 
-/// A finite number; `Err` is the fault. Integers have their own range.
+/// A finite number; `Err` is the fault. The range of integers is checked elsewhere.
 pub(super) fn number(word: &str) -> Result<f64, String> {
     let parsed: Option<f64> = word.parse().ok();
     let finite = parsed.filter(|value| value.is_finite());

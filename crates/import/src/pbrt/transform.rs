@@ -1,9 +1,10 @@
-//! Transforms in pbrt's notation. Each is applied before those that precede it in the file.
+//! Transforms in pbrt's notation. Each transform is applied before those that precede it in the
+//! file.
 
 use glam::{DAffine3, DMat3, DMat4, DVec3, DVec4};
 
-/// Maximum relative deviation of axes from orthogonal axes of equal length: transforms are products
-/// of rounded numbers.
+/// Maximum relative deviation of axes from orthogonal axes of equal length. Transforms are products
+/// of rounded numbers, so they deviate slightly.
 const ALIKE: f64 = 1e-3;
 
 /// A rotation by degrees about an axis of any length.
@@ -19,7 +20,8 @@ pub(super) fn rotation([angle, x, y, z]: [f64; 4]) -> Result<DAffine3, String> {
     )))
 }
 
-/// The map to camera coordinates with Z forward, Y up and X right: pbrt's world is left-handed.
+/// The map to camera coordinates with Z forward, Y up and X to the right; pbrt's world is
+/// left-handed.
 pub(super) fn look_at(numbers: [f64; 9]) -> Result<DAffine3, String> {
     let [eye, at, up] = [0, 3, 6].map(|i| DVec3::from_slice(&numbers[i..]));
     let along = (at - eye).try_normalize().ok_or("no viewing direction")?;

@@ -68,7 +68,7 @@ pub(crate) fn light(inside: &str) -> Light {
     world(inside).lights.remove(0)
 }
 
-/// The material of a sphere, as one side if both are equal.
+/// The material of a sphere; if both sides are equal, one of them.
 pub(crate) fn material(declared: &str) -> Material {
     let mut world = world(&format!("{declared}\nShape \"sphere\""));
     match world.materials.remove(world.shapes[0].material) {

@@ -51,6 +51,15 @@ pub struct Probe<'a> {
 /// Maximum slope of a window.
 const WIDEST: f64 = 1.0;
 
+/// Half-width of the window of a picture along x and y, in half-widths of that of the camera's
+/// plane.
+const POINT: f64 = 1e-9;
+/// Number of frequencies of a picture on either side of zero: 6 cycles for a half-width of 1.
+const PICTURE_FREQUENCIES: usize = 24;
+/// Number of azimuths of the spectrum of a picture: at the highest frequency they are half a cycle
+/// of the half-width apart, less than the width of the window's main lobe.
+const PICTURE_AZIMUTHS: usize = 40;
+
 impl<'a> Probe<'a> {
     /// The light field behind a pixel of a camera. `None` if the camera is orthographic, or the ray
     /// hits nothing.
@@ -106,6 +115,38 @@ impl<'a> Probe<'a> {
             );
         }
         Some(probe)
+    }
+
+    /// Replaces the planes by one: the light that arrives at the middle of the camera's lens, as a
+    /// function of direction alone. X points to the right of the picture, Y up.
+    ///
+    /// The width of the window is that of the question, and frequencies are a quarter of a cycle of
+    /// its half-width apart. Its spectrum is measured along as many azimuths as are needed to meet
+    /// each frequency.
+    #[must_use]
+    pub fn picture(mut self, camera: &Camera) -> Option<Self> {
+        let right = camera.to_world.transform_vector3(-DVec3::X);
+        let mut plane = self.planes.swap_remove(0);
+        let Frame { origin, d, .. } = plane.frame;
+        let half = plane.window.u.half_width();
+        let spot = Profile::Hann(POINT * plane.window.x.half_width());
+        "picture".clone_into(&mut plane.name);
+        plane.frame = Frame::new(origin, d, right)?;
+        plane.window.x = spot;
+        plane.window.y = spot;
+        plane.grid = SliceGrid {
+            azimuths: PICTURE_AZIMUTHS,
+            rho: FrequencyAxis {
+                half: 0,
+                spacing: 1.0,
+            },
+            nu: FrequencyAxis {
+                half: PICTURE_FREQUENCIES,
+                spacing: 0.25 / half,
+            },
+        };
+        self.planes = vec![plane];
+        Some(self)
     }
 
     /// Adds a leg given by the frame at its end, whose light goes towards the camera.

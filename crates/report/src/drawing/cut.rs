@@ -11,7 +11,7 @@ use std::collections::HashMap;
 #[derive(Clone, Copy)]
 pub(super) struct CuttingPlane<'a> {
     pub(super) scene: &'a Scene,
-    /// 0 for the plane of X, 1 for that of Y.
+    /// The index of the plane: 0 for the plane of X, 1 for that of Y.
     pub(super) axis: usize,
 }
 
@@ -151,7 +151,8 @@ impl CuttingPlane<'_> {
         for (i, a) in corners.iter().enumerate() {
             let b = corners[(i + 1) % corners.len()];
             if (a[2] < 0.0) != (b[2] < 0.0) {
-                // Ordered from below, so that two triangles get the same point on a shared edge.
+                // The ends are ordered from below, so that two triangles get the same point on a
+                // shared edge.
                 let (a, b) = if a[2] < 0.0 { (*a, b) } else { (b, *a) };
                 let t = a[2] / (a[2] - b[2]);
                 points.push([0, 1].map(|i| a[i] + t * (b[i] - a[i])));
@@ -200,7 +201,7 @@ impl CuttingPlane<'_> {
         }
     }
 
-    /// The intervals in which a layer is opaque, or more opaque than open; gratings extend a little
+    /// The intervals in which a layer is opaque, or at least half opaque. Gratings extend slightly
     /// beyond the visible range.
     fn layer_extents(&self, layer: &BlockerLayer, half_width: f64) -> Vec<[f64; 2]> {
         let axis = self.axis;
@@ -220,7 +221,7 @@ impl CuttingPlane<'_> {
                     match (half.axis == axis, half.above) {
                         (true, true) => Some([half.edge, f64::INFINITY]),
                         (true, false) => Some([f64::NEG_INFINITY, half.edge]),
-                        // Along the other axis it either covers the cut or is beside it.
+                        // Along the other axis, the row either covers the cut or is beside it.
                         (false, above) => (above == (half.edge < 0.0)).then_some(ENDLESS),
                     }
                 });
@@ -229,7 +230,7 @@ impl CuttingPlane<'_> {
             Mask::Grating(grating)
                 if grating.axis == axis && half_width * grating.frequency < MOST_PERIODS =>
             {
-                // Half a period around each minimum, where 2πft + p = π (2n + 1).
+                // The intervals are half a period around each minimum, where 2πft + p = π (2n + 1).
                 let period = 1.0 / grating.frequency;
                 let first = (0.5 - grating.phase / std::f64::consts::TAU) * period;
                 let count = (half_width / period).ceil() + 1.0;
@@ -293,7 +294,8 @@ fn labelled(
 
 /// The whole X axis.
 const ENDLESS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
-/// The largest number of periods of a grating on either side that can still be distinguished.
+/// The largest number of periods of a grating on either side at which they can still be
+/// distinguished.
 const MOST_PERIODS: f64 = 40.0;
 
 /// The bits of a point as a key.

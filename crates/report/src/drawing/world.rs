@@ -8,10 +8,10 @@ use glam::DVec3;
 
 /// The length in metres at which infinite objects are cut off, beyond any picture.
 const ENDLESS_METRES: f64 = 1e4;
-/// A path that turns by less than this is straight.
+/// Angle of a turn below which a path counts as straight.
 const STRAIGHT: f64 = 1e-9;
 
-/// The scene to scale; `None` where the path only goes straight on and straight back.
+/// The scene to scale; `None` if the path stays on one line.
 pub(super) fn world(scene: &Scene, planes: &[&VirtualPlane]) -> Option<DrawnWorld> {
     let legs = &scene.path.legs;
     let turns = |leg: &Leg| leg.frame.d.dot(legs[0].frame.d).abs() < 1.0 - STRAIGHT;
@@ -37,7 +37,7 @@ pub(super) fn world(scene: &Scene, planes: &[&VirtualPlane]) -> Option<DrawnWorl
         let half = plane.window.x.half_width();
         [-half, half].map(|x| point(&legs[plane.leg], [plane.distance, x]))
     });
-    // The path is continued beyond the last surface, whether or not a plane is there.
+    // The path continues beyond the last surface, even if there is no plane.
     let way = scene.path.first_hit().min(last.length);
     let farthest = planes.iter().map(|plane| plane.distance);
     let end = farthest.fold(last.start + 0.3 * way, f64::max);

@@ -1,14 +1,14 @@
-//! How many cells of a difference chance puts beyond the range of its colors.
+//! The number of cells of a difference that exceed the range of its colors by chance.
 
 use etendue_compare::PlaneComparison;
 use etendue_store::arrays::radial_z;
 use ndarray::Axis;
 
-/// The difference at which colors end, in standard deviations.
+/// The difference at which the range of colors ends, in standard deviations.
 const BEYOND: f64 = 4.0;
 
-/// The number of independent frequencies, and how many of them are beyond 4 σ: in the difference,
-/// and on average in noise alone.
+/// The number of independent frequencies, the number of them beyond 4 σ in the difference, and the
+/// number expected from noise alone.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Outliers {
     cells: usize,
@@ -17,10 +17,10 @@ pub(super) struct Outliers {
 }
 
 impl Outliers {
-    /// Power is not normal: in the dark it is the mean of as many exponential variables as there
-    /// are azimuths, so large values are more frequent than for a normal variable. Its first three
-    /// moments determine a shifted gamma variable, which has that distribution exactly where all
-    /// azimuths have the same noise.
+    /// Power is not normally distributed. Where there is only noise, it is the mean of one
+    /// exponential variable per azimuth, so large values are more frequent than for a normal
+    /// variable. A shifted gamma variable with the same first three moments is used. It has the
+    /// right distribution exactly where all azimuths have the same noise.
     pub(super) fn of(plane: &PlaneComparison) -> Self {
         let grid = plane.measured.grid;
         let z = radial_z(plane);
@@ -73,8 +73,8 @@ fn beyond(skewness: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// The mean of 8 exponential variables exceeds 1 + 4/√8 with probability
-    /// Σ_(k<8) xᵏ e⁻ˣ/k!, x = 8 + 4 √8; a normal variable is beyond 4 with 6.3·10⁻⁵.
+    /// The mean of 8 exponential variables exceeds 1 + 4/√8 with probability Σ_(k<8) xᵏ e⁻ˣ/k!, x =
+    /// 8 + 4 √8. A normal variable exceeds 4 in modulus with probability 6.3·10⁻⁵.
     #[test]
     fn power_is_beyond_four_more_often_than_a_normal_variable() {
         let x = 8.0 + 4.0 * 8.0_f64.sqrt();

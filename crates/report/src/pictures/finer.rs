@@ -1,20 +1,21 @@
 //! Spectra between the frequencies of a scene, for pictures without visible cells.
 //!
 //! Light outside the window does not count, so neighbouring frequencies determine the spectrum
-//! between them. Of all windowed light fields W ℓ with the given spectrum, the one with the least
-//! ∫ ℓ² is drawn; its spectrum is a weighted sum of the given frequencies with the covariance of
-//! white noise behind the window, K(Ω) = ∫ W² e^(−2πi Ω z) dz / ∫ W².
+//! between them. Of all windowed light fields W ℓ with the given spectrum, the one with the least ∫
+//! ℓ² is drawn. Its spectrum is a weighted sum of the given values. The weights follow from the
+//! covariance of white noise behind the window, K(Ω) = ∫ W² e^(−2πi Ω z) dz / ∫ W².
 
 use etendue_field::{Complex, FrequencyAxis, Profile, SliceGrid, Slices, Window};
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis, Slice};
 use std::f64::consts::TAU;
 
-/// The number of cells along an axis from which none are visible.
+/// The number of cells along an axis above which single cells are not visible.
 const SMOOTH: usize = 160;
-/// The share of the variance of a value between the given ones that these may leave open.
+/// The largest share of the variance of an intermediate value that the given values may leave
+/// undetermined.
 const OPEN: f64 = 0.01;
 
-/// The weights of the frequencies of a plane for finer ones.
+/// The weights of a plane's frequencies that give values at finer frequencies.
 pub(super) struct Finer {
     grid: SliceGrid,
     /// Along ρ ≥ 0 and along ν, for each azimuth, [finer, given].
@@ -22,8 +23,8 @@ pub(super) struct Finer {
 }
 
 impl Finer {
-    /// Finer frequencies that fill the same range; `None` where the scene's are fine enough, or too
-    /// far apart to determine those between them.
+    /// Finer frequencies over the same range. `None` if the scene's frequencies are fine enough, or
+    /// too far apart to determine the values between them.
     pub(super) fn new(given: &SliceGrid, window: &Window) -> Option<Self> {
         let grid = SliceGrid {
             azimuths: given.azimuths,
@@ -63,8 +64,8 @@ impl Finer {
     }
 }
 
-/// The mean power over azimuths on the finer frequencies, without the noise that `power`, on those
-/// of the scene, leaves out.
+/// The mean power over azimuths at the finer frequencies. The noise that was removed from `power`,
+/// at the frequencies of the scene, is also removed here.
 pub(super) fn finer_power(finer: &Slices, slices: &Slices, power: &Array2<f64>) -> Array2<f64> {
     let noise = slices.radial_power() - power;
     let (from, to) = (&slices.grid, &finer.grid);
@@ -82,7 +83,7 @@ pub(super) fn finer_power(finer: &Slices, slices: &Slices, power: &Array2<f64>) 
     finer
 }
 
-/// An odd number of finer frequencies for each one, so that each remains among them.
+/// The number of finer frequencies for each given one is odd, so that each given one is among them.
 fn divided(axis: &FrequencyAxis) -> FrequencyAxis {
     let parts = SMOOTH.div_ceil(axis.count());
     let parts = parts + usize::from(parts.is_multiple_of(2));
@@ -111,7 +112,7 @@ fn linear(from: &FrequencyAxis, to: &FrequencyAxis) -> Vec<[(usize, f64); 2]> {
 
 /// The covariance, along a slice, of the spectrum of white noise behind a window.
 struct WindowCovariance {
-    /// Points of both profiles' squares, with their weights, along the slice.
+    /// Points of the squares of both profiles along the slice, with their weights.
     profiles: [Vec<(f64, f64)>; 2],
 }
 
@@ -147,8 +148,8 @@ impl WindowCovariance {
     }
 }
 
-/// The weights of given frequencies for finer ones, [finer, given]; `None` where these leave some
-/// value between them open.
+/// The weights of given frequencies for finer ones, [finer, given]; `None` if the given ones leave
+/// some intermediate value undetermined.
 fn weights(
     from: &FrequencyAxis,
     to: &FrequencyAxis,
@@ -186,7 +187,7 @@ fn weights(
 struct Cholesky(Array2<f64>);
 
 impl Cholesky {
-    /// What is added to the diagonal: neighbouring frequencies are nearly dependent.
+    /// The number added to the diagonal, because neighbouring frequencies are nearly dependent.
     const RIDGE: f64 = 1e-8;
 
     fn new(count: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
@@ -294,7 +295,7 @@ mod tests {
             }
             f64::sqrt(off / all)
         };
-        // What lies beyond the range of frequencies is not known.
+        // The spectrum beyond the range of frequencies is not known.
         assert!(error(1.0) < 0.06, "{}", error(1.0));
         assert!(error(0.9) < 0.02, "{}", error(0.9));
         for ((k, m, n), value) in coarse.half.indexed_iter() {

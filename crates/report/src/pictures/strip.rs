@@ -33,9 +33,9 @@ pub fn path(
     Ok(figure.svg)
 }
 
-/// The planes in the order in which light meets them; in the style of a figure, with their
-/// predicted spectra below. `photons` is the number emitted: a partial measurement has fewer than
-/// the scene requests.
+/// Draws the planes in the order in which light meets them. In the style of a figure, their
+/// predicted spectra are below. `photons` is the number emitted; in a partial measurement it is
+/// lower than the scene requests.
 pub fn strip_of(
     scene: &Scene,
     photons: u64,
@@ -63,7 +63,7 @@ pub fn strip_of(
         && (section.other.is_some() || planes.iter().any(differs_across));
     let is_seen = !is_figure && differs;
     if is_figure {
-        // A figure has no room for a second cut, or for the light field in it.
+        // A figure has no room for a second cut, nor for the light field in that cut.
         section.other = None;
     }
     let both = is_seen.then(|| along.iter().map(BothSlices::of).collect());
@@ -71,7 +71,7 @@ pub fn strip_of(
     for (column, both) in columns.iter_mut().zip(both.iter().flatten()) {
         both.show(column);
     }
-    // A figure has finer frequencies of its own.
+    // A figure was already run at finer frequencies.
     let drawn = along.iter().filter(|_| !is_figure && both.is_none());
     let drawn: Vec<_> = drawn.map(PlaneOnPath::finer_power).collect();
     for (column, values) in columns.iter_mut().zip(&drawn) {
@@ -105,11 +105,11 @@ pub fn strip_of(
     strip(&drawn, &style.copied().unwrap_or_default()).map_err(Failure::cannot_run)
 }
 
-/// What is shown where the light differs between both planes through the central ray.
+/// The description of a strip whose light differs between azimuths 0 and 90°.
 const BOTH: &str = "at azimuth 0 below (*x*, *u*), and at 90° below (*y*, *v*). The light field \
     in (*y*, *v*) is the inverse transform of that spectrum; as the spectrum is cut off \
     at the highest frequencies, fringes accompany edges (Gibbs phenomenon)";
-/// The warning of a figure that shows the mean in their place.
+/// The warning in a figure that shows the mean in place of both slices.
 const MIXED: &str = "; the light differs between azimuths 0 and 90°";
 
 /// A plane with its theory and its comparison.
@@ -190,7 +190,7 @@ impl BothSlices {
         let finer = self.finer.as_ref().map(|both| both.each_ref().map(with));
         let [finer, other_finer] = finer.map_or([None, None], |both| both.map(Some));
         column.finer = finer;
-        // Of two lines through the origin the first is in the plane of incidence.
+        // If there are two lines through the origin, the first belongs to the plane of incidence.
         let is_shear = |guide: &&Guide| guide.through == [0.0, 0.0];
         let shears: Vec<Guide> = column.guides.iter().filter(is_shear).copied().collect();
         if let [own, other] = shears[..] {
@@ -212,7 +212,7 @@ impl BothSlices {
     }
 }
 
-/// The differences from the first-order chains, if one of them has a wrong map.
+/// The differences from the first-order chains, if the map of one chain is wrong.
 fn off_chains(along: &[PlaneOnPath<'_>]) -> Vec<Array2<f64>> {
     let fails = along.iter().any(|at| {
         let chain = at.compared.report.first_order.as_ref();
@@ -304,16 +304,17 @@ fn column<'a>(scene: &Scene, at: &PlaneOnPath<'a>, is_figure: bool) -> StripColu
         verdict: verdict_lines(compared),
         guides: match (&theory.theory, &compared.report.first_order) {
             (Theory::Parallel(_), _) if compared.report.in_window > 0 => guides(scene, plane),
-            // A lobe leaves no line of light, unlike a mirror.
+            // Unlike a mirror, a lobe leaves no line of light.
             (Theory::Specular(_), Some(first_order)) => ridges(scene, &first_order.chain.matrix),
             _ => Vec::new(),
         },
     }
 }
 
-/// Lines where theory puts the light: along ν = −d ρ after travel d, and, at a distance h behind
-/// blockers of frequency f that the window and the frequencies can resolve, the same line through
-/// (± f, ∓ h f). A diffuse surface keeps only ν = 0, and travel begins again.
+/// Lines along which theory predicts the light. After travel d it lies along ν = −d ρ. At a
+/// distance h behind blockers of frequency f it also lies along parallel lines through (± f, ∓ h
+/// f), if the window and the frequencies resolve these. A diffuse surface keeps only ν = 0, and
+/// travel begins again.
 fn guides(scene: &Scene, plane: &VirtualPlane) -> Vec<Guide> {
     let reflected = plane.leg > 0;
     let through = |through| Guide {
@@ -338,9 +339,9 @@ fn guides(scene: &Scene, plane: &VirtualPlane) -> Vec<Guide> {
         .collect()
 }
 
-/// Lines where the chain puts the light of a picture, in the plane of incidence and across it:
-/// light of a projector lies along ρ where it begins, light of a beam along ν, and content at Ω
-/// goes to A⁻ᵀ Ω.
+/// Lines along which the chain predicts the light of a picture, in the plane of incidence and
+/// across it. At the light, a projector's spectrum lies along ρ and a beam's along ν. The map of
+/// the chain moves content at Ω to A⁻ᵀ Ω.
 fn ridges(scene: &Scene, matrix: &[[f64; 4]; 4]) -> Vec<Guide> {
     let slope = |i: usize| {
         let [position, slope] = [matrix[i], matrix[i + 2]];

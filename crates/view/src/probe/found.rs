@@ -9,6 +9,7 @@ use etendue_spectrum::bandwidth::Widest;
 #[derive(Debug)]
 pub(super) struct Found {
     pub(super) comparison: PlaneComparison,
+    /// The bandwidths of the light less its mean.
     pub(super) nu: Option<Widest<Uncertain>>,
     pub(super) rho: Option<Widest<Uncertain>>,
     /// Why photons do not find all light of the plane.

@@ -1,14 +1,13 @@
 //! Maps how fast light changes with angle at the camera, over a picture: measured, and by the
 //! criterion of Durand et al. 2005.
 
-use super::scene::{BATCHES, ProbeRequest, ProbedScene};
-use super::words::{ON_GRID, criterion};
+use super::picture::PictureBandwidth;
+use super::scene::{ProbeRequest, ProbedScene};
+use super::words::criterion;
 use etendue_figures::{Axis, AxisQuantity, Comparison, Scale, comparison};
-use etendue_paths::{BackwardProbe, Budget, Probe};
+use etendue_paths::Probe;
 use etendue_pipeline::{Reporter, Work};
 use etendue_report::pictures;
-use etendue_spectrum::bandwidth::bandwidth_nu;
-use etendue_spectrum::{CrossPower, estimate, measure};
 use etendue_store::Failure;
 use etendue_store::Results;
 use etendue_store::exr::{Part, exr};
@@ -20,23 +19,23 @@ use serde_json::json as tree_of;
 use std::path::PathBuf;
 
 const FILES: [&str; 5] = ["map.exr", "map.npz", "map.png", "map.svg", "map.csv"];
-/// A bandwidth of a spectrum with more noise than this share is not shown.
-const MAX_NOISE: f64 = 0.6;
-
-/// A bandwidth with a larger relative standard error is not shown, because with few rays its
-/// jackknife is unreliable.
-const MAX_ERROR: f64 = 0.2;
-
 /// The results for a pixel; NaN where there is no light, or too much noise.
 #[derive(Clone, Copy, Debug)]
 struct MapPoint {
-    /// The frequency below which 95 % of the power in the window lies, in the azimuth where it is largest, cycles per slope, with its standard error.
+    /// The largest bandwidth over directions of the picture less its mean, cycles per slope, with
+    /// its standard error.
     measured: f64,
     error: f64,
+    /// The direction of the largest bandwidth, radians from the right, counter-clockwise.
+    azimuth: f64,
+    /// The bandwidth across that direction.
+    across: f64,
     /// The bandwidth by Eq. 20, corrected.
     criterion: f64,
     /// The bandwidth of the window alone, a lower bound of the measured one.
     window: f64,
+    /// Width of the window, pixels.
+    pixels: f64,
     /// The number of shading samples along a direction.
     samples: f64,
 }
@@ -45,8 +44,11 @@ impl MapPoint {
     const UNKNOWN: Self = Self {
         measured: f64::NAN,
         error: f64::NAN,
+        azimuth: f64::NAN,
+        across: f64::NAN,
         criterion: f64::NAN,
         window: f64::NAN,
+        pixels: f64::NAN,
         samples: f64::NAN,
     };
 }
@@ -93,29 +95,25 @@ pub fn map_bandwidths(
 /// The bandwidths behind one pixel of the lattice.
 fn point(case: &ProbedScene<'_>, at: [usize; 2], lattice: [usize; 2]) -> Result<MapPoint, Failure> {
     let pixel = [0, 1].map(|i| (2 * at[i] + 1) * case.camera.size[i] / (2 * lattice[i]));
-    let question = case.question(pixel, 4);
-    let Some(mut probe) = Probe::new(&case.paths, &case.camera, &question) else {
+    let number = (at[1] * lattice[0] + at[0]) as u64;
+    let seed = case.request.seed.wrapping_add(number << 32);
+    let Some(picture) = PictureBandwidth::new(case, pixel, seed)? else {
         return Ok(MapPoint::UNKNOWN);
     };
-    probe.planes.truncate(1);
-    let number = (at[1] * lattice[0] + at[0]) as u64;
-    let budget = Budget {
-        each: case.request.rays.div_ceil(u64::from(BATCHES)),
-        seed: case.request.seed.wrapping_add(number << 32),
-    };
-    let rays = BackwardProbe::new(&probe, budget);
-    let found = measure(&rays, &probe.planes, 0..BATCHES, &|_| {});
-    let power = CrossPower::new(&found, 0).map_err(Failure::cannot_run)?;
-    let nu = power.bandwidth(bandwidth_nu).map(|widest| widest.value);
-    let noise = estimate::noise(&found, 0).map_err(Failure::cannot_run)?;
-    let is_clear = noise.is_some_and(|noise| noise <= MAX_NOISE);
-    let nu = nu.filter(|nu| is_clear && nu.error <= MAX_ERROR * nu.value);
+    let question = case.question(pixel, picture.across, 1);
+    let probe = Probe::new(&case.paths, &case.camera, &question);
+    let criterion = probe.and_then(|probe| criterion(&probe.stops[0]));
+    let known = |of: Option<f64>| of.unwrap_or(f64::NAN);
+    let widest = picture.widest();
     Ok(MapPoint {
-        measured: nu.map_or(f64::NAN, |nu| nu.value),
-        error: nu.map_or(f64::NAN, |nu| nu.error),
-        criterion: criterion(&probe.stops[0]).unwrap_or(f64::NAN),
-        window: ON_GRID / probe.planes[0].window.u.half_width(),
-        samples: nu.map_or(f64::NAN, |nu| 2.0 * nu.value * probe.pixel_slope),
+        measured: known(widest.map(|it| it.value.value)),
+        error: known(widest.map(|it| it.value.error)),
+        azimuth: known(widest.map(|it| it.azimuth)),
+        across: known(picture.across().map(|it| it.value)),
+        criterion: known(criterion),
+        window: picture.of_window(),
+        pixels: picture.across,
+        samples: known(widest.map(|it| picture.samples(it.value.value))),
     })
 }
 
@@ -126,11 +124,14 @@ fn write(
     reporter: &dyn Reporter,
 ) -> Result<(), Failure> {
     let (h, w) = map.dim();
-    let layers: [(&'static str, MapLayer); 5] = [
+    let layers: [(&'static str, MapLayer); 8] = [
         ("measured", |point| point.measured),
         ("error", |point| point.error),
+        ("azimuth", |point| point.azimuth),
+        ("across", |point| point.across),
         ("criterion", |point| point.criterion),
         ("window", |point| point.window),
+        ("pixels", |point| point.pixels),
         ("samples", |point| point.samples),
     ];
     let mut made_from = case.made_from();
@@ -172,8 +173,11 @@ fn drawn(
     comparison(&Comparison {
         title: &format!("{name}: bandwidth at the camera"),
         note: &format!(
-            "95 % of the power in windows {} pixels wide; criterion: Eq. 20, corrected, for light of all frequencies, or the bandwidth of the window alone where that is larger",
-            case.request.window
+            "Largest over directions, of the picture less its mean, in {}; grey where it is below that of the window. Criterion: Eq. 20, corrected, for light of all frequencies, or the bandwidth of the window alone where that is larger",
+            match case.request.window {
+                Some(pixels) => format!("windows {pixels} pixels wide"),
+                None => "the narrowest windows that show it".to_owned(),
+            }
         ),
         x: Axis::edges("column", "pixels", [0.0, w]),
         y: Axis::edges("row", "pixels", [0.0, h]).reversed(),
@@ -205,14 +209,12 @@ fn words(map: &Array2<MapPoint>) -> String {
         .iter()
         .filter(|point| point.measured.is_finite())
         .count();
-    let is_told = |point: &&MapPoint| expected(point).max(point.measured) > 1.15 * point.window;
-    let told = map.iter().filter(is_told);
     let ratio = |point: &MapPoint| point.measured / expected(point);
-    let mut ratios: Vec<f64> = told.map(ratio).filter(|x| x.is_finite()).collect();
+    let mut ratios: Vec<f64> = map.iter().map(ratio).filter(|x| x.is_finite()).collect();
     ratios.sort_unstable_by(f64::total_cmp);
     let all = ratios.len();
     let mut lines = vec![format!(
-        "{seen} of {} bandwidths were measured, the others are dark or too noisy; {all} are at surfaces with a lobe and above the bandwidth of the window alone",
+        "{seen} of {} bandwidths were measured, the others are dark, too noisy or below the bandwidth of the window; {all} are at surfaces with a lobe",
         map.len()
     )];
     if all > 0 {

@@ -2,15 +2,16 @@
 
 use super::covariance;
 use super::found::{Found, verdict};
+use super::picture::PictureBandwidth;
 use super::scene::{ALPHA, BATCHES, ProbeRequest, ProbedScene, RESOLUTION};
 use super::words::{lines, of_plane, of_stop};
 use etendue_compare::{Prediction, Test, Verdict, compare, sidak};
-use etendue_field::PhotonSource;
+use etendue_field::{PhotonSource, Slices, VirtualPlane};
 use etendue_paths::{BackwardProbe, Budget, PhotonProbe, Probe};
 use etendue_pipeline::{Reporter, Work};
 use etendue_report::pictures;
 use etendue_spectrum::bandwidth::{bandwidth_nu, bandwidth_rho};
-use etendue_spectrum::{CrossPower, Measurement, measure};
+use etendue_spectrum::{CrossPower, Measurement, WindowedMean, measure};
 use etendue_store::sealed::json;
 use etendue_store::{ArgumentStyle, Failure, Results, arrays};
 use serde_json::json as tree_of;
@@ -47,23 +48,26 @@ pub fn probe_pixel(
             }
         }));
     }
-    let question = scene.question(pixel, 4);
-    let probe = Probe::new(&scene.paths, &scene.camera, &question).ok_or_else(|| {
+    let nothing = || {
         Failure::bad_input(
             "the ray through this pixel meets nothing, or the camera is orthographic",
         )
-    })?;
+    };
+    let picture = PictureBandwidth::new(&scene, pixel, request.seed)?.ok_or_else(nothing)?;
+    let question = scene.question(pixel, picture.across, 4);
+    let probe = Probe::new(&scene.paths, &scene.camera, &question).ok_or_else(nothing)?;
     let name = scene.name();
     let files = probe.planes.iter().flat_map(|plane| files_of(&plane.name));
     let (results, folder) = scene.claim(format!("{name}-{column}-{row}"), files.collect())?;
     let found = measured(request, &probe, reporter)?;
     let note = format!("{name}, pixel {column}, {row}");
-    let verdict = written(&scene, results, (&note, pixel), (&probe, &found), reporter)?;
+    let seen = (&probe, &picture, &found[..]);
+    let verdict = written(&scene, results, (&note, pixel), seen, reporter)?;
     let found: Vec<&Found> = found.iter().map(|(found, _)| found).collect();
     Ok(ProbedPixel {
         folder,
         verdict,
-        lines: lines(request, &scene.imported.world, &probe, &found),
+        lines: lines(request, &scene.imported.world, (&probe, &picture), &found),
     })
 }
 
@@ -72,7 +76,7 @@ fn written(
     scene: &ProbedScene<'_>,
     mut results: Results,
     (note, pixel): (&str, [usize; 2]),
-    (probe, found): (&Probe<'_>, &[(Found, Prediction)]),
+    (probe, picture, found): (&Probe<'_>, &PictureBandwidth, &[(Found, Prediction)]),
     reporter: &dyn Reporter,
 ) -> Result<Verdict, Failure> {
     let mut made_from = scene.made_from();
@@ -89,6 +93,7 @@ fn written(
     let stage = reporter.begin(Work::Stage("writing results"));
     let finished = results.finish(|files| {
         made_from["verdict"] = tree_of!(verdict);
+        made_from["picture"] = picture.tree();
         made_from["surfaces"] = stops
             .map(|stop| of_stop(&scene.imported.world, stop))
             .collect();
@@ -143,7 +148,13 @@ fn measured(
     let plane = |i: usize| {
         let prediction = Prediction::measured(&forward, i).map_err(Failure::cannot_run)?;
         let comparison = compare(&backward, i, &prediction, &test).map_err(Failure::cannot_run)?;
-        let power = CrossPower::new(&backward, i).map_err(Failure::cannot_run)?;
+        let VirtualPlane { window, grid, .. } = &probe.planes[i];
+        let mean = WindowedMean::new(window, grid);
+        let batches = backward.at_plane(i);
+        let varying = batches.map(|batch| mean.removed_from(&batch.slices));
+        let varying: Vec<Slices> = varying.collect();
+        let azimuths = 0..grid.azimuths;
+        let power = CrossPower::of_replicates(&varying, azimuths).map_err(Failure::cannot_run)?;
         let found = Found {
             comparison,
             nu: power.bandwidth(bandwidth_nu),

@@ -28,8 +28,9 @@ pub struct ProbeRequest {
     pub camera: CameraChoice,
     /// The largest number of surfaces along the ray.
     pub surfaces: u16,
-    /// Pixels across the window.
-    pub window: f64,
+    /// Pixels across the window; `None` for the narrowest window that shows the bandwidth of the
+    /// picture.
+    pub window: Option<f64>,
     /// Number of backward rays for each plane.
     pub rays: u64,
     /// Number of photons that check the rays.
@@ -47,8 +48,6 @@ pub struct ProbeRequest {
 impl ProbeRequest {
     /// Default for the largest number of surfaces along the ray.
     pub const SURFACES: u16 = 1;
-    /// Default number of pixels across the window.
-    pub const WINDOW: f64 = 16.0;
     /// Default number of backward rays for each plane.
     pub const RAYS: u64 = 1 << 20;
     /// Default number of backward rays for each pixel of a map.
@@ -65,7 +64,7 @@ impl ProbeRequest {
             source,
             camera: CameraChoice::default(),
             surfaces: Self::SURFACES,
-            window: Self::WINDOW,
+            window: None,
             rays: Self::RAYS,
             photons: Self::PHOTONS,
             seed: Self::SEED,
@@ -115,11 +114,11 @@ impl<'a> ProbedScene<'a> {
         })
     }
 
-    pub(super) fn question(&self, pixel: [usize; 2], azimuths: usize) -> Question {
+    pub(super) fn question(&self, pixel: [usize; 2], across: f64, azimuths: usize) -> Question {
         Question {
             pixel,
             surfaces: self.request.surfaces.into(),
-            across: self.request.window,
+            across,
             frequencies: FREQUENCIES,
             azimuths,
         }

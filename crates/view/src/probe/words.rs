@@ -1,6 +1,7 @@
 //! The result of a probe, in words and in JSON.
 
 use super::found::{Found, verdict};
+use super::picture::PictureBandwidth;
 use super::scene::ProbeRequest;
 use etendue_compare::{Verdict, lobe_cutoff};
 use etendue_field::{Lobe, percent, uncertain};
@@ -58,8 +59,8 @@ pub(super) fn of_plane(found: &Found) -> Value {
         "report": found.comparison.report,
         "verdict": verdict(found),
         "photons_miss": found.misses,
-        "bandwidth_95": { "nu": number(&found.nu), "rho": number(&found.rho) },
-        "bandwidth_95_azimuth": { "nu": azimuth(&found.nu), "rho": azimuth(&found.rho) },
+        "variation_95": { "nu": number(&found.nu), "rho": number(&found.rho) },
+        "variation_95_azimuth": { "nu": azimuth(&found.nu), "rho": azimuth(&found.rho) },
     });
     if let Some(covariance) = &found.covariance {
         tree["spectral_covariance"] = covariance.tree();
@@ -85,7 +86,7 @@ fn word(reflects: Reflects) -> String {
 pub(super) fn lines(
     request: &ProbeRequest,
     world: &World,
-    probe: &Probe<'_>,
+    (probe, picture): (&Probe<'_>, &PictureBandwidth),
     found: &[&Found],
 ) -> Vec<String> {
     let arguments = request.source.arguments;
@@ -113,9 +114,7 @@ pub(super) fn lines(
         let count = probe.stops.len();
         lines.push(format!("The ray leaves the scene after surface {count}."));
     }
-    if let Some(nu) = found.first().and_then(|camera| camera.nu) {
-        lines.extend(bandwidths(probe, nu.value, arguments));
-    }
+    lines.extend(bandwidths(probe, picture, arguments));
     lines.extend(covariances(found));
     lines
 }
@@ -157,8 +156,8 @@ fn planes(found: &[&Found]) -> Vec<String> {
         "plane",
         "noise alone",
         "p",
-        "95 % below ν [cycles/slope]",
-        "95 % below ρ [cycles/m]",
+        "varies below ν [cycles/slope]",
+        "varies below ρ [cycles/m]",
         "verdict",
     ];
     let shown = |of: &Option<Widest<Uncertain>>| {
@@ -186,38 +185,69 @@ fn planes(found: &[&Found]) -> Vec<String> {
     table(head, rows)
 }
 
-/// The bandwidth of a Hann window of half-width 1 along its axes.
-const OF_WINDOW: f64 = 0.557_22;
-
-/// The bandwidth measured for a Hann window of half-width 1 alone, on the grid of a probe: cells
-/// are as wide as half of the spectrum's main lobe, and along the diagonal the product of two
-/// windows has a larger bandwidth than along the axes.
-pub(super) const ON_GRID: f64 = 0.681_53;
-
-/// Bandwidths at the camera, and the shading samples that they require.
-fn bandwidths(probe: &Probe<'_>, measured: Uncertain, arguments: ArgumentStyle) -> Vec<String> {
-    let samples = |cycles: f64| 2.0 * cycles * probe.pixel_slope;
-    let line = |what: &str, cycles: f64| {
-        let samples = samples(cycles);
+/// Bandwidths of the picture, and the shading samples that they require.
+fn bandwidths(
+    probe: &Probe<'_>,
+    picture: &PictureBandwidth,
+    arguments: ArgumentStyle,
+) -> Vec<String> {
+    let line = |what: &str, cycles: String, samples: f64| {
+        let samples = picture.samples(samples);
         format!(
-            "  {what:38}{cycles:10.3} cycles/slope  {samples:8.4} shading samples per pixel along a direction"
+            "  {what:36}{cycles:>16} cycles/slope  {samples:8.4} shading samples per pixel along a direction"
         )
     };
-    let half_width = probe.planes[0].window.u.half_width();
-    // Noise and the light's own shape change it by several per cent.
-    let is_own = measured.value < 1.15 * ON_GRID / half_width;
-    let mut lines = vec!["bandwidth at the camera".to_owned()];
-    lines.push(line("measured, 95 % of the power", measured.value));
-    lines.push(line("of the window alone", OF_WINDOW / half_width));
+    let number = |cycles: f64| format!("{cycles:.3}");
+    let widest = picture.widest();
+    let (own, limit) = (picture.of_window(), picture.limit());
+    let mut lines = vec![format!(
+        "bandwidth of the picture less its mean, in a window {} pixels wide",
+        picture.across
+    )];
+    if let Some(Widest { azimuth, value }) = widest {
+        let degrees = azimuth.to_degrees();
+        let shown = uncertain(value.value, value.error);
+        lines.push(line(
+            &format!("largest, at {degrees:.1}°"),
+            shown,
+            value.value,
+        ));
+        lines.push(match picture.across() {
+            Some(value) => line(
+                "across that direction",
+                uncertain(value.value, value.error),
+                value.value,
+            ),
+            None => line("across that direction, below", number(limit), limit),
+        });
+        if let Some(value) = picture.unblurred() {
+            lines.push(line(
+                "largest without the window's blur",
+                number(value),
+                value,
+            ));
+        }
+    } else {
+        lines.push(line("below", number(limit), limit));
+    }
+    lines.push(line("of the window alone", number(own), own));
     lines.push(match criterion(&probe.stops[0]) {
-        Some(cycles) => line("by Eq. 20, light of all frequencies", cycles),
+        Some(cycles) => line(
+            "Eq. 20, for light of all frequencies",
+            number(cycles),
+            cycles,
+        ),
         None => "  Eq. 20 describes lobes: it does not apply to this surface".to_owned(),
     });
-    if is_own {
-        lines.push(format!(
-            "  The measured bandwidth is that of the window: a wider window ({}) shows the bandwidth of the light.",
-            arguments.name("window")
-        ));
+    if widest.is_none() {
+        let name = arguments.name("window");
+        lines.push(if picture.variation.is_some() {
+            format!(
+                "  The picture is smooth in this window: a wider one ({name}) shows its bandwidth."
+            )
+        } else {
+            "  The picture is even in this window, within noise.".to_owned()
+        });
     }
     lines
 }
@@ -244,51 +274,4 @@ fn covariances(found: &[&Found]) -> Vec<String> {
     }
     let table = aligned(std::iter::once(head.to_vec()).chain(rows).collect());
     std::iter::once(String::new()).chain(table).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::probe::scene::FREQUENCIES;
-    use etendue_field::{FrequencyAxis, Profile, SliceGrid};
-    use etendue_spectrum::bandwidth::{BANDWIDTH_FRACTION, bandwidth, bandwidth_nu, widest};
-    use ndarray::{Array1, Array3};
-
-    /// ∫ W(t) cos(2π f t) dt over a Hann window of half-width 1, by the midpoint rule.
-    fn transformed(frequency: f64) -> f64 {
-        const POINTS: u32 = 1000;
-        let window = Profile::Hann(1.0);
-        let at = |i: u32| {
-            let t = (f64::from(i) + 0.5) / f64::from(POINTS);
-            window.value(t) * libm::cos(std::f64::consts::TAU * frequency * t)
-        };
-        2.0 * (0..POINTS).map(at).sum::<f64>() / f64::from(POINTS)
-    }
-
-    #[test]
-    fn a_window_alone_has_the_bandwidths_that_are_printed() {
-        let fine = FrequencyAxis {
-            half: 2000,
-            spacing: 0.0025,
-        };
-        let power: Array1<f64> = fine
-            .values()
-            .into_iter()
-            .map(|f| transformed(f).powi(2))
-            .collect();
-        let found = bandwidth(power.view(), &fine, BANDWIDTH_FRACTION).unwrap_or_default();
-        assert!((found - OF_WINDOW).abs() < 1e-4, "{found}"); // the tail beyond 5, and the curvature within a cell
-        let axis = |half| FrequencyAxis { half, spacing: 0.5 };
-        let grid = SliceGrid {
-            azimuths: 4,
-            rho: axis(0),
-            nu: axis(FREQUENCIES),
-        };
-        let even = Array3::from_shape_fn(grid.half_shape(), |(k, _, j)| {
-            let [_, _, u, v] = grid.frequency(k, 0.0, grid.nu.value(j));
-            (transformed(u) * transformed(v)).powi(2)
-        });
-        let found = widest(even.view(), &grid, bandwidth_nu).map_or(0.0, |widest| widest.value);
-        assert!((found - ON_GRID).abs() < 1e-4, "{found}"); // rounding of the constant, and the midpoint rule
-    }
 }

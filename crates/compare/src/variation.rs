@@ -1,0 +1,79 @@
+//! Bandwidths of measured and predicted light: of all power, and of the light less its mean.
+
+use crate::prediction::Prediction;
+use crate::report::{Azimuths, Bandwidth, DirectedPair};
+use etendue_field::Slices;
+use etendue_spectrum::bandwidth::{SliceBandwidth, Widest, bandwidth_nu, bandwidth_rho, widest};
+use etendue_spectrum::estimate::TooFewBatches;
+use etendue_spectrum::{CrossPower, Measurement, Uncertain, WindowedMean};
+
+/// Returns the bandwidths of a measured power and of a prediction, each in the azimuth where it is
+/// largest. `replicates` is the power of a prediction that has replicates.
+pub(crate) fn bandwidth(
+    measured: &CrossPower<'_>,
+    replicates: Option<&CrossPower<'_>>,
+    predicted: &Slices,
+) -> Bandwidth {
+    let along = |of: SliceBandwidth| {
+        let measured = measured.bandwidth(of);
+        let predicted = match replicates {
+            Some(power) => power.bandwidth(of),
+            None => exact(predicted, of),
+        };
+        let noise = predicted.map_or(0.0, |p| p.value.error);
+        DirectedPair {
+            measured: measured.map(|m| m.value.value),
+            predicted: predicted.map(|p| p.value.value),
+            error: measured.map(|m| libm::hypot(m.value.error, noise)),
+            azimuth: Azimuths {
+                measured: measured.map(|m| m.azimuth),
+                predicted: predicted.map(|p| p.azimuth),
+            },
+        }
+    };
+    Bandwidth {
+        rho: along(bandwidth_rho),
+        nu: along(bandwidth_nu),
+    }
+}
+
+/// Returns the bandwidths of the light at plane `index`, and of its prediction, less their means.
+///
+/// # Errors
+/// When the measurement has too few batches.
+pub(crate) fn variation(
+    measurement: &Measurement,
+    index: usize,
+    prediction: &Prediction,
+    predicted: &Slices,
+) -> Result<Bandwidth, TooFewBatches> {
+    let plane = &measurement.planes()[index];
+    let azimuths = 0..plane.grid.azimuths;
+    let mean = WindowedMean::new(&plane.window, &plane.grid);
+    let batches = measurement.at_plane(index);
+    let batches: Vec<Slices> = batches
+        .map(|batch| mean.removed_from(&batch.slices))
+        .collect();
+    let measured = CrossPower::of_replicates(&batches, azimuths.clone())?;
+    let replicates = prediction.replicates.iter();
+    let replicates: Vec<Slices> = replicates.map(|one| mean.removed_from(one)).collect();
+    let replicates = match replicates.is_empty() {
+        true => None,
+        false => Some(CrossPower::of_replicates(&replicates, azimuths)?),
+    };
+    let predicted = mean.removed_from(predicted);
+    Ok(bandwidth(&measured, replicates.as_ref(), &predicted))
+}
+
+/// Returns the bandwidth of slices without a statistical error.
+fn exact(slices: &Slices, of: SliceBandwidth) -> Option<Widest<Uncertain>> {
+    let power = slices.half.mapv(|s| s.norm_sqr());
+    let exact = widest(power.view(), &slices.grid, of)?;
+    Some(Widest {
+        azimuth: exact.azimuth,
+        value: Uncertain {
+            value: exact.value,
+            error: 0.0,
+        },
+    })
+}

@@ -1,0 +1,339 @@
+//! Bandwidths of a picture along each of its directions.
+//!
+//! A picture is a windowed function of two slopes. Its 2D spectrum is measured along lines through
+//! zero, one for each azimuth: slices with ρ = 0 alone. [`DirectionalBandwidth`] has, for each
+//! direction e, the smallest B for which the power at |ν · e| > B is at most a twentieth of the
+//! total. Each frequency stands for its polar cell, whose power is spread uniformly over the range
+//! of ν · e in the cell.
+
+use crate::bandwidth::{BANDWIDTH_FRACTION, Widest};
+use crate::estimate::TooFewBatches;
+use crate::jackknife::{Jackknife, Uncertain};
+use crate::radial::CrossPower;
+use crate::variation::transform;
+use etendue_field::{SliceGrid, Slices, Window};
+use ndarray::{ArrayView3, Ix1, arr1};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// The bandwidth along each azimuth of a grid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DirectionalBandwidth {
+    /// The bandwidths, cycles per unit slope, at the azimuths π k / K.
+    pub along: Vec<f64>,
+    /// The largest of them, with its azimuth in radians; the first of equal ones.
+    pub widest: Widest<Uncertain>,
+    /// The bandwidth across the direction of the largest one.
+    pub across: Uncertain,
+    /// The total power, ∫ |F|² dν.
+    pub power: Uncertain,
+}
+
+impl DirectionalBandwidth {
+    /// Computes the bandwidths of independent measurements of one picture.
+    ///
+    /// Returns `None` if the total power is not positive, with all measurements or without one.
+    ///
+    /// # Errors
+    ///
+    /// With fewer than three measurements.
+    ///
+    /// # Panics
+    ///
+    /// If the slices have frequencies with ρ ≠ 0.
+    pub fn new(pictures: &[Slices]) -> Result<Option<Self>, TooFewBatches> {
+        let azimuths = pictures.first().map_or(0, |first| first.grid.azimuths);
+        let power = CrossPower::of_replicates(pictures, 0..azimuths)?;
+        let grid = pictures[0].grid;
+        let mut each = power.at_azimuths();
+        let found = each.next().and_then(|all| Self::of(all.view(), &grid));
+        let Some(mut found) = found else {
+            return Ok(None);
+        };
+        let widest = found.widest.azimuth;
+        let mut jackknife = Jackknife::new(Ix1(3));
+        for without in each {
+            let Some(polar) = PolarPower::new(without.view(), &grid) else {
+                return Ok(None);
+            };
+            let [along, across] = [widest, widest + FRAC_PI_2].map(|e| polar.bandwidth(e));
+            jackknife.add(&arr1(&[along, across, polar.total]));
+        }
+        let errors = jackknife.variance().mapv(f64::sqrt);
+        found.widest.value.error = errors[0];
+        found.across.error = errors[1];
+        found.power.error = errors[2];
+        Ok(Some(found))
+    }
+
+    /// Returns the bandwidths of a window alone, without errors.
+    ///
+    /// # Panics
+    ///
+    /// If the grid has frequencies with ρ ≠ 0.
+    #[must_use]
+    pub fn of_window(window: &Window, grid: &SliceGrid) -> Self {
+        let power = transform(window, grid).mapv(|value| value * value);
+        Self::of(power.view(), grid).expect("a window has power")
+    }
+
+    /// Computes the bandwidths of a power [azimuth, ρ ≥ 0, ν], without errors.
+    fn of(power: ArrayView3<'_, f64>, grid: &SliceGrid) -> Option<Self> {
+        let exact = |value| Uncertain { value, error: 0.0 };
+        let polar = PolarPower::new(power, grid)?;
+        let azimuths = (0..grid.azimuths).map(|k| grid.azimuth(k));
+        let along: Vec<f64> = azimuths.map(|e| polar.bandwidth(e)).collect();
+        let each = along.iter().enumerate();
+        let (k, &most) = each.reduce(|most, next| if next.1 > most.1 { next } else { most })?;
+        let azimuth = grid.azimuth(k);
+        Some(Self {
+            widest: Widest {
+                azimuth,
+                value: exact(most),
+            },
+            across: exact(polar.bandwidth(azimuth + FRAC_PI_2)),
+            power: exact(polar.total),
+            along,
+        })
+    }
+
+    /// Returns the bandwidth at the azimuth nearest to a given one, in radians.
+    #[must_use]
+    pub fn at(&self, azimuth: f64) -> f64 {
+        let count = self.along.len();
+        let turns = (azimuth / PI).rem_euclid(1.0);
+        self.along[index(turns * count as f64 + 0.5) % count]
+    }
+}
+
+/// The power of a picture in polar cells.
+struct PolarPower<'a> {
+    grid: &'a SliceGrid,
+    cells: Vec<PolarCell>,
+    total: f64,
+}
+
+impl<'a> PolarPower<'a> {
+    /// Returns `None` if there is no power.
+    fn new(power: ArrayView3<'_, f64>, grid: &'a SliceGrid) -> Option<Self> {
+        assert_eq!(grid.rho.half, 0, "a picture has no frequency of position");
+        let cells = power.indexed_iter();
+        let cells = cells.map(|((k, _, n), power)| PolarCell::new(grid, [k, n], *power));
+        let cells: Vec<PolarCell> = cells.collect();
+        let total: f64 = cells.iter().map(|cell| cell.power).sum();
+        (total > 0.0).then_some(Self { grid, cells, total })
+    }
+
+    /// Returns the bandwidth along a direction e.
+    fn bandwidth(&self, azimuth: f64) -> f64 {
+        let mut within = Cumulative::new(self.grid);
+        for cell in &self.cells {
+            within.add(cell, azimuth);
+        }
+        within.reaches(BANDWIDTH_FRACTION * self.total)
+    }
+}
+
+/// The cell of a frequency on a polar grid.
+struct PolarCell {
+    azimuth: f64,
+    /// The frequency along the azimuth.
+    nu: f64,
+    /// Half of the cell's sides, along the azimuth and across it.
+    half: [f64; 2],
+    /// ∫ |F|² over the cell.
+    power: f64,
+}
+
+impl PolarCell {
+    fn new(grid: &SliceGrid, [k, n]: [usize; 2], density: f64) -> Self {
+        let nu = grid.nu.value(n);
+        let turn = PI / grid.azimuths as f64;
+        let step = grid.nu.spacing;
+        // The cells at zero share a disc of radius step / 2.
+        let area = if n == grid.nu.half {
+            0.25 * step * step * turn
+        } else {
+            nu.abs() * step * turn
+        };
+        Self {
+            azimuth: grid.azimuth(k),
+            nu,
+            half: [0.5 * step, 0.5 * nu.abs() * turn],
+            power: area * density,
+        }
+    }
+}
+
+/// The power at |ν · e| below each of many limits.
+struct Cumulative {
+    step: f64,
+    /// The power between one limit and the next.
+    bins: Vec<f64>,
+}
+
+/// Number of bins for each step of the grid.
+const BINS: f64 = 8.0;
+
+impl Cumulative {
+    fn new(grid: &SliceGrid) -> Self {
+        let step = grid.nu.spacing / BINS;
+        // A cell ends at most half a step, and its side, beyond the last frequency.
+        let most = 2.0 * (grid.nu.max() + grid.nu.spacing);
+        Self {
+            step,
+            bins: vec![0.0; index(most / step) + 2],
+        }
+    }
+
+    fn add(&mut self, cell: &PolarCell, along: f64) {
+        let (sin, cos) = libm::sincos(cell.azimuth - along);
+        let middle = (cell.nu * cos).abs();
+        let half = cell.half[0] * cos.abs() + cell.half[1] * sin.abs();
+        let [low, high] = [middle - half, middle + half].map(|end| end / self.step);
+        let per_bin = cell.power / (high - low);
+        // What lies below zero is reflected.
+        for [low, high] in [[low.max(0.0), high], [0.0, -low]] {
+            if high <= low {
+                continue;
+            }
+            for bin in index(low)..=index(high) {
+                let from = low.max(bin as f64);
+                let to = high.min(bin as f64 + 1.0);
+                self.bins[bin] += per_bin * (to - from).max(0.0);
+            }
+        }
+    }
+
+    /// Returns the first limit below which there is this power.
+    fn reaches(&self, wanted: f64) -> f64 {
+        let mut within = 0.0;
+        for (bin, power) in self.bins.iter().enumerate() {
+            if within + power >= wanted {
+                return (bin as f64 + (wanted - within) / power) * self.step;
+            }
+            within += power;
+        }
+        // Reached only by rounding.
+        self.bins.len() as f64 * self.step
+    }
+}
+
+/// Returns the whole part of a number that is not negative.
+fn index(value: f64) -> usize {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "small and not negative"
+    )]
+    let index = value as usize;
+    index
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::variation::WindowedMean;
+    use etendue_field::{Complex, FrequencyAxis, Profile};
+
+    /// The grid of a probe for a window of half-width 1.
+    fn grid() -> SliceGrid {
+        SliceGrid {
+            azimuths: 40,
+            rho: FrequencyAxis {
+                half: 0,
+                spacing: 1.0,
+            },
+            nu: FrequencyAxis {
+                half: 24,
+                spacing: 0.25,
+            },
+        }
+    }
+
+    fn window() -> Window {
+        let [small, one] = [1e-9, 1.0].map(Profile::Hann);
+        Window {
+            x: small,
+            y: small,
+            u: one,
+            v: one,
+        }
+    }
+
+    /// The spectrum of a + b cos(2π f · (u, v)) behind the window, over that of the point in x.
+    fn wave(mean: f64, contrast: f64, frequency: [f64; 2]) -> Slices {
+        let (grid, window) = (grid(), window());
+        let mut slices = Slices::zeros(grid);
+        let at = |u: f64, v: f64| window.u.transform(u) * window.v.transform(v);
+        let point = window.x.transform(0.0).powi(2);
+        for ((k, _, n), value) in slices.half.indexed_iter_mut() {
+            let [_, _, u, v] = grid.frequency(k, 0.0, grid.nu.value(n));
+            let [f, g] = frequency;
+            let sides = at(u - f, v - g) + at(u + f, v + g);
+            *value = Complex::from(point * (mean * at(u, v) + 0.5 * contrast * sides));
+        }
+        slices
+    }
+
+    fn less_mean(slices: &Slices) -> Slices {
+        WindowedMean::new(&window(), &grid()).removed_from(slices)
+    }
+
+    fn alone(slices: &Slices) -> DirectionalBandwidth {
+        let copies = vec![slices.clone(); 4];
+        DirectionalBandwidth::new(&copies).unwrap().unwrap()
+    }
+
+    #[test]
+    fn a_window_has_the_bandwidth_of_its_profile() {
+        let found = DirectionalBandwidth::of_window(&window(), &grid());
+        // 0.55722 along the axes by the midpoint rule; the polar cells spread it by up to 2 %.
+        for azimuth in [0.0, FRAC_PI_2] {
+            let value = found.at(azimuth);
+            assert!((value - 0.557).abs() < 0.012, "{value}");
+        }
+    }
+
+    /// Without the mean, the bandwidth of a sine is its frequency with the window's main lobe, at
+    /// any azimuth, and along e it is that of the component f · e.
+    #[test]
+    fn a_sine_of_any_azimuth_and_contrast() {
+        for (azimuth, contrast) in [(0.0, 1.0), (0.41, 0.2), (1.2, 0.03)] {
+            let frequency = 3.3;
+            let (sin, cos) = libm::sincos(azimuth);
+            let field = wave(1.0, contrast, [frequency * cos, frequency * sin]);
+            let found = alone(&less_mean(&field));
+            let widest = found.widest;
+            // One-sided, 95 % of a Hann window's power lie below 0.47.
+            let wanted = frequency + 0.47;
+            let value = widest.value.value;
+            assert!((value - wanted).abs() < 0.1, "{value} {wanted}"); // diagonals, cells
+            let along = PI / 40.0;
+            let turned = (widest.azimuth - azimuth).abs();
+            assert!(turned < 4.0 * along, "{turned}"); // near the maximum all are equal
+            let across = found.across.value;
+            assert!(across < 1.1, "{across}");
+        }
+    }
+
+    #[test]
+    fn the_mean_of_a_picture_hides_its_bandwidth() {
+        let field = wave(1.0, 0.2, [3.3, 0.0]);
+        assert!(alone(&field).widest.value.value < 1.0);
+        // Faults: the mean left in, or removed twice.
+        let found = alone(&less_mean(&field)).widest.value.value;
+        let twice = less_mean(&less_mean(&field));
+        assert!((alone(&twice).widest.value.value - found).abs() < 1e-9); // rounding
+    }
+
+    #[test]
+    fn even_light_has_no_variation() {
+        let field = wave(1.0, 0.0, [0.0; 2]);
+        let left = alone_power(&less_mean(&field));
+        assert!(left < 1e-20 * alone(&field).power.value, "{left:e}");
+    }
+
+    fn alone_power(slices: &Slices) -> f64 {
+        slices.half.iter().map(|s| s.norm_sqr()).sum()
+    }
+}

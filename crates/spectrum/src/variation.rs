@@ -1,0 +1,56 @@
+//! Light fields less their mean.
+//!
+//! Most power of a typical spectrum is that of the mean of the light behind the window. A bandwidth
+//! of all power then says little about how fast the light changes.
+
+use etendue_field::{Complex, SliceGrid, Slices, Window};
+use ndarray::Array3;
+
+/// The mean of light fields behind a window.
+#[derive(Clone, Debug)]
+pub struct WindowedMean {
+    /// Ŵ / Ŵ(0), [azimuth, ρ ≥ 0, ν].
+    shape: Array3<f64>,
+}
+
+impl WindowedMean {
+    /// Builds the means behind a window, on the frequencies of a grid.
+    #[must_use]
+    pub fn new(window: &Window, grid: &SliceGrid) -> Self {
+        let shape = transform(window, grid);
+        let whole = shape[[0, 0, grid.nu.half]];
+        Self {
+            shape: shape / whole,
+        }
+    }
+
+    /// Returns the slices of a windowed light field less its mean: F − F(0) Ŵ / Ŵ(0), where F is
+    /// the spectrum of the light field times the window W.
+    ///
+    /// It is the spectrum of the window times the deviations of the light field from its mean, with
+    /// the window as the weight of the mean.
+    ///
+    /// # Panics
+    ///
+    /// If the slices are on another grid.
+    #[must_use]
+    pub fn removed_from(&self, slices: &Slices) -> Slices {
+        let mean = slices.at_zero();
+        let mut varying = slices.clone();
+        varying.half.zip_mut_with(&self.shape, |value, shape| {
+            *value -= Complex::from(mean * shape);
+        });
+        varying
+    }
+}
+
+/// Returns the transform of a window on the frequencies of a grid, [azimuth, ρ ≥ 0, ν].
+pub(crate) fn transform(window: &Window, grid: &SliceGrid) -> Array3<f64> {
+    let profiles = [window.x, window.y, window.u, window.v];
+    Array3::from_shape_fn(grid.half_shape(), |(k, m, n)| {
+        let rho = m as f64 * grid.rho.spacing;
+        let frequency = grid.frequency(k, rho, grid.nu.value(n));
+        let pairs = profiles.iter().zip(frequency);
+        pairs.map(|(profile, f)| profile.transform(f)).product()
+    })
+}

@@ -1,0 +1,191 @@
+//! The bandwidth of the picture around a pixel, and the window that shows it.
+
+use super::scene::{BATCHES, ProbedScene};
+use etendue_field::Slices;
+use etendue_paths::{BackwardProbe, Budget, Probe};
+use etendue_spectrum::bandwidth::Widest;
+use etendue_spectrum::directional::DirectionalBandwidth;
+use etendue_spectrum::{Uncertain, WindowedMean, measure};
+use etendue_store::Failure;
+use serde_json::{Value, json as tree_of};
+use std::f64::consts::FRAC_PI_2;
+
+/// The smallest window that is tried, pixels.
+const NARROWEST: f64 = 16.0;
+/// The ratio of a bandwidth to that of the window from which the window shows it.
+const CLEAR: f64 = 3.0;
+/// The ratio up to which a bandwidth may be due to the window: light that is linear across it has
+/// 1.49 times the bandwidth of the window, and quadratic light 1.89.
+const SMOOTH: f64 = 1.9;
+/// A variation is found if its power exceeds this many standard errors: with three, one window in
+/// two hundred shows a variation where there is none, and a map has thousands.
+const FOUND: f64 = 5.0;
+/// A bandwidth with a larger relative standard error is not reported, because with few rays its
+/// jackknife is unreliable.
+const MAX_ERROR: f64 = 0.2;
+/// The most rays that choose the window.
+const RAYS_OF_TRIAL: u64 = 1 << 17;
+
+/// The bandwidth of the picture around a pixel: of light that arrives at the middle of the lens, as
+/// a function of direction.
+#[derive(Clone, Debug)]
+pub(super) struct PictureBandwidth {
+    /// Width of the window, pixels.
+    pub(super) across: f64,
+    /// Of the picture less its mean; `None` if it does not vary by more than noise.
+    pub(super) variation: Option<DirectionalBandwidth>,
+    /// Of all power; `None` without light.
+    pub(super) whole: Option<DirectionalBandwidth>,
+    /// Of the window alone.
+    pub(super) window: DirectionalBandwidth,
+    /// The slope difference between adjacent pixels.
+    pub(super) pixel_slope: f64,
+}
+
+impl PictureBandwidth {
+    /// Measures the picture around a pixel, in the requested window, or in the narrowest in which
+    /// the bandwidth is well above that of the window. `None` if the ray through the pixel meets
+    /// nothing.
+    pub(super) fn new(
+        scene: &ProbedScene<'_>,
+        pixel: [usize; 2],
+        seed: u64,
+    ) -> Result<Option<Self>, Failure> {
+        let rays = scene.request.rays;
+        let across = match scene.request.window {
+            Some(across) => across,
+            None => match widened(scene, pixel, seed)? {
+                Some(found) if rays <= RAYS_OF_TRIAL => return Ok(Some(found)),
+                Some(found) => found.across,
+                None => return Ok(None),
+            },
+        };
+        measured(scene, pixel, across, rays, seed)
+    }
+
+    /// Returns the largest bandwidth over directions, if it is above what the window limits.
+    pub(super) fn widest(&self) -> Option<Widest<Uncertain>> {
+        let widest = self.variation.as_ref()?.widest;
+        let is_above = widest.value.value > SMOOTH * self.window.at(widest.azimuth);
+        is_above.then_some(widest)
+    }
+
+    /// Returns the bandwidth across the direction of the largest one, likewise.
+    pub(super) fn across(&self) -> Option<Uncertain> {
+        let widest = self.widest()?;
+        let across = self.variation.as_ref()?.across;
+        let own = self.window.at(widest.azimuth + FRAC_PI_2);
+        (across.value > SMOOTH * own).then_some(across)
+    }
+
+    /// Returns the largest bandwidth of the window alone.
+    pub(super) fn of_window(&self) -> f64 {
+        self.window.widest.value.value
+    }
+
+    /// Returns the bandwidth below which a picture in this window cannot be told from a smooth one.
+    pub(super) fn limit(&self) -> f64 {
+        SMOOTH * self.of_window()
+    }
+
+    /// Returns an estimate of the largest bandwidth without the blur of the window: variances of
+    /// spectra add. For a Gaussian it is exact, and for a single frequency too high by at most 0.84
+    /// bandwidths of the window.
+    pub(super) fn unblurred(&self) -> Option<f64> {
+        let Widest { azimuth, value } = self.widest()?;
+        let own = self.window.at(azimuth);
+        Some((value.value * value.value - own * own).sqrt())
+    }
+
+    /// Returns the shading samples per pixel along a direction that a bandwidth requires: two for
+    /// each cycle.
+    pub(super) fn samples(&self, bandwidth: f64) -> f64 {
+        2.0 * bandwidth * self.pixel_slope
+    }
+
+    fn is_clear(&self) -> bool {
+        let widest = self.widest();
+        widest.is_some_and(|it| it.value.value > CLEAR * self.window.at(it.azimuth))
+    }
+
+    /// Returns the result as JSON.
+    pub(super) fn tree(&self) -> Value {
+        let pair = |of: Uncertain| [of.value, of.error];
+        let each = |of: &Option<DirectionalBandwidth>| of.as_ref().map(|of| of.along.clone());
+        let widest = self.widest();
+        tree_of!({
+            "window_pixels": self.across,
+            "variation": each(&self.variation),
+            "all_power": each(&self.whole),
+            "window": self.window.along,
+            "largest": widest.map(|it| pair(it.value)),
+            "azimuth": widest.map(|it| it.azimuth),
+            "across": self.across().map(pair),
+            "unblurred": self.unblurred(),
+            "samples": widest.map(|it| self.samples(it.value.value)),
+        })
+    }
+}
+
+/// Measures the picture in the narrowest window in which the bandwidth is well above that of the
+/// window, or in one as wide as the picture.
+fn widened(
+    scene: &ProbedScene<'_>,
+    pixel: [usize; 2],
+    seed: u64,
+) -> Result<Option<PictureBandwidth>, Failure> {
+    let rays = scene.request.rays.min(RAYS_OF_TRIAL);
+    let [w, h] = scene.camera.size.map(|n| n as f64);
+    let widest = w.min(h).max(NARROWEST);
+    let mut across = NARROWEST;
+    loop {
+        let found = measured(scene, pixel, across, rays, seed)?;
+        let is_last = found.as_ref().is_none_or(PictureBandwidth::is_clear);
+        if is_last || 2.0 * across > widest {
+            return Ok(found);
+        }
+        across *= 2.0;
+    }
+}
+
+/// Measures the picture in a window.
+fn measured(
+    scene: &ProbedScene<'_>,
+    pixel: [usize; 2],
+    across: f64,
+    rays: u64,
+    seed: u64,
+) -> Result<Option<PictureBandwidth>, Failure> {
+    let question = scene.question(pixel, across, 1);
+    let probe = Probe::new(&scene.paths, &scene.camera, &question);
+    let Some(probe) = probe.and_then(|probe| probe.picture(&scene.camera)) else {
+        return Ok(None);
+    };
+    let plane = &probe.planes[0];
+    let budget = Budget {
+        each: rays.div_ceil(u64::from(BATCHES)),
+        seed,
+    };
+    let rays = BackwardProbe::new(&probe, budget);
+    let found = measure(&rays, &probe.planes, 0..BATCHES, &|_| {});
+    let pictures: Vec<Slices> = found
+        .at_plane(0)
+        .map(|batch| batch.slices.clone())
+        .collect();
+    let mean = WindowedMean::new(&plane.window, &plane.grid);
+    let varying = pictures.iter().map(|picture| mean.removed_from(picture));
+    let varying: Vec<Slices> = varying.collect();
+    let of = |slices: &[Slices]| DirectionalBandwidth::new(slices).map_err(Failure::cannot_run);
+    let variation = of(&varying)?.filter(|found| {
+        let widest = found.widest.value;
+        let is_found = found.power.value > FOUND * found.power.error;
+        is_found && widest.error <= MAX_ERROR * widest.value
+    });
+    Ok(Some(PictureBandwidth {
+        across,
+        variation,
+        whole: of(&pictures)?,
+        window: DirectionalBandwidth::of_window(&plane.window, &plane.grid),
+        pixel_slope: probe.pixel_slope,
+    }))
+}
