@@ -140,7 +140,7 @@ pub struct PlaneReport {
     pub spectral_moments: [Pair; 3],
     /// 95 % bandwidths of the slices where they are largest.
     pub bandwidth_95: Bandwidth,
-    /// The same of the light less its mean, which shows how fast the light changes.
+    /// 95 % bandwidths of the light less its mean, which show how fast the light changes.
     pub variation_95: Bandwidth,
     /// Second central moments of the windowed light field over the coordinates of the plane. `None`
     /// where no light arrived.
