@@ -154,7 +154,7 @@ const MISTAKES: &[[&str; 3]] = &[
     [
         "pitch: 0.2",
         "pitch: 2^20",
-        "line 6, column 21: blockers[0]: unexpected `^20`; allowed: a number without a power, such as 1_048_576 or 1e6",
+        "line 6, column 21: blockers[0]: unexpected `^20`; allowed: a number without the sign ^, such as 1_048_576 or 1e6",
     ],
     // A number in quotes.
     [

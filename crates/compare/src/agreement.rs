@@ -1,4 +1,5 @@
-//! How far measurement and prediction are apart, and what the difference means.
+//! Measures how far a measurement and its prediction are apart, and states what the difference
+//! means.
 
 use crate::prediction::Prediction;
 use crate::residuals::Residuals;
@@ -46,7 +47,7 @@ impl Agreement {
         }
     }
 
-    /// The signed root of a squared quantity, relative to the norm of the prediction.
+    /// Returns the signed root of a squared quantity, relative to the norm of the prediction.
     fn relative(&self, squared: f64) -> Option<f64> {
         (self.predicted > 0.0).then(|| (squared.abs() / self.predicted).sqrt().copysign(squared))
     }
@@ -63,13 +64,13 @@ impl Agreement {
         self.relative(self.difference - self.noise)
     }
 
-    /// The noise relative to the larger of the measured and predicted spectra.
+    /// Returns the noise relative to the larger of the measured and predicted spectra.
     pub(crate) fn resolution(&self) -> f64 {
         (self.noise / self.predicted.max(self.measured)).sqrt()
     }
 
-    /// Whether the error of a prediction without replicates may explain the whole disagreement with
-    /// the photons.
+    /// Checks whether the error of a prediction without replicates may explain the whole
+    /// disagreement with the photons.
     pub(crate) fn is_explained(&self, prediction: &Prediction) -> bool {
         let error = prediction.systematic_error();
         let (Some(error), Some(noise), Some(excess)) = (error, self.noise_limit(), self.excess())
@@ -79,8 +80,8 @@ impl Agreement {
         error > excess.max(UNSEEN * noise)
     }
 
-    /// The number of photons that brings the noise down to the resolution. `None` where the error
-    /// of the prediction alone exceeds the resolution, or where noise is not what prevents a
+    /// Returns the number of photons that brings the noise down to the resolution. `None` where the
+    /// error of the prediction alone exceeds the resolution, or where noise is not what prevents a
     /// verdict.
     pub(crate) fn photons_needed(
         &self,

@@ -30,8 +30,9 @@ pub struct Applicability {
 }
 
 impl Theory {
-    /// Describes in words what in a scene violates the assumptions of the theory. Blockers that
-    /// light meets where the central ray does not become obstacles of the theory.
+    /// Describes in words which parts of a scene violate the assumptions of the theory. Adds an
+    /// obstacle to the theory for blockers that light meets on a leg where the central ray does
+    /// not.
     fn obstacles(
         &mut self,
         scene: &Scene,
@@ -51,7 +52,7 @@ impl Theory {
         found
     }
 
-    /// Makes an obstacle of blockers that light meets from the leg `from` on.
+    /// Adds a layer of blockers, which light meets from the leg `from` on, as an obstacle.
     fn take(&mut self, layer: &BlockerLayer, from: usize) {
         let (layers, obstacles) = match self {
             Self::Specular(view) => (&mut view.system.layers, &mut view.system.obstacles),
@@ -64,8 +65,8 @@ impl Theory {
     }
 }
 
-/// The distance, as a share of the plane's own, by which a plane stands off an object at the same
-/// place: more than rounding, and too small to change phases visibly.
+/// The offset that separates a plane from an object at the same distance, as a share of that
+/// distance. The offset exceeds rounding errors but is too small to change phases visibly.
 const AT_PLANE: f64 = 1e-12;
 
 impl Applicability {
@@ -133,7 +134,7 @@ impl Applicability {
         }
     }
 
-    /// The kind of prediction.
+    /// Returns the kind of prediction.
     #[must_use]
     pub fn class(&self) -> Class {
         match self.theory {
@@ -145,8 +146,8 @@ impl Applicability {
         }
     }
 
-    /// The chain of affine maps that leads to a plane behind specular surfaces, by the paper's
-    /// printed formulas where the scene asks for those.
+    /// Returns the chain of affine maps that leads to a plane behind specular surfaces, by the
+    /// paper's printed formulas where the scene asks for those.
     #[must_use]
     pub fn affine_chain(&self, scene: &Scene) -> Option<rays::AffineChain> {
         match &self.theory {
@@ -155,8 +156,8 @@ impl Applicability {
         }
     }
 
-    /// The steps that make the spectrum of the plane, one line each: the chain, anything that no
-    /// theory describes, and the window last.
+    /// Returns the steps that make the spectrum of the plane, one line each: the chain, anything
+    /// that no theory describes, and the window last.
     #[must_use]
     pub fn steps(&self, scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
         let Window { x, y, u, v } = &plane.window;
@@ -175,8 +176,8 @@ impl Applicability {
             Theory::Parallel(_) => None,
         };
         if let Some(maps) = maps {
-            // The light source is described the same way in either case; its transport is described
-            // by the maps, or not at all.
+            // The first step describes the light source and remains. The maps, if there are any,
+            // replace the steps that describe transport.
             steps.truncate(1);
             steps.extend(maps);
         }

@@ -1,5 +1,5 @@
-//! How fast a glossy reflection changes with angle: by the paper's criteria, by quadrature and as
-//! measured.
+//! Computes how fast a glossy reflection changes with angle: by the paper's criteria, by quadrature
+//! and from the photons.
 
 use crate::applicability::Applicability;
 use crate::budget::budget;
@@ -12,8 +12,8 @@ use etendue_spectrum::{CrossPower, Measurement, Uncertain};
 use etendue_theory::shading::{self, Criterion};
 use etendue_theory::{Model, scattering};
 
-/// The criterion of a plane across the ray that leaves a surface with a BRDF. The cutoff of the
-/// lobe holds [`BANDWIDTH_FRACTION`] of its energy. `None` for any other plane.
+/// Returns the criterion for a plane across the ray that leaves a surface with a BRDF; `None` for
+/// any other plane. The share [`BANDWIDTH_FRACTION`] of a lobe's energy lies below its cutoff.
 ///
 /// The edge that limits the light is that of the last blockers. Without blockers it is the edge of
 /// the light itself, unless the light is far away.
@@ -48,14 +48,14 @@ pub fn criterion(
     })
 }
 
-/// The largest cutoff of the lobes of a sum; 0 if all lobes are about the normal.
+/// Returns the largest cutoff of the lobes of a sum; 0 if all lobes are centred on the normal.
 fn sharpest_cutoff(reflectance: &Reflectance) -> f64 {
     let lobes = reflectance.terms.iter().map(|term| term.brdf.lobe);
     lobes.filter_map(lobe_cutoff).fold(0.0, f64::max)
 }
 
-/// Ω_ρ, the frequency below which a lobe has [`BANDWIDTH_FRACTION`] of its energy, cycles per
-/// radian. `None` for a lobe about the normal.
+/// Returns Ω_ρ, the frequency below which a lobe has [`BANDWIDTH_FRACTION`] of its energy, cycles
+/// per radian. `None` for a lobe centred on the normal.
 #[must_use]
 pub fn lobe_cutoff(lobe: Lobe) -> Option<f64> {
     let lobe = match lobe {
@@ -67,8 +67,8 @@ pub fn lobe_cutoff(lobe: Lobe) -> Option<f64> {
     Some(lobe.cutoff(BANDWIDTH_FRACTION))
 }
 
-/// The bandwidth along ν of the exact prediction of such a plane, by the same estimator as for
-/// photons.
+/// Returns the bandwidth along ν of the exact prediction of such a plane, by the same estimator as
+/// for photons.
 #[must_use]
 pub fn exact_bandwidth(
     scene: &Scene,
@@ -86,8 +86,8 @@ pub fn exact_bandwidth(
     Some(power.bandwidth(bandwidth_nu)?.value.value)
 }
 
-/// The bandwidth along ν as measured at plane `index`, with its error. `None` where no light
-/// arrived.
+/// Returns the bandwidth along ν as measured at plane `index`, with its error. `None` where no
+/// light arrived.
 ///
 /// # Errors
 /// When the measurement has too few batches.

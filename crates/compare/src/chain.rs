@@ -4,9 +4,9 @@ use etendue_field::{Mask, Quantity, Shape, Side, VirtualPlane};
 use etendue_scene::{Object, Scene};
 use etendue_theory::{Chain, Operator, Source};
 
-/// The chain that leads from the light to a virtual plane: travels, visibilities and diffuse
-/// reflections in the order in which the central ray meets them. Anything else is left out and
-/// reported by [`Applicability`](crate::Applicability).
+/// Returns the chain that leads from the light to a virtual plane: travels, visibilities and
+/// diffuse reflections in the order in which the central ray meets them. Anything else is left out
+/// and reported by [`Applicability`](crate::Applicability).
 #[must_use]
 pub fn chain(scene: &Scene, plane: &VirtualPlane) -> Chain {
     let mut walk = ChainWalk {
@@ -51,8 +51,8 @@ pub fn chain(scene: &Scene, plane: &VirtualPlane) -> Chain {
     }
 }
 
-/// Names, distances and masks of the objects across the path, including surfaces beside the central
-/// ray, which stop light too.
+/// Returns the names, distances and masks of the objects across the path, including surfaces beside
+/// the central ray, which stop light too.
 fn obstacles(scene: &Scene) -> Vec<(&str, f64, Mask)> {
     let blockers = scene.blockers.iter();
     let blockers = blockers.map(|layer| (layer.name.as_str(), layer.distance, layer.mask.clone()));
@@ -69,7 +69,7 @@ fn obstacles(scene: &Scene) -> Vec<(&str, f64, Mask)> {
     obstacles
 }
 
-/// Whether light meets an object at `distance` on its way to the plane.
+/// Checks whether light meets an object at `distance` on its way to the plane.
 #[must_use]
 pub fn stands_before(distance: f64, scene: &Scene, plane: &VirtualPlane) -> bool {
     if plane.leg > 0 {

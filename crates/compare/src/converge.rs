@@ -1,4 +1,5 @@
-//! How the first-order chain becomes exact as the neighbourhood of the central ray shrinks.
+//! Measures how the first-order chain becomes exact as the neighbourhood of the central ray
+//! shrinks.
 
 use crate::applicability::Applicability;
 use crate::system::print;
@@ -22,7 +23,7 @@ pub struct Convergence {
     pub order: Option<f64>,
 }
 
-/// The rays of each step where no quadrature rule converges.
+/// The budget of rays of each step, for planes where no quadrature rule converges.
 const BUDGET: RayBudget = RayBudget {
     nodes: 4e6,
     error: 1e-4,
@@ -32,9 +33,9 @@ const SHARES: [f64; 5] = [1.0, 0.5, 0.25, 0.125, 0.0625];
 /// Errors below this many times the quadrature error are too small to judge the chain by.
 const CLEAR: f64 = 5.0;
 
-/// Shrinks the light and the window of a plane behind specular surfaces, and the lobes where
-/// several surfaces scatter, and widens the frequencies by the same factor. `None` for any other
-/// plane. No photons are traced.
+/// Shrinks the light and the window of a plane behind specular surfaces, or the lobes where several
+/// surfaces scatter. Widens the frequencies by the same factor. `None` for any other plane. No
+/// photons are traced.
 #[must_use]
 pub fn converge(
     scene: &Scene,
@@ -73,8 +74,8 @@ pub fn converge(
     })
 }
 
-/// The error of a first-order chain behind specular surfaces at the scale e, and the error of the
-/// sums over rays that it is computed from.
+/// Returns the error of a first-order chain behind specular surfaces at the scale e, and the error
+/// of the sums over rays from which the former is computed.
 fn by_rays(
     scene: &Scene,
     whole: &Observed<rays::SpecularSystem>,
@@ -93,8 +94,8 @@ fn by_rays(
     Some([error, own(&exact).max(own(&linear))])
 }
 
-/// The error of the chain where several surfaces scatter. It is a difference of sums over the same
-/// paths, with an error of its own of a few per cent.
+/// Returns the error of the chain where several surfaces scatter. It is a difference of sums over
+/// the same paths, and this difference has an error of a few per cent.
 fn by_paths(
     whole: &Observed<reflections::ReflectionSystem>,
     e: f64,
@@ -110,7 +111,7 @@ fn by_paths(
     Some(linear.independent_relative_difference(&exact.slices))
 }
 
-/// The slope of ln error over ln e.
+/// Returns the slope of ln error over ln e.
 fn order(steps: &[[f64; 2]]) -> f64 {
     let logs: Vec<[f64; 2]> = steps.iter().map(|step| step.map(libm::log)).collect();
     let n = logs.len() as f64;

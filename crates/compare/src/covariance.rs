@@ -20,8 +20,8 @@ use serde::Serialize;
 /// The covariance of the power spectrum of a plane, ∫ P Ω Ωᵀ/∫ P over (ρx, ρy, νu, νv), by every
 /// available method.
 ///
-/// Entries are in cycles² over the units of their coordinates. Second moments of a field with edges
-/// do not exist, so all but `traced` are taken over the same band of frequencies.
+/// Entries are in cycles² over the units of their coordinates. The spectrum of a field with edges
+/// has no second moments, so all matrices but `traced` are taken over the same band of frequencies.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CovarianceReport {
     /// Name of the plane.
@@ -46,8 +46,9 @@ pub struct CovarianceReport {
     pub error: Option<Matrix<4>>,
     /// How much each measured variance grows from half of the band to all of it.
     pub growth: Option<[f64; 4]>,
-    /// The largest difference of `traced_in_band` from `measured`, over the geometric mean of the two variances; and the
-    /// error of `measured` by the same measure.
+    /// The largest difference between `traced_in_band` and `measured`, divided by the geometric
+    /// mean of the two variances. The second number is the error of `measured`, divided in the same
+    /// way.
     pub off: Option<[f64; 2]>,
     /// Moments ρρ, ρν and νν of the slice at azimuth 0, where positions and slopes along y have no frequency.
     pub slice: [SliceMoment; 3],
@@ -60,7 +61,7 @@ pub struct CovarianceReport {
 pub struct SliceMoment {
     /// By covariance tracing.
     pub traced: Option<f64>,
-    /// By the photons, and by the exact prediction.
+    /// The moment of the photons, and that of the exact prediction.
     #[serde(flatten)]
     pub found: Pair,
 }
@@ -75,7 +76,7 @@ pub struct TracedPlane {
 }
 
 impl TracedPlane {
-    /// The covariance traced to a plane, the window included as the last step.
+    /// Returns the covariance traced to a plane, the window included as the last step.
     ///
     /// # Errors
     /// The reason, where covariance tracing gives no result.
@@ -97,7 +98,7 @@ impl TracedPlane {
         })
     }
 
-    /// The moments of the Gaussian over a band.
+    /// Returns the moments of the Gaussian over a band.
     fn in_band(&self, moments: &Moments) -> Option<Matrix<4>> {
         let field = self.field.as_ref()?;
         moments
@@ -105,7 +106,7 @@ impl TracedPlane {
             .covariance()
     }
 
-    /// The power of the Gaussian at the frequencies of a slice.
+    /// Returns the power of the Gaussian at the frequencies of a slice.
     fn on_slice(&self, grid: &SliceGrid) -> Option<Array2<f64>> {
         let field = self.field.as_ref()?;
         let shape = (grid.rho.count(), grid.nu.count());
@@ -116,8 +117,8 @@ impl TracedPlane {
 }
 
 impl CovarianceReport {
-    /// The covariances of plane `index` of a measurement, whose light field was also measured on
-    /// the grid `grid`.
+    /// Returns the covariances of plane `index` of a measurement, whose light field was also
+    /// measured on the grid `grid`.
     ///
     /// # Errors
     /// When the measurement has too few batches for errors.
@@ -163,7 +164,7 @@ impl CovarianceReport {
         Ok(report)
     }
 
-    /// Remarks on what the numbers do not decide.
+    /// Returns remarks on what the numbers do not decide.
     fn remarks_of(&self) -> Vec<String> {
         let mut remarks: Vec<String> = self.untraced.iter().cloned().collect();
         if self.untraced.is_none() && self.traced.is_none() {
@@ -213,15 +214,16 @@ pub const AXES: [&str; 4] = ["ρx", "ρy", "νu", "νv"];
 /// deviations, and by 3 % at six.
 const ENDLESS: f64 = 1.15;
 
-/// The largest of the entries over the geometric mean of the variances of a matrix.
+/// Divides each entry by the geometric mean of the variances of its two axes in a matrix, and
+/// returns the largest result.
 fn largest(of: &Matrix<4>, entry: &dyn Fn(usize, usize) -> f64) -> f64 {
     let pairs = (0..4).flat_map(|i| (0..4).map(move |j| (i, j)));
     let shares = pairs.map(|(i, j)| entry(i, j).abs() / (of[i][i] * of[j][j]).abs().sqrt());
     shares.fold(0.0, f64::max)
 }
 
-/// The covariance of the exact spectrum, where theory has the spectrum at any frequency in closed
-/// form.
+/// Returns the covariance of the exact spectrum, where theory has the spectrum at any frequency in
+/// closed form.
 fn exact(
     applicability: &Applicability,
     plane: &VirtualPlane,
@@ -244,7 +246,7 @@ fn exact(
     }))
 }
 
-/// The moments of the slice at azimuth 0.
+/// Returns the moments of the slice at azimuth 0.
 fn slice(
     measurement: &Measurement,
     index: usize,
@@ -269,7 +271,8 @@ fn slice(
     }))
 }
 
-/// |F|² of theory at azimuth 0, [ρ, ν]; replicates are crossed, as batches are. `None` where another tracer stands for
+/// Returns |F|² of theory at azimuth 0, [ρ, ν]. It is computed from pairs of replicates, as a
+/// measured power is from pairs of batches. `None` where the measurement of another tracer replaces
 /// theory.
 fn predicted_slice(prediction: &Prediction) -> Option<Array2<f64>> {
     if prediction.class == Class::Reference {

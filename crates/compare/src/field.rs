@@ -27,8 +27,8 @@ pub enum PredictedField {
 }
 
 impl PredictedField {
-    /// The prediction of theory for a plane: in closed form, or by nets of rays in `groups` groups.
-    /// `None` where no theory applies, or no ray arrives.
+    /// Returns the prediction of theory for a plane: in closed form, or by nets of rays in `groups`
+    /// groups. `None` where no theory applies, or no ray arrives.
     #[must_use]
     pub fn new(
         scene: &Scene,
@@ -72,7 +72,7 @@ impl PredictedField {
         found
     }
 
-    /// The spectrum of another measurement, where no theory applies.
+    /// Returns the spectrum of another measurement, where no theory applies.
     #[must_use]
     pub fn reference(groups: Vec<FieldGroup>) -> Self {
         let scaled = groups.into_iter().map(|FieldGroup { share, spectrum }| {
@@ -82,7 +82,7 @@ impl PredictedField {
         Self::Sampled(scaled.collect())
     }
 
-    /// The predicted spectra: one for an exact prediction, or one for each group.
+    /// Returns the predicted spectra: one for an exact prediction, or one for each group.
     pub(crate) fn spectra(&self) -> &[FieldSpectrum] {
         match self {
             Self::Exact { spectrum, .. } => std::slice::from_ref(spectrum.as_ref()),
@@ -92,11 +92,12 @@ impl PredictedField {
 }
 
 /// The largest number of products of a closed form, some ten seconds on one core. Nets of rays
-/// replace a closed form with more, such as that of a disc, which consists of many rectangles.
+/// replace a closed form with more products, such as that of a disc, which consists of many
+/// rectangles.
 const MAX_PRODUCTS: usize = 4_000_000_000;
 
-/// The closed form between parallel planes. `None` behind a receiver, for the rays of a file, and
-/// where it would take too long.
+/// Returns the closed form between parallel planes. `None` behind a receiver, for the rays of a
+/// file, and where it would take too long.
 fn closed_form(
     chain: &Chain,
     plane: &VirtualPlane,
@@ -117,7 +118,7 @@ fn closed_form(
     })
 }
 
-/// The spectrum itself, without the effects of the grid.
+/// Returns the spectrum itself, without the effects of the grid.
 fn alias_free(
     chain: &Chain,
     plane: &VirtualPlane,
@@ -130,7 +131,7 @@ fn alias_free(
     Some(spectrum(&harmonics, (grid, assignment)))
 }
 
-/// The spectrum at all frequencies of a grid, those along v from zero on.
+/// Returns the spectrum at all frequencies of a grid, those along v from zero on.
 fn spectrum(harmonics: &Harmonics, (grid, assignment): (FieldGrid, Assignment)) -> FieldSpectrum {
     let [nx, ny, nu, nv] = grid.cells;
     let mut values = Array4::zeros((nx, ny, nu, nv / 2 + 1));

@@ -30,12 +30,12 @@ pub struct FirstOrder {
 pub struct FirstOrderChain {
     /// ‖first order − exact‖/‖exact‖ as computed, by the corrected formulas.
     pub error: f64,
-    /// The error that remains as the neighbourhood of the central ray shrinks: zero but for
-    /// rounding if every map is right (see [`rays::defect`]). It is that of the printed formulas
-    /// where `slices` are.
+    /// The error that remains as the neighbourhood of the central ray shrinks. It is zero, apart
+    /// from rounding errors, if every map is right (see [`rays::defect`]). Where `slices` come from
+    /// the printed formulas, so does the defect.
     pub defect: f64,
-    /// The part of the defect that is in the factor of the chain: the radiance that the chain gives
-    /// the central ray, over the radiance that the ray has, less 1.
+    /// The relative error of the radiance that the chain assigns to the central ray. It is the part
+    /// of the defect that is due to the constant factor of the chain.
     #[serde(default)]
     pub radiance_defect: f64,
     /// The matrix A that takes rays from the light to the plane, z' = A z, by the corrected
@@ -51,7 +51,7 @@ pub struct FirstOrderChain {
     pub as_printed: bool,
 }
 
-/// The photons compared with the first-order chain, as in `summary.json`.
+/// The comparison of the photons with the first-order chain, as in `summary.json`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FirstOrderReport {
     /// The numbers of the chain.
@@ -72,8 +72,9 @@ pub struct FirstOrderReport {
     pub verdict: Verdict,
 }
 
-/// A chain with a larger defect has a wrong map. Finite differences leave 10⁻⁹; a first-order
-/// operator that is left out or wrong by a thousandth is detected.
+/// A chain with a larger defect has a wrong map. Finite differences alone cause a defect of 10⁻⁹,
+/// and a first-order operator that is missing or wrong by a thousandth causes a defect above this
+/// limit.
 const DEFECT: f64 = 1e-5;
 /// Above this error a first-order chain is useless as a prediction of the light field.
 const MAX_ERROR: f64 = 0.5;
@@ -81,8 +82,8 @@ const MAX_ERROR: f64 = 0.5;
 const NINETY_FIVE: f64 = 1.645;
 
 impl FirstOrderChain {
-    /// The verdict on the chain: it fails if a map is wrong, and is undecided where its error is
-    /// too large for a useful prediction.
+    /// Returns the verdict on the chain: it fails if a map is wrong, and is undecided where its
+    /// error is too large for a useful prediction.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
         if self.defect > DEFECT {
@@ -134,9 +135,9 @@ impl FirstOrder {
         })
     }
 
-    /// The chain past surfaces that scatter light, with its defect and the matrix of its rays along
-    /// the mirror directions. Its noise is that of the exact prediction, because the difference of
-    /// the two has little noise of its own.
+    /// Returns the chain past surfaces that scatter light, with its defect and the matrix of its
+    /// rays along the mirror directions. Its noise is that of the exact prediction, because the
+    /// difference of the two has little noise of its own.
     pub(crate) fn of_reflection(exact: &Predicted, defect: f64, matrix: Matrix<4>) -> Option<Self> {
         let difference = exact.to_first_order.as_ref();
         let difference = difference.filter(|_| !exact.slices.is_dark())?;
@@ -190,16 +191,16 @@ impl FirstOrder {
     }
 }
 
-/// The covariance after the chain and the window, for a Gaussian as wide as the light. Inverse
-/// covariances add in a product of Gaussians, and a map A takes S⁻¹ to A⁻ᵀ S⁻¹ A⁻¹. `None` for an
-/// environment, which has no width.
+/// Returns the covariance after the chain and the window, for a Gaussian as wide as the light.
+/// Inverse covariances add in a product of Gaussians, and a map A takes S⁻¹ to A⁻ᵀ S⁻¹ A⁻¹. `None`
+/// for an environment, which has no width.
 fn propagated(system: &SpecularSystem, chain: &Matrix<4>, window: &Window) -> Option<Matrix<4>> {
     if matches!(system.light, Light::Environment { .. }) {
         return None;
     }
     let window = [window.x, window.y, window.u, window.v].map(|profile| variance(&profile));
-    // A zero width is replaced by one that is narrow beside the window; an infinite one adds no
-    // inverse.
+    // A zero width is replaced by a width that is narrow beside the window. An infinite width adds
+    // no inverse covariance.
     let narrow = window.map(|v| 1e8 / v);
     let picture = |w: f64| TAU / (w * w);
     let light = &system.light;
@@ -225,8 +226,8 @@ fn propagated(system: &SpecularSystem, chain: &Matrix<4>, window: &Window) -> Op
     Some(AffineMap::linear(inverse).inverse()?.matrix)
 }
 
-/// The variance of the Gaussian with the profile's curvature at its centre; for a box, the variance
-/// of the box.
+/// Returns the variance of the Gaussian with the profile's curvature at its centre; for a box, the
+/// variance of the box.
 fn variance(profile: &Profile) -> f64 {
     match *profile {
         Profile::Hann(h) => 2.0 * (h / PI).powi(2),

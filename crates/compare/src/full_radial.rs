@@ -40,8 +40,7 @@ pub struct FullRadialComparison {
     pub sigma: Array2<f64>,
 }
 
-/// The difference of measured and predicted power in a bin, in terms of the groups whose noise
-/// makes it.
+/// The difference of measured and predicted power in a bin, as a sum over the groups of photons.
 ///
 /// Group r of a measurement holds the share a_r of it, G_r, and the same share of the prediction,
 /// P_r, with the same expectation a_r F. Both powers are computed from pairs of groups, so their
@@ -60,8 +59,8 @@ struct BinDifference {
 }
 
 impl BinDifference {
-    /// From the products of the spectra in a bin: those of groups with the shares `a`, and those of
-    /// the prediction.
+    /// Computes the difference from the products of the spectra in a bin. The spectra are those of
+    /// the groups, which have the shares `a`, and those of the prediction.
     fn new(products: ArrayView2<'_, f64>, a: &[f64]) -> Self {
         let n = a.len();
         let is_exact = products.nrows() == n + 1;
@@ -90,7 +89,7 @@ impl BinDifference {
         }
     }
 
-    /// U with these signs of the D_r.
+    /// Returns U with these signs of the D_r.
     fn with_signs(&self, signs: &[f64]) -> f64 {
         let mut pairs = self.pairs.as_slice();
         let mut sum = 0.0;
@@ -103,14 +102,14 @@ impl BinDifference {
         sum
     }
 
-    /// The variance of U over all signs; it does not depend on the signs.
+    /// Returns the variance of U over all signs; it does not depend on the signs.
     fn variance(&self) -> f64 {
         let terms = self.linear.iter().chain(&self.pairs);
         terms.map(|term| term * term).sum()
     }
 }
 
-/// Σ_r |G_r − a_r G|², by the products of the groups.
+/// Returns Σ_r |G_r − a_r G|², from the products of the groups.
 fn spread(product: &dyn Fn(usize, usize) -> f64, a: &[f64]) -> f64 {
     let n = a.len();
     let row = |r: usize| (0..n).map(|s| product(r, s)).sum::<f64>();
@@ -119,7 +118,7 @@ fn spread(product: &dyn Fn(usize, usize) -> f64, a: &[f64]) -> f64 {
     each.sum::<f64>().max(0.0)
 }
 
-/// The mean product of two groups, from number `first` on: the power without noise.
+/// Returns the mean product of two groups, from number `first` on: the power without noise.
 fn crossed(products: ArrayView2<'_, f64>, first: usize) -> f64 {
     let all = products.indexed_iter();
     let pairs = all.filter(|((r, s), _)| first <= *r.min(s) && r != s);
@@ -146,7 +145,8 @@ impl FullRadialComparison {
     }
 }
 
-/// The report, the predicted power and σ of the difference, for the groups of a measurement.
+/// Returns the report, the predicted power and σ of the difference, for the groups of a
+/// measurement.
 pub(crate) fn compared(
     bins: &RadialBins,
     groups: &[FieldGroup],
@@ -159,7 +159,7 @@ pub(crate) fn compared(
     let n = shares.len();
     assert!(
         [n + 1, 2 * n].contains(&spectra.len()),
-        "groups of measurement and prediction"
+        "the groups of the prediction differ from those of the measurement"
     );
     let products = bins.products(&spectra);
     let each = || products.outer_iter();
@@ -235,13 +235,14 @@ mod tests {
     use super::*;
     use ndarray::Array2;
 
-    /// Pseudo-random numbers about zero.
+    /// Returns pseudo-random numbers about zero.
     fn noise(count: usize, seed: f64) -> Vec<f64> {
         let each = (0..count).map(|i| libm::sin(1e4 * (seed + 1.7 * i as f64)));
         each.collect()
     }
 
-    /// The products of groups of a measurement and of a prediction, for two frequencies in one bin.
+    /// Returns the products of groups of a measurement and of a prediction, for two frequencies in
+    /// one bin.
     fn products(exact: bool) -> (Array2<f64>, Vec<f64>, f64) {
         let shares = vec![0.25, 0.25, 0.3, 0.2];
         let truth = [1.5, -0.4];

@@ -14,7 +14,7 @@ use etendue_transform::SliceTransform;
 pub struct Memory {
     /// The spectra of all batches, kept until the errors are known, including those of references.
     pub batches: f64,
-    /// The fine grids of each thread that photons are spread over.
+    /// The fine grids over which each thread spreads photons.
     pub threads: f64,
     /// Predictions with their derivatives, and the working memory of computing one.
     pub predictions: f64,
@@ -36,7 +36,8 @@ const TRIANGLE: f64 = 150.0;
 const NORMALS: f64 = 72.0;
 
 impl Memory {
-    /// The memory of a run of a scene on `threads` threads. `theories` are those of its planes.
+    /// Returns the memory of a run of a scene on `threads` threads. `theories` are the theories of
+    /// its planes.
     #[must_use]
     pub fn new(scene: &Scene, theories: &[Applicability], threads: usize) -> Self {
         let batches = f64::from(scene.run.batches);
@@ -71,14 +72,15 @@ impl Memory {
                 let work = work::of(scene, plane, of);
                 work.bytes + threads as f64 * work.bytes_each
             }),
-            // Residuals of all batches, means, variances, powers, and the sums for p-values.
+            // The comparison holds residuals of all batches, means, variances, powers, and the sums
+            // for p-values.
             comparison: largest(&|plane, _| (batches + 8.0) * spectra(plane))
                 + sum(&|plane, _| 4.0 * spectra(plane)),
             meshes: meshes(scene),
         }
     }
 
-    /// The sum of the parts.
+    /// Returns the sum of the parts.
     #[must_use]
     pub fn total(&self) -> f64 {
         let Self {
@@ -108,7 +110,7 @@ fn cells(grid: &SliceGrid) -> f64 {
     grid.half_shape().iter().map(|n| *n as f64).product()
 }
 
-/// The replicates that a prediction by nets holds, of itself and of the first-order chain.
+/// Returns the replicates that a prediction by nets holds, of itself and of the first-order chain.
 fn replicates(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> f64 {
     let each = etendue_theory::REPLICATES as f64;
     let picture = ProjectionGrid::new(&plane.window, PROJECTION_BINS);

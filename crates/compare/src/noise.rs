@@ -4,8 +4,9 @@ use crate::residuals::Residuals;
 use etendue_spectrum::Measurement;
 use etendue_spectrum::estimate::{self, TooFewBatches};
 
-/// The number of independent normal real numbers whose mean square fluctuates as much as that of
-/// the noise of plane `plane`, with each frequency in units of its own σ.
+/// Returns the effective number of independent real numbers in the noise of plane `plane`. The mean
+/// square of that many normal numbers fluctuates as much as the mean square of the noise, with each
+/// frequency in units of its own σ.
 ///
 /// The window correlates neighbouring frequencies. With C the covariance of the noise over its σ,
 /// the mean of |S − E S|²/σ² over m frequencies has the variance 2 tr C²/m², like the mean square of
@@ -27,7 +28,7 @@ pub fn noise_dof(measurement: &Measurement, plane: usize) -> Result<Option<f64>,
     Ok(of_batches(&Residuals::new(measurement, plane, &mean)))
 }
 
-/// The same number, from the difference of each batch to the mean.
+/// Returns the same number, from the difference of each batch to the mean.
 fn of_batches(centred: &Residuals) -> Option<f64> {
     // tr Ĉ and tr Ĉ²; the matrix of products has the same eigenvalues as Ĉ.
     let products = centred.products(true);

@@ -1,4 +1,4 @@
-//! What rules out the theory of light between parallel planes for a plane.
+//! Finds what rules out the theory of light between parallel planes.
 
 use etendue_field::{Frame, Light, Mask, Orientation, Profile, Quantity, Side, VirtualPlane};
 use etendue_scene::{BlockerLayer, Hit, Object, Scene, Surface};
@@ -50,8 +50,9 @@ pub(crate) fn obstacles_to_theory(scene: &Scene, plane: &VirtualPlane) -> Vec<St
 /// Angles below this many degrees count as rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// The objects that light for the plane may meet: meshes, smooth surfaces, and flat objects that do
-/// not lie across the path. On the way back, flat objects across the path count too.
+/// Returns the objects that light for the plane may meet: meshes, smooth surfaces, and flat objects
+/// that do not lie across the path. Once a surface has reflected the light, flat objects across the
+/// path count too.
 fn in_the_way(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
     let mut found = Vec::new();
     // Objects that light visits later may block it earlier.
@@ -91,7 +92,8 @@ fn in_the_way(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
     found
 }
 
-/// Corners of rectangles that hold every part of a layer that light for a plane may meet.
+/// Returns the corners of rectangles that contain every part of a layer that light for a plane may
+/// meet.
 fn parts(layer: &BlockerLayer, scene: &Scene, plane: &VirtualPlane) -> Vec<[DVec3; 4]> {
     // A half-plane or grating is cut off at a thousand times the extent of the light.
     let lengths = tube(scene, plane).into_iter().flatten();
@@ -120,8 +122,8 @@ fn parts(layer: &BlockerLayer, scene: &Scene, plane: &VirtualPlane) -> Vec<[DVec
     }
 }
 
-/// Half-widths of the regions where light for a plane leaves the source and where it reaches each
-/// surface.
+/// Returns the half-widths of the regions where light for a plane leaves the source and where it
+/// reaches each surface.
 fn tube(scene: &Scene, plane: &VirtualPlane) -> [[f64; 2]; 2] {
     let window = [&plane.window.x, &plane.window.y].map(Profile::half_width);
     let slope = [&plane.window.u, &plane.window.v].map(Profile::half_width);
@@ -133,7 +135,8 @@ fn tube(scene: &Scene, plane: &VirtualPlane) -> [[f64; 2]; 2] {
     [light, [0, 1].map(|axis| window[axis] + along * slope[axis])]
 }
 
-/// Whether light for a plane may pass through a box around points, given in the frame at the light.
+/// Checks whether light for a plane may pass through a box around points, given in the frame at the
+/// light.
 pub(crate) fn passes(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -162,8 +165,8 @@ pub(crate) fn passes(
     (first..=plane.leg.min(1)).any(crosses)
 }
 
-/// Whether a box around points meets a tube along a frame, from depth 0 with half-widths `from` to
-/// depth `end` with `to`.
+/// Checks whether a box around points meets a tube along a frame. The tube has the half-widths
+/// `from` at depth 0 and `to` at depth `end`.
 fn overlaps(points: &[DVec3], frame: &Frame, from: [f64; 2], to: [f64; 2], end: f64) -> bool {
     let local = points.iter().map(|p| frame.to_local(*p));
     let (low, high) = local.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| {
@@ -180,7 +183,8 @@ fn overlaps(points: &[DVec3], frame: &Frame, from: [f64; 2], to: [f64; 2], end: 
     })
 }
 
-/// Whether four points of a plane lie in a plane that a tube, as for [`overlaps`], does not cross.
+/// Checks whether four points lie in one plane, and a tube as in [`overlaps`] does not cross that
+/// plane.
 fn is_beside(points: &[DVec3], frame: &Frame, from: [f64; 2], to: [f64; 2], end: f64) -> bool {
     let [a, b, c, d] = points else { return false };
     let normal = (b - a).cross(c - a);
@@ -195,8 +199,8 @@ fn is_beside(points: &[DVec3], frame: &Frame, from: [f64; 2], to: [f64; 2], end:
     sides.iter().all(|side| *side > 0.0) || sides.iter().all(|side| *side < 0.0)
 }
 
-/// The surface whose edge lies within the view of a plane after a reflection. Theory assumes that
-/// the surface is infinite.
+/// Returns the surface whose edge lies within the view of a plane after a reflection. Theory
+/// assumes that the surface is infinite.
 fn beyond_edge<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a str> {
     let surface = reflector(scene, plane)?;
     let (w, travelled) = (&plane.window, scene.path.along(plane));
@@ -210,7 +214,7 @@ fn beyond_edge<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a str> {
     (!covered).then_some(&surface.name)
 }
 
-/// The flat surface from which light starts on the leg of a plane.
+/// Returns the flat surface from which light starts on the leg of a plane.
 fn reflector<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a Surface> {
     match scene.path.legs[plane.leg].leaves?.object {
         Object::Surface(i) => Some(&scene.surfaces[i]),

@@ -49,13 +49,14 @@ pub struct PlaneComparison {
 }
 
 /// A field with less than this share of the unblocked light is predicted to be dark. A closed form
-/// is a difference of transforms of that size, accurate to 10⁻¹⁵ of it.
+/// is a difference of transforms as large as the unblocked light, and has an error of 10⁻¹⁵ of that
+/// light.
 const DARK: f64 = 1e-12;
 
-/// Above this noise the residuals come from few photons and are not symmetric, as the p-value
-/// assumes.
+/// Above this noise the residuals come from few photons and are not symmetric, although the p-value
+/// assumes that they are.
 const MAX_HANDFUL_NOISE: f64 = 0.25;
-/// Photons per batch with which one in 3,000 batches is empty.
+/// The number of photons per batch at which one in 3,000 batches is empty.
 pub const MIN_PHOTONS_PER_BATCH: f64 = 8.0;
 
 /// Compares plane `index` of a measurement with its prediction.
@@ -181,7 +182,7 @@ impl ComparedSides<'_> {
         }
     }
 
-    /// Why the comparison is undecided, in words; `None` where it is decided.
+    /// Returns why the comparison is undecided, in words; `None` where it is decided.
     fn open_question(
         &self,
         agreement: &Agreement,
@@ -199,7 +200,7 @@ impl ComparedSides<'_> {
             // Theory may prove that no light arrives; finding no ray is no proof.
             self.prediction.is_statistical().then(|| {
                 format!(
-                    "no ray of the prediction reached the window; {inside} of {emitted} photons reached it (if none did, the share of such photons would be below 3 in {emitted}, with 95 % confidence)"
+                    "no ray of the prediction reached the window; {inside} of {emitted} photons reached it (if no photon reaches it, the share of photons that can reach it is below 3 in {emitted} with 95 % confidence)"
                 )
             })
         } else if inside == 0 {
@@ -211,7 +212,7 @@ impl ComparedSides<'_> {
             ))
         } else if let Some(each) = self.uneven(agrees) {
             Some(format!(
-                "a few photons, or a few rays of the prediction, carry most of the light: it varies as if each batch held only {each:.1} of them, too few for a test{needs}"
+                "a few photons, or a few rays of the prediction, carry most of the light: the light varies as if each batch held only {each:.1} of them, too few for a test{needs}"
             ))
         } else if agrees && error > test.resolution {
             let error = percent(error);
@@ -242,15 +243,16 @@ impl ComparedSides<'_> {
         }
     }
 
-    /// Whether the possible error of a quadrature explains the whole disagreement, for example
-    /// where the photons have almost no noise.
+    /// Checks whether the possible error of a quadrature explains the whole disagreement, for
+    /// example where the photons have almost no noise.
     fn is_excused(&self, test: &Test) -> bool {
         let error = self.prediction.systematic_error();
         error.is_some_and(|error| self.agrees_within(error, test))
     }
 
-    /// Whether photons agree with some prediction within this relative error at each frequency,
-    /// plus the error of the photons' transform.
+    /// Checks whether photons agree with some spectrum near the prediction. At each frequency this
+    /// spectrum may differ from the prediction by the relative error `error`, plus the error of the
+    /// photons' transform.
     fn agrees_within(&self, error: f64, test: &Test) -> bool {
         let p = self
             .residuals
@@ -259,8 +261,8 @@ impl ComparedSides<'_> {
         p.is_none_or(|p| p >= test.level)
     }
 
-    /// The number of photons that would decide; `None` where that is not known, or where more
-    /// photons do not help.
+    /// Returns the number of photons that would decide; `None` where that is not known, or where
+    /// more photons do not help.
     fn photons_needed(&self, agreement: &Agreement, agrees: bool, test: &Test) -> Option<f64> {
         let (inside, emitted) = (self.inside(), self.measurement.emitted());
         if self.predicted.is_dark() || inside == 0 {
@@ -284,8 +286,9 @@ impl ComparedSides<'_> {
         }
     }
 
-    /// Where measurement and prediction disagree: the number of rays of equal weight that would
-    /// vary like those of a batch, or of a replicate of the prediction, if it is too small.
+    /// Returns the number of rays of equal weight that would vary like the rays of a batch, or of a
+    /// replicate of the prediction. Returns `None` unless this number is too small for a test, and
+    /// measurement and prediction disagree.
     fn uneven(&self, agrees: bool) -> Option<f64> {
         let batches = self.measurement.at_plane(self.index);
         let measured = too_few(batches.map(|batch| &batch.slices));
@@ -294,8 +297,8 @@ impl ComparedSides<'_> {
         fewest.min_by(f64::total_cmp).filter(|_| !agrees)
     }
 
-    /// Whether photons brought no light, or so little that it cannot be distinguished from the
-    /// rounding of the prediction.
+    /// Checks whether photons brought no light, or so little that it cannot be distinguished from
+    /// the rounding of the prediction.
     fn is_dark(&self) -> bool {
         largest(&self.residuals.mean()) <= self.prediction.unblocked * DARK
     }
@@ -304,8 +307,8 @@ impl ComparedSides<'_> {
         self.measurement.tally(self.index).inside
     }
 
-    /// Whether a batch of photons, or a replicate of the prediction, found no light: with so few,
-    /// errors are not symmetric and allow no conclusion.
+    /// Checks whether a batch of photons, or a replicate of the prediction, found no light: with so
+    /// few rays, errors are not symmetric and allow no conclusion.
     fn is_sparse(&self) -> bool {
         let mut batches = self.measurement.at_plane(self.index);
         let mut replicates = self.prediction.replicates.iter();
@@ -367,15 +370,15 @@ impl ComparedSides<'_> {
             .collect()
     }
 
-    /// ‖error‖ of a prediction by quadrature, over the independent frequencies.
+    /// Returns ‖error‖ of a prediction by quadrature, over the independent frequencies.
     fn numerical_error(&self) -> f64 {
         let half = &self.predicted.half;
         let size = self.residuals.sum(half, half, |f, _| f.norm_sqr()).sqrt();
         self.prediction.systematic_error().unwrap_or(0.0) * size
     }
 
-    /// The shear slope s = Σ P ρν / Σ P ρ². An error ‖dF‖ = ε ‖F‖ of the spectrum moves it by no
-    /// more than 2ε √(Σ P · Σ g² P), where g = ∂s/∂P = (ρν − s ρ²) / Σ P ρ² (Cauchy–Schwarz).
+    /// Returns the shear slope s = Σ P ρν / Σ P ρ². An error ‖dF‖ = ε ‖F‖ of the spectrum moves it
+    /// by no more than 2ε √(Σ P · Σ g² P), where g = ∂s/∂P = (ρν − s ρ²) / Σ P ρ² (Cauchy–Schwarz).
     fn slope(&self, grid: &SliceGrid) -> Pair {
         let pair = self.pair(|p| shear_slope(p, grid));
         let epsilon = self.prediction.systematic_error();
@@ -417,7 +420,7 @@ impl ComparedSides<'_> {
         vec![share(farthest), share(plane.distance)]
     }
 
-    /// A number computed from both radial powers by the same estimator.
+    /// Returns a number computed from both radial powers by the same estimator.
     fn pair(&self, of: impl Fn(ArrayView2<'_, f64>) -> Option<f64>) -> Pair {
         let measured = self.power.statistic(&of);
         let predicted = self.replicates.and_then(|power| power.statistic(&of));
@@ -430,7 +433,7 @@ impl ComparedSides<'_> {
     }
 }
 
-/// The second moments of the photons, and their prediction.
+/// Returns the second moments of the photons, and their prediction.
 fn covariance(
     measurement: &Measurement,
     index: usize,
@@ -450,14 +453,14 @@ fn covariance(
 }
 
 /// Rounds up to one digit, with a margin of a tenth, because the noise of one run only estimates
-/// what another needs.
+/// what another run needs.
 fn rounded(photons: f64) -> f64 {
     let wanted = 1.1 * photons;
     let unit = libm::pow(10f64, libm::log10(wanted.max(1.0)).floor());
     (wanted / unit).ceil() * unit
 }
 
-/// The predicted slices, set to zero where they are the rounding errors of a dark field.
+/// Returns the predicted slices, set to zero where they are the rounding errors of a dark field.
 fn without_rounding(prediction: &Prediction) -> Slices {
     let least = prediction.unblocked * DARK;
     if largest(&prediction.slices.half) <= least {
@@ -470,7 +473,7 @@ fn without_rounding(prediction: &Prediction) -> Slices {
 /// The share of the peak above which predicted power on the border of the grid causes a warning.
 const BORDER: f64 = 1e-2;
 
-/// Limits of the measurement, in words.
+/// Returns the limits of the measurement, in words.
 fn warnings(predicted: &Array2<f64>, grid: &SliceGrid, blur: Option<(f64, f64)>) -> Vec<String> {
     let mut warnings = Vec::new();
     if let Some((error, noise)) = blur.filter(|(error, noise)| *error > UNSEEN * noise) {
@@ -505,9 +508,9 @@ fn warnings(predicted: &Array2<f64>, grid: &SliceGrid, blur: Option<(f64, f64)>)
 }
 
 impl PlaneComparison {
-    /// Adds the full radial spectrum. A plane that would pass fails where the p-value is below the
-    /// level of the test, unless the stated error of the prediction that no replicates show may be
-    /// visible above the noise.
+    /// Adds the full radial spectrum. A plane that would otherwise pass fails if the p-value is
+    /// below the level of the test. It does not fail if a systematic error of the prediction, which
+    /// its replicates do not show, may be visible above the noise.
     pub fn add_full_radial(
         &mut self,
         full_radial: FullRadialComparison,

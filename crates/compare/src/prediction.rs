@@ -65,28 +65,28 @@ pub struct PredictedParameter {
 }
 
 impl Prediction {
-    /// Whether the slices have a statistical error, which their replicates show.
+    /// Checks whether the slices have a statistical error, which their replicates show.
     pub(crate) fn is_statistical(&self) -> bool {
         !self.replicates.is_empty()
     }
 
-    /// ‖error‖/‖slices‖ that no replicates show.
+    /// Returns the part of ‖error‖/‖slices‖ that replicates do not show.
     pub(crate) fn systematic_error(&self) -> Option<f64> {
         let quadrature = self.quadrature_error.filter(|_| !self.is_statistical());
         both(quadrature, self.mesh_error)
     }
 
-    /// ‖error‖/‖slices‖ of theory's own replicates. It does not shrink with more photons.
+    /// Returns ‖error‖/‖slices‖ of theory's own replicates. It does not shrink with more photons.
     pub(crate) fn statistical_error(&self) -> Option<f64> {
         self.quadrature_error.filter(|_| self.is_statistical())
     }
 
-    /// ‖error‖/‖slices‖ of all kinds combined.
+    /// Returns ‖error‖/‖slices‖ of all kinds combined.
     pub(crate) fn error(&self) -> Option<f64> {
         both(self.quadrature_error, self.mesh_error)
     }
 
-    /// The prediction of theory for a plane of a scene. `None` where no theory applies and
+    /// Returns the prediction of theory for a plane of a scene. `None` where no theory applies and
     /// [`Self::reference`] takes its place.
     #[must_use]
     pub fn new(scene: &Scene, plane: &VirtualPlane, applicability: &Applicability) -> Self {
@@ -125,7 +125,7 @@ impl Prediction {
         }
     }
 
-    /// The prediction of a model, with the first-order chain beside it.
+    /// Returns the prediction of a model, with the first-order chain beside it.
     fn by<M: Model>(
         self,
         model: &M,
@@ -157,7 +157,7 @@ impl Prediction {
         }
     }
 
-    /// The prediction of no light at all.
+    /// Returns a prediction in which no light arrives.
     fn darkness(scene: &Scene, plane: &VirtualPlane, applicability: &Applicability) -> Self {
         let grid = ProjectionGrid::new(&plane.window, PROJECTION_BINS);
         let values = Array2::zeros((grid.bins, grid.bins));
@@ -175,15 +175,15 @@ impl Prediction {
             parameters: Vec::new(),
             depth: depth(scene, plane),
             cuts: match class {
-                // Light that leaves a mirror or a lobe has no such border.
+                // No cut separates high frequencies in light that leaves a mirror or a lobe.
                 Class::FirstOrder => Vec::new(),
                 Class::Exact | Class::Reference => cuts(scene, plane),
             },
         }
     }
 
-    /// The prediction from another, independent measurement of plane `index`, where no theory
-    /// applies.
+    /// Returns the prediction from another, independent measurement of plane `index`, where no
+    /// theory applies.
     ///
     /// # Errors
     /// When that measurement has too few batches.
@@ -204,7 +204,7 @@ impl Prediction {
         })
     }
 
-    /// A plane of a measurement, to compare another, independent measurement with.
+    /// Returns a plane of a measurement, with which another, independent measurement is compared.
     ///
     /// # Errors
     /// When the measurement has too few batches.
@@ -227,7 +227,7 @@ impl Prediction {
     }
 }
 
-/// The root of the sum of squares of two errors.
+/// Returns the root of the sum of squares of two errors.
 fn both(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     match (a, b) {
         (Some(a), Some(b)) => Some(libm::hypot(a, b)),
@@ -235,8 +235,9 @@ fn both(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     }
 }
 
-/// Two main lobes of the transform of a Hann window, which end at 1/half-width each, and 1.5 times
-/// that, to show whether H depends on the cut. Empty where light does not leave a surface.
+/// Returns two cuts. The first is twice the end of the main lobe of a Hann window's transform,
+/// which lies at 1/half-width. The second is 1.5 times the first, to show whether H depends on the
+/// cut. Empty where light does not leave a surface.
 fn cuts(scene: &Scene, plane: &VirtualPlane) -> Vec<f64> {
     if plane.leg == 0 || scene.path.along(plane) > 0.0 {
         return Vec::new();

@@ -16,8 +16,8 @@ pub struct Pair {
     pub measured: Option<f64>,
     /// The value of the prediction, by the same estimator.
     pub predicted: Option<f64>,
-    /// Standard error of the difference: that of the measured value, combined with that of the
-    /// predicted one where the prediction has replicates. For a shear slope it includes the
+    /// Standard error of the difference. It combines the error of the measured value with that of
+    /// the predicted value where the prediction has replicates. For a shear slope it includes the
     /// possible error of the prediction's quadrature.
     pub error: Option<f64>,
 }
@@ -140,22 +140,22 @@ pub struct PlaneReport {
     pub spectral_moments: [Pair; 3],
     /// 95 % bandwidths of the slices where they are largest.
     pub bandwidth_95: Bandwidth,
-    /// The same of the light less its mean, which shows how fast the light changes.
+    /// 95 % bandwidths of the light less its mean, which show how fast the light changes.
     pub variation_95: Bandwidth,
     /// Second central moments of the windowed light field over the coordinates of the plane. `None`
     /// where no light arrived.
     pub covariance: Option<Covariance>,
     /// H at two cuts, on a plane that light leaves diffusely; empty for any other plane.
     pub high_frequency_share: Vec<HighFrequencyShare>,
-    /// The shares of power in wedges, for blockers on the way to a plane of the first leg: the
-    /// wedge between the nearest and the farthest blocker, and the one that reaches back to the
-    /// light, whose edges have frequencies too. Empty for any other plane.
+    /// The shares of power in two wedges, for blockers on the way to a plane of the first leg. The
+    /// first wedge lies between the nearest and the farthest blocker. The second reaches back to
+    /// the light, because the edges of the light have frequencies too. Empty for any other plane.
     pub wedge_share: Vec<WedgeShare>,
     /// The full radial spectrum, where the light field was put on a 4D grid (`--save field`).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub full_radial: Option<FullRadialReport>,
-    /// The photons compared with the first-order chain, on a plane of that class. All numbers above
-    /// compare them with the exact ray-space prediction.
+    /// The comparison of the photons with the first-order chain, on a plane that has such a chain.
+    /// All numbers above compare the photons with the exact ray-space prediction.
     pub first_order: Option<FirstOrderReport>,
     /// The verdict.
     pub verdict: Verdict,
@@ -169,7 +169,8 @@ pub struct PlaneReport {
 }
 
 impl PlaneReport {
-    /// The verdict on the exact prediction, whatever the verdict on a first-order chain.
+    /// Returns the verdict on the exact prediction. It does not depend on the verdict on a
+    /// first-order chain.
     #[must_use]
     pub fn exact_verdict(&self) -> Verdict {
         let chain = self.first_order.as_ref();

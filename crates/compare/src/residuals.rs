@@ -9,9 +9,9 @@ use ndarray::{Array2, Array3, Axis};
 ///
 /// Against a prediction without statistical error there is a residual for each batch, r_b = S_b −
 /// F. Against a prediction that has replicates itself, batches and replicates are combined into
-/// groups of neighbours, as many as the smaller of the two numbers (docs/theory.md, section 6).
-/// Under the hypothesis each residual is an independent draw with mean zero, and their mean is S −
-/// F.
+/// groups of neighbours. There are as many groups as batches or as replicates, whichever are fewer
+/// (docs/theory.md, section 6). Under the hypothesis each residual is an independent draw with mean
+/// zero, and their mean is S − F.
 #[derive(Clone, Debug)]
 pub struct Residuals {
     grid: SliceGrid,
@@ -28,7 +28,8 @@ const TRANSFORM: f64 = 2e-7;
 const ROUNDING: f64 = 1e-9;
 
 impl Residuals {
-    /// The residuals of plane `plane` of a measurement from slices without statistical error.
+    /// Returns the residuals of plane `plane` of a measurement from slices without statistical
+    /// error.
     ///
     /// # Panics
     /// When the plane was measured at other frequencies than the prediction's.
@@ -44,11 +45,12 @@ impl Residuals {
         }
     }
 
-    /// The residuals from slices that are the mean of replicates, or that are exact if there are
-    /// none.
+    /// Returns the residuals from slices that are the mean of replicates, or that are exact if
+    /// there are none.
     ///
     /// Each group g of n = min(B, R) holds a share of B batches and R replicates, and r_g = n/B Σ_b
-    /// (S_b − F) − n/R Σ_j (F_j − F). Where all groups hold equally many of either, F drops out.
+    /// (S_b − F) − n/R Σ_j (F_j − F). F drops out where all groups hold the same number of batches
+    /// and the same number of replicates.
     ///
     /// # Panics
     /// When the plane was measured at other frequencies than the prediction's.
@@ -87,8 +89,9 @@ impl Residuals {
         Self { grid, parts }
     }
 
-    /// The residuals from the prediction closest to the measurement, among those within `error`|F|
-    /// of F at each frequency plus the fast transform's error relative to the largest F.
+    /// Returns the residuals from the spectrum closest to the measurement among those near the
+    /// prediction. At each frequency such a spectrum is within `error`|F| of F, plus the fast
+    /// transform's error relative to the largest F.
     #[must_use]
     pub fn forgiving(&self, prediction: &Slices, error: f64) -> Self {
         let mut moved = self.mean();
@@ -106,18 +109,18 @@ impl Residuals {
         }
     }
 
-    /// The number of residuals R.
+    /// Returns the number of residuals R.
     #[must_use]
     pub fn count(&self) -> usize {
         self.parts.len()
     }
 
-    /// Each residual, [azimuth, ρ ≥ 0, ν].
+    /// Returns each residual, [azimuth, ρ ≥ 0, ν].
     pub(crate) fn each(&self) -> impl Iterator<Item = &Array3<Complex>> {
         self.parts.iter()
     }
 
-    /// S − F, [azimuth, ρ ≥ 0, ν].
+    /// Returns S − F, [azimuth, ρ ≥ 0, ν].
     #[must_use]
     pub fn mean(&self) -> Array3<Complex> {
         let mut sum = Array3::zeros(self.grid.half_shape());
@@ -127,7 +130,7 @@ impl Residuals {
         sum / Complex::from(self.count() as f64)
     }
 
-    /// The variance of [`Self::mean`] from the spread of the batches (docs/theory.md (12)).
+    /// Returns the variance of [`Self::mean`] from the spread of the batches (docs/theory.md (12)).
     pub(crate) fn variance(&self) -> Array3<f64> {
         let mean = self.mean();
         let mut variance = Array3::zeros(self.grid.half_shape());
@@ -140,7 +143,8 @@ impl Residuals {
         variance / (self.count() * (self.count() - 1)) as f64
     }
 
-    /// The independent cells of an array on the half-plane, in the same order for all arrays.
+    /// Returns the independent cells of an array on the half-plane, in the same order for all
+    /// arrays.
     fn cells<'a, T>(&self, array: &'a Array3<T>) -> impl Iterator<Item = &'a T> {
         let grid = self.grid;
         array
@@ -149,13 +153,13 @@ impl Residuals {
             .map(|(_, value)| value)
     }
 
-    /// Number of independent frequencies.
+    /// Returns the number of independent frequencies.
     #[must_use]
     pub fn frequencies(&self) -> usize {
         self.cells(&self.parts[0]).count()
     }
 
-    /// Sum of `term` over the independent frequencies of two arrays.
+    /// Returns the sum of `term` over the independent frequencies of two arrays.
     pub(crate) fn sum<A, B>(
         &self,
         a: &Array3<A>,
@@ -168,8 +172,8 @@ impl Residuals {
             .sum()
     }
 
-    /// χ² per degree of freedom: the mean of |S − F|²/σ² over the independent frequencies where σ >
-    /// 0.
+    /// Returns χ² per degree of freedom: the mean of |S − F|²/σ² over the independent frequencies
+    /// where σ > 0.
     ///
     /// σ² is itself estimated from R batches. For complex normal residuals this raises the mean by
     /// (R − 1)/(R − 2), which is divided out. `None` when no photon arrived.
@@ -186,8 +190,8 @@ impl Residuals {
         Some(sum / resolved as f64 * (r - 2.0) / (r - 1.0))
     }
 
-    /// Standard deviation, [ρ, ν], of the measured radial power around the predicted one, if F is
-    /// true.
+    /// Returns the standard deviation, [ρ, ν], of the measured radial power around the predicted
+    /// one, if F is true.
     ///
     /// |S|² − σ² − |F|² = 2 Re F*(S − F) + (|S − F|² − σ²), averaged over the azimuths. The first
     /// term is a mean over residuals, whose spread gives its variance. The second has the variance
@@ -217,8 +221,8 @@ impl Residuals {
         self.grid.unfold_radial(sigma.view())
     }
 
-    /// Products of residuals, summed over frequencies: H_bc = Σ Re(r_b conj r_c) / s, [R, R], with
-    /// s = 1 or s = Σ_b |r_b|² at each frequency.
+    /// Returns products of residuals, summed over frequencies: H_bc = Σ Re(r_b conj r_c) / s, [R,
+    /// R], with s = 1 or s = Σ_b |r_b|² at each frequency.
     pub(crate) fn products(&self, normalised: bool) -> Array2<f64> {
         let r = self.count();
         let mut scale = Array3::from_elem(self.grid.half_shape(), 1.0);
@@ -246,8 +250,8 @@ impl Residuals {
         products
     }
 
-    /// ‖mean residual‖² without its noise, Σ_{b≠c} H_bc / (R (R − 1)), and its delete-one jackknife
-    /// error (docs/theory.md, section 6).
+    /// Returns ‖mean residual‖² without its noise, Σ_{b≠c} H_bc / (R (R − 1)), and its delete-one
+    /// jackknife error (docs/theory.md, section 6).
     pub(crate) fn squared(&self) -> (f64, f64) {
         let products = self.products(false);
         let r = self.count() as f64;
@@ -265,8 +269,8 @@ impl Residuals {
         (total / (r * (r - 1.0)), ((r - 1.0) / r * spread).sqrt())
     }
 
-    /// Standard error of [`Self::squared`] if every residual has mean zero: its terms are then
-    /// uncorrelated, and each pair occurs twice.
+    /// Returns the standard error of [`Self::squared`] if every residual has mean zero: its terms
+    /// are then uncorrelated, and each pair occurs twice.
     pub(crate) fn squared_error(&self) -> f64 {
         let products = self.products(false);
         let r = self.count() as f64;
@@ -275,7 +279,8 @@ impl Residuals {
         (2.0 * (all - diagonal)).max(0.0).sqrt() / (r * (r - 1.0))
     }
 
-    /// Real and imaginary parts of the independent cells of azimuth `k`, over the root of `scale`.
+    /// Returns the real and imaginary parts of the independent cells of azimuth `k`, divided by the
+    /// root of `scale`.
     fn row(&self, residual: &Array3<Complex>, scale: &Array3<f64>, k: usize) -> Vec<f64> {
         let plane = residual.index_axis(Axis(0), k);
         let scale = scale.index_axis(Axis(0), k);
@@ -293,12 +298,12 @@ impl Residuals {
         row
     }
 
-    /// The p-value of the hypothesis that every residual has mean zero.
+    /// Returns the p-value of the hypothesis that every residual has mean zero.
     ///
     /// The statistic is Σ |Σ_b r_b|² / Σ_b |r_b|² over the frequencies. Under the hypothesis a
     /// residual is as likely as its negative, so the statistic under random signs is a draw from
-    /// its own distribution, correlations between neighbouring frequencies included. The p-value is
-    /// the share of rounds, the observed one included, that reach the observed value.
+    /// its own distribution. This includes correlations between neighbouring frequencies. The
+    /// p-value is the share of rounds, the observed one included, that reach the observed value.
     ///
     /// `None` when all residuals are zero: nothing measured and nothing predicted.
     #[must_use]
@@ -316,13 +321,16 @@ impl Residuals {
     }
 }
 
-/// Panics when slices have other frequencies than the prediction.
+/// Panics if the measured slices have other frequencies than the predicted slices.
 fn check(measured: &Slices, predicted: &Slices) {
     let (measured, predicted) = (measured.grid, predicted.grid);
-    assert_eq!(measured, predicted, "frequencies measured and predicted");
+    assert_eq!(
+        measured, predicted,
+        "the measured and the predicted frequencies differ"
+    );
 }
 
-/// Σ_b<c ε_b ε_c H_bc; the diagonal is the same for all signs.
+/// Returns Σ_b<c ε_b ε_c H_bc; the diagonal is the same for all signs.
 fn signed_sum(products: &Array2<f64>, signs: &[f64]) -> f64 {
     let mut sum = 0.0;
     for (b, row) in products.outer_iter().enumerate() {
@@ -332,7 +340,7 @@ fn signed_sum(products: &Array2<f64>, signs: &[f64]) -> f64 {
     sum
 }
 
-/// Random signs for the batches of one round.
+/// Returns random signs for the batches of one round.
 pub(crate) fn signs(seed: u64, round: u64, count: usize) -> Vec<f64> {
     let mut signs = Vec::with_capacity(count + 128);
     for block in 0.. {
@@ -347,13 +355,13 @@ pub(crate) fn signs(seed: u64, round: u64, count: usize) -> Vec<f64> {
     signs
 }
 
-/// The largest modulus of some slices.
+/// Returns the largest modulus of some slices.
 pub(crate) fn largest(slices: &Array3<Complex>) -> f64 {
     slices.iter().map(|s| modulus(*s)).fold(0.0, f64::max)
 }
 
-/// Σ a b in eight parallel sums. The matrix products of libraries round differently on each
-/// processor; these sums round the same on every one.
+/// Computes Σ a b in eight parallel sums. The matrix products of libraries round differently on
+/// each processor; these sums round the same on every one.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     const LANES: usize = 8;
     let (a, a_rest) = a.as_chunks::<LANES>();

@@ -26,14 +26,14 @@ pub struct ParameterReport {
 /// the normal quantiles 2.576 + 1.282.
 const DETECTABLE: f64 = 3.858;
 
-/// The score test of one parameter (docs/theory.md, section 6): projects S − F on ∂F/∂parameter,
-/// weighted by 1/σ².
+/// Returns the score test of one parameter (docs/theory.md, section 6): projects S − F on
+/// ∂F/∂parameter, weighted by 1/σ².
 ///
-/// The step δ = Re Σ conj(D)(S − F)/σ² / Σ|D|²/σ² is the least-squares change of the parameter; its
-/// error is the spread of δ over the residuals, so it includes correlations between frequencies and
-/// the noise of a prediction's replicates. A further error of the prediction, `numerical` =
-/// ‖error‖, moves δ by no more than `numerical` ‖D/σ²‖ / Σ|D|²/σ² (Cauchy–Schwarz), which is added
-/// in quadrature. Both are of first order in δ.
+/// The step δ = Re Σ conj(D)(S − F)/σ² / Σ|D|²/σ² is the least-squares change of the parameter; the
+/// error of δ is its spread over the residuals. This error includes correlations between
+/// frequencies and the noise of a prediction's replicates. A further error of the prediction,
+/// `numerical` = ‖error‖, moves δ by no more than `numerical` ‖D/σ²‖ / Σ|D|²/σ² (Cauchy–Schwarz),
+/// which is added in quadrature. Both are of first order in δ.
 ///
 /// `None` when the prediction does not depend on the parameter, or no photon arrived.
 pub(crate) fn score(

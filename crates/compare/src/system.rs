@@ -7,8 +7,8 @@ use etendue_theory::geometry::Edition;
 use etendue_theory::rays::{Plane, SpecularSurface, SpecularSystem};
 use etendue_theory::{Observed, Obstacle, ObstacleForm, reflections, scattering};
 
-/// The light, masks and specular surfaces through which rays reach a plane, and the plane. `None`
-/// where light comes from a ray file, and where a surface is not specular.
+/// Returns the light, masks and specular surfaces through which rays reach a plane, and the plane.
+/// `None` where light comes from a ray file, and where a surface is not specular.
 #[must_use]
 pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<SpecularSystem>> {
     if matches!(scene.light, Light::Rays { .. }) {
@@ -52,7 +52,8 @@ pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<SpecularSy
     })
 }
 
-/// The event of a surface as if its front faced the light; `back` means that its back does.
+/// Returns the event of a surface, expressed as if the front of the surface faced the light; `back`
+/// states that the back faces the light.
 fn seen_from(event: Specular, back: bool) -> Specular {
     match event {
         Specular::Refraction {
@@ -66,8 +67,9 @@ fn seen_from(event: Specular, back: bool) -> Specular {
     }
 }
 
-/// The light, the masks and the surface with a BRDF before a plane, and the plane. `None` where the
-/// plane is not on the second leg, where the first surface has no BRDF, and where light comes from a ray file.
+/// Returns the light, the masks and the surface with a BRDF before a plane, and the plane. `None`
+/// where the plane is not on the second leg, where the first surface has no BRDF, and where light
+/// comes from a ray file.
 #[must_use]
 pub fn scattered(
     scene: &Scene,
@@ -99,9 +101,9 @@ pub fn scattered(
     })
 }
 
-/// The light, all masks and all surfaces of the path, and a plane behind some of them. `None` where
-/// light comes from a ray file, where it has met a mesh, and where it was
-/// scattered by no surface or by too many.
+/// Returns the light, all masks and all surfaces of the path, and a plane behind some of them.
+/// `None` where light comes from a ray file, where it has met a mesh, and where it was scattered by
+/// no surface or by too many.
 pub(crate) fn reflected(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -113,7 +115,7 @@ pub(crate) fn reflected(
     let hits: Vec<Hit> = legs.filter_map(|leg| leg.leaves).collect();
     let visited = plane.leg;
     let surfaces = hits.iter().map(|hit| visited_surface(scene, hit));
-    // A mesh that ends the last leg, or stands beside the path, does not count as a surface of the
+    // A mesh does not count as a surface of the path if it ends the last leg or stands beside the
     // path.
     let surfaces: Vec<reflections::PathSurface> = surfaces.map_while(|surface| surface).collect();
     let scatterers = surfaces
@@ -143,7 +145,7 @@ pub(crate) fn reflected(
     })
 }
 
-/// A surface of the path; `None` for a mesh.
+/// Returns a surface of the path; `None` for a mesh.
 fn visited_surface(scene: &Scene, hit: &Hit) -> Option<reflections::PathSurface> {
     let name = scene.name_of(hit.object).to_owned();
     let of = |patch, outline, interaction| reflections::PathSurface {
@@ -183,14 +185,14 @@ fn visited_surface(scene: &Scene, hit: &Hit) -> Option<reflections::PathSurface>
     }
 }
 
-/// The masks that light meets before a plane, with their distances.
+/// Returns the masks that light meets before a plane, with their distances.
 fn layers_before(scene: &Scene, plane: &VirtualPlane) -> Vec<(f64, Mask)> {
     let layers = scene.blockers.iter();
     let layers = layers.filter(|layer| stands_before(layer.distance, scene, plane));
     layers.map(|l| (l.distance, l.mask.clone())).collect()
 }
 
-/// A plane in the frame at the light.
+/// Returns a plane in the frame at the light.
 fn in_frame(scene: &Scene, plane: &VirtualPlane) -> Plane {
     let hit = surface(scene, plane);
     let patch = match hit.map(|hit| hit.object) {
@@ -207,7 +209,7 @@ fn in_frame(scene: &Scene, plane: &VirtualPlane) -> Plane {
     }
 }
 
-/// The edition of the formulas that a scene asks for.
+/// Returns the edition of the formulas that a scene asks for.
 pub(crate) fn print(scene: &Scene) -> Edition {
     if scene.file.as_printed {
         Edition::Equations
@@ -216,7 +218,7 @@ pub(crate) fn print(scene: &Scene) -> Edition {
     }
 }
 
-/// The hit on the surface that carries a plane.
+/// Returns the hit on the surface that carries a plane.
 fn surface<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a Hit> {
     match plane.side {
         Side::Before => scene.path.ends_at(plane.leg),
@@ -228,7 +230,7 @@ fn surface<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a Hit> {
 /// more the prediction would take too long.
 const MAX_TRIANGLES: usize = 500;
 
-/// The objects that the path does not visit. They stop light.
+/// Returns the objects that the path does not visit. They stop light.
 pub(crate) fn unvisited(scene: &Scene) -> impl Iterator<Item = Object> + '_ {
     let surfaces = (0..scene.surfaces.len()).map(Object::Surface);
     let patches = (0..scene.patches.len()).map(Object::Patch);
@@ -241,7 +243,7 @@ fn is_too_fine(scene: &Scene, object: Object) -> bool {
     matches!(object, Object::Mesh(i) if scene.meshes[i].triangles.len() > MAX_TRIANGLES)
 }
 
-/// The obstacles beside the path that rays are tested against.
+/// Returns the obstacles beside the path that rays are tested against.
 fn beside_the_path(scene: &Scene) -> Vec<Obstacle> {
     let coarse = unvisited(scene).filter(|object| !is_too_fine(scene, *object));
     coarse.map(|object| as_obstacle(scene, object)).collect()
@@ -263,7 +265,8 @@ fn as_obstacle(scene: &Scene, object: Object) -> Obstacle {
     }
 }
 
-/// A layer of blockers that light meets, from this leg on, where the central ray does not.
+/// Returns the obstacle for a layer of blockers that light meets from this leg on, at places where
+/// the central ray does not.
 pub(crate) fn in_the_way(layer: &BlockerLayer, from: usize) -> Obstacle {
     Obstacle {
         name: layer.name.clone(),
@@ -275,7 +278,7 @@ pub(crate) fn in_the_way(layer: &BlockerLayer, from: usize) -> Obstacle {
     }
 }
 
-/// Descriptions of the objects beside the path that no ray is tested against.
+/// Returns descriptions of the objects beside the path that no ray is tested against.
 pub(crate) fn too_fine(scene: &Scene) -> Vec<String> {
     let fine = unvisited(scene).filter(|object| is_too_fine(scene, *object));
     fine.map(|object| {

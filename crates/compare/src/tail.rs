@@ -7,10 +7,11 @@ const MAX_TERMS: u32 = 1_000_000;
 /// The precision at which a series or a continued fraction ends: the rounding of f64.
 const ROUNDING: f64 = 1e-16;
 
-/// Probability that χ² of `dof` degrees of freedom, any positive number, is above `x`.
+/// Returns the probability that χ² of `dof` degrees of freedom, any positive number, is above `x`.
 ///
-/// It is Q(dof/2, x/2), the upper regularised incomplete gamma function: by its series below
-/// x = dof + 2, by its continued fraction above (Abramowitz and Stegun 1964, 6.5.29 and 6.5.31).
+/// It is Q(dof/2, x/2), the upper regularised incomplete gamma function, computed from its series
+/// below x = dof + 2 and from its continued fraction above (Abramowitz and Stegun 1964, 6.5.29 and
+/// 6.5.31).
 pub(crate) fn chi_squared_above(x: f64, dof: f64) -> f64 {
     let (a, x) = (0.5 * dof, 0.5 * x);
     if x <= 0.0 {
@@ -28,7 +29,7 @@ pub(crate) fn chi_squared_above(x: f64, dof: f64) -> f64 {
     above.clamp(0.0, 1.0)
 }
 
-/// Σ xⁿ/(a (a + 1) … (a + n)).
+/// Returns Σ xⁿ/(a (a + 1) … (a + n)).
 fn lower_series(a: f64, x: f64) -> f64 {
     let mut term = 1.0 / a;
     let mut sum = term;
@@ -42,7 +43,7 @@ fn lower_series(a: f64, x: f64) -> f64 {
     sum
 }
 
-/// 1/(x + 1 − a − 1(1 − a)/(x + 3 − a − …)) by Lentz's method.
+/// Computes 1/(x + 1 − a − 1(1 − a)/(x + 3 − a − …)) by Lentz's method.
 fn upper_fraction(a: f64, x: f64) -> f64 {
     let mut b = x + 1.0 - a;
     let mut c = f64::INFINITY;
@@ -62,10 +63,11 @@ fn upper_fraction(a: f64, x: f64) -> f64 {
     fraction
 }
 
-/// Probability that Student's t of `dof` degrees of freedom is at least as far from zero as `t`.
+/// Returns the probability that Student's t of `dof` degrees of freedom is at least as far from
+/// zero as `t`.
 ///
-/// Uses the normal deviate with about the same tail (Wallace 1959): within 1 % of the probability
-/// from 30 degrees of freedom on, down to 10⁻⁶.
+/// Uses the normal deviate with about the same tail (Wallace 1959). The error is below 1 % of the
+/// probability from 30 degrees of freedom on, for probabilities down to 10⁻⁶.
 pub(crate) fn student_beyond(t: f64, dof: f64) -> f64 {
     let shrink = (8.0 * dof + 1.0) / (8.0 * dof + 3.0);
     let normal = shrink * (dof * libm::log1p(t * t / dof)).sqrt();
@@ -78,7 +80,7 @@ mod tests {
 
     #[test]
     fn chi_squared_has_its_tabulated_quantiles() {
-        // Abramowitz and Stegun 1964, table 26.8: Q(χ²|ν).
+        // These values are from Abramowitz and Stegun 1964, table 26.8: Q(χ²|ν).
         for (x, dof, p) in [
             (3.84146, 1.0, 0.05),
             (18.3070, 10.0, 0.05),
@@ -87,11 +89,11 @@ mod tests {
             (77.9295, 100.0, 0.95),
         ] {
             let found = chi_squared_above(x, dof);
-            // The table gives x to six digits, an error of 5e-4 at most, and the tail falls by 0.2
-            // of itself per unit.
+            // The table gives x to six digits, with an error of 5e-4 at most, and the tail falls by
+            // a fifth per unit of x.
             assert!((found / p - 1.0).abs() < 1e-4, "{x} {dof}: {found}");
         }
-        // Two degrees of freedom: an exponential.
+        // With two degrees of freedom the tail is exponential.
         assert!((chi_squared_above(9.0, 2.0) / (-4.5f64).exp() - 1.0).abs() < 1e-13); // rounding
         assert!(chi_squared_above(0.0, 5.0) > 1.0 - 1e-15 && chi_squared_above(1e9, 5.0) < 1e-300);
     }
@@ -112,7 +114,7 @@ mod tests {
 
     #[test]
     fn student_has_its_tabulated_quantiles() {
-        // Abramowitz and Stegun 1964, table 26.10: two-sided.
+        // These two-sided values are from Abramowitz and Stegun 1964, table 26.10.
         for (t, dof, p) in [
             (2.042, 30.0, 0.05),
             (3.646, 30.0, 0.001),

@@ -26,8 +26,8 @@ pub enum Theory {
 }
 
 impl Theory {
-    /// The theory that covers what the central ray meets on its way to a plane, whether or not its
-    /// assumptions hold.
+    /// Returns the theory that covers what the central ray meets on its way to a plane, whether or
+    /// not its assumptions hold.
     #[must_use]
     pub fn of(scene: &Scene, plane: &VirtualPlane) -> Self {
         if let Some(view) = followed(scene, plane) {
@@ -39,8 +39,8 @@ impl Theory {
         }
     }
 
-    /// Whether the theory assumes that all light meets the blockers of a layer before it comes to a
-    /// surface.
+    /// Checks whether the theory assumes that all light meets the blockers of a layer before it
+    /// comes to a surface.
     pub(crate) fn has_all_light_meet(&self, layer: &BlockerLayer) -> bool {
         let layers = match self {
             Self::Specular(view) => &view.system.layers,
@@ -51,7 +51,7 @@ impl Theory {
         layers.iter().any(|known| is_same(known, layer))
     }
 
-    /// The assumptions of the theory about a scene, each checked where the theory applies.
+    /// Returns the assumptions of the theory about a scene, each checked where the theory applies.
     #[must_use]
     pub fn assumptions(&self) -> &'static [&'static str] {
         const FOLLOWED: &[&str] = &[
@@ -67,7 +67,7 @@ impl Theory {
         }
     }
 
-    /// The parameters of the theory's model that a measurement can estimate.
+    /// Returns the parameters of the theory's model that a measurement can estimate.
     pub(crate) fn parameters(&self) -> Vec<Parameter> {
         match self {
             Self::Parallel(chain) => chain.parameters(),
@@ -78,7 +78,7 @@ impl Theory {
         }
     }
 
-    /// The work of a prediction by the theory's model.
+    /// Returns the work of a prediction by the theory's model.
     pub(crate) fn work(&self, over: Over<'_>, budget: RayBudget) -> PredictionWork {
         match self {
             Self::Parallel(chain) => chain.work(over, budget),
@@ -90,8 +90,8 @@ impl Theory {
     }
 }
 
-/// The system of specular surfaces that leads to a plane behind or on one of them, or of light that
-/// passes through pictures.
+/// Returns the system of specular surfaces that leads to a plane behind or on one of them, or of
+/// light that passes through pictures.
 fn followed(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<rays::SpecularSystem>> {
     let across = plane.orientation == Orientation::Orthogonal;
     if !scene.light.is_picture() && plane.leg == 0 && across {

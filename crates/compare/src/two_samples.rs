@@ -1,4 +1,4 @@
-//! Compares two measurements of one plane by the data that a result keeps of them.
+//! Compares two measurements of one plane, from the data that their results store.
 
 use crate::tail::{chi_squared_above, student_beyond};
 use etendue_field::{Complex, SliceGrid, modulus};
@@ -160,8 +160,8 @@ pub struct Estimate {
     pub batches: usize,
 }
 
-/// The pull of two estimates of one number, (a − b)/√(e_a² + e_b²), and the probability of a pull
-/// at least as far from zero if both estimate the same.
+/// Returns the pull of two estimates of one number, (a − b)/√(e_a² + e_b²), and the probability of
+/// a pull at least as far from zero if both estimate the same.
 ///
 /// The test is that of Welch (1947): Student's t with n = (e_a² + e_b²)²/Σ e⁴/(R − 1) degrees of
 /// freedom. `None` where neither has an error.

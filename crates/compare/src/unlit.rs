@@ -12,12 +12,12 @@ type Extent = [[f64; 2]; 2];
 const UNLIMITED: Extent = [[f64::NEG_INFINITY, f64::INFINITY]; 2];
 /// The largest slope of light that is considered.
 const MAX_SLOPE: f64 = 1e3;
-/// The share of the rays of a section that may be left by rounding.
+/// The share of the rays of a section that rounding errors may leave.
 const ROUNDING: f64 = 1e-12;
-/// The number of parts from which a layer is assumed to have holes.
+/// A layer whose shapes leave more open parts than this is assumed to have holes.
 const MOST_PARTS: usize = 4096;
 
-/// Why no light reaches a plane, in words; `None` where some may.
+/// Returns why no light reaches a plane, in words; `None` where some may.
 ///
 /// Half-planes cut the rays of a section, (position at the light, slope), to a convex polygon,
 /// which is empty if no ray passes. No ray passes either if a layer covers every place where these
@@ -65,7 +65,7 @@ impl RaySection {
         let window = &plane.window;
         let [position, slope] =
             [[&window.x, &window.u], [&window.y, &window.v]][axis].map(Profile::half_width);
-        // An infinite light shines from beyond this position at steeper slopes only.
+        // Light from beyond this position arrives only at larger slopes than those considered.
         let far = MAX_SLOPE * (plane.distance + position);
         let ends = scene.light.extent(axis);
         let [low, high] = ends.map(|x| if x.is_finite() { x } else { far.copysign(x) });
@@ -99,7 +99,7 @@ impl RaySection {
         }
     }
 
-    /// Twice the area, or the length of a degenerate polygon.
+    /// Returns twice the area, or the length of a degenerate polygon.
     fn measure(&self) -> f64 {
         let [positions, slopes] = [0, 1].map(|k| {
             let [low, high] = extent(self.0.iter().map(|corner| corner[k]));
@@ -115,7 +115,7 @@ impl RaySection {
             .abs()
     }
 
-    /// The interval where the rays cross a plane at a distance from the light.
+    /// Returns the interval where the rays cross a plane at a distance from the light.
     fn at(&self, distance: f64) -> [f64; 2] {
         extent(self.0.iter().map(|[s, u]| s + distance * u))
     }
@@ -127,7 +127,7 @@ fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
     })
 }
 
-/// Whether a layer stops all rays of both sections on their way to the first surface.
+/// Checks whether a layer stops all rays of both sections on their way to the first surface.
 fn covers(
     layer: &BlockerLayer,
     sections: &[RaySection; 2],
@@ -137,7 +137,7 @@ fn covers(
     let Mask::Opaque { shapes, .. } = &layer.mask else {
         return false;
     };
-    // A plane before the surface also sees light that passes beside it.
+    // A plane before the surface also sees light that passes beside the surface.
     let is_beyond = plane.leg > 0 || plane.orientation.is_local();
     let towards = if is_beyond {
         towards_surface(scene, sections, layer.distance)
@@ -158,7 +158,8 @@ fn covers(
     open.is_empty()
 }
 
-/// The region where lines from the light to the first surface, if it is smooth, cross a plane.
+/// Returns the region where lines from the light to the first surface, if it is smooth, cross a
+/// plane.
 fn towards_surface(scene: &Scene, sections: &[RaySection; 2], distance: f64) -> Extent {
     let Some(Object::Patch(i)) = scene.path.ends_at(0).map(|hit| hit.object) else {
         return UNLIMITED;
@@ -177,7 +178,7 @@ fn towards_surface(scene: &Scene, sections: &[RaySection; 2], distance: f64) -> 
     })
 }
 
-/// The parts of a rectangle that a shape leaves uncovered.
+/// Returns the parts of a rectangle that a shape leaves uncovered.
 fn without(part: &Extent, shape: &Shape) -> Vec<Extent> {
     let [[x0, x1], [y0, y1]] = *part;
     match shape {

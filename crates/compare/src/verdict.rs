@@ -15,13 +15,13 @@ pub struct Test {
 }
 
 impl Test {
-    /// The test of a scene: α over all its planes.
+    /// Returns the test of a scene: α over all its planes.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         Self::each(scene, 1)
     }
 
-    /// The test of a scene in which each plane is tested `times` times: α over all tests.
+    /// Returns the test of a scene in which each plane is tested `times` times: α over all tests.
     #[must_use]
     pub fn each(scene: &Scene, times: usize) -> Self {
         let run = &scene.run;
@@ -46,7 +46,7 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// The worse of two verdicts: fail before undecided before pass.
+    /// Returns the worse of two verdicts: fail before undecided before pass.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         match (self, other) {
@@ -57,8 +57,8 @@ impl Verdict {
     }
 }
 
-/// The level of one of `planes` tests at which all pass together with probability 1 − `alpha`
-/// (Šidák 1967).
+/// Returns the level of one of `planes` tests at which all pass together with probability 1 −
+/// `alpha` (Šidák 1967).
 #[must_use]
 pub fn sidak(alpha: f64, planes: usize) -> f64 {
     1.0 - libm::pow(1.0 - alpha, 1.0 / planes as f64)

@@ -51,9 +51,9 @@ impl fmt::Display for TooMuchWork {
     }
 }
 
-/// The plane that takes most of the work, if the predictions of a scene would take more than about
-/// ten minutes, or the first plane whose prediction would not fit into a gigabyte. `theories` are
-/// those of the scene's planes.
+/// Returns the plane that takes most of the work if the predictions of a scene would take more than
+/// about ten minutes. Returns the first plane whose prediction would not fit into a gigabyte, if
+/// there is one. `theories` are the theories of the scene's planes.
 #[must_use]
 pub fn too_much_work(scene: &Scene, theories: &[Applicability]) -> Option<TooMuchWork> {
     let mut total = 0.0;
@@ -82,8 +82,8 @@ pub fn too_much_work(scene: &Scene, theories: &[Applicability]) -> Option<TooMuc
 /// `ggx_sphere` (docs/performance.md).
 const SECONDS: f64 = 4e-8;
 
-/// The approximate seconds on one core to trace the photons of a scene, and the upper limit for its
-/// predictions.
+/// Returns the approximate seconds on one core to trace the photons of a scene, and the upper limit
+/// for its predictions.
 #[must_use]
 pub fn seconds(scene: &Scene, theories: &[Applicability]) -> [f64; 2] {
     let planes = scene.planes.iter();
@@ -99,7 +99,7 @@ pub fn seconds(scene: &Scene, theories: &[Applicability]) -> [f64; 2] {
     ]
 }
 
-/// The work of the prediction of a plane.
+/// Returns the work of the prediction of a plane.
 pub(crate) fn of(
     scene: &Scene,
     plane: &VirtualPlane,

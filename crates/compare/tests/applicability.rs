@@ -10,7 +10,7 @@ use etendue_theory::ObstacleForm;
 const LIGHT: &str = "Rectangle(center: (0, 0, 0), size: (0.2, 0.2))";
 const PROJECTOR: &str = "Projector(center: (0, 0, 0), image: (width: (0.3, 0.3)))";
 
-/// A scene with one plane, whose window has the given width in metres and slope.
+/// Returns a scene with one plane, whose window has the given width in metres and slope.
 fn scene(light: &str, blockers: &str, surfaces: &str, visits: &str, at: &str, half: f64) -> Scene {
     let text = format!(
         r#"(
@@ -48,7 +48,7 @@ fn applies_only(narrow: f64, wide: f64, reason: &str, scene: impl Fn(f64) -> Sce
     assert!(steps.contains(&format!("without theory  {reason}")));
 }
 
-/// The obstacles that a theory tests rays against.
+/// Returns the obstacles that a theory tests rays against.
 fn obstacles(theory: Theory) -> Vec<String> {
     let obstacles = match theory {
         Theory::Specular(view) => view.system.obstacles,
@@ -302,8 +302,8 @@ fn a_smooth_mesh_is_flat_or_finely_curved() {
     assert_eq!(of(3.0, 10), Class::Reference);
 }
 
-/// An object directly at a plane is in the way after the object only. An object in the light of a
-/// picture before a flat surface is in the way.
+/// An object directly at a plane is in the way only of a plane after the object. An object in the
+/// light of a picture before a flat surface is in the way.
 #[test]
 fn what_stands_at_a_plane_or_before_a_flat_surface() {
     let sheet = r#"Mesh(name: "sheet", center: (0, 0, 0.5), mesh: Paraboloid(curvatures: (0, 0), half: 0.1, cells: 1))"#;
@@ -332,7 +332,8 @@ fn what_stands_at_a_plane_or_before_a_flat_surface() {
     );
 }
 
-/// A card that shades a small mirror leaves light beside it, which a plane before the mirror sees.
+/// A card that shades a small mirror leaves light beside the mirror, and a plane before the mirror
+/// sees this light.
 #[test]
 fn what_passes_beside_a_shaded_surface_is_not_dark() {
     let card = r#"Shapes(name: "card", center: (0, 0, 0.5), shapes: [Rectangle(center: (0, 0), size: (0.4, 0.4))])"#;

@@ -11,7 +11,7 @@ use etendue_spectrum::{Batch, Measurement, PROJECTION_BINS, PlaneBatch};
 
 const BATCHES: u32 = 64;
 
-/// A smooth spectrum and its derivative with respect to its width.
+/// Returns a smooth spectrum and its derivative with respect to its width.
 fn spectrum(width: f64) -> [Slices; 2] {
     let grid = plane().grid;
     let mut value = Slices::zeros(grid);
@@ -31,12 +31,12 @@ const TEST: Test = Test {
     seed: 1,
 };
 
-/// Batches around `truth` with noise of the given size on each.
+/// Returns batches around `truth` with noise of the given size on each.
 fn measurement(truth: &Slices, size: f64, seed: u64) -> Measurement {
     noisy(truth, seed, |_| size)
 }
 
-/// A measurement with noise of the given size in each cell.
+/// Returns a measurement with noise of the given size in each cell.
 fn noisy(truth: &Slices, seed: u64, size: impl Fn(usize) -> f64) -> Measurement {
     let plane = plane();
     let mut measurement = Measurement::new(vec![plane.clone()]);
@@ -109,7 +109,7 @@ fn rays_that_found_nothing_decide_nothing() {
         let compared = compare(&measurement, 0, prediction, &TEST).unwrap();
         compared.report.verdict
     };
-    // A closed form that is dark is certain of it.
+    // A closed form that is dark proves that no light arrives.
     assert_eq!(verdict(&nothing), Verdict::Fail);
     nothing.replicates = vec![Slices::zeros(plane().grid); 32];
     assert_eq!(verdict(&nothing), Verdict::Undecided);
@@ -136,12 +136,12 @@ fn a_reference_is_judged_with_its_own_noise() {
         seeds += 1.0;
         assert_eq!(verdict(1.05, seed).verdict, Verdict::Fail);
     }
-    // Eight times 170 complex numbers: 1/√1360 = 0.027, and four of these. Without the reference's
-    // noise the value would be 2.
+    // The mean over eight times 170 complex numbers has the standard deviation 1/√1360 = 0.027; the
+    // limit is four of these. Without the reference's noise the value would be 2.
     assert!((chi2 / seeds - 1.0).abs() < 0.11, "{}", chi2 / seeds);
 }
 
-/// Replicates of a prediction around `truth`, with noise of the given size on each.
+/// Returns replicates of a prediction around `truth`, with noise of the given size on each.
 fn replicates(truth: &Slices, size: f64, count: u32, seed: u64) -> Vec<Slices> {
     let replicate = |index: u32| {
         let mut slices = truth.clone();
@@ -153,7 +153,7 @@ fn replicates(truth: &Slices, size: f64, count: u32, seed: u64) -> Vec<Slices> {
     (0..count).map(replicate).collect()
 }
 
-/// The prediction of a spectrum of this width, known to theory through replicates.
+/// Returns the prediction of a spectrum of this width, known to theory through replicates.
 fn sampled(width: f64, size: f64, count: u32, seed: u64) -> Prediction {
     let [truth, _] = spectrum(width);
     let replicates = replicates(&truth, size, count, seed);
@@ -194,13 +194,13 @@ fn two_samples_are_compared_with_the_noise_of_both() {
             // nothing undecided.
             assert_ne!(report.verdict, Verdict::Undecided);
         }
-        // 15 ± 3.2 of 50: four standard deviations.
+        // The expected number is 15 ± 3.2 of 50; the limits are four standard deviations.
         assert!(
             (3..=27).contains(&below),
             "{count}: {below} of 50 below 0.3"
         );
-        // 50 times 170 complex numbers: 1/√8500 = 0.011, and four of these; the groups' own
-        // variance adds as much.
+        // The mean over 50 times 170 complex numbers has the standard deviation 1/√8500 = 0.011;
+        // the limit is four of these, and as much again for the groups' own variance.
         assert!((chi2 - 1.0).abs() < 0.06, "{count}: {chi2}");
         for seed in 0..5 {
             assert_eq!(compared(1.05, seed).verdict, Verdict::Fail, "{count}");
@@ -264,7 +264,8 @@ fn truth_passes_with_chi2_of_one_and_no_excess() {
         .unwrap()
         .report;
     assert_eq!(report.verdict, Verdict::Pass);
-    // 170 independent complex numbers: a standard deviation of 1/√170 = 0.077, and four of these.
+    // The mean over 170 independent complex numbers has the standard deviation 1/√170 = 0.077; the
+    // limit is four of these.
     assert!(
         (report.chi2_per_dof.unwrap() - 1.0).abs() < 0.3,
         "{report:?}"
@@ -288,15 +289,16 @@ fn a_wrong_parameter_is_rejected_and_measured() {
     assert_eq!(report.verdict, Verdict::Fail, "{report:?}");
     let width = &report.parameters[0];
     assert!(width.measured > 1.0 + width.detectable, "{width:?}");
-    // Four errors, plus the second-order effect of a step of 2 %.
+    // The limit is four errors, plus the second-order effect of a step of 2 %.
     assert!(
         (width.measured - 1.02).abs() < 4.0 * width.error + 0.002,
         "{width:?}"
     );
 }
 
-/// A quadrature whose error is above the resolution leaves the plane undecided. One below it passes
-/// if the error is as large as the disagreement, and fails otherwise.
+/// A quadrature whose error is above the resolution leaves the plane undecided. With an error below
+/// the resolution the plane passes if the error is as large as the disagreement, and fails
+/// otherwise.
 #[test]
 fn a_coarse_quadrature_decides_nothing() {
     let judged = |truth: f64, share: f64| {
@@ -328,9 +330,9 @@ fn a_coarse_quadrature_decides_nothing() {
     }
 }
 
-/// The possible error of a quadrature is included in the errors of measured numbers: almost no
-/// noise, and a prediction that is wrong by just its stated error, along a derivative or by a
-/// shear.
+/// The possible error of a quadrature is included in the errors of measured numbers. Here there is
+/// almost no noise, and the prediction is wrong by just its stated error, along a derivative or by
+/// a shear.
 #[test]
 fn errors_of_measured_numbers_hold_that_of_a_quadrature() {
     const STATED: f64 = 1e-3;
@@ -378,14 +380,15 @@ fn errors_of_slopes_hold_the_noise_of_replicates() {
         (slope.measured.unwrap() - slope.predicted.unwrap()) / slope.error.unwrap()
     };
     let squares: f64 = (0..100).map(|seed| pull(seed).powi(2)).sum();
-    // 100 squares of unit variance: four times √(2/100) is 0.57. Without the replicates, whose
-    // noise power is eight times the photons', the mean would be 9.
+    // The mean of 100 squares of numbers with unit variance has the standard deviation √(2/100);
+    // four times this is 0.57. Without the replicates, whose noise power is eight times the
+    // photons', the mean would be 9.
     let mean = squares / 100.0;
     assert!((mean - 1.0).abs() < 0.57, "{mean}");
 }
 
 /// The total of photons of equal weight has no noise. A quadrature is never as exact, and its error
-/// there is no disagreement.
+/// is then no disagreement.
 #[test]
 fn a_quadrature_is_excused_where_photons_have_no_noise() {
     let [truth, _] = spectrum(1.0);
@@ -427,7 +430,7 @@ fn p_is_uniform_where_the_truth_is_predicted() {
         .map(|seed| Residuals::new(&measurement(&truth, 0.02, seed + 10), 0, &truth))
         .filter(|residuals| residuals.p_value(1).unwrap() < 0.3)
         .count();
-    // 15 ± 3.2 of 50: four standard deviations.
+    // The expected number is 15 ± 3.2 of 50; the limits are four standard deviations.
     assert!((3..=27).contains(&below), "{below} of 50 below 0.3");
 }
 

@@ -1,4 +1,4 @@
-//! A small object beside the central ray that stops light is found: theory takes blockers as
+//! A small object that stops light beside the central ray is found. Theory then treats blockers as
 //! obstacles, and does not apply to a plane whose light meets a surface out of turn.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
@@ -12,7 +12,8 @@ const HALF: f64 = 0.2;
 const POINT: &str = "Point(center: (0, 0, 0), intensity: 1)";
 const SQUARE: &str = "Rectangle(center: (0, 0, 0), size: (0.1, 0.1))";
 
-/// A surface that deflects the central ray, a disc in the plane z = 0.7 and a plane at 1.7 m.
+/// Returns a surface that deflects the central ray, a disc in the plane z = 0.7 and a plane at 1.7
+/// m.
 fn scene(light: &str, event: &str, disc: [f64; 2], radius: f64) -> Scene {
     let [x, y] = disc;
     let text = format!(
@@ -40,7 +41,7 @@ fn reasons(scene: &Scene) -> Vec<String> {
     [found.reasons, found.declined].concat()
 }
 
-/// The names of the obstacles that theory tests rays against.
+/// Returns the names of the obstacles that theory tests rays against.
 fn obstacles(scene: &Scene) -> Vec<String> {
     let obstacles = match Applicability::new(scene, &scene.planes[0]).theory {
         Theory::Specular(view) => view.system.obstacles,
@@ -53,13 +54,13 @@ fn obstacles(scene: &Scene) -> Vec<String> {
         .collect()
 }
 
-/// The point where the ray from one point towards another crosses z = 0.7.
+/// Returns the point where the ray from one point towards another crosses z = 0.7.
 fn crossing(from: DVec3, to: DVec3) -> [f64; 2] {
     let at = from.lerp(to, (0.7 - from.z) / (to.z - from.z));
     [at.x, at.y]
 }
 
-/// The point of the plane with coordinates (x, y), as shares of the window.
+/// Returns the point of the plane with coordinates (x, y), as shares of the window.
 fn in_plane(x: f64, y: f64) -> DVec3 {
     let far = scene(POINT, "Mirror", [9.0, 9.0], 0.01);
     let frame = far.planes[0].frame;
@@ -67,7 +68,7 @@ fn in_plane(x: f64, y: f64) -> DVec3 {
     frame.to_world(DVec3::new(HALF * x, HALF * y, 0.0))
 }
 
-/// Places in the window, as shares of its size: middle, edges and corners.
+/// Returns places in the window, as shares of its size: middle, edges and corners.
 fn places() -> impl Iterator<Item = [f64; 2]> {
     const SHARES: [f64; 4] = [-0.995, -0.4, 0.3, 0.995];
     SHARES.into_iter().flat_map(|x| SHARES.map(|y| [x, y]))
@@ -112,13 +113,13 @@ fn a_small_disc_in_light_that_a_brdf_has_scattered() {
     }
 }
 
-/// The mirror image of a point in a plane.
+/// Returns the mirror image of a point in a plane.
 fn reflected(point: DVec3, [on, normal]: [DVec3; 2]) -> DVec3 {
     point - 2.0 * (point - on).dot(normal) * normal
 }
 
 /// A second mirror whose edge just reaches into the light on its way to the first. A million random
-/// rays, traced by the images of the light in both planes, determine how far it may reach.
+/// rays, traced by the images of the light in both planes, determine how far the edge may reach.
 #[test]
 fn the_edge_of_a_mirror_that_is_met_out_of_turn() {
     const RAYS: u32 = 1_000_000;

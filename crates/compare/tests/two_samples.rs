@@ -14,7 +14,7 @@ use ndarray::Array3;
 const BATCHES: usize = 32;
 const SEEDS: u64 = 200;
 
-/// A smooth spectrum.
+/// Returns a smooth spectrum.
 fn truth() -> Array3<Complex> {
     let grid = plane().grid;
     Array3::from_shape_fn(grid.half_shape(), |(_, m, n)| {
@@ -23,8 +23,8 @@ fn truth() -> Array3<Complex> {
     })
 }
 
-/// Slices of one batch: the truth plus noise that, as a Hann window causes, has the shares 1/2, 1,
-/// 1/2 in three neighbours along ν, and falls with ρ.
+/// Returns slices of one batch: the truth plus noise. As with a Hann window, the noise has the
+/// shares 1/2, 1, 1/2 in three neighbours along ν, and it falls with ρ.
 fn batch(seed: u64, index: usize, size: f64) -> Slices {
     let grid = plane().grid;
     let [azimuths, rho, nu] = grid.half_shape();
@@ -40,7 +40,7 @@ fn batch(seed: u64, index: usize, size: f64) -> Slices {
     Slices { grid, half }
 }
 
-/// The mean of this many batches and its noise.
+/// Returns the mean of this many batches and its noise.
 fn sample(seed: u64, batches: usize, size: f64) -> Sample {
     let plane = plane();
     let mut measurement = Measurement::new(vec![plane.clone()]);
@@ -76,7 +76,7 @@ fn sample(seed: u64, batches: usize, size: f64) -> Sample {
 
 const SIZE: f64 = 0.2;
 
-/// Pairs of independent samples; the noise of the second may differ.
+/// Returns pairs of independent samples; the noise of the second may differ.
 fn pairs(batches: usize, size: f64) -> Vec<(Sample, Sample)> {
     (0..SEEDS)
         .map(|seed| {
@@ -92,8 +92,8 @@ fn p_values(pairs: &[(Sample, Sample)]) -> Vec<f64> {
     p.map(|test| test.p_value.unwrap()).collect()
 }
 
-/// The largest distance of the distribution of `values` from uniform, in units of 1/√n: 1.63 is
-/// exceeded once in a hundred times (Smirnov 1948).
+/// Returns the largest distance of the distribution of `values` from uniform, in units of 1/√n:
+/// 1.63 is exceeded once in a hundred times (Smirnov 1948).
 fn distance(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -111,7 +111,8 @@ fn p_is_uniform_for_two_measurements_of_one_plane() {
     let alike = pairs(BATCHES, SIZE);
     let found = distance(&p_values(&alike));
     assert!(found < SMIRNOV, "{found}");
-    // Twice the batches and a third of the noise: nearly all noise comes from the first sample.
+    // The second sample has twice the batches and a third of the noise, so nearly all noise comes
+    // from the first.
     let unlike = distance(&p_values(&pairs(2 * BATCHES, SIZE / 3.0)));
     assert!(unlike < SMIRNOV, "{unlike}");
 
@@ -136,14 +137,14 @@ fn p_is_uniform_for_two_measurements_of_one_plane() {
 
 #[test]
 fn noise_amounts_to_as_many_numbers_as_its_correlation_leaves() {
-    // Neighbours along ν have the correlation 2/3, the next ones 1/6: a line of n cells has tr C² =
-    // n + 2 (n − 1) 4/9 + 2 (n − 2)/36, and half of that as a complex number.
+    // Neighbours along ν have the correlation 2/3, and the next ones 1/6. So a line of n cells has
+    // tr C² = n + 2 (n − 1) 4/9 + 2 (n − 2)/36, and half of that for complex numbers.
     let squares = |n: f64| n + (n - 1.0) * 8.0 / 9.0 + (n - 2.0) / 18.0;
     let found: Vec<f64> = (0..50)
         .map(|seed| sample(seed, BATCHES, SIZE).noise_dof.unwrap())
         .collect();
     let mean = found.iter().sum::<f64>() / 50.0;
-    // Two azimuths: six lines with ρ > 0 each, and half of the line with ρ = 0.
+    // Each of two azimuths has six lines with ρ > 0, and half of the line with ρ = 0.
     let frequencies = 2.0 * (6.0 * 13.0 + 7.0);
     let expected = 2.0 * frequencies * frequencies / (2.0 * (6.0 * squares(13.0) + squares(7.0)));
     // Each frequency is in units of its own σ, which is estimated from 32 batches and adds two
@@ -158,8 +159,8 @@ fn a_difference_of_twice_the_noise_is_found() {
         let [a, mut b] = [2 * seed, 2 * seed + 1].map(|seed| sample(seed, BATCHES, SIZE));
         let sound = TwoSamples::new(&grid, &a, &b);
         assert!(sound.p_value.unwrap() > 1e-4, "{sound:?}"); // of twenty, one in 500 runs
-        // A difference in norm: the truth times 1 + ε, with ε ‖truth‖ twice the noise of the
-        // difference.
+        // The samples differ in norm: the second truth is 1 + ε times the first, with ε ‖truth‖
+        // twice the noise of the difference.
         let noise: f64 = a.sigma.iter().chain(&b.sigma).map(|s| s * s).sum();
         let norm: f64 = truth().iter().map(|s| s.norm_sqr()).sum();
         let epsilon = 2.0 * (noise / norm).sqrt();
@@ -215,7 +216,7 @@ fn pulls_are_in_units_of_both_errors() {
     };
     let (found, p) = pull(estimate(1.0, 0.3), estimate(3.0, 0.4)).unwrap();
     assert!((found + 4.0).abs() < 1e-12); // rounding
-    // Student's t of about 117 degrees of freedom at 4: 1.1e-4.
+    // The probability of Student's t with about 117 degrees of freedom at 4 is 1.1e-4.
     assert!((p - 1.1e-4).abs() < 0.1e-4, "{p}");
     assert!(pull(estimate(1.0, 0.0), estimate(1.0, 0.0)).is_none());
 }

@@ -16,10 +16,10 @@ use std::sync::Arc;
 /// | Phong | albedo · (n + 1)/(2π) · max(0, cos α)ⁿ · F(θi): its integral over dωo is the albedo (Phong 1975) |
 /// | Beckmann, GGX | albedo · D(h) G₁(ωi) G₁(ωo) F(h·ωi) / (4 cos θi cos θo) (Walter et al. 2007, Eq. 20) |
 ///
-/// D and Smith's G₁ are those of Walter et al. 2007, Eqs. 25–27 and 33–34, exact for Beckmann. The
-/// BRDF is zero unless both cosines are positive. It is multiplied by f(θi) and h(θo) if it has
-/// such factors (Durand et al. 2005, section 4.3). A BRDF is reciprocal unless it has a Fresnel
-/// factor of the angle of incidence, or f and h differ.
+/// D and Smith's G₁ are those of Walter et al. 2007, Eqs. 25–27 and 33–34, with the exact G₁ of
+/// Beckmann. The BRDF is zero unless both cosines are positive. It is multiplied by f(θi) and h(θo)
+/// if it has such factors (Durand et al. 2005, section 4.3). A BRDF is reciprocal unless it has a
+/// Fresnel factor of the angle of incidence, or f and h differ.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Brdf {
     /// The lobe.
@@ -101,7 +101,8 @@ pub enum Lobe {
 }
 
 impl Lobe {
-    /// Checks whether the lobe is about the mirror direction; otherwise it is about the normal.
+    /// Checks whether the lobe is centred on the mirror direction; otherwise it is centred on the
+    /// normal.
     #[must_use]
     pub fn is_about_mirror(&self) -> bool {
         !matches!(self, Self::Lambertian)
@@ -177,7 +178,7 @@ mod tests {
             (90.0, 0.7),
         ] {
             let value = table.value(libm::cos(degrees.to_radians()));
-            // For 0.26 rad, the cosine loses 10⁻¹⁵ of the angle.
+            // At 0.26 rad, the angle from the cosine has an error of 10⁻¹⁵.
             assert!((value - expected).abs() < 1e-14, "{degrees}: {value}");
         }
     }

@@ -14,9 +14,10 @@ pub struct Crossing {
     pub weight: f64,
 }
 
-/// The ledger of the emitted flux; sums over photons, in W times the number of emitted photons.
+/// The ledger of the emitted flux. Each entry is a sum over photons, in W times the number of
+/// emitted photons.
 ///
-/// Flux is conserved: emitted = absorbed + escaped + stopped, to rounding.
+/// Flux is conserved up to rounding errors: emitted = absorbed + escaped + stopped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Ledger {
     /// Flux that left the light.
@@ -86,8 +87,8 @@ pub trait PhotonSource: Sync {
     /// Returns the number of photons emitted in `batch`, including those that end with zero weight.
     fn emitted(&self, batch: u32) -> u64;
 
-    /// Emits the photons of `batch`. `record` is called with the index of a plane and crossings of
-    /// it, a block at a time, in an order that is always the same; `progress` is called with the
+    /// Emits the photons of `batch`. `record` receives the index of a plane and crossings of this
+    /// plane, a block at a time, in an order that is always the same. `progress` receives the
     /// number of photons of each block.
     fn emit(
         &self,

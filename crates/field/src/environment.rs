@@ -48,9 +48,9 @@ pub struct SphericalGaussian {
 /// The axes are those of `OpenEXR`'s latitude–longitude maps: the top is up (Y), longitude is 0 in
 /// the middle, to the front (Z), and grows to the left, π/2 being along X; latitude is π/2 at the
 /// top. So the map is seen from inside. A pixel is an area, as in other renderers: the centre of
-/// column i of w is at longitude π (1 − (2 i + 1)/w), that of row j of h at latitude π (½ − (j +
-/// ½)/h). Mitsuba 3 has the centres of the first and the last row at the poles instead, and the
-/// centre of row j at latitude π (½ − j/(h − 1)).
+/// column i of w is at longitude π (1 − (2 i + 1)/w), and the centre of row j of h is at latitude π
+/// (½ − (j + ½)/h). Mitsuba 3 has the centres of the first and the last row at the poles instead,
+/// and the centre of row j at latitude π (½ − j/(h − 1)).
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LatLong {
     radiance: Raster,
@@ -207,7 +207,7 @@ mod tests {
             (DVec3::Z, [4.0, 2.0]),
             (DVec3::NEG_X, [6.0, 2.0]),
         ] {
-            // Rounding of angles.
+            // The limit is the rounding error of angles.
             assert!((map.direction(place) - direction).length() < 1e-15);
             let [column, row] = map.place(direction);
             assert!((column - place[0]).abs() + (row - place[1]).abs() < 1e-14); // likewise
@@ -221,7 +221,8 @@ mod tests {
         let radiance = |d: DVec3| 2.0 + d.x + 0.5 * d.y;
         let map = LatLong::from_fn(64, 32, radiance);
         let d = DVec3::new(0.3, -0.8, 0.4).normalize();
-        // An eighth of the square of a pixel's side, 0.1, times the second derivatives.
+        // The error is an eighth of the square of a pixel's side, 0.1, times the second
+        // derivatives.
         assert!((map.radiance(d) - radiance(d)).abs() < 3e-3);
     }
 

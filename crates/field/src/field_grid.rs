@@ -5,9 +5,10 @@ use serde::{Deserialize, Serialize};
 
 /// A 4D grid over the support of a window, axes in the order x, y, u, v.
 ///
-/// Along an axis of half-width h and n cells the box is periodic, with period 2h; cell i is centred at
-/// (i − n/2) · 2h/n, so the plane's origin is the centre of cell n/2, and cell 0 lies half at either
-/// edge. The frequencies of its transform are the multiples of 1/(2h) up to the Nyquist frequency n/(4h).
+/// Along an axis of half-width h and n cells the box is periodic, with period 2h; cell i is centred
+/// at (i − n/2) · 2h/n. So the plane's origin is the centre of cell n/2, and half of cell 0 lies at
+/// either edge. The frequencies of its transform are the multiples of 1/(2h) up to the Nyquist
+/// frequency n/(4h).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FieldGrid {
     /// Number n of cells along each axis: even, at least 8.
@@ -133,11 +134,11 @@ impl Assignment {
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "not negative; a number beyond usize becomes its largest"
+    reason = "the number is not negative; a number too large for usize becomes usize::MAX"
 )]
 fn even_cells(spacings: f64) -> usize {
-    // By rounding, a product such as 0.7 · 2 · (5/1.4) may be above the whole number that it
-    // equals.
+    // Because of rounding, a product such as 0.7 · 2 · (5/1.4) may be above the whole number that
+    // it equals.
     let whole = (spacings * (1.0 - 1e-12)).ceil();
     (whole as usize).saturating_mul(2).max(8)
 }

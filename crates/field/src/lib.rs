@@ -2,9 +2,9 @@
 //!
 //! A local light field is the radiance around a central ray, a function of the four coordinates of
 //! a ray at a [virtual plane](VirtualPlane): position (x, y) and slopes (u, v), see [`TwoPlane`]. A
-//! plane multiplies it by a [`Window`] and samples its spectrum on a [`SliceGrid`] of frequencies;
-//! the result, measured or predicted, is a set of [`Slices`]. A [`FieldGrid`] divides the support
-//! of the window into cells.
+//! plane multiplies the light field by a [`Window`] and samples the spectrum of the product on a
+//! [`SliceGrid`] of frequencies. The result, measured or predicted, is a set of [`Slices`]. A
+//! [`FieldGrid`] divides the support of the window into cells.
 //!
 //! This crate contains plain values: it does not trace, transform, predict or access files.
 //!

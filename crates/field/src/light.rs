@@ -4,8 +4,8 @@ use crate::{Environment, Image, RayLight, Shape};
 use serde::{Serialize, Serializer};
 use std::sync::Arc;
 
-/// The number of widths at which a Gaussian picture is below 10⁻¹² of its peak, and where it is cut
-/// off for photons.
+/// The distance from the centre, in widths, at which a Gaussian picture is cut off for photons.
+/// Beyond this distance the picture is below 10⁻¹² of its peak.
 const PICTURE: f64 = 3.0;
 
 /// A light in a plane across the central ray, shining along it.

@@ -1,7 +1,7 @@
 //! Formatting of numbers for readers, and conversion to whole numbers.
 
-/// Returns the shortest text that is accurate to twelve significant digits, without the last digits
-/// of rounding.
+/// Returns the shortest text that is accurate to twelve significant digits, which omits the digits
+/// that contain rounding errors.
 #[must_use]
 pub fn tidy(x: f64) -> String {
     let rounded: f64 = format!("{x:.11e}").parse().unwrap_or(x);
@@ -72,7 +72,7 @@ pub fn uncertain(value: f64, error: f64) -> String {
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "what is asked for is the whole part"
+    reason = "the function returns the whole part"
 )]
 pub fn whole(x: f64) -> usize {
     x as usize

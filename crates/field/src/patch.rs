@@ -57,8 +57,8 @@ impl Patch {
         box_corners(-half, half).map(|p| self.frame.to_world(p))
     }
 
-    /// Returns the unit normal at a point near the patch, both in the coordinates in which its
-    /// frame is given; on the side of D at the vertex.
+    /// Returns the unit normal at a point near the patch, on the side of D at the vertex. Both are
+    /// in the coordinates in which the patch's frame is given.
     #[inline]
     #[must_use]
     pub fn normal(&self, point: DVec3) -> DVec3 {
@@ -119,8 +119,9 @@ impl Patch {
 
 impl Specular {
     /// Returns the direction of a ray after it meets a surface at `point`, given the unit normal
-    /// there on the side the surface faces; all in one frame, the direction in any length. `lens`
-    /// is the frame of a lens. `None` if a ray to be refracted is totally reflected.
+    /// there on the side the surface faces. All vectors are in one frame, and the direction may
+    /// have any length. `lens` is the frame of a lens. `None` if a ray to be refracted is totally
+    /// reflected.
     #[must_use]
     pub fn turned(
         &self,

@@ -88,7 +88,7 @@ mod tests {
             (0.21, 0.0, 0.0),
             (0.0, -0.11, 0.0),
         ] {
-            // Rounding.
+            // The limit is the rounding error.
             assert!((pattern.value(s, t) - expected).abs() < 1e-15, "({s}, {t})");
         }
     }

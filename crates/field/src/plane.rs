@@ -58,7 +58,7 @@ impl Orientation {
 /// the observation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VirtualPlane {
-    /// Name, also that of the folder of its results.
+    /// Name of the plane, and of the folder of its results.
     pub name: String,
     /// Distance from the light along the central ray, in metres, accumulated over all legs.
     pub distance: f64,

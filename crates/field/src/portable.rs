@@ -1,5 +1,5 @@
-//! Functions whose results are bitwise independent of the machine's C library, where `libm` has
-//! none or a slow one.
+//! Functions whose results do not depend on the machine's C library, not even in the last bit. They
+//! replace functions that `libm` lacks or computes slowly.
 
 /// A complex number of a spectrum.
 pub type Complex = num_complex::Complex<f64>;
@@ -23,7 +23,7 @@ pub fn power(x: f64, y: f64) -> f64 {
     }
 }
 
-/// |z|, without overflow or underflow on the way.
+/// Returns |z|, without overflow or underflow on the way.
 #[must_use]
 pub fn modulus(z: Complex) -> f64 {
     libm::hypot(z.re, z.im)

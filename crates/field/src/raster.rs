@@ -76,7 +76,7 @@ impl Raster {
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "the number of a pixel, brought into range before"
+    reason = "the number of a pixel, already limited to the range"
 )]
 fn neighbours(place: f64, count: usize, wraps: bool) -> ([usize; 2], f64) {
     let last = count - 1;
@@ -110,7 +110,7 @@ mod tests {
             (-0.25, 1.5, true, 32.5),
         ] {
             let found = raster.value(column, row, wraps);
-            // Rounding.
+            // The limit is the rounding error.
             assert!((found - expected).abs() < 1e-13, "{column} {row}: {found}");
         }
         assert!(Raster::new(3, 2, vec![1.0; 5]).is_none());

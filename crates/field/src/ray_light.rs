@@ -12,8 +12,9 @@ pub struct FluxRay {
     pub flux: f64,
 }
 
-/// Rays through the plane of the light, all of which go forward. On both sides of that plane they
-/// are straight lines: a ray of a file that begins beyond the plane is extended back to it.
+/// Rays through the plane of the light, all of which go forward. The rays are straight lines on
+/// both sides of the plane: a ray of a file that begins beyond the plane is extended back to the
+/// plane.
 ///
 /// The light field is a sum of deltas. A ray of flux Φ adds Φ (1 + u² + v²)² to radiance space.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,8 +31,8 @@ pub struct RayLight {
 }
 
 impl RayLight {
-    /// Takes rays, and the flux of rays that are left out. Returns `None` if the rays carry no
-    /// flux, or if a number is not finite or a flux is negative.
+    /// Builds the light from rays, and from the flux of the rays that are left out. Returns `None`
+    /// if the rays carry no flux, or if a number is not finite or a flux is negative.
     #[must_use]
     pub fn new(rays: Vec<FluxRay>, behind: f64) -> Option<Self> {
         let mut flux = 0.0;
@@ -86,7 +87,7 @@ impl RayLight {
     pub fn at_share(&self, share: f64) -> &FluxRay {
         let flux = share * self.flux();
         let index = self.upto.partition_point(|upto| *upto <= flux);
-        // The last ray with non-zero flux, in case rounding leads beyond it.
+        // The last ray with non-zero flux is used if rounding leads beyond it.
         let last = || self.upto.partition_point(|upto| *upto < self.flux());
         self.rays.get(index).unwrap_or_else(|| &self.rays[last()])
     }

@@ -3,7 +3,7 @@
 use crate::{Brdf, Pattern};
 use serde::Serialize;
 
-/// The most terms of a sum.
+/// The largest number of terms of a sum.
 pub const MOST_TERMS: usize = 8;
 
 /// The reflectance of a surface: a weighted sum of BRDFs (Durand et al. 2005, section 4.5), times a
@@ -119,7 +119,7 @@ impl Reflectance {
         }
     }
 
-    /// Returns the first BRDF of the sum, which determines whether light leaves about the mirror
+    /// Returns the first BRDF of the sum, which determines whether light leaves around the mirror
     /// direction.
     #[must_use]
     pub fn first(&self) -> &Brdf {

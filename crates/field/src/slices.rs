@@ -45,7 +45,7 @@ impl Slices {
         unfold(&self.grid, self.half.view(), |s| s.conj())
     }
 
-    /// |S|² averaged over the azimuths, [ρ, ν], ρ and ν ascending.
+    /// Returns |S|² averaged over the azimuths, [ρ, ν], ρ and ν ascending.
     #[must_use]
     pub fn radial_power(&self) -> Array2<f64> {
         let mut power = Array2::zeros((self.grid.rho.count(), self.grid.nu.count()));

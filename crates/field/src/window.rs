@@ -32,8 +32,8 @@ pub struct CosineTerm {
     pub weight: f64,
 }
 
-/// Number of terms of the power series of a cosine, whose error is 2·10⁻¹⁷ at a quarter of its
-/// period.
+/// Number of terms of the power series of a cosine. The error of the series is 2·10⁻¹⁷ at a quarter
+/// of the cosine's period.
 const TERMS: usize = 11;
 
 /// (−1)ᵏ (π/2)²ᵏ/(2k)!.
@@ -218,7 +218,8 @@ mod tests {
         for i in -1000..=1000 {
             let s = f64::from(i) / 1000.0;
             let exact = libm::cos(std::f64::consts::FRAC_PI_2 * s).powi(2);
-            // Twice two roundings of numbers up to 1.3, in steps of 2.2·10⁻¹⁶.
+            // The limit is twice the error of two roundings of numbers up to 1.3, in steps of
+            // 2.2·10⁻¹⁶.
             assert!((hann([0.5, s])[1] - exact).abs() < 8e-16, "at {s}");
         }
     }

@@ -10,9 +10,9 @@ use rayon::prelude::*;
 
 /// Makes a failed plane undecided if its photons were aimed at other windows.
 ///
-/// Photons are aimed at all windows in equal shares. Where those aimed at a window rarely reach it,
-/// for example behind a curved mirror, the measurement may hold only the part of the light that
-/// other photons happen to bring, with an error that is far too small.
+/// Photons are aimed at all windows in equal shares. Where the photons aimed at a window rarely
+/// reach it, for example behind a curved mirror, the measurement may contain only the light that
+/// other photons happen to bring. The estimated error is then far too small.
 pub(crate) fn leave_open(case: &MeasuredScene, planes: &mut [PlaneComparison]) {
     let count = case.scene.planes.len() as u64;
     if count < 2 {
@@ -41,8 +41,8 @@ pub(crate) fn leave_open(case: &MeasuredScene, planes: &mut [PlaneComparison]) {
     }
 }
 
-/// The number of photons, out of `photons`, that reach the window of a plane when all are aimed at
-/// it.
+/// Returns the number of photons, out of `photons`, that reach the window of a plane when all are
+/// aimed at it.
 fn reached(scene: &Scene, plane: usize, photons: u64) -> u64 {
     let mut alone = scene.seen_at(&[plane]);
     alone.run.photons = photons;

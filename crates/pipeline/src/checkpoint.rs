@@ -1,5 +1,5 @@
-//! Makes a measurement outlive its process: finished batches are stored, and unfinished ones every
-//! few seconds.
+//! Stores a measurement so that it survives the end of its process: finished batches are stored,
+//! and unfinished ones every few seconds.
 
 use crate::method::source;
 use crate::reporter::{Progress, Reporter, Work};
@@ -25,7 +25,8 @@ const PARTIAL_INTERVAL: Duration = Duration::from_secs(2);
 /// The time limit of a measurement, and the other processes that take part.
 #[derive(Clone, Copy, Debug)]
 pub struct Checkpointing<'a> {
-    /// Continues from stored batches, and shares the work with other processes that do.
+    /// Whether to continue from stored batches, and to share the work with other processes that
+    /// continue from them.
     pub resume: bool,
     /// The time after which no more parts of batches are begun.
     pub until: Option<Instant>,
@@ -33,9 +34,9 @@ pub struct Checkpointing<'a> {
     pub workers: Option<&'a Leader<'a>>,
 }
 
-/// Measures all batches of a scene. `None` where another process that shares the work has finished
-/// it, which `is_done` reports. If the time limit comes first, finished batches are stored and a
-/// message is given.
+/// Measures all batches of a scene. Returns `None` if another process that shares the work has
+/// finished it; `is_done` checks this. If the time limit comes first, stores finished batches and
+/// returns a failure with a message.
 pub fn measured(
     scene: &Scene,
     method: Method,
@@ -94,13 +95,13 @@ pub fn measured(
     Ok(Some(all))
 }
 
-/// The approximate number of photons of a batch that are traced.
+/// Returns the approximate number of photons of a batch that are traced.
 fn photons_of(source: &dyn PhotonSource, batch: &PartialBatch) -> u64 {
     let parts = u64::from(source.parts(batch.index));
     source.emitted(batch.index) / parts * u64::from(batch.parts)
 }
 
-/// The error of a run that exceeded its time limit, stating what is stored.
+/// Returns the error of a run that exceeded its time limit, stating what is stored.
 fn time_is_up(kept: &CheckpointStore, batches: usize) -> Failure {
     let [done, begun] = kept.count();
     let begun = match begun {
@@ -160,7 +161,7 @@ impl Keeper<'_> {
         Ok(missing)
     }
 
-    /// Whether enough time has passed for storing anything.
+    /// Checks whether enough time has passed for storing anything.
     fn keeps(&self) -> bool {
         let Checkpointing {
             resume,
@@ -190,7 +191,7 @@ impl Keeper<'_> {
         );
     }
 
-    /// Whether an unfinished batch has not been stored for a while; marks it as stored now.
+    /// Checks whether an unfinished batch has not been stored for a while; marks it as stored now.
     fn is_due(&self, batch: u32) -> bool {
         let mut partial = self.partial.lock().unwrap_or_else(PoisonError::into_inner);
         let last = partial.entry(batch).or_insert(self.begun);
@@ -216,7 +217,7 @@ impl Watch for Keeper<'_> {
         if !self.checkpointing.resume {
             return true;
         }
-        // A batch at which another process is ahead is left to that process.
+        // If another process has done more parts of a batch, the batch is left to that process.
         !(self.is_done)()
             && match self.kept.progress(batch) {
                 None => true,

@@ -30,8 +30,8 @@ struct FieldIndex {
     width: [f64; 4],
     window: etendue_field::Window,
     assignment: etendue_field::Assignment,
-    /// ‖4D − slices‖/‖slices‖ of the same photons at shared frequencies up to half of Nyquist, with
-    /// the values it is compared with.
+    /// ‖4D − slices‖/‖slices‖ of the same photons at shared frequencies up to half of Nyquist, and
+    /// the values with which it is compared.
     aliasing: Option<AliasingNumbers>,
 }
 
@@ -39,9 +39,9 @@ struct FieldIndex {
 struct AliasingNumbers {
     frequencies: usize,
     difference: f64,
-    /// The expected value, if the spectrum beyond Nyquist is as strong as just inside.
+    /// The expected value if the spectrum beyond Nyquist is as strong as just below it.
     expected: f64,
-    /// The upper bound, whatever the photons.
+    /// The upper bound, which holds for any photons.
     bound: f64,
 }
 
@@ -124,7 +124,8 @@ fn on_grid(
     reporter: &dyn Reporter,
 ) -> Result<FieldMeasurement, Failure> {
     let scene = case.scene.seen_at(&[index]);
-    // Photons are aimed at all planes of a scene, and those compared must be the same ones.
+    // Photons are aimed at all planes of a scene. The photons on the grid must be those of the
+    // measurement, so the whole scene is traced.
     let (source, at) = if method == case.method {
         (source(&case.scene, method)?, index)
     } else {

@@ -53,7 +53,7 @@ pub fn report_failure(workers: &dyn Workers, Failure { message, .. }: Failure) {
     let _ = workers.receive();
 }
 
-/// A finished piece of work.
+/// Returns a finished piece of work.
 fn whole(number: u32, bytes: Vec<u8>) -> Packed {
     let piece = Piece {
         number,

@@ -30,7 +30,8 @@ pub(crate) fn inquire(
     failed.into_iter().filter_map(judged).collect()
 }
 
-/// Whether a plane fails against its prediction, and not only against its chain of affine maps.
+/// Checks whether a plane fails against its prediction, and not only against its chain of affine
+/// maps.
 fn disagrees_with_theory(report: &PlaneReport) -> bool {
     report.class != Class::Reference && report.exact_verdict() == Verdict::Fail
 }
@@ -40,8 +41,8 @@ fn disagrees_with_theory(report: &PlaneReport) -> bool {
 const DETECTABLE: f64 = 3.6;
 
 impl Inquiry {
-    /// Compares the judge of plane `i`, where the plane has the number `at`, with photons and with
-    /// theory.
+    /// Compares the judge's measurement of plane `i` with photons and with theory. The plane has
+    /// the number `at` in that measurement.
     fn of(
         case: &MeasuredScene,
         (i, failed): (usize, &PlaneReport),
@@ -82,7 +83,9 @@ impl Inquiry {
             }
             (Verdict::Pass, Verdict::Pass) => both_pass([this, other], failed, theory, rays),
             (Verdict::Undecided, _) | (_, Verdict::Undecided) => {
-                format!("{other} are too few to decide which is wrong; use more photons")
+                format!(
+                    "{other} are too few to decide whether {this} or the prediction is wrong; use more photons"
+                )
             }
         };
         Self {
@@ -94,8 +97,8 @@ impl Inquiry {
     }
 }
 
-/// The conclusion where another tracer with `rays` rays agrees with both a measurement and its
-/// prediction, which disagree with each other.
+/// Returns the conclusion where another tracer with `rays` rays agrees with both a measurement and
+/// its prediction, although these disagree with each other.
 fn both_pass(
     [this, other]: [&str; 2],
     failed: &PlaneReport,
@@ -108,10 +111,12 @@ fn both_pass(
         return format!("{other} agree with both: the failure may be chance; use another seed");
     }
     let noise = percent(theory.noise_limit);
-    let cannot = format!("{other} cannot decide which is wrong: their noise is {noise}");
+    let cannot = format!(
+        "{other} cannot decide whether {this} or the prediction is wrong: their noise is {noise}"
+    );
     let positive = squares.into_iter().filter(|square| *square > 0.0);
     let least = positive.fold(f64::INFINITY, f64::min);
-    // The standard error of a square falls at least as fast as the number of rays grows.
+    // The standard error of a square falls at least as fast as one over the number of rays.
     let needed = rays * DETECTABLE * error / least;
     if needed > rays && needed.is_finite() {
         let apart = percent(Some(least.sqrt()));
@@ -123,10 +128,10 @@ fn both_pass(
     }
 }
 
-/// Squared distances of a failed plane from its prediction, beyond noise: with all frequencies
-/// weighted equally, and weighted as in the test, where frequencies of less noise count more. The
-/// noise of another tracer is distributed differently, so it must be able to detect the smaller
-/// one.
+/// Returns the squared distances of a failed plane from its prediction, beyond noise. In the first
+/// all frequencies are weighted equally; in the second they are weighted as in the test, where
+/// frequencies of less noise count more. The noise of another tracer is distributed differently, so
+/// that tracer must be able to detect the smaller of the two distances.
 fn disagreement(failed: &PlaneReport) -> [f64; 2] {
     let alike = failed.excess.map(|excess| excess * excess.abs());
     let tested = failed.chi2_per_dof.zip(failed.noise_limit);
@@ -155,7 +160,8 @@ mod tests {
         resolve("test", file, ".".as_ref(), u64::MAX).unwrap()
     }
 
-    /// A plane whose photons, backward rays and prediction come from lights with these radiances.
+    /// Returns a plane whose photons, backward rays and prediction come from lights with these
+    /// radiances.
     fn compared(photons: f64, rays: f64, predicted: f64) -> (MeasuredScene, PlaneComparison) {
         let of = |radiance| scene(radiance);
         let prediction = |scene: &Scene| {
@@ -176,7 +182,7 @@ mod tests {
         (case, compared)
     }
 
-    /// The findings for such a plane.
+    /// Returns the findings for such a plane.
     fn found(photons: f64, rays: f64, predicted: f64) -> Vec<String> {
         let (case, compared) = compared(photons, rays, predicted);
         let inquiries = inquire(&case, &[compared], &Silent).unwrap();
@@ -226,7 +232,7 @@ mod tests {
         let chance = "agree with both: the failure may be chance";
         assert!(found(1.25, 8.4e-6).contains(chance), "3.6 standard errors");
         let open = found(1.25, 8.5e-6);
-        assert!(open.contains("cannot decide which is wrong"), "{open}");
+        assert!(open.contains("cannot decide whether photons or"), "{open}");
         let open = found(1.25, 3e-5);
         for words in [
             "differ by 0.550 %",

@@ -39,7 +39,7 @@ pub struct Job {
 }
 
 impl Job {
-    /// The scene of a file, or of a text in its place.
+    /// Reads the scene of a file, or of a text that takes the place of the file.
     ///
     /// # Errors
     /// When the scene cannot be read or is not valid; the error lists all faults with their lines.
@@ -52,7 +52,7 @@ impl Job {
         Self::of(scene, options.method, inputs)
     }
 
-    /// The job of a resolved scene, which was read from these files.
+    /// Returns the job of a resolved scene, which was read from these files.
     pub fn of(scene: Scene, method: Method, inputs: Vec<PathBuf>) -> Result<Self, Failure> {
         method::check(&scene, method)?;
         Ok(Self {
@@ -63,19 +63,19 @@ impl Job {
         })
     }
 
-    /// The scene.
+    /// Returns the scene.
     #[must_use]
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// Which theory applies to each plane.
+    /// Returns which theory applies to each plane.
     #[must_use]
     pub fn theories(&self) -> &[Applicability] {
         &self.theories
     }
 
-    /// The source of the scene's photons.
+    /// Returns the source of the scene's photons.
     ///
     /// # Errors
     /// When the method finds no light.
@@ -83,7 +83,7 @@ impl Job {
         source(&self.scene, self.method)
     }
 
-    /// The format in which batches are sent to another process.
+    /// Returns the format in which batches are sent to another process.
     pub(crate) fn packing(&self) -> Packing<'_> {
         Packing {
             scene: &self.scene,
@@ -91,7 +91,7 @@ impl Job {
         }
     }
 
-    /// A batch as bytes, for another process.
+    /// Returns a batch as bytes, for another process.
     ///
     /// # Errors
     /// When there is not enough memory for the bytes.
@@ -99,8 +99,8 @@ impl Job {
         self.packing().packed(batch)
     }
 
-    /// The batch with that number from the bytes of [`Self::packed`], identical to one emitted by
-    /// `source`.
+    /// Returns the batch with that number from the bytes of [`Self::packed`], identical to one
+    /// emitted by `source`.
     ///
     /// # Errors
     /// When the bytes belong to another scene, seed or number of photons.
@@ -113,7 +113,7 @@ impl Job {
         self.packing().unpacked(source, number, bytes)
     }
 
-    /// The prediction of a plane that theory predicts, as bytes for another process.
+    /// Returns the prediction of a plane that theory predicts, as bytes for another process.
     pub fn packed_prediction(&self, plane: u32) -> Result<Vec<u8>, Failure> {
         let number = plane as usize;
         let found = self.scene.planes.get(number).zip(self.theories.get(number));
@@ -182,49 +182,49 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// The planes, in the order of the scene.
+    /// Returns the planes, in the order of the scene.
     #[must_use]
     pub fn planes(&self) -> &[PlaneComparison] {
         &self.judged.planes
     }
 
-    /// The verdict on all planes.
+    /// Returns the verdict on all planes.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
         self.judged.summary.verdict
     }
 
-    /// The predictions that the planes were compared with.
+    /// Returns the predictions that the planes were compared with.
     #[must_use]
     pub fn predictions(&self) -> &[Prediction] {
         &self.case.predictions
     }
 
-    /// The content of `summary.json`, without hashes of files.
+    /// Returns the content of `summary.json`, without hashes of files.
     #[must_use]
     pub fn summary(&self) -> Vec<u8> {
         self.judged.summary.json(&BTreeMap::new())
     }
 
-    /// The table that `etendue run` prints.
+    /// Returns the table that `etendue run` prints.
     #[must_use]
     pub fn table(&self) -> String {
         crate::table::text(&self.judged.summary)
     }
 
-    /// The scene with its measurement and predictions.
+    /// Returns the scene with its measurement and predictions.
     #[must_use]
     pub fn case(&self) -> &MeasuredScene {
         &self.case
     }
 
-    /// The comparisons and their summary.
+    /// Returns the comparisons and their summary.
     #[must_use]
     pub fn judged(&self) -> &Judged {
         &self.judged
     }
 
-    /// The files that the scene was read from.
+    /// Returns the files that the scene was read from.
     #[must_use]
     pub fn inputs(&self) -> &[PathBuf] {
         &self.inputs

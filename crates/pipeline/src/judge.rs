@@ -18,8 +18,8 @@ pub(crate) struct Judge {
 }
 
 impl Judge {
-    /// Measures some planes of a scene by the methods that judge `method` there, one measurement
-    /// for each method.
+    /// Measures some planes of a scene by the methods that judge `method` at these planes. Returns
+    /// one measurement for each method.
     pub(crate) fn all(
         scene: &Scene,
         planes: &[usize],
@@ -45,7 +45,7 @@ impl Judge {
         judged.map(judge).collect()
     }
 
-    /// The judge of a plane of the scene, and the plane's number in its measurement.
+    /// Returns the judge of a plane of the scene, and the plane's number in its measurement.
     pub(crate) fn of(all: &[Self], plane: usize) -> Option<(&Self, usize)> {
         all.iter().find_map(|judge| {
             let at = judge.planes.binary_search(&plane).ok()?;

@@ -37,7 +37,7 @@ impl Judged {
     }
 }
 
-/// The comparison of each plane, with its verdict.
+/// Returns the comparison of each plane, with its verdict.
 pub fn judged(case: &MeasuredScene, test: &Test) -> Result<Vec<PlaneComparison>, Failure> {
     let each = case.predictions.iter().enumerate();
     let compared = each.map(|(i, prediction)| {

@@ -1,9 +1,9 @@
-//! A run from scene to verdict, as a library: measuring, predicting, judging by another tracer,
-//! investigating failures, adding photons until noise is low enough, storing batches, and using
+//! Carries out a run from scene to verdict, as a library. It measures, predicts, judges by another
+//! tracer, investigates failures, adds photons until noise is low enough, stores batches, and uses
 //! several processes.
 //!
-//! It does not depend on arguments or a terminal. Progress is reported to a [`Reporter`]. The entry
-//! point is [`Job`].
+//! The library does not depend on arguments or a terminal. Progress is reported to a [`Reporter`].
+//! The entry point is [`Job`].
 
 #![allow(
     clippy::missing_errors_doc,

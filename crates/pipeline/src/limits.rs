@@ -7,7 +7,7 @@ use etendue_store::Failure;
 use etendue_store::machine;
 
 /// Fails where a run of the scene on `threads` threads would take too long, or not fit into this
-/// machine. `theories` are those of the scene's planes.
+/// machine. `theories` are the theories of the scene's planes.
 pub fn check(scene: &Scene, theories: &[Applicability], threads: usize) -> Result<(), Failure> {
     check_work(scene, theories)?;
     check_memory(scene, theories, threads)
@@ -31,7 +31,7 @@ fn check_rays(scene: &Scene, theories: &[Applicability]) -> Result<(), Failure> 
     let mut planes = scene.planes.iter().zip(theories);
     match planes.find(|(_, theory)| !theory.reasons.is_empty()) {
         Some((plane, theory)) => Err(Failure::bad_input(format!(
-            "{}: plane {}: the light is a ray file, for which there is no prediction at this plane ({}); allowed: planes orthogonal to the central ray and before the first surface, with only flat blockers orthogonal to the ray before them. `etendue measure` accepts any plane",
+            "{}: plane {}: the light is a ray file, for which there is no prediction at this plane ({}); allowed: planes that are orthogonal to the central ray and before the first surface, if all blockers before them are flat and orthogonal to the ray. `etendue measure` accepts any plane",
             scene.name,
             plane.name,
             theory.reasons.join(", ")
@@ -60,7 +60,7 @@ pub fn check_memory(
         meshes,
     } = needed;
     Err(Failure::cannot_run(format!(
-        "{}: on {threads} threads it needs {} of memory: {} for {} batches, {} for the grids of threads, {} for predictions, {} to compare, {} for meshes; {} are available",
+        "{}: a run on {threads} threads needs {} of memory: {} for {} batches, {} for the grids of threads, {} for predictions, {} to compare, {} for meshes; {} are available",
         scene.name,
         gigabytes(needed.total()),
         gigabytes(batches),

@@ -14,16 +14,17 @@ use std::path::{Path, PathBuf};
 pub struct SceneSource {
     /// The file, in RON or JSON. Its meshes and pictures are in the same folder.
     pub path: PathBuf,
-    /// The content in place of a file; `path` then only names the scene and its folder.
+    /// A text that takes the place of the file; `path` then only gives the name of the scene and
+    /// its folder.
     pub text: Option<String>,
-    /// Fields with the values they are set to, each as by [`SceneFile::with`].
+    /// Fields with the values they are set to, each set as [`SceneFile::with`] does.
     pub set: Vec<(String, String)>,
     /// The style in which messages name arguments.
     pub arguments: ArgumentStyle,
 }
 
 impl SceneSource {
-    /// A scene file that the command line names.
+    /// Returns a scene file that the command line names.
     #[must_use]
     pub fn file(path: &Path, set: &[(String, String)]) -> Self {
         Self {
@@ -34,18 +35,18 @@ impl SceneSource {
         }
     }
 
-    /// The folder of the scene's meshes and pictures.
+    /// Returns the folder of the scene's meshes and pictures.
     fn folder(&self) -> &Path {
         self.path.parent().unwrap_or(Path::new(""))
     }
 
-    /// The name of the scene, the file name without its extension.
+    /// Returns the name of the scene, the file name without its extension.
     fn name(&self) -> Cow<'_, str> {
         self.path.file_stem().unwrap_or_default().to_string_lossy()
     }
 
-    /// The name of the scene in messages: the path of its file, or its own name where there is no
-    /// file.
+    /// Returns the name of the scene in messages: the path of its file, or its own name where there
+    /// is no file.
     fn shown(&self) -> String {
         match self.text {
             Some(_) => self.name().into_owned(),
@@ -53,7 +54,7 @@ impl SceneSource {
         }
     }
 
-    /// The content of the file, read unless it is given.
+    /// Returns the content of the file, read unless it is given.
     fn read(&self) -> Result<Cow<'_, str>, Failure> {
         if let Some(text) = &self.text {
             return Ok(text.into());
@@ -93,14 +94,15 @@ pub fn scene(source: &SceneSource, options: impl FnOnce(&mut RunFile)) -> Result
     scene.map_err(|error| refused(&error, &shown, text.unwrap_or_default(), &set))
 }
 
-/// The faults of a scene, one line each: the place in the text, or the argument that set the value.
+/// Returns the faults of a scene, one line each: the place in the text, or the argument that set
+/// the value.
 fn refused(error: &SceneError, shown: &str, text: &str, set: &[(String, String)]) -> Failure {
     let lines = error.in_text(text, set);
     let lines = lines.lines().map(|line| format!("{shown}: {line}"));
     Failure::of_scene(error, lines.collect::<Vec<_>>().join("\n"))
 }
 
-/// The scene file, if there is one, and all files that it names.
+/// Returns the scene file, if there is one, and all files that it names.
 pub fn inputs(source: &SceneSource, scene: &Scene) -> Vec<PathBuf> {
     let file = source.text.is_none().then(|| source.path.clone());
     let named = scene.inputs.keys();

@@ -5,7 +5,7 @@ use etendue_scene::Scene;
 use etendue_store::{Failure, Method};
 use etendue_trace::{Backward, Tracer, finds};
 
-/// The source of photons that `method` sends through a scene.
+/// Returns the source of photons that `method` sends through a scene.
 pub fn source(scene: &Scene, method: Method) -> Result<Box<dyn PhotonSource>, Failure> {
     Ok(match method {
         Method::Photons => Box::new(Tracer::new(scene)),
@@ -22,7 +22,8 @@ pub fn check(scene: &Scene, method: Method) -> Result<(), Failure> {
     }
 }
 
-/// The method that judges another one at a plane, chosen to be as independent as the scene allows.
+/// Returns the method that judges another one at a plane, chosen to be as independent as the scene
+/// allows.
 pub fn judge_of(method: Method, scene: &Scene, plane: &VirtualPlane) -> Method {
     match method {
         Method::Photons if finds(scene, plane) => Method::Backward,
@@ -31,13 +32,14 @@ pub fn judge_of(method: Method, scene: &Scene, plane: &VirtualPlane) -> Method {
     }
 }
 
-/// The prediction step for measurements by a method in place of theory.
+/// Returns the line that describes the step of a prediction in which the measurement by a method
+/// takes the place of theory.
 pub fn step(method: Method) -> String {
     let shared = match method {
         Method::Photons | Method::Backward => "",
         // Otherwise no ray finds the light.
         Method::Even => {
-            ", which after emission are traced as photons are: errors of this tracing are not detected"
+            ", which are traced after emission in the same way as photons: errors of this tracing are not detected"
         }
     };
     format!("instead of theory  {}{shared}", method.words())

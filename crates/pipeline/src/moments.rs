@@ -4,7 +4,7 @@ use etendue_field::VirtualPlane;
 use etendue_spectrum::field::FieldOptions;
 use etendue_store::{Failure, machine};
 
-/// The covariance, with the groups of batches from which errors are estimated.
+/// Returns the covariance, with the groups of batches from which errors are estimated.
 fn options() -> FieldOptions {
     FieldOptions {
         covariance: true,
@@ -12,8 +12,8 @@ fn options() -> FieldOptions {
     }
 }
 
-/// The options for the grid of a plane: all groups are kept where they fit into half of the memory,
-/// which saves a pass.
+/// Returns the options for the grid of a plane: all groups are kept where they fit into half of the
+/// memory, which saves a pass.
 pub fn fitting(plane: &VirtualPlane) -> FieldOptions {
     let kept = FieldOptions {
         keep: true,

@@ -20,14 +20,14 @@ pub enum Save {
     Photons,
     /// The same photons as rays in world coordinates, in MCPL.
     Mcpl,
-    /// The same in IES TM-25.
+    /// The same rays in IES TM-25.
     Tm25,
     /// The light field on a 4D grid, and its full radial spectrum.
     Field,
 }
 
 impl Save {
-    /// The name in commands.
+    /// Returns the name in commands.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -42,7 +42,7 @@ impl Save {
 /// The index of a plane's NPY file.
 const INDEX: &str = "photons.json";
 
-/// The file names of a plane.
+/// Returns the file names of a plane.
 pub fn names(save: Save) -> Vec<&'static str> {
     let index = (save == Save::Photons).then_some(INDEX);
     file_of(save)
@@ -52,8 +52,8 @@ pub fn names(save: Save) -> Vec<&'static str> {
         .collect()
 }
 
-/// The file of the photons of a plane, its prefix on the command line, and the bytes of a photon in
-/// it.
+/// Returns the name of the file with the photons of a plane, the name of its format in commands,
+/// and the number of bytes of a photon in it.
 fn file_of(save: Save) -> Option<(&'static str, &'static str, u64)> {
     match save {
         Save::Photons => Some(("photons.npy", "photons", 40)),
@@ -73,7 +73,7 @@ struct PhotonsIndex {
     emitted: Vec<u64>,
 }
 
-/// The largest possible size of the files, reached if every photon crosses every plane.
+/// Returns the largest possible size of the files, reached if every photon crosses every plane.
 pub fn announcement(scene: &Scene, save: Save) -> Option<String> {
     let (_, option, row) = file_of(save)?;
     let planes = scene.planes.len();
@@ -94,8 +94,8 @@ fn size(bytes: u64) -> String {
 }
 
 /// Traces the same photons again, one plane after the other, and streams them to disk, so that
-/// memory holds only one block. A TM-25 file begins with the flux of the photons, for which they
-/// are traced once more.
+/// memory holds only one block. A TM-25 file begins with the flux of the photons, so they are
+/// traced once more to compute it.
 pub fn save(results: &mut Results, case: &MeasuredScene, save: Save) -> Result<(), Failure> {
     let Some((name, ..)) = file_of(save) else {
         return Ok(());

@@ -31,7 +31,7 @@ pub enum Work {
     Stage(&'static str),
 }
 
-/// Work in progress. It ends when this is dropped.
+/// Work in progress. The work ends when this value is dropped.
 ///
 /// A program that wants to stop may unwind from `advance` and from [`Reporter::begin`]: both are
 /// called often, and never while a result is half written.

@@ -62,7 +62,7 @@ pub struct Inquiry {
 }
 
 impl Summary {
-    /// The settings that the arrays of the result are made from.
+    /// Returns the settings that the arrays of the result are made from.
     pub fn made_from(&self) -> serde_json::Value {
         serde_json::json!({
             "scene": self.scene,
@@ -73,7 +73,7 @@ impl Summary {
         })
     }
 
-    /// The summary of the compared planes.
+    /// Returns the summary of the compared planes.
     pub fn new(case: &MeasuredScene, planes: &[PlaneComparison], inquiries: Vec<Inquiry>) -> Self {
         let MeasuredScene {
             scene,
@@ -107,7 +107,7 @@ impl Summary {
         }
     }
 
-    /// The file's bytes; `files` maps each file to its BLAKE3 hash.
+    /// Returns the file's bytes; `files` maps each file to its BLAKE3 hash.
     pub fn json(&self, files: &BTreeMap<String, String>) -> Vec<u8> {
         #[derive(Serialize)]
         struct WithFiles<'a> {
@@ -145,13 +145,13 @@ impl Stopwatch {
         self.last = Instant::now();
     }
 
-    /// The seconds that a stage took.
+    /// Returns the seconds that a stage took.
     pub fn seconds(&self, stage: &str) -> Option<f64> {
         let mut stages = self.seconds.iter();
         stages.find(|(name, _)| *name == stage).map(|(_, s)| *s)
     }
 
-    /// The content of `timing.json`.
+    /// Returns the content of `timing.json`.
     pub fn json(&self, photons: u64) -> Vec<u8> {
         #[derive(Serialize)]
         struct Timing {

@@ -6,7 +6,8 @@ use etendue_compare::{
 };
 use etendue_field::{brief, decimals, fixed, uncertain};
 
-/// The table of planes, the table of parameters, and the verdict, as printed by `etendue run`.
+/// Returns the table of planes, the table of parameters, and the verdict, as printed by
+/// `etendue run`.
 pub fn text(summary: &Summary) -> String {
     let ledger = summary
         .ledger_imbalance
@@ -51,7 +52,7 @@ pub fn text(summary: &Summary) -> String {
     lines.join("\n")
 }
 
-/// The message about a first-order chain that does not pass.
+/// Returns the message about a first-order chain that does not pass.
 pub fn on_chain(plane: &PlaneReport) -> Option<String> {
     let FirstOrderReport { chain, verdict, .. } = plane.first_order.as_ref()?;
     let name = &plane.name;
@@ -77,7 +78,7 @@ pub fn on_chain(plane: &PlaneReport) -> Option<String> {
     }
 }
 
-/// The difference of measurement and prediction, plane by plane.
+/// Returns the difference of measurement and prediction, plane by plane.
 pub fn planes(summary: &Summary) -> Vec<Vec<String>> {
     let mut header = vec![
         "plane",
@@ -117,7 +118,8 @@ pub fn planes(summary: &Summary) -> Vec<Vec<String>> {
         .collect()
 }
 
-/// The difference of the photons from the first-order chain, beyond noise, and its expected value.
+/// Returns the difference of the photons from the first-order chain, beyond noise, and its expected
+/// value.
 pub fn chain(plane: &PlaneReport) -> String {
     let Some(first_order) = &plane.first_order else {
         return "–".to_owned();
@@ -126,7 +128,7 @@ pub fn chain(plane: &PlaneReport) -> String {
     format!("{} ({error:.3} %)", percent(first_order.excess))
 }
 
-/// The parameters of the chain as the photons measure them.
+/// Returns the parameters of the chain as the photons measure them.
 pub fn parameters(summary: &Summary) -> Vec<Vec<String>> {
     let header = [
         "plane",
@@ -151,7 +153,7 @@ pub fn parameters(summary: &Summary) -> Vec<Vec<String>> {
     rows
 }
 
-/// The difference of measured and predicted full radial spectra, plane by plane.
+/// Returns the difference of measured and predicted full radial spectra, plane by plane.
 fn full_radials(summary: &Summary) -> Vec<Vec<String>> {
     let header = [
         "plane",
@@ -179,7 +181,7 @@ fn full_radials(summary: &Summary) -> Vec<Vec<String>> {
     std::iter::once(header).chain(planes.map(row)).collect()
 }
 
-/// A name with its unit in brackets.
+/// Returns a name with its unit in brackets.
 pub fn with_unit(name: &str, unit: &str) -> String {
     if unit.is_empty() {
         name.to_owned()
@@ -188,9 +190,10 @@ pub fn with_unit(name: &str, unit: &str) -> String {
     }
 }
 
-/// The measured value and the smallest detectable change, the latter as a share of the parameter if
-/// it has a size, or with the parameter's unit. Both are – where even a change by the whole parameter would be undetectable, and
-/// the value is – where its error is larger than itself.
+/// Returns the measured value and the smallest detectable change, the latter as a share of the
+/// parameter if it has a size, or with the parameter's unit. Both are – where even a change by the
+/// whole parameter would be undetectable, and the value is – where the error is larger than the
+/// value.
 fn measured(parameter: &ParameterReport) -> [String; 2] {
     let value = uncertain(parameter.measured, parameter.error);
     if parameter.scene.abs() < 1e-12 {
@@ -210,7 +213,8 @@ fn measured(parameter: &ParameterReport) -> [String; 2] {
     }
 }
 
-/// Columns as wide as their widest cell, two spaces apart; text to the left, numbers to the right.
+/// Aligns columns that are as wide as their widest cell and two spaces apart, with text to the left
+/// and numbers to the right.
 pub fn aligned(rows: Vec<Vec<String>>) -> Vec<String> {
     let width = |column: usize| {
         let cells = rows.iter().map(|row| row[column].chars().count());
@@ -238,7 +242,7 @@ pub fn aligned(rows: Vec<Vec<String>>) -> Vec<String> {
     rows.iter().map(line).collect()
 }
 
-/// The verdict of a run in a sentence, with its reasons.
+/// Returns the verdict of a run in a sentence, with its reasons.
 pub fn verdict_text(summary: &Summary) -> String {
     let with = |verdict: Verdict| -> Vec<&PlaneReport> {
         let planes = summary.planes.iter();
@@ -284,7 +288,7 @@ pub fn verdict_text(summary: &Summary) -> String {
     }
 }
 
-/// The predicted slope to as many digits as the measured one has.
+/// Returns the predicted slope to as many digits as the measured one has.
 fn predicted(plane: &PlaneReport) -> String {
     match (plane.slope.predicted, plane.slope.error) {
         (Some(value), Some(error)) if error > 0.0 => fixed(value, decimals(error)),
@@ -292,7 +296,7 @@ fn predicted(plane: &PlaneReport) -> String {
     }
 }
 
-/// A verdict as a word.
+/// Returns a verdict as a word.
 pub fn word(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Pass => "pass",
@@ -301,17 +305,17 @@ pub fn word(verdict: Verdict) -> &'static str {
     }
 }
 
-/// A number with `digits` digits after the point; – where there is none.
+/// Returns a number with `digits` digits after the point; – where there is none.
 pub fn number(value: Option<f64>, digits: usize) -> String {
     value.map_or("–".to_owned(), |v| fixed(v, digits))
 }
 
-/// A share in per cent; – where there is none.
+/// Returns a share in per cent; – where there is none.
 pub fn percent(value: Option<f64>) -> String {
     value.map_or("–".to_owned(), |share| etendue_field::percent(share, 3))
 }
 
-/// 10000000 as 10 000 000.
+/// Formats 10000000 as 10 000 000.
 pub fn grouped(n: u64) -> String {
     let digits = n.to_string();
     let groups: Vec<&str> = digits
@@ -323,7 +327,7 @@ pub fn grouped(n: u64) -> String {
     groups.join(" ")
 }
 
-/// A name for display, with spaces in place of underscores.
+/// Returns a name for display, with spaces in place of underscores.
 pub fn spaced(name: &str) -> String {
     name.replace('_', " ")
 }

@@ -20,9 +20,10 @@ const MAX_PHOTONS: u64 = 1 << 40;
 /// may need fewer.
 const MAX_FACTOR: f64 = 8.0;
 
-/// Measures all batches of a scene with 2ᵐ photons, where 2ᵐ is the first power, from 2²⁰ on, with
-/// which noise is at most a share `target` of the spectrum at each plane. The scene is given that
-/// number of photons. The last possible stage has `most` photons, a power of two or not.
+/// Measures all batches of a scene with enough photons that noise is at most a share `target` of
+/// the spectrum at each plane. The number of photons is the first sufficient power of two, from 2²⁰
+/// on. The scene is given that number of photons. The last possible stage has `most` photons, a
+/// power of two or not.
 ///
 /// Each stage starts again, so that its result is that of a run with as many photons. The possible
 /// stages are fixed beforehand, and only noise decides which one is the last, so p-values are
@@ -53,8 +54,8 @@ pub fn reached(
         }
         let noise_now = percent(Some(noise));
         let now = format!("noise is {noise_now} at {plane} with {emitted} photons");
-        // Nets may need fewer photons than the square-root law predicts, so the largest power below
-        // that is used.
+        // Nets may need fewer photons than the square-root law predicts, so the largest power of
+        // two below the predicted number is used.
         let needed = photons as f64 * (noise / target).powi(2);
         let mut next = photons.saturating_mul(2);
         while next < most && 2.0 * next as f64 <= needed {
@@ -80,8 +81,8 @@ pub fn reached(
     }
 }
 
-/// The noise of the run, and the noise of a run a hundred times as long, in words; `None` where
-/// there is no light.
+/// Returns the noise of the run, and the noise of a run a hundred times as long, in words; `None`
+/// where there is no light.
 pub fn outlook(planes: &[PlaneReport], seconds: f64) -> Option<String> {
     let noise = |plane: &PlaneReport| plane.noise_limit;
     let lit = planes
@@ -96,7 +97,7 @@ pub fn outlook(planes: &[PlaneReport], seconds: f64) -> Option<String> {
     ))
 }
 
-/// What `target` leaves out, in words.
+/// Returns what `target` leaves out, in words.
 #[must_use]
 pub fn left_out(planes: &[PlaneReport], target: f64) -> String {
     let sampled = planes
@@ -105,7 +106,7 @@ pub fn left_out(planes: &[PlaneReport], target: f64) -> String {
     let noise = sampled.filter_map(|plane| Some((&plane.name, plane.noise_limit?)));
     let rest = match noise.max_by(|(_, a), (_, b)| a.total_cmp(b)) {
         Some((name, noise)) => format!(
-            "with the errors of predictions it is up to {} (at {name})",
+            "with the errors of predictions, noise is up to {} (at {name})",
             percent(Some(noise))
         ),
         None => "all predictions are in closed form".to_owned(),
@@ -116,7 +117,7 @@ pub fn left_out(planes: &[PlaneReport], target: f64) -> String {
     )
 }
 
-/// The lit plane with the most noise, and its noise as a share of the spectrum.
+/// Returns the lit plane with the most noise, and its noise as a share of the spectrum.
 fn noisiest(measurement: &Measurement) -> Option<(&str, f64)> {
     let planes = measurement.planes().iter().enumerate();
     let lit = planes.filter_map(|(i, plane)| {

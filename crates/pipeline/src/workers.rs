@@ -1,10 +1,10 @@
-//! Work that is shared by several processes, each with its own memory: one leads and hands out
-//! pieces as others request them.
+//! Shares work among several processes, each with its own memory. One process leads and hands out
+//! pieces when others request them.
 //!
 //! A piece is a batch of a run, a plane to predict, or a point of a sweep. Processes exchange
-//! bytes, and pieces are identified by their numbers. So the result has the same bits however many
-//! processes there are and whichever is faster, on processors of one kind. The leading process
-//! works as well.
+//! bytes, and pieces are identified by their numbers. So on processors of one kind, the bits of the
+//! result depend neither on the number of processes nor on their speed. The leading process works
+//! as well.
 
 mod leader;
 mod link;

@@ -14,17 +14,17 @@ impl<'a> ByteCursor<'a> {
         Self { bytes, at, little }
     }
 
-    /// The offset of the next byte.
+    /// Returns the offset of the next byte.
     pub(crate) fn at(&self) -> usize {
         self.at
     }
 
-    /// The number of bytes that have not been read.
+    /// Returns the number of bytes that have not been read.
     pub(crate) fn left(&self) -> usize {
         self.bytes.len().saturating_sub(self.at)
     }
 
-    /// The next bytes; `what` names them in an error message.
+    /// Returns the next bytes; `what` names them in an error message.
     pub(crate) fn take(&mut self, length: usize, what: &str) -> Result<&'a [u8], Fault> {
         let found = self.at.checked_add(length);
         let found = found.and_then(|end| self.bytes.get(self.at..end));
@@ -68,7 +68,7 @@ impl<'a> ByteCursor<'a> {
         self.array(what).map(f64::from_le_bytes)
     }
 
-    /// A number of 0 or 1.
+    /// Reads a number that must be 0 or 1.
     pub(crate) fn flag(&mut self, what: &str) -> Result<bool, Fault> {
         let at = self.at;
         match self.u32(what)? {

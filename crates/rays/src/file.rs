@@ -9,7 +9,7 @@ use std::fmt;
 /// unpacked, plus [`MEMORY_FREE`] bytes.
 ///
 /// The shortest record, 28 bytes, is kept once and becomes 64 bytes of a set. The output of gzip
-/// may take twice its length.
+/// may take twice its length in memory.
 pub const MEMORY: usize = 6;
 
 /// Bytes that reading may take regardless of the length of the file, for its texts and tables, at
@@ -30,7 +30,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// The format of a file with this name, by its extension in any case.
+    /// Returns the format of a file with this name, by its extension in any case.
     #[must_use]
     pub fn of_name(name: &str) -> Option<Self> {
         let name = name.to_ascii_lowercase();
@@ -87,7 +87,7 @@ impl RayFile {
         }
     }
 
-    /// The rays of the file.
+    /// Returns the rays of the file.
     #[must_use]
     pub fn rays(&self) -> RaySet {
         match self {

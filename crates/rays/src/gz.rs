@@ -7,20 +7,20 @@ use flate2::write::GzEncoder;
 use std::borrow::Cow;
 use std::io::{Read, Write};
 
-/// The largest ratio of unpacked to packed length, apart from [`FREE`] bytes. Rays pack to a half
-/// or less; those of test files, which repeat, to a tenth.
+/// The largest ratio of unpacked to packed length, apart from [`FREE`] bytes. Packed rays have half
+/// of their length or less; in test files, where rays repeat, they have a tenth of it.
 pub const MOST_RATIO: usize = 64;
 
 /// Bytes that a packed file may unpack to regardless of its length.
 pub const FREE: usize = 1 << 20;
 
-/// Whether a file begins like a gzip file.
+/// Checks whether a file begins like a gzip file.
 #[must_use]
 pub fn is_packed(bytes: &[u8]) -> bool {
     bytes.starts_with(&[0x1f, 0x8b])
 }
 
-/// The unpacked bytes; those of a file that is not packed are unchanged.
+/// Returns the unpacked bytes; those of a file that is not packed are unchanged.
 ///
 /// # Errors
 /// When gzip cannot read the bytes, or there are more of them than [`MOST_RATIO`] and [`FREE`]
@@ -37,7 +37,7 @@ pub fn unpack(bytes: &[u8]) -> Result<Cow<'_, [u8]>, Fault> {
     read.map_err(|e| Fault::file(format!("gzip: {e}")))?;
     if unpacked.len() > most {
         let message = format!(
-            "gzip: it unpacks to more than {most} bytes, {MOST_RATIO} times its length plus {FREE} bytes"
+            "gzip: the file unpacks to more than {most} bytes, which is {MOST_RATIO} times its length plus {FREE} bytes"
         );
         return Err(Fault::file(message));
     }

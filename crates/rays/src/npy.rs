@@ -23,7 +23,7 @@ pub(crate) fn write(set: &RaySet) -> Result<Vec<u8>, Fault> {
     Ok(bytes)
 }
 
-/// Why a row is not a valid ray.
+/// Checks a row; the error states why the row is not a valid ray.
 fn check(row: &[f64; 8]) -> Result<(), String> {
     let [.., kx, ky, kz, power, wavelength] = *row;
     if let Some(value) = row[..7].iter().find(|v| !v.is_finite()) {
@@ -82,7 +82,7 @@ pub(crate) fn read(bytes: &[u8]) -> Result<RaySet, Fault> {
     Ok(set)
 }
 
-/// The offset of the data, and the numbers of rows and columns.
+/// Returns the offset of the data, and the numbers of rows and columns.
 fn shape(bytes: &[u8]) -> Result<(usize, usize, usize), Fault> {
     let refused = || {
         let message = "an NPY file of an array of f64 ('<f8') in C order, [rays, 7] or [rays, 8], is expected";

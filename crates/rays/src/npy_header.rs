@@ -19,7 +19,7 @@ const PREAMBLE: usize = 10;
 const MAX_DICTIONARY: usize = 1024;
 
 impl NpyHeader {
-    /// The header of an array in C order.
+    /// Returns the header of an array in C order.
     #[must_use]
     pub fn new(descr: &str, shape: &[u64]) -> Self {
         Self {
@@ -29,7 +29,7 @@ impl NpyHeader {
         }
     }
 
-    /// The header in version 1.0, padded so that the data begin at a multiple of 64 bytes.
+    /// Returns the header in version 1.0, padded so that the data begin at a multiple of 64 bytes.
     #[must_use]
     pub fn bytes(&self) -> Vec<u8> {
         let Self {
@@ -38,7 +38,7 @@ impl NpyHeader {
             shape,
         } = self;
         let order = if *fortran_order { "True" } else { "False" };
-        // A tuple of one needs its comma.
+        // A tuple of one element needs a comma.
         let shape = match shape.as_slice() {
             [one] => format!("{one},"),
             all => all
@@ -57,8 +57,8 @@ impl NpyHeader {
         header
     }
 
-    /// The header at the beginning of a file, and the offset of its data. `None` where the file has
-    /// no header of a numeric array: NumPy allows any Python literal there, but only flat
+    /// Returns the header at the beginning of a file, and the offset of its data. `None` where the
+    /// file has no header of a numeric array: NumPy allows any Python literal there, but only flat
     /// dictionaries are read here.
     #[must_use]
     pub fn read(file: &[u8]) -> Option<(Self, usize)> {
@@ -113,7 +113,7 @@ impl NpyHeader {
     }
 }
 
-/// The content of a Python string without escapes.
+/// Returns the content of a Python string without escapes.
 fn unquoted(text: &str) -> Option<&str> {
     let text = text.trim();
     let quote = text.chars().next().filter(|c| matches!(c, '\'' | '"'))?;
@@ -152,7 +152,7 @@ mod tests {
             ..NpyHeader::new("<f8", &[2, 3])
         };
         assert_eq!(read(numpy), Some(header));
-        // The notation of other programs.
+        // Other programs write this notation.
         let other = r#"{"shape": (5,), "fortran_order": False, "descr": "<f8"}"#;
         assert_eq!(read(other), Some(NpyHeader::new("<f8", &[5])));
     }

@@ -15,7 +15,7 @@ pub enum PowerUnit {
 }
 
 impl PowerUnit {
-    /// The symbol of the unit.
+    /// Returns the symbol of the unit.
     #[must_use]
     pub fn symbol(self) -> &'static str {
         match self {
@@ -58,25 +58,26 @@ pub struct RaySet {
 }
 
 impl RaySet {
-    /// The number of rays.
+    /// Returns the number of rays.
     #[must_use]
     pub fn len(&self) -> usize {
         self.positions.len()
     }
 
-    /// Whether the set is empty.
+    /// Checks whether the set is empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
     }
 
-    /// The power of all rays, in the set's unit.
+    /// Returns the power of all rays, in the set's unit.
     #[must_use]
     pub fn total_power(&self) -> f64 {
         self.powers.iter().sum()
     }
 
-    /// The bounding box of the positions, lower and upper corner, metres; `None` without rays.
+    /// Returns the bounding box of the positions, lower and upper corner, metres; `None` without
+    /// rays.
     #[must_use]
     pub fn bounds(&self) -> Option<[[f64; 3]; 2]> {
         let first = *self.positions.first()?;
@@ -90,7 +91,7 @@ impl RaySet {
         Some(self.positions.iter().fold([first, first], grow))
     }
 
-    /// The wavelength of a ray, metres; `None` where it is unknown.
+    /// Returns the wavelength of a ray, metres; `None` where it is unknown.
     #[must_use]
     pub fn wavelength(&self, ray: usize) -> Option<f64> {
         let known = match &self.wavelengths {
@@ -102,12 +103,12 @@ impl RaySet {
     }
 }
 
-/// The length of a vector.
+/// Returns the length of a vector.
 pub(crate) fn length(v: [f64; 3]) -> f64 {
     v.iter().map(|c| c * c).sum::<f64>().sqrt()
 }
 
-/// The unit vector along a vector that is neither zero nor infinite.
+/// Returns the unit vector along a vector that is neither zero nor infinite.
 pub(crate) fn unit(v: [f64; 3]) -> [f64; 3] {
     let length = length(v);
     v.map(|c| c / length)

@@ -37,7 +37,8 @@ fn seeds() -> Vec<Vec<u8>> {
         .to_vec()
 }
 
-/// A file with a few bytes, numbers or its length changed, more often in the header than in rays.
+/// Returns a file with a few bytes, numbers or its length changed, more often in the header than in
+/// rays.
 fn mutate(seed: &[u8], dice: &mut Dice) -> Vec<u8> {
     let mut bytes = seed.to_vec();
     for _ in 0..=dice.below(4) {
@@ -78,7 +79,7 @@ fn mutate(seed: &[u8], dice: &mut Dice) -> Vec<u8> {
     bytes
 }
 
-/// The peak address space of the process, bytes; only Linux reports it.
+/// Returns the peak address space of the process, bytes; only Linux reports it.
 fn peak() -> Option<usize> {
     let status = fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|l| l.starts_with("VmPeak:"))?;

@@ -53,11 +53,11 @@ impl ChiSquare {
         }
     }
 
-    /// Checks against four and a half standard deviations of χ², exceeded in one comparison of
-    /// 300,000.
+    /// Checks against four and a half standard deviations of χ², which are exceeded in one
+    /// comparison of 300,000.
     ///
-    /// The integral is that of the midpoint rule over cells of 32 × 32 points, some of which are
-    /// cut by edges of the density, and the share is that of some 100,000 samples.
+    /// The integral comes from the midpoint rule over cells of 32 × 32 points, some of which are
+    /// cut by edges of the density. The share comes from some 100,000 samples.
     #[must_use]
     pub fn agrees(&self) -> bool {
         self.chi2 < self.cells + 4.5 * (2.0 * self.cells).sqrt() && self.excess.abs() < 5e-3
@@ -146,7 +146,7 @@ impl SphereCells {
         angles.sort_by(f64::total_cmp);
         let mut rings = vec![0.0];
         rings.extend((1..RINGS).map(|i| angles[i * angles.len() / RINGS]));
-        // The tail, and the edge of a lobe, where the density may jump.
+        // These rings resolve the tail, and the edge of a lobe, where the density may jump.
         rings.extend([255, 4095].map(|i| angles[i * angles.len() / (i + 1)]));
         rings.extend([0.5 * PI, PI]);
         rings.sort_by(f64::total_cmp);

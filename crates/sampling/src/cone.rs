@@ -28,8 +28,8 @@ impl Cone {
         }
     }
 
-    /// Returns the cone that a sphere subtends whose centre is at `way` from the observer; `None`
-    /// from inside the sphere.
+    /// Returns the cone of directions to a sphere, where `way` leads from the observer to the
+    /// centre of the sphere; `None` from inside the sphere.
     #[must_use]
     pub fn around_sphere(way: DVec3, radius: f64) -> Option<Self> {
         let squared = way.length_squared();

@@ -61,7 +61,7 @@ impl LatLongSampler {
     pub fn sample(&self, r: [f64; 4]) -> DVec3 {
         let row = self.rows.sample(r[0]);
         let column = self.columns[row].sample(r[1]);
-        // Reflected back at the poles.
+        // A position beyond a pole is reflected back.
         let [top, bottom] = self.map.poles();
         let down = top + (row as f64 + 0.5 + tent(r[3]) - top).abs();
         let down = bottom - (bottom - down).abs();

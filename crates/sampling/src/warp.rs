@@ -28,8 +28,8 @@ pub fn sphere([a, b]: [f64; 2]) -> DVec3 {
     polar(2.0 * a, b)
 }
 
-/// Samples a direction with z > 0 by its cosine to Z (Malley's method: a point of the disc below
-/// the hemisphere).
+/// Samples a direction with z > 0 in proportion to its cosine to Z (Malley's method: a point of the
+/// disc below the hemisphere).
 #[inline]
 #[must_use]
 pub fn cosine_hemisphere([a, b]: [f64; 2]) -> DVec3 {

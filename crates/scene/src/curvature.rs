@@ -4,13 +4,14 @@ use crate::scene::{Hit, MeshObject};
 use etendue_field::{Frame, Patch};
 use glam::DVec3;
 
-/// The radius, in longest edges of the triangle hit, within which vertices are used.
+/// The radius within which vertices are used, in units of the longest edge of the triangle that was
+/// hit.
 const EDGES: f64 = 6.0;
 
 impl MeshObject {
-    /// The least-squares paraboloid through the vertices around a hit. Its frame has the principal
-    /// directions there, its curvatures are the principal ones, and it faces the side from which
-    /// the light comes. `None` where there are too few vertices.
+    /// Returns the least-squares paraboloid through the vertices around a hit. Its frame has the
+    /// principal directions there, its curvatures are the principal ones, and it faces the side
+    /// from which the light comes. `None` where there are too few vertices.
     #[must_use]
     pub fn osculating(&self, hit: &Hit) -> Option<Patch> {
         let [a, b, c] = self.triangles[self.nearest(hit)?];
@@ -45,14 +46,14 @@ impl MeshObject {
         })
     }
 
-    /// Whether light comes to a hit from the side that the mesh's normals point away from.
+    /// Checks whether light comes to a hit from the side that the mesh's normals point away from.
     #[must_use]
     pub fn is_met_on_its_back(&self, hit: &Hit) -> bool {
         let nearest = self.nearest(hit);
         nearest.is_some_and(|i| self.normal(i, hit.point).dot(hit.normal) < 0.0)
     }
 
-    /// The triangle whose middle is nearest to a hit.
+    /// Returns the triangle whose middle is nearest to a hit.
     fn nearest(&self, hit: &Hit) -> Option<usize> {
         let distance = |i: &usize| {
             let middle: DVec3 = self.triangles[*i].iter().sum::<DVec3>() / 3.0;
@@ -62,8 +63,8 @@ impl MeshObject {
     }
 }
 
-/// h, ∂h/∂s, ∂h/∂t, ∂²h/∂s², ∂²h/∂s∂t and ∂²h/∂t² at the origin of a frame, for the least-squares
-/// quadratic in (s, t) through points (s, t, h).
+/// Returns h, ∂h/∂s, ∂h/∂t, ∂²h/∂s², ∂²h/∂s∂t and ∂²h/∂t² at the origin of a frame, for the
+/// least-squares quadratic in (s, t) through points (s, t, h).
 fn quadric(frame: &Frame, points: &[DVec3], unit: f64) -> Option<[f64; 6]> {
     let rows = points.iter().map(|point| {
         let DVec3 { x, y, z } = frame.to_local(*point) / unit;
@@ -73,7 +74,7 @@ fn quadric(frame: &Frame, points: &[DVec3], unit: f64) -> Option<[f64; 6]> {
     Some([h * unit, s, t, ss / unit, st / unit, tt / unit])
 }
 
-/// The least-squares solution x of a · x = b over rows [a, b]. `None` where the rows do not
+/// Returns the least-squares solution x of a · x = b over rows [a, b]. `None` where the rows do not
 /// determine x.
 fn least_squares<const N: usize, const M: usize>(
     rows: impl Iterator<Item = [f64; M]>,

@@ -13,7 +13,7 @@ const NEAR: f64 = 10.0;
 /// Larger slopes, beyond 79° from the central ray, are rarely meant.
 const STEEP: f64 = 5.0;
 
-/// A description of each likely mistake.
+/// Returns a description of each likely mistake.
 pub(crate) fn mistakes(scene: &Scene) -> Vec<String> {
     let planes = scene.file.planes.iter().zip(&scene.planes).enumerate();
     let mut told = BTreeSet::new();
@@ -25,7 +25,7 @@ pub(crate) fn mistakes(scene: &Scene) -> Vec<String> {
     long(scene).into_iter().chain(steep).chain(told).collect()
 }
 
-/// Lengths that seem to be in millimetres.
+/// Warns of lengths that seem to be in millimetres.
 fn long(scene: &Scene) -> Option<String> {
     let file = serde_json::to_value(&scene.file).ok()?;
     let mut lengths = Vec::new();
@@ -59,7 +59,7 @@ fn long(scene: &Scene) -> Option<String> {
     })
 }
 
-/// Slopes that seem to be angles in degrees.
+/// Warns of slopes that seem to be angles in degrees.
 fn steep(window: &WindowFile) -> Option<String> {
     let axes = [("u", Some(&window.u)), ("v", window.v.as_ref())];
     let (name, slope) = axes
@@ -73,7 +73,7 @@ fn steep(window: &WindowFile) -> Option<String> {
     ))
 }
 
-/// All lengths below a node, each with the path of its field.
+/// Collects all lengths below a node, each with the path of its field.
 fn collect(node: &Value, path: &str, is_length: bool, lengths: &mut Vec<(String, f64)>) {
     const LENGTHS: [&str; 9] = [
         "center", "size", "radius", "pitch", "edge", "aperture", "half", "Distance", "x",
@@ -104,7 +104,7 @@ fn collect(node: &Value, path: &str, is_length: bool, lengths: &mut Vec<(String,
     }
 }
 
-/// Frequencies that end before the first step that the window resolves.
+/// Warns of frequencies that end before the first step that the window resolves.
 fn coarse(
     i: usize,
     file: &PlaneFile,
@@ -134,7 +134,7 @@ fn coarse(
     told.collect()
 }
 
-/// Arrays beyond whose edges a plane receives light.
+/// Warns of arrays that let light pass beyond their edges to a plane.
 fn past_edges(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
     let arrays = scene.blockers.iter().filter(|layer| layer.pitch.is_some());
     let told = arrays.filter_map(|layer| {
@@ -158,8 +158,8 @@ fn pair([x, y]: [f64; 2]) -> String {
     format!("({}, {})", brief(x), brief(y))
 }
 
-/// The extent of an array from the central ray, along X and along Y: to half a pitch beyond the
-/// centres of its last squares.
+/// Returns the extent of an array from the central ray, along X and along Y: to half a pitch beyond
+/// the centres of its last squares.
 fn edges(layer: &BlockerLayer) -> Option<[f64; 2]> {
     let Mask::Opaque { shapes, .. } = &layer.mask else {
         return None;
@@ -174,8 +174,8 @@ fn edges(layer: &BlockerLayer) -> Option<[f64; 2]> {
     }))
 }
 
-/// The distance from the central ray at which light seen by a plane passes a place on the first
-/// leg.
+/// Returns the distance from the central ray at which light seen by a plane passes a place on the
+/// first leg.
 fn reach(scene: &Scene, plane: &VirtualPlane, at: f64) -> Option<[f64; 2]> {
     let w = &plane.window;
     let windows = [(&w.x, &w.u), (&w.y, &w.v)].map(|(x, u)| [x.half_width(), u.half_width()]);
@@ -196,7 +196,7 @@ fn reach(scene: &Scene, plane: &VirtualPlane, at: f64) -> Option<[f64; 2]> {
         let from_plane = x + (end - at) * u;
         match (plane.leg, &scene.light) {
             (_, Light::Beam { .. }) => hit,
-            // For light from an environment nothing is known, which leaves the other bound.
+            // An environment gives no bound, so the minimum is the other bound.
             (0, _) => from_plane.min(from_light),
             _ => from_light,
         }

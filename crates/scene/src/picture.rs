@@ -13,9 +13,10 @@ const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 /// The largest number of values in a file: 8192 × 4096 pixels of red, green, blue and alpha.
 const MAX_NUMBERS: usize = 1 << 27;
 
-/// The largest number of values per byte of a file: DEFLATE makes at most 1032 bytes of one (RFC
-/// 1951; zlib's technical notes), which are as many values of a PNG file and half as many of an
-/// OpenEXR file. So memory is allocated for what a file can hold, not for what its header claims.
+/// The largest number of values per byte of a file: DEFLATE expands one byte to at most 1032 bytes
+/// (RFC 1951; zlib's technical notes). These hold 1032 values of a PNG file, or half as many values
+/// of an OpenEXR file. So memory is allocated for what a file can hold, not for what its header
+/// claims.
 const MOST_PER_BYTE: usize = 1032;
 
 /// A picture: grey, or red, green and blue.
@@ -35,7 +36,7 @@ pub struct Channels {
 }
 
 impl Channels {
-    /// The picture as one number for each pixel.
+    /// Returns the picture as one number for each pixel.
     ///
     /// # Errors
     /// When the picture has no pixels.
@@ -161,7 +162,8 @@ fn exr(bytes: &[u8]) -> Result<Channels, Fault> {
     ))
 }
 
-/// The number of values per pixel of a layer, and the values; `None` if the channels are missing.
+/// Returns the number of values per pixel of a layer, and the values; `None` if the channels are
+/// missing.
 fn colours(channels: &AnyChannels<FlatSamples>) -> Option<(usize, Vec<f64>)> {
     let channel = |name: &str| {
         let mut list = channels.list.iter();

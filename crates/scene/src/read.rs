@@ -15,7 +15,7 @@ pub enum ReadError {
     #[error("not a regular file")]
     NotRegular,
     /// The path, with links followed, leads out of the folder.
-    #[error("outside of the folder it must be in, after links are followed")]
+    #[error("outside of the required folder, after links are followed")]
     Outside,
     /// The file is longer than allowed.
     #[error("{length} bytes long; allowed: at most {most}")]
@@ -27,12 +27,13 @@ pub enum ReadError {
     },
 }
 
-/// The bytes of a regular file, at most `most` of them.
+/// Returns the bytes of a regular file, at most `most` of them.
 ///
 /// # Errors
-/// [`ReadError`]; a path outside of every folder is not an error here.
+/// [`ReadError`]; the file may be in any folder.
 pub fn read_file(path: &Path, most: u64) -> Result<Vec<u8>, ReadError> {
-    // Checked before opening: opening a pipe would wait for the other end.
+    // The kind of file is checked before opening, because opening a pipe would wait for the other
+    // end.
     if !fs::metadata(path)?.is_file() {
         return Err(ReadError::NotRegular);
     }
@@ -50,7 +51,8 @@ pub fn read_file(path: &Path, most: u64) -> Result<Vec<u8>, ReadError> {
     }
 }
 
-/// The bytes of the regular file `name`, which must be below `folder` after all links are followed.
+/// Returns the bytes of the regular file `name`, which must be below `folder` after all links are
+/// followed.
 ///
 /// # Errors
 /// [`ReadError`].
@@ -70,7 +72,7 @@ pub fn read_below(folder: &Path, name: &str, most: u64) -> Result<Vec<u8>, ReadE
     read_file(&path, most)
 }
 
-/// Whether a path, as written, never leads upwards.
+/// Checks whether a path, as written, never leads upwards.
 pub(crate) fn leads_down(path: &str) -> bool {
     let mut components = Path::new(path).components();
     components.all(|c| matches!(c, Component::Normal(_)))

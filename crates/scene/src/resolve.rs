@@ -58,7 +58,7 @@ pub fn resolve(
     }
 }
 
-/// Ten times the smallest possible p-value.
+/// The lowest allowed level of a test: ten times the smallest possible p-value.
 const LEAST_LEVEL: f64 = 5e-4;
 /// Relative distance below which two planes across the path count as the same.
 const SAME_PLANE: f64 = 1e-9;
@@ -131,7 +131,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// The bytes of a file named in the scene.
+    /// Returns the bytes of a file named in the scene.
     fn named_file(&mut self, of: &str, name: &str) -> Option<Vec<u8>> {
         match read_below(self.folder, name, INPUT_BYTES) {
             Ok(bytes) => {
@@ -184,7 +184,7 @@ impl Resolver<'_> {
     }
 
     fn run(&mut self, run: &RunFile) {
-        // A batch of one photon has a spread, an empty batch has none.
+        // A batch of one photon has a spread, but an empty batch has none.
         let least = u64::from(run.batches);
         if !(least..=1_000_000_000_000).contains(&run.photons) {
             let allowed = format!("{least} (one for each batch) to 10^12");
@@ -221,7 +221,7 @@ impl PathStop<'_> {
     }
 }
 
-/// All objects of a scene, sorted by distance.
+/// Returns all objects of a scene, sorted by distance.
 fn stops<'a>(path: &CentralRay, things: Things<'a>) -> Vec<PathStop<'a>> {
     let ends = |object: Object| {
         let mut legs = 0..path.legs.len();
@@ -257,7 +257,7 @@ fn stops<'a>(path: &CentralRay, things: Things<'a>) -> Vec<PathStop<'a>> {
     stops
 }
 
-/// Smallest and largest distance of points.
+/// Returns the smallest and largest distance of points.
 fn extent(points: &[DVec3]) -> [f64; 2] {
     let low = points.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
     let high = points.iter().map(|p| p.z).fold(f64::NEG_INFINITY, f64::max);

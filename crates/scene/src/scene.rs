@@ -6,11 +6,11 @@ use glam::DVec3;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// A checked experiment. Distances are along the central ray from the light, blockers lie across its first leg, and
-/// all coordinates are those of the frame at the light.
+/// A checked experiment. Distances are along the central ray from the light, and blockers lie
+/// across the first leg of this ray. All coordinates are those of the frame at the light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// Name of the scene: the file's, without its extension.
+    /// Name of the scene: the name of its file, without the extension.
     pub name: String,
     /// The file that the scene was resolved from, defaults and overrides included.
     pub file: SceneFile,
@@ -56,7 +56,7 @@ pub struct Leg {
     pub leaves: Option<Hit>,
 }
 
-/// Where the central ray meets a surface.
+/// A point where the central ray meets a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// The object that the ray meets.
@@ -80,9 +80,9 @@ pub enum Object {
 }
 
 impl Hit {
-    /// The frame (T, B, N) at the hit, for light that arrives in a frame, and the longitude θ₀ of
-    /// the direction it comes from: T lies in the plane of incidence, and X is rotated to −T at
-    /// normal incidence (docs/conventions.md).
+    /// Returns the frame (T, B, N) at the hit, for light that arrives in a frame, and the longitude
+    /// θ₀ of the direction from which the light comes: T lies in the plane of incidence, and X is
+    /// rotated to −T at normal incidence (docs/conventions.md).
     #[must_use]
     pub fn surface_frame(&self, arriving: &Frame) -> (Frame, f64) {
         let (n, from) = (self.normal, -arriving.d);
@@ -104,32 +104,32 @@ impl Hit {
 }
 
 impl CentralRay {
-    /// Distance at which the central ray meets its first surface.
+    /// Returns the distance at which the central ray meets its first surface.
     #[must_use]
     pub fn first_hit(&self) -> f64 {
         self.legs[0].length
     }
 
-    /// The hit at which the leg ends; `None` for the last leg.
+    /// Returns the hit at which the leg ends; `None` for the last leg.
     #[must_use]
     pub fn ends_at(&self, leg: usize) -> Option<&Hit> {
         self.legs.get(leg + 1)?.leaves.as_ref()
     }
 
-    /// Whether the path visits an object.
+    /// Checks whether the path visits an object.
     #[must_use]
     pub fn visits(&self, object: Object) -> bool {
         let mut hits = self.legs.iter().filter_map(|leg| leg.leaves);
         hits.any(|hit| hit.object == object)
     }
 
-    /// Distance of a plane along its leg.
+    /// Returns the distance of a plane along its leg.
     #[must_use]
     pub fn along(&self, plane: &VirtualPlane) -> f64 {
         plane.distance - self.legs[plane.leg].start
     }
 
-    /// The frame at a distance along the path, on a leg, in the frame at the light.
+    /// Returns the frame at a distance along the path, on a leg, in the frame at the light.
     #[must_use]
     pub fn frame_at(&self, distance: f64, leg: usize) -> Frame {
         let Leg { frame, start, .. } = &self.legs[leg];
@@ -144,7 +144,7 @@ pub struct BlockerLayer {
     pub name: String,
     /// Distance of the layer's plane.
     pub distance: f64,
-    /// Distance between repetitions, if any: they replicate spectra at multiples of 1/pitch.
+    /// Distance between repetitions, if any. Repetitions replicate spectra at multiples of 1/pitch.
     pub pitch: Option<f64>,
     /// The mask that multiplies radiance.
     pub mask: Mask,
@@ -161,7 +161,7 @@ pub struct MeshObject {
     pub triangles: Triangles,
     /// The nearest and the farthest distance of the corners.
     pub extent: [f64; 2],
-    /// Reflected over incident flux; `None` if the mesh is not Lambertian.
+    /// The ratio of reflected to incident flux; `None` if the mesh is not Lambertian.
     pub albedo: Option<f64>,
     /// The smooth surface, if the mesh is one.
     pub smooth: Option<SmoothMesh>,
@@ -177,7 +177,7 @@ pub struct SmoothMesh {
 }
 
 impl MeshObject {
-    /// Whether the mesh is neither Lambertian nor smooth.
+    /// Checks whether the mesh is neither Lambertian nor smooth.
     #[must_use]
     pub fn is_black(&self) -> bool {
         self.albedo.is_none() && self.smooth.is_none()
@@ -205,8 +205,8 @@ pub enum Event {
 }
 
 impl Event {
-    /// Whether light leaves the surface in or near the mirror direction, unlike Lambertian light.
-    /// For a sum of BRDFs the first one decides.
+    /// Checks whether light leaves the surface in or near the mirror direction, unlike Lambertian
+    /// light. For a sum of BRDFs the first one decides.
     #[must_use]
     pub fn mirrors(&self) -> bool {
         match self {
@@ -226,17 +226,17 @@ pub struct Surface {
     pub frame: Frame,
     /// Side lengths along X and Y of the frame.
     pub size: [f64; 2],
-    /// Reflected over incident flux.
+    /// The ratio of reflected to incident flux.
     pub albedo: f64,
 }
 
 impl Surface {
-    /// Distance and rectangle, if the surface lies across the first leg with its edges along X and
-    /// Y.
+    /// Returns the distance and the rectangle, if the surface lies across the first leg with its
+    /// edges along X and Y.
     #[must_use]
     #[expect(
         clippy::float_cmp,
-        reason = "the very numbers of a rectangle that does not say where it faces"
+        reason = "a rectangle without a `facing` field has exactly these numbers"
     )]
     pub fn across(&self) -> Option<(f64, Rectangle)> {
         let Frame { origin, x, d, .. } = &self.frame;
@@ -249,7 +249,7 @@ impl Surface {
         ))
     }
 
-    /// The four corners of the surface, in the frame at the light.
+    /// Returns the four corners of the surface, in the frame at the light.
     #[must_use]
     pub fn corners(&self) -> [DVec3; 4] {
         let [x, y] = self.size.map(|side| 0.5 * side);
@@ -259,7 +259,7 @@ impl Surface {
 }
 
 impl Scene {
-    /// The same scene with only some of its planes, given by index.
+    /// Returns the same scene with only some of its planes, given by index.
     #[must_use]
     pub fn seen_at(&self, planes: &[usize]) -> Self {
         Self {
@@ -268,14 +268,14 @@ impl Scene {
         }
     }
 
-    /// BLAKE3 hash of everything that defines the scene: its file, defaults and overrides included,
-    /// as JSON, followed by the name and hash of each mesh and picture it names.
+    /// Returns the BLAKE3 hash of everything that defines the scene. Its input is the scene file as
+    /// JSON, with defaults and overrides, followed by the name and hash of each mesh and picture.
     #[must_use]
     pub fn hash(&self) -> String {
         scene_hash(&self.file, &self.inputs)
     }
 
-    /// The name of a surface.
+    /// Returns the name of a surface.
     #[must_use]
     pub fn name_of(&self, object: Object) -> &str {
         match object {
@@ -305,7 +305,7 @@ pub struct Run {
     pub sampling: Sampling,
 }
 
-/// [`Scene::hash`] of a file and of the hashes of the files it names.
+/// Returns [`Scene::hash`] of a file and of the hashes of the files it names.
 #[must_use]
 pub fn scene_hash(file: &SceneFile, inputs: &BTreeMap<String, String>) -> String {
     let mut hasher = blake3::Hasher::new();

@@ -31,7 +31,7 @@ impl Triangles {
         }))
     }
 
-    /// The lowest and the highest corner of the bounding box.
+    /// Returns the lowest and the highest corner of the bounding box.
     #[must_use]
     pub fn bounds(&self) -> [DVec3; 2] {
         self.0.bounds

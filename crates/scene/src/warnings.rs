@@ -9,7 +9,8 @@ use std::f64::consts::{PI, TAU};
 /// The difference of a spectrum between photons and backward rays above which a mesh causes a
 /// warning.
 const LEVEL: f64 = 0.01;
-/// The largest number of triangles examined; of finer meshes every second, every third, ….
+/// The largest number of triangles examined; in finer meshes only every second, every third, …
+/// triangle is examined.
 const MAX_TRIANGLES: usize = 20_000;
 /// The number of pieces of a window across which triangles are subdivided.
 const PIECES: f64 = 8.0;
@@ -21,15 +22,16 @@ const WAVES: usize = 8;
 const SLOPES: [f64; 3] = [-0.5, 0.0, 0.5];
 
 impl Scene {
-    /// Warnings in words: one for each likely mistake, and one for each smooth mesh on the path
-    /// that is too coarse.
+    /// Returns warnings in words: one for each likely mistake, and one for each smooth mesh on the
+    /// path that is too coarse.
     ///
-    /// A mesh deflects light by its interpolated normal n and receives it by the normal t of the
-    /// triangle. Photons that come along d and leave along e then have (d·t / d·n) / (e·t / e·n)
-    /// times the radiance that backward rays find: interpolated normals do not conserve étendue.
-    /// The effect on a plane is the spectrum of the window times that factor less 1, over the
-    /// spectrum of the window, both where the mesh is hit, at the measured frequencies along x and
-    /// y: facets finer than those average out.
+    /// A mesh deflects light according to its interpolated normal n, but receives light according
+    /// to the normal t of the triangle. Photons that come along d and leave along e then have (d·t
+    /// / d·n) / (e·t / e·n) times the radiance that backward rays find: interpolated normals do not
+    /// conserve étendue. The effect on a plane is the ratio of two spectra at the measured
+    /// frequencies along x and y. The first is the spectrum of the window times the factor less 1,
+    /// and the second is the spectrum of the window, both where the mesh is hit. Facets finer than
+    /// the waves of these frequencies average out.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = mistakes(self);
@@ -56,7 +58,7 @@ impl Scene {
         warnings
     }
 
-    /// A warning about the rays of a ray file that are omitted.
+    /// Returns a warning about the rays of a ray file that are omitted.
     fn rays_behind(&self) -> Option<String> {
         let Light::Rays { rays } = &self.light else {
             return None;
@@ -71,9 +73,9 @@ impl Scene {
         })
     }
 
-    /// The possible difference between photons and backward rays at a plane because a smooth mesh
-    /// before it is too coarse, as a share of the spectrum (see [`warnings`](Self::warnings)).
-    /// `None` without such a mesh.
+    /// Returns the possible difference between photons and backward rays at a plane, as a share of
+    /// the spectrum. The cause is a smooth mesh before the plane that is too coarse (see
+    /// [`warnings`](Self::warnings)). `None` without such a mesh.
     #[must_use]
     pub fn mesh_mismatch(&self, plane: &VirtualPlane) -> Option<f64> {
         let legs = 1..=plane.leg;
@@ -81,7 +83,7 @@ impl Scene {
         all.max_by(f64::total_cmp)
     }
 
-    /// The smooth mesh at the beginning of a leg, and the difference it causes at a plane.
+    /// Returns the smooth mesh at the beginning of a leg, and the difference it causes at a plane.
     fn mismatch(&self, leg: usize, plane: &VirtualPlane) -> Option<(&MeshObject, f64)> {
         let legs = [&self.path.legs[leg - 1], &self.path.legs[leg]];
         let Object::Mesh(mesh) = legs[1].leaves?.object else {
@@ -119,7 +121,8 @@ struct WindowSums {
 /// A wave with frequency Ω, and the spectra at that frequency.
 struct Wave {
     frequency: [f64; 2],
-    /// 2 where the complex conjugate is a different wave.
+    /// The number of waves represented: 2 if the complex conjugate is a different wave, otherwise
+    /// 1.
     times: f64,
     difference: [f64; 2],
     whole: [f64; 2],
@@ -135,7 +138,7 @@ impl Wave {
     }
 }
 
-/// The waves of a plane's frequencies along x and y.
+/// Returns the waves of a plane's frequencies along x and y.
 fn waves(plane: &VirtualPlane) -> Vec<Wave> {
     let axis = &plane.grid.rho;
     let orders = 0..=axis.half.min(WAVES);
@@ -176,7 +179,7 @@ impl<'a> WindowView<'a> {
         }
     }
 
-    /// The root of the energy of the difference over that of the window.
+    /// Returns the root of the ratio of the energy of the difference to the energy of the window.
     fn mismatch(&self) -> f64 {
         let mut waves = waves(self.plane);
         let stride = self.mesh.triangles.len().div_ceil(MAX_TRIANGLES);
@@ -227,7 +230,7 @@ impl<'a> WindowView<'a> {
         let flat = (q - p).cross(r - p).normalize();
         let area = (b - a).cross(c - a).z.abs();
         let mut sums = WindowSums::default();
-        // Three points of a triangle that integrate squares exactly.
+        // The sum over three points of a triangle integrates squares exactly.
         for corner in piece {
             let point = (a + b + c + 3.0 * *corner) / 6.0;
             let normal = interpolated_normal(whole, normals, point);

@@ -18,7 +18,7 @@ const FIELDS: [(&str, &str); 5] = [
     ("frequencies", "frequencies: (rho: (max: 8), nu: (max: 8))"),
 ];
 
-/// The fields in a page's fragments of scenes; each begins a line.
+/// Returns the fields in a page's fragments of scenes; each begins a line.
 fn fragments(page: &str) -> Vec<String> {
     let blocks = page.split("```ron fragment\n").skip(1);
     let mut fields: Vec<String> = Vec::new();

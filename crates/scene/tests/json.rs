@@ -6,7 +6,7 @@ use etendue_scene::{SceneFile, resolve};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The scenes of this repository.
+/// Returns the scenes of this repository.
 fn scenes() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
     let folders = [folder.clone(), folder.join("table1"), folder.join("wild")];

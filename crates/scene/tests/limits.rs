@@ -35,7 +35,7 @@ fn resolved(text: &str) -> Result<Scene, SceneError> {
     resolve("test", SceneFile::parse(text)?, ".".as_ref(), u64::MAX)
 }
 
-/// The error of the scene in which `from` is replaced by `to`.
+/// Returns the error of the scene in which `from` is replaced by `to`.
 fn error(from: &str, to: &str) -> SceneError {
     assert!(text().contains(from), "{from} is not in the scene");
     resolved(&text().replacen(from, to, 1)).unwrap_err()
@@ -48,7 +48,7 @@ fn faults(from: &str, to: &str) -> Vec<Fault> {
     }
 }
 
-/// A layer of the shapes that `shape` writes for 0 to `count`.
+/// Returns a layer of the shapes that `shape` writes for 0 to `count`.
 fn layer(count: u32, shape: impl Fn(u32) -> String) -> String {
     let shapes: String = (0..count).map(|i| shape(i) + ",").collect();
     format!(r#"Shapes(name: "some", center: (0, 0, 1), shapes: [{shapes}])"#)
@@ -86,7 +86,7 @@ fn the_last_pair_that_overlaps_is_found() {
             i => format!("Disc(center: ({}, {}), radius: 0.5)", i % 122, i / 122),
         })
     };
-    // A disc in the gap between four discs, and a slightly larger one.
+    // The first disc fits in the gap between four discs; the second is slightly larger.
     for (radius, told) in [(0.207, None), (0.208, Some("shapes[17] and shapes[14999]"))] {
         let shapes = apart(&format!("Disc(center: (17.5, 0.5), radius: {radius})"));
         let text = text().replacen(BLOCKERS, &shapes, 1);
@@ -98,7 +98,7 @@ fn the_last_pair_that_overlaps_is_found() {
     }
 }
 
-/// The fault of a layer of two squares and some half-planes, if any.
+/// Returns the fault of a layer of two squares and some half-planes, if any.
 fn overlap_of(half_planes: &str) -> Option<String> {
     let squares =
         "Rectangle(center: (0, 0), size: (1, 1)), Rectangle(center: (2, 0), size: (1, 1)),";
@@ -151,7 +151,7 @@ fn a_fault_that_planes_share_is_told_once() {
     assert_eq!(told.lines().count(), 1, "{told}");
 }
 
-/// A list of `count` items, each written with its number.
+/// Returns a list of `count` items, each written with its number.
 fn list(count: u32, thing: impl Fn(u32) -> String) -> String {
     (0..count).fold(String::new(), |mut all, i| {
         write!(all, "{},", thing(i)).unwrap();
@@ -271,7 +271,7 @@ fn the_scene_itself_has_a_name_that_can_be_a_folder() {
     }
 }
 
-/// Whether a message is short and safe for a terminal.
+/// Checks whether a message is short and safe for a terminal.
 fn is_plain(message: &str) -> bool {
     let printable = |c: char| !c.is_control() && !matches!(c, '\u{202a}'..='\u{202e}' | '\u{fffe}');
     message.chars().count() < 3_000 && message.lines().all(|line| line.chars().all(printable))
@@ -332,7 +332,7 @@ fn a_value_that_is_set_is_nested_no_deeper_than_a_scene() {
         open("(") + &close,
         open("a(") + &close,
         open("(a:") + &close,
-        // Brackets closed one by one, and all at the end.
+        // The brackets are closed one by one, or all at the end.
         open("(a)") + &close,
     ] {
         let told = quickly("a nested value", || {
@@ -368,7 +368,7 @@ fn sets(fields: &[(&str, &str)]) -> Vec<(String, String)> {
 fn fields_set_together_are_as_set_one_after_the_other() {
     let fields = sets(&[
         ("run.photons", "1e6"),
-        // The phase is not written, and set by the next edit.
+        // The phase is not written, and the next edit sets it.
         (
             "blockers.0",
             "Grating(name: bars, center: (0, 0, 1), axis: X, frequency: 3)",

@@ -14,15 +14,15 @@ fn read(name: &str, bytes: impl AsRef<[u8]>) -> Result<Mesh, Fault> {
     Mesh::parse(Path::new(name), bytes.as_ref())
 }
 
-/// The enclosed volume, by the divergence theorem; positive when triangles face outward.
+/// Returns the enclosed volume, by the divergence theorem; positive when triangles face outward.
 fn volume(mesh: &Mesh) -> f64 {
     mesh.corners()
         .map(|[a, b, c]| a.dot(b.cross(c)) / 6.0)
         .sum()
 }
 
-/// Whether every edge is traversed once in each direction, so that two triangles share it and agree
-/// on the outside.
+/// Checks whether every edge is traversed once in each direction, so that two triangles share it
+/// and agree on the outside.
 fn closed(mesh: &Mesh) -> bool {
     let mut edges: HashMap<[u32; 2], [u32; 2]> = HashMap::new();
     for [a, b, c] in mesh.triangles() {
@@ -34,8 +34,8 @@ fn closed(mesh: &Mesh) -> bool {
     edges.values().all(|walks| *walks == [1, 1])
 }
 
-/// The Euler characteristic of a closed mesh, vertices less edges plus faces: 2 for a sphere's
-/// topology.
+/// Returns the Euler characteristic of a closed mesh, vertices less edges plus faces: 2 for a
+/// sphere's topology.
 fn euler(mesh: &Mesh) -> usize {
     mesh.vertices().len() + mesh.triangles().len() - mesh.triangles().len() * 3 / 2
 }
@@ -143,9 +143,9 @@ fn written_ply_reads_back_here_and_elsewhere() {
     assert_eq!(counts, [mesh.vertices().len(), mesh.triangles().len()]);
 }
 
-/// The triangles of an OBJ file as points agree with tobj's. The `l` line, which tobj takes for a
-/// triangle, the color, which it requires on all vertices or none, and the continued line, which it
-/// refuses, are left out.
+/// The triangles of an OBJ file as points agree with tobj's. Three things that tobj reads
+/// differently are left out: the `l` line, which tobj takes for a triangle, the colour, which tobj
+/// requires on all vertices or none, and the continued line, which tobj refuses.
 #[test]
 fn obj_agrees_with_an_independent_reader() {
     let text = std::str::from_utf8(CUBE_OBJ).unwrap();
@@ -219,7 +219,7 @@ fn faults_of_obj_files_are_told() {
     assert_eq!(told, "vertices (`v` lines) is 0; allowed: at least 3");
 }
 
-/// An ASCII triangle, with one piece replaced; the piece must be there.
+/// Returns an ASCII triangle, with one piece replaced; the piece must be there.
 fn edited(from: &str, to: &str) -> String {
     let sound = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
                  element face 1\nproperty list uchar int vertex_indices\nend_header\n\

@@ -11,7 +11,7 @@ use std::path::Path;
 const SQUARE: &str = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv 0 0 0.1\n";
 const ROOF: &str = "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
 
-/// A scene with a mesh below a light, and further text.
+/// Returns a scene with a mesh below a light, and further text.
 fn text(mesh: &str, rest: &str) -> String {
     format!(
         r#"(
@@ -30,7 +30,7 @@ fn resolved(text: &str, folder: &Path) -> Result<Scene, SceneError> {
     resolve("test", SceneFile::parse(text)?, folder, u64::MAX)
 }
 
-/// The result for a file with this content.
+/// Returns the result for a file with this content.
 fn file(name: &str, content: &str, rest: &str) -> Result<Scene, SceneError> {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join(name), content).unwrap();
@@ -70,7 +70,7 @@ fn vertices_whose_normals_cancel_are_named_as_the_file_counts() {
         file("a.obj", &both, "event: Mirror"),
         &[
             "surfaces[0].mesh, \"a.obj\": vertex 6 is without a normal",
-            "(2 more are not)",
+            "(2 more have this fault)",
         ],
     );
     told(
@@ -107,7 +107,7 @@ fn vertices_beyond_all_coordinates_are_named() {
         resolved(&far, ".".as_ref()),
         &[
             "surfaces[0].mesh, vertex 0 is at [",
-            "1000000000.0 (25 more are not)",
+            "1000000000.0 (25 more have this fault)",
         ],
     );
 }
@@ -127,7 +127,7 @@ fn triangles_too_thin_are_dropped_or_named() {
         &[
             "the triangle of vertices 1, 2 and 5 is",
             "m high; allowed: at least",
-            "(3 more are not)",
+            "(3 more have this fault)",
         ],
     );
 }
@@ -158,7 +158,7 @@ fn a_header_of_any_length_is_read_in_proportion() {
         assert!(fault.to_string().len() < 500, "{fault}");
         start.elapsed().as_secs_f64()
     };
-    // 60,000 took 6 s when each was compared with all previous ones.
+    // 60,000 names took 6 s when each name was compared with all previous ones.
     let properties = header(200_000, &|i| format!("property int p{i}\n"));
     let elements = header(200_000, &|i| format!("element e{i} 1\nproperty int p\n"));
     assert!(seconds(&properties) < 2.0);

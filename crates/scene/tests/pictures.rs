@@ -60,7 +60,7 @@ fn singles(values: &[f64]) -> FlatSamples {
     FlatSamples::F32(values.collect())
 }
 
-/// Levels of two rows of three pixels, of 8 bits.
+/// Writes levels of two rows of three pixels.
 fn write_png(file: &Path, color: png::ColorType, depth: png::BitDepth, bytes: &[u8]) {
     let mut encoder = png::Encoder::new(BufWriter::new(File::create(file).unwrap()), 3, 2);
     encoder.set_color(color);
@@ -69,7 +69,7 @@ fn write_png(file: &Path, color: png::ColorType, depth: png::BitDepth, bytes: &[
     writer.write_image_data(bytes).unwrap();
 }
 
-/// A folder with the files of a valid scene.
+/// Returns a folder with the files of a valid scene.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let levels = [0, 51, 102, 153, 204, 255];
@@ -108,7 +108,8 @@ fn lobes_are_where_the_axes_put_them() {
     let up = DVec3::new(0.0, 1.0, 0.2).normalize();
     assert!((found.frame.y - up).length() < 1e-15 && found.frame.d.z < -0.9); // rounding
     assert!((found.frame.x.cross(found.frame.y) - found.frame.d).length() < 1e-15); // likewise
-    // From straight above, three times a lobe of 1, and the tail of the other.
+    // Straight above, the radiance is three times that of a lobe of 1, plus the tail of the other
+    // lobe.
     let other = ((0.1 / 1.05_f64.sqrt() - 1.0) / 0.09).exp();
     let expected = 3.0 + 6.0 * other;
     assert!((found.radiance(-up) - expected).abs() < 1e-13); // rounding
@@ -146,7 +147,7 @@ fn maps_come_back_as_they_were_written() {
         };
         assert_eq!((found.raster().width(), found.raster().height()), (16, 8));
         for (a, b) in found.raster().values().iter().zip(&wanted) {
-            // Rounding of the weights of red, green and blue.
+            // The limit is the rounding error of the weights of red, green and blue.
             assert!((a - b).abs() < 1e-14, "{a} {b}");
         }
         assert_eq!(
@@ -199,7 +200,7 @@ fn png_levels_are_read_as_they_are() {
         let scene = resolved(&text(LOBES), folder.path()).unwrap();
         let found = texture(&scene);
         assert_eq!((found.width(), found.height()), (3, 2));
-        // Rounding.
+        // The limit is the rounding error.
         assert!((found.values()[4] - last).abs() < 1e-15, "{found:?}");
     }
 }

@@ -4,7 +4,7 @@
 
 use etendue_scene::{Fault, SceneError, SceneFile};
 
-/// The line and column that a message gives for a field.
+/// Returns the line and column that a message gives for a field.
 fn place(text: &str, field: &str) -> Option<[usize; 2]> {
     let fault = Fault {
         field: field.to_owned(),

@@ -10,7 +10,7 @@ use std::path::Path;
 
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
-/// A folder `scene` with a mesh, and a folder `secret` beside it.
+/// Returns a folder `scene` with a mesh, and a folder `secret` beside it.
 fn folders() -> tempfile::TempDir {
     let top = tempfile::tempdir().unwrap();
     let at = |name: &str| top.path().join(name);

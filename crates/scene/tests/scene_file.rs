@@ -27,7 +27,7 @@ fn edited(from: &str, to: &str) -> String {
     FIG9B.replacen(from, to, 1)
 }
 
-/// The rectangles of the first layer.
+/// Returns the rectangles of the first layer.
 fn squares_of(scene: &Scene) -> Vec<Rectangle> {
     let Mask::Opaque { shapes, .. } = &scene.blockers[0].mask else {
         panic!("the layer is opaque");

@@ -42,7 +42,7 @@ fn a_path_through_smooth_surfaces_resolves_to_what_it_says() {
     let [_, reflected, refracted] = scene.path.legs.as_slice() else {
         panic!("three legs: {:?}", scene.path.legs);
     };
-    // Deflected by twice the angle of incidence: 2 · 0.6 · 0.8 = 0.96.
+    // The ray is deflected by twice the angle of incidence: 2 · 0.6 · 0.8 = 0.96.
     assert!(
         (reflected.frame.d.x - 0.96).abs() < 1e-12 && (reflected.frame.d.z + 0.28).abs() < 1e-12
     ); // rounding
@@ -81,13 +81,13 @@ fn curvatures_of_a_mesh_are_those_of_what_it_samples() {
     let scene = resolved(&text).unwrap();
     let hit = scene.path.legs[2].leaves.unwrap();
     let patch = scene.meshes[0].osculating(&hit).unwrap();
-    // A sphere of 0.2 m with triangles of 1 cm: the fit extends over 6 of them, where (r/R)² is a
-    // tenth and a paraboloid departs from the sphere.
+    // The sphere has a radius of 0.2 m and triangles of 1 cm. The fit extends over 6 of them, where
+    // (r/R)² is a tenth and a paraboloid departs from the sphere.
     for k in &patch.curvature[..2] {
         assert!((k / 5.0 - 1.0).abs() < 0.1, "{k}");
     }
     let outward = (hit.point - scene.meshes[0].center).normalize();
-    // Interpolation is accurate to the square of a triangle over the radius.
+    // Interpolation has an error of the square of a triangle's size over the radius.
     assert!(
         hit.normal.dot(outward) > 1.0 - 1e-5,
         "{}",
@@ -107,7 +107,8 @@ fn curvatures_of_a_mesh_are_those_of_what_it_samples() {
         .unwrap();
     let mut found = [patch.curvature[0], patch.curvature[1]];
     found.sort_by(f64::total_cmp);
-    // Vertices lie on a paraboloid: the fit is exact at its vertex, but for the facet on which the ray ends (some 1e-5 m inside).
+    // Vertices lie on a paraboloid: the fit is exact at its vertex, except that the ray ends on a
+    // facet (some 1e-5 m inside).
     assert!(
         (found[0] + 0.5).abs() < 1e-4 && (found[1] - 0.3).abs() < 1e-4,
         "{found:?}"

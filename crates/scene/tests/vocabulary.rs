@@ -76,7 +76,7 @@ fn everything_resolves_to_what_it_says() {
         (Side::Before, 0, Quantity::DifferentialIrradiance)
     );
     assert_eq!(places[3], (Side::After, 1, Quantity::Radiance));
-    // Light goes back as far as the grating.
+    // The light that goes back travels as far as the grating.
     assert!((scene.path.legs[1].length - 0.8).abs() < 1e-15); // rounding
     let back = &scene.planes[4].frame;
     assert!((back.origin.z - 1.5).abs() < 1e-15 && back.d.z < 0.0 && back.x.x < 0.0); // rounding
@@ -168,7 +168,7 @@ const BAD: &[(&str, &str, &str)] = &[
     ("albedo: 0.5", "albedo: 1.1", "surfaces[0].albedo"),
 ];
 
-/// The same for a path over an oblique wall to a floor.
+/// More such cases, for a path over an oblique wall to a floor.
 const BAD_PATHS: &[(&str, &str, &str)] = &[
     (FACING, "facing: (0, 0, 0)", "surfaces[0].facing"),
     (FACING, "facing: (1, NaN, -1)", "surfaces[0].facing[1]"),
@@ -176,12 +176,12 @@ const BAD_PATHS: &[(&str, &str, &str)] = &[
     (VISITS, "visits: []", "path.visits"),
     (VISITS, "visits: [\"floor\"]", "path.visits[0]"),
     (VISITS, "visits: [\"wall\", \"roof\"]", "path.visits[1]"),
-    // Behind the floor, along it, and the zero vector.
+    // Directions behind the floor and along the floor, and the zero vector.
     (VISITS, LEAVES[0], "path.leaves"),
     (VISITS, LEAVES[1], "path.leaves"),
     (VISITS, LEAVES[2], "path.leaves"),
     (VISITS, LEAVES[3], "path.leaves[2]"),
-    // Behind the wall; behind a card.
+    // The floor lies behind the wall, or behind a card.
     (
         "center: (1.5, 0, 2)",
         "center: (-1.5, 0, 2)",
@@ -254,7 +254,7 @@ fn a_mesh_that_cannot_be_read_is_a_fault_of_its_field() {
         let error = resolved(&text().replacen(from, to, 1))
             .unwrap_err()
             .to_string();
-        // Planes and visits that refer to it are not reported too.
+        // Planes and visits that refer to this object are not reported too.
         assert!(
             error.starts_with(told) && error.lines().count() == 1,
             "{error}"
@@ -318,8 +318,8 @@ fn unknown_words_are_named_with_the_known_ones() {
     }
 }
 
-/// On its way back light may pass the planes of blockers and of a light beside it, but a virtual
-/// plane must not lie in theirs.
+/// On its way back, light may pass beside blockers and beside a light, but a virtual plane must not
+/// lie in the planes of these objects.
 #[test]
 fn a_plane_beyond_blockers_that_the_central_ray_misses() {
     let at = |distance: f64| {

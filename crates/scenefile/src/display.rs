@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Display, Write};
 
-/// `value` as formatted text, in at most `most` characters that are safe for a terminal.
+/// Returns `value` as formatted text, in at most `most` characters that are safe for a terminal.
 ///
 /// Control and format characters (including those that change the direction of text), line
 /// separators, private-use characters and non-characters are escaped as `\u{..}`. A text that is
@@ -19,7 +19,7 @@ pub fn shown(value: impl Display, most: usize) -> String {
     cut.text
 }
 
-/// A number in its usual notation.
+/// Returns a number in its usual notation.
 #[must_use]
 pub fn number(x: f64) -> String {
     let is_plain = x == 0.0 || !x.is_finite() || (1e-4..1e6).contains(&x.abs());
@@ -55,7 +55,8 @@ impl Write for ShortenedText {
     }
 }
 
-/// Whether a character is visible, is the plain space, or is a mark on the previous character.
+/// Checks whether a character is visible, is the plain space, or is a mark on the previous
+/// character.
 #[must_use]
 pub fn is_printable(c: char) -> bool {
     if c.is_ascii() {

@@ -17,7 +17,7 @@ pub struct Fault {
     pub memory: bool,
 }
 
-/// A fault of a file: the place in it, the text found, and what is allowed.
+/// Returns a fault of a file: the place in it, the text found, and what is allowed.
 #[must_use]
 pub fn fault(place: impl Into<String>, value: impl ToString, allowed: impl Into<String>) -> Fault {
     Fault {
@@ -70,9 +70,9 @@ pub enum SceneError {
 }
 
 impl SceneError {
-    /// The error in words, one line for each fault with its place: in the text of the scene file
-    /// or, for a field that was set elsewhere, such as by `--set run.photons=3`, the path it was
-    /// set at.
+    /// Returns the error in words, one line for each fault with its place. The place is a line and
+    /// column of the scene file or, for a field that was set elsewhere, what set it, such as
+    /// `--set run.photons=3`.
     #[must_use]
     pub fn in_text(&self, text: &str, set: &[(String, String)]) -> String {
         match self {
@@ -98,7 +98,7 @@ fn list(faults: &[Fault]) -> String {
     lines(faults, Fault::to_string).join("\n")
 }
 
-/// The first faults in words, and the number of further ones.
+/// Returns the first faults in words, and the number of further ones.
 fn lines(faults: &[Fault], told: impl Fn(&Fault) -> String) -> Vec<String> {
     let first = faults.iter().take(limits::FAULTS);
     let mut lines: Vec<String> = first.map(told).collect();

@@ -147,7 +147,7 @@ pub enum BlockersFile {
 }
 
 impl BlockersFile {
-    /// Name of the blockers.
+    /// Returns the name of the blockers.
     #[must_use]
     pub fn name(&self) -> &str {
         match self {
@@ -205,7 +205,7 @@ pub enum AxisName {
 }
 
 impl AxisName {
-    /// 0 for X, 1 for Y.
+    /// Returns 0 for X and 1 for Y.
     #[must_use]
     pub fn index(self) -> usize {
         match self {

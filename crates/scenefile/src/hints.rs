@@ -1,10 +1,10 @@
-//! Looks up, in the schema, what each field of a scene file is and an example of it.
+//! Looks up the description and an example of each field of a scene file in the schema.
 
 use crate::place::steps;
 use crate::schema::{element, referred, schema};
 use serde_json::Value;
 
-/// The description of the field at a path, and an example.
+/// Returns the description of the field at a path, and an example.
 fn field(path: &str) -> [&'static str; 2] {
     let node = below(schema(), &steps(path)).unwrap_or(&Value::Null);
     let words = |node: &'static Value| Some([node["title"].as_str()?, node["x-ron"].as_str()?]);
@@ -20,7 +20,7 @@ fn field(path: &str) -> [&'static str; 2] {
     }
 }
 
-/// The node that these steps lead to, through any variants on the way.
+/// Returns the node that these steps lead to, through any variants on the way.
 fn below(node: &'static Value, steps: &[&str]) -> Option<&'static Value> {
     let [step, rest @ ..] = steps else {
         return Some(node);
@@ -40,7 +40,7 @@ fn below(node: &'static Value, steps: &[&str]) -> Option<&'static Value> {
     })
 }
 
-/// The unit of the number at a path such as `blockers.0.pitch`; empty if none is stated.
+/// Returns the unit of the number at a path such as `blockers.0.pitch`; empty if none is stated.
 #[must_use]
 pub fn unit(path: &str) -> &'static str {
     match field(path)[0] {
@@ -52,18 +52,18 @@ pub fn unit(path: &str) -> &'static str {
     }
 }
 
-/// The description of how the field at a path may be written.
+/// Returns the description of how the field at a path may be written.
 pub(crate) fn wanted(path: &str) -> String {
     let [what, example] = field(path);
     format!("{what}, such as {example}")
 }
 
-/// An example of the field at a path.
+/// Returns an example of the field at a path.
 pub(crate) fn example(path: &str) -> &'static str {
     field(path)[1]
 }
 
-/// Whether the value at a path has named fields.
+/// Checks whether the value at a path has named fields.
 pub(crate) fn has_fields(path: &str) -> bool {
     example(path).contains(": ")
 }
@@ -86,7 +86,7 @@ mod tests {
         assert_eq!(super::unit("surfaces.0.albedo"), "");
     }
 
-    /// The texts of the scenes in this repository.
+    /// Returns the texts of the scenes in this repository.
     fn scenes() -> Vec<String> {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
         let folders = [folder.clone(), folder.join("table1"), folder.join("wild")];
@@ -126,8 +126,8 @@ mod tests {
         }
     }
 
-    /// Each field that is written in a scene accepts the example instead, and is named in the error
-    /// when it holds an impossible value.
+    /// Each field that is written in a scene accepts the example instead, and the error names the
+    /// field when it holds an impossible value.
     #[test]
     fn examples_can_be_read_where_they_are_told() {
         let mut tried = BTreeSet::new();

@@ -35,8 +35,8 @@ pub const PRODUCTS: f64 = 1e6;
 pub const CELLS: u32 = 2048;
 
 /// Triangles of all generated meshes, not those read from files: slightly more than the finest
-/// generated mesh has. Each takes 72 bytes, and about as much again while the hierarchy over them
-/// is built.
+/// generated mesh has. Each triangle takes 72 bytes, and about as much again while the hierarchy
+/// over the triangles is built.
 pub const MADE_TRIANGLES: u64 = 20_000_000;
 
 /// The largest number of a scene, and the inverse of the smallest size. Products of six of them,

@@ -8,7 +8,7 @@ use crate::{SceneError, SceneFile, limits};
 use serde_json::Value;
 
 impl SceneFile {
-    /// The scene file with the field at `path` (such as `blockers.0.fill`) set to `value`.
+    /// Returns the scene file with the field at `path` (such as `blockers.0.fill`) set to `value`.
     ///
     /// Names of variants (`Rectangle`, `JitteredSquares`) may be left out of the path.
     ///
@@ -24,7 +24,7 @@ impl SceneFile {
         serde_path_to_error::deserialize(tree).map_err(|error| fault(unfit(&error)))
     }
 
-    /// The scene file with several fields set in turn, each as by [`Self::with`].
+    /// Returns the scene file with several fields set in turn, each as by [`Self::with`].
     ///
     /// # Errors
     /// [`SceneError::Override`] for the first field that cannot be set, or for more than
@@ -66,7 +66,7 @@ fn set(tree: &mut Value, path: &str, value: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// The child `name` of a node, skipping the name of a variant.
+/// Returns the child `name` of a node, skipping the name of a variant.
 fn step<'a>(node: &'a mut Value, name: &str) -> Option<&'a mut Value> {
     match node {
         Value::Array(items) => items.get_mut(name.parse::<usize>().ok()?),
@@ -88,7 +88,7 @@ fn is_name_of_variant(name: &str) -> bool {
     name.starts_with(char::is_uppercase)
 }
 
-/// Why there is no field `name` below a node.
+/// Returns why there is no field `name` below a node.
 fn refusal(node: &Value, name: &str) -> String {
     let allowed = match node {
         Value::Array(items) => match items.len() {
@@ -116,8 +116,8 @@ fn refusal(node: &Value, name: &str) -> String {
     format!("no field `{name}` here{meant}; allowed: {allowed}{another}")
 }
 
-/// A value in the notation of a scene file or of JSON; whole numbers such as 1e6 are integers, and
-/// anything else is text. `None` when its brackets are nested deeper than `deepest`.
+/// Returns a value in the notation of a scene file or of JSON; whole numbers such as 1e6 are
+/// integers, and anything else is text. `None` when its brackets are nested deeper than `deepest`.
 fn parsed(text: &str, deepest: usize) -> Option<Value> {
     let text = text.trim();
     if let Ok(value) = serde_json::from_str(text) {
@@ -139,7 +139,7 @@ fn parsed(text: &str, deepest: usize) -> Option<Value> {
     })
 }
 
-/// The content of parentheses: named fields, several values, or one.
+/// Returns the content of parentheses: named fields, several values, or one.
 fn fields(text: &str, deepest: usize) -> Option<Value> {
     let parts = separated(text);
     let named: Option<Vec<_>> = parts.iter().map(|part| part.split_once(':')).collect();
@@ -158,7 +158,7 @@ fn fields(text: &str, deepest: usize) -> Option<Value> {
     }
 }
 
-/// The parts of a list, separated at the commas outside of parentheses.
+/// Returns the parts of a list, separated at the commas outside of parentheses.
 fn separated(text: &str) -> Vec<&str> {
     let mut depth = 0_i32;
     text.split(|c: char| {

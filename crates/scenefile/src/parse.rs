@@ -22,7 +22,7 @@ impl SceneFile {
             return json(text);
         }
         if text.trim_start().starts_with('<') {
-            let message = "this is XML, such as a scene of Mitsuba 3, which render, import and probe read; allowed: a scene in RON or JSON";
+            let message = "this is XML, such as a scene of Mitsuba 3, which the commands render, import and probe read; allowed: a scene in RON or JSON";
             return Err(SceneError::Syntax {
                 line: 1,
                 column: 1,
@@ -62,13 +62,13 @@ fn json(text: &str) -> Result<SceneFile, SceneError> {
     })
 }
 
-/// The path of a field below a path.
+/// Returns the path of a field below a path.
 fn below(path: &str, field: &str) -> String {
     let dot = if path.is_empty() { "" } else { "." };
     format!("{path}{dot}{}", shown(field, limits::NAME))
 }
 
-/// The error, in words, of a file with a fault at a path.
+/// Returns the error, in words, of a file with a fault at a path.
 fn syntax(text: &str, path: &str, error: &SpannedError) -> SceneError {
     let [start, end] = [error.span.start, error.span.end].map(|at| [at.line, at.col]);
     let value = find(text, path);
@@ -94,7 +94,7 @@ fn syntax(text: &str, path: &str, error: &SpannedError) -> SceneError {
     }
 }
 
-/// The error in the names of variants and fields, and whether it concerns the whole value.
+/// Returns the error in the names of variants and fields, and whether it concerns the whole value.
 fn of_names(code: &Error, name: &str, path: &str) -> Option<(bool, String)> {
     Some(match code {
         Error::NoSuchEnumVariant {
@@ -140,7 +140,7 @@ fn of_names(code: &Error, name: &str, path: &str) -> Option<(bool, String)> {
     })
 }
 
-/// Whether an error inside a value concerns the whole value: a number, a name or a vector.
+/// Checks whether an error inside a value concerns the whole value: a number, a name or a vector.
 fn is_shape(code: &Error, path: &str) -> bool {
     let is_cut = matches!(
         code,
@@ -152,7 +152,7 @@ fn is_shape(code: &Error, path: &str) -> bool {
     !is_cut && !has_fields(path)
 }
 
-/// The text found at a place between fields, and what is allowed there.
+/// Returns the text found at a place between fields, and what is allowed there.
 fn unexpected(code: &Error, text: &str, [line, column]: [usize; 2]) -> String {
     let rest = text.lines().nth(line - 1).unwrap_or_default();
     let at = rest.char_indices().nth(column - 1);
@@ -165,7 +165,7 @@ fn unexpected(code: &Error, text: &str, [line, column]: [usize; 2]) -> String {
                 .into();
         }
         Error::ExpectedComma if rest.starts_with('^') => {
-            "a number without a power, such as 1_048_576 or 1e6"
+            "a number without the sign ^, such as 1_048_576 or 1e6"
         }
         Error::ExpectedComma if before.ends_with(is_digit) => "a number without a unit",
         Error::ExpectedComma => "a comma before it, or a closing bracket",
@@ -182,7 +182,7 @@ fn unexpected(code: &Error, text: &str, [line, column]: [usize; 2]) -> String {
     format!("unexpected `{found}`; allowed: {allowed}")
 }
 
-/// The beginning of a value, on one line.
+/// Returns the beginning of a value, on one line.
 fn excerpt(value: &str) -> String {
     // A word may be as long as the whole file.
     let start: String = value.chars().take(4 * EXCERPT).collect();

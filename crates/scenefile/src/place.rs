@@ -14,8 +14,8 @@ pub(crate) struct ScenePlace<'a> {
     pub(crate) value: &'a str,
 }
 
-/// The names and indices of a path such as `blockers[0].fill` or `blockers.0.fill`, as far as it is
-/// valid, without names of variants.
+/// Returns the names and indices of a path such as `blockers[0].fill` or `blockers.0.fill`, as far
+/// as it is valid, without names of variants.
 pub(crate) fn steps(path: &str) -> Vec<&str> {
     let in_path = |c: char| c.is_alphanumeric() || "_.[]".contains(c);
     let end = path.find(|c| !in_path(c)).unwrap_or(path.len());
@@ -24,7 +24,7 @@ pub(crate) fn steps(path: &str) -> Vec<&str> {
     steps.filter(is_step).collect()
 }
 
-/// The value at a path, or the innermost enclosing value that is written.
+/// Returns the value at a path, or the innermost enclosing value that is written.
 pub(crate) fn find<'a>(text: &'a str, path: &str) -> Option<ScenePlace<'a>> {
     let steps = steps(path);
     let mut found: Option<InnermostValue> = None;
@@ -103,7 +103,7 @@ struct InnermostValue {
 
 /// The text between two brackets.
 struct OpenBracket<'a> {
-    /// The number of steps of the path that lead to it; `None` where they lead elsewhere.
+    /// The number of steps of the path that lead to it; `None` if the path leads elsewhere.
     at: Option<usize>,
     /// Whether a name precedes the bracket, as in `Hann(0.5)`: a value without a key is then not an
     /// element.
@@ -125,7 +125,7 @@ impl OpenBracket<'_> {
         }
     }
 
-    /// The number of steps that lead to the next value.
+    /// Returns the number of steps that lead to the next value.
     fn child(&self, steps: &[&str]) -> Option<usize> {
         let at = self.at?;
         let step = steps.get(at);
@@ -185,7 +185,7 @@ impl Iterator for RonTokens<'_> {
     }
 }
 
-/// Length in bytes of white space and comments.
+/// Returns the length in bytes of white space and comments.
 fn blank(text: &str) -> usize {
     let mut rest = text.trim_start();
     loop {
@@ -200,7 +200,8 @@ fn blank(text: &str) -> usize {
     }
 }
 
-/// Length in bytes of a comment that may be nested, or of all the text where it is not closed.
+/// Returns the length in bytes of a comment that may be nested, or of all the text where it is not
+/// closed.
 fn block(text: &str) -> usize {
     let mut depth = 0;
     let bytes = text.as_bytes();
@@ -222,7 +223,7 @@ fn block(text: &str) -> usize {
     text.len()
 }
 
-/// Length in bytes of a string, plain or raw.
+/// Returns the length in bytes of a string, plain or raw.
 fn string(text: &str) -> Option<usize> {
     let plain = text.strip_prefix('"');
     if let Some(inside) = plain {
@@ -242,8 +243,8 @@ fn string(text: &str) -> Option<usize> {
     Some(end.map_or(text.len(), |end| open + end + 1 + fence.len()))
 }
 
-/// The number of bytes before the next bracket, comma, colon, quote, blank or comment; at least one
-/// character if there is one.
+/// Returns the number of bytes before the next bracket, comma, colon, quote, blank or comment; at
+/// least one character if there is one.
 pub(crate) fn word(text: &str) -> usize {
     let ends = |c: char| c.is_whitespace() || "()[]{},:\"/".contains(c);
     let first = text.chars().next().map_or(0, char::len_utf8);

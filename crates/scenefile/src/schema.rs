@@ -5,9 +5,9 @@ use crate::file::positive;
 use serde_json::{Map, Value};
 use std::sync::LazyLock;
 
-/// The JSON schema of a scene as JSON, in which a variant is an object of one field. `title`
-/// describes a field, `x-ron` is an example in the notation of a scene file, and `x-range` gives
-/// the numbers it may hold.
+/// Returns the JSON schema of a scene as JSON, in which a variant is an object of one field.
+/// `title` describes a field, `x-ron` is an example in the notation of a scene file, and `x-range`
+/// gives the numbers it may hold.
 #[must_use]
 pub fn schema() -> &'static Value {
     static SCHEMA: LazyLock<Value> = LazyLock::new(|| {
@@ -40,26 +40,26 @@ fn complete(node: &mut Value, types: &Value) {
     }
 }
 
-/// The name of the type of a node, which may be optional.
+/// Returns the name of the type of a node, which may be optional.
 fn name_of_type(node: &Value) -> Option<&str> {
     let types = [node, node.get("anyOf").map_or(node, |any| &any[0])];
     let mut references = types.iter().filter_map(|node| node.get("$ref")?.as_str());
     references.next()?.rsplit('/').next()
 }
 
-/// Whether a node is a number, which may be optional.
+/// Checks whether a node is a number, which may be optional.
 fn is_number(node: &Value) -> bool {
     let is = |name: &Value| name == "number" || name == "integer";
     let names = node.get("type");
     names.is_some_and(|name| is(name) || name.as_array().is_some_and(|names| names.iter().any(is)))
 }
 
-/// A node of the schema, with its reference resolved.
+/// Returns a node of the schema, with its reference resolved.
 pub(crate) fn referred(node: &'static Value) -> &'static Value {
     name_of_type(node).map_or(node, |name| &schema()["$defs"][name])
 }
 
-/// The node of a variant's content, within the node of its type.
+/// Returns the node of a variant's content, within the node of its type.
 pub(crate) fn variant(node: &'static Value, name: &str) -> &'static Value {
     let variants = referred(node)["oneOf"].as_array();
     let mut contents = variants
@@ -71,7 +71,7 @@ pub(crate) fn variant(node: &'static Value, name: &str) -> &'static Value {
         .unwrap_or(&Value::Null)
 }
 
-/// The node of the element at a place of a list, within the node of the list.
+/// Returns the node of the element at a place of a list, within the node of the list.
 pub(crate) fn element(node: &'static Value, place: usize) -> &'static Value {
     let node = referred(node);
     match node.get("prefixItems") {

@@ -3,8 +3,8 @@
 use crate::limits;
 use strsim::osa_distance;
 
-/// ` (did you mean …?)` with the known name most similar to this one, or empty where none is
-/// similar.
+/// Returns ` (did you mean …?)` with the known name most similar to this one, or nothing where none
+/// is similar.
 #[must_use]
 pub fn did_you_mean<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     match nearest(name, known) {
@@ -13,7 +13,7 @@ pub fn did_you_mean<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) ->
     }
 }
 
-/// The known name most similar to this one; `None` where none is similar.
+/// Returns the known name most similar to this one; `None` where none is similar.
 #[must_use]
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let lower = |name: &str| -> String {

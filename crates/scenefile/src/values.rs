@@ -12,7 +12,7 @@ use serde_json::Value;
 use std::fmt;
 
 impl SceneFile {
-    /// Each number outside the range that the schema gives for it.
+    /// Returns a fault for each number outside the range that the schema gives for it.
     #[must_use]
     #[expect(
         clippy::missing_panics_doc,

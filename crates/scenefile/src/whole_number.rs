@@ -1,6 +1,6 @@
 //! Recognises whole numbers among doubles.
 
-/// A number as a whole number, if it is one.
+/// Returns a number as a whole number, if it is one.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

@@ -77,7 +77,7 @@ pub fn bandwidth(
     let wanted = fraction * total;
     let mut inside = 0.0;
     for step in 0..=axis.half {
-        // Both cells at this distance from zero; the cell of zero extends to both sides.
+        // Adds both cells at this distance from zero; the cell of zero extends to both sides.
         let (power, inner, width) = match step {
             0 => (marginal[axis.half], 0.0, 0.5),
             _ => (
@@ -91,7 +91,7 @@ pub fn bandwidth(
         }
         inside += power;
     }
-    // Reached only by rounding, because the whole power exceeds any fraction of it.
+    // Only rounding errors lead here, because the whole power exceeds any fraction of it.
     Some(axis.max() + 0.5 * axis.spacing)
 }
 
@@ -107,12 +107,12 @@ mod tests {
 
     #[test]
     fn bandwidths_of_known_powers() {
-        // 81 cells of 0.25, 0.95 of which are inside.
+        // The power is uniform over 81 cells of width 0.25, and the share 0.95 is inside.
         let flat = bandwidth(Array1::ones(81).view(), &axis(40, 0.25), 0.95).unwrap();
         assert!((flat - 0.95 * 81.0 * 0.25 / 2.0).abs() < 1e-12); // rounding
         let of =
             |powers: [f64; 3], fraction| bandwidth(arr1(&powers).view(), &axis(1, 2.0), fraction);
-        // Half of the cell at zero, which ends at 1.
+        // Half of the cell at zero, which ends at 1, holds half of the power.
         assert_eq!(of([0.0, 3.0, 0.0], 0.5), Some(0.5));
         assert_eq!(of([1.0, 0.0, 1.0], 0.5), Some(2.0));
         assert_eq!(of([1.0, 0.0, 1.0], 1.0), Some(3.0));
@@ -130,7 +130,7 @@ mod tests {
             let (rho, nu) = (grid.rho.value(i), grid.nu.value(j));
             libm::exp(-(nu * nu) - (rho / 0.8).powi(2))
         });
-        // exp(−t²/s²) with s = 0.8 and 1: erf(B/s) = 0.95 at B = 1.386 s.
+        // The power is exp(−t²/s²) with s = 0.8 and 1, and erf(B/s) = 0.95 at B = 1.386 s.
         let rho = bandwidth_rho(power.view(), &grid, 0.95).unwrap();
         let nu = bandwidth_nu(power.view(), &grid, 0.95).unwrap();
         assert!((rho - 1.386 * 0.8).abs() < 0.02, "{rho}"); // curvature within a cell of 0.3
@@ -156,12 +156,12 @@ mod tests {
 
     #[test]
     fn a_window_alone_has_its_own_bandwidth() {
-        // 0.55722 by the midpoint rule with 4·10⁴ points up to 20; 6.12 if the half-width is
-        // 0.09105.
+        // The bandwidth is 0.55722 by the midpoint rule with 4·10⁴ points up to 20; it is 6.12 if
+        // the half-width is 0.09105.
         for (spacing, error) in [(0.02, 1e-3), (0.125, 4e-3)] {
             let axis = axis(100, spacing);
             let found = bandwidth(seen(None, &axis).view(), &axis, 0.95).unwrap();
-            // Error from the curvature of the power within a cell.
+            // The curvature of the power within a cell causes this error.
             assert!((found - 0.557_22).abs() < error, "{spacing}: {found}");
         }
     }

@@ -191,7 +191,7 @@ impl Cumulative {
         let half = cell.half[0] * cos.abs() + cell.half[1] * sin.abs();
         let [low, high] = [middle - half, middle + half].map(|end| end / self.step);
         let per_bin = cell.power / (high - low);
-        // What lies below zero is reflected.
+        // The part below zero is reflected.
         for [low, high] in [[low.max(0.0), high], [0.0, -low]] {
             if high <= low {
                 continue;
@@ -213,7 +213,7 @@ impl Cumulative {
             }
             within += power;
         }
-        // Reached only by rounding.
+        // Only rounding errors lead here.
         self.bins.len() as f64 * self.step
     }
 }
@@ -235,7 +235,7 @@ mod tests {
     use crate::variation::WindowedMean;
     use etendue_field::{Complex, FrequencyAxis, Profile};
 
-    /// The grid of a probe for a window of half-width 1.
+    /// Returns the grid of a probe for a window of half-width 1.
     fn grid() -> SliceGrid {
         SliceGrid {
             azimuths: 40,
@@ -260,7 +260,8 @@ mod tests {
         }
     }
 
-    /// The spectrum of a + b cos(2π f · (u, v)) behind the window, over that of the point in x.
+    /// Returns the spectrum of a + b cos(2π f · (u, v)) behind the window, over that of the point
+    /// in x.
     fn wave(mean: f64, contrast: f64, frequency: [f64; 2]) -> Slices {
         let (grid, window) = (grid(), window());
         let mut slices = Slices::zeros(grid);
@@ -294,8 +295,8 @@ mod tests {
         }
     }
 
-    /// Without the mean, the bandwidth of a sine is its frequency with the window's main lobe, at
-    /// any azimuth, and along e it is that of the component f · e.
+    /// Without the mean, the bandwidth of a sine is its frequency plus the window's main lobe, at
+    /// any azimuth. Along e it is the bandwidth of the component f · e.
     #[test]
     fn a_sine_of_any_azimuth_and_contrast() {
         for (azimuth, contrast) in [(0.0, 1.0), (0.41, 0.2), (1.2, 0.03)] {
@@ -320,7 +321,7 @@ mod tests {
     fn the_mean_of_a_picture_hides_its_bandwidth() {
         let field = wave(1.0, 0.2, [3.3, 0.0]);
         assert!(alone(&field).widest.value.value < 1.0);
-        // Faults: the mean left in, or removed twice.
+        // A mean that is left in hides the bandwidth; removing it twice changes nothing more.
         let found = alone(&less_mean(&field)).widest.value.value;
         let twice = less_mean(&less_mean(&field));
         assert!((alone(&twice).widest.value.value - found).abs() < 1e-9); // rounding

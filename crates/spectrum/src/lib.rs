@@ -1,4 +1,4 @@
-//! From photons that cross virtual planes to spectra with statistical errors.
+//! Turns photons that cross virtual planes into spectra with statistical errors.
 //!
 //! The input is a [`PhotonSource`](etendue_field::PhotonSource) and the virtual planes. [`measure`]
 //! runs batches of photons and keeps, for each batch and plane, the

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 /// A measurement, whole or partial: some batches of photons at some virtual planes.
 ///
 /// A measurement records which batches it contains, so partial results of one experiment can be
-/// computed anywhere and merged in any order; all sums are over batches in order, so results are
+/// computed anywhere and merged in any order. All sums are over batches in order, so results are
 /// bitwise identical.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurement {

@@ -104,7 +104,7 @@ mod tests {
         }
     }
 
-    /// A Gaussian ridge along ν = `slope` ρ.
+    /// Returns a Gaussian ridge along ν = `slope` ρ.
     fn ridge(slope: f64) -> Array2<f64> {
         let grid = grid();
         Array2::from_shape_fn((grid.rho.count(), grid.nu.count()), |(i, j)| {

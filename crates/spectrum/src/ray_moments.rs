@@ -67,7 +67,7 @@ mod tests {
             moments.deposit(&ray, weight);
         }
         let covariance = moments.finish(0.25).covariance().unwrap_or_default();
-        // Means 1.5, 0.5, 0, 0.125.
+        // The means are 1.5, 0.5, 0 and 0.125.
         let expected = [
             (0, 0, 2.75),
             (0, 1, 0.75),

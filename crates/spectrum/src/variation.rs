@@ -27,8 +27,8 @@ impl WindowedMean {
     /// Returns the slices of a windowed light field less its mean: F − F(0) Ŵ / Ŵ(0), where F is
     /// the spectrum of the light field times the window W.
     ///
-    /// It is the spectrum of the window times the deviations of the light field from its mean, with
-    /// the window as the weight of the mean.
+    /// The result is the spectrum of a product: the window times the deviations of the light field
+    /// from its mean. The window is also the weight of that mean.
     ///
     /// # Panics
     ///

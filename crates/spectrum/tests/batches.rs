@@ -154,7 +154,8 @@ fn a_batch_goes_on_where_it_was_left() {
             };
             let first = watch(parts);
             let (found, left) = measured([0, 1].map(PartialBatch::new).to_vec(), &first);
-            // All parts that were begun are in it, reported in the order of summation.
+            // The sum contains all parts that were begun, and they are reported in the order of
+            // summation.
             assert_eq!(
                 left.iter().map(|b| (b.index, b.parts)).collect::<Vec<_>>(),
                 [(0, parts)]

@@ -43,7 +43,7 @@ fn over_bound(spectrum: &FieldSpectrum, crossings: &[Crossing]) -> f64 {
                         std::array::from_fn(|axis| harmonics[axis] as f64 * grid.spacing(axis));
                     let plain = direct::at(crossings, |_| 1.0, frequency);
                     let off = (spectrum.at(harmonics) - plain).norm();
-                    // 1e-13: rounding of both sums.
+                    // The rounding error of both sums is 1e-13.
                     let bound = spectrum.alias_bound(harmonics) + 1e-13 * spectrum.at_zero();
                     largest = largest.max(off / bound);
                 }
@@ -53,8 +53,8 @@ fn over_bound(spectrum: &FieldSpectrum, crossings: &[Crossing]) -> f64 {
     largest
 }
 
-/// Random rays; one ray; one ray at the worst position, half-way between centres on one axis and on
-/// a centre on the others.
+/// Returns sets of rays: random rays, one ray, and one ray at the worst position. That position is
+/// half-way between centres on one axis and on a centre on the others.
 fn sets(window: &Window) -> Vec<Vec<Crossing>> {
     let grid = small(window);
     let mut random = Random(11);
@@ -134,8 +134,9 @@ fn wrong_compensations_are_beyond_it() {
         };
         assert!(power(0) <= 1.0);
         assert!(power(-1) > 1.2, "{assignment:?}: {}", power(-1));
-        // Too little compensation: one power for TSC, two for CIC, whose bound is as wide as one;
-        // for the nearest cell the bound is so wide that it holds without any compensation.
+        // The spectrum is compensated too little: by one power for TSC, and by two for CIC, whose
+        // bound is as wide as the effect of one power. For the nearest cell the bound is so wide
+        // that it holds without any compensation.
         match assignment {
             Assignment::Nearest => assert!(power(1) <= 1.0),
             Assignment::Cic => assert!(power(2) > 1.2, "{}", power(2)),
@@ -201,15 +202,15 @@ fn the_slices_tell_the_aliasing() {
         for assignment in ALL {
             let spectrum = gridded(&crossings, field_grid, assignment);
             let aliasing = spectrum.aliasing(&slices, 1.0).unwrap();
-            // Two lines of one half of 15 × 19 frequencies, zero being in both.
+            // Each of two lines has one half of 15 × 19 frequencies, and both contain zero.
             assert_eq!(aliasing.compared, 15 * 19 + 1);
             let ratio = aliasing.difference / aliasing.expected;
             if smooth {
                 assert!(aliasing.difference < aliasing.bound);
                 assert!(ratio < 1.5, "{ratio}");
             } else {
-                // 286 frequencies, few of which have most of it; the power beyond is estimated from
-                // 150.
+                // A few of 286 frequencies have most of the difference, and the power beyond
+                // Nyquist is estimated from 150 frequencies.
                 assert!((0.6..1.5).contains(&ratio), "{assignment:?}: {ratio}");
             }
             assert!(aliasing.difference < last, "{assignment:?}"); // a smoother spline aliases less
@@ -228,7 +229,8 @@ fn what_is_not_shared_is_not_compared() {
         let field_grid = FieldGrid::new(&window, &slice_grid);
         gridded(&crossings, field_grid, Assignment::Tsc)
     };
-    // Twice as fine shares every other frequency. An odd number of azimuths shares one line.
+    // Slices with twice as fine a spacing share every other frequency. An odd number of azimuths
+    // shares one line.
     for (azimuths, fineness, compared) in [
         (3, 1.0, 7 * 7 / 2 + 1),
         (3, 2.0, 7 * 7 / 2 + 1),

@@ -9,7 +9,7 @@ use etendue_spectrum::field::{
 };
 use std::f64::consts::{PI, TAU};
 
-/// A window that is a Gaussian of variance w²/2π.
+/// Returns a window that is a Gaussian of variance w²/2π.
 fn window() -> Window {
     let gaussian = |width: f64, cut: f64| Profile::Gaussian { width, cut };
     Window {
@@ -69,8 +69,8 @@ impl PhotonSource for Gaussian {
                 u,
                 v,
             };
-            // Sampled from radiance over (x, y, u, v), so the factor from flux to radiance is
-            // divided out.
+            // Photons are sampled from radiance over (x, y, u, v), so the factor from flux to
+            // radiance is divided out.
             let weight = 1.0 / plane.factor(&ray);
             record(0, &[Crossing { ray, weight }]);
         }
@@ -131,8 +131,8 @@ fn photons_have_the_covariance_of_their_field() {
         }
         signal = signal.min(row[i] / found.error[i][i]);
     }
-    // The largest of ten entries, in units of errors from 16 groups, Student's t of 15: beyond 4.1
-    // once in a hundred times.
+    // The entries in units of their errors, from 16 groups, follow Student's t with 15 degrees of
+    // freedom. The largest of ten exceeds 4.1 once in a hundred times.
     assert!(most < 4.1, "{most}");
     // A shear of the wrong sign, A for A⁻ᵀ and a factor 2 each differ by far more than the errors.
     assert!(signal > 20.0, "{signal}");
@@ -176,7 +176,7 @@ fn few_photons_have_no_bias() {
     };
     for (k, exact) in exact.into_iter().enumerate() {
         let (value, error) = mean(&all, k);
-        // Exceeded by chance once in a thousand, for four entries.
+        // One of four entries exceeds this limit by chance once in a thousand times.
         assert!(
             (value - exact).abs() < 3.7 * error,
             "{k}: {value} {error} {exact}"
@@ -206,7 +206,8 @@ fn exact_moments() -> etendue_spectrum::field::PowerMoments {
         let [a, b, c] = expected(axis).map(|entry| 8.0 * PI * PI * entry);
         let determinant = a * c - b * b;
         let [sx, su] = [LIGHT[axis], LIGHT[axis + 2]];
-        // ∫ of the windowed Gaussian, divided by that of the density photons are sampled from.
+        // This is the integral of the windowed Gaussian, divided by that of the density from which
+        // photons are sampled.
         let integral = 1.0 / (determinant * sx * su).sqrt();
         (
             [c / determinant, -b / determinant, a / determinant],
@@ -232,7 +233,7 @@ fn moments_of_a_gaussian_are_its_covariance() {
         for (j, expected) in row.iter().enumerate() {
             let scale = (known()[i][i] * known()[j][j]).sqrt();
             let off = (found[i][j] - expected).abs() / scale;
-            // The remainder beyond seven half-cycles of the narrowest axis.
+            // The limit is the remainder beyond seven half-cycles of the narrowest axis.
             assert!(off < 2e-3, "{i} {j} {off}");
         }
     }

@@ -163,7 +163,7 @@ fn the_jackknife_leaves_groups_out() {
     }
     let sigma = variance.mapv(f64::sqrt);
     assert!(largest(&(&whole.sigma - &sigma)) < 1e-10 * largest(&sigma)); // rounding of differences
-    // Groups of unequal size: 20 batches in 3 groups are 7, 7 and 6.
+    // The groups have unequal sizes: 20 batches in 3 groups are 7, 7 and 6.
     let three = run(&source, plane, 3).full_radial;
     let groups = [0, 1, 2].map(|g| (g..20).step_by(3).collect::<Vec<u32>>());
     let bins = RadialBins::new(&run(&source, plane, 3).grid);
@@ -171,7 +171,7 @@ fn the_jackknife_leaves_groups_out() {
         let others: Vec<u32> = (0..20).filter(|b| !groups[g].contains(b)).collect();
         run(&Without(&source, &others), plane, 3).spectrum
     });
-    // By the definition: Σ a_r a_s Re(S_r conj S_s) / Σ a_r a_s over r ≠ s.
+    // The definition is Σ a_r a_s Re(S_r conj S_s) / Σ a_r a_s over r ≠ s.
     let share = |r: usize| groups[r].len() as f64 / 20.0;
     let pairs = [[0, 1], [0, 2], [1, 2]];
     let norm: f64 = pairs.iter().map(|[r, s]| share(*r) * share(*s)).sum();
@@ -226,13 +226,14 @@ fn shot_noise_is_removed() {
         variance += (&radial.sigma * &counts).mapv(|s| s * s).sum();
         frequencies += counts.sum();
     }
-    // The sum over bins of each trial: variance noise² · R/(R−1) for each of effectively half as
-    // many complex numbers.
+    // The sum over the bins of a trial has the variance noise² · R/(R−1) for each complex number,
+    // and there are effectively half as many of these as frequencies.
     let noise = left_in / frequencies;
     assert!(noise > 1.0 / 3.0 / 2000.0); // E w² = 1/3 over 2000 photons; aliases come on top
     let sd = noise * (2.0 / frequencies * 20.0 / 19.0).sqrt();
     let mean = removed / frequencies;
-    // Four standard deviations; noise is not white on the grid (its aliases grow towards Nyquist), hence 1.5.
+    // The limit is four standard deviations, times 1.5 because noise is not white on the grid (its
+    // aliases grow towards Nyquist).
     assert!(mean.abs() < 4.0 * 1.5 * sd, "{mean} {sd}");
     assert!(noise > 50.0 * sd); // left in it would be seen
     // With pure noise the jackknife's variance is 2(R−1)/(R−2) times the true one.

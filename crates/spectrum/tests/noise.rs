@@ -5,7 +5,8 @@ use etendue_field::{Ledger, PhotonSource, SliceGrid, VirtualPlane};
 use etendue_spectrum::{CrossPower, Measurement, estimate, measure, moments};
 use ndarray::{Axis, Slice};
 
-/// Photons uniform in a box one period wide, at azimuth 0: no structure, only noise.
+/// Measures photons that are uniform in a box one period wide, at azimuth 0: they have no
+/// structure, only noise.
 fn white(seed: u64, photons: u64, batches: u32, fineness: f64) -> Measurement {
     let window = boxed();
     let plane = plane("white", window, grid(&window, 1, [12, 16], fineness));
@@ -71,8 +72,8 @@ fn white_noise_is_flat() {
         chi2 += z * z;
     }
     let bins = grid.rho.half as f64;
-    // Four standard deviations of χ² of 12 degrees of freedom; a 10 % tilt of the kernel's
-    // correction gives 100s.
+    // The limit is four standard deviations of χ² with 12 degrees of freedom. A 10 % tilt of the
+    // kernel's correction gives hundreds of them.
     assert!(chi2 < bins + 4.0 * (2.0 * bins).sqrt(), "{chi2}");
     assert!(chi2 > 2.0, "{chi2}"); // below 2 with probability 1e-4: the noise would be too smooth
 }
@@ -83,12 +84,13 @@ fn removing_shot_noise_leaves_nothing_of_white_noise() {
     let measurement = white(2, photons, batches, 1.0);
     let radial = CrossPower::new(&measurement, 0).unwrap().radial();
     let noise = SQUARE / photons as f64;
-    // One half of the plane without the line ρ = 0: independent frequencies.
+    // The frequencies of one half of the plane, without the line ρ = 0, are independent.
     let zero = measurement.planes()[0].grid.rho.half;
     let power = radial.power.slice_axis(Axis(0), Slice::from(zero + 1..));
     let count = power.len() as f64;
     let mean = power.sum() / count;
-    // Var U = s⁴/(R(R−1)) for each frequency, s² = R · noise; four standard deviations of the mean of all.
+    // For each frequency Var U = s⁴/(R(R−1)) with s² = R · noise. The limit is four standard
+    // deviations of the mean over all frequencies.
     let sd = noise / count.sqrt() * (64.0_f64 / 63.0).sqrt();
     assert!(mean.abs() < 4.0 * sd, "{mean} {sd}");
     // Noise that is left in would be 20 standard deviations.
@@ -113,13 +115,15 @@ fn the_variance_of_the_slices_is_the_photons_noise() {
     let variance = estimate.variance.slice_axis(Axis(1), Slice::from(1..));
     let mean = variance.sum() / variance.len() as f64;
     let expected = SQUARE / photons as f64;
-    // 396 frequencies of 63 degrees of freedom each: four times 0.6 %.
+    // The mean over 396 frequencies with 63 degrees of freedom each has an error of 0.6 %; the
+    // limit is four times that.
     assert!((mean / expected - 1.0).abs() < 0.025, "{}", mean / expected);
     assert_eq!(estimate.batches, 64);
     let projection = estimate::projection(&measurement, 0).unwrap();
     let cells = projection.mean.values.len() as f64;
     let mean = projection.mean.values.sum() / cells;
-    // Mean weight 1 over the area 1.6 · 0.8; Σw of 32000 photons: four times 0.3 %.
+    // The mean weight is 1 over the area 1.6 · 0.8. The sum of 32000 weights has an error of 0.3 %;
+    // the limit is four times that.
     assert!((mean * 1.28 - 1.0).abs() < 0.013, "{mean}");
     let variance = projection.standard_error.mapv(|e| e * e).sum() / cells;
     let one = SQUARE * cells / (photons as f64 * 1.28 * 1.28);
@@ -136,7 +140,7 @@ fn jackknife_intervals_cover_the_truth() {
         let cross = CrossPower::new(&measurement, 0).unwrap();
         let grid: SliceGrid = measurement.planes()[0].grid;
         let [i, j] = [grid.rho.half + 1, grid.nu.half];
-        // |F|² = sinc²(ρ · 1.6), mean weight 1.
+        // The truth is |F|² = sinc²(ρ · 1.6), since the mean weight is 1.
         let t = std::f64::consts::PI * grid.rho.value(i) * 1.6;
         let truth = (t.sin() / t).powi(2);
         let radial = cross.radial();
@@ -151,7 +155,8 @@ fn jackknife_intervals_cover_the_truth() {
         statistics += u32::from(slope.value.abs() < 2.131 * slope.error);
     }
     let share = |count: u32| f64::from(count) / trials as f64;
-    // 95 % of 300 trials: three times 1.3 %, and the jackknife's own 1 %.
+    // The share of 300 trials is 95 %, with an error of 1.3 %. The limits are three times that,
+    // plus the jackknife's own 1 %.
     assert!((0.90..0.99).contains(&share(covered)));
     assert!((0.90..0.995).contains(&share(statistics)));
     assert!(share(halved) < 0.80); // an error half as large is seen: it covers 70 %

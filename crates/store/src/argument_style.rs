@@ -14,7 +14,7 @@ pub enum ArgumentStyle {
 }
 
 impl ArgumentStyle {
-    /// The argument with this name, without a value.
+    /// Returns the argument with this name, without a value.
     #[must_use]
     pub fn name(self, name: &str) -> String {
         match self {
@@ -23,7 +23,7 @@ impl ArgumentStyle {
         }
     }
 
-    /// The argument with this name and a value.
+    /// Returns the argument with this name and a value.
     #[must_use]
     pub fn with(self, name: &str, value: impl Display) -> String {
         match self {
@@ -32,7 +32,7 @@ impl ArgumentStyle {
         }
     }
 
-    /// The argument that sets a field of a scene.
+    /// Returns the argument that sets a field of a scene.
     #[must_use]
     pub fn set(self, path: &str, value: &str) -> String {
         match self {
@@ -41,7 +41,7 @@ impl ArgumentStyle {
         }
     }
 
-    /// A fault in the argument that sets fields of a scene.
+    /// Returns a fault in the argument that sets fields of a scene.
     #[must_use]
     pub fn in_set(self, fault: impl Display) -> String {
         match self {
@@ -50,7 +50,7 @@ impl ArgumentStyle {
         }
     }
 
-    /// The argument that allows replacing files of others.
+    /// Returns the argument that allows replacing files that Étendue did not write.
     #[must_use]
     pub fn force(self) -> &'static str {
         match self {
@@ -59,7 +59,7 @@ impl ArgumentStyle {
         }
     }
 
-    /// The advice to name another folder.
+    /// Returns the advice to name another folder.
     #[must_use]
     pub fn another_folder(self) -> &'static str {
         match self {

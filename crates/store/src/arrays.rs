@@ -48,7 +48,7 @@ pub struct SliceArrays {
 }
 
 impl SliceArrays {
-    /// The slices of a plane.
+    /// Returns the slices of a plane.
     #[must_use]
     pub fn of(plane: &PlaneComparison) -> Self {
         let grid = plane.measured.grid;
@@ -93,7 +93,8 @@ fn radial(plane: &PlaneComparison) -> Result<Vec<u8>, Failure> {
         .bytes()
 }
 
-/// Measured minus predicted radial power over its standard deviation if the prediction is true.
+/// Returns the measured minus the predicted radial power, divided by its standard deviation if the
+/// prediction is true.
 pub fn radial_z(plane: &PlaneComparison) -> Array2<f64> {
     z(
         &plane.radial.power,
@@ -102,14 +103,14 @@ pub fn radial_z(plane: &PlaneComparison) -> Array2<f64> {
     )
 }
 
-/// (measured − predicted) / sigma; NaN where no photon gave an error.
+/// Returns (measured − predicted) / sigma; NaN where no photon gave an error.
 pub fn z(measured: &Array2<f64>, predicted: &Array2<f64>, sigma: &Array2<f64>) -> Array2<f64> {
     let mut z = measured - predicted;
     z.zip_mut_with(sigma, |z, s| *z = if *s > 0.0 { *z / s } else { f64::NAN });
     z
 }
 
-/// A file of four parts, with ρ to the right and ν upwards.
+/// Returns a file of four parts, with ρ to the right and ν upwards.
 fn radial_exr(mut made_from: Value, plane: &PlaneComparison) -> Result<Vec<u8>, Failure> {
     let power = &plane.radial.power;
     let difference = power - &plane.predicted_radial;

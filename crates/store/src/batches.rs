@@ -30,7 +30,7 @@ fn file_of(plane: &VirtualPlane) -> String {
     format!("{}/batches.npz", plane.name)
 }
 
-/// The names of the files of a measurement.
+/// Returns the names of the files of a measurement.
 pub fn names(planes: &[VirtualPlane]) -> Vec<String> {
     let each = planes.iter().map(file_of);
     each.chain([LEDGER.to_owned()]).collect()
@@ -44,7 +44,7 @@ pub fn write(results: &mut Results, measurement: &Measurement) -> Result<(), Fai
     files.try_for_each(|(name, bytes)| results.write(&name, &bytes))
 }
 
-/// The files of some batches at `planes`: name and content of each.
+/// Returns the files of some batches at `planes`: name and content of each.
 pub fn files(
     planes: &[VirtualPlane],
     batches: &[&Batch],
@@ -65,7 +65,7 @@ pub fn files(
     each.chain([Ok((LEDGER.to_owned(), ledger))]).collect()
 }
 
-/// A file that records which batches its rows are.
+/// Returns a file that records which batches its rows are.
 fn numbered(batches: &[&Batch]) -> Result<Npz, Failure> {
     let numbers: Array1<u32> = batches.iter().map(|b| b.index).collect();
     let emitted: Array1<u64> = batches.iter().map(|b| b.emitted).collect();
@@ -168,7 +168,7 @@ struct StoredRows {
 }
 
 impl StoredRows {
-    /// Checks that they are those in the index.
+    /// Checks that the rows are the batches in the index.
     fn read(file: &mut NpzFile, held: &Held) -> Result<Self, Failure> {
         let Range { start, end } = held.batches;
         let count = end.saturating_sub(start) as usize;

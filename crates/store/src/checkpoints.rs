@@ -2,7 +2,7 @@
 //!
 //! Each batch is a file below `batches/` and the key of the run, in the folder of its results. It
 //! is moved there as a whole, and its name holds the hash of its content. A batch has the same
-//! bytes whichever process measures it (but for rounding on another kind of processor). So
+//! bytes whichever process measures it, except for rounding errors on another kind of processor. So
 //! processes share the work without a lock, and one that dies does not delay the others. An
 //! unfinished batch is a file too, the sum of its first parts, and is replaced by the next one.
 
@@ -38,7 +38,7 @@ pub struct CheckpointStore {
 }
 
 impl CheckpointStore {
-    /// The batches of a run into `out`: of this scene, measured by this method and version.
+    /// Returns the batches of a run into `out`: of this scene, measured by this method and version.
     pub fn of(out: &Path, scene: &Scene, method: Method) -> Self {
         let what = format!("{VERSION} {} {}", scene.hash(), method.words());
         let key = &blake3::hash(what.as_bytes()).to_hex()[..16];
@@ -51,19 +51,19 @@ impl CheckpointStore {
         }
     }
 
-    /// The folder of the batches, for messages.
+    /// Returns the folder of the batches, for messages.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// The numbers of finished batches and of those begun.
+    /// Returns the numbers of finished batches and of those begun.
     pub fn count(&self) -> [usize; 2] {
         let found = self.furthest();
         let done = found.values().filter(|name| name.parts.is_none()).count();
         [done, found.len() - done]
     }
 
-    /// The progress of a batch; `None` if it is not begun.
+    /// Returns the progress of a batch; `None` if it is not begun.
     pub fn progress(&self, batch: u32) -> Option<BatchProgress> {
         let furthest = self.furthest().remove(&batch)?;
         Some(
@@ -73,7 +73,7 @@ impl CheckpointStore {
         )
     }
 
-    /// For each batch, the file with the most parts.
+    /// Returns the file with the most parts for each batch.
     fn furthest(&self) -> BTreeMap<u32, CheckpointName> {
         let mut furthest = BTreeMap::new();
         for name in self.names() {
@@ -85,7 +85,7 @@ impl CheckpointStore {
         furthest
     }
 
-    /// Whether no link leads out of the results folder.
+    /// Checks whether no link leads out of the results folder.
     fn is_inside(&self) -> bool {
         let below = self.folder.strip_prefix(&self.out).ok();
         let name = below.and_then(|below| below.join("batch").to_str().map(str::to_owned));
@@ -142,8 +142,8 @@ impl CheckpointStore {
     }
 
     /// Adds the finished batches that a measurement does not have yet. Returns those that are
-    /// begun, and the paths of damaged files, which are removed and measured again. `emitted`
-    /// returns the number of photons of a batch.
+    /// begun, and the paths of damaged files. These files are removed, and their batches are
+    /// measured again. `emitted` returns the number of photons of a batch.
     pub fn read(
         &self,
         all: &mut Measurement,
@@ -200,7 +200,7 @@ impl CheckpointStore {
     }
 }
 
-/// A batch as the bytes of its file.
+/// Returns a batch as the bytes of its file.
 pub fn packed(planes: &[VirtualPlane], batch: &Batch) -> Result<Vec<u8>, Failure> {
     let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
     let stored = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
@@ -213,7 +213,7 @@ pub fn packed(planes: &[VirtualPlane], batch: &Batch) -> Result<Vec<u8>, Failure
     Ok(archive.finish().map_err(Failure::cannot_run)?.into_inner())
 }
 
-/// The batch described by `held`, from the bytes of its file.
+/// Returns the batch described by `held`, from the bytes of its file.
 pub fn unpacked(bytes: &[u8], held: &Held, planes: &[VirtualPlane]) -> Result<Batch, Failure> {
     let open = |name: &str| {
         let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(Failure::bad_input)?;
@@ -234,7 +234,7 @@ pub fn unpacked(bytes: &[u8], held: &Held, planes: &[VirtualPlane]) -> Result<Ba
 /// The progress of a batch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BatchProgress {
-    /// This number of its first parts are summed.
+    /// The sum contains this number of the batch's first parts.
     Parts(u32),
     /// The batch is complete.
     Done,
@@ -277,7 +277,7 @@ impl CheckpointName {
         Some(Self { batch, parts, hash })
     }
 
-    /// Whether this file holds more of a batch than another file of the same batch.
+    /// Checks whether this file holds more of a batch than another file of the same batch.
     fn is_beyond(&self, other: &Self) -> bool {
         let rank = |name: &Self| name.parts.map_or(u64::MAX, u64::from);
         rank(self) > rank(other)

@@ -17,7 +17,7 @@ pub struct Part {
     pub samples: Vec<f32>,
 }
 
-/// The bytes of a file; `provenance` is an attribute of each part.
+/// Returns the bytes of a file; `provenance` is an attribute of each part.
 pub fn exr(
     [width, height]: [usize; 2],
     parts: Vec<Part>,
@@ -49,9 +49,9 @@ pub fn exr(
     Ok(bytes.into_inner())
 }
 
-/// A single attribute, since the order of several would be random.
+/// Returns a single attribute, since the order of several would be random.
 fn attribute(provenance: &Value) -> (Text, AttributeValue) {
-    // EXR holds Latin-1; other than ASCII characters are written as JSON escapes.
+    // EXR holds Latin-1; characters other than ASCII are written as JSON escapes.
     let mut ascii = String::new();
     for unit in provenance.to_string().encode_utf16() {
         match u8::try_from(unit).ok().filter(u8::is_ascii) {

@@ -1,4 +1,4 @@
-//! Why a command stops, and its exit code.
+//! The reason why a command stops, and its exit code.
 
 use etendue_scene::SceneError;
 use std::fmt::Display;
@@ -19,7 +19,7 @@ const BAD_INPUT: u8 = 2;
 pub const CANNOT_RUN: u8 = 3;
 
 impl Failure {
-    /// An input of the user is wrong: exit code 2.
+    /// Returns the failure for a wrong input of the user: exit code 2.
     pub fn bad_input(message: impl Display) -> Self {
         Self {
             message: message.to_string(),
@@ -27,7 +27,7 @@ impl Failure {
         }
     }
 
-    /// The request cannot be carried out here: exit code 3.
+    /// Returns the failure for a request that cannot be carried out here: exit code 3.
     pub fn cannot_run(message: impl Display) -> Self {
         Self {
             message: message.to_string(),
@@ -35,7 +35,7 @@ impl Failure {
         }
     }
 
-    /// The scene is invalid, or valid and too large for this machine.
+    /// Returns the failure for a scene that is invalid, or valid but too large for this machine.
     pub fn of_scene(error: &SceneError, message: impl Display) -> Self {
         match error {
             SceneError::Values(faults) if faults.iter().all(|f| f.memory) => {
@@ -45,7 +45,7 @@ impl Failure {
         }
     }
 
-    /// The result file or folder `path` could not be written.
+    /// Returns the failure for a result file or folder `path` that could not be written.
     pub fn write(path: &Path, reason: impl Display) -> Self {
         Self::cannot_run(format!("cannot write {}: {reason}", path.display()))
     }

@@ -11,14 +11,15 @@ pub struct FieldChange {
     pub values: [String; 2],
 }
 
-/// All fields in which two trees differ, in the order of the first. A missing field counts as null.
+/// Returns all fields in which two trees differ, in the order of the first. A missing field counts
+/// as null.
 pub fn differences(a: &Value, b: &Value) -> Vec<FieldChange> {
     let mut found = Vec::new();
     collect(String::new(), a, b, &mut found);
     found
 }
 
-/// The first field that differs.
+/// Returns the first field that differs.
 pub fn difference(a: &Value, b: &Value) -> Option<FieldChange> {
     differences(a, b).into_iter().next()
 }
@@ -50,7 +51,7 @@ fn collect(field: String, a: &Value, b: &Value, found: &mut Vec<FieldChange>) {
     }
 }
 
-/// A value, shortened to part of a line.
+/// Returns a value, shortened to part of a line.
 fn brief(value: &Value) -> String {
     const MAX_CHARACTERS: usize = 60;
     let text = value.to_string();

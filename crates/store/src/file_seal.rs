@@ -1,5 +1,5 @@
-//! A mark in a file that this program wrote: a hash of all other bytes, at the end. A file with
-//! its own hash was not changed since and may be replaced.
+//! A mark in a file that this program wrote: a hash of all other bytes, at the end. A file whose
+//! hash matches was not changed since it was written, and may be replaced.
 
 /// The kind of file, which determines how the mark is stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,7 +20,7 @@ const LAST: usize = 12;
 const DIGITS: usize = 64;
 
 impl SealKind {
-    /// The file with its mark.
+    /// Returns the file with its mark.
     #[must_use]
     pub fn sealed(self, bytes: &[u8]) -> Vec<u8> {
         let hash = blake3::hash(bytes).to_hex();
@@ -37,7 +37,7 @@ impl SealKind {
         [start, &mark, end].concat()
     }
 
-    /// Whether a file bears its own mark.
+    /// Checks whether a file bears its own mark.
     #[must_use]
     pub fn is_sealed(self, bytes: &[u8]) -> bool {
         let (mark, last) = match self {
@@ -52,7 +52,7 @@ impl SealKind {
     }
 }
 
-/// A text chunk of a PNG: its length, kind, data and checksum.
+/// Returns a text chunk of a PNG: its length, kind, data and checksum.
 fn chunk(data: &[u8]) -> Vec<u8> {
     let summed = [b"tEXt", data].concat();
     let length = u32::try_from(data.len()).unwrap_or(0).to_be_bytes();

@@ -3,14 +3,14 @@
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// The length of the words, the words, and the bytes.
+/// Returns the length of the words, the words, and the bytes.
 pub fn joined(words: &impl Serialize, bytes: &[u8]) -> Vec<u8> {
     let words = serde_json::to_vec(words).unwrap_or_default();
     let length = (words.len() as u64).to_le_bytes();
     [&length, words.as_slice(), bytes].concat()
 }
 
-/// The words and bytes of [`joined`].
+/// Returns the words and bytes of [`joined`].
 ///
 /// # Errors
 /// When the bytes are not such a message.

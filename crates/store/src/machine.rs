@@ -6,8 +6,9 @@ use etendue_scene::{Scene, SceneFile, resolve};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Memory that this process may still allocate without swapping, in bytes, limited by the machine,
-/// by the control groups of the process, and by its own limits (`ulimit -v`, `ulimit -d`).
+/// Returns the memory that this process may still allocate without swapping, in bytes. The machine
+/// limits it, and so do the control groups of the process and its own limits (`ulimit -v`,
+/// `ulimit -d`).
 pub fn available_memory() -> u64 {
     let machine = kilobytes("/proc/meminfo", "MemAvailable:");
     let limits = [
@@ -29,12 +30,12 @@ pub fn resolved(name: &str, file: SceneFile, folder: &Path, shown: &str) -> Resu
     })
 }
 
-/// The peak memory of this process, in bytes.
+/// Returns the peak memory of this process, in bytes.
 pub fn peak_memory() -> Option<u64> {
     kilobytes("/proc/self/status", "VmHWM:")
 }
 
-/// Whether a signal was ignored when this process began, as under `nohup`.
+/// Checks whether a signal was ignored when this process began, as under `nohup`.
 pub fn ignores(signal: i32) -> bool {
     let read = || {
         let text = fs::read_to_string("/proc/self/status").ok()?;
@@ -45,14 +46,15 @@ pub fn ignores(signal: i32) -> bool {
     read().unwrap_or(false)
 }
 
-/// The memory left in each control group around this process, of version 2 or 1.
+/// Returns the memory left in each control group around this process, of version 2 or 1.
 fn control_groups() -> impl Iterator<Item = u64> {
     let text = fs::read_to_string("/proc/self/cgroup").unwrap_or_default();
     let groups: Vec<PathBuf> = text.lines().flat_map(folders).collect();
     groups.into_iter().filter_map(|folder| left_in(&folder))
 }
 
-/// The folders of a control group and those around it, from a line `number:controllers:path`.
+/// Returns the folders of a control group and those around it, from a line
+/// `number:controllers:path`.
 fn folders(line: &str) -> Vec<PathBuf> {
     let mut parts = line.splitn(3, ':').skip(1);
     let root = match parts.next() {
@@ -67,7 +69,8 @@ fn folders(line: &str) -> Vec<PathBuf> {
     ancestors.map(|path| Path::new(root).join(path)).collect()
 }
 
-/// The limit of a control group less its usage; cached files can be evicted and count as free.
+/// Returns the limit of a control group less its usage; cached files can be evicted and count as
+/// free.
 fn left_in(folder: &Path) -> Option<u64> {
     let read = |name: &str| fs::read_to_string(folder.join(name)).ok();
     let number = |name: &str| read(name)?.trim().parse::<u64>().ok();
@@ -77,7 +80,7 @@ fn left_in(folder: &Path) -> Option<u64> {
     Some(limit.saturating_sub(used.saturating_sub(cached.unwrap_or(0))))
 }
 
-/// A limit of this process, in bytes; `None` if there is none.
+/// Returns a limit of this process, in bytes; `None` if there is none.
 fn limit(name: &str) -> Option<u64> {
     let text = fs::read_to_string("/proc/self/limits").ok()?;
     field(&text, name)?.parse().ok()
@@ -90,7 +93,7 @@ fn kilobytes(file: &str, name: &str) -> Option<u64> {
     Some(kilobytes * 1024)
 }
 
-/// The first word after a name at the beginning of a line.
+/// Returns the first word after a name at the beginning of a line.
 fn field<'a>(text: &'a str, name: &str) -> Option<&'a str> {
     let rest = text.lines().find_map(|line| line.strip_prefix(name))?;
     rest.split_whitespace().next()

@@ -15,7 +15,7 @@ pub enum Method {
 }
 
 impl Method {
-    /// Whether the method keeps a ledger of all flux, which only photons from the light do.
+    /// Checks whether the method keeps a ledger of all flux, which only photons from the light do.
     #[must_use]
     pub fn keeps_ledger(self) -> bool {
         match self {
@@ -24,7 +24,7 @@ impl Method {
         }
     }
 
-    /// The name in commands.
+    /// Returns the name in commands.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -34,7 +34,7 @@ impl Method {
         }
     }
 
-    /// What the method measures with, in words.
+    /// Returns what the method measures with, in words.
     #[must_use]
     pub fn words(self) -> &'static str {
         match self {

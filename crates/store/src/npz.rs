@@ -16,9 +16,9 @@ pub trait Number: Copy {
     const DESCR: &'static str;
     /// Appends the bytes of the number.
     fn write(self, bytes: &mut Vec<u8>);
-    /// The number from exactly as many bytes as it has.
+    /// Decodes a number; `None` unless there are exactly as many bytes as a number has.
     fn read(bytes: &[u8]) -> Option<Self>;
-    /// Whether the number is neither infinite nor NaN.
+    /// Checks whether the number is neither infinite nor NaN.
     fn is_finite(self) -> bool;
 }
 
@@ -104,7 +104,7 @@ impl Default for Npz {
 }
 
 impl Npz {
-    /// A file without arrays.
+    /// Returns a file without arrays.
     #[must_use]
     pub fn new() -> Self {
         Self(ZipWriter::new(Cursor::new(Vec::new())))
@@ -134,7 +134,7 @@ impl Npz {
         axes.try_fold(self, |npz, (name, values)| npz.add(name, &values))
     }
 
-    /// The bytes of the file.
+    /// Returns the bytes of the file.
     pub fn bytes(self) -> Result<Vec<u8>, Failure> {
         let finished = self.0.finish().map_err(Failure::cannot_run)?;
         Ok(finished.into_inner())
@@ -144,7 +144,7 @@ impl Npz {
 /// Arrays larger than this need the 64-bit fields of ZIP, which NumPy reads.
 const MAX_SMALL_FILE: usize = 1 << 31;
 
-/// The axes of arrays [azimuth, ρ ≥ 0, ν].
+/// Returns the axes of arrays [azimuth, ρ ≥ 0, ν].
 fn half_axes(grid: &SliceGrid) -> [(&'static str, Array1<f64>); 3] {
     let rho = (0..=grid.rho.half).map(|i| grid.rho.value(grid.rho.half + i));
     [
@@ -174,7 +174,7 @@ impl fmt::Debug for NpzFile {
 const HEADER: usize = 1 << 16;
 
 impl NpzFile {
-    /// The file of these bytes; `path` is for messages.
+    /// Returns the file of these bytes; `path` is for messages.
     pub fn new(path: PathBuf, bytes: Vec<u8>) -> Result<Self, Failure> {
         let length = bytes.len();
         match ZipArchive::new(Cursor::new(bytes)) {
@@ -187,7 +187,7 @@ impl NpzFile {
         }
     }
 
-    /// The array `name`, in C order. It must have this shape and hold finite numbers.
+    /// Returns the array `name`, in C order. It must have this shape and hold finite numbers.
     pub fn array<A: Number, I: IntoDimension>(
         &mut self,
         name: &str,
@@ -214,7 +214,7 @@ impl NpzFile {
         })
     }
 
-    /// The numbers of an axis, of any length.
+    /// Returns the numbers of an axis, of any length.
     pub fn axis(&mut self, name: &str) -> Result<Array1<f64>, Failure> {
         // Uncompressed data are no larger than the file.
         let (found, numbers) = self.numbers(name, self.length)?;
@@ -227,13 +227,13 @@ impl NpzFile {
         }
     }
 
-    /// Whether the file is long enough for this many numbers of eight bytes, as an uncompressed
-    /// file must be.
+    /// Checks whether the file is long enough for this many numbers of eight bytes, as an
+    /// uncompressed file must be.
     pub fn may_hold(&self, numbers: usize) -> bool {
         numbers <= self.length / size_of::<f64>()
     }
 
-    /// The finite numbers of an array that needs at most `bytes`, in the order of the file.
+    /// Returns the finite numbers of an array that needs at most `bytes`, in the order of the file.
     fn numbers<A: Number>(
         &mut self,
         name: &str,
@@ -241,7 +241,7 @@ impl NpzFile {
     ) -> Result<(NpyHeader, Vec<A>), Failure> {
         let bytes = self.entry(name, bytes)?;
         let Some((header, start)) = NpyHeader::read(&bytes) else {
-            return Err(self.fault(name, "its header is not one of an array of numbers"));
+            return Err(self.fault(name, "its header does not describe an array of numbers"));
         };
         if header.descr != A::DESCR {
             let is = format!("its numbers are '{}'; must be '{}'", header.descr, A::DESCR);
@@ -270,7 +270,7 @@ impl NpzFile {
         Ok((header, numbers))
     }
 
-    /// Whether the file has an array of this name.
+    /// Checks whether the file has an array of this name.
     pub fn has(&self, name: &str) -> bool {
         self.archive
             .index_for_name(&format!("{name}.npy"))
@@ -288,14 +288,14 @@ impl NpzFile {
         Ok(())
     }
 
-    /// The message for a fault of array `name`.
+    /// Returns the message for a fault of array `name`.
     pub fn fault(&self, name: &str, what: impl Display) -> Failure {
         let path = self.path.display();
         Failure::bad_input(format!("{path}: array {name}: {what}"))
     }
 
-    /// The NPY file `name` in the archive. Compressed data are not unpacked beyond the bytes that
-    /// `numbers` need or that the whole archive holds.
+    /// Returns the NPY file `name` in the archive. Unpacks at most as many bytes as `numbers`, the
+    /// whole archive and a header have together.
     fn entry(&mut self, name: &str, numbers: usize) -> Result<Vec<u8>, Failure> {
         let limit = numbers.saturating_add(self.length).saturating_add(HEADER);
         let mut bytes = Vec::new();
@@ -313,7 +313,7 @@ impl NpzFile {
     }
 }
 
-/// The azimuths of slices.
+/// Returns the azimuths of slices.
 pub(super) fn azimuths(grid: &SliceGrid) -> Array1<f64> {
     (0..grid.azimuths).map(|k| grid.azimuth(k)).collect()
 }

@@ -24,14 +24,14 @@ pub struct OutputFile {
 
 impl OutputFile {
     /// Checks that the file can be written, before any work is done. An existing file at the path
-    /// is kept, unless `force` is set and it is a regular file; it must not be among `inputs` in
-    /// any case.
+    /// is kept, unless `force` is set and the file is regular. The path must not be among `inputs`
+    /// in any case.
     pub fn claim(path: &Path, force: bool, inputs: &[PathBuf]) -> Result<Self, Failure> {
         Self::of_kind(path, force, inputs, None)
     }
 
-    /// The same for a file that bears a mark: one that this program wrote, unchanged since, is
-    /// replaced without `force`.
+    /// Checks the same for a file that bears a mark. A file that this program wrote and that has
+    /// not changed since is replaced without `force`.
     pub fn claim_sealed(
         path: &Path,
         mut force: bool,

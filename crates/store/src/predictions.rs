@@ -19,8 +19,8 @@ use std::path::PathBuf;
 /// The content of `prediction.json`, beside the scene.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct StoredPrediction {
-    /// Method of the measurement that the prediction is for; where there is no theory, the other
-    /// method took its place.
+    /// Method of the measurement that the prediction is for. Where there is no theory, a
+    /// measurement by another method takes its place.
     method: Method,
     /// A prediction for each plane of the scene.
     pub planes: Vec<PredictedPlane>,
@@ -40,8 +40,8 @@ pub struct PredictedPlane {
     parameters: Vec<[String; 2]>,
     cuts: Vec<f64>,
     depth: Option<[f64; 2]>,
-    /// Numbers of independent replicates of the slices, and of those of the chain of affine maps;
-    /// zero where they have no statistical error.
+    /// Numbers of independent replicates of the slices, and of the slices of the chain of affine
+    /// maps; zero where the slices have no statistical error.
     replicates: [usize; 2],
 }
 
@@ -49,7 +49,7 @@ fn file_of(plane: &VirtualPlane) -> String {
     format!("{}/prediction.npz", plane.name)
 }
 
-/// The names of the files of a prediction.
+/// Returns the names of the files of a prediction.
 pub fn names(planes: &[VirtualPlane]) -> Vec<String> {
     planes.iter().map(file_of).collect()
 }
@@ -71,20 +71,20 @@ pub fn write(
     Ok(StoredPrediction { method, planes })
 }
 
-/// A prediction as bytes, for another process.
+/// Returns a prediction as bytes, for another process.
 pub fn packed(plane: &VirtualPlane, prediction: &Prediction) -> Result<Vec<u8>, Failure> {
     let (words, bytes) = stored(plane, prediction)?;
     Ok(joined(&words, &bytes))
 }
 
-/// The prediction of a plane from bytes of [`packed`].
+/// Returns the prediction of a plane from bytes of [`packed`].
 pub fn unpacked(plane: &VirtualPlane, bytes: &[u8]) -> Result<Prediction, Failure> {
     let (words, bytes): (PredictedPlane, _) = split(bytes).map_err(Failure::cannot_run)?;
     let file = NpzFile::new(PathBuf::from(file_of(plane)), bytes.to_vec())?;
     read_plane(file, plane, &words)
 }
 
-/// The text of a prediction, and the bytes of its file of arrays.
+/// Returns the text of a prediction, and the bytes of its file of arrays.
 fn stored(
     plane: &VirtualPlane,
     prediction: &Prediction,
@@ -150,7 +150,7 @@ fn stored(
     Ok((words, bytes))
 }
 
-/// Slices as one array, [slices, azimuth, ρ ≥ 0, ν].
+/// Returns slices as one array, [slices, azimuth, ρ ≥ 0, ν].
 fn stacked(grid: &SliceGrid, all: &[Slices]) -> Array4<Complex> {
     let [azimuths, rho, nu] = grid.half_shape();
     let mut stacked = Array4::zeros([all.len(), azimuths, rho, nu]);

@@ -1,9 +1,9 @@
 //! A folder of results, which owns only the files that it wrote.
 //!
 //! New files wait in a subfolder until all are complete, so an earlier result stays until then. An
-//! index, such as `summary.json`, lists them by their hashes and comes last. Files that the index
-//! of an earlier result lists, and that still have the listed hash, are removed; anything else in
-//! the folder belongs to somebody else, and stays (docs/files.md).
+//! index, such as `summary.json`, lists the files with their hashes and is moved last. A file of an
+//! earlier result is removed if the index of that result lists it and it still has the listed hash.
+//! Anything else in the folder belongs to somebody else, and stays (docs/files.md).
 
 mod claim;
 mod commit;
@@ -36,7 +36,8 @@ pub const PICTURE: &str = "picture.json";
 pub const PROBE: &str = "probe.json";
 /// The index of `etendue covariance`.
 pub const COVARIANCE: &str = "covariance.json";
-/// Seconds of a comparison. They are outside the index, since they differ in every run.
+/// The file with the seconds of a comparison. They are outside the index, since they differ in
+/// every run.
 pub const TIMING: &str = "timing.json";
 
 /// The largest number of bytes of an index.
@@ -46,7 +47,7 @@ pub const MAX_INDEX_BYTES: u64 = 1 << 26;
 const UNFINISHED: &str = ".etendue-unfinished";
 const LOCK: &str = ".etendue.lock";
 
-/// Why nothing is written below a folder.
+/// The reason why nothing is written below a folder.
 pub const LINKED: &str = "a link or a file is in the place of a folder";
 
 /// How long another process may hold a folder before a message is given.
@@ -97,7 +98,7 @@ pub struct Finished {
 }
 
 impl Finished {
-    /// A message that lists the replaced files of somebody else, if any.
+    /// Returns a message that lists the replaced files of somebody else, if any.
     #[must_use]
     pub fn replaced_message(&self) -> Option<String> {
         let names = self.replaced.join(", ");
@@ -107,9 +108,9 @@ impl Finished {
 }
 
 impl Results {
-    /// Claims a folder, before any work is done: creates it, locks it, removes the remains of a
-    /// dead process, and refuses when a file of somebody else, or an input, is in the place of a
-    /// file to be written.
+    /// Claims a folder, before any work is done. Creates and locks the folder, and removes the
+    /// remains of a dead process. Refuses if a file of somebody else, or an input, is in the place
+    /// of a file to be written.
     pub fn claim(folder: &Path, plan: Plan) -> Result<Self, Failure> {
         let failure = |e| Failure::write(folder, e);
         if folder.symlink_metadata().is_ok() && !folder.is_dir() {
@@ -140,8 +141,8 @@ impl Results {
         Ok(results)
     }
 
-    /// The same for a folder `name` inside `out`, which the user names: below `out` nothing is
-    /// written through a link.
+    /// Claims a folder `name` inside `out`. The user chooses `out`, and below it nothing is written
+    /// through a link.
     pub fn claim_below(out: &Path, name: &str, plan: Plan) -> Result<Self, Failure> {
         let folder = out.join(name);
         if inside(out, &format!("{name}/{}", plan.index)).is_none() {
@@ -150,7 +151,7 @@ impl Results {
         Self::claim(&folder, plan)
     }
 
-    /// The same, but waits while another process writes there, and warns if that takes long.
+    /// Claims a folder, but waits while another process writes there, and warns if that takes long.
     pub fn claim_in_turn(folder: &Path, plan: Plan, warn: &dyn Fn(&str)) -> Result<Self, Failure> {
         let mut begun = Some(Instant::now());
         loop {
@@ -177,7 +178,8 @@ impl Results {
         self.stream(name, &mut |file| file.write_all(bytes))
     }
 
-    /// The same for a file too large for memory, which `content` writes.
+    /// Writes a file that the index lists and that is too large for memory; `content` writes its
+    /// bytes.
     pub fn stream(
         &mut self,
         name: &str,
@@ -208,12 +210,13 @@ impl Results {
         if !self.planned().any(|planned| planned == name) {
             return Err(Failure::write(
                 &shown,
-                "it was not announced: a bug in etendue",
+                "this file was not planned: a bug in etendue",
             ));
         }
         let path = self.staged(name);
         let mut write = || {
-            // An interrupted process has removed the folder, and must not create it again.
+            // If this process is being interrupted, the folder is removed and must not be created
+            // again.
             let file = unfinished::undisturbed(|| {
                 if let Some(folder) = path.parent() {
                     fs::create_dir_all(folder)?;
@@ -252,23 +255,23 @@ impl Results {
         })
     }
 
-    /// The names of all files to be written.
+    /// Returns the names of all files to be written.
     fn planned(&self) -> impl Iterator<Item = &str> {
         let files = self.plan.files.iter().map(String::as_str);
         files.chain([self.plan.index])
     }
 
-    /// The temporary path of a new file.
+    /// Returns the temporary path of a new file.
     fn staged(&self, name: &str) -> PathBuf {
         self.folder.join(UNFINISHED).join("new").join(name)
     }
 
-    /// The temporary path of a new index, once all files are complete and begin to move.
+    /// Returns the temporary path of a new index, once all files are complete and begin to move.
     fn ready(&self, index: &str) -> PathBuf {
         self.folder.join(UNFINISHED).join(index)
     }
 
-    /// The index whose files have begun to move.
+    /// Returns the index whose files have begun to move.
     fn ready_index(&self) -> Option<&'static str> {
         let mut indices = [
             SUMMARY,
@@ -288,7 +291,7 @@ impl Results {
 
 impl Drop for Results {
     fn drop(&mut self) {
-        // Files that have begun to move are moved on by the next process.
+        // If files have begun to move, the next process completes their moves.
         if self.ready_index().is_none() {
             let _ = fs::remove_dir_all(self.folder.join(UNFINISHED));
         }
@@ -300,7 +303,8 @@ impl Drop for Results {
     }
 }
 
-/// The path of a file of a folder; `None` if it leads out of it, by `..` or by a link.
+/// Returns the path of a file of a folder; `None` if the path leads out of the folder, by `..` or
+/// by a link.
 pub fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
     let mut path = folder.to_owned();
     let mut components = Path::new(name).components().peekable();
@@ -320,8 +324,8 @@ pub fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
     Some(path)
 }
 
-/// The files that an index lists, with their hashes; `None` unless the index is exactly as Étendue
-/// wrote it.
+/// Returns the files that an index lists, with their hashes; `None` unless the index is exactly as
+/// Étendue wrote it.
 fn listed(index: &Path) -> Option<BTreeMap<String, String>> {
     let bytes = sealed_bytes(index)?;
     let tree: serde_json::Value = serde_json::from_slice(&bytes).ok()?;
@@ -330,17 +334,17 @@ fn listed(index: &Path) -> Option<BTreeMap<String, String>> {
     files.collect()
 }
 
-/// The hash of a file in the index of a complete result.
+/// Returns the hash of a file in the index of a complete result.
 pub fn hash_of(folder: &Path, index: &str, name: &str) -> Option<String> {
     listed(&folder.join(index))?.remove(name)
 }
 
-/// Whether a path is itself a regular file, and not a link to one.
+/// Checks whether a path is itself a regular file, and not a link to one.
 fn is_regular(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok_and(|found| found.is_file())
 }
 
-/// Whether a path is a regular file with this hash.
+/// Checks whether a path is a regular file with this hash.
 fn has_hash(path: &Path, hash: &str) -> bool {
     let hashed = || {
         let mut hasher = blake3::Hasher::new();
@@ -350,14 +354,14 @@ fn has_hash(path: &Path, hash: &str) -> bool {
     is_regular(path) && hashed().is_some_and(|found| found.as_str() == hash)
 }
 
-/// The content of a regular file that ends with its own hash.
+/// Returns the content of a regular file that ends with its own hash.
 fn sealed_bytes(path: &Path) -> Option<Vec<u8>> {
     let bytes = || read_file(path, MAX_INDEX_BYTES).ok();
     let bytes = is_regular(path).then(bytes).flatten();
     bytes.filter(|bytes| sealed::is_sealed(bytes))
 }
 
-/// The folders, below the results folder, that hold these files.
+/// Returns the folders, below the results folder, that hold these files.
 fn parents<'a>(names: impl Iterator<Item = &'a String>) -> BTreeSet<&'a Path> {
     let ancestors = names.flat_map(|name| Path::new(name).ancestors().skip(1));
     ancestors

@@ -5,7 +5,7 @@
 
 use serde::Serialize;
 
-/// Readable JSON with a final newline. Numbers that are not finite become null.
+/// Returns readable JSON with a final newline. Numbers that are not finite become null.
 pub fn json(value: &impl Serialize) -> Vec<u8> {
     // This cannot fail: all keys are text.
     let mut bytes = serde_json::to_vec_pretty(value).unwrap_or_default();
@@ -26,7 +26,7 @@ pub fn sealed(json: &[u8]) -> Vec<u8> {
     [body, BEFORE.as_bytes(), hash.as_bytes(), AFTER.as_bytes()].concat()
 }
 
-/// Whether bytes end with their own hash.
+/// Checks whether bytes end with their own hash.
 pub fn is_sealed(bytes: &[u8]) -> bool {
     let hash_of = || {
         let rest = bytes.strip_suffix(AFTER.as_bytes())?;

@@ -16,7 +16,8 @@ use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
-/// The path at which a stage keeps a copy of a mesh or picture, beside the index of that name.
+/// Returns the path at which a stage keeps a copy of a mesh or picture, beside the index of that
+/// name.
 pub fn copy_of(index: &str, input: &str) -> String {
     let stage = index.trim_end_matches(".json");
     format!("{stage}.inputs/{input}")
@@ -43,7 +44,7 @@ pub struct Index<T> {
 }
 
 impl<T: Serialize> Index<T> {
-    /// The index of a stage for a scene.
+    /// Returns the index of a stage for a scene.
     pub fn new(scene: &Scene, content: T) -> Self {
         Self {
             scene: scene.name.clone(),
@@ -86,7 +87,7 @@ impl<T: DeserializeOwned> Stored<T> {
             .map_err(|e| Failure::bad_input(format!("cannot read {shown}: {e}")))?;
         let fault = |what: String| Failure::bad_input(format!("{shown}: {what}"));
         let tree: Value = serde_json::from_slice(&bytes).unwrap_or_default();
-        // Checked before the rest, which another version may write differently.
+        // The version is checked before the rest, which another version may write differently.
         if let Some(version) = tree["version"].as_str().filter(|v| *v != VERSION) {
             return Err(fault(format!(
                 "written by version {version}, but this is version {VERSION}: all stages must be of the same version"
@@ -112,7 +113,7 @@ impl<T: DeserializeOwned> Stored<T> {
 }
 
 impl<T> Stored<T> {
-    /// The scene of the stage; its meshes and pictures are the stage's own copies.
+    /// Returns the scene of the stage; its meshes and pictures are the stage's own copies.
     pub fn scene(&self) -> Result<Scene, Failure> {
         let Index {
             scene,
@@ -140,18 +141,18 @@ impl<T> Stored<T> {
         names.try_for_each(|name| self.bytes(&copy_of(self.name, name)).map(drop))
     }
 
-    /// The paths of the index and of all files it lists.
+    /// Returns the paths of the index and of all files it lists.
     pub fn paths(&self) -> Vec<PathBuf> {
         let files = self.index.files.keys().map(|name| self.folder.join(name));
         files.chain([self.path.clone()]).collect()
     }
 
-    /// The arrays in the file `name`.
+    /// Returns the arrays in the file `name`.
     pub fn npz(&self, name: &str) -> Result<NpzFile, Failure> {
         NpzFile::new(self.folder.join(name), self.bytes(name)?)
     }
 
-    /// The file `name`, whose bytes must be unchanged.
+    /// Returns the file `name`, whose bytes must be unchanged.
     fn bytes(&self, name: &str) -> Result<Vec<u8>, Failure> {
         listed_bytes(&self.folder, self.name, &self.index.files, name)
     }
@@ -191,14 +192,14 @@ impl<T> Stored<T> {
         )))
     }
 
-    /// The message for a fault of the index.
+    /// Returns the message for a fault of the index.
     pub fn fault(&self, what: impl Display) -> Failure {
         Failure::bad_input(format!("{}: {what}", self.path.display()))
     }
 }
 
-/// The file `name` of a folder, whose bytes must be those listed in `files` of the index called
-/// `index`.
+/// Returns the file `name` of a folder, whose bytes must be those listed in `files` of the index
+/// called `index`.
 pub fn listed_bytes(
     folder: &Path,
     index: &str,
@@ -219,7 +220,7 @@ pub fn listed_bytes(
     Ok(bytes)
 }
 
-/// The summary of a run of exactly this scene, by the same method and version.
+/// Returns the summary of a run of exactly this scene, by the same method and version.
 pub fn summary_of(folder: &Path, scene: &Scene, method: Method) -> Option<Value> {
     let bytes = read_file(&folder.join(SUMMARY), MAX_INDEX_BYTES).ok()?;
     let summary: Value = serde_json::from_slice(&bytes).ok()?;
@@ -229,9 +230,9 @@ pub fn summary_of(folder: &Path, scene: &Scene, method: Method) -> Option<Value>
     (sealed::is_sealed(&bytes) && same).then_some(summary)
 }
 
-/// Fails where a folder holds a result of another scene, so that no result replaces one that only
-/// shares its name. Settings of the measurement are ignored. `arguments` is the style in which the
-/// message names `force`.
+/// Fails where a folder holds a result of another scene, so that no result replaces another that
+/// only has the same name. Settings of the measurement are ignored. `arguments` is the style in
+/// which the message names `force`.
 pub fn check_earlier(
     folder: &Path,
     index: &str,

@@ -4,7 +4,8 @@ use std::fs;
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// The unfinished files, and the locks on their folders. Global, because signals are.
+/// The unfinished files, and the locks on their folders. The list is global, because signals are
+/// global.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// The message at the end of an interrupted command whose batches are stored.
@@ -19,8 +20,8 @@ fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Makes unfinished files, and registers everything that is removed when the user asks to stop. A
-/// first signal waits for both.
+/// Makes unfinished files, and registers everything that is removed when the user asks to stop. The
+/// first signal to stop takes effect after both.
 pub fn begin<T, E>(paths: Vec<PathBuf>, make: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
     let mut unfinished = unfinished();
     let made = make()?;
@@ -28,21 +29,22 @@ pub fn begin<T, E>(paths: Vec<PathBuf>, make: impl FnOnce() -> Result<T, E>) -> 
     Ok(made)
 }
 
-/// Releases the unfinished files and clears the register. A first signal waits for both.
+/// Releases the unfinished files and clears the register. The first signal to stop takes effect
+/// after both.
 pub fn ended(release: impl FnOnce()) {
     let mut unfinished = unfinished();
     release();
     unfinished.clear();
 }
 
-/// Does short work that a first signal waits for.
+/// Does short work; the first signal to stop takes effect afterwards.
 pub fn undisturbed<T>(work: impl FnOnce() -> T) -> T {
     let _held = unfinished();
     work()
 }
 
-/// Removes the unfinished files, and calls `last` with the message for the user. Nothing begins or
-/// ends meanwhile: the process must end in `last`.
+/// Removes the unfinished files, and calls `last` with the message for the user. No other thread
+/// can make or release files afterwards, so the process must end in `last`.
 pub fn abandon(last: impl FnOnce(&'static str)) {
     let unfinished = unfinished();
     let kept = *KEPT.lock().unwrap_or_else(PoisonError::into_inner);

@@ -24,8 +24,8 @@ const BAND: usize = 512;
 ///
 /// The one-dimensional transforms are those of `realfft` along rows and of `rustfft` along the
 /// other axes. Each is computed by one thread, and columns are grouped in the same way on any
-/// number of threads, so the result is bitwise independent of that number. It depends on the kind
-/// of processor, since both libraries use the best instructions available.
+/// number of threads, so the result is bitwise independent of that number. The result depends on
+/// the kind of processor, since both libraries use the best instructions available.
 ///
 /// Error, relative to the root mean square of F: 2 to 5·10⁻¹⁶, at most 1.5·10⁻¹⁵ (AVX, shapes up to 64 × 64 and 9⁴).
 #[derive(Clone)]
@@ -133,7 +133,7 @@ impl RealFft4 {
             let at = |l: usize| reals.get(l).copied().unwrap_or_default();
             Complex::new(at(2 * (i % row)), at(2 * (i % row) + 1))
         };
-        // On all threads: most of the time is spent touching new memory.
+        // All threads take part, because most of the time is spent touching new memory.
         let all = (0..self.size()).into_par_iter().with_min_len(1 << 14);
         all.map(pair).collect()
     }

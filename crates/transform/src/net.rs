@@ -138,9 +138,9 @@ impl Net {
     }
 }
 
-/// Owen scrambling by a hash of the reversed bits, each of which depends only on the bits above it
-/// (Laine and Karras 2011; the hash of Vegdahl 2021, *Building a better LK hash*, with a multiplier
-/// that is independent of the addend, which makes all numbers equally likely).
+/// Applies Owen scrambling by a hash of the reversed bits, each of which depends only on the bits
+/// above it (Laine and Karras 2011; the hash of Vegdahl 2021, *Building a better LK hash*, with a
+/// multiplier that is independent of the addend, which makes all numbers equally likely).
 #[inline]
 fn scrambled(value: u32, [added, factor]: [u32; 2]) -> u32 {
     let mut x = value.reverse_bits();
@@ -175,8 +175,9 @@ mod tests {
             .count()
     }
 
-    /// Each coordinate has one of 2ᵐ points in every interval of length 2⁻ᵐ, and the first two of a
-    /// block have one in every box of volume 2⁻ᵐ that halves their sides.
+    /// Each coordinate has one of 2ᵐ points in every interval of length 2⁻ᵐ. The first two
+    /// coordinates of a block have one point in every box of volume 2⁻ᵐ that is formed by halving
+    /// sides.
     #[test]
     fn boxes_hold_one_point_each() {
         const N: u32 = 256;
@@ -202,7 +203,7 @@ mod tests {
     }
 
     /// The mean of a product over all coordinates is unbiased and has less noise than with random
-    /// numbers; so is the mean over the coordinates of one block.
+    /// numbers; the same is true of the mean over the coordinates of one block.
     #[test]
     fn nets_beat_random_numbers() {
         const N: u32 = 1 << 12;
@@ -221,7 +222,7 @@ mod tests {
             let random = ((1.0_f64 + 0.25 / 12.0).powi(factors) - 1.0) / f64::from(N);
             assert!(power < less * random, "{from}..{to}: {:e}", power / random);
             let mean = errors.iter().sum::<f64>() / NETS as f64;
-            // Four of its standard errors.
+            // The limit is four of its standard errors.
             assert!(
                 mean.abs() < 4.0 * (power / NETS as f64).sqrt(),
                 "{from}..{to}"
@@ -229,8 +230,8 @@ mod tests {
         }
     }
 
-    /// Points 5, 16 and 32, times 64, as in `scipy.stats.qmc.Sobol(8, scramble=False)` of SciPy
-    /// 1.17, which counts in Gray code, where they are points 6, 31 and 63.
+    /// These are points 5, 16 and 32, times 64, as `scipy.stats.qmc.Sobol(8, scramble=False)` of
+    /// SciPy 1.17 returns them. SciPy counts in Gray code, where they are points 6, 31 and 63.
     #[test]
     fn points_are_those_of_sobol() {
         let point = |[low, high]: [usize; 2]| -> Vec<u32> {

@@ -6,8 +6,8 @@ use std::sync::OnceLock;
 /// Each rule is computed once.
 static RULES: [OnceLock<Vec<(f64, f64)>>; 256] = [const { OnceLock::new() }; 256];
 
-/// Returns nodes and weights of the Gauss–Legendre rule of `n` points on (−1, 1), ascending: exact
-/// to rounding for polynomials of degree 2n − 1.
+/// Returns nodes and weights of the Gauss–Legendre rule of `n` points on (−1, 1), ascending. The
+/// rule is exact for polynomials of degree 2n − 1, apart from rounding errors.
 #[must_use]
 pub fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
     let found = || (0..n).map(|i| node(n, i)).collect();
@@ -20,7 +20,8 @@ pub fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
 /// x²) P'(x)²).
 fn node(n: usize, i: usize) -> (f64, f64) {
     let mut x = -libm::cos(PI * (i as f64 + 0.75) / (n as f64 + 0.5));
-    // Quadratic convergence from an error below 0.1/n²: five steps reach rounding.
+    // Convergence is quadratic from an error below 0.1/n², so after five steps only rounding errors
+    // remain.
     for _ in 0..5 {
         let (value, slope) = legendre(n, x);
         x -= value / slope;
@@ -63,7 +64,7 @@ mod tests {
                 assert!(error(degree) < 1e-14, "{count}, {degree}"); // rounding of values up to 1
             }
             // The rule of n points has an error of about 4^−n for ∫ x^2n; with many points that is
-            // below rounding.
+            // below the rounding error.
             assert_eq!(error(2 * count) > 1e-8, count < 16, "{count}");
         }
     }

@@ -34,8 +34,8 @@ fn the_transform_is_the_plain_sum() {
         ] {
             let grid = grid(&window, azimuths, half, fineness);
             let many: Vec<_> = (0..1000).map(|_| random.crossing(&window, 1.0)).collect();
-            // The corners, where x cos φ + y sin φ exceeds a period; a single ray, so errors do not
-            // average out.
+            // At the corners x cos φ + y sin φ exceeds a period. There is a single ray, so errors
+            // do not average out.
             let corner = |sign: f64| Crossing {
                 ray: TwoPlane {
                     x: 0.999_999 * window.x.half_width(),
@@ -73,7 +73,7 @@ fn a_wrong_spacing_is_seen() {
     let mut random = Random(2);
     let crossings: Vec<_> = (0..100).map(|_| random.crossing(&window, 1.0)).collect();
     let plain = direct::slices(&crossings, |z| window.value(z), &wrong);
-    // A phase error of 2π · 8 · 1e-5 · 0.3 periods, averaged over a hundred rays.
+    // The phase error is 2π · 8 · 1e-5 · 0.3 periods, averaged over a hundred rays.
     assert!(
         error(
             &fast(&crossings, &window, &right),
@@ -144,8 +144,8 @@ fn power_over_all_frequencies_is_the_sum_of_squares() {
     }
     let power = sum.finish(1.0).radial_power();
     let mean = power.sum() / power.len() as f64;
-    // The error of each |S|² is 2 · 1e-7 Σw |S|; 21 · 15 rays of mean weight 1/2, so Σw = 158, |S|
-    // ~ √Σw², few large.
+    // The error of each |S|² is 2 · 1e-7 Σw |S|. There are 21 · 15 rays with the mean weight 1/2,
+    // so Σw = 158, and |S| is about √Σw² at all but a few frequencies.
     assert!((mean / squares - 1.0).abs() < 1e-5, "{mean} {squares}");
 }
 

@@ -1,4 +1,4 @@
-//! How far a ray's path, as theory assumes it, passes from objects that theory ignores.
+//! Measures how far a ray's path, as theory assumes it, passes from objects that theory ignores.
 
 use super::rays::CheckRay;
 use super::surroundings::{Meets, SurroundingForm, Surroundings};
@@ -30,7 +30,7 @@ pub(super) struct Suspect {
 /// The object, or the part of a layer of blockers, that a ray may meet.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum What {
-    /// A shape of a layer, both by index.
+    /// A shape of a layer; the layer and the shape are given by index.
     Shape { layer: usize, shape: usize },
     /// A half-plane of a layer.
     HalfPlane { layer: usize, half: usize },
@@ -44,8 +44,8 @@ pub(super) enum What {
 const AT_END: f64 = 1e-6;
 
 impl Suspect {
-    /// Everything that rays may meet on the legs of these paths. For a layer with many shapes, only
-    /// those nearest to where the rays cross it.
+    /// Returns everything that rays may meet on the legs of these paths. A layer with many shapes
+    /// contributes only the shapes nearest to where the rays cross it.
     pub(super) fn all(around: &Surroundings<'_>, paths: &[&[PathPiece]]) -> Vec<Self> {
         let legs = paths.first().map_or(0, |pieces| pieces.len());
         let on_leg = |leg: usize| {
@@ -59,7 +59,7 @@ impl Suspect {
         (0..legs).flat_map(on_leg).collect()
     }
 
-    /// The description of the obstacle once a ray meets it.
+    /// Returns the description of the obstacle once a ray meets it.
     pub(super) fn meets(&self, around: &Surroundings<'_>, piece: &PathPiece) -> Meets {
         match self.what {
             What::Shape { layer: index, .. }
@@ -79,8 +79,8 @@ impl Suspect {
         }
     }
 
-    /// The distance by which a piece of a path misses the obstacle, metres: zero where it meets the
-    /// obstacle unexpectedly, infinite where it cannot.
+    /// Returns the distance by which a piece of a path misses the obstacle, metres: zero where it
+    /// meets the obstacle unexpectedly, infinite where it cannot.
     pub(super) fn gap(&self, around: &Surroundings<'_>, piece: &PathPiece) -> f64 {
         let (layer, outside): (usize, &dyn Fn(DVec3) -> f64) = match self.what {
             What::Object(i) => return object_gap(around, i, piece),
@@ -107,7 +107,8 @@ impl Suspect {
         let off = if piece.leg > 0 || !around.is_known(layer) {
             beyond(t, [from, to])
         } else {
-            // Theory expects the surface here; the error would be to meet it earlier.
+            // Theory expects the ray to meet the layer within the piece. The error would be that
+            // the piece ends earlier.
             (to - t).max(0.0)
         };
         libm::hypot(off, outside(piece.ray.at(t)))
@@ -122,7 +123,7 @@ const NEAREST_SHAPES: usize = 16;
 /// The number of rays whose crossings determine the nearest shapes of a layer.
 const CROSSINGS: usize = 300;
 
-/// The parts of a layer that rays may meet on a leg.
+/// Returns the parts of a layer that rays may meet on a leg.
 fn of_layer(
     around: &Surroundings<'_>,
     layer: usize,
@@ -160,12 +161,12 @@ fn of_layer(
     shapes.chain(halves).collect()
 }
 
-/// How far a number lies outside an interval.
+/// Returns how far a number lies outside an interval.
 fn beyond(t: f64, [from, to]: [f64; 2]) -> f64 {
     (from - t).max(t - to).max(0.0)
 }
 
-/// How far a point in the plane of a shape lies outside the shape, metres.
+/// Returns how far a point in the plane of a shape lies outside the shape, metres.
 fn outside_shape(shape: &Shape, at: DVec3) -> f64 {
     match *shape {
         Shape::Rectangle(Rectangle { center, size }) => {
@@ -178,29 +179,30 @@ fn outside_shape(shape: &Shape, at: DVec3) -> f64 {
     }
 }
 
-/// How far a point lies outside a rectangle around the origin.
+/// Returns how far a point lies outside a rectangle around the origin.
 fn outside_rectangle(at: [f64; 2], size: [f64; 2]) -> f64 {
     let [x, y] = [0, 1].map(|axis: usize| (at[axis].abs() - 0.5 * size[axis]).max(0.0));
     libm::hypot(x, y)
 }
 
-/// How far a point in the plane of a half-plane lies outside it, metres.
+/// Returns how far a point in the plane of a half-plane lies outside it, metres.
 fn outside_half_plane(half: &HalfPlane, at: DVec3) -> f64 {
     let coordinate = if half.axis == 0 { at.x } else { at.y };
     let off = half.edge - coordinate;
     if half.above { off } else { -off }.max(0.0)
 }
 
-/// How far a piece of a path passes from a surface of the path where theory does not expect it.
+/// Returns how far a piece of a path passes from a surface of the path where theory does not expect
+/// it.
 fn object_gap(around: &Surroundings<'_>, index: usize, piece: &PathPiece) -> f64 {
     let (object, form) = &around.objects[index];
     let [from, to] = piece.extent;
     let own = |which: Option<Object>| which == Some(*object);
     let extent = match (own(piece.ends), own(piece.leaves), piece.is_last) {
-        // Theory expects it there.
+        // Theory expects the surface there.
         (true, _, true) => return f64::INFINITY,
         (true, _, false) => [from, to * (1.0 - AT_END)],
-        // Light that meets again the surface it has left is lost, wherever the plane is.
+        // Light that returns to the surface it has left is lost, wherever the plane is.
         (false, true, true) => [from, f64::INFINITY],
         _ => piece.extent,
     };
@@ -214,7 +216,7 @@ fn object_gap(around: &Surroundings<'_>, index: usize, piece: &PathPiece) -> f64
     }
 }
 
-/// How far a ray passes from a rectangle between two distances.
+/// Returns how far a ray passes from a rectangle between two distances.
 fn flat_gap(surface: &Surface, ray: &CheckRay, extent: [f64; 2]) -> f64 {
     let local = ray.seen_from(&surface.frame);
     let t = -local.point.z / local.direction.z;
@@ -228,8 +230,8 @@ fn flat_gap(surface: &Surface, ray: &CheckRay, extent: [f64; 2]) -> f64 {
     )
 }
 
-/// How far a ray passes from a patch between two distances. It may meet the quadric outside the
-/// patch or outside the piece, or miss the quadric.
+/// Returns how far a ray passes from a patch between two distances. The ray may meet the quadric
+/// outside the patch or outside the piece, or miss the quadric.
 fn patch_gap(patch: &Patch, ray: &CheckRay, extent: [f64; 2]) -> f64 {
     let CheckRay { point, direction } = ray.seen_from(&patch.frame);
     let off = |t: f64| {
@@ -254,7 +256,7 @@ fn patch_gap(patch: &Patch, ray: &CheckRay, extent: [f64; 2]) -> f64 {
     roots.map(off).fold(f64::INFINITY, f64::min)
 }
 
-/// The distance of a piece from a box around a mesh.
+/// Returns the distance of a piece from a box around a mesh.
 fn box_gap([low, high]: &[DVec3; 2], ray: &CheckRay, [from, to]: [f64; 2]) -> f64 {
     let distance = |t: f64| {
         let at = ray.at(t);

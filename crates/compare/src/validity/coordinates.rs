@@ -7,7 +7,7 @@ use etendue_theory::rays::Plane;
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
-/// The frame that angles are measured in on a surface, where its unit normal is known.
+/// Returns the frame in which angles are measured at a point of a surface with this unit normal.
 fn local(plane: &Plane, normal: DVec3) -> Frame {
     if plane.orientation.is_local() {
         plane
@@ -18,7 +18,7 @@ fn local(plane: &Plane, normal: DVec3) -> Frame {
     }
 }
 
-/// −1 where directions are rotated about the normal.
+/// Returns −1 if directions are rotated about the normal, otherwise 1.
 fn turned(plane: &Plane) -> f64 {
     if plane.orientation == Orientation::Mirrored {
         -1.0
@@ -27,8 +27,8 @@ fn turned(plane: &Plane) -> f64 {
     }
 }
 
-/// The coordinates of a ray. `on_surface` is the point and the unit normal of the surface that the
-/// plane is on, where the plane needs them. `None` where the ray does not pass.
+/// Returns the coordinates of a ray. `on_surface` is the point and the unit normal of the surface
+/// that the plane is on, where the plane needs them. `None` if the ray travels the wrong way.
 pub(super) fn coordinates(
     plane: &Plane,
     ray: &CheckRay,
@@ -60,8 +60,8 @@ pub(super) fn coordinates(
     })
 }
 
-/// The direction of light that leaves a point of a surface, where its unit normal is known, and has
-/// these slopes or angles at the plane.
+/// Returns the direction of light that has these slopes or angles at the plane. The light leaves a
+/// surface at a point with this unit normal.
 pub(super) fn direction(plane: &Plane, normal: DVec3, [u, v]: [f64; 2]) -> DVec3 {
     if plane.orientation == Orientation::Orthogonal {
         return plane
@@ -74,8 +74,8 @@ pub(super) fn direction(plane: &Plane, normal: DVec3, [u, v]: [f64; 2]) -> DVec3
     local(plane, normal).vector_to_world(DVec3::new(across * sin, up, across * cos))
 }
 
-/// The ray with the coordinates (x, y, u, v) at a plane; `None` where the plane is on a surface and
-/// there is no surface at that point.
+/// Returns the ray with the coordinates (x, y, u, v) at a plane; `None` where the plane is on a
+/// surface and there is no surface at that point.
 pub(super) fn seen(plane: &Plane, [x, y, u, v]: [f64; 4]) -> Option<CheckRay> {
     let on_surface = plane.orientation != Orientation::Orthogonal;
     // A direction a full turn away has the same coordinates.

@@ -4,8 +4,8 @@
 /// patches.
 #[derive(Clone, Copy, Debug)]
 pub struct OffPatches {
-    /// The distance between the arrival points, in half-widths of the window: the root mean square
-    /// over light.
+    /// The distance between the arrival points, in half-widths of the window: the root mean square,
+    /// weighted by light.
     pub apart: f64,
     /// ‖change of the slices‖, as a share of their value at frequency zero: an upper estimate,
     /// from a sample of rays with its standard error added.

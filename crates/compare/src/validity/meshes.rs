@@ -10,12 +10,13 @@ use etendue_transform::SliceTransform;
 use glam::DVec3;
 use ndarray::Array3;
 
-/// Rays that are drawn to find those with light in the window.
+/// The number of rays that are drawn to find rays with light in the window.
 const TRIES: u32 = 300_000;
 /// The smallest and the largest number of rays with light in the window that are followed.
 const MIN_RAYS: usize = 300;
 const MAX_RAYS: usize = 3000;
-/// The number of triangles tested for these rays, where more than the smallest number are followed.
+/// The largest number of triangles tested for all rays together; the smallest number of rays is
+/// followed in any case.
 const LOOKED_AT: usize = 30_000_000;
 /// The distance, in edges of a triangle, within which the triangle counts as a neighbour of the
 /// point that a ray leaves.
@@ -28,12 +29,13 @@ const LOST: f64 = 1.0;
 struct Displaced {
     predicted: TwoPlane,
     by_triangles: Option<TwoPlane>,
-    /// The light of the ray before the window weights it.
+    /// The light of the ray before the window's weight is applied.
     before: f64,
 }
 
 impl Follower<'_> {
-    /// How far smooth meshes send light from where their patches send it; `None` without a mesh.
+    /// Returns how far smooth meshes send light from where their patches send it; `None` without a
+    /// mesh.
     pub(super) fn off_patches(&self) -> Option<OffPatches> {
         let legs = &self.scene.path.legs[1..=self.plane.leg];
         let objects = legs.iter().filter_map(|leg| Some(leg.leaves?.object));
@@ -56,7 +58,7 @@ impl Follower<'_> {
         }
     }
 
-    /// A ray of the light, and the relative amount of light that it represents.
+    /// Returns a ray of the light, and the relative amount of light that it represents.
     fn weighted(&self, draw: &RayDraw) -> Option<(CheckRay, f64)> {
         let (ray, strength) = self.ray(draw)?;
         let patch = &self.system.elements.first()?.patch;
@@ -80,7 +82,8 @@ impl Follower<'_> {
         })
     }
 
-    /// The same for at most a given number of rays; `None` if none brings light into the window.
+    /// Measures how far smooth meshes send at most a given number of rays from where their patches
+    /// send them; `None` if no ray brings light into the window.
     fn displacement(
         &self,
         rays: impl Iterator<Item = (CheckRay, f64)>,
@@ -110,8 +113,8 @@ impl Follower<'_> {
         })
     }
 
-    /// The distance between the two arrivals of a ray, in half-widths of the window along the axis
-    /// where it is largest.
+    /// Returns the distance between the two arrivals of a ray, in half-widths of the window along
+    /// the axis where it is largest.
     fn apart(&self, ray: &Displaced) -> f64 {
         let window = &self.plane.window;
         let half = [window.x, window.y, window.u, window.v].map(|p| Profile::half_width(&p));
@@ -123,8 +126,8 @@ impl Follower<'_> {
         })
     }
 
-    /// How much the slices change when rays arrive by triangles: the mean of two halves of the
-    /// rays, and half of their difference, which is its standard error.
+    /// Returns how much the slices change when rays arrive by triangles: the mean of the changes
+    /// from two halves of the rays, plus its standard error, which is half of their difference.
     fn change(&self, lit: &[(f64, Displaced)]) -> f64 {
         let transform = SliceTransform::new(&self.plane.grid);
         let mut sum = transform.accumulator();
@@ -147,8 +150,8 @@ impl Follower<'_> {
         norm(&a + &b) + norm(a - b)
     }
 
-    /// The arrival of a ray by the triangles of smooth meshes; `None` if it misses a mesh or meets
-    /// one again.
+    /// Returns the arrival of a ray by the triangles of smooth meshes; `None` if it misses a mesh
+    /// or meets one again.
     fn by_triangles(&self, light: CheckRay) -> PlaneArrival {
         let mut ray = light;
         let mut share = 1.0;
@@ -178,7 +181,7 @@ impl Follower<'_> {
     }
 }
 
-/// The distances at which a ray meets triangles of a mesh, beyond a given distance, and the
+/// Returns the distances at which a ray meets triangles of a mesh, beyond a given distance, and the
 /// triangles' numbers.
 fn hits<'a>(
     mesh: &'a MeshObject,

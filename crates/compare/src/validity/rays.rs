@@ -1,4 +1,4 @@
-//! Draws rays of the light for a check, the same in every run.
+//! Draws rays of the light for a check. The rays are the same in every run.
 
 use etendue_field::{EnvironmentMap, Frame, Light, Patch, Rectangle, Shape, Window};
 use glam::DVec3;
@@ -25,9 +25,9 @@ impl RayDraw {
     }
 }
 
-/// The first `most` rays that carry light into the window, without those that are relatively dark.
-/// Only light inside the window determines what is dark: the strongest part of the sky may be
-/// behind it.
+/// Returns the first `most` rays that carry light into the window, without those that are
+/// relatively dark. Only light inside the window determines which rays count as dark, because the
+/// strongest part of the sky may lie outside it.
 pub(super) fn bright<T>(rays: impl Iterator<Item = (f64, T)>, most: usize) -> Vec<(f64, T)> {
     let mut strongest = 0.0;
     let mut found = Vec::new();
@@ -57,7 +57,7 @@ impl CheckRay {
         self.point + t * self.direction
     }
 
-    /// The same ray, starting where it crosses the plane of the light.
+    /// Returns the same ray, starting where it crosses the plane of the light.
     pub(super) fn begun(&self) -> Self {
         Self {
             point: self.at(-self.point.z / self.direction.z),
@@ -65,7 +65,7 @@ impl CheckRay {
         }
     }
 
-    /// The reversed ray, starting beyond a surface that it meets.
+    /// Returns the reversed ray, starting beyond a surface that it meets.
     pub(super) fn back(&self, patch: &Patch) -> Self {
         let far = 4.0 * patch.aperture + (self.point - patch.frame.origin).length();
         Self {
@@ -74,7 +74,7 @@ impl CheckRay {
         }
     }
 
-    /// The same ray in the coordinates of a frame.
+    /// Returns the same ray in the coordinates of a frame.
     pub(super) fn seen_from(&self, frame: &Frame) -> Self {
         Self {
             point: frame.to_local(self.point),
@@ -82,7 +82,7 @@ impl CheckRay {
         }
     }
 
-    /// The distance along the ray at which it meets a triangle (Möller and Trumbore 1997).
+    /// Returns the distance along the ray at which it meets a triangle (Möller and Trumbore 1997).
     pub(super) fn meets_triangle(&self, [a, b, c]: &[DVec3; 3]) -> Option<f64> {
         let [side, other, from] = [*b - *a, *c - *a, self.point - *a];
         let across = self.direction.cross(other);
@@ -94,9 +94,10 @@ impl CheckRay {
         (s >= 0.0 && t >= 0.0 && s + t <= 1.0).then_some(at)
     }
 
-    /// The distance at which theory meets a surface: on the side of the quadric's extremum along
-    /// the ray on which the ray crosses the tangent plane at the vertex (`etendue_theory::rays`, by
-    /// Newton's method from there).
+    /// Returns the distance at which theory finds the intersection of the ray with a surface.
+    /// Theory uses Newton's method from the point where the ray crosses the tangent plane at the
+    /// vertex (`etendue_theory::rays`). So the intersection lies on the same side of the quadric's
+    /// extremum along the ray as that point.
     pub(super) fn theory_hit(&self, patch: &Patch) -> Option<f64> {
         let Self { point, direction } = self.seen_from(&patch.frame);
         let from = if direction.z.abs() > 1e-3 {
@@ -106,7 +107,7 @@ impl CheckRay {
         };
         let curved = DVec3::from(patch.curvature) * direction;
         let (a, b) = (curved.dot(direction), curved.dot(point) + direction.z);
-        // Avoids cancellation: the other root is the constant over this one.
+        // This avoids cancellation: the other root is the constant term divided by q.
         let root = (b * b - a * patch.value(point)).sqrt();
         let q = -(b + root.copysign(b));
         let roots = [q / a, patch.value(point) / q];
@@ -117,8 +118,8 @@ impl CheckRay {
         found.filter(|t| patch.contains(point + *t * direction))
     }
 
-    /// The distance at which the ray meets a surface from the side of a normal, whatever it meets
-    /// before.
+    /// Returns the distance at which the ray meets a surface from the side of a normal, whatever it
+    /// meets before.
     pub(super) fn front_hit(&self, patch: &Patch, side: DVec3) -> Option<f64> {
         let Self { point, direction } = self.seen_from(&patch.frame);
         let side = patch.frame.d.dot(side).signum();
@@ -128,8 +129,8 @@ impl CheckRay {
     }
 }
 
-/// Six numbers in (0, 1) that fill the cube uniformly: multiples of powers of the root of x⁷ = x +
-/// 1 (Roberts 2018, *The unreasonable effectiveness of quasirandom sequences*).
+/// Returns six numbers in (0, 1) that fill the cube uniformly: multiples of powers of the root of
+/// x⁷ = x + 1 (Roberts 2018, *The unreasonable effectiveness of quasirandom sequences*).
 pub(super) fn lattice(index: u32) -> [f64; 6] {
     const ROOT: f64 = 1.112_775_684_278_705_6;
     std::array::from_fn(|axis| {
@@ -138,7 +139,7 @@ pub(super) fn lattice(index: u32) -> [f64; 6] {
     })
 }
 
-/// Coordinates at a plane, uniform in its window.
+/// Returns coordinates at a plane, uniform in its window.
 pub(super) fn within(window: &Window, r: [f64; 6]) -> [f64; 4] {
     let Window { x, y, u, v } = window;
     let profiles = [x, y, u, v];
@@ -148,8 +149,8 @@ pub(super) fn within(window: &Window, r: [f64; 6]) -> [f64; 4] {
 /// The smallest number that [`centred`] draws densely.
 const CENTRE: f64 = 1e-3;
 
-/// A number in [−1, 1]: every other one is uniform, the rest are distributed logarithmically around
-/// zero, down to a thousandth.
+/// Returns a number in [−1, 1]: every other one is uniform, the rest are distributed
+/// logarithmically around zero, down to a thousandth.
 pub(super) fn centred(index: u32, r: f64) -> f64 {
     let s = 2.0 * r - 1.0;
     if index.is_multiple_of(2) {
@@ -159,7 +160,7 @@ pub(super) fn centred(index: u32, r: f64) -> f64 {
     }
 }
 
-/// The density of pairs of numbers that [`centred`] draws with one index, over all indices.
+/// Returns the density of pairs of numbers that [`centred`] draws with one index, over all indices.
 pub(super) fn density(pair: [f64; 2]) -> f64 {
     let dense = pair.map(|s| {
         let is_drawn = (CENTRE..=1.0).contains(&s.abs());
@@ -169,7 +170,7 @@ pub(super) fn density(pair: [f64; 2]) -> f64 {
     0.5 * (0.25 + dense[0] * dense[1])
 }
 
-/// A ray of the light through a point, and its strength; `None` where there is none.
+/// Returns a ray of the light through a point, and its strength; `None` where there is none.
 pub(super) fn ray_to(
     light: &Light,
     point: DVec3,
@@ -189,7 +190,7 @@ pub(super) fn ray_to(
         Light::Environment { environment } => {
             let frame = &environment.frame;
             let direction = match &environment.map {
-                // The light far from a lobe's centre may be all that travels forward.
+                // Only the light far from a lobe's centre may travel forward.
                 EnvironmentMap::Lobes(lobes) if (index / 4).is_multiple_of(2) => {
                     let lobe = &lobes[(index / 8) as usize % lobes.len().max(1)];
                     let around = Frame::IDENTITY.turned_to(lobe.from);
@@ -212,7 +213,7 @@ pub(super) fn ray_to(
     (ray.direction.z > 0.0).then(|| (ray, strength(light, &ray)))
 }
 
-/// The strength of a ray that starts at the light, relative to the other rays.
+/// Returns the strength of a ray that starts at the light, relative to the other rays.
 pub(super) fn strength(light: &Light, ray: &CheckRay) -> f64 {
     let CheckRay { point, direction } = ray;
     match light {
@@ -227,8 +228,8 @@ pub(super) fn strength(light: &Light, ray: &CheckRay) -> f64 {
     }
 }
 
-/// The point of a shape at an offset from its centre, as a share of its size; a point outside a
-/// disc is pulled in.
+/// Returns the point of a shape at an offset from its centre, as a share of its size; a point
+/// outside a disc is pulled in.
 fn point_of(shape: &Shape, [a, b]: [f64; 2]) -> DVec3 {
     match shape {
         Shape::Rectangle(rectangle) => {
@@ -245,8 +246,8 @@ fn point_of(shape: &Shape, [a, b]: [f64; 2]) -> DVec3 {
     }
 }
 
-/// The area of a shape over that of the square of offsets that [`point_of`] maps to it, and the
-/// offset of a point.
+/// Returns the area of a shape, divided by the area of the square of offsets that [`point_of`] maps
+/// to the shape. Also returns the offset of a point.
 pub(super) fn offset_of(shape: &Shape, point: DVec3) -> (f64, [f64; 2]) {
     match shape {
         Shape::Rectangle(Rectangle { center, size }) => {
@@ -256,7 +257,7 @@ pub(super) fn offset_of(shape: &Shape, point: DVec3) -> (f64, [f64; 2]) {
         }
         Shape::Disc(disc) => {
             let [x, y] = [point.x - disc.center[0], point.y - disc.center[1]];
-            // The circle of radius r is the image of the square of side 2 r/R.
+            // The map takes the square of side 2 r/R to the circle of radius r.
             let wide = x.abs().max(y.abs()).max(f64::MIN_POSITIVE);
             let share = wide / libm::hypot(x, y).max(f64::MIN_POSITIVE);
             let scale = disc.radius * share;
@@ -265,7 +266,8 @@ pub(super) fn offset_of(shape: &Shape, point: DVec3) -> (f64, [f64; 2]) {
     }
 }
 
-/// A point of a surface, drawn over all of it but mostly near where the central ray hits it.
+/// Returns a point of a surface, drawn over all of it but mostly near where the central ray hits
+/// it.
 pub(super) fn point_on(patch: &Patch, hit: DVec3, index: u32, r: [f64; 2]) -> Option<DVec3> {
     let center = patch.frame.to_local(hit);
     let [s, t] = [0, 1].map(|axis| 2.0 * patch.aperture * centred(index, r[axis]));

@@ -1,4 +1,4 @@
-//! Compares, for light scattered by a surface with a BRDF, what photons meet with what theory
+//! Checks, for light that a surface with a BRDF scatters, whether photons meet only what theory
 //! assumes.
 
 use super::clearance::PathPiece;
@@ -12,8 +12,8 @@ use etendue_theory::Observed;
 use etendue_theory::rays::Plane;
 use etendue_theory::scattering::ScatteringSystem;
 
-/// Descriptions of what light for a plane meets, before or behind a surface with a BRDF, that
-/// theory ignores; and the blockers that theory includes.
+/// Describes what light for a plane meets before or behind a surface with a BRDF although theory
+/// ignores it. Also returns the blockers that theory includes.
 pub(crate) fn unforeseen_by_scattering(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -101,7 +101,7 @@ struct LightPath {
 }
 
 impl CheckedScatterer<'_> {
-    /// A path from the light to the window; `None` if it brings no light.
+    /// Returns a path from the light to the window; `None` if it brings no light.
     fn follow(&self, draw: &RayDraw) -> Option<LightPath> {
         let leaving = self.leaving(draw)?;
         let CheckRay { point, direction } = leaving;
@@ -123,8 +123,8 @@ impl CheckedScatterer<'_> {
         })
     }
 
-    /// A ray that leaves the surface: from a point of it or, for every other draw of a plane across
-    /// the leg, as it comes through the window.
+    /// Returns a ray that leaves the surface. It starts at a point of the surface or, for every
+    /// other draw of a plane across the leg, is traced back from the window.
     fn leaving(&self, draw: &RayDraw) -> Option<CheckRay> {
         let r = draw.numbers;
         let [x, y, u, v] = within(&self.plane.window, r);
@@ -140,15 +140,16 @@ impl CheckedScatterer<'_> {
         Some(CheckRay { point, direction })
     }
 
-    /// The occluder between the light and a point of the surface.
+    /// Returns the occluder between the light and a point of the surface.
     fn shadow(&self, ray: &CheckRay, end: f64) -> Option<Meets> {
         let (t, object) = self.around.first(ray, 0.0, None)?;
         let before = t < end * (1.0 - 1e-9);
         before.then(|| self.named(object))
     }
 
-    /// The occluder between a point of the surface and the plane. The surface itself counts at any
-    /// distance, because photons that would meet it again are lost, whatever stops them before.
+    /// Returns the occluder between a point of the surface and the plane. The surface itself counts
+    /// at any distance, because photons that would meet it again are lost, whatever stops them
+    /// before.
     fn beyond(&self, ray: &CheckRay) -> Option<Meets> {
         let end = self.around.to_plane(ray);
         let from = self.around.rounding(1);
@@ -171,8 +172,8 @@ impl CheckedScatterer<'_> {
         }
     }
 
-    /// Whether theory takes the ray to leave from this point: it looks back along the ray from far
-    /// away.
+    /// Checks whether theory assumes that the ray leaves from this point. Theory looks back along
+    /// the ray from far away.
     fn looks_at(&self, leaving: &CheckRay) -> bool {
         let back = leaving.back(&self.system.patch);
         let far = (back.point - leaving.point).length();

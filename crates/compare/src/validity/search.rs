@@ -1,9 +1,10 @@
 //! Searches for light in the window that meets objects theory ignores.
 //!
 //! A few thousand rays fill the window uniformly and find the occluders of much of the light. An
-//! object that occludes little of it may lie between these rays, at the edge or in the corner of
-//! the window. So for each such object the rays that pass it nearest are moved until they meet it
-//! or come no nearer: a distance that falls along a smooth path finds the smallest object.
+//! object that occludes little of the light may lie between these rays, at the edge or in the
+//! corner of the window. So for each such object, the rays that pass nearest are moved until they
+//! meet the object or come no nearer. The distance falls along a smooth path, so even the smallest
+//! object is found.
 
 use super::clearance::{PathPiece, Suspect};
 use super::rays::{RayDraw, bright, lattice};
@@ -20,13 +21,14 @@ const MOVES: u32 = 300;
 /// Length of the first moves, the spacing of the rays: 3000 fill a window of four axes with seven
 /// on each.
 const FIRST_MOVE: f64 = 0.15;
-/// Factor by which a move that comes nearer lengthens the next. A move that does not shortens the
-/// next, by an amount that keeps the length at one success in twelve: in a corner most axes are at
-/// their ends.
+/// Factor by which a move that comes nearer lengthens the next. A move that comes no nearer
+/// shortens the next. The two factors keep the length constant at one success in twelve moves,
+/// because most moves fail in a corner, where most axes are at their ends.
 const LONGER: f64 = 1.5;
 const SHORTER: f64 = 0.964;
 /// An object is out of reach if its distance from the nearest ray exceeds this share of the range
-/// of distances: the nearest corner of a window of four axes lies a seventh of it beyond.
+/// of distances. The nearest corner of a window of four axes lies only a seventh of the range
+/// beyond the nearest ray.
 const REACH: f64 = 0.5;
 /// A shadow in light of this share of the strongest has 10⁻⁶ of the power of a shadow in the
 /// strongest, which 10⁹ photons cannot resolve.
@@ -34,19 +36,19 @@ const FAINT: f64 = 1e-3;
 
 /// Rays that theory follows from the light to a plane.
 pub(super) trait Followed {
-    /// The amount of light that a ray brings into the window, and the first thing it meets that
-    /// theory ignores, if any; `None` if it brings none.
+    /// Returns the amount of light that a ray brings into the window, and the first thing it meets
+    /// that theory ignores, if any; `None` if it brings none.
     fn check(&self, draw: &RayDraw) -> Option<(f64, Option<Meets>)>;
 
-    /// The amount of light that a ray brings along theory's path, and the pieces of that path;
-    /// `None` if it brings none.
+    /// Returns the amount of light that a ray brings along theory's path, and the pieces of that
+    /// path; `None` if it brings none.
     fn pieces(&self, draw: &RayDraw) -> Option<(f64, Vec<PathPiece>)>;
 
-    /// The surroundings of the path.
+    /// Returns the surroundings of the path.
     fn around(&self) -> &Surroundings<'_>;
 }
 
-/// Everything that rays meet and theory ignores.
+/// Returns everything that rays meet and theory ignores.
 pub(super) fn found(rays: &impl Followed) -> Vec<Meets> {
     let checked = (0..TRIED_RAYS).filter_map(|index| {
         let draw = RayDraw::new(index);
@@ -95,7 +97,8 @@ impl<R: Followed> Search<'_, R> {
             .gap(self.rays.around(), &pieces[self.suspect.leg])
     }
 
-    /// The rays that pass the object nearest, with their distances; empty if it is out of reach.
+    /// Returns the rays that pass the object nearest, with their distances; empty if it is out of
+    /// reach.
     fn starts(&self, paths: &[(RayDraw, Vec<PathPiece>)]) -> Vec<(f64, RayDraw)> {
         let gaps = paths.iter().map(|(draw, pieces)| (self.gap(pieces), *draw));
         let mut gaps: Vec<(f64, RayDraw)> = gaps.filter(|(gap, _)| gap.is_finite()).collect();
@@ -134,8 +137,8 @@ impl<R: Followed> Search<'_, R> {
     }
 }
 
-/// A draw that differs from another by at most `length` along each axis. Two of three moves go
-/// along one axis, since in a corner of the window few other moves stay inside.
+/// Returns a draw that differs from another by at most `length` along each axis. Two of three moves
+/// go along one axis, since in a corner of the window few other moves stay inside.
 fn moved(from: &RayDraw, length: f64, number: u32) -> RayDraw {
     let step = lattice(number);
     let mut numbers = from.numbers;

@@ -1,4 +1,4 @@
-//! Compares, for rays through specular surfaces, what photons meet with what theory assumes.
+//! Checks, for rays through specular surfaces, whether photons meet only what theory assumes.
 
 use super::clearance::PathPiece;
 use super::coordinates::{coordinates, seen};
@@ -12,9 +12,9 @@ use etendue_theory::Observed;
 use etendue_theory::rays::{Plane, SpecularSystem};
 use glam::DVec3;
 
-/// Descriptions of what light for a plane meets, between or at the surfaces of a system, that
-/// theory ignores, and the blockers that theory includes. `off` is the displacement by meshes, see
-/// [`off_patches`].
+/// Describes what light for a plane meets between or at the surfaces of a system although theory
+/// ignores it. Also returns the blockers that theory includes. `off` is the displacement by meshes,
+/// see [`off_patches`].
 pub(crate) fn unforeseen_by_rays(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -38,8 +38,8 @@ pub(crate) fn unforeseen_by_rays(
     (found, later)
 }
 
-/// How far smooth meshes send rays from where their osculating patches send them; `None` without a
-/// mesh.
+/// Returns how far smooth meshes send rays from where their osculating patches send them; `None`
+/// without a mesh.
 pub(crate) fn off_patches(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -50,8 +50,8 @@ pub(crate) fn off_patches(
 }
 
 /// The largest accepted distance between the arrivals of rays by a mesh and by its osculating
-/// patch, in half-widths of the window. Such rays change a spectrum by some ten times as much,
-/// which is reported.
+/// patch, in half-widths of the window. Such rays change a spectrum by some ten times this
+/// distance, and the change is reported.
 const OFF_PATCHES: f64 = 1e-4;
 
 pub(super) struct Follower<'a> {
@@ -110,8 +110,8 @@ impl<'a> Follower<'a> {
 }
 
 impl Follower<'_> {
-    /// The amount of light that a ray brings into the window, and the first thing it meets that
-    /// theory ignores, if any; `None` if it brings none.
+    /// Returns the amount of light that a ray brings into the window, and the first thing it meets
+    /// that theory ignores, if any; `None` if it brings none.
     fn check(&self, (ray, emitted): (CheckRay, f64)) -> Option<(f64, Option<Meets>)> {
         let (arrival, meets) = self.photon(ray);
         let brought = [arrival, self.theory(ray)].into_iter().flatten();
@@ -120,7 +120,7 @@ impl Follower<'_> {
         (light > 0.0).then_some((light, meets))
     }
 
-    /// A ray of the light towards the first surface, and its strength.
+    /// Returns a ray of the light towards the first surface, and its strength.
     pub(super) fn ray(&self, draw: &RayDraw) -> Option<(CheckRay, f64)> {
         let RayDraw { index, numbers: r } = *draw;
         let hit = self.scene.path.ends_at(0)?;
@@ -147,9 +147,10 @@ impl Follower<'_> {
         ray_to(&self.system.light, target, index, [r[2], r[3]])
     }
 
-    /// A ray that theory predicts to arrive in the window. It is needed because few rays of the
-    /// light itself may reach a narrow window, or a part of a wide one that is close to the light.
-    /// Light without extent is aimed at places in the window if no surface deflects it first.
+    /// Returns a ray that theory predicts to arrive in the window. Such rays are needed because few
+    /// rays drawn at the light may reach a narrow window, or the part of a wide window that is
+    /// close to the light. Light without extent is aimed at places in the window if no surface
+    /// deflects it first.
     pub(super) fn ray_of_window(&self, draw: &RayDraw) -> Option<(CheckRay, f64)> {
         let light = &self.system.light;
         let coordinates = within(&self.plane.window, draw.numbers);
@@ -177,12 +178,13 @@ impl Follower<'_> {
         (begins && ray.direction.z > 0.0).then(|| (ray, strength(light, &ray)))
     }
 
-    /// The arrival of a ray as theory predicts it.
+    /// Returns the arrival of a ray as theory predicts it.
     pub(super) fn theory(&self, light: CheckRay) -> PlaneArrival {
         self.follow(light, |_| {})
     }
 
-    /// The arrival of a ray as theory predicts it; `tell` receives its straight pieces in order.
+    /// Returns the arrival of a ray as theory predicts it; `tell` receives the straight pieces of
+    /// its path in order.
     fn follow(&self, light: CheckRay, mut tell: impl FnMut(PathPiece)) -> PlaneArrival {
         let path = &self.scene.path;
         let piece = |leg: usize, ray: CheckRay, end: f64| PathPiece {
@@ -205,7 +207,8 @@ impl Follower<'_> {
         Some((coordinates(self.at, &ray, self.counted_at(&ray)?)?, share))
     }
 
-    /// The length of a ray of the last leg: to the plane, or to the surface that the plane is on.
+    /// Returns the length of a ray of the last leg: to the plane, or to the surface that the plane
+    /// is on.
     fn end(&self, ray: &CheckRay) -> f64 {
         let across = self.around.to_plane(ray);
         let ends = self.scene.path.ends_at(self.plane.leg);
@@ -214,7 +217,7 @@ impl Follower<'_> {
         hit.unwrap_or(across)
     }
 
-    /// The share of a ray that passes the blockers that theory includes on the first leg.
+    /// Returns the share of a ray that passes the blockers that theory includes on the first leg.
     pub(super) fn passed(&self, leg: usize, ray: &CheckRay, end: f64) -> f64 {
         if leg == 0 {
             self.around.first_leg(ray, end).0[1]
@@ -223,8 +226,9 @@ impl Follower<'_> {
         }
     }
 
-    /// The point of the plane's surface at which theory counts a ray of the last leg, and the unit
-    /// normal there, if the plane is on a surface. `None` where the ray does not meet the surface.
+    /// Returns the point of the plane's surface at which theory counts a ray of the last leg, and
+    /// the unit normal there, if the plane is on a surface. `None` where the ray does not meet the
+    /// surface.
     pub(super) fn counted_at(&self, ray: &CheckRay) -> Option<Option<[DVec3; 2]>> {
         let Some(patch) = self.at.patch.as_ref() else {
             return Some(None);
@@ -237,7 +241,7 @@ impl Follower<'_> {
         Some(Some(on(patch, point)))
     }
 
-    /// The arrival of a photon, and the first thing it meets that theory ignores.
+    /// Returns the arrival of a photon, and the first thing it meets that theory ignores.
     fn photon(&self, light: CheckRay) -> (PlaneArrival, Option<Meets>) {
         let mut ray = light;
         let mut share = 1.0;
@@ -267,8 +271,8 @@ impl Follower<'_> {
         (seen.map(|z| (z, share)), unforeseen.or(meets))
     }
 
-    /// The distance at which a photon meets the surface that ends its leg; `None` where it meets
-    /// another first.
+    /// Returns the distance at which a photon meets the surface that ends its leg; `None` where it
+    /// meets another surface first.
     fn next(
         &self,
         ray: &CheckRay,
@@ -293,7 +297,7 @@ impl Follower<'_> {
         }
     }
 
-    /// The coordinates at the plane of a photon that has met all surfaces before the plane.
+    /// Returns the coordinates at the plane of a photon that has met all surfaces before the plane.
     fn last_leg(&self, ray: &CheckRay) -> (Option<TwoPlane>, Option<Meets>) {
         let path = &self.scene.path;
         let leg = self.plane.leg;
@@ -303,8 +307,8 @@ impl Follower<'_> {
         let end = self.end(ray);
         let nearer = self.around.first(ray, from, ends);
         let nearer = nearer.filter(|(t, object)| *t < end && Some(*object) != leaves);
-        // A photon that would meet again the surface it has left is lost, wherever the plane is and
-        // whatever stops the photon before.
+        // A photon that would return to the surface it has left is lost, wherever the plane is and
+        // whatever stops the photon earlier.
         let again = leaves.filter(|left| self.around.hit(ray, from, *left).is_some());
         let mut unforeseen = nearer
             .map(|(_, object)| Meets::OutOfTurn(object))
@@ -329,9 +333,10 @@ impl Follower<'_> {
         (seen, unforeseen)
     }
 
-    /// The point of a surface at which a plane on it counts a photon: where an arriving photon
-    /// meets its front or, for leaving light, the intersection of its line nearest to where the
-    /// central ray hits.
+    /// Returns the point at which a plane on a surface counts a photon. An arriving photon counts
+    /// where it meets the front of the surface. The line of a leaving photon may intersect the
+    /// surface twice, and the photon counts at the intersection nearest to the hit of the central
+    /// ray.
     fn counted(&self, patch: &Patch, ray: &CheckRay) -> Option<DVec3> {
         if self.at.arriving {
             return Some(ray.at(ray.front_hit(patch, self.at.frame.d)?));
@@ -343,7 +348,7 @@ impl Follower<'_> {
         points.min_by(|a, b| a.distance(center).total_cmp(&b.distance(center)))
     }
 
-    /// The ray that leaves the surface at the end of a leg.
+    /// Returns the ray that leaves the surface at the end of a leg.
     pub(super) fn turned(&self, leg: usize, at: [DVec3; 2], ray: &CheckRay) -> Option<CheckRay> {
         let [point, normal] = at;
         let element = &self.system.elements[leg];
@@ -354,7 +359,7 @@ impl Follower<'_> {
     }
 }
 
-/// A point of a surface and the unit normal there.
+/// Returns a point of a surface and the unit normal there.
 pub(super) fn on(patch: &Patch, point: DVec3) -> [DVec3; 2] {
     [point, patch.normal(point)]
 }

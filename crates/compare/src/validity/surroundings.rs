@@ -18,7 +18,7 @@ pub(super) enum Meets {
 }
 
 impl Meets {
-    /// The description in words; `None` for blockers, which theory includes.
+    /// Returns the description in words; `None` for blockers, which theory includes.
     fn describe(self, scene: &Scene) -> Option<String> {
         match self {
             Self::Layer { .. } => None,
@@ -36,8 +36,8 @@ impl Meets {
     }
 }
 
-/// Descriptions of what light meets and theory ignores, each once, and the blockers that light
-/// meets where the central ray does not, which theory then includes.
+/// Returns descriptions of what light meets and theory ignores, each once. Also returns the
+/// blockers that light meets at places where the central ray does not; theory then includes them.
 ///
 /// A ray reports only the first thing that it meets. So blockers are included in the theory and
 /// rays are traced again, until they meet no further blockers.
@@ -103,8 +103,8 @@ pub(super) enum SurroundingForm<'a> {
 const ROUNDING: f64 = 1e-9;
 
 impl<'a> Surroundings<'a> {
-    /// Meshes that the plane's light has left are excluded: theory represents them by the surface
-    /// that osculates them where the central ray hits.
+    /// Collects the surroundings. Meshes that the plane's light has left are excluded: theory
+    /// represents each by the surface that osculates it where the central ray hits.
     pub(super) fn new(scene: &'a Scene, plane: &'a VirtualPlane) -> Self {
         let mut objects: Vec<(Object, SurroundingForm<'a>)> = Vec::new();
         for (leg, hit) in scene.path.legs.iter().map(|leg| leg.leaves).enumerate() {
@@ -127,14 +127,14 @@ impl<'a> Surroundings<'a> {
         }
     }
 
-    /// The rounding error of a distance on a leg.
+    /// Returns the rounding error of a distance on a leg.
     pub(super) fn rounding(&self, leg: usize) -> f64 {
         let leg = &self.scene.path.legs[leg];
         ROUNDING * (leg.start + leg.leaves.map_or(0.0, |Hit { point, .. }| point.length()))
     }
 
-    /// The distance to the plane along a ray of its leg; for a plane on a surface, to the plane
-    /// across the leg where the central ray hits.
+    /// Returns the distance to the plane along a ray of its leg; for a plane on a surface, the
+    /// distance to the plane across the leg where the central ray hits.
     pub(super) fn to_plane(&self, ray: &CheckRay) -> f64 {
         let path = &self.scene.path;
         let leg = &path.legs[self.plane.leg];
@@ -143,7 +143,7 @@ impl<'a> Surroundings<'a> {
         -local.point.z / local.direction.z
     }
 
-    /// The surface that a ray meets first beyond `from`, and where; `ignored` is skipped.
+    /// Returns the surface that a ray meets first beyond `from`, and where; `ignored` is skipped.
     pub(super) fn first(
         &self,
         ray: &CheckRay,
@@ -163,15 +163,15 @@ impl<'a> Surroundings<'a> {
         hits.min_by(|(a, _), (b, _)| a.total_cmp(b))
     }
 
-    /// The distance at which a ray meets an object beyond `from`, whatever it meets first.
+    /// Returns the distance at which a ray meets an object beyond `from`, whatever it meets first.
     pub(super) fn hit(&self, ray: &CheckRay, from: f64, what: Object) -> Option<f64> {
         let forms = self.objects.iter().filter(|(object, _)| *object == what);
         let hits = forms.flat_map(|(_, form)| form.hits(ray));
         hits.filter(|t| *t > from).min_by(f64::total_cmp)
     }
 
-    /// The share of a ray of the first leg that passes the blockers before `end`, and the share
-    /// that passes those that theory places before the plane.
+    /// Returns the share of a ray of the first leg that passes the blockers before `end`, and the
+    /// share that passes those that theory places before the plane.
     pub(super) fn first_leg(&self, ray: &CheckRay, end: f64) -> ([f64; 2], Option<Meets>) {
         let mut shares = [1.0; 2];
         let mut meets = None;
@@ -198,7 +198,7 @@ impl<'a> Surroundings<'a> {
         (shares, meets)
     }
 
-    /// Blockers that a ray of a later leg meets between `from` and `end`.
+    /// Returns the blockers that a ray of a later leg meets between `from` and `end`.
     pub(super) fn later_leg(
         &self,
         ray: &CheckRay,
@@ -215,7 +215,7 @@ impl<'a> Surroundings<'a> {
         Some(Meets::Layer { index, leg })
     }
 
-    /// Whether theory includes blockers wherever light meets them on a leg.
+    /// Checks whether theory includes blockers wherever light meets them on a leg.
     pub(super) fn has_taken(&self, index: usize, leg: usize) -> bool {
         let mut taken = self.taken.iter();
         taken.any(|layer| layer.index == index && layer.from <= leg)
@@ -226,12 +226,12 @@ impl<'a> Surroundings<'a> {
         self.taken.push(TakenLayer { index, from });
     }
 
-    /// Whether theory includes a layer of blockers on the first leg, before the plane.
+    /// Checks whether theory includes a layer of blockers on the first leg, before the plane.
     pub(super) fn is_known(&self, index: usize) -> bool {
         stands_before(self.scene.blockers[index].distance, self.scene, self.plane)
     }
 
-    /// The distance at which a ray crosses the plane of blockers.
+    /// Returns the distance at which a ray crosses the plane of blockers.
     pub(super) fn crossing(&self, ray: &CheckRay, index: usize) -> Option<f64> {
         let t = (self.scene.blockers[index].distance - ray.point.z) / ray.direction.z;
         t.is_finite().then_some(t)
@@ -245,7 +245,7 @@ impl<'a> Surroundings<'a> {
 }
 
 impl SurroundingForm<'_> {
-    /// The distances at which a ray meets it; NaN for none.
+    /// Returns the distances at which a ray meets the form; NaN for none.
     fn hits(&self, ray: &CheckRay) -> [f64; 2] {
         match self {
             Self::Around([low, high]) => {

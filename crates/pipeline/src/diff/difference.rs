@@ -50,7 +50,7 @@ impl Diff {
         })
     }
 
-    /// The numbers of tests of slices and of parameters.
+    /// Returns the numbers of tests of slices and of parameters.
     pub(super) fn tests(&self) -> [usize; 2] {
         let compared = || self.planes.iter().filter_map(PlaneDiff::compared);
         let slices = compared().filter(|plane| plane.test.p_value.is_some());
@@ -58,14 +58,14 @@ impl Diff {
         [slices.count(), parameters.sum()]
     }
 
-    /// The level of each test with which all tests together find a difference where there is none
-    /// with probability α.
+    /// Returns the level of each test. With this level, the probability is α that any of the tests
+    /// finds a difference where there is none.
     pub(super) fn level(&self) -> f64 {
         let [slices, parameters] = self.tests();
         sidak(self.alpha, (slices + parameters).max(1))
     }
 
-    /// The verdict of all tests together.
+    /// Returns the verdict of all tests together.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
         let level = self.level();
@@ -74,14 +74,15 @@ impl Diff {
     }
 }
 
-/// Whether a field affects how a scene is run, and not what it is.
+/// Checks whether a field affects only how a scene is run.
 pub(super) fn is_of_run(change: &FieldChange) -> bool {
     change.field.starts_with("run.")
 }
 
-/// Whether two scenes with equal files use different meshes or pictures.
+/// Checks whether two scenes with equal files use different meshes or pictures.
 pub(super) fn has_other_inputs(a: &StoredResult, b: &StoredResult, scene: &[FieldChange]) -> bool {
     let [a, b] = [a, b].map(|result| &result.index);
-    // The name is not part of any hash; another version may have other defaults.
+    // The name of the scene is not part of its hash. Results of different versions are not compared
+    // by hash, because the versions may have other defaults.
     scene.is_empty() && a.version == b.version && a.scene_hash != b.scene_hash
 }

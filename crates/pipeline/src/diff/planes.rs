@@ -64,8 +64,8 @@ pub(super) struct PredictionDiff {
 
 /// Smaller relative differences count as the rounding of sums.
 pub(super) const ROUNDING: f64 = 1e-12;
-/// The difference of closed forms in two versions, which may order their sums differently: rounding
-/// of the largest terms.
+/// The largest difference of closed forms in two versions, which may order their sums differently.
+/// It is the rounding error of the largest terms.
 const CLOSED_FORM: f64 = 1e-9;
 /// The number of combined standard errors beyond which two predictions differ. The error is a norm
 /// over all frequencies, which hardly fluctuates.
@@ -86,7 +86,7 @@ impl PlaneDiff {
             .map_or(Verdict::Undecided, |compared| compared.verdict(level))
     }
 
-    /// Why the plane is undecided.
+    /// Returns why the plane is undecided.
     pub(super) fn undecided(&self, level: f64) -> Option<String> {
         match &self.found {
             PlaneDifference::Missing(0) => Some("only the second result has this plane".to_owned()),
@@ -102,12 +102,12 @@ impl PlaneDiff {
 }
 
 impl Compared {
-    /// The tested parameters with their pulls.
+    /// Returns the tested parameters with their pulls.
     pub(super) fn pulls(&self) -> impl Iterator<Item = &ParameterDiff> {
         self.parameters.iter().filter(|_| self.invalid.is_none())
     }
 
-    /// Descriptions of what differs beyond noise.
+    /// Returns descriptions of what differs beyond noise.
     pub(super) fn differing(&self, level: f64) -> Vec<String> {
         let mut differing = Vec::new();
         if self.invalid.is_none() && self.test.p_value.is_some_and(|p| p < level) {
@@ -130,7 +130,7 @@ impl Compared {
     }
 }
 
-/// All planes of two results, in the order of the first.
+/// Returns all planes of two results, in the order of the first.
 pub(super) fn of_results(
     a: &StoredResult,
     b: &StoredResult,
@@ -186,7 +186,8 @@ impl ResultPair<'_> {
         Ok(PlaneDifference::Compared(Box::new(compared)))
     }
 
-    /// Whether both use the same photons, as far as the scenes allow it.
+    /// Checks whether both results have the same method, seed, photons and batches, and so share
+    /// photons as far as their scenes agree.
     fn has_one_seed(&self) -> bool {
         let [a, b] = [self.a, self.b].map(|result| {
             let index = &result.index;
@@ -195,7 +196,7 @@ impl ResultPair<'_> {
         a == b
     }
 
-    /// Why the slices of the two results cannot be subtracted.
+    /// Returns why the slices of the two results cannot be subtracted.
     fn unlike(&self, name: &str, a: &StoredSlices, b: &StoredSlices) -> Option<String> {
         let [left, right] = [self.a, self.b].map(|result| view(&result.index.scene_file, name));
         if let Some(FieldChange { field, values }) = differences(&left, &right).into_iter().next() {
@@ -250,7 +251,7 @@ impl ResultPair<'_> {
         }
     }
 
-    /// Why the tests are invalid for these photons, whatever they find.
+    /// Returns why the tests are invalid for these photons, whatever they find.
     fn invalid(&self, planes: [&StoredPlane; 2], slices: [&StoredSlices; 2]) -> Option<String> {
         let results = [self.a, self.b];
         for ((plane, slices), result) in planes.into_iter().zip(slices).zip(results) {
@@ -273,14 +274,14 @@ impl ResultPair<'_> {
             }
             if let Some(each) = carried_by(&slices.sample, &slices.grid) {
                 return Some(format!(
-                    "a few photons carry most of the light of {folder}: it varies as if each batch held only {each:.1} of them"
+                    "a few photons carry most of the light of {folder}: the light varies as if each batch held only {each:.1} of them"
                 ));
             }
         }
         None
     }
 
-    /// Why a test without a detected difference does not prove that there is none.
+    /// Returns why a test without a detected difference does not prove that there is none.
     fn unresolved(&self, test: &TwoSamples) -> Option<String> {
         let [a, b] = [self.a, self.b].map(|result| &result.index);
         let [apart, noise] = [test.difference, test.noise].map(|share| percent(share, 3));
@@ -292,11 +293,11 @@ impl ResultPair<'_> {
                 "they share photons, or their noise is overstated".to_owned()
             };
             return Some(format!(
-                "they differ by {apart}, but independent noise would differ by {noise}: {seeds}; run one with another seed"
+                "they differ by {apart}, but results with independent noise would differ by {noise}: {seeds}; run one of them with another seed"
             ));
         }
         let resolution = [a, b].map(|r| r.scene_file["run"]["resolution"].as_f64());
-        // Two results with this noise each differ by its root mean square sum.
+        // Two results that each have this noise differ by √2 times as much.
         let resolution = SQRT_2 * resolution.into_iter().flatten().fold(0.0, f64::max);
         (test.noise > resolution).then(|| {
             let resolution = percent(resolution, 3);
@@ -305,9 +306,9 @@ impl ResultPair<'_> {
     }
 }
 
-/// The number of photons of equal weight per batch that would vary as much as the light of this
-/// sample, where it is so small that some batch would be empty; as for a single run
-/// (`etendue_compare`).
+/// Returns the number of photons of equal weight per batch that would vary as much as the light of
+/// this sample. `None` if the number is large enough that no batch would be empty, as for a single
+/// run (`etendue_compare`).
 fn carried_by(sample: &Sample, grid: &SliceGrid) -> Option<f64> {
     let zero = [0, 0, grid.nu.half];
     let batches = sample.batches as f64;
@@ -316,7 +317,7 @@ fn carried_by(sample: &Sample, grid: &SliceGrid) -> Option<f64> {
     (sigma > 0.0 && each < libm::log(batches)).then_some(each)
 }
 
-/// ‖a − b‖ over the larger norm; 0 if both are dark.
+/// Returns ‖a − b‖ over the larger norm; 0 if both are dark.
 fn apart(grid: &SliceGrid, a: &Array3<Complex>, b: &Array3<Complex>) -> f64 {
     let sample = |mean: &Array3<Complex>| Sample {
         mean: mean.clone(),
@@ -327,7 +328,7 @@ fn apart(grid: &SliceGrid, a: &Array3<Complex>, b: &Array3<Complex>) -> f64 {
     TwoSamples::new(grid, &sample(a), &sample(b)).difference
 }
 
-/// The definition of a plane's slices: its window, quantity and coordinates.
+/// Returns the definition of a plane's slices: its window, quantity and coordinates.
 fn view(scene_file: &Value, name: &str) -> Value {
     let planes = scene_file["planes"].as_array();
     let mut planes = planes.into_iter().flatten();

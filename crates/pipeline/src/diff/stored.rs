@@ -78,7 +78,8 @@ impl StoredNumber {
 }
 
 impl StoredParameter {
-    /// Whether the photons determine the parameter: a change by all of it would be detected.
+    /// Checks whether the photons determine the parameter: a change by its whole value would be
+    /// detected.
     pub(super) fn is_determined(&self) -> bool {
         let (Some(scene), Some(detectable)) = (self.scene, self.detectable) else {
             return false;
@@ -126,12 +127,12 @@ impl StoredResult {
         self.index.planes.iter().find(|plane| plane.name == name)
     }
 
-    /// The hash of the arrays of a plane.
+    /// Returns the hash of the arrays of a plane.
     pub(super) fn hash(&self, plane: &str) -> Option<&String> {
         self.index.files.get(&slices_of(plane))
     }
 
-    /// The arrays of a plane.
+    /// Returns the arrays of a plane.
     pub(super) fn slices(&self, plane: &StoredPlane) -> Result<StoredSlices, Failure> {
         let name = slices_of(&plane.name);
         let bytes = listed_bytes(&self.folder, SUMMARY, &self.index.files, &name)?;
@@ -173,7 +174,7 @@ impl StoredResult {
     }
 }
 
-/// The half with ρ ≥ 0 of an array [azimuth, ρ, ν].
+/// Returns the half with ρ ≥ 0 of an array [azimuth, ρ, ν].
 fn half<A: Clone>(array: &Array3<A>, grid: &SliceGrid) -> Array3<A> {
     let (_, half) = array.view().split_at(Axis(1), grid.rho.half);
     half.to_owned()

@@ -11,7 +11,7 @@ use etendue_store::fields::FieldChange;
 /// The largest number of differing fields that are listed.
 const MOST_FIELDS: usize = 20;
 
-/// The output of `etendue diff`.
+/// Returns the output of `etendue diff`.
 #[must_use]
 pub fn text(diff: &Diff) -> String {
     let mut lines = vec![header('A', &diff.results[0]), header('B', &diff.results[1])];
@@ -45,7 +45,7 @@ fn header(letter: char, result: &StoredResult) -> String {
     )
 }
 
-/// The differences of the scenes.
+/// Returns the differences of the scenes.
 fn scene(diff: &Diff) -> Vec<String> {
     let [a, b] = &diff.results;
     let changes = &diff.scene;
@@ -70,7 +70,8 @@ fn scene(diff: &Diff) -> Vec<String> {
     lines
 }
 
-/// A field in the notation of `--set`: `blockers.0.pitch`, not `blockers.0.JitteredSquares.pitch`.
+/// Returns a field in the notation of `--set`: `blockers.0.pitch`, not
+/// `blockers.0.JitteredSquares.pitch`.
 fn without_variants(field: &str) -> String {
     let parts: Vec<&str> = field.split('.').collect();
     let last = parts.len() - 1;
@@ -163,7 +164,7 @@ fn word(verdict: Verdict) -> &'static str {
     }
 }
 
-/// The verdict in a sentence, with its reasons.
+/// Returns the verdict in a sentence, with its reasons.
 fn verdict(diff: &Diff) -> String {
     let level = diff.level();
     let alpha = format!("{} %", tidy(100.0 * diff.alpha));

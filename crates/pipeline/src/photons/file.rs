@@ -17,7 +17,7 @@ pub(super) struct Rays {
 }
 
 impl Rays {
-    /// The rays of a plane; `None` if there is no such plane.
+    /// Returns the rays of a plane; `None` if there is no such plane.
     pub(super) fn of(case: &MeasuredScene, plane: usize) -> Option<Self> {
         let VirtualPlane { name, distance, .. } = case.scene.planes.get(plane)?;
         let emitted = case.measurement.batches().map(|batch| batch.emitted).sum();
@@ -31,12 +31,12 @@ impl Rays {
         })
     }
 
-    /// The power of a photon, W.
+    /// Returns the power of a photon, W.
     pub(super) fn watts(&self, crossing: &Crossing) -> f64 {
         self.world.flux(crossing) / self.emitted as f64
     }
 
-    /// Position in metres, direction, and power in W.
+    /// Returns the position in metres, the direction, and the power in W.
     fn ray(&self, crossing: &Crossing) -> io::Result<([f64; 3], [f64; 3], f64)> {
         let [point, along] = self.world.ray(&crossing.ray).ok_or_else(|| {
             let what = "a photon crossed the plane where it has no ray: a bug in etendue";
@@ -54,15 +54,15 @@ pub(super) enum Content<'a> {
 }
 
 impl<'a> Content<'a> {
-    /// f64 [rows, 5], in the frame of the plane.
+    /// Returns the content of an NPY file: f64 [rows, 5], in the frame of the plane.
     pub(super) fn npy(rows: u64) -> Self {
         Self::Npy(rows)
     }
 
-    /// Photons of unknown energy, in f64.
+    /// Returns the content of an MCPL file: photons of unknown energy, in f64.
     pub(super) fn mcpl(rays: &'a Rays, rows: u64) -> Self {
         let mut comments = vec![WATTS.as_bytes().to_vec(), rays.about.clone().into_bytes()];
-        // In the format, a number of photons is a sum.
+        // The format stores the number of emitted photons as a sum.
         comments.extend(stat_sum_comment("emitted_photons", rays.emitted as f64));
         let header = mcpl::McplHeader {
             universal_pdg: Some(PHOTON),
@@ -73,7 +73,7 @@ impl<'a> Content<'a> {
         Self::Mcpl(rays, Box::new(header), rows)
     }
 
-    /// Rays with this total flux, W, without wavelengths.
+    /// Returns the content of a TM-25 file: rays with this total flux, W, without wavelengths.
     pub(super) fn tm25(rays: &'a Rays, rows: u64, flux: f64) -> Self {
         let mut header = tm25::Tm25Header {
             radiant_flux: single(flux),

@@ -5,10 +5,10 @@ use etendue_store::stored::VERSION;
 
 /// Processes that work together, over any transport of bytes. Number 0 leads.
 pub trait Workers: Sync {
-    /// The number of this process.
+    /// Returns the number of this process.
     fn number(&self) -> usize;
 
-    /// The number of processes, including this one.
+    /// Returns the number of processes, including this one.
     fn count(&self) -> usize;
 
     /// Sends bytes to a process.
@@ -24,7 +24,8 @@ pub trait Workers: Sync {
     fn receive(&self) -> Result<(usize, Vec<u8>), String>;
 }
 
-/// A key that all processes must have in common; otherwise they would work on different things.
+/// Returns a key that all processes must have in common; otherwise they would work on different
+/// things.
 pub fn key<'a>(scenes: impl IntoIterator<Item = &'a Scene>) -> String {
     let scenes = scenes.into_iter();
     let words = scenes.map(|scene| format!(" {} {}", scene.hash(), scene.run.seed));

@@ -47,7 +47,7 @@ pub(crate) struct Order {
 /// A piece with its bytes.
 pub(crate) type Packed = (Piece, Vec<u8>);
 
-/// The message `words` about pieces, with their bytes.
+/// Returns the message `words` about pieces, with their bytes.
 pub(crate) fn packed<T: Serialize>(
     words: impl FnOnce(Vec<Piece>) -> T,
     pieces: Vec<Packed>,
@@ -56,7 +56,7 @@ pub(crate) fn packed<T: Serialize>(
     joined(&words(pieces), &bytes.concat())
 }
 
-/// The bytes of each piece, which are stored one after the other.
+/// Returns the bytes of each piece, which are stored one after the other.
 pub(crate) fn unpack<'a>(
     pieces: &'a [Piece],
     mut bytes: &'a [u8],

@@ -15,13 +15,13 @@ pub(crate) struct Packing<'a> {
 }
 
 impl Packing<'_> {
-    /// A batch as bytes.
+    /// Returns a batch as bytes.
     pub(crate) fn packed(&self, batch: &Batch) -> Result<Vec<u8>, Failure> {
         checkpoints::packed(&self.scene.planes, batch)
     }
 
-    /// The batch with that number from the bytes of [`Self::packed`], identical to one emitted by
-    /// `source`.
+    /// Returns the batch with that number from the bytes of [`Self::packed`], identical to one
+    /// emitted by `source`.
     pub(crate) fn unpacked(
         &self,
         source: &dyn PhotonSource,
@@ -37,7 +37,7 @@ impl Packing<'_> {
         checkpoints::unpacked(bytes, &held, &self.scene.planes)
     }
 
-    /// The first parts of a batch as bytes.
+    /// Returns the first parts of a batch as bytes.
     pub(crate) fn packed_partial(&self, batch: &PartialBatch) -> Result<Packed, Failure> {
         let bytes = batch
             .sum
@@ -51,7 +51,7 @@ impl Packing<'_> {
         Ok((piece, bytes))
     }
 
-    /// The first parts of a batch, from bytes of [`Self::packed_partial`].
+    /// Returns the first parts of a batch, from bytes of [`Self::packed_partial`].
     pub(crate) fn unpacked_partial(
         &self,
         source: &dyn PhotonSource,

@@ -17,9 +17,10 @@ pub(super) fn check(d: [f64; 3]) -> Result<(), String> {
     }
 }
 
-/// Version 3, adaptive projection (Kittelmann et al. 2017, section 3.2): the component of largest
-/// modulus is omitted except for its sign. If it is not z, its place is taken by 1/z, which is
-/// larger than 1 in modulus and so marks which component it was.
+/// Packs a unit vector as version 3 does, by adaptive projection (Kittelmann et al. 2017, section
+/// 3.2): the component of largest modulus is omitted except for its sign. If the omitted component
+/// is x or y, 1/z takes its place. Since 1/z is larger than 1 in modulus, it shows which component
+/// was omitted.
 pub(super) fn pack(d: [f64; 3]) -> ([f64; 2], bool) {
     let [x, y, z] = d;
     if z.abs() >= x.abs().max(y.abs()) {
@@ -31,23 +32,21 @@ pub(super) fn pack(d: [f64; 3]) -> ([f64; 2], bool) {
     }
 }
 
-/// 1/z, and +∞ for either zero.
+/// Returns 1/z, and +∞ for either zero.
 fn inverse(z: f64) -> f64 {
     if z == 0.0 { f64::INFINITY } else { 1.0 / z }
 }
 
-/// The vector that [`pack`] encoded as two numbers and a sign.
+/// Returns the vector that [`pack`] encoded as two numbers and a sign.
 pub(super) fn unpack([a, b]: [f64; 2], negative: bool) -> Result<[f64; 3], String> {
     let signed = |v: f64| if negative { -v } else { v };
-    // The omitted component; for a valid unit vector it is not smaller than the others.
+    // Computes the omitted component; for a valid unit vector it is not smaller than the others.
     let missing = |c: f64, d: f64| {
         let squared = 1.0 - (c * c + d * d);
         if squared >= -SLACK {
             Ok(signed(squared.max(0.0).sqrt()))
         } else {
-            Err(format!(
-                "packed direction {a}, {b}; it is not a unit vector"
-            ))
+            Err(format!("packed direction {a}, {b} is not a unit vector"))
         }
     };
     match [a.abs() > 1.0, b.abs() > 1.0] {
@@ -59,10 +58,11 @@ pub(super) fn unpack([a, b]: [f64; 2], negative: bool) -> Result<[f64; 3], Strin
     }
 }
 
-/// Version 2: a point of the octahedron |x| + |y| + |z| = 1, with its lower half folded out. `flat`
-/// means that z is 0.
+/// Unpacks a direction of version 2: a point of the octahedron |x| + |y| + |z| = 1, with its lower
+/// half folded out. `flat` means that z is 0.
 pub(super) fn unpack_octahedral([a, b]: [f64; 2], flat: bool) -> Result<[f64; 3], String> {
-    // Both are coordinates in a square; rounding to f32 may exceed it by this much.
+    // Both are coordinates in a square; rounding to f32 may move them outside the square by this
+    // much.
     if !(a.abs() <= 1.0 + 1e-6 && b.abs() <= 1.0 + 1e-6) {
         return Err(format!(
             "packed direction {a}, {b}; allowed: −1 to 1 for both"
@@ -96,8 +96,8 @@ mod tests {
                     let (packed, negative) = pack(d);
                     let again = unpack(packed, negative).unwrap();
                     for (a, b) in again.iter().zip(d) {
-                        // Two roundings of numbers up to 1; the root of a sum of at least 1/3 at
-                        // most doubles them.
+                        // The limit covers two rounding errors of numbers up to 1, which the root
+                        // of a sum of at least 1/3 at most doubles.
                         assert!((a - b).abs() < 1e-15, "{d:?} {again:?}");
                     }
                 }

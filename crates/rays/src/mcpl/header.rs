@@ -26,14 +26,16 @@ pub struct McplHeader {
     pub universal_weight: Option<f64>,
     /// The program that wrote the file, as bytes, usually UTF-8.
     pub source: Vec<u8>,
-    /// Comments, as bytes like `source`. `stat:sum:` has a meaning, see [`StatSum`].
+    /// Comments, as bytes like `source`. Comments that begin with `stat:sum:` have a meaning, see
+    /// [`StatSum`].
     pub comments: Vec<Vec<u8>>,
     /// Keys and their data.
     pub blobs: Vec<(Vec<u8>, Vec<u8>)>,
 }
 
 impl Default for McplHeader {
-    /// Version 3, little-endian, f64, with a PDG code and a weight for each particle.
+    /// Returns a header of version 3, little-endian, f64, with a PDG code and a weight for each
+    /// particle.
     fn default() -> Self {
         Self {
             version: 3,
@@ -51,7 +53,7 @@ impl Default for McplHeader {
 }
 
 impl McplHeader {
-    /// The header, the number of particles, and the offset of the first.
+    /// Returns the header, the number of particles, and the offset of the first.
     pub(super) fn read(bytes: &[u8]) -> Result<(Self, u64, usize), Fault> {
         let (version, little_endian) = signature(bytes)?;
         let mut cursor = ByteCursor::new(bytes, 8, little_endian);
@@ -113,14 +115,14 @@ impl McplHeader {
         stat::sums(&self.comments).map(|_| ())
     }
 
-    /// The sums stored in comments.
+    /// Returns the sums stored in comments.
     #[must_use]
     pub fn stat_sums(&self) -> Vec<StatSum> {
         // Comments are checked when the header is read or written.
         stat::sums(&self.comments).unwrap_or_default()
     }
 
-    /// The number of bytes of a particle.
+    /// Returns the number of bytes of a particle.
     #[must_use]
     pub fn record_size(&self) -> usize {
         let number = if self.single_precision { 4 } else { 8 };
@@ -130,7 +132,7 @@ impl McplHeader {
         number * numbers + 4 * codes
     }
 
-    /// The bytes before the first particle, for files that are written incrementally.
+    /// Returns the bytes before the first particle, for files that are written incrementally.
     #[must_use]
     pub fn bytes(&self, count: u64) -> Vec<u8> {
         let little = self.little_endian;
@@ -138,7 +140,7 @@ impl McplHeader {
             format!("MCPL{:03}{}", self.version, if little { 'L' } else { 'B' }).into_bytes();
         bytes.extend(ordered(count.to_le_bytes(), little));
         let mut number = |value: u32| bytes.extend(ordered(value.to_le_bytes(), little));
-        // A length that does not fit cannot come from a file, since no file is longer.
+        // No file contains a length that does not fit into 32 bits, since no file is that long.
         let short = |length: usize| u32::try_from(length).unwrap_or(u32::MAX);
         number(short(self.comments.len()));
         number(short(self.blobs.len()));
@@ -162,7 +164,7 @@ impl McplHeader {
     }
 }
 
-/// The version and the byte order.
+/// Returns the version and the byte order.
 fn signature(bytes: &[u8]) -> Result<(u32, bool), Fault> {
     let mut cursor = ByteCursor::new(bytes, 0, true);
     let start = cursor.take(8, "the signature of MCPL")?;
@@ -189,7 +191,7 @@ fn signature(bytes: &[u8]) -> Result<(u32, bool), Fault> {
 /// bytes of the file.
 const MOST_TEXTS: u32 = 65_536;
 
-/// The number of comments or blobs.
+/// Returns the number of comments or blobs.
 fn texts(cursor: &mut ByteCursor<'_>, what: &str) -> Result<u32, Fault> {
     let at = cursor.at();
     let count = cursor.u32(what)?;
@@ -200,13 +202,13 @@ fn texts(cursor: &mut ByteCursor<'_>, what: &str) -> Result<u32, Fault> {
     Ok(count)
 }
 
-/// Bytes preceded by their number.
+/// Reads bytes preceded by their number.
 fn text(cursor: &mut ByteCursor<'_>, what: &str) -> Result<Vec<u8>, Fault> {
     let length = cursor.u32(what)?;
     cursor.take(length as usize, what).map(<[u8]>::to_vec)
 }
 
-/// The bytes of a number, given lowest first, in the byte order of a file.
+/// Returns the bytes of a number, given lowest first, in the byte order of a file.
 pub(super) fn ordered<const N: usize>(mut bytes: [u8; N], little: bool) -> [u8; N] {
     if !little {
         bytes.reverse();

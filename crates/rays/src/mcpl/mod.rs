@@ -38,9 +38,9 @@ impl McplFile {
     /// Reads an unpacked file.
     ///
     /// # Errors
-    /// The first violation of the format. A file that was not closed (no particles according to its
-    /// header, and records after it) is refused too, as is one with enough bytes after the last
-    /// record for another.
+    /// The first violation of the format. Files that were not closed are refused too: their header
+    /// states no particles although records follow. Files with enough bytes after the last record
+    /// for another record are also refused.
     pub fn read(bytes: &[u8]) -> Result<Self, Fault> {
         let (header, count, start) = McplHeader::read(bytes)?;
         let size = header.record_size();
@@ -67,7 +67,8 @@ impl McplFile {
         Ok(file)
     }
 
-    /// A file of version 3 with these particles, all of which must fit the header's options.
+    /// Returns a file of version 3 with these particles, all of which must fit the header's
+    /// options.
     ///
     /// # Errors
     /// When a particle is invalid, or differs from the universal weight or PDG code of the header.
@@ -93,31 +94,31 @@ impl McplFile {
         Ok(file)
     }
 
-    /// The header, which applies to all particles.
+    /// Returns the header, which applies to all particles.
     #[must_use]
     pub fn header(&self) -> &McplHeader {
         &self.header
     }
 
-    /// The number of particles.
+    /// Returns the number of particles.
     #[must_use]
     pub fn len(&self) -> usize {
         self.count
     }
 
-    /// Whether the file has no particles.
+    /// Checks whether the file has no particles.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }
 
-    /// All particles, in their order.
+    /// Returns all particles, in their order.
     pub fn particles(&self) -> impl Iterator<Item = Particle> {
         // Each record has been decoded before, so none is omitted.
         (0..self.count).filter_map(|index| self.decode(index).ok())
     }
 
-    /// The bytes of the file; identical to those it was read from, if any.
+    /// Returns the bytes of the file; identical to those it was read from, if any.
     #[must_use]
     pub fn write(&self) -> Vec<u8> {
         let mut bytes = self.header.bytes(self.count as u64);
@@ -126,9 +127,9 @@ impl McplFile {
         bytes
     }
 
-    /// The rays of the file in metres. Their power is the weight of the particles, in W where the
-    /// comment [`WATTS`] states this. Particles other than photons, and photons of energy 0, have
-    /// no wavelength.
+    /// Returns the rays of the file in metres. Their power is the weight of the particles, in W
+    /// where the comment [`WATTS`] states this. Particles other than photons, and photons of energy
+    /// 0, have no wavelength.
     #[must_use]
     pub fn rays(&self) -> RaySet {
         let watts = self.header.comments.iter().any(|c| c == WATTS.as_bytes());
@@ -162,7 +163,7 @@ impl McplFile {
         set
     }
 
-    /// The particle with an index within the file.
+    /// Returns the particle with an index within the file.
     fn decode(&self, index: usize) -> Result<Particle, String> {
         let size = self.header.record_size();
         let record = self.records.get(index * size..(index + 1) * size);
@@ -171,7 +172,7 @@ impl McplFile {
     }
 }
 
-/// A single wavelength where all rays have the same.
+/// Returns a single wavelength where all rays have the same.
 fn shared(each: Vec<f64>) -> Wavelengths {
     let first = each.first().copied().unwrap_or(f64::NAN);
     if each.iter().all(|w| w.is_nan()) {
@@ -186,7 +187,7 @@ fn shared(each: Vec<f64>) -> Wavelengths {
 fn wrong_length(start: usize, count: u64, size: usize, found: usize) -> Fault {
     let message = if count == 0 {
         format!(
-            "the header says 0 particles, and {found} bytes follow it: the file was not closed (`mcpltool --repair` counts its particles)"
+            "the header states 0 particles, but {found} bytes follow the header: the file was not closed (`mcpltool --repair` counts its particles)"
         )
     } else {
         format!("{count} particles of {size} bytes should follow, but {found} bytes do")

@@ -18,8 +18,8 @@ pub struct StatSum {
     pub value: Option<f64>,
 }
 
-/// The comment that holds a sum. The value is written as the shortest decimal number that reads as
-/// the same f64.
+/// Returns the comment that holds a sum. The value is written as the shortest decimal number that
+/// reads as the same f64.
 ///
 /// # Errors
 /// When the key is not an identifier of at most 64 characters, or the value is negative or not
@@ -37,7 +37,7 @@ pub fn stat_sum_comment(key: &str, value: f64) -> Result<Vec<u8>, Fault> {
     Ok(comment)
 }
 
-/// The sums among comments.
+/// Returns the sums among comments.
 pub(super) fn sums(comments: &[Vec<u8>]) -> Result<Vec<StatSum>, Fault> {
     let mut keys = BTreeSet::new();
     let mut sums = Vec::new();
@@ -60,11 +60,11 @@ fn parse(comment: &[u8]) -> Result<StatSum, Fault> {
         .ok_or_else(|| refused("a colon must stand between key and value"))?;
     if !is_identifier(key) {
         return Err(refused(
-            "a key is a letter and then letters, digits and _, 64 characters at most",
+            "a key must be a letter followed by letters, digits or _, and have at most 64 characters",
         ));
     }
     if value.len() != WIDTH {
-        return Err(refused("a value takes 24 characters, blanks included"));
+        return Err(refused("a value must have 24 characters, including blanks"));
     }
     let digits = value.trim_matches(' ');
     let decimal = digits
@@ -77,7 +77,7 @@ fn parse(comment: &[u8]) -> Result<StatSum, Fault> {
     let value = match number {
         v if v.to_bits() == (-1.0_f64).to_bits() => None,
         v if v.is_finite() && v >= 0.0 => Some(v),
-        _ => return Err(refused("a value is 0 or more, or −1 where it is not known")),
+        _ => return Err(refused("a value must be 0 or more, or −1 if not known")),
     };
     let key = key.to_owned();
     Ok(StatSum { key, value })

@@ -37,7 +37,7 @@ pub struct Flags {
 }
 
 impl Flags {
-    /// The names of the columns of rays, in order.
+    /// Returns the names of the columns of rays, in order.
     fn names(self) -> Vec<&'static str> {
         let groups: [(bool, &[&str]); 7] = [
             (true, &["x", "y", "z", "kx", "ky", "kz"]),
@@ -55,12 +55,13 @@ impl Flags {
         present.flat_map(|(_, names)| names).copied().collect()
     }
 
-    /// The column of a ray's power: radiant flux, or luminous flux if there is no radiant flux.
+    /// Returns the column of a ray's power: radiant flux, or luminous flux if there is no radiant
+    /// flux.
     pub(super) fn power_column(self) -> usize {
         6 + usize::from(!self.radiant_flux && self.wavelength)
     }
 
-    /// The columns that cannot hold negative numbers.
+    /// Returns the columns that cannot hold negative numbers.
     pub(super) fn not_negative(self) -> impl Iterator<Item = usize> {
         let numbers = [self.radiant_flux, self.wavelength, self.luminous_flux];
         6..6 + numbers.map(usize::from).iter().sum::<usize>()
@@ -109,7 +110,7 @@ pub struct Tm25Header {
 }
 
 impl Default for Tm25Header {
-    /// Simulated rays with a radiant flux, and no further information.
+    /// Returns the header of simulated rays with a radiant flux and no further information.
     fn default() -> Self {
         Self {
             version: 2013,
@@ -156,13 +157,13 @@ impl Tm25Header {
         "reference of the data",
     ];
 
-    /// The number of columns of a ray.
+    /// Returns the number of columns of a ray.
     #[must_use]
     pub fn columns(&self) -> usize {
         self.flags.names().len() + self.extra_columns.len()
     }
 
-    /// The name of a column of rays.
+    /// Returns the name of a column of rays.
     pub(super) fn column_name(&self, at: usize) -> String {
         let names = self.flags.names();
         let extra = at.checked_sub(names.len());
@@ -174,7 +175,7 @@ impl Tm25Header {
             .unwrap_or_default()
     }
 
-    /// The header, the number of rays, and the offset of the first.
+    /// Returns the header, the number of rays, and the offset of the first.
     pub(super) fn read(bytes: &[u8], notes: &mut Vec<String>) -> Result<(Self, u64, usize), Fault> {
         let cursor = &mut ByteCursor::new(bytes, 0, true);
         let mut header = Self::default();
@@ -309,7 +310,7 @@ impl Tm25Header {
             "padding after spectra",
         )?;
         if filling.iter().any(|&b| b != 0) {
-            notes.push("the padding after spectra is not zero; dropped".to_owned());
+            notes.push("the padding after spectra is not zero; it is dropped".to_owned());
         }
         Ok(())
     }
@@ -341,7 +342,7 @@ impl Tm25Header {
         )?;
         refuse(
             (kind == SpectrumType::SpectrumPerRay) != flags.spectrum,
-            "rays must name a spectrum exactly when the type of spectra is \"spectrum of each ray\"",
+            "rays must refer to a spectrum if, and only if, the type of spectra is \"spectrum of each ray\"",
         )?;
         refuse(
             flags.stokes && !radiant,
@@ -383,10 +384,10 @@ impl Tm25Header {
         Ok(())
     }
 
-    /// The bytes before the first ray, for files that are written incrementally.
+    /// Returns the bytes before the first ray, for files that are written incrementally.
     #[must_use]
     pub fn bytes(&self, rays: u64) -> Vec<u8> {
-        // A length that does not fit cannot come from a file, since no file is longer.
+        // No file contains a length that does not fit into 32 bits, since no file is that long.
         let short = |length: usize| u32::try_from(length).unwrap_or(u32::MAX).to_le_bytes();
         let mut bytes = b"TM25".to_vec();
         bytes.extend(self.version.to_le_bytes());

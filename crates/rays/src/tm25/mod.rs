@@ -29,11 +29,11 @@ pub struct Tm25File {
     notes: Vec<String>,
 }
 
-/// The tolerance for the length of a direction, which should be 1, without a note: ten roundings of
+/// The largest deviation of the length of a direction from 1 that causes no note: ten roundings of
 /// f32.
 const LENGTH_SLACK: f64 = 1e-6;
-/// The relative tolerance for the flux of the header against the sum over rays, without a note: the
-/// error of f32 and four printed digits.
+/// The largest relative difference between the flux of the header and the sum over rays that causes
+/// no note: the error of f32 and of four printed digits.
 const FLUX_SLACK: f64 = 1e-3;
 
 impl Tm25File {
@@ -70,7 +70,8 @@ impl Tm25File {
         Ok(file)
     }
 
-    /// A file with these rays, each of `columns` numbers, as counted by [`Tm25Header::columns`].
+    /// Returns a file with these rays, each of `columns` numbers, as counted by
+    /// [`Tm25Header::columns`].
     ///
     /// # Errors
     /// When the header or the rays are invalid.
@@ -93,36 +94,36 @@ impl Tm25File {
         Ok(file)
     }
 
-    /// The header, which applies to all rays.
+    /// Returns the header, which applies to all rays.
     #[must_use]
     pub fn header(&self) -> &Tm25Header {
         &self.header
     }
 
-    /// Notes on anything unusual, in the order of the file.
+    /// Returns notes on anything unusual, in the order of the file.
     #[must_use]
     pub fn notes(&self) -> &[String] {
         &self.notes
     }
 
-    /// The number of rays.
+    /// Returns the number of rays.
     #[must_use]
     pub fn len(&self) -> usize {
         self.numbers.len() / self.header.columns()
     }
 
-    /// Whether the file has no rays.
+    /// Checks whether the file has no rays.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.numbers.is_empty()
     }
 
-    /// The numbers of each ray.
+    /// Returns the numbers of each ray.
     fn rows(&self) -> impl Iterator<Item = &[f32]> {
         self.numbers.chunks_exact(self.header.columns())
     }
 
-    /// The bytes of the file.
+    /// Returns the bytes of the file.
     #[must_use]
     pub fn write(&self) -> Vec<u8> {
         let mut bytes = self.header.bytes(self.len() as u64);
@@ -131,8 +132,8 @@ impl Tm25File {
         bytes
     }
 
-    /// The rays of the file in metres; power is in W where rays state radiant flux, otherwise in
-    /// lm. A wavelength of 0 is unknown.
+    /// Returns the rays of the file in metres; power is in W where rays state radiant flux,
+    /// otherwise in lm. A wavelength of 0 is unknown.
     #[must_use]
     pub fn rays(&self) -> RaySet {
         let flags = self.header.flags;
@@ -174,7 +175,7 @@ impl Tm25File {
         }
     }
 
-    /// The radiant flux of 1 lm, W, where the header states both fluxes.
+    /// Returns the radiant flux of 1 lm, W, where the header states both fluxes.
     #[must_use]
     pub fn watts_per_lumen(&self) -> Option<f64> {
         let Tm25Header {
@@ -186,7 +187,7 @@ impl Tm25File {
         stated.then(|| f64::from(radiant_flux) / f64::from(luminous_flux))
     }
 
-    /// The first spectral table, in metres.
+    /// Returns the first spectral table, in metres.
     fn spectrum(&self) -> Vec<[f64; 2]> {
         let table = self.header.spectra.first().into_iter().flatten();
         let row =

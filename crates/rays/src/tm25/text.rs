@@ -31,7 +31,7 @@ pub(super) fn read(
     }
     if codes().skip(end).any(|code| code != 0) {
         notes.push(format!(
-            "{what}: there is more after the terminating zero; dropped"
+            "{what}: characters after the terminating zero are dropped"
         ));
     }
     Ok(text)

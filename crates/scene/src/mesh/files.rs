@@ -12,10 +12,10 @@ impl Mesh {
     ///
     /// OBJ: `v` and `f` make the mesh, all objects and groups together; normals, texture
     /// coordinates, colors, weights, materials, points and lines are ignored, free-form surfaces
-    /// are refused. PLY: ASCII and binary of either byte order, coordinates and lists of any type;
-    /// other elements and properties are ignored. Faces of more than three corners become fans
-    /// about their first corner, which is right for convex faces, and have at most 4,096 corners.
-    /// Triangles of zero area are dropped where others remain.
+    /// are refused. PLY: the format is ASCII or binary of either byte order, with coordinates and
+    /// lists of any type. Other elements and properties are ignored. Faces of more than three
+    /// corners become fans about their first corner, which is right for convex faces, and have at
+    /// most 4,096 corners. Triangles of zero area are dropped where others remain.
     ///
     /// # Errors
     /// The first fault found: the place in the file, the value and what is allowed. Elements are
@@ -27,7 +27,8 @@ impl Mesh {
         })
     }
 
-    /// The mesh as a binary little-endian PLY file, exact: coordinates as `double`, indices as `uint`.
+    /// Returns the mesh as a binary little-endian PLY file, exact: coordinates as `double`, indices
+    /// as `uint`.
     #[must_use]
     pub fn ply(&self) -> Vec<u8> {
         ply::write(&self.vertices, &self.triangles)

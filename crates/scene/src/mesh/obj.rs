@@ -42,12 +42,13 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, Fault> {
     Mesh::new(vertices, triangles)
 }
 
-/// Windows editors begin UTF-8 files with a byte order mark.
+/// Removes the byte order mark with which Windows editors begin UTF-8 files.
 fn without_mark(bytes: &[u8]) -> &[u8] {
     bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
 }
 
-/// Statements with the number of their first line: comments removed, continued lines joined.
+/// Returns statements with the number of their first line; comments are removed, and continued
+/// lines are joined.
 fn statements(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, [u8]>)> {
     let mut lines = Lines::new(bytes).map(|(number, line)| {
         let end = line.iter().position(|b| *b == b'#');
@@ -70,8 +71,8 @@ fn statements(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, [u8]>)> {
     })
 }
 
-/// Points of the `v` lines, at least one; values after the three coordinates (weight, color) are
-/// ignored.
+/// Returns the points of the `v` lines, at least one; values after the three coordinates (weight,
+/// color) are ignored.
 fn vertices(bytes: &[u8]) -> Result<Vec<DVec3>, Fault> {
     let mut vertices = Vec::new();
     for (line, statement) in statements(bytes) {
@@ -105,8 +106,8 @@ fn vertex(line: usize, index: usize, mut words: LineWords<'_>) -> Result<DVec3, 
     Ok(point)
 }
 
-/// Triangles of the `f` lines, at least one. `index` resolves a corner from its word and the
-/// numbers of `v`, `vt` and `vn` lines above it.
+/// Returns the triangles of the `f` lines, at least one. `index` resolves a corner from its word
+/// and the numbers of `v`, `vt` and `vn` lines above it.
 fn triangles(
     bytes: &[u8],
     mut index: impl FnMut(&[u8], [usize; 3]) -> Result<u32, CornerFault>,
@@ -146,8 +147,8 @@ fn triangles(
 /// A fault of a corner: its value, and what is allowed.
 type CornerFault = (String, String);
 
-/// Index of a corner such as `7`, `7/3`, `7//5` or `-1/-1/-1`: counted from 1, or backwards from
-/// the last of the `before` vertices above this line.
+/// Returns the index of a corner such as `7`, `7/3`, `7//5` or `-1/-1/-1`: counted from 1, or
+/// backwards from the last of the `before` vertices above this line.
 fn corner(word: &[u8], before: usize, count: usize) -> Result<u32, CornerFault> {
     let mut parts = word.split(|b| *b == b'/');
     let vertex: Option<i64> = parts.next().and_then(number);

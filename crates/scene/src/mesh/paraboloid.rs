@@ -5,7 +5,8 @@ use etendue_scenefile::Fault;
 use glam::DVec3;
 
 impl Mesh {
-    /// A smooth open surface through the origin, z = −(k₁ x² + k₂ y²)/2 over |x|, |y| ≤ `half`, facing along z.
+    /// Returns a smooth open surface through the origin, z = −(k₁ x² + k₂ y²)/2 over |x|, |y| ≤
+    /// `half`, facing along z.
     ///
     /// `cells` × `cells` squares of two triangles, all cut along the same diagonal. Inside, the
     /// triangles around a vertex are point-symmetric, and the vertex normal weighted by their areas

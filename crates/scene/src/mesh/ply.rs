@@ -10,7 +10,7 @@ use etendue_scenefile::{Fault, fault};
 use glam::DVec3;
 use header::PlyElement;
 
-/// The positions of x, y and z among a vertex's properties.
+/// Returns the positions of x, y and z among a vertex's properties.
 fn axes(element: &PlyElement) -> Result<[usize; 3], Fault> {
     let mut axes = [0; 3];
     for (axis, name) in axes.iter_mut().zip(["x", "y", "z"]) {
@@ -29,7 +29,7 @@ fn axes(element: &PlyElement) -> Result<[usize; 3], Fault> {
     Ok(axes)
 }
 
-/// The position of the corner list among a face's properties.
+/// Returns the position of the corner list among a face's properties.
 fn list(element: &PlyElement) -> Result<usize, Fault> {
     let names = ["vertex_indices", "vertex_index"];
     let mut properties = element.properties.iter();

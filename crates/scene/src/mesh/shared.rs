@@ -7,8 +7,8 @@ use glam::{DAffine3, DVec3};
 /// Triangles with shared vertices, in the file's units and frame.
 ///
 /// Valid by construction: at least one triangle, each with an area and with valid vertex indices;
-/// coordinates within ±10⁹. Corners run counterclockwise seen from outside, where the file has them
-/// so; the surface need not be closed. Unused vertices are allowed.
+/// coordinates within ±10⁹. Corners run counterclockwise as seen from outside if the file lists
+/// them in this order. The surface need not be closed. Unused vertices are allowed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     pub(super) vertices: Vec<DVec3>,
@@ -16,8 +16,8 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// The mesh of these triangles without those of zero area (in f64), which occur in real files.
-    /// A scene may drop or refuse further triangles depending on where it places them.
+    /// Returns the mesh of these triangles without those of zero area (in f64), which occur in real
+    /// files. A scene may drop or refuse further triangles depending on where it places them.
     ///
     /// # Errors
     /// When a coordinate or an index is out of range, or no triangle has an area.
@@ -46,8 +46,8 @@ impl Mesh {
         })
     }
 
-    /// The mesh under an affine map. A map that mirrors also reverses the order of corners, so that
-    /// outside stays outside.
+    /// Returns the mesh under an affine map. A map that mirrors also reverses the order of corners,
+    /// so that outside stays outside.
     ///
     /// # Errors
     /// When coordinates exceed ±10⁹, or no triangle has an area after the map.
@@ -59,25 +59,25 @@ impl Mesh {
         Self::new(vertices.collect(), triangles.collect())
     }
 
-    /// Vertices; triangles refer to them by index.
+    /// Returns the vertices; triangles refer to them by index.
     #[must_use]
     pub fn vertices(&self) -> &[DVec3] {
         &self.vertices
     }
 
-    /// Corners of each triangle, as indices of [`Mesh::vertices`].
+    /// Returns the corners of each triangle, as indices of [`Mesh::vertices`].
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
 
-    /// Corner points of each triangle in turn.
+    /// Returns the corner points of each triangle in turn.
     pub fn corners(&self) -> impl ExactSizeIterator<Item = [DVec3; 3]> {
         let point = |i: u32| self.vertices[i as usize];
         self.triangles.iter().map(move |corners| corners.map(point))
     }
 
-    /// Lowest and highest coordinates of the triangles.
+    /// Returns the lowest and highest coordinates of the triangles.
     #[must_use]
     pub fn bounds(&self) -> [DVec3; 2] {
         let nothing = [DVec3::INFINITY, DVec3::NEG_INFINITY];
@@ -87,7 +87,7 @@ impl Mesh {
     }
 }
 
-/// Whether the triangle's area, in f64, is more than zero.
+/// Checks whether the triangle's area, in f64, is more than zero.
 fn has_area(vertices: &[DVec3], corners: [u32; 3]) -> bool {
     let [a, b, c] = corners.map(|i| vertices[i as usize]);
     (b - a).cross(c - a) != DVec3::ZERO
@@ -115,7 +115,7 @@ pub(super) fn check_coordinate(value: f64, place: impl FnOnce() -> String) -> Re
     }
 }
 
-/// Triangles of a face: the fan about its first corner.
+/// Returns the triangles of a face: the fan about its first corner.
 pub(super) fn fan(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     let pairs = corners.get(1..).unwrap_or_default().windows(2);
     pairs.map(|pair| [corners[0], pair[0], pair[1]])

@@ -6,15 +6,15 @@ use glam::DVec3;
 use std::f64::consts::PI;
 
 impl Mesh {
-    /// A smooth closed surface about the origin, star-shaped and with lobes about the z axis:
-    /// r(θ, φ) = `radius` · (1 + `relief` · sinˡθ · cos lφ) with l = `lobes`, a sphere plus its sectoral harmonic.
+    /// Returns a smooth closed surface about the origin, star-shaped and with lobes about the z
+    /// axis: r(θ, φ) = `radius` · (1 + `relief` · sinˡθ · cos lφ) with l = `lobes`, a sphere plus
+    /// its sectoral harmonic.
     ///
-    /// θ steps through `rings` bands and φ through 2 `rings` segments. The poles are
-    /// one vertex each and no vertex is doubled at φ = 0, so the surface is watertight:
-    /// 2 `rings`(`rings` − 1) + 2 vertices, 4 `rings`(`rings` − 1) triangles (50 624
-    /// for 113 rings), facing outward. Vertices lie on the surface; because of the
-    /// facets the volume falls short of R³(4π/3 + 2π relief² (2l)!!/(2l+1)!!), l ≥ 1,
-    /// by a part proportional to rings⁻².
+    /// θ steps through `rings` bands and φ through 2 `rings` segments. Each pole is one vertex and
+    /// no vertex is doubled at φ = 0, so the surface is watertight. It has 2 `rings`(`rings` − 1) +
+    /// 2 vertices and 4 `rings`(`rings` − 1) triangles (50 624 for 113 rings), which face outward.
+    /// Vertices lie on the surface; because of the facets the volume falls short of R³(4π/3 + 2π
+    /// relief² (2l)!!/(2l+1)!!), l ≥ 1, by a part proportional to rings⁻².
     ///
     /// # Errors
     /// When there are fewer than four segments per lobe, or [`Self::new`] refuses the mesh.
@@ -49,7 +49,7 @@ impl Mesh {
     }
 }
 
-/// Caps about the two poles, and two triangles for each cell between.
+/// Returns triangles: caps about the two poles, and two for each cell between.
 fn triangles(rings: u32, segments: u32) -> Vec<[u32; 3]> {
     let at = |ring: u32, segment: u32| 1 + (ring - 1) * segments + segment % segments;
     let (north, south) = (0, at(rings, 0));

@@ -60,12 +60,12 @@ impl<'a> Iterator for LineWords<'a> {
     }
 }
 
-/// The number that a word represents: decimal, with an optional exponent, infinite or NaN.
+/// Returns the number that a word represents: decimal, with an optional exponent, infinite or NaN.
 pub(super) fn number<T: std::str::FromStr>(word: &[u8]) -> Option<T> {
     str::from_utf8(word).ok()?.parse().ok()
 }
 
-/// The first few bytes of a word, for a message.
+/// Returns the first few bytes of a word, for a message.
 pub(super) fn quoted(bytes: &[u8]) -> String {
     const LONGEST: usize = 40;
     let shown = String::from_utf8_lossy(&bytes[..bytes.len().min(LONGEST)]);

@@ -14,7 +14,7 @@ use glam::DVec3;
 const STRIPS: f64 = 64.0;
 
 impl Resolver<'_> {
-    /// The blockers that lie across the central ray.
+    /// Returns the blockers that lie across the central ray.
     pub(super) fn blockers(&mut self, file: &SceneFile, frame: &Frame) -> Vec<BlockerLayer> {
         let blockers = file.blockers.iter().enumerate();
         blockers
@@ -39,7 +39,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// The layer of these blockers; `None` for a mesh.
+    /// Returns the layer of these blockers; `None` for a mesh.
     fn layer(&mut self, of: &str, blockers: &BlockersFile, frame: &Frame) -> Option<BlockerLayer> {
         let (BlockersFile::JitteredSquares { name, center, .. }
         | BlockersFile::Shapes { name, center, .. }
@@ -58,7 +58,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// The mask of the blockers, and the distance between their repetitions.
+    /// Returns the mask of the blockers, and the distance between their repetitions.
     fn mask(
         &mut self,
         of: &str,
@@ -114,8 +114,8 @@ impl Resolver<'_> {
         if !(fill > 0.0 && fill <= 1.0) {
             let allowed = "above 0, at most 1: a share of the pitch";
             self.faults.add(format!("{of}.fill"), number(fill), allowed);
-        // The prediction would count overlapping squares twice. The tolerance prevents rounding
-        // from refusing a fill of 0.7 with a jitter of 0.3.
+        // The prediction would count overlapping squares twice. The tolerance admits a fill of 0.7
+        // with a jitter of 0.3 in spite of rounding errors.
         } else if !(jitter >= 0.0 && fill + jitter <= 1.0 + 1e-12) {
             let allowed = format!("0 to 1 − fill, which is {}", tidy(1.0 - fill));
             self.faults
@@ -128,7 +128,7 @@ impl Resolver<'_> {
         squares.into_iter().map(Shape::Rectangle).collect()
     }
 
-    /// The shapes, moved to `center`.
+    /// Returns the shapes, moved to `center`.
     fn shapes(&mut self, of: &str, files: &[ShapeFile], center: [f64; 2]) -> Mask {
         if !(1..=limits::SHAPES).contains(&files.len()) {
             let allowed = format!("1 to {} shapes", limits::SHAPES);

@@ -47,7 +47,7 @@ impl Faults {
         }
     }
 
-    /// Whether there is a fault below a field.
+    /// Checks whether there is a fault below a field.
     pub(super) fn has_below(&self, field: &str) -> bool {
         let below = |fault: &Fault| {
             fault
@@ -58,7 +58,8 @@ impl Faults {
         self.all.iter().any(below)
     }
 
-    /// The faults without duplicates, because planes share the scene's window and frequencies.
+    /// Returns the faults without duplicates, because planes share the scene's window and
+    /// frequencies.
     pub(super) fn once(self) -> Vec<Fault> {
         let mut seen = HashSet::new();
         let is_new: Vec<bool> = self.all.iter().map(|fault| seen.insert(fault)).collect();
@@ -68,8 +69,8 @@ impl Faults {
     }
 }
 
-/// Whether a field sets the position of a surface or of blockers, and so what the central ray
-/// meets.
+/// Checks whether a field sets the position of a surface or of blockers, and so what the central
+/// ray meets.
 fn is_of_place(field: &str) -> bool {
     let of_things = |list: &str| {
         field
@@ -89,18 +90,18 @@ fn is_of_place(field: &str) -> bool {
         || starts(of_things("blockers["), &["center", "mesh", "scale"])
 }
 
-/// A vector as it is written in a scene file.
+/// Returns a vector as it is written in a scene file.
 pub(super) fn vector(values: &[f64]) -> String {
     let values: Vec<String> = values.iter().map(|value| number(*value)).collect();
     format!("({})", values.join(", "))
 }
 
-/// A value as it is written, truncated for a message.
+/// Returns a value as it is written, truncated for a message.
 pub(super) fn show(value: impl Debug) -> String {
     shown(format_args!("{value:?}"), limits::VALUE)
 }
 
-/// The names to choose from, for a message.
+/// Returns the names to choose from, for a message.
 pub(super) fn names<'a>(mut all: impl Iterator<Item = &'a str>) -> String {
     let first = all.by_ref().take(limits::FAULTS);
     let mut listed: Vec<String> = first.map(|name| shown(name, limits::NAME)).collect();

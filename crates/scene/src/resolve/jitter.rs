@@ -3,7 +3,7 @@
 use etendue_field::Rectangle;
 use etendue_transform::random::{self, Stream};
 
-/// Squares of side fill · pitch at (i − (n−1)/2) · pitch + U(−jitter/2, jitter/2) · pitch.
+/// Returns squares of side fill · pitch at (i − (n−1)/2) · pitch + U(−jitter/2, jitter/2) · pitch.
 pub(super) fn jittered_squares(
     center: [f64; 2],
     count: [u32; 2],

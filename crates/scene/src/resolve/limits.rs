@@ -7,7 +7,8 @@ use etendue_scenefile::{
 };
 
 impl Resolver<'_> {
-    /// Adds a fault for everything that there is too much of, and returns whether there was none.
+    /// Adds a fault for each kind of object that is too numerous, and returns whether there was no
+    /// such fault.
     pub(super) fn counts(&mut self, file: &SceneFile) -> bool {
         let lobes = match &file.light {
             LightFile::Environment {
@@ -69,7 +70,8 @@ fn meshes(file: &SceneFile) -> impl Iterator<Item = &MeshSource> {
     blockers.chain(surfaces)
 }
 
-/// The approximate number of triangles of a generated mesh; zero for one that will be refused.
+/// Returns the approximate number of triangles of a generated mesh; zero for one that will be
+/// refused.
 fn triangles(mesh: &MeshSource) -> u64 {
     let square = |n: u32| u64::from(if n > limits::CELLS { 0 } else { n }).pow(2);
     match mesh {

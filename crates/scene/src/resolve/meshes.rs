@@ -24,7 +24,7 @@ struct PlacedMesh<'a> {
 }
 
 impl Resolver<'_> {
-    /// The meshes: blockers, then surfaces.
+    /// Returns the meshes: blockers, then surfaces.
     pub(super) fn meshes(&mut self, file: &SceneFile, frame: &Frame) -> Vec<MeshObject> {
         let blockers = file
             .blockers
@@ -112,7 +112,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// A mesh with the normals of its vertices.
+    /// Returns a mesh with the normals of its vertices.
     fn smooth(
         &mut self,
         at: &MeshPlacement<'_>,
@@ -172,7 +172,7 @@ impl Resolver<'_> {
     }
 }
 
-/// The largest distance from the origin at which light may begin or leave a surface: the
+/// Returns the largest distance from the origin at which light may begin or leave a surface: the
 /// coordinates of rays and meshes are that large.
 fn reach(file: &SceneFile) -> f64 {
     let centers = file.surfaces.iter().map(|surface| match surface {

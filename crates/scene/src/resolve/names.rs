@@ -57,7 +57,7 @@ impl Resolver<'_> {
     }
 }
 
-/// Whether a name can be used in messages, files and pictures.
+/// Checks whether a name can be used in messages, files and pictures.
 fn is_name(name: &str) -> bool {
     let length = name.chars().take(limits::NAME + 1).count();
     (1..=limits::NAME).contains(&length) && name.chars().all(is_printable)

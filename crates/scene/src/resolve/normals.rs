@@ -7,19 +7,20 @@ use glam::DVec3;
 
 /// The smallest cosine between the normal of a vertex and the normals of its triangles, 89.4°.
 ///
-/// An interpolated normal is a mean, with shares from 0 to 1, of three normals that each have at
-/// least this component along the normal of the triangle, and so has it itself: it cannot vanish or
-/// turn over. The shares are off by at most 4e-4 each (`triangles.rs`), which leaves eight tenths
-/// of this component.
+/// An interpolated normal is a mean, with shares from 0 to 1, of the normals of three vertices.
+/// Each of them has at least this component along the normal of the triangle, and so does their
+/// mean: it cannot vanish or turn over. The shares are off by at most 4e-4 each (`triangles.rs`),
+/// which leaves eight tenths of this component.
 ///
-/// It is also the smallest length of a vertex's sum of normals times areas, over the sum of their
-/// lengths. With a shorter sum some triangle has a smaller cosine, since the mean cosine, weighted
-/// by area, is that ratio. So this test refuses no mesh that would pass the other.
+/// The same limit applies to a ratio at each vertex: the length of the sum of the area-weighted
+/// normals of its triangles, divided by the sum of their lengths. This ratio is the mean of the
+/// cosines, weighted by area, so below the limit some triangle has a smaller cosine too. So the
+/// test of the ratio refuses no mesh that would pass the test of the cosines.
 const MIN_NORMAL: f64 = 0.01;
 
 impl Resolver<'_> {
-    /// The normals of all vertices: the area-weighted mean over the triangles around each; zero at
-    /// vertices without a triangle.
+    /// Returns the normals of all vertices: the area-weighted mean over the triangles around each;
+    /// zero at vertices without a triangle.
     pub(super) fn normals(&mut self, at: &MeshPlacement<'_>, mesh: &Mesh) -> Option<Vec<DVec3>> {
         let mut sums = vec![(DVec3::ZERO, 0.0); mesh.vertices().len()];
         for (corners, indices) in mesh.corners().zip(mesh.triangles()) {
@@ -43,7 +44,7 @@ impl Resolver<'_> {
                 "without a normal: the normals of its triangles cancel to {left:.1e} of their summed lengths"
             );
             let allowed = format!(
-                "vertices of a smooth surface, at which at least {MIN_NORMAL} is left{}",
+                "vertices of a smooth surface, at which at least {MIN_NORMAL} of these lengths is left{}",
                 others(cancel.len())
             );
             self.faults.add(field, value, allowed);
@@ -94,7 +95,7 @@ impl Resolver<'_> {
     }
 }
 
-/// A vector along the normal of a triangle, with the length of twice its area.
+/// Returns a vector along the normal of a triangle, with the length of twice its area.
 fn across([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }

@@ -11,9 +11,9 @@ pub(super) enum Thing {
     HalfPlane(usize),
 }
 
-/// The first two shapes or half-planes that overlap, given finite numbers.
+/// Returns the first two shapes or half-planes that overlap, given finite numbers.
 pub(super) fn overlap(shapes: &[Shape], half_planes: &[HalfPlane]) -> Option<[Thing; 2]> {
-    // Of any three half-planes two overlap, so no more need be tested.
+    // Of any three half-planes two overlap, so the first three suffice.
     let first = &half_planes[..half_planes.len().min(3)];
     let two = pairs(first.len()).find(|[i, j]| !facing_away(&first[*i], &first[*j]));
     if let Some(pair) = two {
@@ -30,10 +30,10 @@ fn pairs(count: usize) -> impl Iterator<Item = [usize; 2]> {
     (0..count).flat_map(|j| (0..j).map(move |i| [i, j]))
 }
 
-/// The first shape that overlaps another, and the first that it overlaps.
+/// Returns the first shape that overlaps another, and the first that it overlaps.
 ///
-/// Bounds of disjoint shapes meet only where the shapes touch or in the corners of discs. At any
-/// point there are few of these for each order of magnitude of sizes, so few pairs are tested.
+/// Bounds of disjoint shapes meet only where the shapes touch, or in the corners of the bounds of
+/// discs. At any point few bounds of each order of magnitude meet, so few pairs are tested.
 fn overlap_of_shapes(shapes: &[Shape]) -> Option<[usize; 2]> {
     let indexed = shapes.iter().enumerate().map(|(i, shape)| {
         let [low, high] = corners(shape);
@@ -49,7 +49,7 @@ fn overlap_of_shapes(shapes: &[Shape]) -> Option<[usize; 2]> {
     })
 }
 
-/// The lowest and the highest coordinates of a shape.
+/// Returns the lowest and the highest coordinates of a shape.
 fn corners(shape: &Shape) -> [[f64; 2]; 2] {
     let bounds = shape.bounds();
     let [[left, right], [bottom, top]] = [bounds.extent(0), bounds.extent(1)];
@@ -96,7 +96,7 @@ fn reaches(shape: &Shape, half_plane: &HalfPlane) -> bool {
     }
 }
 
-/// Whether two half-planes are disjoint because they face away from each other.
+/// Checks whether two half-planes are disjoint because they face away from each other.
 fn facing_away(a: &HalfPlane, b: &HalfPlane) -> bool {
     let (above, below) = if a.above { (a, b) } else { (b, a) };
     a.axis == b.axis && a.above != b.above && below.edge <= above.edge

@@ -9,7 +9,7 @@ use etendue_scenefile::{EventFile, FormFile, SceneFile, SurfaceFile};
 use glam::DVec3;
 
 impl Resolver<'_> {
-    /// The smooth surfaces.
+    /// Returns the smooth surfaces.
     pub(super) fn patches(&mut self, file: &SceneFile, light: &Frame) -> Vec<PatchObject> {
         let surfaces = file.surfaces.iter().enumerate();
         surfaces
@@ -87,7 +87,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// The specular event; `None` for a surface that reflects by a BRDF.
+    /// Returns the specular event; `None` for a surface that reflects by a BRDF.
     pub(super) fn specular(
         &mut self,
         of: &str,

@@ -16,7 +16,7 @@ const MIN_LEG_SHARE: f64 = 1e-9;
 const GRAZING: f64 = 1.7e-3;
 
 impl Resolver<'_> {
-    /// The legs, as far as they can be computed; the length of a faulty leg is NaN.
+    /// Returns the legs, as far as they can be computed; the length of a faulty leg is NaN.
     pub(super) fn path(
         &mut self,
         file: &SceneFile,
@@ -63,7 +63,7 @@ impl Resolver<'_> {
         CentralRay { frame, legs }
     }
 
-    /// The distance of visit `i` along the leg, and the hit.
+    /// Returns the distance of visit `i` along the leg, and the hit.
     fn visit(
         &mut self,
         i: usize,
@@ -120,7 +120,7 @@ impl Resolver<'_> {
         Some((length, hit))
     }
 
-    /// The direction in which the central ray leaves visit `i`.
+    /// Returns the direction in which the central ray leaves visit `i`.
     fn onwards(
         &mut self,
         i: usize,
@@ -183,10 +183,10 @@ impl Resolver<'_> {
     }
 }
 
-/// The frame in which light leaves a hit along `d`: the frame of a mirror, (−X, Y) reflected,
-/// rotated by the smallest angle until it faces along `d`. Straight back at normal incidence it is
-/// (−X, Y, −D) (Durand et al. 2005, section 4.1, steps 1 and 7, at θ = 0); in the plane of
-/// incidence it is that of docs/conventions.md.
+/// Returns the frame in which light leaves a hit along `d`. It is the frame of a mirror, (−X, Y)
+/// reflected, rotated by the smallest angle until it faces along `d`. For light that goes straight
+/// back at normal incidence, the frame is (−X, Y, −D) (Durand et al. 2005, section 4.1, steps 1 and
+/// 7, at θ = 0). For light in the plane of incidence, it is the frame of docs/conventions.md.
 ///
 /// Light that is transmitted keeps the frame in which it arrived, rotated in the same way.
 fn leaving(arriving: &Frame, hit: &Hit, d: DVec3, through: bool) -> Frame {
@@ -218,7 +218,7 @@ fn leaving(arriving: &Frame, hit: &Hit, d: DVec3, through: bool) -> Frame {
 }
 
 impl Things<'_> {
-    /// All reflecting objects, with their names.
+    /// Returns all reflecting objects, with their names.
     fn objects(&self) -> Vec<(Object, &str)> {
         let surfaces = self.surfaces.iter().enumerate();
         let surfaces = surfaces.map(|(i, s)| (Object::Surface(i), s.name.as_str()));
@@ -230,8 +230,8 @@ impl Things<'_> {
         surfaces.chain(meshes).chain(patches).collect()
     }
 
-    /// The event of a smooth surface at a hit that ends a leg, its frame as a lens, and its normal
-    /// there on the side it faces.
+    /// Returns the event of a smooth surface at a hit that ends a leg, its frame as a lens, and its
+    /// normal there on the side it faces.
     fn specular(&self, hit: &Hit, leg: &Frame) -> Option<(Specular, Frame, DVec3)> {
         match hit.object {
             Object::Surface(_) => None,
@@ -251,7 +251,7 @@ impl Things<'_> {
         }
     }
 
-    /// Whether light leaves an object in or near the mirror direction.
+    /// Checks whether light leaves an object in or near the mirror direction.
     fn mirrors(&self, object: Object) -> bool {
         match object {
             Object::Surface(_) | Object::Mesh(_) => false,
@@ -259,13 +259,13 @@ impl Things<'_> {
         }
     }
 
-    /// Whether light that leaves a hit along `d` is transmitted.
+    /// Checks whether light that leaves a hit along `d` is transmitted.
     fn is_left_behind(&self, hit: &Hit, d: DVec3, leg: &Frame) -> bool {
         self.specular(hit, leg).is_some() && d.dot(hit.normal) < 0.0
     }
 
-    /// The first hit of the axis of a frame with an object: distance, point and the normal on this
-    /// side.
+    /// Returns the first hit of the axis of a frame with an object: distance, point and the normal
+    /// on this side.
     fn hit(&self, object: Object, frame: &Frame) -> Option<(f64, DVec3, DVec3)> {
         let found = match object {
             Object::Surface(i) => {
@@ -306,7 +306,7 @@ impl Things<'_> {
         }
     }
 
-    /// The distance along the axis of a frame to the first object, blocker or light.
+    /// Returns the distance along the axis of a frame to the first object, blocker or light.
     fn clear(&self, frame: &Frame, light: &Light) -> f64 {
         let objects = self.objects();
         let objects = objects
@@ -333,8 +333,8 @@ impl Things<'_> {
 }
 
 impl MeshObject {
-    /// The first hit of the axis of a frame with the mesh, and the normal there: that of the
-    /// triangle, or interpolated.
+    /// Returns the first hit of the axis of a frame with the mesh, and the normal there: that of
+    /// the triangle, or interpolated.
     pub(crate) fn first_on(&self, frame: &Frame) -> Option<(f64, DVec3)> {
         let central = TwoPlane::default();
         let hits = self
@@ -349,7 +349,7 @@ impl MeshObject {
         Some((t, self.normal(i, frame.origin + t * frame.d)))
     }
 
-    /// The outward normal at a point of a triangle, by its winding.
+    /// Returns the outward normal at a point of a triangle, by its winding.
     pub(crate) fn normal(&self, triangle: usize, point: DVec3) -> DVec3 {
         let corners = &self.triangles[triangle];
         match &self.smooth {

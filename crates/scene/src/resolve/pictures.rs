@@ -18,8 +18,8 @@ use std::sync::Arc;
 const REACH: f64 = 6.0;
 
 impl Resolver<'_> {
-    /// Light from an environment. The axes are directions of the world; `light` is the frame at the
-    /// light.
+    /// Returns the light from an environment. The axes are directions of the world; `light` is the
+    /// frame at the light.
     pub(super) fn environment(
         &mut self,
         [up, front]: [&[f64; 3]; 2],
@@ -103,7 +103,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// A picture that varies a BRDF over a surface.
+    /// Returns a picture that varies a BRDF over a surface.
     pub(super) fn picture_pattern(&mut self, of: &str, file: &str, size: [f64; 2]) -> Pattern {
         let raster = self.picture(&format!("{of}.file"), file, &["exr", "png"], 1.0);
         let black = || LatLong::from_fn(1, 1, |_| 0.0).raster().clone();
@@ -113,7 +113,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// The picture in a file, with values from 0 to `most`.
+    /// Returns the picture in a file, with values from 0 to `most`.
     fn picture(&mut self, of: &str, path: &str, extensions: &[&str], most: f64) -> Option<Raster> {
         let bytes = self.named_file(of, path)?;
         let raster = picture::parse(Path::new(path), &bytes, extensions).map_err(|fault| {

@@ -66,7 +66,8 @@ impl Resolver<'_> {
         planes
     }
 
-    /// The frame of a plane, in the frame at the light, and the longitude of the central ray in it.
+    /// Returns the frame of a plane, in the frame at the light, and the longitude of the central
+    /// ray in the plane's frame.
     fn view(
         &mut self,
         of: &str,
@@ -116,8 +117,8 @@ impl Resolver<'_> {
             Side::Before => (frame, arrives),
             Side::After => {
                 let d = path.legs[place.leg].frame.d;
-                // Transmitted light leaves on the other side; N points there, and T is rotated with
-                // it.
+                // Transmitted light leaves on the other side; N points to that side, and T is
+                // rotated with N.
                 let frame = if d.dot(frame.d) < 0.0 {
                     Frame {
                         x: -frame.x,
@@ -179,7 +180,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// The object that the place of a plane names.
+    /// Returns the object that the place of a plane names.
     fn stop<'a>(
         &mut self,
         of: &str,
@@ -215,7 +216,7 @@ impl Resolver<'_> {
     fn beyond_light(&mut self, of: &str, place: &Place, distance: f64) -> f64 {
         if distance < 0.0 {
             let allowed = format!(
-                "a place on the path, which begins at the light; this one lies {} m behind it",
+                "a place on the path, which begins at the light; this place lies {} m behind the light",
                 tidy(-distance)
             );
             self.faults.add_on_path(of, show(place), allowed);
@@ -223,7 +224,7 @@ impl Resolver<'_> {
         distance
     }
 
-    /// The place on the leg that holds this distance along the path.
+    /// Returns the place on the leg that holds this distance along the path.
     fn at_distance(
         &mut self,
         of: &str,
@@ -363,8 +364,9 @@ impl Resolver<'_> {
     pub(super) fn memory(&mut self, planes: &[VirtualPlane], batches: u32, memory: u64) {
         let cells =
             |grid: &SliceGrid| -> f64 { grid.half_shape().iter().map(|n| *n as f64).product() };
-        // Batches and their residuals, plus prediction, derivatives and errors, and the transform's
-        // fine grids, seven for each thread: 100 copies suffice for a dozen threads.
+        // Memory holds batches and their residuals. A hundred copies more suffice for the
+        // prediction, its derivatives and errors, and for seven fine grids of the transform on each
+        // of a dozen threads.
         let copies = 2.0 * f64::from(batches) + 100.0;
         let bytes: f64 = planes
             .iter()
@@ -388,7 +390,7 @@ fn gigabytes(bytes: f64) -> String {
     format!("{:.1} GB", bytes / 1e9)
 }
 
-/// Whether a frame lies across the first leg.
+/// Checks whether a frame lies across the first leg.
 fn is_across(frame: &Frame) -> bool {
     libm::hypot(frame.d.x, frame.d.y) <= SAME_PLANE
 }

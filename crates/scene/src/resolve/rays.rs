@@ -8,7 +8,8 @@ use glam::DVec3;
 use std::sync::Arc;
 
 impl Resolver<'_> {
-    /// The rays of a file whose Z and Y axes have these directions in the world; `light` is the frame at the light.
+    /// Returns the rays of a file whose Z and Y axes have these directions in the world; `light` is
+    /// the frame at the light.
     pub(super) fn rays(
         &mut self,
         name: &str,
@@ -28,7 +29,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// The axes of the file, in the frame at the light.
+    /// Returns the axes of the file, in the frame at the light.
     fn axes_of_rays(&mut self, [front, up]: [Option<[f64; 3]>; 2], light: &Frame) -> Frame {
         let axis = |given: Option<[f64; 3]>, default: DVec3| {
             given.map_or(default, |v| light.vector_to_local(DVec3::from(v)))
@@ -90,7 +91,7 @@ impl Resolver<'_> {
     }
 }
 
-/// The rays that go forward, at their intersection with the plane of the light.
+/// Returns the rays that go forward, at their intersection with the plane of the light.
 fn through_the_plane(set: &RaySet, axes: &Frame, watts: f64) -> Option<RayLight> {
     let mut rays = Vec::with_capacity(set.len());
     let mut behind = 0.0;

@@ -12,7 +12,7 @@ use etendue_scenefile::{
 const FINEST: usize = 901;
 
 impl Resolver<'_> {
-    /// The reflectance of a surface; `None` for one that sends each ray in one direction.
+    /// Returns the reflectance of a surface; `None` for one that sends each ray in one direction.
     pub(super) fn reflectance(&mut self, of: &str, event: &EventFile) -> Option<Reflectance> {
         let (mut resolved, texture) = match event {
             EventFile::Reflects {
@@ -57,7 +57,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// The sum of BRDFs; `None` where there are no terms, or too many.
+    /// Returns the sum of BRDFs; `None` where there are no terms, or too many.
     fn sum(&mut self, of: &str, terms: &[TermFile]) -> Option<Reflectance> {
         let count = terms.len();
         if !(1..=MOST_TERMS).contains(&count) {
@@ -139,7 +139,7 @@ impl Resolver<'_> {
     }
 }
 
-/// The grating of a picture or a pattern.
+/// Returns the grating of a picture or a pattern.
 pub(super) fn grating_of(file: &GratingFile) -> Grating {
     Grating {
         axis: file.axis.index(),

@@ -8,18 +8,18 @@ use etendue_scenefile::limits::MAX_NUMBER;
 use glam::DVec3;
 use std::path::Path;
 
-/// The height of a triangle over the largest coordinate below which it cannot be distinguished from
-/// a line.
+/// The ratio of a triangle's height to the largest coordinate below which the triangle cannot be
+/// distinguished from a line.
 ///
 /// A coordinate in the frame of a leg is rounded by up to 4e-16 of the largest. At this height a
 /// normal is tilted by 4e-4 of a radian, and the barycentric shares of a point are off by as much;
-/// below it rounding dominates.
+/// below this height rounding dominates.
 const THIN: f64 = 1e-12;
 /// The smallest height in metres: the smallest size of a scene times the smallest scale. Products
 /// of six such lengths stay within f64.
 const LEAST_HEIGHT: f64 = 1e-18;
-/// The share of a mesh's area that thin triangles may hold and be dropped; the missing light is far
-/// below the noise.
+/// The largest share of a mesh's area up to which thin triangles are dropped; the missing light is
+/// far below the noise.
 const MAX_DROPPED_SHARE: f64 = 1e-6;
 /// The placement of a mesh, and how its faults are reported.
 pub(super) struct MeshPlacement<'a> {
@@ -33,13 +33,13 @@ pub(super) struct MeshPlacement<'a> {
 }
 
 impl MeshPlacement<'_> {
-    /// A vertex in the world of the scene file.
+    /// Returns a vertex in the world of the scene file.
     pub(super) fn world(&self, vertex: DVec3) -> DVec3 {
         self.center + vertex * self.scale
     }
 
-    /// The number of a vertex, counted as in its format: OBJ from 1, PLY and generated meshes from
-    /// 0.
+    /// Returns the number of a vertex, counted as in its format: OBJ from 1, PLY and generated
+    /// meshes from 0.
     pub(super) fn number(&self, vertex: u32) -> u64 {
         let extension = match self.source {
             MeshSource::File(path) => Path::new(path).extension(),
@@ -48,7 +48,7 @@ impl MeshPlacement<'_> {
         u64::from(vertex) + u64::from(extension.is_some_and(|e| e.eq_ignore_ascii_case("obj")))
     }
 
-    /// The path of a field of the mesh.
+    /// Returns the path of a field of the mesh.
     pub(super) fn field(&self, what: &str) -> String {
         match self.source {
             MeshSource::File(path) => format!("{}.mesh, {path:?}: {what}", self.of),
@@ -56,7 +56,7 @@ impl MeshPlacement<'_> {
         }
     }
 
-    /// A triangle by the numbers of its vertices.
+    /// Returns a triangle by the numbers of its vertices.
     pub(super) fn triangle(&self, corners: [u32; 3]) -> String {
         let [a, b, c] = corners.map(|i| self.number(i));
         format!("the triangle of vertices {a}, {b} and {c}")
@@ -64,7 +64,7 @@ impl MeshPlacement<'_> {
 }
 
 impl Resolver<'_> {
-    /// The mesh without triangles too thin for f64, if they are a negligible part of it.
+    /// Returns the mesh without triangles too thin for f64, if they are a negligible part of it.
     pub(super) fn distinct_triangles(
         &mut self,
         at: &MeshPlacement<'_>,
@@ -124,17 +124,17 @@ impl Resolver<'_> {
     }
 }
 
-/// The height of a triangle over its longest side, and twice its area.
+/// Returns the height of a triangle over its longest side, and twice its area.
 fn height([a, b, c]: [DVec3; 3]) -> [f64; 2] {
     let longest = (b - a).length().max((c - b).length()).max((a - c).length());
     let twice = (b - a).cross(c - a).length();
     [twice / longest, twice]
 }
 
-/// The words that count the others after the first.
+/// Returns words that count the faults after the first.
 pub(super) fn others(count: usize) -> String {
     match count {
         0 | 1 => String::new(),
-        more => format!(" ({} more are not)", more - 1),
+        more => format!(" ({} more have this fault)", more - 1),
     }
 }

@@ -6,7 +6,7 @@ use crate::limits::MAX_NUMBER;
 use schemars::Schema;
 use serde_json::Value;
 
-/// The description of the field, and an example.
+/// Adds the description of a field, and an example.
 pub(super) fn told(what: &'static str, example: &'static str) -> impl FnMut(&mut Schema) {
     move |schema| {
         schema.insert("title".into(), what.into());
@@ -14,17 +14,18 @@ pub(super) fn told(what: &'static str, example: &'static str) -> impl FnMut(&mut
     }
 }
 
-/// The least and the largest number.
+/// Sets the least and the largest allowed number.
 pub(super) fn within(least: f64, most: f64) -> impl FnMut(&mut Schema) {
     move |schema| numbers(schema, |node| bound(node, least, most))
 }
 
-/// The range in words, where it depends on other fields and is checked by the resolver.
+/// Sets the range in words, for a range that depends on other fields and is checked by the
+/// resolver.
 pub(super) fn depends(words: &'static str) -> impl FnMut(&mut Schema) {
     move |schema| numbers(schema, |node| node["x-range"] = words.into())
 }
 
-/// The reason why other numbers are not allowed.
+/// Adds the reason why other numbers are not allowed.
 pub(super) fn since(reason: &'static str) -> impl FnMut(&mut Schema) {
     move |schema| {
         numbers(schema, |node| {
@@ -34,17 +35,18 @@ pub(super) fn since(reason: &'static str) -> impl FnMut(&mut Schema) {
     }
 }
 
-/// Any number allowed in a scene.
+/// Allows all numbers that a scene may contain.
 pub(super) fn any(schema: &mut Schema) {
     within(-MAX_NUMBER, MAX_NUMBER)(schema);
 }
 
-/// Sizes, widths, frequencies and strengths: the default for every number.
+/// Allows positive numbers, as for sizes, widths, frequencies and strengths; this is the default
+/// for every number.
 pub(crate) fn positive(node: &mut Value) {
     bound(node, 1.0 / MAX_NUMBER, MAX_NUMBER);
 }
 
-/// A direction of any length.
+/// Describes a direction of any length.
 pub(super) fn direction(example: &'static str) -> impl FnMut(&mut Schema) {
     move |schema| {
         told("a direction", example)(schema);

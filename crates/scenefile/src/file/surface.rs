@@ -124,7 +124,7 @@ pub enum SurfaceFile {
 }
 
 impl SurfaceFile {
-    /// The name of the surface.
+    /// Returns the name of the surface.
     #[must_use]
     pub fn name(&self) -> &str {
         match self {

@@ -15,8 +15,8 @@ pub struct Aliasing {
     /// The difference. It includes the slices' own error: below 2·10⁻⁷ Σw at each frequency.
     pub difference: f64,
     /// The expected difference from aliasing if the spectrum beyond Nyquist is as strong as in the
-    /// outermost quarter inside. It is not a bound: correct for white noise, too large if the
-    /// spectrum falls off, too small if it rises again.
+    /// outermost quarter below Nyquist. It is not a bound: it is correct for white noise, too large
+    /// if the spectrum falls off, and too small if the spectrum rises again.
     pub expected: f64,
     /// The bound of [`FieldSpectrum::alias_bound`]: it holds for any photons, and is far above the
     /// difference for most.

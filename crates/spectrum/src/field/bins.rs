@@ -92,7 +92,8 @@ impl RadialBins {
     /// Returns means over the bins of numbers that are even in Ω, such as powers. `of` is called
     /// with indices [x, y, u, v] of the spectrum.
     ///
-    /// Sums are over each Ωx, then over these in order: bitwise identical on any number of threads.
+    /// Sums are over each Ωx, then over these in order, so the result is bitwise identical on any
+    /// number of threads.
     #[must_use]
     pub fn means<const N: usize>(
         &self,
@@ -141,8 +142,8 @@ fn edges(grid: &FieldGrid, [a, b]: [usize; 2]) -> Vec<f64> {
     std::iter::once(0.0).chain(outer).collect()
 }
 
-/// |F|² of a prediction as a full radial spectrum: its mean over the frequencies that a measurement on `grid`
-/// has in each bin of [`RadialBins`], [|Ωxy|, |Ωuv|].
+/// Returns |F|² of a prediction as a full radial spectrum: its mean over the frequencies that a
+/// measurement on `grid` has in each bin of [`RadialBins`], [|Ωxy|, |Ωuv|].
 ///
 /// `of` is the spectrum of a real field at (Ωx, Ωy, Ωu, Ωv); it is called for Ωv ≥ 0 only.
 #[must_use]
@@ -167,7 +168,7 @@ mod tests {
         ] {
             let bins = RadialBins::new(&grid);
             let mut counts = Array2::<u64>::zeros(bins.counts.raw_dim());
-            // The direct way, with far more harmonics than the grid has.
+            // Computes the mean directly, with far more harmonics than the grid has.
             let around =
                 |axis: usize| (-20_i32..=20).map(move |m| f64::from(m) * grid.spacing(axis));
             let rings = |a: usize, b: usize| {

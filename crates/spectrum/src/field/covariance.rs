@@ -49,8 +49,9 @@ fn pairs() -> impl Iterator<Item = (usize, usize)> {
     (0..4).flat_map(|i| (i..4).map(move |j| (i, j)))
 }
 
-/// The frequencies that moments are over: those of a 4D grid within the largest ones of a plane's slices, |Ωx| and
-/// |Ωy| ≤ ρ_max, |Ωu| and |Ωv| ≤ ν_max. None at Nyquist is among them.
+/// The frequencies over which moments are taken: those of a 4D grid within the largest ones of a
+/// plane's slices, |Ωx| and |Ωy| ≤ ρ_max, |Ωu| and |Ωv| ≤ ν_max. Frequencies at Nyquist are
+/// excluded.
 #[derive(Clone, Debug)]
 pub struct Moments {
     grid: FieldGrid,
@@ -80,7 +81,8 @@ impl Moments {
     /// Returns the moments of a power that is even in Ω, given at indices of a transform, with
     /// those along v from zero on.
     ///
-    /// Sums are over each Ωx, then over these in order: bitwise identical on any number of threads.
+    /// Sums are over each Ωx, then over these in order, so the result is bitwise identical on any
+    /// number of threads.
     #[must_use]
     pub fn of(&self, power: impl Fn([usize; 4]) -> f64 + Sync) -> PowerMoments {
         let [xs, ys, us, vs] = [0, 1, 2, 3].map(|axis| self.along(axis));
@@ -115,7 +117,7 @@ impl Moments {
     /// Returns indices and frequencies of the band along an axis.
     fn along(&self, axis: usize) -> Vec<(usize, f64)> {
         let (n, spacing) = (self.grid.cells[axis], self.grid.spacing(axis));
-        // The largest frequency may be a multiple of the spacing up to rounding.
+        // The largest frequency may be a multiple of the spacing apart from rounding errors.
         let most = self.band[axis] * (1.0 + 1e-9);
         let all = (0..n).map(|i| (i, self.grid.harmonic(axis, i)));
         let inside = all.filter(|(_, harmonic)| 2 * harmonic.unsigned_abs() < n);
@@ -226,8 +228,9 @@ impl FieldCovariance {
     }
 
     /// Returns the factor by which each variance grows from half of the band to all of it: 1 if the
-    /// band contains the spectrum, about 2 if the field has an edge, whose spectrum has no second
-    /// moment, and more if replicas lie in between. `None` if there is no light beyond noise.
+    /// band contains the spectrum, about 2 if the field has an edge, and more if replicas lie in
+    /// between. The spectrum of an edge has no second moment. `None` if there is no light beyond
+    /// noise.
     #[must_use]
     pub fn growth(&self) -> Option<[f64; 4]> {
         let [all, half] = [self.moments.covariance()?, self.half.covariance()?];

@@ -5,8 +5,8 @@ use super::spectrum::FieldSpectrum;
 use crate::jackknife::Jackknife;
 use ndarray::Array2;
 
-/// The full radial spectrum of a plane: the mean of |ℓ̂|² over both azimuths, that of (Ωx, Ωy) and
-/// that of (Ωu, Ωv), independently.
+/// The full radial spectrum of a plane: the mean of |ℓ̂|² over the azimuth of (Ωx, Ωy) and,
+/// independently, over the azimuth of (Ωu, Ωv).
 ///
 /// Arrays are [|Ωxy|, |Ωuv|]; the bins are those of [`RadialBins`]. Unit: that of ℓ̂, squared. The sign of a shear
 /// is lost; the slices keep it.
@@ -25,7 +25,7 @@ pub struct FullRadial {
     /// leaves out.
     pub shot_noise: Array2<f64>,
     /// The standard error of `power` by the delete-one jackknife over groups of batches: about √2
-    /// too large where there is only noise.
+    /// times too large where there is only noise.
     pub sigma: Array2<f64>,
 }
 

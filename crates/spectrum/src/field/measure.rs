@@ -26,14 +26,15 @@ pub struct FieldOptions {
     pub keep: bool,
     /// Whether to return the spectra of all groups, which are then in memory together.
     pub spectra: bool,
-    /// Whether to compute the covariance of the spectrum too, over the frequencies of the plane, on
-    /// a grid that extends to 1.5 times these: the alias at the highest frequencies is then an
-    /// eighth of the spectrum at twice those frequencies.
+    /// Whether to compute the covariance of the spectrum too, over the frequencies of the plane.
+    /// The grid then extends to 1.5 times these frequencies, and the alias at the highest of them
+    /// is an eighth of the spectrum at twice that frequency.
     pub covariance: bool,
 }
 
 impl Default for FieldOptions {
-    /// Triangular shaped clouds, 16 groups, not kept, no spectra of groups, no covariance.
+    /// Returns the default options: triangular shaped clouds, 16 groups, which are not kept, no
+    /// spectra of groups and no covariance.
     fn default() -> Self {
         Self {
             assignment: Assignment::Tsc,

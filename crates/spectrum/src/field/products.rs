@@ -10,7 +10,7 @@ impl RadialBins {
     /// bins of a row-major [|Ωxy|, |Ωuv|].
     ///
     /// All pairs are computed together to read each spectrum once. Each ring of (Ωx, Ωy) is summed
-    /// separately, in order: bitwise identical on any number of threads.
+    /// separately, in order, so the result is bitwise identical on any number of threads.
     ///
     /// # Panics
     /// If a spectrum is on another grid.
@@ -92,7 +92,7 @@ mod tests {
                 [(a * b.conj()).re]
             });
             for ((r, c), mean) in mean.indexed_iter() {
-                // Rounding of sums of about a hundred numbers around 1.
+                // The limit is the rounding error of sums of about a hundred numbers around 1.
                 assert!((products[[r * bins.counts.ncols() + c, i, j]] - mean).abs() < 1e-13);
             }
         }

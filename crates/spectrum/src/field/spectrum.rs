@@ -68,7 +68,7 @@ impl FieldSpectrum {
             let f = harmonics[axis] as f64 / self.grid.cells[axis] as f64;
             worst_alias(self.assignment, f)
         };
-        // Π(1 + ε) − 1 without losing small ε to rounding.
+        // Computes Π(1 + ε) − 1 without losing small ε to rounding.
         let sum = (0..4).fold(0.0, |sum, axis| sum + worst(axis) * (1.0 + sum));
         self.at_zero() * sum
     }

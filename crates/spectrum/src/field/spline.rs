@@ -35,7 +35,7 @@ pub(crate) fn transform(assignment: Assignment, f: f64) -> f64 {
     reason = "whole, not negative and at most n: a ray in the window is in the box"
 )]
 pub(crate) fn taps<const P: usize>(t: f64, n: usize) -> ([usize; P], [f64; P]) {
-    // The cell below t, or for odd P the nearest.
+    // The cell below t or, for odd P, the cell nearest to t.
     let cell = (t + (P % 2) as f64 * 0.5).floor();
     let d = t - cell;
     let shares: [f64; 3] = match P {

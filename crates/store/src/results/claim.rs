@@ -10,17 +10,18 @@ use std::path::{Path, PathBuf};
 const MAX_NAMES: usize = 10;
 
 impl Results {
-    /// The files of the earlier result, as listed in its index.
+    /// Returns the files of the earlier result, as listed in its index.
     pub(super) fn earlier(&self) -> BTreeMap<String, String> {
         listed(&self.folder.join(self.plan.index)).unwrap_or_default()
     }
 
-    /// The path of a file of the folder; `None` if it leads out of it, by `..` or by a link.
+    /// Returns the path of a file of the folder; `None` if the path leads out of the folder, by
+    /// `..` or by a link.
     pub(super) fn inside(&self, name: &str) -> Option<PathBuf> {
         inside(&self.folder, name)
     }
 
-    /// Refuses results in the place of inputs.
+    /// Refuses results that would replace inputs.
     pub(super) fn refuse_inputs(&self) -> Result<(), Failure> {
         let earlier = self.earlier();
         let earlier = earlier.keys().map(String::as_str);
@@ -36,7 +37,7 @@ impl Results {
             let waits = canonical.starts_with(self.folder.join(UNFINISHED));
             if waits || written.contains(&canonical) {
                 return Err(Failure::bad_input(format!(
-                    "{} is read by this command and would be replaced by its results in {}: choose another folder",
+                    "{} is read by this command and would be replaced by the results in {}: choose another folder",
                     input.display(),
                     self.shown.display()
                 )));
@@ -45,8 +46,8 @@ impl Results {
         Ok(())
     }
 
-    /// Refuses where a file of somebody else is in the way; with `force`, only where it is not a
-    /// regular file.
+    /// Refuses to write where a file of somebody else is in the way; with `force`, refuses only if
+    /// that file is not a regular file.
     pub(super) fn refuse_foreign(&self) -> Result<(), Failure> {
         let earlier = self.earlier();
         let mut foreign = Vec::new();
@@ -81,7 +82,7 @@ impl Results {
         )))
     }
 
-    /// Whether a file belongs to an earlier result, and is unchanged.
+    /// Checks whether a file belongs to an earlier result, and is unchanged.
     fn is_own(&self, name: &str, path: &Path, earlier: &BTreeMap<String, String>) -> bool {
         match earlier.get(name) {
             Some(hash) => has_hash(path, hash),

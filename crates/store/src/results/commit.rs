@@ -56,7 +56,7 @@ impl MovedFiles {
     /// Moves everything back.
     fn undo(&self) {
         for [from, to] in self.done.iter().rev() {
-            // A file that cannot be moved back now is moved on by the next process.
+            // If a file cannot be moved back now, the next process completes its move.
             let _ = fs::rename(to, from);
         }
     }
@@ -119,7 +119,7 @@ impl Results {
     fn moves(&self, index: &str, moved: &mut MovedFiles) -> Result<(), Failure> {
         let ready = self.ready(index);
         let new = listed(&ready).unwrap_or_default();
-        // From here on the folder holds no valid result, until the new index comes.
+        // From here on the folder holds no valid result until the new index is in place.
         let place = self.folder.join(index);
         if listed(&place).is_some() {
             moved.file(place, self.aside(index))?;
@@ -166,7 +166,7 @@ impl Results {
         moved.file(from, to)
     }
 
-    /// The path to which an earlier file is moved before it is removed.
+    /// Returns the path to which an earlier file is moved before it is removed.
     fn aside(&self, name: &str) -> PathBuf {
         self.folder.join(UNFINISHED).join("old").join(name)
     }

@@ -212,7 +212,8 @@ mod tests {
                 let scale = at(m as f64, rows) * at(nu, columns) / 2.0;
                 let period = (n + columns - grid.nu.half) % columns;
                 let off = found * scale - plain(&fine, placement, [m, period]);
-                // Rounding of sums of up to 56 numbers of about 4 in total, and of 38 of about 13.
+                // The limit covers the rounding errors of sums of up to 56 numbers, about 4 in
+                // total, and of 38 numbers, about 13 in total.
                 assert!(modulus(off) < 5e-14, "{rows} × {columns}, {m}, {nu}: {off}");
             }
         }

@@ -93,7 +93,7 @@ impl Kernel {
     /// cycles per cell.
     ///
     /// It is the transform of the polynomials that are used for spreading, by a Gauss–Legendre rule
-    /// on each cell, exact to rounding for |ξ| ≤ 1/2.
+    /// on each cell, exact apart from rounding errors for |ξ| ≤ 1/2.
     pub(crate) fn transform(&self, xi: f64) -> f64 {
         let mut sum = 0.0;
         for (x, weight) in gauss_legendre(16) {
@@ -172,7 +172,7 @@ mod tests {
                 worst = worst.max((tap - exact(j, f)).abs());
             }
             for (j, tap) in each[0][..HALF].iter().enumerate() {
-                // The same sums, with a zero added first.
+                // The formula has the same sums, with a zero added first.
                 assert!((kernel.tap(j, f) - tap).abs() <= 1e-16);
             }
             let turned: [[f64; 8]; 8] = std::array::from_fn(|i| all.map(|tap| tap[i]));
@@ -185,7 +185,7 @@ mod tests {
     fn transform_is_that_of_the_kernel() {
         let kernel = Kernel::new();
         for xi in [0.0, 0.11, 0.25, 0.5] {
-            // The midpoint rule over the formula, 8 cells wide.
+            // Applies the midpoint rule to the formula, over 8 cells.
             let n = 20_000;
             let sum: f64 = (0..n)
                 .map(|i| {
@@ -195,7 +195,7 @@ mod tests {
                 })
                 .sum();
             let expected = 8.0 * sum / f64::from(n);
-            // Eight cells times the error of the taps, which is at most 5e-8.
+            // The limit is eight cells times the error of the taps, which is at most 5e-8.
             assert!((kernel.transform(xi) - expected).abs() < 4e-7, "{xi}");
         }
     }

@@ -1,7 +1,7 @@
 //! The sum of weighted rays on all slices, by a non-uniform fast Fourier transform.
 //!
-//! It sums both photons and the nodes of theory's nets. Both test it against the plain sum, so an
-//! error in it cannot go unnoticed because both share it.
+//! It sums both photons and the nodes of theory's nets. The tests of both compare it with the plain
+//! sum, so an error in the transform is noticed although both share it.
 
 mod block;
 mod fine_grid;

@@ -6,8 +6,8 @@ use fearless_simd::{Simd, f64x8, prelude::*};
 
 /// The mapping of rays to the fine grid of one azimuth φ, a period of `rows` × `columns` cells.
 ///
-/// Rows divide the period 1/spacing of p = x cos φ + y sin φ, the conjugate of ρ; columns that of
-/// q = u cos φ + v sin φ, the conjugate of ν.
+/// Rows divide the period 1/spacing of p = x cos φ + y sin φ, the conjugate of ρ; columns divide
+/// that of q = u cos φ + v sin φ, the conjugate of ν.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placement {
     /// cos φ and sin φ times the spacing of ρ: periods per metre.

@@ -42,8 +42,8 @@ pub(in super::super) fn read(bytes: &[u8]) -> Result<DetailedMesh, Fault> {
     })
 }
 
-/// The numbers of all lines that begin with a given word. The second of two texture coordinates may
-/// be missing.
+/// Returns the numbers of all lines that begin with a given word. The second of two texture
+/// coordinates may be missing.
 fn rows<const N: usize>(bytes: &[u8], word: &[u8]) -> Result<Vec<[f64; N]>, Fault> {
     let mut rows = Vec::new();
     for (line, statement) in statements(bytes) {
@@ -68,7 +68,7 @@ fn rows<const N: usize>(bytes: &[u8], word: &[u8]) -> Result<Vec<[f64; N]>, Faul
     Ok(rows)
 }
 
-/// A corner such as `7`, `7/3`, `7//5` or `-1/-1/-1`.
+/// Returns a corner such as `7`, `7/3`, `7//5` or `-1/-1/-1`.
 fn key(word: &[u8], before: [usize; 3], counts: [usize; 3]) -> Result<CornerKey, CornerFault> {
     let first = corner(word, before[0], counts[0])?;
     let mut others = word.split(|b| *b == b'/').skip(1);

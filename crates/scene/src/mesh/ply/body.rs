@@ -170,7 +170,7 @@ impl PlyRow<'_> {
     }
 }
 
-/// The value of a number; f64 represents all eight types exactly.
+/// Returns the value of a number; f64 represents all eight types exactly.
 fn decode(scalar: Scalar, raw: &[u8], big_endian: bool) -> f64 {
     let mut little = [0; 8];
     little[..raw.len()].copy_from_slice(raw);
@@ -190,12 +190,12 @@ fn decode(scalar: Scalar, raw: &[u8], big_endian: bool) -> f64 {
     }
 }
 
-/// The number as a count or an index, if it is one.
+/// Returns the number as a count or an index, if it is one.
 pub(super) fn whole(value: f64) -> Option<u32> {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "in range and whole, as just asked"
+        reason = "checked to be whole and in range"
     )]
     let cast = |value| value as u32;
     let fits = (0.0..=f64::from(u32::MAX)).contains(&value) && value.fract() == 0.0;

@@ -55,7 +55,7 @@ const LONGEST_NAME: usize = 100;
 const MOST_LISTED: usize = 4;
 
 impl PlyHeader {
-    /// The header, and the lines after it.
+    /// Returns the header, and the lines after it.
     pub(super) fn read(bytes: &[u8]) -> Result<(Self, Lines<'_>), Fault> {
         let mut lines = Lines::new(bytes);
         let first = lines.next().map_or(&[][..], |(_, line)| line);
@@ -64,7 +64,7 @@ impl PlyHeader {
         }
         let mut encoding = None;
         let mut elements: Vec<PlyElement> = Vec::new();
-        // Names of all elements, and of the properties of the last one, in hash sets so that
+        // Hash sets hold the names of all elements, and of the properties of the last one, so
         // reading takes time linear in the length of the header.
         let (mut known, mut properties) = (HashSet::new(), HashSet::new());
         for (at, line) in lines.by_ref() {
@@ -150,7 +150,7 @@ impl PlyHeader {
 }
 
 impl PlyProperty {
-    /// The smallest number of bytes that the property takes in a row.
+    /// Returns the smallest number of bytes that the property takes in a row.
     fn least(&self, encoding: Encoding) -> usize {
         match encoding {
             Encoding::Ascii => 2, // a digit and what parts it from the next
