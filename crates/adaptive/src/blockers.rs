@@ -18,8 +18,8 @@ const STEP: usize = 4;
 /// dominate the cost.
 pub const BLOCKER_RAYS: u32 = 16;
 
-/// The nearness at each pixel, from `rays` rays of each point to what is reflected, and as many to
-/// lights.
+/// Returns the nearness at each pixel. From each point, `rays` rays go towards what it reflects,
+/// and as many towards lights.
 pub(crate) fn nearness(
     visible: &Visible,
     (paths, camera, cutoffs, seed): (&Paths, &Camera, &Cutoffs, u64),

@@ -2,8 +2,8 @@
 //! Elimination for Generating Poisson Disk Sample Sets*).
 //!
 //! More candidates than needed are drawn from the density. The candidate most crowded by its
-//! neighbours is removed repeatedly until the required number is left. Distances use the metric, in
-//! which the density is 1 everywhere.
+//! neighbours is removed repeatedly until the required number is left. Distances are measured with
+//! the metric in which the density is 1 everywhere.
 
 use crate::metric::Metric;
 use etendue_sampling::DiscreteDistribution;
@@ -30,7 +30,7 @@ pub(crate) struct PicturePoint {
     pub(crate) metric: Metric,
 }
 
-/// At most `count` points over a picture `wide` pixels across, in order of pixels.
+/// Returns at most `count` points over a picture `wide` pixels across, in order of pixels.
 pub(crate) fn blue_noise(
     metrics: &[Option<Metric>],
     wide: usize,
@@ -271,8 +271,8 @@ mod tests {
         assert!((left as f64 - 120.0).abs() < 12.0, "{left}");
     }
 
-    /// Below the frequency of neighbours blue noise has almost no power, whereas random points have
-    /// 1.
+    /// At frequencies below the inverse distance of neighbours, blue noise has almost no power,
+    /// whereas random points have 1.
     #[test]
     fn low_frequencies_are_quiet() {
         let even = vec![Some(Metric::even(0.1)); 100 * 100];

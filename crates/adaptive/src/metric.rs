@@ -68,8 +68,8 @@ impl Metric {
         [self.yy, self.xx].map(|across| radius * (across / determinant).sqrt())
     }
 
-    /// The metric made rounder until the lengths of directions differ by at most a factor of
-    /// `most`.
+    /// Returns the metric made rounder, so that the lengths of a step in different directions
+    /// differ by at most a factor of `most`.
     #[must_use]
     pub(crate) fn rounder(self, most: f64) -> Self {
         let large = self.largest();

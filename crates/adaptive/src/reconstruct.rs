@@ -27,16 +27,16 @@ impl ShadedSample {
     }
 }
 
-/// Standard deviation of the filter in units in which neighbours are about 1 apart: with less, some
-/// points use only one sample; with more, sampled detail is lost.
+/// Standard deviation of the filter, in units in which neighbours are about 1 apart. With a smaller
+/// one, some points would use only one sample; with a larger one, sampled detail would be lost.
 const WIDTH: f64 = 0.5;
 
-/// Cutoffs of the filter in standard deviations: for the first round, and for later rounds at
-/// points that no sample reached.
+/// Cutoffs of the filter in standard deviations. The first is that of the first round. The others
+/// are those of later rounds, at points that no sample has reached.
 const REACHES: [f64; 3] = [3.0, 9.0, 27.0];
 
-/// Standard deviation of normals: a right angle is another face, but the turn over a metric's
-/// distance is not.
+/// Standard deviation of normals. It separates faces that meet at a right angle, but not normals
+/// that turn within the distance of samples.
 const NORMALS: f64 = 0.35;
 
 /// Standard deviation of the elevation angle of a sample above the surface at a point.
@@ -118,7 +118,7 @@ impl LocalSums {
 
     /// The value of the fitted plane at the point.
     fn plane(&self, of: &ValueSums) -> f64 {
-        // Relative to the mean position, with added spread to keep the slope from few samples
+        // Positions are relative to their mean. Spread is added to keep the slope from few samples
         // small.
         let [x, y] = self.x.map(|x| x / self.weight);
         let mean = of.value / self.weight;
@@ -217,7 +217,8 @@ fn unlike(place: &SeenSurface, sample: &SeenSurface) -> f64 {
         return turned;
     }
     let height = between.dot(place.normal);
-    // On a curved surface normals turn by twice that angle; a larger angle means another sheet.
+    // On a curved surface, normals turn by twice the elevation angle; a larger elevation angle
+    // means another sheet.
     turned + height * height / (length * HEIGHTS * HEIGHTS)
 }
 

@@ -8,8 +8,7 @@ use obvhs::bvh2::Bvh2;
 /// Cost of visiting a leaf, in openings of a node.
 const VISIT: f32 = 1.5;
 
-/// The largest number of boxes that together represent the subtree of a node of the binary tree,
-/// and the choice of them: see [`costs`].
+/// A binary tree, and the [`costs`] that decide which of its nodes become boxes.
 struct Collapse<'a> {
     bvh: &'a Bvh2,
     costs: Vec<[f32; WIDTH]>,
@@ -22,7 +21,7 @@ struct Collapse<'a> {
 ///
 /// If a leaf has more than [`MAX_LEAF`].
 pub(crate) fn collapsed(bvh: &Bvh2) -> (Wide, Vec<[u32; 2]>) {
-    // The largest possible number: memory is only used once it is written to.
+    // The largest possible number of nodes; memory counts as used only once it is written to.
     let most = bvh.nodes.len() / 2 + 1;
     let (mut nodes, mut leaves) = (Vec::with_capacity(most), Vec::with_capacity(most));
     nodes.push(Node::EMPTY);
@@ -60,9 +59,10 @@ pub(crate) fn collapsed(bvh: &Bvh2) -> (Wide, Vec<[u32; 2]>) {
     (Wide::new(nodes, deepest), leaves)
 }
 
-/// Returns the cost of rays below each node of the binary tree if it becomes at most 1, 2 … boxes
-/// of an eight-wide node: areas times the cost of opening (Ylitie, Karras and Laine 2017,
-/// *Efficient incoherent ray traversal on GPUs through compressed wide BVHs*, section 3.1).
+/// Returns, for each node of the binary tree, the cost of rays below it if it becomes at most 1, 2
+/// … boxes of an eight-wide node. A cost is a sum of areas times the cost of opening (Ylitie,
+/// Karras and Laine 2017, *Efficient incoherent ray traversal on GPUs through compressed wide
+/// BVHs*, section 3.1).
 fn costs(bvh: &Bvh2) -> Vec<[f32; WIDTH]> {
     let mut costs = vec![[0.0; WIDTH]; bvh.nodes.len()];
     let mut order = Vec::with_capacity(bvh.nodes.len());

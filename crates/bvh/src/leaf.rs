@@ -30,7 +30,7 @@ pub(crate) struct LeafRay {
     axes: [usize; 3],
     slopes: [f32; 2],
     /// Bound on the error of coordinates across the ray. Rounding of corners, origin and slopes
-    /// causes 4e-6 of it.
+    /// accounts for 4e-6 of it.
     tolerance: f32,
 }
 
@@ -82,10 +82,10 @@ impl Leaf {
         let b = self.across(simd, sight, 1);
         let c = self.across(simd, sight, 2);
         let [u, v, w] = [side(b, c), side(c, a), side(a, b)];
-        // The error of a product due to the errors of two coordinates, for all products.
+        // A bound on the error of any of the products, due to the errors of its two coordinates.
         let size = size(a) + size(b) + size(c) + 2.0 * sight.tolerance;
         let error = size * sight.tolerance;
-        // NaN does not lead to rejection.
+        // Comparisons with NaN are false, so NaN does not lead to rejection.
         let out = u.min(v).min(w).simd_lt(-error) & u.max(v).max(w).simd_gt(error);
         !u32::try_from(out.to_bitmask()).unwrap_or_default() & ((1 << self.count) - 1)
     }

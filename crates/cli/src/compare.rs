@@ -97,7 +97,8 @@ fn read(args: &CompareArgs) -> Result<(MeasuredScene, Vec<PathBuf>), Failure> {
     Ok((case, inputs))
 }
 
-/// Checks that batches belong to the same experiment: others are not replicates of each other.
+/// Checks that batches belong to the same experiment: batches of different experiments are not
+/// replicates of each other.
 fn same_experiment(first: &Stored<Held>, shard: &Stored<Held>) -> Result<(), Failure> {
     first.check_scene(shard, true)?;
     let words = |stored: &Stored<Held>| {

@@ -60,7 +60,7 @@ pub(crate) fn install() -> Result<(), Failure> {
     install().map(drop).map_err(Failure::cannot_run)
 }
 
-/// On other systems the process ends at once, and the next one removes what it left.
+/// On other systems the process ends at once, and the next process removes the files that it left.
 #[cfg(not(unix))]
 pub(crate) fn install() -> Result<(), Failure> {
     Ok(())

@@ -18,7 +18,7 @@ pub fn command_of_workers(line: impl IntoIterator<Item = OsString>, workers: &dy
     let command = match Cli::parse_line(line) {
         Ok(cli) => cli.command,
         Err(error) => {
-            // Only the process with the terminal prints it.
+            // Only the process with the terminal prints the error.
             if leads {
                 return not_parsed(&error);
             }

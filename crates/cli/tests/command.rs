@@ -21,7 +21,8 @@ fn run(out: &Path, arguments: &[&str]) -> Output {
         .unwrap()
 }
 
-/// Whether a folder is a result: its summary lists files that are there with those hashes.
+/// Whether a folder is a result: all files that its summary lists are there, with the hashes that
+/// it states.
 fn is_result(folder: &Path) -> bool {
     let Ok(text) = fs::read(folder.join("summary.json")) else {
         return false;
@@ -34,8 +35,8 @@ fn is_result(folder: &Path) -> bool {
     })
 }
 
-/// A plane crossed by photons aimed at another plane does not fail because these cover only part of
-/// it.
+/// A plane that is crossed by photons aimed at another plane does not fail, although these photons
+/// cover only part of it.
 #[test]
 fn a_window_seen_in_part_is_undecided() {
     let folder = tempfile::tempdir().unwrap();
@@ -441,8 +442,8 @@ fn a_killed_run_leaves_no_half_result() {
     let whole = start.elapsed();
     let mut complete = 0;
     for i in 0..20u32 {
-        // All runs use one folder: an earlier result must not vouch for the files of a later,
-        // killed run.
+        // All runs use one folder, which tests that the summary of an earlier result does not cover
+        // the files of a later, killed run.
         let out = folder.path().join("killed");
         let mut child = etendue()
             .arg("run")
@@ -459,8 +460,8 @@ fn a_killed_run_leaves_no_half_result() {
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        // Moments follow the golden ratio over twice the time of a run: half of them hit it, and on
-        // a machine that has slowed down some still come after its end.
+        // The moments follow the golden ratio over twice the time of a run. Half of them hit the
+        // run, and some come after its end even on a machine that has slowed down.
         let share = f64::from(i) * 0.618_034 % 1.0 * 2.0;
         std::thread::sleep(Duration::from_secs_f64(whole.as_secs_f64() * share));
         child.kill().unwrap();

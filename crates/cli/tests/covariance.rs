@@ -41,7 +41,7 @@ fn light_that_fills_the_window_has_its_covariance_and_edges_are_told() {
     done(folder.path(), "covariance lamp.ron --out out");
     let index = json(&folder.path().join("out/covariance.json"));
     let full = &index["planes"][0];
-    // Of a Hann window of half-width h: 1/12h².
+    // The variance of a Hann window of half-width h is 1/12h².
     for (i, h) in [0.1, 0.1, 0.2, 0.2].into_iter().enumerate() {
         let expected = 1.0 / (12.0 * h * h);
         let traced = entry(full, "traced", i, i);

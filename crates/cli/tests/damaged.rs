@@ -189,7 +189,7 @@ fn changed_files_are_refused() {
                 let _file = Swap::new(folder.join(file), bytes);
                 refused(folder, COMPARE, &[file, "is damaged"]);
             }
-            // With a matching hash it is detected all the same.
+            // With a matching hash, a changed bit is detected all the same.
             refused_with(folder, file, bytes, &[]);
         }
         fs::remove_file(folder.join(file)).unwrap();

@@ -70,7 +70,7 @@ fn two_results_are_told_apart_when_they_differ() {
         &[&seeds[..], &[same, "the same, with other settings"]].concat(),
     );
     found(&folder, "a backward", 0, &["method backward", same]);
-    // Shared photons: identical bytes, or undecided.
+    // Results that share photons have identical bytes, or the comparison is undecided.
     found(
         &folder,
         "a again",
@@ -96,7 +96,7 @@ fn two_results_are_told_apart_when_they_differ() {
         "different: slices at light; slices at receiver",
     ];
     found(&folder, "a bright", 1, &bright);
-    // Noise, windows and frequencies.
+    // Results may differ in noise, windows and frequencies.
     found(&folder, "a few", 4, &["undecided:", "light: noise is"]);
     found(
         &folder,
@@ -150,7 +150,7 @@ fn planes_that_one_result_lacks_are_named() {
     assert!(message.contains("no plane in common"), "{message}");
 }
 
-/// Refuses in one line that names the file.
+/// Checks that `diff` refuses in one line that names the file.
 #[track_caller]
 fn refuses(folder: &Path, parts: &[&str]) {
     for arguments in ["a b", "b a"] {

@@ -21,7 +21,8 @@ fn drawing(scene: &str) -> String {
 
 #[test]
 fn a_cut_through_y_is_drawn_where_it_shows_something_else() {
-    // Bars along Y, and squares that are irregular only through jitter.
+    // The first scene has bars along Y; the others have squares that are irregular only through
+    // jitter.
     for (scene, is_other) in [
         ("grating", true),
         ("fig9b", false),

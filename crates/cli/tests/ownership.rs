@@ -375,7 +375,7 @@ fn a_full_disk_takes_nothing_away() {
     let folder = folder();
     passes(folder.path(), "run s.ron --out out");
     let before = files(folder.path());
-    // Files may grow to 8 blocks: the arrays do not fit.
+    // Files may grow to 8 blocks, so the arrays do not fit.
     let program = env!("CARGO_BIN_EXE_etendue");
     for command in [
         "run s.ron --seed 2 --quiet --out out",

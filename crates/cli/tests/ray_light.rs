@@ -13,7 +13,8 @@ use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// Rays from a chip of 2 mm at heights of its own, a third of them going sideways or back, with power of their own.
+/// Returns rays from a chip of 2 mm. Each has a height and a power of its own, and a third of them
+/// go sideways or back.
 fn rays(unit: PowerUnit) -> RaySet {
     let count = 3000;
     let wave = |i: usize, step: f64| 2.0 * (i as f64 * step).fract() - 1.0;
@@ -59,7 +60,8 @@ fn folder() -> TempDir {
     folder
 }
 
-/// The scene of the repository with some of its text replaced, and as many photons as leave noise of a few per cent.
+/// The scene of the repository with some of its text replaced, and enough photons for a noise of a
+/// few per cent.
 fn text(edits: &[(&str, &str)]) -> String {
     let mut text = fs::read_to_string(scene("ray_file.ron")).unwrap();
     let edits = [
@@ -111,7 +113,7 @@ fn photons_agree_with_the_sum_over_rays() {
     for edits in [
         vec![],
         vec![("run: (", "run: (sampling: Random, ")],
-        // Turned, and behind a grating.
+        // The light is turned and shines through a grating.
         vec![
             (
                 "file: \"led.tm25ray\"",

@@ -80,7 +80,7 @@ fn points_have_one_seed_where_that_is_asked_for() {
     );
     assert_eq!(seeds("--seed 7"), own);
     assert_eq!(seeds("--seed 7 --common-seed"), ["7".to_owned()].into());
-    // A swept seed is the seed used.
+    // If the seed is swept, its values are the seeds used.
     let line = "sweep small.ron --photons 4096 --out t --set run.seed=3,4";
     assert_eq!(call(path, line).status.code(), Some(0));
     let seeds: BTreeSet<String> = rows(&path.join("t/sweep.csv"))

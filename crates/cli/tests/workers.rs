@@ -1,4 +1,4 @@
-//! Several processes on one job: here threads that exchange bytes, as MPI ranks do.
+//! Several processes share one job; here they are threads that exchange bytes, as MPI ranks do.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -121,8 +121,8 @@ fn runs_predictions_and_sweeps_have_the_bytes_of_one_process() {
         "predict SCENE --threads 1 --photons 2^16 --out OUT",
         "sweep SCENE --threads 1 --photons 4096 --set blockers.0.pitch=0.05..0.2:4 --out OUT",
     ] {
-        // Whichever process is first takes the next piece, so on a busy machine the others may get
-        // nothing: then it is repeated.
+        // Whichever process is first takes the next piece. On a busy machine the others may
+        // therefore get nothing; the run is then repeated.
         let helped = (0..20).any(|_| {
             let sent = same_files(folder().path(), line, 3);
             // One message reports the process as present, and one follows each order.

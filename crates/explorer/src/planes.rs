@@ -113,8 +113,8 @@ fn travel(from: &str, to: &str, distance: f64) -> Operator {
     }
 }
 
-/// The light that arrives at the receiver, with `times` curvature times position added to its
-/// slopes.
+/// Returns the chain of the light that arrives at the receiver, after `times` · curvature ·
+/// position has been added to its slopes.
 fn imaged(setup: &Setup, times: f64) -> Chain {
     let chain = PathPlace::Arrived.chain(setup);
     let power = times * setup.get(SettingKey::Curvature);

@@ -45,7 +45,7 @@ impl Paths {
     }
 
     /// The radiance arriving at the origin of a ray, from distances within the visible range: an
-    /// unbiased estimate by one path. `before` is the number of surfaces between there and the
+    /// unbiased estimate by one path. `before` is the number of surfaces between the origin and the
     /// camera.
     pub(crate) fn radiance(
         &self,
@@ -73,7 +73,7 @@ impl Paths {
 
     /// The radiance that a hit surface scatters back along the ray, as the parts found by one path,
     /// each with its incident direction in the frame of the hit. `before` is the number of surfaces
-    /// between there and the camera.
+    /// between the hit and the camera.
     pub(crate) fn scattered(
         &self,
         mut ray: Ray,

@@ -175,7 +175,7 @@ impl Paths {
                 })
                 .map_or(0.0, |hit| hit.distance.max(nearest).recip());
         }
-        // No penumbra is fully lit, or fully blocked.
+        // A point that is fully lit or fully blocked is in no penumbra.
         let contrast = 4.0 * lit * blocked / (lit + blocked).powi(2);
         Nearness {
             reflected: reflected / f64::from(rays.max(1)),

@@ -87,7 +87,7 @@ fn mask(of: Material) -> Material {
 enum Behind {
     /// The same medium as in front.
     Same,
-    /// A medium of this index, in which radiance is larger by its square.
+    /// A medium of this index, in which radiance is larger by the square of the index.
     Medium(f64),
     /// No light is transmitted.
     Nothing,

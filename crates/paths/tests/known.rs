@@ -250,7 +250,7 @@ fn glass_keeps_the_light_around_it() {
 #[test]
 fn a_sky_is_where_its_pixels_are() {
     let mut values = vec![0.0; 64 * 32];
-    // Column 16 of 64 is a quarter turn from −Z to X; row 8 of 0 to 31 is at 46° from Y.
+    // Column 16 of 64 is a quarter turn from −Z to X; row 8 of the rows 0 to 31 is at 46° from Y.
     values[8 * 64 + 16] = 100.0;
     let raster = Raster::new(64, 32, values).unwrap();
     let map = Arc::new(LatLong::from_pole_to_pole(raster));

@@ -129,7 +129,7 @@ fn assert_even(world: &World, question: &Question, planes: &[&str], radiance: f6
                 "{what} at {}: {mean} ± {error}, not {expected}",
                 plane.name
             );
-            // Small enough to detect a missing cosine or half-width.
+            // The error is small enough to detect a missing cosine or half-width.
             assert!(
                 error < 0.06 * expected,
                 "{what} at {}: ± {error} of {expected}",

@@ -15,7 +15,8 @@ pub fn reflectance(fresnel: &Fresnel, cosine: f64) -> f64 {
     }
 }
 
-/// At a dielectric: all light beyond the critical angle of an index below 1.
+/// Returns the reflectance of a dielectric. With an index below 1, all light beyond the critical
+/// angle is reflected.
 #[inline]
 fn dielectric(index: f64, cosine: f64) -> f64 {
     let squared = index * index;
@@ -55,8 +56,8 @@ pub(crate) struct Interface {
 }
 
 impl Interface {
-    /// Builds an interface whose far side has `index` times the index of the near side, where the
-    /// angle has this cosine, above 0.
+    /// Builds an interface for an angle of incidence with this cosine, above 0; the index of the
+    /// far side is `index` times that of the near side.
     #[inline]
     pub(crate) fn new(index: f64, cosine: f64) -> Self {
         let cosine = cosine.min(1.0);

@@ -29,8 +29,9 @@ impl Microfacets {
         }
     }
 
-    /// Returns the BRDF of perfect mirrors, with both directions in front of the surface (Walter et
-    /// al., Eq. 20), and the cosine of the angle of incidence on them, for a Fresnel factor.
+    /// Returns the BRDF of perfect mirrors, for two directions in front of the surface (Walter et
+    /// al., Eq. 20). Also returns the cosine of the angle of incidence on the mirrors, for a
+    /// Fresnel factor.
     #[inline]
     #[must_use]
     pub fn value(&self, wi: DVec3, wo: DVec3) -> (f64, f64) {
@@ -61,8 +62,8 @@ impl Microfacets {
         }
     }
 
-    /// Samples the mirror direction of wo at any normal, visible from wo or not, by D cos θ (Walter
-    /// et al., Eqs. 28 f. and 35 f.).
+    /// Samples the mirror direction of wo at any normal, visible from wo or not, in proportion to D
+    /// cos θ (Walter et al., Eqs. 28 f. and 35 f.).
     ///
     /// For Beckmann, weights are closer to 1 than with [`Self::sample`] if light comes from near
     /// the normal, but grow without bound towards grazing.
@@ -111,7 +112,7 @@ impl Microfacets {
         match self.distribution {
             MicrofacetDistribution::Beckmann => {
                 let a = 1.0 / slope;
-                // Beyond this, erfc(6) is below rounding.
+                // Beyond this, erfc is below erfc(6), which is below rounding error.
                 if a > 6.0 {
                     return 1.0;
                 }

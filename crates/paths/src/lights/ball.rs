@@ -26,7 +26,8 @@ impl ShiningSphere {
         }
     }
 
-    /// The cone that the sphere subtends; `None` from inside, where it does not emit.
+    /// The cone that the sphere subtends; `None` for a point inside, where the sphere does not
+    /// emit.
     fn cone(&self, at: DVec3) -> Option<Cone> {
         Cone::around_sphere(self.center - at, self.radius)
     }

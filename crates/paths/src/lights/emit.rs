@@ -35,7 +35,7 @@ pub(crate) struct EmissionTarget {
 /// Random numbers and targets for photon directions.
 struct Draw<'a> {
     targets: &'a [EmissionTarget],
-    /// For the direction, and for the choice of its distribution.
+    /// Random numbers for the direction, and for the choice of its distribution.
     random: [f64; 3],
 }
 
@@ -137,7 +137,8 @@ impl Draw<'_> {
         }
     }
 
-    /// A photon from a distant light: across a disc that covers all surfaces, or a target.
+    /// A photon of a distant light, sent through a disc that covers all surfaces or through a
+    /// target.
     fn afar(&self, geometry: &SceneGeometry, toward: DVec3, irradiance: f64) -> Emitted {
         let [a, b, _] = self.random;
         let whole = EmissionTarget {
@@ -169,8 +170,8 @@ impl Draw<'_> {
     }
 }
 
-/// The target at which a photon is aimed: half of the photons are aimed, equally many at each
-/// target.
+/// Returns the target at which a photon is aimed, if any. Half of the photons are aimed, equally
+/// many at each target.
 pub(crate) fn chosen(targets: &[EmissionTarget], by: f64) -> Option<&EmissionTarget> {
     let number = (2.0 * by - 1.0) * targets.len() as f64;
     #[expect(
@@ -197,7 +198,7 @@ pub(crate) fn mixed(
 }
 
 impl EmissionTarget {
-    /// The cone that the sphere subtends; all directions from inside.
+    /// The cone that the sphere subtends; for a point inside, all directions.
     fn cone(&self, from: DVec3) -> Cone {
         Cone::around_sphere(self.center - from, self.radius).unwrap_or(Cone::SPHERE)
     }

@@ -162,7 +162,7 @@ impl<'a> Probe<'a> {
 /// The number of rays or photons per batch, and the seed.
 #[derive(Clone, Copy, Debug)]
 pub struct Budget {
-    /// Number in each batch.
+    /// Number of rays or photons in each batch.
     pub each: u64,
     /// Seed of all batches.
     pub seed: u64,

@@ -261,8 +261,8 @@ impl<'a> PhotonProbe<'a> {
     }
 }
 
-/// The factor from BSDF times the cosine to the shading normal to flux: both cosines refer to the
-/// geometric normal.
+/// Returns the factor that converts the BSDF times the cosine to the shading normal into flux, for
+/// which both cosines refer to the geometric normal.
 fn tilt(hit: &Hit, arriving: DVec3, leaving: DVec3) -> f64 {
     (leaving.dot(hit.normal) / arriving.dot(hit.normal)).abs()
 }

@@ -15,9 +15,10 @@ pub struct Stop {
     pub position: DVec3,
     /// The shading normal, on the visible side.
     pub normal: DVec3,
-    /// The direction in which light leaves towards the camera: of unit length.
+    /// The direction, of unit length, in which light leaves towards the camera.
     pub leaving: DVec3,
-    /// The direction in which light arrives that a mirror would send to the camera: of unit length.
+    /// The direction, of unit length, in which light arrives that a mirror here would send to the
+    /// camera.
     pub arriving: DVec3,
     /// The distance to the camera, or to the previous surface.
     pub distance: f64,
@@ -35,8 +36,8 @@ impl Stop {
         self.normal.dot(self.leaving)
     }
 
-    /// The factor by which a mirror reflection spreads slopes of rays from one point at `travelled`
-    /// before the surface.
+    /// Returns the factor by which a mirror reflection spreads the slopes of rays that start at one
+    /// point, at the distance `travelled` before the surface.
     pub(super) fn spreading(&self, travelled: f64) -> f64 {
         let [along, across] = self.curvature;
         let turned = |k: f64, cosine: f64| (1.0 + 2.0 * k * travelled * cosine).abs();

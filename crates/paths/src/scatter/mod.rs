@@ -193,8 +193,8 @@ impl Scatter {
         })
     }
 
-    /// The squared index on the side of `to`, over that on the side of `from`: 1 unless light is
-    /// refracted.
+    /// Returns the squared index on the side of `to` divided by that on the side of `from`. It is 1
+    /// unless light is refracted.
     pub(crate) fn squared_index(&self, from: DVec3, to: DVec3) -> f64 {
         match self {
             Self::Dielectric(of) if !of.is_thin && from.z * to.z < 0.0 => {

@@ -116,7 +116,7 @@ impl WorldMesh {
         }
     }
 
-    /// The area of each triangle once placed.
+    /// The area of each triangle in the world.
     pub(super) fn areas(&self, to_world: &DAffine3) -> impl Iterator<Item = f64> {
         self.triangles.corners().iter().map(|corners| {
             let [a, b, c] = places(&self.triangles, *corners);

@@ -126,7 +126,7 @@ fn smooth_interfaces_refract_by_snell() {
                 continue;
             }
             let behind = if is_thin { 1.0 } else { index };
-            // Radiance divided by the squared index, and rounding.
+            // Radiance is divided by the squared index; the rest is rounding error.
             assert!((far.weight * behind * behind - 1.0).abs() < 1e-12);
             assert!((far.wi.truncate() * behind + wo.truncate()).length() < 1e-12);
             assert!(far.density.is_none() && (far.wi.length() - 1.0).abs() < 1e-12);
@@ -148,7 +148,7 @@ fn light_goes_both_ways() {
     for model in all() {
         for [a, b] in pairs() {
             let [there, back] = [model.bsdf.value(a, b), model.bsdf.value(b, a)];
-            // Rounding, in the exponent of a narrow lobe.
+            // The tolerance covers rounding errors in the exponent of a narrow lobe.
             let close = (there - back).abs() <= 1e-9 * there.abs();
             assert!(close, "{}: {there} and {back}", model.name);
         }

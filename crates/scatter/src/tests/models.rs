@@ -75,9 +75,9 @@ where
     }
 }
 
-/// Returns the largest weight for sampling by visible normals: for GGX, Smith's masking of one
-/// direction, and rounding; for Beckmann, which is sampled by GGX, the same times the ratios of D,
-/// 4/e, and of G₁, √π.
+/// Returns the largest weight for sampling by visible normals. For GGX it is Smith's masking of one
+/// direction, plus rounding error. Beckmann's normals are sampled by GGX, so their weight is larger
+/// by the ratios of D, 4/e, and of G₁, √π.
 fn masked(facets: Microfacets) -> f64 {
     match facets.distribution {
         MicrofacetDistribution::Beckmann => 2.61,
@@ -128,7 +128,8 @@ pub(super) fn modified_phong(diffuse: f64, specular: f64, exponent: f64) -> Mode
         specular,
         lobe: Phong { exponent },
     };
-    // kd over its share for the cosine, and (n + 2)/(n + 1) of that for the lobe.
+    // The weight of the cosine is at most kd divided by its share; for the lobe the ratio is larger
+    // by (n + 2)/(n + 1).
     let bound = (diffuse + specular) * (exponent + 2.0) / (exponent + 1.0) + 1e-9;
     model(format!("{phong:?}"), bound, phong)
 }
