@@ -9,8 +9,8 @@ pub(crate) type Bounds = [[f64; 2]; 2];
 /// A mask prepared for many queries.
 #[derive(Debug)]
 pub(crate) struct Barrier<'a> {
-    /// The distance of the mask, metres: from the light or before a receiver, as the owner counts
-    /// it.
+    /// The distance of the mask, metres. The owner of the barrier counts it from the light, or back
+    /// from a receiver.
     pub(crate) distance: f64,
     /// The region that half-planes leave open.
     pub(crate) open: Bounds,

@@ -12,8 +12,8 @@
 //! Travel is a shear of (position, slope), so every edge stays a straight line and every field is a
 //! signed sum of products of convex polygons, one in (x, u) and one in (y, v); windows and gratings
 //! are sums of cosines. The transform of such a polygon is known in closed form: no quadrature, no
-//! grid, no aliasing. A disc is a weighted sum of rectangles, a factor of slope a sum of products
-//! of cosine series; both converge exponentially.
+//! grid, no aliasing. A disc is a weighted sum of rectangles, and a factor of slope is a sum of
+//! products of cosine series; both sums converge exponentially.
 //!
 //! [`geometry`] has the steps of a light path that bend it (incidence, curvature, mirrors,
 //! refraction, lenses) as affine maps of rays, with their effect on spectra and covariances; a

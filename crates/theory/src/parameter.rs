@@ -13,8 +13,9 @@ pub enum Parameter {
     SpotExponent,
     /// The first width of a picture; the second keeps the proportion.
     ImageWidth,
-    /// The distance of a travel. In a system: the length of the central ray from an element, or
-    /// from the light (0), to the next element or the plane. Everything later moves along D.
+    /// The distance of a step of travel. In a system: the length of the central ray from an
+    /// element, or from the light (0), to the next element or the plane. Everything later moves
+    /// along D.
     Travel(usize),
     /// The side along X, or the radius, of the first shape of an opaque mask. All shapes of the
     /// mask scale by the same factor; their centres stay.
@@ -69,7 +70,8 @@ impl Parameter {
         }
     }
 
-    /// Returns the scale against which a small change of the parameter is small.
+    /// Returns the scale of the parameter: a change is small if it is small compared with this
+    /// scale.
     pub(crate) fn scale(self, value: f64) -> f64 {
         match self {
             Self::Incidence(_) | Self::Curvature(..) | Self::Albedo | Self::Lobe => {

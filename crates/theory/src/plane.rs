@@ -6,9 +6,10 @@ use etendue_field::{Frame, Orientation, Patch, Quantity};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
     /// The plane's frame, in coordinates of the frame at the light: O on the central ray, D along
-    /// it. On a surface: T, B and the normal there, on the side to which directions point.
+    /// it. On a surface: On a surface its axes are T, B and the normal there, on the side to which
+    /// directions point.
     pub frame: Frame,
-    /// What the coordinates are relative to.
+    /// The reference of the coordinates: the central ray, the tangent plane or the surface itself.
     pub orientation: Orientation,
     /// On a surface: θ of the central ray, radians. The coordinates are then (s, t, θ − longitude,
     /// φ).

@@ -18,7 +18,8 @@ fn opening(half_width: f64) -> f64 {
 }
 
 /// Returns the covariance of one profile of a window, in cycles per unit, squared: 1/12h² for Hann,
-/// 1/4πw² for exp(−πt²/w²), ignoring its truncation. A box has edges.
+/// 1/4πw² for exp(−πt²/w²), ignoring its truncation. A box has edges, so the Gaussian of its
+/// variance replaces it.
 #[must_use]
 pub fn profile(profile: &Profile) -> f64 {
     match *profile {

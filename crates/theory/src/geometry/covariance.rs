@@ -9,7 +9,8 @@ use std::array;
 use std::f64::consts::{PI, TAU};
 
 /// Returns the covariance after a product with a Gaussian window of standard deviations `std`, one
-/// for each coordinate: S⁻¹ becomes S⁻¹ + diag(1/std²). Infinite ones have no effect.
+/// for each coordinate: S⁻¹ becomes S⁻¹ + diag(1/std²). Infinite standard deviations have no
+/// effect.
 ///
 /// Computed as S (1 + diag(1/std²) S)⁻¹, which allows a singular S, such as light from a point.
 /// `None` if that inverse does not exist, which no covariance causes.

@@ -59,8 +59,8 @@ impl AffineMap<4> {
             .then(&Self::outgoing(-theta0))
     }
 
-    /// Refraction at a surface with the shape operator M, met at the angle θ₀: as in 2D, and back
-    /// with the cosine of θ₂.
+    /// Refraction at a surface with the shape operator M, met at the angle θ₀. It is composed as in
+    /// 2D; the step back uses the cosine of θ₂.
     #[must_use]
     pub fn refracting_surface(theta0: f64, shape: Matrix<2>, media: &Media) -> Option<Self> {
         let theta2 = media.refracted(theta0)?;

@@ -47,7 +47,8 @@ impl<const N: usize> AffineMap<N> {
     }
 
     /// Returns the distance of this map from the tangent at zero of another map of rays, measured
-    /// as by [`apart`](Self::apart), beyond the error of the differences where that map bends fast.
+    /// as by [`apart`](Self::apart). Subtracts the error of the finite differences, which matters
+    /// where the other map bends fast.
     pub(crate) fn off_touching(
         &self,
         map: impl Fn([f64; N]) -> Option<[f64; N]>,

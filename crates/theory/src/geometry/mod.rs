@@ -30,8 +30,8 @@
 //! + cos θ N) + sin φ B: longitude θ, latitude φ.
 //!
 //! **Order.** Travel, mirror and a thin lens are exact. A step between a light frame and a surface
-//! is linear in the size e of the neighbourhood, with a relative error that falls as e, and as e²
-//! at normal incidence.
+//! holds to first order in the size e of the neighbourhood: its relative error falls as e, and as
+//! e² at normal incidence.
 //!
 //! **The printed equations.** Some equations in the paper differ from these; [`Edition`] has both
 //! versions.

@@ -31,8 +31,9 @@ const OF_DERIVATIVES: usize = 8;
 const OF_TRIALS: usize = 16;
 /// Fewest and most nodes of each net of a derivative.
 const DERIVATIVE_NODES: [u32; 2] = [1 << 12, 1 << 15];
-/// The relative error ‖error‖/‖D‖ at which a derivative is accurate enough. It causes an error of
-/// its square in a measured parameter, relative to the parameter's distance from the scene's value.
+/// The relative error ‖error‖/‖D‖ at which a derivative is accurate enough. It causes a relative
+/// error of its square in a measured parameter, whose scale is the parameter's distance from the
+/// scene's value.
 const DERIVATIVE_ERROR: f64 = 0.03;
 /// Nodes of a net before its error is first estimated.
 const FIRST_NODES: u32 = 1 << 11;
@@ -82,7 +83,8 @@ pub(crate) trait Integrand: Sync {
     fn rays(&self) -> usize {
         1
     }
-    /// Computes the rays of each field at a point, field by field. All are dark before the call.
+    /// Computes the rays of each field at a point, field by field. All rays are dark before the
+    /// call.
     fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [RayNode]);
 }
 
@@ -130,8 +132,9 @@ pub(crate) fn sums(
 }
 
 /// Returns ‖error‖/‖F‖ of a small number of rays, for choosing a sampling strategy. With too few
-/// rays, strategies that are best only with few rays would win. The nets differ from those of
-/// predictions: otherwise the strategy whose heavy rays these nets happen to miss would win.
+/// rays, this would prefer strategies that are best only with few rays. The nets differ from those
+/// of predictions; otherwise this would prefer the strategy whose heavy rays these nets happen to
+/// miss.
 pub(crate) fn trial(
     integrand: &(impl Integrand + ?Sized),
     (window, grid): (&Window, &SliceGrid),
@@ -215,10 +218,10 @@ pub(crate) fn means(
     }
 }
 
-/// Steps of a ray, and of spreading it over an azimuth.
+/// Steps to follow a ray, and to spread it over an azimuth.
 const RAY: f64 = 400.0;
 const SPREAD: f64 = 15.0;
-/// Approximate number of fields of a pass over derivatives.
+/// Approximate number of fields in one pass over derivatives.
 const FIELDS: f64 = 12.0;
 /// Steps of a transform per frequency.
 const TRANSFORM: f64 = 300.0;

@@ -177,7 +177,8 @@ impl ChainSegment<'_> {
         self.light.power - 2.0 * f64::from(self.cosines)
     }
 
-    /// Returns the shapes in each plane with edges: the light's, then those of opaque masks.
+    /// Returns the shapes of each plane that has edges: those of the light, then those of opaque
+    /// masks.
     pub(crate) fn planes(&self) -> Vec<&[Shape]> {
         let of_masks = self.layers.iter().filter_map(|layer| match layer.mask {
             Mask::Opaque { shapes, .. } => Some(&shapes[..]),

@@ -1,7 +1,7 @@
 //! The transforms of many polygons along a row of frequencies, without one exponential per polygon
 //! and frequency (docs/theory.md, section 3).
 //!
-//! Eq. 5 there with the field k exp(−2πi k·p) telescopes to the corners p, where edges of
+//! With the field k exp(−2πi k·p), Eq. 5 there becomes a sum over the corners p, at which edges of
 //! directions d and e meet:
 //!
 //! F(k) = 1/(4π²) Σ (d × e) / ((k·d)(k·e)) · exp(−2πi k·p)

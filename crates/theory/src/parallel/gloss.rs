@@ -7,10 +7,10 @@
 //! S(ρ, ν) = ∫ Ŵ(ν − q) ρ̂'(q) I(ρ, q) dq,
 //!
 //! where I is the spectrum under a window that contains all slopes whose lobes reach the plane's
-//! window. The integral is a sum over q: that field is bounded, so the sum is exact up to the
-//! lobe's tail once the spacing separates the copies of the field. Along y the same operation takes
-//! a share of all light out of the window, which is exact if the field is a product of one of (x,
-//! u) and one of (y, v), as behind slats along y.
+//! window. The integral is a sum over q. The field under this window is bounded, so the sum is
+//! exact up to the lobe's tail once the spacing separates the copies of the field. Along y the same
+//! operation takes a share of all light out of the window, which is exact if the field is a product
+//! of one of (x, u) and one of (y, v), as behind slats along y.
 
 use super::{projection, slices};
 use crate::Chain;
@@ -27,7 +27,7 @@ const TAIL: f64 = 1e-10;
 const SEEN_TAIL: f64 = 1e-4;
 /// Distance between the copies of the field, in field widths.
 const APART: f64 = 1.05;
-/// Lobes of this reach, in radians, count as cut off.
+/// Lobes that reach farther than this, in radians, count as cut off at a right angle.
 const BROAD: f64 = 1.5;
 /// The most frequencies on each side for a narrow lobe.
 const MAX_FREQUENCIES: usize = 512;
@@ -137,7 +137,7 @@ impl Blur {
         }
     }
 
-    /// Returns the weight of each frequency before the lobe in ν after it.
+    /// Returns the weights with which the frequencies before the lobe contribute to ν after it.
     fn weights(&self, nu: f64) -> Vec<f64> {
         let frequencies = self.lattice.values().into_iter().zip(&self.hats);
         frequencies
@@ -187,9 +187,9 @@ fn reach(lobe: &PlanarLobe, share: f64) -> f64 {
     outside
 }
 
-/// Returns a frequency beyond which the spectrum of a lobe is negligible: that of a Gaussian with
-/// the same reach, and three times that for lobes that end at a right angle, whose transforms have
-/// tails.
+/// Returns a frequency beyond which the spectrum of a lobe is negligible. It is that of a Gaussian
+/// with the same reach, or three times that for lobes that end at a right angle, whose transforms
+/// have tails.
 fn highest(reach: f64) -> f64 {
     let deviations = (-2.0 * libm::log(TAIL)).sqrt();
     let tail = if reach < BROAD { 1.0 } else { 3.0 };

@@ -173,8 +173,9 @@ impl Polygon {
         }
     }
 
-    /// Returns the transform from half as many exponentials if opposite sides are parallel:
-    /// exp(−2πi k·c) sinc(k·a) sinc(k·b) times the area, for sides a and b about a centre c.
+    /// Returns the transform of a polygon whose opposite sides are parallel, from half as many
+    /// exponentials: exp(−2πi k·c) sinc(k·a) sinc(k·b) times the area, for sides a and b about a
+    /// centre c.
     pub(crate) fn transform_by_sides(&self, k: [f64; 2]) -> Complex {
         let [p, q, r, s] = &self.0[..] else {
             return self.transform(k);

@@ -19,7 +19,8 @@ use std::f64::consts::TAU;
 const NODES: usize = 5;
 /// Number of nodes for each cycle.
 const NODES_PER_CYCLE: f64 = 5.0;
-/// The most nodes; bars so fine that a cell of a picture holds dozens are undersampled.
+/// The most nodes; gratings so fine that a cell of a picture holds dozens of periods are
+/// undersampled.
 const MOST_NODES: f64 = 200.0;
 
 /// Returns the windowed light field integrated over y and v, as means over cells of (x, u).
@@ -387,7 +388,7 @@ mod tests {
             // integral.
             assert!((projection.values[index] - expected).abs() < all / 200.0);
         }
-        // The cells above are partly lit, partly blocked, and differ by far more than that.
+        // The cells above are partly lit and partly blocked, and their values differ by far more.
         assert!(behind > 0.1 * all);
     }
 }

@@ -244,8 +244,8 @@ mod tests {
         for chain in chains() {
             for window in [window(hann, hann), window(Profile::Box(half), hann), mixed] {
                 let worst = difference(&chain, &window, &singular_grid(4, 6));
-                // A thousand roundings where two directions nearly cancel, divided by a lit part of
-                // about 1/20.
+                // The tolerance is a thousand rounding errors, from two directions that nearly
+                // cancel, divided by a lit part of about 1/20.
                 assert!(worst < 1e-12, "{worst:e} {:?}", chain.describe());
             }
         }

@@ -1,7 +1,7 @@
 //! Estimates of the work of a prediction before it is made.
 //!
 //! The estimate counts what the prediction itself uses: corners, nodes, shapes, frequencies. It
-//! serves to refuse a scene that would run for days at once. Each kind of prediction has its own
+//! serves to refuse at once a scene that would run for days. Each kind of prediction has its own
 //! estimate; this file has that of the closed form.
 
 use crate::Chain;

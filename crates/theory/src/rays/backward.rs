@@ -70,8 +70,8 @@ impl Back {
 }
 
 impl SpecularSurface {
-    /// Returns the factor by which dx dy du dv / (1 + u² + v²)² grows if light that returns along
-    /// `before` has left along `after`.
+    /// Returns the factor by which dx dy du dv / (1 + u² + v²)² grows on the way back through the
+    /// surface, where light that returns along `before` has left along `after`.
     fn spread(&self, before: &LegRay, after: DVec3) -> f64 {
         let frame = &self.patch.frame;
         match self.event {

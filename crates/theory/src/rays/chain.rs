@@ -16,12 +16,12 @@ pub struct AffineChain {
     pub map: SpectrumMap<4>,
     /// The maps of the chain, in the order light meets them.
     pub maps: Vec<SpectrumMap<4>>,
-    /// The steps in words, in the order light meets them, without steps inside the plane's surface
-    /// or the light.
+    /// The steps in words, in the order light meets them, without the steps inside the light or
+    /// inside the surface of the plane.
     pub steps: Vec<String>,
-    /// Distances on the last leg, in metres from the last surface, at which rays meet that left the
-    /// light parallel; ascending, negative if behind. There are at most two: in the plane of
-    /// incidence and across it, if these are its principal planes.
+    /// Distances on the last leg at which rays that left the light parallel meet, in metres from
+    /// the last surface; ascending, and negative if behind it. There are at most two: in the plane
+    /// of incidence and across it, if these are its principal planes.
     pub foci: Vec<f64>,
 }
 
@@ -365,7 +365,7 @@ fn seen_across(plane: &Frame, leg: &Frame) -> Matrix<4> {
     let mut matrix = [[0.0; 4]; 4];
     for (column, axis) in axes.iter().enumerate() {
         for (row, (across, slope)) in [axis.x, axis.y].into_iter().zip(slopes).enumerate() {
-            // Along the ray to the plane; the slope of D + u X.
+            // The point moves along the ray to the plane; the slopes are those of D + u X.
             let moved = across - slope * axis.z;
             matrix[row][column] = moved;
             matrix[row + 2][column + 2] = moved / towards.z.abs();
@@ -382,7 +382,7 @@ fn onto_leaning(plane: &Plane, at: &Frame, theta: f64) -> AffineMap<4> {
     let (sin, cos) = libm::sincos(theta);
     let start = plane.frame.to_local(at.origin);
     let away = local(sin * at.x + cos * at.d);
-    // In longitude and latitude.
+    // The derivatives of the direction are with respect to longitude and latitude.
     let turned = [cos * at.x - sin * at.d, at.y].map(local);
     let slope = [away.x, away.y].map(|w| w / away.z);
     let (flat, up) = (

@@ -37,9 +37,9 @@ impl Plane {
         t.is_finite().then_some(t)
     }
 
-    /// The inverse of [`Self::coordinates`]: returns a ray, in the direction of light, from a point
-    /// of the plane or of the surface it is on; and étendue over dx dy du dv there. `None` if there
-    /// is none.
+    /// The inverse of [`Self::coordinates`]: returns the ray, in the direction of light, that has
+    /// the given coordinates on the plane or on the surface it is on; and étendue over dx dy du dv
+    /// there. `None` if there is none.
     pub(crate) fn ray(&self, [x, y, u, v]: [f64; 4]) -> Option<(LegRay, f64)> {
         let foot = self.frame.to_world(DVec3::new(x, y, 0.0));
         if self.orientation == Orientation::Orthogonal {

@@ -43,8 +43,8 @@ pub(super) struct RaySampler<'a> {
     by: By,
 }
 
-/// The sampling of the two coordinates that the emission of a light with extent is not parametrised
-/// by.
+/// The sampling of the other two coordinates of a light with extent, which do not parametrise its
+/// emission.
 #[derive(Clone, Debug)]
 enum Outer<'a> {
     /// Not sampled: all rays have the same values.
@@ -119,8 +119,8 @@ impl<'a> Outer<'a> {
 }
 
 impl<'a> RaySampler<'a> {
-    /// `center` is where the central ray lands and `jacobian` how that changes with the ray; `None`
-    /// if they do not determine the ray. Without a plane all rays land as targeted.
+    /// `center` is where the central ray lands, and `jacobian` is how that changes with the ray;
+    /// `None` if they do not determine the ray. Without a plane all rays land as targeted.
     #[expect(
         clippy::too_many_lines,
         reason = "the coordinates by which each kind of light is aimed, side by side"

@@ -86,8 +86,9 @@ pub(crate) use trace::{LegRay, bent};
 use crate::obstacle::Obstacle;
 use etendue_field::{Light, Mask, Patch, Specular};
 
-/// How far behind the plane of the light a point of a plane may seem to be and still be lit, in
-/// metres: the rounding of a tilted plane at the light itself. No object is this close.
+/// The distance, in metres, that a point of a plane may seem to be behind the plane of the light
+/// and still be lit. It covers the rounding errors of a tilted plane at the light itself. No object
+/// is this close.
 pub(crate) const AT_LIGHT: f64 = 1e-9;
 
 /// A light and the specular surfaces that its central ray visits, in the frame at the light.
@@ -112,6 +113,7 @@ pub struct SpecularSurface {
     /// The geometry of the surface.
     pub patch: Patch,
     /// The event at the surface. Refraction goes from the side the ray comes from. A thin lens is
-    /// flat; its slopes are those in the patch's frame (X, Y and the side light goes to).
+    /// flat; its slopes are relative to the patch's frame (X, Y and the normal on the side to which
+    /// light goes).
     pub event: Specular,
 }

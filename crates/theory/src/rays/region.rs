@@ -19,7 +19,7 @@ impl<F: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync> RayField for F {}
 const CELLS: usize = 32;
 /// Rays below this share of the strongest are ignored.
 const MIN_SHARE: f64 = 1e-13;
-/// Number of bisections of a cell that locate an edge to rounding.
+/// Number of bisections of a cell that locate an edge up to rounding error.
 const HALVINGS: usize = 40;
 /// Number of boxes tried before the last is taken.
 const ROUNDS: usize = 24;

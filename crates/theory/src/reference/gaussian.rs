@@ -238,8 +238,8 @@ pub(crate) fn shaded(
     window: &GaussianWindow,
     field: impl Fn(&GaussianWindow) -> Complex,
 ) -> Complex {
-    // The error from the step 0.25 is exp(−π²/0.25²) = 1e-69, from the end at 6.5 exp(−6.5²) =
-    // 5e-19.
+    // The error from the step 0.25 is exp(−π²/0.25²) = 1e-69, and that from the end at 6.5 is
+    // exp(−6.5²) = 5e-19.
     const STEP: f64 = 0.25;
     let nodes = (1..=26).map(|j| STEP * f64::from(j));
     let sum: Complex = nodes

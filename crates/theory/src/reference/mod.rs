@@ -22,8 +22,8 @@ use gaussian::{GaussianBlock, GaussianWindow};
 use jitter::{JitteredArray, jittered_array_power};
 use serde_json::Value;
 
-/// Relative to the largest value of a block: the file is accurate to 14 digits, of which rounding
-/// takes one.
+/// The tolerance relative to the largest value of a block. The file is accurate to 14 digits, and
+/// rounding takes one of them.
 const CLOSE: f64 = 1e-13;
 /// Side of rectangles that represent strips: wider than any window.
 const ENDLESS: f64 = 1e3;

@@ -13,8 +13,8 @@ use crate::shading::{
 };
 use std::f64::consts::{PI, TAU};
 
-/// Relative to the largest value of a block: the values here are closed forms, or quadratures
-/// accurate to 10⁻¹².
+/// The tolerance relative to the largest value of a block. The values here are closed forms, or
+/// quadratures accurate to 10⁻¹².
 const NEAR: f64 = 1e-9;
 /// The smallest error of a planted fault that must be detected; actual errors are much larger.
 const FAULT: f64 = 1e-3;
@@ -269,8 +269,8 @@ fn traced(
                 sum += wave(s, -incident) * share;
                 continue;
             };
-            // A normal distribution by trapezoids 0.4 standard deviations long: accurate to
-            // rounding.
+            // A normal distribution by the trapezoid rule with steps of 0.4 standard deviations,
+            // accurate up to rounding error.
             for (z, dz) in lattice(0.0, 8.0, 20) {
                 let density = libm::exp(-0.5 * z * z) / TAU.sqrt() * dz;
                 sum += wave(s, deviation * z - incident) * (share * density);

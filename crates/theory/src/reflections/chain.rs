@@ -54,8 +54,8 @@ pub fn chain(view: &Observed<ReflectionSystem>) -> Option<ReflectionChain> {
     })
 }
 
-/// Returns how far the maps of a chain are from those of the exact rays, in radians, metres, or
-/// relative to these: zero for the chain of [`chain`].
+/// Returns how far the maps of a chain are from those of the exact rays, in metres or radians, or
+/// as a ratio of these: zero for the chain of [`chain`].
 #[must_use]
 pub fn defect(view: &Observed<ReflectionSystem>, tried: &ReflectionChain) -> Option<f64> {
     let traced = chain(view)?;

@@ -40,9 +40,9 @@ impl Gaussian<4> {
         })
     }
 
-    /// Returns the Gaussian of incident light that a lobe scatters into this one, whose angles are
-    /// relative to the central ray: blurred about the mirror direction; for diffuse light the
-    /// angles are arbitrary.
+    /// Returns the Gaussian of the incident light that a lobe scatters into this one, whose angles
+    /// are relative to the central ray. The lobe blurs it about the mirror direction; for diffuse
+    /// light its angles are arbitrary.
     pub(super) fn before_lobe(&self, width: Option<f64>, outgoing: [f64; 2]) -> Self {
         let [s, t, theta, phi] = self.mean;
         let Some(width) = width else {
@@ -77,7 +77,7 @@ impl Gaussian<4> {
         })
     }
 
-    /// Returns the Gaussian of two coordinates, whatever the other two.
+    /// Returns the marginal Gaussian of two coordinates, with the other two arbitrary.
     pub(super) fn marginal(&self, of: [usize; 2]) -> Gaussian<2> {
         Gaussian {
             mean: of.map(|i| self.mean[i]),

@@ -42,8 +42,8 @@ impl ReflectionSystem {
 }
 
 impl PathSurface {
-    /// Returns the factor of the surface's BRDF, if it scatters; for a sum of BRDFs, of the first
-    /// alone.
+    /// Returns the factor of the surface's BRDF, if it scatters. For a sum of BRDFs this is the
+    /// factor of the first one.
     fn albedo_mut(&mut self) -> Option<&mut f64> {
         match &mut self.interaction {
             Interaction::Specular(_) => None,

@@ -32,9 +32,9 @@ pub(super) struct FieldPaths<'a> {
 /// The sampling of the light's rays.
 #[derive(Debug)]
 enum Start<'a> {
-    /// Positions in a beam, by the Gaussian of the rays that reach the window.
+    /// Positions in a beam, drawn by the Gaussian of the rays that reach the window.
     Beam(Conditional),
-    /// Directions from points of the light, likewise.
+    /// Directions from points of the light, drawn in the same way.
     Points(Conditional),
     Sky(Box<SkyRays<'a>>),
 }

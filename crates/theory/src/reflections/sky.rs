@@ -22,9 +22,10 @@ const GUIDED: f64 = 0.5;
 pub(super) struct SkyRays<'a> {
     environment: &'a Environment,
     radiance: SkyDensity<'a>,
-    /// Directions that reach the window, if the guide knows any.
+    /// Directions that reach the window, if the guide determines any.
     guide: Option<HeavyTailedGaussian>,
-    /// Positions that reach the window from a direction, and from all of them.
+    /// Positions from which light reaches the window: for a given direction, and for all
+    /// directions.
     positions: (Conditional, Option<Gaussian<2>>),
     coordinates: Coordinates,
     aim: DirectionCoordinates,
@@ -45,8 +46,8 @@ pub(super) type SkyRay = ([f64; 4], f64, Option<DVec3>);
 
 impl<'a> SkyRays<'a> {
     /// `guide` describes the light at the first scatterer if `aim` is a position there, otherwise
-    /// the rays at the light. `has_lobe` is false if the first scatterer is diffuse: the guide
-    /// then knows nothing of directions. Returns `None` if the environment is dark.
+    /// the rays at the light. `has_lobe` is false if the first scatterer is diffuse: the guide then
+    /// does not restrict directions. Returns `None` if the environment is dark.
     pub(super) fn new(
         environment: &'a Environment,
         guide: &Gaussian<4>,

@@ -285,8 +285,9 @@ fn two_diffuse_surfaces_are_a_sum_over_the_first() {
     assert!(off.abs() < 3e-3, "{off:e} {:?}", found.error);
 }
 
-/// In a corner the next surface is arbitrarily near. The paths toward it have bounded weights, so the
-/// error of the sum falls as that of other sums, and is what it states.
+/// In a corner the next surface may be arbitrarily near. The paths toward the next surface have
+/// bounded weights. So the error of the sum falls as fast as that of other sums, and is as large as
+/// it states.
 #[test]
 fn a_corner_has_no_heavy_paths() {
     let (x, z) = (DVec3::X, DVec3::Z);

@@ -97,8 +97,8 @@ pub fn chain(view: &Observed<ScatteringSystem>) -> Option<ScatteringChain> {
     })
 }
 
-/// Returns how far the maps of a chain are from those of the exact rays, in radians, metres, or
-/// relative to these: zero for the chain of [`chain`].
+/// Returns how far the maps of a chain are from those of the exact rays, in metres or radians, or
+/// as a ratio of these: zero for the chain of [`chain`].
 #[must_use]
 pub fn defect(view: &Observed<ScatteringSystem>, tried: &ScatteringChain) -> Option<f64> {
     let traced = chain(view)?;
@@ -201,8 +201,8 @@ pub(crate) fn reflection(reflectance: &Reflectance) -> Vec<String> {
     words
 }
 
-/// Describes the factors of angles before and after a lobe, with the lobe between them; verbs
-/// first.
+/// Describes the factors of angles before and after a lobe, with the lobe between them; each
+/// description begins with a verb.
 fn term_in_words(term: &Term) -> impl Iterator<Item = [String; 2]> {
     let brdf = &term.brdf;
     let lobe = match brdf.lobe {

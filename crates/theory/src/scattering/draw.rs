@@ -20,11 +20,11 @@ use std::sync::Arc;
 /// A sampling strategy. No strategy is best for every scene; they are tried on the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct LightStrategy {
-    /// Samples half of the slopes about the mirrored light.
+    /// Whether half of the slopes are sampled about the mirrored light.
     pub(super) mirrored: bool,
-    /// Samples half of the parts of the light by the lobe.
+    /// Whether half of the parts of the light are sampled by the lobe.
     pub(super) by_lobe: bool,
-    /// Samples four parts of the light for each point of the surface.
+    /// Whether four parts of the light are sampled for each point of the surface.
     pub(super) quarters: bool,
 }
 
@@ -47,7 +47,7 @@ impl LightStrategy {
         ]
     }
 
-    /// Returns this strategy without the choices that make no difference to a system.
+    /// Returns this strategy without the choices that make no difference for a system.
     pub(super) fn in_effect(self, system: &ScatteringSystem) -> Self {
         let has_extent = system.light.has_extent();
         let has_lobe = narrowest_of(system).is_some();
@@ -290,8 +290,8 @@ impl<'a> Lights<'a> {
         }
     }
 
-    /// Returns the light of an environment along a direction, given a direction in the axes of its
-    /// map; with its density.
+    /// Returns the part of an environment from which light travels along `along`, with its density;
+    /// `from` is the direction it comes from, in the axes of the map.
     fn of_sky(&self, along: DVec3, from: DVec3) -> Option<(LightPart, f64)> {
         let (Light::Environment { environment }, Some(sky)) = (&self.system.light, &self.sky)
         else {

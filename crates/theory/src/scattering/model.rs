@@ -49,7 +49,7 @@ impl Model for Observed<ScatteringSystem> {
         }
     }
 
-    /// For a sum of BRDFs, of the first alone.
+    /// For a sum of BRDFs, the albedo and the lobe are those of the first one.
     fn change(&mut self, parameter: Parameter, new: New<'_>) -> Option<()> {
         let ScatteringSystem {
             light,

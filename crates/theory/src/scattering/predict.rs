@@ -22,8 +22,8 @@ use glam::DVec3;
 ///
 /// The prediction of the chain, and the derivatives, are differences of the radiance of the same
 /// rays: accurate to about a per cent of their values. Parts of the light move with the light, so
-/// its edges cause no edges in a difference. Shadows do not move with masks: points lit on one side
-/// of a difference alone add noise, which decreases with the distance between the sides.
+/// its edges cause no edges in a difference. Shadows do not move with masks. Points that are lit on
+/// only one side of a difference add noise, which decreases with the distance between the sides.
 pub(crate) fn predict(
     view: &Observed<ScatteringSystem>,
     chain: Option<&ScatteringChain>,

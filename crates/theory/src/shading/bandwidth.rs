@@ -107,9 +107,9 @@ impl Criterion {
 mod tests {
     use super::*;
 
-    /// Samples per metre of the surface by Eq. 21, over Ω_ρ, beside the error per metre of
-    /// irradiance caching, Δ/R + √(1 − n·n₀) (Ward et al. 1988), on a sphere: both contain the
-    /// inverse of the harmonic mean distance, and then the curvature, 2k here and k/√2 there.
+    /// Compares the samples per metre of the surface by Eq. 21, divided by Ω_ρ, with the error per
+    /// metre of irradiance caching, Δ/R + √(1 − n·n₀) (Ward et al. 1988), on a sphere. Both contain
+    /// the inverse of the harmonic mean distance, and then the curvature: 2k here and k/√2 there.
     #[test]
     fn eq_21_spaces_samples_as_irradiance_caching_does() {
         let step: f64 = 1e-3;

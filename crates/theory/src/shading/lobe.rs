@@ -112,7 +112,7 @@ impl PlanarLobe {
                 missing -= next;
                 continue;
             }
-            // Bisects until the interval is at rounding.
+            // Bisects until the interval is as small as rounding error.
             let (mut inside, mut outside) = (low, low + step);
             for _ in 0..50 {
                 let middle = 0.5 * (inside + outside);

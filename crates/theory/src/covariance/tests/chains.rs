@@ -96,7 +96,7 @@ fn patch() -> Patch {
     }
 }
 
-/// A plane 0.7 m along the path after the mirror.
+/// The cosine acts as a window of variances ½ and ⅜ over the angles.
 fn beyond() -> Plane {
     let leg = Frame::IDENTITY.travelled(1.0);
     let normal = patch().frame.d;

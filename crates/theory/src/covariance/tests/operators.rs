@@ -140,7 +140,8 @@ fn diffuse_reflection_is_the_limit_of_lobes() {
         .zip(limit.iter().flatten())
         .enumerate()
     {
-        // A lobe of 10⁷ leaves 1/(8π² 10⁷) along angles, and the square root of that elsewhere.
+        // A lobe of variance 10⁷ leaves 1/(8π² 10⁷) along angles, and the square root of that
+        // elsewhere.
         assert!((got - near).abs() < 1e-4, "{i}: {got} {near}");
     }
     assert_eq!(diffuse[2..], [[0.0; 4]; 2]);

@@ -101,7 +101,7 @@ fn covariance_of_sampled_rays() {
 fn windows_and_lobes() {
     let wide = gaussian_window(&FIELD, [f64::INFINITY; 4]).unwrap();
     assert!(apart(&AffineMap::linear(wide), &AffineMap::linear(FIELD)) < 1e-16); // rounding
-    // The covariance of light from a point is singular, after a window it is not: on x = D u, 1/σ²
+    // The covariance of light from a point is singular; after a window it is not. On x = D u, 1/σ²
     // is the sum 1/σu² + D²/σx².
     let point = [[4.0, 2.0], [2.0, 1.0]];
     let seen = gaussian_window(&point, [0.5, 0.3]).unwrap();

@@ -46,7 +46,7 @@ fn symmetry_and_zero() {
         } else {
             2.0 * libm::sin(0.5 * PI * b) / b
         };
-        // At zero and next to it, where the kink is a ln a.
+        // Values at zero and next to it, where the kink behaves as a ln a.
         assert!((plane_sphere_kernel(0.0, theta) - expected).abs() < STATED);
         assert!((plane_sphere_kernel(1e-15, theta) - expected).abs() < 1e-11);
     }

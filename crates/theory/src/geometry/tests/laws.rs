@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// Rounding of products of a few entries of order one.
+/// The rounding error of products of a few entries of order one.
 const ROUNDING: f64 = 1e-14;
 
 #[test]

@@ -44,7 +44,7 @@ fn two_half_planes_in_one_mask_leave_a_slit() {
         shapes: vec![],
         half_planes: half_planes.to_vec(),
     };
-    // The same result from blockers that are large enough.
+    // Blockers that are large enough give the same result.
     let blocks = rectangles(&[-50.1, 50.15].map(|y| square([0.0, y], 100.0)));
     let behind = |mask| {
         chain_of(
@@ -93,8 +93,8 @@ fn two_gratings_leave_the_wedge() {
     let k = [0.0, 0.0, f * between, 0.0];
     let value = |chain: &Chain| at(chain, &hann(), k).norm() / zero(chain);
     let both = value(&seen(mask(), mask()));
-    // (m/4)² relative to (½)², from the difference of the two frequencies; half of it is the edge
-    // of the window.
+    // The ratio is (m/4)² to (½)²: the first is the component at the difference of the two
+    // frequencies, of which the edge of the window leaves half.
     assert!(
         (both / (0.9_f64.powi(2) / 4.0) - 1.0).abs() < 0.05,
         "{both}"

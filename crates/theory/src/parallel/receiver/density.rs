@@ -13,7 +13,7 @@ const MAX_NODES: usize = 48;
 const ARC: usize = 10;
 /// Number of halvings of the longest panel with a precomputed number of nodes.
 const LEVELS: usize = 24;
-/// Steps of a closed form.
+/// Steps to evaluate a closed form.
 const CLOSED: f64 = 100.0;
 /// The most nodes for which a rectangle is integrated numerically: in the closed form the corners
 /// of so small a rectangle cancel.

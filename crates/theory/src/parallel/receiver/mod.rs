@@ -172,9 +172,9 @@ impl<'a> Receiver<'a> {
         through.product::<f64>() * brightness * lobe / self.distance.powi(2)
     }
 
-    /// Returns the mean irradiance over a rectangle of the receiver around a point if the light is
-    /// a point; otherwise the irradiance at the centre. Shadows of a point light have sharp edges,
-    /// so a value at the centre of a cell would not represent the cell.
+    /// Returns the mean irradiance over a rectangle of the receiver if the light is a point;
+    /// otherwise the irradiance at the rectangle's centre. Shadows of a point light have sharp
+    /// edges, so a value at the centre of a cell would not represent the cell.
     fn cell(&self, center: [f64; 2], size: [f64; 2]) -> f64 {
         if self.light.shape.is_some() {
             return self.irradiance(center[0], center[1]);
@@ -187,7 +187,7 @@ impl<'a> Receiver<'a> {
         self.light.brightness * self.received(&bundle, region) / sides.area()
     }
 
-    /// Returns the integral over those slopes of a region that no blocker stops.
+    /// Returns the integral over those slopes of a region at which no blocker stops light.
     fn received(&self, bundle: &SlopeProjection, region: ReceiverRegion) -> f64 {
         self.passed(
             bundle,

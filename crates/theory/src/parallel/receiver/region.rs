@@ -122,8 +122,8 @@ impl ReceiverRegion {
         nodes * density.steps_along_u(bounds[0][1] - bounds[0][0]) + edges
     }
 
-    /// Returns ∫ A dv up the part of the line at u inside the discs and between the lower and upper
-    /// side.
+    /// Returns ∫ A dv upwards along the line at u, over its part that lies inside the discs and
+    /// between the lower and the upper side.
     fn edge(&self, u: f64, from: f64, density: &ReceiverDensity<'_>) -> f64 {
         let chords = self.discs.iter().map(|disc| {
             let across = u - disc.center[0];

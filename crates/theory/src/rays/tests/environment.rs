@@ -192,7 +192,8 @@ fn the_sky_on_a_sphere() {
     }
 }
 
-/// Past a grating, by slopes, and on an oblique surface that light reaches past the grating.
+/// Tests light that has passed a grating: its slopes across the central ray, and the light that
+/// reaches an oblique surface.
 #[test]
 fn the_sky_past_a_grating() {
     let (window, grid) = (window(WINDOW[0], Profile::Hann(0.5)), grid(2, [0.3, 0.5]));

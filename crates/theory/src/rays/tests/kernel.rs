@@ -35,7 +35,8 @@ fn plain_summation() {
             Complex::from_polar(node.weight, -TAU * phase)
         };
         let plain: Complex = nodes.iter().map(term).sum();
-        // 32 roundings of a factor, and the rounding of phases up to 400.
+        // The tolerance is 32 rounding errors of a factor, and the rounding error of phases up to
+        // 400.
         assert!((value - plain).norm() < 1e-12 * total, "{k} {m} {n}");
     }
 }

@@ -273,7 +273,8 @@ fn errors(
         .to_vec()
 }
 
-/// Returns a Phong lobe as wide as the neighbourhood: 1/√n of the size.
+/// Returns a Phong lobe as wide as the neighbourhood: its width 1/√n is the size of the
+/// neighbourhood.
 fn phong(e: f64) -> Lobe {
     Lobe::Phong {
         exponent: 1.0 / (0.25 * e * e),
@@ -291,7 +292,8 @@ fn first_order_is_of_its_order() {
         let errors = errors(theta0, k, |e| white(phong(e)), orientation);
         let order = libm::log2(errors[1] / errors[2]);
         let due = if theta0 == 0.0 { 2.0 } else { 1.0 };
-        // Three sizes; terms beyond the first neglected order are at most a quarter of it.
+        // Three sizes are tested; terms beyond the first neglected order are at most a quarter of
+        // it.
         assert!(
             (order - due).abs() < 0.25,
             "{theta0} {orientation:?}: {order} {errors:?}"
@@ -445,9 +447,11 @@ fn diffuse_sphere_under_an_environment_is_the_known_product() {
     for (map, most) in [
         // The error of a net of 2¹⁸ points.
         (EnvironmentMap::Lobes(vec![lobe]), 1e-5),
-        // Likewise, with kinks between pixels, which are 0.006 rad over widths of 0.25: (1/40)²/24.
+        // The net has the same error here, and there are kinks between pixels, which are 0.006 rad
+        // apart over widths of 0.25: (1/40)²/24.
         (map([1024, 512]), 1e-4),
-        // Bilinear between pixel centres, 0.03 rad apart: (1/8)²/12 of the lobe's curvature.
+        // The map is interpolated bilinearly between pixel centres, 0.03 rad apart: (1/8)²/12 of
+        // the lobe's curvature.
         (map([200, 100]), 4e-4),
     ] {
         let system = under(map);
@@ -482,6 +486,6 @@ fn diffuse_sphere_under_an_environment_is_the_known_product() {
     let grid = grid([0.1, 0.4]);
     let chain = chain(&view(&system, &plane)).unwrap();
     let error = linearised(&system, &plane, &window, &grid, &chain);
-    // (k s)³ of 0.08³, and the interaction of tilts about both axes.
+    // The neglected terms are (k s)³, here 0.08³, and the interaction of tilts about both axes.
     assert!(error < 3e-3, "{error}");
 }

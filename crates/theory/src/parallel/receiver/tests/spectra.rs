@@ -42,7 +42,7 @@ fn fast_and_plain_sums_agree() {
                 let (rho, nu) = (m as f64 * grid.rho.spacing, grid.nu.value(n));
                 let plain = table.at(grid.frequency(k, rho, nu));
                 let error = (slices.half[[k, m, n]] - plain).norm() / slices.at_zero();
-                // Rounding, and Gauss rules accurate to 1e-14.
+                // Rounding error, and the error of Gauss rules accurate to 1e-14.
                 assert!(error < 1e-12, "{after} {k} {m} {n}: {error:e}");
             }
         }
@@ -188,7 +188,8 @@ fn error_is_told() {
         assert!((slices.at_zero() - zero).norm() < 1e-12 * zero.norm()); // rounding of two sums
         let told = receiver.quadrature_error(&window, &grid, &slices).unwrap();
         let truth = slices.relative_difference(&receiver.table(&window, 1000).slices(&grid));
-        // An estimate, not a bound: correct to a factor of a few, both below the requested error.
+        // The estimate is not a bound, but it is correct to a factor of a few, and below the
+        // requested error.
         assert!(
             truth < 3.0 * told + 1e-9 && told < 1e-4,
             "{number}: {told:e} {truth:e}"
@@ -253,8 +254,8 @@ fn hard_shadows_of_a_point_light() {
     let bench = TestReceiver::new(Light::Point { intensity: 3.0 }, vec![(0.5, mask)]);
     let receiver = bench.receiver();
     let [x, y, u, v] = [2.0, -3.0, 1.0, 0.5];
-    // In the turned frame, over a rectangle of the receiver; the shadow is 4/3 as large as the
-    // mask.
+    // The frame is turned, and the integral is over a rectangle of the receiver; the shadow is 4/3
+    // as large as the mask.
     let lit = |along_x: [f64; 2], along_y: [f64; 2]| -> Complex {
         integrate(40, along_x, |s| {
             integrate(40, along_y, |t| {
