@@ -158,7 +158,7 @@ impl FromSky {
                 by_sky * position[0].density(x) * position[1].density(y)
             }
             SkyStrategy::Facing(facing) => facing.density(ray),
-            // No light is aimed from directions without light.
+            // Rays are not aimed from directions that no light comes from.
             SkyStrategy::Onto(_) if by_sky <= 0.0 => 0.0,
             SkyStrategy::Onto(ground) => by_sky * ground.density(ray),
         });
@@ -166,7 +166,7 @@ impl FromSky {
     }
 }
 
-/// Whether a plane lies across the first leg. The light it sees may not have met anything.
+/// Whether a plane lies across the first leg. The light that it sees need not have met anything.
 pub(crate) fn looks_across(plane: &VirtualPlane) -> bool {
     plane.leg == 0 && plane.orientation == Orientation::Orthogonal
 }

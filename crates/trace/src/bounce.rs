@@ -19,7 +19,7 @@ pub(crate) enum Bounce {
         reflectance: Box<Reflectance>,
         scatterer: Option<Scatterer>,
     },
-    /// Reflection, refraction or a lens; the lens's frame, in the frame of the leg.
+    /// Reflection, refraction or a lens, with the lens's frame in the frame of the leg.
     Specular(Frame, Specular),
 }
 

@@ -30,8 +30,8 @@ enum EmissionStrategy {
     Aimed(Vec<[Proposal; 2]>),
     /// Light from an environment.
     Sky(FromSky),
-    /// Light without extent, uniform within each of these bounds with equal shares: bounds of
-    /// slopes along x and y, or of positions of a beam.
+    /// Light without extent, drawn uniformly within bounds, each of which has an equal share.
+    /// Bounds are slopes along x and y, or positions for a beam.
     Even(Vec<AxisBounds>),
     /// In proportion to the emission of the light.
     Plain(Plain),
@@ -138,8 +138,8 @@ impl Emitter {
     }
 
     /// The first block of random words that a photon's bounces use. Of block 1 the emission uses
-    /// the last word, which selects the plane that a ray is aimed at; light from an environment
-    /// uses all of them.
+    /// only the last word, which selects the plane at which a ray is aimed; light from an
+    /// environment uses all words.
     pub(crate) fn bounces_from(&self) -> u32 {
         if let EmissionStrategy::Sky(_) = self.strategy {
             2
@@ -187,7 +187,8 @@ impl Emitter {
         (rays, weights)
     }
 
-    /// Rays aimed at planes, each of which is drawn at random as well: columns of x, y, u and v.
+    /// Rays aimed at planes, as columns of x, y, u and v; the plane of each ray is drawn at random
+    /// as well.
     #[inline]
     fn aimed(
         &self,
@@ -268,9 +269,10 @@ fn densities(proposals: &[[Proposal; 2]], [x, y, u, v]: &Columns) -> [f64; ABREA
 /// Lowest and highest coordinate along two axes.
 type AxisBounds = [[f64; 2]; 2];
 
-/// The bounds of slopes of a point or a projector, or of positions of a beam, at which light
-/// crosses the window of each plane before the first surface, and at which it meets that surface
-/// for other planes; empty where they are not known.
+/// For each plane across the first leg, the bounds within which light crosses its window; for all
+/// other planes together, the bounds within which light meets the first surface. Bounds are slopes
+/// for a point or a projector, and positions for a beam. Empty if any of them is unknown or
+/// receives no light.
 fn even(scene: &Scene) -> Vec<AxisBounds> {
     let light = &scene.light;
     if light.has_extent() || matches!(light, Light::Rays { .. }) {

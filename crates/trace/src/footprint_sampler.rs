@@ -131,9 +131,9 @@ mod tests {
         .unwrap()
     }
 
-    /// For any direction the density over (x, y) integrates to 1, also where lines meet the surface
-    /// twice, and points follow the density: the mean over points of a function over the density is
-    /// the integral of the function.
+    /// Two laws hold. For any direction the density over (x, y) integrates to 1, also where lines
+    /// meet the surface twice. Points follow the density: the mean over points of a function
+    /// divided by the density is the integral of the function.
     #[test]
     #[expect(clippy::too_many_lines, reason = "a test may be a list of cases")]
     fn lines_follow_the_density() {

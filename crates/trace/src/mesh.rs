@@ -35,8 +35,8 @@ impl BlockerMesh {
         }
     }
 
-    /// The first triangle that a ray meets beyond `from`, and its distance; of several there, the
-    /// one with the lowest number. Hits beyond `until` may be ignored.
+    /// The first triangle that a ray meets beyond `from`, and its distance; of several at that
+    /// distance, the one with the lowest number. Hits beyond `until` may be ignored.
     pub(crate) fn closest_hit(
         &self,
         ray: &TwoPlane,
@@ -66,8 +66,8 @@ impl BlockerMesh {
         last.map(|(at, Reverse(i))| (at, i))
     }
 
-    /// Whether a ray meets a triangle at a distance between `from` and `distance` that satisfies
-    /// `does`; searched backwards.
+    /// Whether a ray meets a triangle at a distance that satisfies `does`, between `from` and
+    /// `distance`. The search goes backwards.
     pub(crate) fn is_occluded(
         &self,
         ray: &TwoPlane,

@@ -223,7 +223,7 @@ impl Obstacles {
         distance: f64,
     ) -> bool {
         let other = |what: &HitKind| !what.is(own);
-        // The point itself is at the same distance, but for rounding.
+        // The point itself is at the same distance, up to rounding error.
         let distance = distance - ROUNDING * distance.abs();
         self.primitives
             .is_occluded(ray, from, distance, false, other)

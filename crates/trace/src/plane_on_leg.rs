@@ -131,9 +131,9 @@ impl PlaneOnLeg {
     /// The distance along its heading, from `from` on, at which light on a ray of the leg comes to
     /// the plane; `None` if it does not.
     ///
-    /// A plane on a surface records light where it meets the surface: an oblique surface reaches
-    /// before and behind its central hit, and what lies between may stand in the light of one part
-    /// alone. Light that travels back along the leg only reaches planes on a surface.
+    /// A plane on a surface records light where it meets the surface. An oblique surface extends
+    /// before and behind its central hit, so an occluder may shade one part of it alone. Light that
+    /// travels back along the leg only reaches planes on a surface.
     #[inline]
     pub(crate) fn crossing(&self, ray: &TwoPlane, from: f64) -> Option<f64> {
         let Some(surface) = &self.surface else {
@@ -143,9 +143,9 @@ impl PlaneOnLeg {
         (self.side == Side::After || point.z > from).then_some(point.z)
     }
 
-    /// The same for a photon that starts at `from` and arrives at the surface at the end of the leg
-    /// first, or at something else (`None`): what starts or ends on the surface of the plane is there
-    /// already.
+    /// Returns the same for a photon that starts at `from` and first arrives at the surface at the
+    /// end of the leg, or at something else (`None`). A photon that starts or ends on the surface
+    /// of the plane is at the plane already.
     #[inline]
     pub(crate) fn crossing_of_photon(
         &self,

@@ -81,8 +81,8 @@ impl Primitive {
         }
     }
 
-    /// Whether a ray meets the primitive at a distance between `from` and `until` that satisfies
-    /// `does`.
+    /// Whether a ray meets the primitive at a distance that satisfies `does`, between `from` and
+    /// `until`.
     #[inline]
     pub(crate) fn is_occluded(
         &self,

@@ -145,8 +145,8 @@ impl Aim {
         }
     }
 
-    /// The cumulative of the slope at the ends of the range that crosses the window from `x` at
-    /// distance `from`; `None` if the range is empty.
+    /// The cumulative density of the slope at the ends of the range that crosses the window from
+    /// `x` at distance `from`; `None` if the range is empty.
     #[inline]
     fn range(&self, x: f64, from: f64) -> Option<[f64; 2]> {
         let distance = self.distance - from;
@@ -182,9 +182,9 @@ impl Aim {
 
 /// Rays in one pair of coordinates, (x, u) or (y, v), that leave the light and cross a window.
 ///
-/// Draws u first, by the window's profile over the slopes of rays that do both, then x, by the
-/// profile over the light's image at that slope. No sample misses the light or the window. For a
-/// point light x is fixed, and the density is that of u alone.
+/// Draws u first, by the window's profile over the slopes of rays that leave the light and cross
+/// the window. Then draws x, by the profile over the light's image at that slope. No sample misses
+/// the light or the window. For a point light x is fixed, and the density is that of u alone.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Proposal {
     /// Distance of the window from the light.
@@ -193,7 +193,7 @@ pub(crate) struct Proposal {
     light: [f64; 2],
     space: ProfileDensity,
     slope: ProfileDensity,
-    /// The cumulative of the slope at the ends of its range.
+    /// The cumulative density of the slope at the ends of its range.
     range: [f64; 2],
 }
 
@@ -234,7 +234,8 @@ impl Proposal {
         self.light[1] <= self.light[0]
     }
 
-    /// The cumulative of the position in the window at the ends of the light's image at slopes `u`.
+    /// The cumulative density of the position in the window, at the ends of the light's image at
+    /// slopes `u`.
     #[inline(always)]
     fn images<const N: usize>(&self, u: &[f64; N]) -> [[f64; N]; 2] {
         let at = |x: f64| {

@@ -9,10 +9,10 @@ use etendue_field::{
 use etendue_scene::{Event, Hit, Leg, Object, Scene, Surface};
 use glam::{DVec2, DVec3};
 
-/// Half-widths, across the end of `leg`, of a box around the central ray through which all light
-/// from `origins` (in the frame of the leg) passes that can reach the window of `plane`, on a later
-/// leg or on the surface that ends this one. `None` if there is none, and where light of a later
-/// leg must go across or back along that leg.
+/// Half-widths, across the end of `leg`, of a box around the central ray. All light from `origins`
+/// (in the frame of the leg) that can reach the window of `plane` passes through it. The plane is
+/// on a later leg, or on the surface that ends this one. `None` if there is no such light, and
+/// where light of a later leg must go across or back along that leg.
 pub(crate) fn reach(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -231,7 +231,8 @@ fn seen_of_patch(
     })
 }
 
-/// The rays through the corners of a window with its extreme slopes, by two points each, in the frame at the light.
+/// The rays through the corners of a window with its extreme slopes, each given by two points in
+/// the frame at the light.
 fn tube(plane: &VirtualPlane, along: f64, leg: &Leg) -> Vec<[DVec3; 2]> {
     let w = &plane.window;
     let ends = |profile: &Profile| [-1.0, 1.0].map(|s| s * profile.half_width());

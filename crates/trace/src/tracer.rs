@@ -373,7 +373,8 @@ impl PhotonSource for Tracer {
                 record(plane, crossings);
                 crossings.clear();
             }
-            // Sums of sums: rounding grows with the number of blocks, not with that of photons.
+            // The sums of blocks are summed, so rounding errors grow with the number of blocks, not
+            // with that of photons.
             total.add(&block);
             progress(end - start);
         }

@@ -6,7 +6,7 @@ use crate::common::estimates;
 use etendue_scene::{SceneFile, resolve};
 use etendue_trace::{Backward, Tracer};
 
-/// Towards the arriving light, rotated out of the plane of X and the central ray.
+/// The direction towards the arriving light, rotated out of the plane of X and the central ray.
 const FACING: &str = "(0.3, -0.5, -0.8)";
 
 fn smooth(event: &str) -> String {
@@ -85,7 +85,8 @@ fn arriving_behind_the_light() {
     }
 }
 
-/// A tangent plane that extends beyond its surface records light that passes beside.
+/// A tangent plane that extends beyond its surface also records light that passes beside the
+/// surface.
 #[test]
 fn arriving_beside() {
     for event in ["Mirror", "Reflects(brdf: (lobe: Lambertian))"] {

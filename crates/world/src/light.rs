@@ -19,7 +19,7 @@ pub enum Light {
     Spot {
         /// Its position and orientation; without scale.
         to_world: DAffine3,
-        /// W sr⁻¹ within `beam`.
+        /// Intensity within `beam`, W sr⁻¹.
         intensity: f64,
         /// Half-angle of the cone of full intensity, radians.
         beam: f64,
@@ -32,7 +32,7 @@ pub enum Light {
     Directional {
         /// The direction of light, of unit length.
         direction: DVec3,
-        /// W m⁻² on a surface across that direction.
+        /// Irradiance of a surface across that direction, W m⁻².
         irradiance: f64,
     },
     /// Uniform radiance from all directions.

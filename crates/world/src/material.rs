@@ -29,7 +29,7 @@ pub enum Material {
         /// n.
         exponent: Texture,
     },
-    /// One opaque material on each side, each acting as on its front.
+    /// One opaque material on each side; each scatters as it does on its front.
     TwoSided(Box<[Self; 2]>),
     /// A partly transparent surface: light passes unchanged except for a fraction that hits the
     /// material.

@@ -1,7 +1,7 @@
 //! Connects points to light without extent, which no ray hits by chance: point lights, projectors
 //! and beams.
 //!
-//! From a given point the path to such a light is known, so only this path is traced.
+//! For a given point the path to such a light is known, so only this path is traced.
 
 use etendue_field::{Light, TwoPlane, VirtualPlane};
 use etendue_scene::{Event, Object, Scene};
@@ -19,7 +19,7 @@ pub fn finds(scene: &Scene, plane: &VirtualPlane) -> bool {
         Object::Patch(i) => matches!(scene.patches[i].event, Event::Specular(_)),
     });
     let light = &scene.light;
-    // A randomly drawn ray meets none of a file's.
+    // A randomly drawn ray meets none of the rays of a file.
     if matches!(light, Light::Rays { .. }) {
         return false;
     }
@@ -27,8 +27,9 @@ pub fn finds(scene: &Scene, plane: &VirtualPlane) -> bool {
     light.has_extent() || !is_at_point && (plane.leg == 0 || !turns)
 }
 
-/// The ray, given at the light, from a light without extent to a point in the frame at the light;
-/// and the irradiance there across the ray, over what the ray carries per du dv or dx dy.
+/// Returns the ray from a light without extent to a point in the frame at the light, given at the
+/// light. Also returns the irradiance at the point across the ray, divided by the value that the
+/// ray carries per du dv or dx dy.
 pub(super) fn connection(light: &Light, point: DVec3) -> Option<(TwoPlane, f64)> {
     let [x, y] = [point.x, point.y];
     if point.z < 0.0 || point.z == 0.0 && !light.is_distant() {

@@ -188,7 +188,7 @@ impl Backward {
         let point = start(ray) + begin * along;
         match &leaves.how {
             Scattering::Diffuse { albedo, .. } => {
-                // Light left the surface on the side that it travels away from.
+                // Light left the surface on the side to which it travels.
                 let normal = primitive.normal(point);
                 let normal = frame.vector_to_world(normal.dot(along).signum() * normal);
                 let point = frame.to_world(point);
@@ -361,9 +361,9 @@ impl Backward {
     }
 }
 
-/// The ratio of the radiance after a deflection at a point to that before, for light that goes
-/// along `along` and arrived against `came`: (n'/n)² at an interface; at an ideal lens, the value
-/// that conserves flux in two-plane coordinates.
+/// The ratio of the radiance after a deflection at a point to that before, for light that arrived
+/// from the direction `came` and leaves along `along`: (n'/n)² at an interface; at an ideal lens,
+/// the value that conserves flux in two-plane coordinates.
 fn radiance_factor(
     lens: &Frame,
     event: Specular,
