@@ -26,7 +26,7 @@ pub struct Paths {
 pub(crate) const ROULETTE: u32 = 6;
 
 /// Maximum path length, for endless paths between mirrors; the remaining throughput is below the
-/// rounding of a picture.
+/// rounding error of a picture.
 const LONGEST: u32 = 10_000;
 
 impl Paths {

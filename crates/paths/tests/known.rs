@@ -71,8 +71,8 @@ fn seen(world: &World, from: DVec3, at: DVec3, samples: u32) -> (f64, f64) {
     (picture.mean[0], picture.variance[0].sqrt())
 }
 
-/// Checks agreement within five standard errors, or within rounding if all paths find the same
-/// value; the error must be small.
+/// Checks agreement within five standard errors, or within rounding error if all paths find the
+/// same value; the standard error must be small.
 fn assert_seen(world: &World, from: DVec3, at: DVec3, expected: f64) {
     let (mean, error) = seen(world, from, at, 20_000);
     assert!(

@@ -57,7 +57,7 @@ enum Ready<'a> {
     },
 }
 
-/// Relative error of a distance that rounding may cause.
+/// Relative error of a distance that may come from rounding.
 pub(crate) const ROUNDING: f64 = 1e-9;
 
 impl<'a> PreparedObstacles<'a> {

@@ -131,7 +131,7 @@ pub(crate) fn change_curvature(patch: &mut Patch, axis: usize, new: New<'_>) -> 
     Some(())
 }
 
-/// Checks whether two curvatures are equal up to rounding.
+/// Checks whether two curvatures are equal up to rounding error.
 fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-12 * a.abs().max(b.abs())
 }

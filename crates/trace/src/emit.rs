@@ -242,8 +242,8 @@ impl Emitter {
     /// Radiance over density.
     #[inline]
     fn weight(&self, ray: &TwoPlane, density: f64) -> f64 {
-        // Rounding can put a ray exactly on the edge, where the density is zero; the ray then
-        // carries nothing.
+        // Because of rounding, a ray can lie exactly on the edge, where the density is zero; the
+        // ray then carries nothing.
         if density > 0.0 {
             radiance(&self.light, ray) / density
         } else {

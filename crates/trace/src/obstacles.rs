@@ -257,7 +257,7 @@ impl Obstacles {
     }
 }
 
-/// The relative difference that rounding may make between two computations of a distance.
+/// The relative difference that rounding errors may make between two computations of a distance.
 const ROUNDING: f64 = 1e-9;
 
 /// The primitive for a hit on a half-plane.

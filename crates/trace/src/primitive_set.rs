@@ -180,8 +180,8 @@ mod tests {
         )))
     }
 
-    /// Squares that share edges, discs and triangles: the cases in which rounding could let rays
-    /// through.
+    /// Squares that share edges, discs and triangles: the cases in which rounding errors could let
+    /// rays through.
     fn primitives(scale: f64) -> Vec<TaggedPrimitive<u32>> {
         let mut primitives = Vec::new();
         for layer in 1..4u32 {

@@ -261,5 +261,5 @@ fn meets(from: DVec3, to: DVec3, surface: &Frame, side: f64) -> Option<DVec3> {
 
 /// The cosine, and the share of a leg, below which light counts as parallel to a surface.
 const MIN_COSINE: f64 = 1e-3;
-/// The margin, larger than rounding, by which the aimed region exceeds the visible one.
+/// The margin, larger than rounding errors, by which the aimed region exceeds the visible one.
 const MARGIN: f64 = 1e-9;

@@ -46,7 +46,7 @@ struct FlightLeg {
     /// The object on which the leg begins, if light may meet it again; light never meets a flat
     /// surface again.
     rejoins: Option<Object>,
-    /// Distances up to which a hit counts as rounding.
+    /// Distances up to which a hit is attributed to rounding errors.
     rounding: f64,
 }
 
@@ -288,8 +288,8 @@ impl FlightLeg {
             let Some(distance) = plane_on_leg.crossing_of_photon(&ray, from, arrival) else {
                 continue;
             };
-            // A plane beside an object is at exactly the same distance, so rounding cannot separate
-            // them.
+            // A plane beside an object is at exactly the same distance, so rounding errors cannot
+            // separate them.
             let crossed = match side {
                 Side::Before => distance <= end,
                 Side::After => distance < end,

@@ -72,7 +72,7 @@ impl Bench<'_> {
         let aimed = self.scene("Aimed", 600_000);
         let plain = self.scene("Plain", 2_000_000);
         let (photons, ledger) = estimates(&Tracer::new(&aimed), &aimed);
-        // Rounding of some 10^5 additions.
+        // The rounding error of some 10^5 additions.
         assert!(ledger.imbalance().abs() < 1e-12, "{what}: {ledger:?}");
         let (plain, ledger) = estimates(&Tracer::new(&plain), &plain);
         assert!(ledger.imbalance().abs() < 1e-12, "{what}: {ledger:?}"); // likewise

@@ -85,7 +85,7 @@ fn all_ways_agree_on_every_leg() {
         let plain = scene(wall, blockers, visits, "Plain", 2_500_000);
         let (backward, _) = estimates(&Backward::new(&aimed).unwrap(), &aimed);
         let (photons, ledger) = estimates(&Tracer::new(&aimed), &aimed);
-        // Rounding of some 10^5 additions.
+        // The rounding error of some 10^5 additions.
         assert!(ledger.imbalance().abs() < 1e-12, "{ledger:?}");
         let (plain, _) = estimates(&Tracer::new(&plain), &plain);
         for (way, other) in [("aimed", &photons), ("plain", &plain)] {
@@ -215,7 +215,7 @@ fn both_ways_agree_behind_smooth_surfaces() {
         let scene = resolve("test", file, ".".as_ref(), u64::MAX).unwrap();
         let (backward, _) = estimates(&Backward::new(&scene).unwrap(), &scene);
         let (photons, ledger) = estimates(&Tracer::new(&scene), &scene);
-        // Rounding of some 10^5 additions.
+        // The rounding error of some 10^5 additions.
         assert!(ledger.imbalance().abs() < 1e-12, "{ledger:?}");
         for (plane, (a, b)) in backward.iter().zip(&photons).enumerate() {
             let name = &scene.planes[plane].name;

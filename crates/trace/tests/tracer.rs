@@ -86,7 +86,7 @@ fn ledger_closes() {
             ("run.photons", "1e6"),
             ("run.emission", emission),
         ]));
-        // Rounding of 10^6 additions in blocks of 4096: below 1e-13.
+        // The rounding error of 10^6 additions in blocks of 4096 is below 1e-13.
         assert!(
             ledger.imbalance().abs() < 1e-12,
             "{emission}: {}",

@@ -148,7 +148,7 @@ mod tests {
             (Wrap::Clamp, 7.5, 4.0),
             (Wrap::Clamp, -7.5, 1.0),
         ] {
-            // The tolerance for rounding of u / 3.
+            // The tolerance for the rounding error of u / 3.
             assert!(
                 (at(wrap, Filter::Nearest, u) - nearest).abs() < 1e-12,
                 "{wrap:?} {u}"

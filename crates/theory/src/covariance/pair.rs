@@ -132,7 +132,7 @@ impl SpectralCovariance {
     }
 }
 
-/// Removes the asymmetry that rounding leaves.
+/// Removes the asymmetry that rounding errors leave.
 fn symmetric(a: &Matrix<4>) -> Matrix<4> {
     from_fn(|i, j| 0.5 * (a[i][j] + a[j][i]))
 }

@@ -3,8 +3,8 @@
 use crate::numerics::sinc::sinc;
 use std::f64::consts::{PI, TAU};
 
-/// The step of the trapezoid rule in ln t. Twice this step gives the same values up to rounding,
-/// for frequencies from 10⁻¹² to 160.
+/// The step of the trapezoid rule in ln t. Twice this step gives the same values up to rounding
+/// error, for frequencies from 10⁻¹² to 160.
 const STEP: f64 = 1.0 / 32.0;
 /// Frequencies beyond this are not evaluated: the recurrence takes one step for each third of a
 /// cycle per radian.

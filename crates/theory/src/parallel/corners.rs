@@ -24,7 +24,7 @@ use etendue_field::Complex;
 use std::f64::consts::{PI, TAU};
 
 /// The smallest |k·edge|, for the longest edge of a direction, at which corners are used. Two such
-/// edges in one quotient amplify rounding by 1/CANCELLATION² = 1000.
+/// edges in one quotient amplify rounding errors by 1/CANCELLATION² = 1000.
 const CANCELLATION: f64 = 0.03;
 /// Number of waves processed at a time, chosen to keep their quotients in the cache.
 const WAVES_AT_A_TIME: usize = 32;

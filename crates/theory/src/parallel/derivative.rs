@@ -9,7 +9,7 @@ use etendue_field::{SliceGrid, Slices, Window};
 ///
 /// The error of the difference is half the second derivative times the step. Since a parameter
 /// changes phases by at most some tens of radians, this error is about 10⁻³ of the derivative.
-/// Rounding adds 10⁻¹²/10⁻⁴ = 10⁻⁸ of the spectrum.
+/// Rounding errors add 10⁻¹²/10⁻⁴ = 10⁻⁸ of the spectrum.
 const RELATIVE_STEP: f64 = 1e-4;
 
 /// Returns the derivative of the slices with respect to a parameter, per its unit: the forward

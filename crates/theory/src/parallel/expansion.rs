@@ -9,8 +9,8 @@ use crate::parallel::weighted_rectangle::WeightedRectangle;
 use etendue_field::{Complex, Mask, Profile, Window};
 use std::collections::HashMap;
 
-/// Polygons with a measure below this, in units of the window's half-widths, are dropped: they are
-/// below rounding.
+/// Polygons with a measure below this, in units of the window's half-widths, are dropped, because
+/// they are below rounding error.
 const SMALLEST_MEASURE: f64 = 1e-15;
 /// Number of pairs of a term and a patch that may be tested, for each term that is allowed.
 const PAIRS_PER_TERM: usize = 8;

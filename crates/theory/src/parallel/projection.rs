@@ -14,8 +14,8 @@ use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// Number of nodes along each direction of a triangle. The window is smooth inside a cell: with
-/// Hann profiles the error is below 1e-11 for 8 bins and below rounding for 32. Each cycle of a
-/// grating in a cell adds nodes.
+/// Hann profiles the error is below 1e-11 for 8 bins and below rounding error for 32. Each cycle of
+/// a grating in a cell adds nodes.
 const NODES: usize = 5;
 /// Number of nodes for each cycle.
 const NODES_PER_CYCLE: f64 = 5.0;

@@ -12,7 +12,7 @@ use etendue_field::{Complex, SliceGrid, Slices, Window};
 use rayon::prelude::*;
 
 /// Below this, the cosine or sine of an azimuth is treated as exactly zero (azimuths of π/2 and 0
-/// up to rounding).
+/// up to rounding error).
 const ORTHOGONAL: f64 = 1e-15;
 
 /// Returns the slices of the spectrum on a grid: the values of [`at`](crate::at), from sums over
@@ -303,7 +303,7 @@ mod tests {
         let slices = slices(&chain, &window, &singular_grid(5, 3));
         for slice in slices.half.outer_iter() {
             let difference = slice[[0, 3]] - slices.at_zero();
-            // Rounding of one sum in two different orders.
+            // The rounding error of one sum in two different orders.
             assert!(difference.norm() < 1e-13 * slices.at_zero());
         }
     }

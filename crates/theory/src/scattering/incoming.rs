@@ -77,7 +77,7 @@ impl Masks<'_> {
     }
 }
 
-/// Relative error of a distance by rounding, within which an occluder at the point itself is
+/// Relative error of a distance due to rounding, within which an occluder at the point itself is
 /// ignored.
 const ROUNDING: f64 = 1e-9;
 

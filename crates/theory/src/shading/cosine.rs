@@ -68,12 +68,13 @@ mod tests {
                 let ends = [0.0, 0.2, 0.5, 1.0, 1.4, 1.5, FRAC_PI_2];
                 let plain = even_transform(&ends, omega, |t| libm::pow(libm::cos(t), n));
                 let got = cosine_power_hat(n, omega);
-                // Rounding of ln Γ; 1e-8 because Gauss rules converge slowly at the end of cos^2.5.
+                // The rounding error of ln Γ; 1e-8 because Gauss rules converge slowly at the end
+                // of cos^2.5.
                 let close = if n % 1.0 > 0.0 { 1e-8 } else { 1e-13 };
                 assert!((got - plain).abs() < close, "{n} {omega}: {got} {plain}");
             }
             let [one, two] = [1.0, 2.0].map(|n| cosine_power_hat(n, omega));
-            // Three times the rounding of ln Γ up to 25.
+            // Three times the rounding error of ln Γ up to 25.
             assert!((cosine_hat(omega) - one).abs() < 1e-13);
             assert!((cosine_squared_hat(omega) - two).abs() < 1e-13); // likewise
         }

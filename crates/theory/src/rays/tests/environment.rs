@@ -296,7 +296,7 @@ fn all_ways_to_draw_the_sky_agree() {
     }
     let cases = [
         (&plain, after(&plain, 1.0)),
-        // The plane of the light itself, as rounding leaves it in a tilted scene.
+        // The plane of the light itself, as rounding errors leave it in a tilted scene.
         (&plain, after(&plain, -1e-16)),
         (&plain, local),
         (&plain, aside),

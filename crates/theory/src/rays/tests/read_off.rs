@@ -38,7 +38,8 @@ fn off(system: &SpecularSystem, plane: &Plane, print: Edition) -> f64 {
     offsets.chain(entries).fold(0.0, f64::max)
 }
 
-/// Error of central differences of rays: a step of 10⁻⁵ squared, and rounding over the step.
+/// Error of central differences of rays: the square of a step of 10⁻⁵, and rounding error divided
+/// by the step.
 const CLOSE: f64 = 1e-8;
 
 /// A point with a narrow picture; only its geometry matters here.

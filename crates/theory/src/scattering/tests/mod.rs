@@ -239,7 +239,7 @@ fn chain_is_the_product_of_operators() {
             let a = read.matrix.as_flattened().iter().chain(&read.offset);
             let b = put.matrix.as_flattened().iter().chain(&put.offset);
             let worst = a.zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            // Rounding of 1e-16 over a step of 1e-5.
+            // A rounding error of 1e-16 divided by a step of 1e-5.
             assert!(worst < 1e-8, "{theta0} {k}: {worst:e}\n{read:?}\n{put:?}");
         }
     }
