@@ -1,6 +1,6 @@
-//! Reconstruction between samples: at each point a plane is fitted to the samples around it,
-//! weighted by similarity in shape, normal and position (a bilateral filter, Tomasi and Manduchi
-//! 1998, whose width is that of the samples' metric, as in Durand et al. 2005, section 6.2).
+//! Reconstruction between samples. At each point a plane is fitted to the samples around it,
+//! weighted by similarity in shape, normal and position. This is a bilateral filter (Tomasi and
+//! Manduchi 1998), whose width follows the samples' metric, as in Durand et al. 2005, section 6.2.
 
 use crate::blue_noise::PixelPosition;
 use crate::criterion::shaded;

@@ -143,8 +143,8 @@ fn expecting_disagreement_turns_the_exit_code() {
     assert_eq!(code("few", &[few, expect].concat()), Some(4));
 }
 
-/// A chain that is wrong only in amplitude is not reported to have a wrong map; its failure is in
-/// the picture and on the page.
+/// A chain that is wrong only in amplitude is not reported to have a wrong map; the picture and the
+/// page show its failure.
 #[test]
 fn a_failing_chain_is_told_and_drawn() {
     let folder = tempfile::tempdir().unwrap();

@@ -44,8 +44,8 @@ impl Workers for Member {
     }
 }
 
-/// Runs `lines`, one for each process; returns the exit code of the first, and the number of
-/// messages each other process has sent.
+/// Runs `lines`, one for each process. Returns the exit code of the first process, and the number
+/// of messages that each other process has sent.
 fn in_crew_of(lines: &[String]) -> (u8, Vec<usize>) {
     let (to, inboxes): (Vec<_>, Vec<_>) = lines.iter().map(|_| channel()).unzip();
     let members = inboxes.into_iter().enumerate();
@@ -64,8 +64,8 @@ fn in_crew_of(lines: &[String]) -> (u8, Vec<usize>) {
             scope.spawn(move || command_of_workers(words, member))
         };
         let others: Vec<_> = (1..lines.len()).map(begin).collect();
-        // The leader begins when the others have reported: otherwise work this small is done before
-        // they do.
+        // The leader begins when the others have reported; otherwise it would finish so little work
+        // before they begin.
         for (member, process) in members[1..].iter().zip(&others) {
             while member.sent.load(Ordering::Relaxed) == 0 && !process.is_finished() {
                 thread::yield_now();

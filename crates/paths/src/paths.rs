@@ -71,9 +71,9 @@ impl Paths {
         }
     }
 
-    /// The radiance that a hit surface scatters back along the ray, as the parts found by one path,
-    /// each with its incident direction in the frame of the hit. `before` is the number of surfaces
-    /// between the hit and the camera.
+    /// The radiance that a hit surface scatters back along the ray, as the parts that one path
+    /// finds. Each part has its incident direction in the frame of the hit. `before` is the number
+    /// of surfaces between the hit and the camera.
     pub(crate) fn scattered(
         &self,
         mut ray: Ray,

@@ -110,7 +110,7 @@ impl Paths {
     }
 
     /// The radiance that base and lobe scatter to the eye, W m⁻² sr⁻¹, as means of `paths` paths;
-    /// and the variance of their sum divided by the number of paths. It depends only on the point,
+    /// and the variance of their sum, divided by the number of paths. It depends only on the point,
     /// the seed and `number`.
     ///
     /// Paths of one point use a scrambled net for their first numbers, so the error of the mean is

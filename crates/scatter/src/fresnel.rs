@@ -31,7 +31,7 @@ fn dielectric(index: f64, cosine: f64) -> f64 {
     0.5 * (s * s + p * p)
 }
 
-/// At a conductor with index n + i k: (n + i k)² − sin²θ = (a + i b)².
+/// For a conductor with index n + i k, (n + i k)² − sin²θ = (a + i b)².
 fn conductor(n: f64, k: f64, cosine: f64) -> f64 {
     let c2 = cosine * cosine;
     let s2 = 1.0 - c2;

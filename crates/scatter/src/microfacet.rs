@@ -49,8 +49,8 @@ impl Microfacets {
         mirrored(wo, self.sample_normal(wo, random))
     }
 
-    /// Returns the density of [`Self::sample`], over the whole sphere: that of the normal over 4 h
-    /// · ωo (Walter et al., Eq. 14).
+    /// Returns the density of [`Self::sample`], over the whole sphere. It is the density of the
+    /// normal, divided by 4 h · ωo (Walter et al., Eq. 14).
     #[inline]
     #[must_use]
     pub fn density(&self, wi: DVec3, wo: DVec3) -> f64 {

@@ -13,7 +13,7 @@ pub enum Parameter {
     SpotExponent,
     /// The first width of a picture; the second keeps the proportion.
     ImageWidth,
-    /// The distance of a step of travel. In a system: the length of the central ray from an
+    /// The distance of a step of travel. In a system, the length of the central ray from an
     /// element, or from the light (0), to the next element or the plane. Everything later moves
     /// along D.
     Travel(usize),

@@ -8,8 +8,8 @@ use etendue_field::{Environment, Orientation, Profile, TwoPlane, VirtualPlane};
 use etendue_scene::{Emission, Scene};
 use etendue_transform::random;
 
-/// A mixture, with equal shares, of strategies that draw rays of an environment: a density over (x,
-/// y, u, v) at the beginning of the first leg.
+/// A mixture, with equal shares, of strategies that draw rays of an environment. Its density is
+/// over (x, y, u, v) at the beginning of the first leg.
 ///
 /// Emission, aimed or plain, covers only rays that some plane may see, because the flux of an
 /// environment through all space is infinite.
@@ -88,9 +88,9 @@ impl FromSky {
     /// Aimed emission has, for the window of each plane on the first leg, a strategy by the plane's
     /// profiles and one by the environment. For each other plane it has one for the part of the
     /// first surface that the plane sees, and one by the plane's profiles if the plane is on that
-    /// surface. Plain emission draws positions uniformly over the windows of the planes on the first
-    /// leg, over the first surface and over the windows of planes on that surface; directions are
-    /// always drawn by the environment.
+    /// surface. Plain emission draws positions uniformly over the windows of the planes on the
+    /// first leg, over the first surface, and over the windows of planes on that surface. It always
+    /// draws directions by the environment.
     pub(crate) fn new(scene: &Scene, environment: &Environment) -> Self {
         let aimed = scene.run.emission == Emission::Aimed;
         let mut strategies = Vec::new();

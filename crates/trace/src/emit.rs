@@ -47,7 +47,7 @@ impl Emitter {
     /// The emitter of a scene.
     ///
     /// Aimed emission is a mixture, with equal shares, of one proposal for each virtual plane whose
-    /// window the light reaches; for a plane on a later leg, the proposal aims at the part of the
+    /// window the light reaches. For a plane on a later leg, the proposal aims at the part of the
     /// first surface from which light can get to the plane. Where the light reaches no window,
     /// emission is plain, and every window stays empty. For an environment, aimed or plain, only
     /// rays that a plane may see are emitted, and the ledger counts only these.
@@ -107,7 +107,8 @@ impl Emitter {
             // Pictures have their own proposal.
             Light::Projector { image, .. } => EmissionStrategy::Plain(Plain::Slopes(image)),
             Light::Beam { image, .. } => EmissionStrategy::Plain(Plain::Positions(image)),
-            // Rays of a file have their own proposal too: there are no neighbouring rays to aim.
+            // Rays of a file have their own proposal too, because they have no neighbouring rays at
+            // which to aim.
             Light::Rays { ref rays } => EmissionStrategy::Plain(Plain::Rays(rays.clone())),
             Light::Environment { ref environment } => {
                 EmissionStrategy::Sky(FromSky::new(scene, environment))
@@ -121,7 +122,7 @@ impl Emitter {
     }
 
     /// The emitter of a scene in which light without extent shines uniformly at the whole first
-    /// surface, and at the windows of planes before it, whatever else planes see.
+    /// surface, and at the windows of planes before that surface, whatever else planes see.
     ///
     /// For any other light, and where the surface reaches back to the light, it is the emitter of
     /// [`Self::new`].

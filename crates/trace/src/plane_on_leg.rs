@@ -45,7 +45,8 @@ const MAX_AIMED_ANGLE: f64 = 0.8;
 fn points(patch: &Patch, start: DVec3, along: DVec3) -> impl Iterator<Item = DVec3> {
     let local = patch.frame.to_local(start);
     let direction = patch.frame.vector_to_local(along);
-    // A ray nearly across its leg starts far away, and a quadratic loses digits from there.
+    // A ray nearly across its leg starts far away, and a quadratic equation loses digits from
+    // there.
     let near = -local.dot(direction) / direction.length_squared();
     let hits = patch.hits(local + near * direction, direction);
     let met = hits.into_iter().filter(|t| !t.is_nan());
@@ -162,7 +163,7 @@ impl PlaneOnLeg {
     }
 
     /// The largest slopes in the leg, along x and y, of light that arrives on a surface in the
-    /// window of a plane; `None` across the leg, and where they are too large to aim by.
+    /// window of a plane. `None` across the leg, and where the slopes are too large to aim by.
     pub(crate) fn slopes(&self, window: &Window) -> Option<[f64; 2]> {
         self.surface.as_ref()?.slopes(window)
     }

@@ -4,10 +4,10 @@ use etendue_field::Profile;
 
 /// A density on |t| < half that follows a window's profile and can be sampled on any interval.
 ///
-/// A Hann profile is approximated by a tent, 1 − |t|/half: their ratio stays in 0..1.14 and falls
-/// to zero at the edge, so the weights are bounded. Other profiles do not vanish at their edge and
-/// are approximated by a constant. For light that a surface receives the density follows the
-/// cosine.
+/// A Hann profile is approximated by a tent, 1 − |t|/half. The ratio of the two stays in 0..1.14
+/// and falls to zero at the edge, so the weights are bounded. Other profiles do not vanish at their
+/// edge and are approximated by a constant. For light that a surface receives the density follows
+/// the cosine.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ProfileDensity {
     half: f64,
@@ -127,8 +127,8 @@ pub(crate) fn lanes<const N: usize>(f: impl Fn(usize) -> f64) -> [f64; N] {
     all
 }
 
-/// Slopes along one axis, at a point of a surface, of rays that cross a window at some distance:
-/// distributed by the window's profile over the slopes that cross it.
+/// Slopes along one axis, at a point of a surface, of rays that cross a window at some distance.
+/// They are distributed by the window's profile over the slopes that cross it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Aim {
     distance: f64,

@@ -59,8 +59,8 @@ pub(crate) fn outline(scene: &Scene, object: Object) -> Vec<DVec3> {
 }
 
 /// The part of the first surface on the path, if flat, from which light can reach the window of a
-/// plane on or beyond it, as lowest and highest coordinates in the surface's frame; `None` if there
-/// is none.
+/// plane on or beyond the surface. It is given by its lowest and highest coordinates in the
+/// surface's frame; `None` if there is no such part.
 pub(crate) fn footprint(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -208,7 +208,7 @@ fn seen_of_patch(
     let corners = patch.corners().map(|p| at.to_local(p));
     let [mut low, mut high] = enclosing(&corners);
     // A point of the patch at distance r from the normal at the hit is at most |k| r² off the
-    // tangent plane, and lines of the window meet the slab of that thickness in a box. The bound is
+    // tangent plane. Lines of the window meet the slab of that thickness in a box. The bound is
     // iterated, starting from the whole patch.
     for _ in 0..8 {
         let [x, y] = [low.x.abs().max(high.x.abs()), low.y.abs().max(high.y.abs())];

@@ -172,7 +172,7 @@ impl Scatterer {
     }
 
     /// A direction in which light leaves a point where the surface has this normal, and its density
-    /// with respect to du dv over n · (u, v, ±1); `None` when the chosen plane cannot be reached
+    /// with respect to du dv over n · (u, v, ±1). `None` when the chosen plane cannot be reached
     /// from the point, or the direction goes behind the surface.
     #[inline]
     pub(crate) fn sample(

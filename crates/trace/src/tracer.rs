@@ -20,7 +20,7 @@ use std::ops::Range;
 /// A photon leaves the light and crosses the planes in front of the first thing it meets; gratings
 /// on the way attenuate it. Blockers absorb it, and a Lambertian surface absorbs the share 1 −
 /// albedo. Light that the surface at the end of a leg scatters, reflects or refracts crosses the
-/// planes on the next leg, and so on; anything else ends the photon.
+/// planes on the next leg, and so on. Light that meets anything else ends there.
 ///
 /// Light that arrives at a surface with a BRDF, on the side that the surface faces, is booked as
 /// stopped, because the reflected share has no closed form. Light that is scattered onwards, by the
@@ -274,8 +274,8 @@ impl FlightLeg {
             planes_on_leg,
             ..
         } = course;
-        // Light that would meet again the object it has left is lost, even if something stops it
-        // before: a blocker beyond a plane does not add light.
+        // Light that has left an object and would meet it again is lost, even if something stops
+        // the light before: a blocker beyond a plane does not add light.
         let stopped = self.rejoins.is_some() && met.is_some();
         if stopped && obstacles.meets(self.rejoins, &ray, from) {
             return;

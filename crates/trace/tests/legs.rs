@@ -111,7 +111,8 @@ fn all_ways_agree_on_every_leg() {
     assert!(tests > 100, "{tests} tests");
 }
 
-/// ∫ L W at the plane before the floor, whose light left the wall: every integral as a plain sum, in world coordinates.
+/// ∫ L W at the plane before the floor, whose light left the wall. Every integral is a plain sum,
+/// in world coordinates.
 #[test]
 fn light_that_left_an_oblique_wall_is_what_a_plain_sum_says() {
     // The mid-point rule for Hann windows converges faster than any power.

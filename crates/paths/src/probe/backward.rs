@@ -4,8 +4,8 @@ use super::{Budget, Probe};
 use crate::numbers::PathNumbers;
 use etendue_field::{Crossing, Ledger, PhotonSource, TwoPlane, VirtualPlane};
 
-/// Backward rays of a [`Probe`]: for each plane separately, lines drawn uniformly over its window,
-/// with the radiance that a path finds along each.
+/// Backward rays of a [`Probe`]. For each plane separately, lines are drawn uniformly over the
+/// plane's window, and a path finds the radiance along each line.
 #[derive(Debug)]
 pub struct BackwardProbe<'a> {
     probe: &'a Probe<'a>,

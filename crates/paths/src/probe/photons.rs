@@ -163,8 +163,8 @@ impl<'a> PhotonProbe<'a> {
         }
     }
 
-    /// The continuation of a photon from a hit, and its share of flux: half of the photons follow
-    /// the material, half are aimed at the regions that the windows see.
+    /// The continuation of a photon from a hit, and its share of flux. Half of the photons follow
+    /// the material; the other half are aimed at the regions that the windows see.
     fn onward(
         &self,
         hit: &Hit,

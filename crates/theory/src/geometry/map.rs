@@ -59,8 +59,8 @@ impl<const N: usize> AffineMap<N> {
         Some((self.apart(&fine, half) - open).max(0.0))
     }
 
-    /// Returns the distance of this map from another, in half-widths of a window: the largest
-    /// difference between the two images of a ray, over rays that either map keeps within the
+    /// Returns the distance of this map from another, in half-widths of a window. It is the largest
+    /// difference between the two images of a ray, over all rays that either map keeps within the
     /// window.
     pub(crate) fn apart(&self, other: &Self, half: &[f64; N]) -> f64 {
         let mut most = 0.0_f64;
@@ -174,12 +174,13 @@ impl<const N: usize> AffineMap<N> {
         Some(congruent(&transpose(&inverse), before))
     }
 
-    /// Returns how far the map is from conserving étendue: the largest entry of |Aᵀ J A − r J|, J =
-    /// [[0, 1], [−1, 0]] in blocks, where r is the index of refraction before over the index after.
+    /// Returns how far the map is from conserving étendue: the largest entry of |Aᵀ J A − r J|,
+    /// with J = [[0, 1], [−1, 0]] in blocks, and r the index of refraction before the map divided
+    /// by that after it.
     ///
-    /// The result is zero between two planes perpendicular to the light, whatever is between them:
-    /// n dx du is conserved in 2D (J then gives |det A − r|), and the Lagrange invariant of every
-    /// pair of rays in 4D. Maps onto or off a surface have one cosine too many or too few.
+    /// The result is zero between two planes perpendicular to the light, whatever is between them.
+    /// In 2D, n dx du is conserved (J then gives |det A − r|); in 4D, the Lagrange invariant of
+    /// every pair of rays is. Maps onto or off a surface have one cosine too many or too few.
     #[must_use]
     pub fn symplectic_defect(&self, index_ratio: f64) -> f64 {
         let half = N / 2;

@@ -61,8 +61,8 @@ impl LinearDensity {
         }
     }
 
-    /// Returns the density of a window's profile. Next to the border it is slightly larger than the
-    /// profile, which bounds the weight of rays there.
+    /// Returns the density of a window's profile. Next to the border the density is slightly larger
+    /// than the profile, which bounds the weight of rays there.
     pub(crate) fn of(profile: &Profile) -> Self {
         let half = profile.half_width();
         let inside = |t: f64| profile.value(t * (1.0 - 1e-9)) + 1e-3;

@@ -2,9 +2,9 @@
 //!
 //! Light fields without a closed form are integrals over rays: positions and slopes at the plane,
 //! and points of the light. The nodes are those of scrambled nets ([`sobol`]). Each of
-//! [`REPLICATES`] independent nets is an unbiased prediction of its own, and their spread is the
-//! error of their mean: if the rule is too coarse, the nets disagree. Nodes are added until the
-//! error is below the requested one, or a budget is spent.
+//! [`REPLICATES`] independent nets is an unbiased prediction, and the error of their mean is
+//! computed from their spread. If the rule is too coarse, the nets disagree. Nodes are added until
+//! the error is below the requested one, or a budget is spent.
 
 mod density;
 mod rays;

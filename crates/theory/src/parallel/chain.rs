@@ -16,7 +16,7 @@ pub struct Source {
 pub enum Operator {
     /// Free travel (docs/theory.md (2)): ℓ'(x, u) = ℓ(x − d u, u), ℓ̂'(Ωx, Ωu) = ℓ̂(Ωx, Ωu + d Ωx)
     /// (Durand et al. 2005, Eq. 3). [`AffineMap::travel`](crate::geometry::AffineMap::travel) is
-    /// the same as a map; here distances are added, and polygons are sheared.
+    /// the same step as a map; here distances are added, and polygons are sheared.
     Travel {
         /// Name of the plane where the light comes from.
         from: String,
@@ -25,8 +25,9 @@ pub enum Operator {
         /// The distance d, in metres.
         distance: f64,
     },
-    /// A mask in the plane where the light is now: a product with 1 − Σ shapes and half-planes,
-    /// which must not overlap each other, or with a cosine grating (Durand et al. 2005, Eq. 4).
+    /// A mask in the plane where the light is now. It is a product with 1 − Σ shapes and
+    /// half-planes, which must not overlap each other, or with a cosine grating (Durand et al.
+    /// 2005, Eq. 4).
     Visibility {
         /// Name of the mask.
         name: String,
@@ -69,8 +70,8 @@ pub struct Chain {
 /// A plane with a mask, relative to the end of a [`ChainSegment`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MaskLayer<'a> {
-    /// The distance the light has travelled since the mask, in metres: the ray (x, u) was at x −
-    /// distance · u there.
+    /// The distance that light has travelled since the mask, in metres: the ray (x, u) crossed the
+    /// mask at x − distance · u.
     pub(crate) distance: f64,
     pub(crate) mask: &'a Mask,
 }

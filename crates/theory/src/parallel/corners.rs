@@ -35,7 +35,7 @@ struct Corner {
     at: [f64; 2],
     /// Index of the corner's pair of directions.
     pair: usize,
-    /// The sign of the order of the directions; ±i for the ends of a segment.
+    /// The sign given by the order of the two directions; ±i for the ends of a segment.
     sign: Complex,
     /// Index of the corner's polygon.
     polygon: usize,
@@ -58,8 +58,8 @@ pub(crate) struct Corners<'a> {
 
 /// The quotients of some waves along a row.
 struct Quotients {
-    /// weight · (c₊ + c₋) and weight · (c₋ − c₊), [pair, wave, n]; `re` and `im` in the form in
-    /// which they are multiplied.
+    /// weight · (c₊ + c₋) and weight · (c₋ − c₊), [pair, wave, n]. `re` and `im` are stored in the
+    /// form in which they are multiplied.
     values: ComplexRow,
     /// Cells that need the plain transform: n, the shifted frequency, the weight.
     left: Vec<(usize, [f64; 2], Complex)>,

@@ -12,8 +12,9 @@ use etendue_field::{SliceGrid, Slices, Window};
 /// Rounding errors add 10⁻¹²/10⁻⁴ = 10⁻⁸ of the spectrum.
 const RELATIVE_STEP: f64 = 1e-4;
 
-/// Returns the derivative of the slices with respect to a parameter, per its unit: the forward
-/// difference with a step of 10⁻⁴ of the parameter's value (of its unit, if the value is zero).
+/// Returns the derivative of the slices with respect to a parameter, per unit of the parameter. It
+/// is the forward difference with a step of 10⁻⁴ of the parameter's value (or of its unit, if the
+/// value is zero).
 ///
 /// `prediction` must be the slices of the chain itself, on the same window and grid.
 ///

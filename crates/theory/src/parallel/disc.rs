@@ -40,9 +40,9 @@ pub(crate) fn patches_of(shape: &Shape, discs: Discs) -> Vec<WeightedRectangle> 
 ///
 /// Under an integral with a smooth function, the sum replaces the disc. That integral is ∫ A(R cos
 /// t) dB(R sin t), where A and B are the integrals along the two sides of a rectangle. A and B are
-/// odd, so they are expanded in the cosines and sines of odd multiples of t. With the sum over
-/// multiples m < 2n in closed form, π/n² Σ m cos(m t_j) sin(m t_k) = π/2n (c(k + j + 1) + c(k −
-/// j)), with c(i) = −(−1)^i / sin(π i/2n) and c(0) = 0.
+/// odd, so they are expanded in the cosines and sines of odd multiples of t. The sum over multiples
+/// m < 2n has a closed form, π/n² Σ m cos(m t_j) sin(m t_k) = π/2n (c(k + j + 1) + c(k − j)), with
+/// c(i) = −(−1)^i / sin(π i/2n) and c(0) = 0.
 fn rule(disc: &Disc, n: usize) -> Vec<WeightedRectangle> {
     let angle = FRAC_PI_2 / n as f64;
     let node = |j: usize| angle * (j as f64 + 0.5);
@@ -134,7 +134,8 @@ mod tests {
 
     #[test]
     fn the_rule_has_the_transform_of_a_disc() {
-        // π R Ω = 15.1 at the last frequency: the error falls with every node from there on.
+        // At the last frequency π R Ω is 15.1; from this number of nodes on, the error falls with
+        // every node.
         let errors = [16, 20, 24].map(|n| worst(Discs::Rule(n)));
         assert!(errors[0] < 1e-8, "{errors:?}");
         assert!(errors[1] < 1e-12, "{errors:?}");

@@ -13,7 +13,7 @@ const ORDER: i32 = 4;
 ///
 /// * Discs: the difference from a prediction that splits them a quarter finer, divided by 1 − 0.8⁴.
 ///   Where masks and windows have corners within a disc the error falls as n⁻⁴, elsewhere faster
-///   than exponentially (docs/theory.md, section 3), so that the difference is nearly all of it.
+///   than exponentially (docs/theory.md, section 3). So the difference is nearly the whole error.
 /// * Diffuse reflection: a third of the difference from a prediction with half as many nodes, since
 ///   the rule is of second order.
 /// * Spots, points and cosines: the residual of the series of (1 + u² + v²)^p over the window,

@@ -17,7 +17,7 @@ const PAIRS_PER_TERM: usize = 8;
 /// A range without bounds.
 const EVERYWHERE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
-/// The (position, slope) plane of one axis: the polygons that light fills in the plane, in units of
+/// The (position, slope) plane of one axis, and the polygons in it that light fills, in units of
 /// the half-widths of the window.
 #[derive(Debug)]
 pub(crate) struct AxisSection {
@@ -64,8 +64,8 @@ pub(crate) struct SectionColumns {
 ///
 /// A rectangle in a plane at distance h is a strip x − h u ∈ [low, high] times a strip in (y, v),
 /// so the product source · Π_layers (1 − Σ blockers) is a signed sum of products of convex
-/// polygons. All other factors are products of waves, with an outer sum if the two sections do not
-/// separate.
+/// polygons. All other factors are products of waves, with an outer sum over them if the two
+/// sections do not separate.
 #[derive(Debug)]
 pub(crate) struct Expansion {
     /// The sections (x, u) and (y, v).

@@ -9,7 +9,7 @@
 //! where I is the spectrum under a window that contains all slopes whose lobes reach the plane's
 //! window. The integral is a sum over q. The field under this window is bounded, so the sum is
 //! exact up to the lobe's tail once the spacing separates the copies of the field. Along y the same
-//! operation takes a share of all light out of the window, which is exact if the field is a product
+//! operation moves a share of all light out of the window. This is exact if the field is a product
 //! of one of (x, u) and one of (y, v), as behind slats along y.
 
 use super::{projection, slices};
@@ -146,7 +146,7 @@ impl Blur {
     }
 }
 
-/// Returns the picture of the chain's field after a lobe, like [`projection`] without a lobe:
+/// Returns the picture of the chain's field after a lobe, like [`projection`] without a lobe. It is
 /// accurate to a fraction of a cell, over which the lobe is taken as constant.
 #[must_use]
 pub fn blurred_projection(

@@ -217,7 +217,8 @@ mod tests {
             let worst = pairs.map(|(a, b)| (a - b).norm_sqr().sqrt());
             worst.fold(0.0, f64::max) / expected.at_zero()
         };
-        // A midpoint rule of 24 cells at an edge of light: of order 1/24², the square of a cell.
+        // A midpoint rule of 24 cells at an edge of light has an error of order 1/24², the square
+        // of a cell.
         assert!(off(&found.slices) < 4e-3, "{}", off(&found.slices));
         // A planted fault is detected: travel left out.
         let mut wrong = given;

@@ -64,8 +64,8 @@ impl Chain {
         over: Over<'_>,
         into: impl Fn(Self) -> V,
     ) -> Vec<ShiftedModels<V>> {
-        // Step for parameters of masks, whose shadows move: large enough that some rays cross the
-        // shadow's edge, and small enough that phases turn by a third of a radian at most.
+        // Step for parameters of masks, whose shadows move. It is so large that some rays cross the
+        // shadow's edge, and so small that phases turn by a third of a radian at most.
         const STEP: f64 = 1e-2;
         const PHASE: f64 = 0.05;
         let moved = |parameter: &Parameter| {

@@ -95,8 +95,8 @@ impl<'a> Product<'a> {
         }
     }
 
-    /// Returns the factors of all polygons of section `axis` in the row at ρ, [polygon, ν]; `along`
-    /// is the cosine of the angle between the azimuth and the axis.
+    /// Returns the factors of all polygons of section `axis` in the row at ρ, as [polygon, ν].
+    /// `along` is the cosine of the angle between the azimuth and the axis.
     fn factors(&self, axis: usize, rho: f64, along: f64, grid: &SliceGrid) -> Vec<Complex> {
         let section = &self.expansion.sections[axis];
         if along.abs() < ORTHOGONAL {

@@ -3,8 +3,8 @@
 //!
 //! The function is decomposed by elimination with complete pivoting, one product a(u) b(v) at a
 //! time (Townsend and Trefethen 2013). Each factor is smooth in the window and is fitted there by
-//! cosines whose period is longer than the window (a Fourier extension, Huybrechs 2010). Both stop
-//! at a measured residual.
+//! cosines whose period is longer than the window (a Fourier extension, Huybrechs 2010). The
+//! decomposition and the fits each stop at a measured residual.
 
 use crate::numerics::quadrature::gauss_legendre;
 use etendue_field::{CosineTerm, Profile};

@@ -1,4 +1,4 @@
-//! Exact backward rays: rays of a plane followed back to the light through the geometry.
+//! Exact backward rays: rays of a plane are followed back to the light through the geometry.
 
 use super::trace::LegRay;
 use super::{AT_LIGHT, Plane, SpecularSurface, SpecularSystem};
@@ -54,9 +54,9 @@ impl Back {
         Some(([at.x, at.y, u, v], spread / width))
     }
 
-    /// Returns the backward ray from the last surface for the last leg. The leg is started from
-    /// beyond all its possible intersections with that surface, because half of a plane at an
-    /// oblique surface lies behind the surface. On a curved surface itself the point is known.
+    /// Returns the backward ray from the last surface for the last leg. The leg starts beyond all
+    /// its possible intersections with that surface, because half of a plane at an oblique surface
+    /// lies behind the surface. On a curved surface itself the point is known.
     fn off_last(&self, element: &SpecularSurface, last: &LegRay) -> Option<LegRay> {
         let SpecularSurface { patch, .. } = element;
         let back = -last.direction;
@@ -86,7 +86,7 @@ impl SpecularSurface {
                 };
                 ratio * ratio
             }
-            // A lens conserves dx dy du dv of its own slopes.
+            // A lens conserves dx dy du dv, with slopes in its own frame.
             Specular::ThinLens { .. } => {
                 (after.dot(frame.d) / before.direction.dot(frame.d)).powi(4)
             }

@@ -47,7 +47,7 @@ impl Incidence {
         }
     }
 
-    /// Returns the derivative of the normal along (T, B) at a point of a patch: its shape operator,
+    /// Returns the shape operator of a patch at a point: the derivative of the normal along (T, B),
     /// per metre, convex positive as seen along N.
     pub(crate) fn shape(&self, patch: &Patch, point: DVec3) -> Matrix<2> {
         let gradient = patch.gradient(patch.frame.to_local(point));

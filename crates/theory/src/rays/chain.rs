@@ -26,8 +26,8 @@ pub struct AffineChain {
 }
 
 /// Derives the chain from the geometry: distances, angles and curvatures along the central ray.
-/// `None` if the ray misses an element or is totally reflected, and on a lens itself, which has no
-/// side from which to count angles.
+/// `None` if the ray misses an element or is totally reflected. Also `None` for a plane on a lens
+/// itself, which has no side from which to count angles.
 ///
 /// The printed versions differ in incidence, curvature and outgoing angle; the paper has no
 /// refraction and no lens.
@@ -173,9 +173,9 @@ impl Walk {
         Some(self)
     }
 
-    /// Appends the steps onto a surface, into its local normals, and the event there. Returns the
-    /// shape operator, and the longitude of the central ray afterwards (directions of refracted
-    /// light stay flipped).
+    /// Appends the steps onto a surface and into its local normals, and the step of the event at
+    /// the surface. Returns the shape operator, and the longitude of the central ray afterwards
+    /// (directions of refracted light stay flipped).
     fn event(&mut self, element: &SpecularSurface, hit: &CentralHit) -> Option<(Matrix<2>, f64)> {
         let incidence = &hit.incidence;
         let theta0 = incidence.theta0;
@@ -344,8 +344,8 @@ impl Walk {
     }
 }
 
-/// Returns the map of a thin lens, from the frame of one leg to that of the next, to first order
-/// about a central ray that may cross the lens at any point and slope.
+/// Returns the map of a thin lens, from the frame of one leg to that of the next. It holds to first
+/// order about a central ray, which may cross the lens at any point and slope.
 ///
 /// In the lens's own frame positions stay and slopes decrease by position over focal length; at the
 /// centre and along the axis that is [`AffineMap::thin_lens`].
@@ -374,9 +374,9 @@ fn seen_across(plane: &Frame, leg: &Frame) -> Matrix<4> {
     matrix
 }
 
-/// Returns the map from positions and angles in the plane of a frame, where `theta` is the
-/// longitude of the central ray, to those of a plane on a surface that is tilted or displaced
-/// relative to it.
+/// Returns the map from positions and angles in the plane of a frame to those of a plane on a
+/// surface that is tilted or displaced relative to that frame; `theta` is the longitude of the
+/// central ray.
 fn onto_leaning(plane: &Plane, at: &Frame, theta: f64) -> AffineMap<4> {
     let local = |v: DVec3| plane.frame.vector_to_local(v);
     let (sin, cos) = libm::sincos(theta);

@@ -11,8 +11,8 @@ use etendue_field::Window;
 /// The maps of a chain must be the derivatives of the paths of rays through the real geometry. Then
 /// the chain's error falls with the size of the neighbourhood, or with its square, and this limit
 /// is zero up to 10⁻⁹ from differences and rounding errors. With a wrong sign, cosine or factor in
-/// any map the error converges to this number instead: the error of rays, in half-widths of the
-/// window, or the relative error of radiance.
+/// any map, the error converges to the number returned instead: the error of rays, in half-widths
+/// of the window, or the relative error of radiance.
 ///
 /// `None` if the central ray does not arrive.
 #[must_use]

@@ -3,9 +3,9 @@
 //! To first order a ray of the light lands where the linearisation about the central ray maps it.
 //! So a target position or slope in the window determines which ray of the light to follow; the
 //! actual landing point is found by following the ray. The sampling density is known exactly,
-//! whatever the rays do. Few of these rays meet a window that is narrow compared with the error of
-//! the first order; in that case rays of all four coordinates are followed back from the window
-//! through the exact geometry.
+//! whatever the rays do. If the window is narrow compared with the error of the first order, few of
+//! these rays meet it. In that case all four coordinates of rays are sampled in the window, and the
+//! rays are followed back through the exact geometry.
 
 use super::backward::Back;
 use super::emission::{EmissionMeasure, point_of};

@@ -2,18 +2,18 @@
 //!
 //! The inputs are a [`SpecularSystem`] and a [`Plane`]. The system has a light, masks across its
 //! first leg, obstacles on any leg, and the mirrors, refracting surfaces and lenses that the
-//! central ray visits. The [`Observed`](crate::Observed) of both is a [`Model`](crate::Model): it
-//! follows rays through the real geometry and sums them, by a quadrature rule if that converges and
-//! over scrambled nets otherwise. In addition there are the [`chain`](chain()) of first-order maps
-//! ([`geometry`](crate::geometry)) derived from the same system, and the [`linear()`] prediction of
-//! that chain. So a measured difference from the first-order chain splits into noise, linearisation
-//! and faults.
+//! central ray visits. The [`Observed`](crate::Observed) of both is a [`Model`](crate::Model). It
+//! follows rays through the real geometry and sums them, by a quadrature rule if the rule converges
+//! and over scrambled nets otherwise. In addition there are the [`chain`](chain()) of first-order
+//! maps ([`geometry`](crate::geometry)) derived from the same system, and the [`linear()`]
+//! prediction of that chain. So a measured difference from the first-order chain splits into noise,
+//! linearisation and faults.
 //!
 //! All coordinates are in the frame at the light: the central ray starts at the origin along Z, and
 //! (x, y) are along X and Y. A ray carries flux; `emission.rs` has the flux of each light. Flux is
 //! conserved at every surface. A ray that misses a patch, is totally reflected, or would have to go
-//! back is lost. At a plane across the central ray flux Φ corresponds to Φ (1 + u² + v²)² in
-//! radiance space, on a surface to Φ/(cos θ cos² φ): docs/theory.md, section 8.
+//! back is lost. Flux Φ corresponds to Φ (1 + u² + v²)² in radiance space at a plane across the
+//! central ray, and to Φ/(cos θ cos² φ) on a surface: docs/theory.md, section 8.
 //!
 //! On a surface itself (`LocalNormals`) the integral is over the surface's area.
 //!

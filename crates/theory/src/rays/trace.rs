@@ -37,14 +37,14 @@ impl LegRay {
     /// `None` if the patch is missed or behind.
     ///
     /// Uses Newton's method from the tangent plane at the vertex. Along a ray the quadric is a
-    /// polynomial of degree two, so there is one root on either side of its extremum, and the root
-    /// nearer to the tangent plane is found.
+    /// polynomial of degree two, so it has at most one root on either side of its extremum; the
+    /// root nearer to the tangent plane is found.
     pub(crate) fn met(&self, patch: &Patch) -> Option<(f64, DVec3)> {
         self.met_facing(patch, None)
     }
 
-    /// Returns the intersection at which the ray meets a patch from one side, even if another is
-    /// nearer: the side of D, or the opposite one for −1.
+    /// Returns the intersection at which the ray meets a patch from one side, even if another one
+    /// is nearer. The side is that of D, or the opposite one for −1.
     ///
     /// A ray meets a quadric once from either side, so there is at most one such point.
     pub(crate) fn met_from(&self, patch: &Patch, side: f64) -> Option<(f64, DVec3)> {

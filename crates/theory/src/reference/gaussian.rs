@@ -1,8 +1,8 @@
 //! Closed forms under an untruncated Gaussian window, for checks only.
 //!
 //! A [`Window`](etendue_field::Window) has a finite support, so this window exists nowhere else.
-//! All but the disc are in 2D; frequencies are (Ωx, Ωv), in cycles per metre and per unit slope;
-//! the slope is called v, as in the paper.
+//! All but the disc are in 2D. Frequencies are (Ωx, Ωv), in cycles per metre and per unit slope.
+//! The slope is called v, as in the paper.
 
 use crate::numerics::quadrature::integrate;
 use crate::numerics::sinc::sinc;
@@ -203,8 +203,8 @@ pub(crate) fn through_grating(
         .sum()
 }
 
-/// Returns the part of the light that a strip, (lowest, highest) in metres, blocks: a double
-/// integral over strip and light, v = (y − y₀)/d₁ and x = y + d₂ v.
+/// Returns the part of the light that a strip, (lowest, highest) in metres, blocks. It is a double
+/// integral over strip and light, with v = (y − y₀)/d₁ and x = y + d₂ v.
 #[must_use]
 pub(crate) fn blocked_by_strip(
     bench: &GaussianBlock,

@@ -1,9 +1,9 @@
 //! Checks against `tests/reference.json`: numbers computed with mpmath at 25 digits, independently
 //! of this crate.
 //!
-//! If a block uses the untruncated Gaussian window, its closed form is checked, and if the field is
-//! made of polygons, the polygon code is checked too, truncated at 3.4 widths, where the window is
-//! 2e-16.
+//! If a block uses the untruncated Gaussian window, its closed form is checked. If its field is
+//! also made of polygons, the polygon code is checked too, with the window truncated at 3.4 widths,
+//! where it is 2e-16.
 
 mod area;
 pub(crate) mod gaussian;

@@ -218,8 +218,9 @@ fn every_step_of_a_reflection() {
     assert_seen("a lobe 5 % wider", last(&wider));
 }
 
-/// Returns the coordinates (x, θ), in the frame of central rays at an angle, of a ray that leaves
-/// the circle at arc length s with the local direction θ, and ∂x/∂s at a fixed direction.
+/// Returns the coordinates (x, θ) of a ray that leaves the circle at arc length s with the local
+/// direction θ, and ∂x/∂s at a fixed direction. The coordinates are in the frame of central rays at
+/// an angle.
 ///
 /// The frame is the one after the reflection: X = c T − sin N. Before it, rays are reversed and X
 /// points the other way.

@@ -1,8 +1,8 @@
 //! The coordinates that aim a leg: directions away from a point, parametrised by two coordinates.
 //!
-//! If a leg runs straight to the next scattering surface, or to a plane across it, the coordinates
-//! are a position there, which lets rays from anywhere on a wide surface meet a narrow window.
-//! Otherwise they are angles, and the landing point is known only to first order.
+//! If a leg runs straight to the next scattering surface, or to a plane across the leg, the
+//! coordinates are a position there. Rays from anywhere on a wide surface can then be aimed at a
+//! narrow window. Otherwise they are angles, and the landing point is known only to first order.
 
 use super::chain::{ScatteringSurface, towards};
 use super::guide::Gaussian;

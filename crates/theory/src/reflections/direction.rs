@@ -43,7 +43,8 @@ impl OutgoingDirections<'_> {
     /// Samples a direction for a point of the unit square.
     ///
     /// `st` is the local position of the point. `guide` gives the angles that reach the window from
-    /// there, `lobe` those that the surface scatters into, with the mirror direction if there is one.
+    /// this position. `lobe` gives the angles that the surface scatters into, with the mirror
+    /// direction if there is one.
     pub(super) fn draw(
         &self,
         [a, b]: [f64; 2],

@@ -1,9 +1,9 @@
 //! Gaussians that guide light into the window, and sampling by them.
 //!
-//! The window is approximated by a Gaussian with the same variances. An affine map takes that back
-//! to the previous leg; a lobe blurs its angles there; the edge of a surface narrows its positions.
-//! The resulting Gaussian at a surface gives the relevant directions at each of its points, and at
-//! the light the relevant rays.
+//! The window is approximated by a Gaussian with the same variances. An affine map takes this
+//! Gaussian back to the previous leg, a lobe blurs its angles, and the edge of a surface narrows
+//! its positions. The resulting Gaussian at a surface gives the relevant directions at each of its
+//! points, and at the light the relevant rays.
 
 use crate::geometry::{
     AffineMap, Matrix, congruent, diagonal, from_fn, inverse, product, sum, times,

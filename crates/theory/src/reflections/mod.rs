@@ -16,10 +16,10 @@
 //! A path ends if it meets a surface out of order, or a surface of the path for a second time. So
 //! no assumption is made about the positions of surfaces.
 //!
-//! In addition there is the chain of first-order operators (Durand et al. 2005, Table 1): affine
-//! maps from one scattering surface to the next, and at each a product with the cosine and a
-//! convolution with the lobe at the central ray. The error of the chain is a sum over the same
-//! paths.
+//! In addition there is the chain of first-order operators (Durand et al. 2005, Table 1). It has
+//! affine maps from one scattering surface to the next; at each surface it has a product with the
+//! cosine and a convolution with the lobe at the central ray. The error of the chain is a sum over
+//! the same paths.
 //!
 //! This module shares no intersection, BRDF evaluation or sampling code with the tracers.
 

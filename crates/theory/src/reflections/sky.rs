@@ -1,8 +1,8 @@
 //! Rays of an environment that are sampled by its radiance and by the window.
 //!
-//! A direction is sampled, then a position: on the first surface if it scatters, otherwise at the
-//! light. Some directions follow the radiance of the environment and the others the guide, so that
-//! neither a bright lobe of the environment nor a narrow one of a BRDF is missed.
+//! A direction is sampled first, then a position: on the first surface if that scatters, otherwise
+//! at the light. Some directions follow the radiance of the environment and the others the guide,
+//! so that neither a bright lobe of the environment nor a narrow one of a BRDF is missed.
 
 use super::aim::DirectionCoordinates;
 use super::chain::{ScatteringSurface, towards};
@@ -45,9 +45,9 @@ enum Coordinates {
 pub(super) type SkyRay = ([f64; 4], f64, Option<DVec3>);
 
 impl<'a> SkyRays<'a> {
-    /// `guide` describes the light at the first scatterer if `aim` is a position there, otherwise
-    /// the rays at the light. `has_lobe` is false if the first scatterer is diffuse: the guide then
-    /// does not restrict directions. Returns `None` if the environment is dark.
+    /// `guide` describes the light at the first scatterer if `aim` is a position on it; otherwise
+    /// it describes the rays at the light. `has_lobe` is false if the first scatterer is diffuse:
+    /// the guide then does not restrict directions. Returns `None` if the environment is dark.
     pub(super) fn new(
         environment: &'a Environment,
         guide: &Gaussian<4>,

@@ -1,9 +1,9 @@
 //! Importance sampling of rays at a plane, and of the light that shines on their starting points.
 //!
 //! Any density that is non-zero wherever there is light gives the same integral. These densities
-//! follow the window, the lobe of the BRDF and the light; if two of them compete, half of the rays
-//! are sampled from each and all are weighted by the mixture (the balance heuristic, Veach and
-//! Guibas 1995).
+//! follow the window, the lobe of the BRDF and the light. If two of them compete, half of the rays
+//! are sampled from each, and all rays are weighted by the mixture (the balance heuristic, Veach
+//! and Guibas 1995).
 
 use super::brdf::narrowest;
 use super::exact::Leaving;
@@ -240,8 +240,8 @@ impl<'a> Lights<'a> {
         self.by_lobe
     }
 
-    /// Returns the sampled parts of the light for a point of the surface, with their densities over
-    /// their share of the mean: one part, or one in each quarter of the unit square.
+    /// Returns the sampled parts of the light for a point of the surface: one part, or one in each
+    /// quarter of the unit square. Each part's density is divided by its share of the mean.
     pub(super) fn each<'b>(
         &'b self,
         leaving: &'b Leaving,

@@ -16,14 +16,15 @@ use glam::DVec3;
 /// Returns the windowed spectrum of the light that a surface scatters, with the derivatives with
 /// respect to given parameters.
 ///
-/// Rays are sampled at the plane, and for each ray one or four parts of the light that shines on
-/// its starting point (docs/theory.md (40)). `chain` is that of [`chain`](super::chain()); it
-/// guides the sampling. The result is bitwise identical on any number of threads.
+/// Rays are sampled at the plane. For each ray, one or four parts of the light that shines on its
+/// starting point are sampled (docs/theory.md (40)). `chain` is that of [`chain`](super::chain());
+/// it guides the sampling. The result is bitwise identical on any number of threads.
 ///
 /// The prediction of the chain, and the derivatives, are differences of the radiance of the same
-/// rays: accurate to about a per cent of their values. Parts of the light move with the light, so
-/// its edges cause no edges in a difference. Shadows do not move with masks. Points that are lit on
-/// only one side of a difference add noise, which decreases with the distance between the sides.
+/// rays. They are accurate to about a per cent of their values. Parts of the light move with the
+/// light, so its edges cause no edges in a difference. Shadows do not move with masks. Points that
+/// are lit on only one side of a difference add noise, which decreases with the distance between
+/// the sides.
 pub(crate) fn predict(
     view: &Observed<ScatteringSystem>,
     chain: Option<&ScatteringChain>,
@@ -79,8 +80,8 @@ fn affordable(system: &ScatteringSystem, budget: RayBudget) -> RayBudget {
     }
 }
 
-/// Returns the prediction of a chain that may differ from that of [`chain`](super::chain()): the
-/// exact field of the surface, and its difference to the chain.
+/// Returns the prediction of a chain, which may differ from that of [`chain`](super::chain()): the
+/// exact field of the surface, and the difference between it and the chain.
 #[must_use]
 pub fn beside(
     view: &Observed<ScatteringSystem>,

@@ -7,8 +7,9 @@ pub const COSINE_CUTOFF: f64 = 0.376;
 /// The parameters of the image of a glossy surface in an environment (Durand et al. 2005, section
 /// 6.2).
 ///
-/// Bandwidths are the largest |Ωv| at a fixed point, the eye, in cycles per unit slope there. They
-/// assume a distant eye: if d is not zero the blur by the cosine, [`COSINE_CUTOFF`], is neglected.
+/// Bandwidths are the largest |Ωv| at a fixed point, the eye, in cycles per unit slope at the eye.
+/// They assume a distant eye: if d is not zero the blur by the cosine, [`COSINE_CUTOFF`], is
+/// neglected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Criterion {
     /// Curvature k, in 1/m, convex positive. The sign matters: a concave surface first reverses the

@@ -3,8 +3,8 @@
 /// Number of steps of a sum up to the largest frequency.
 const STEPS: usize = 3000;
 
-/// Returns the frequency below which a spectrum has each share of its energy, in the unit of
-/// `largest`; `None` for a share that is not reached below `largest`.
+/// Returns, for each share, the frequency below which a spectrum has this share of its energy, in
+/// the unit of `largest`; `None` for a share that is not reached below `largest`.
 ///
 /// `hat` is the transform of an even function, and `energy` is the integral of that function's square, which is ∫|f̂|² over all frequencies (Parseval).
 /// The sum is over midpoints of steps of `largest`/3000.

@@ -8,7 +8,7 @@ use etendue_scene::{Event, Object, Scene};
 use glam::DVec3;
 
 /// Whether rays traced back from a plane find the light. Light without extent is found only where
-/// nothing deflects it before the plane, or before the first surface that scatters it; a point
+/// nothing deflects it before it reaches the plane, or the first surface that scatters it. A point
 /// light is not found from its own position. Rays of a file are never found.
 #[must_use]
 pub fn finds(scene: &Scene, plane: &VirtualPlane) -> bool {

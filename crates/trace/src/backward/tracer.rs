@@ -21,9 +21,9 @@ use glam::DVec3;
 
 /// The backward tracer of a scene, the independent check of [`Tracer`](crate::Tracer).
 ///
-/// For each plane separately, and for each photon, it draws a ray in the plane's window, traces it
-/// back and finds the radiance that arrives along it. Nothing is emitted, aimed or absorbed, and
-/// there is no ledger.
+/// For each plane separately, and for each photon, it draws a ray in the plane's window, traces the
+/// ray back and finds the radiance that arrives along it. Nothing is emitted, aimed or absorbed,
+/// and there is no ledger.
 #[derive(Debug)]
 pub struct Backward {
     light: TracedLight,
@@ -385,10 +385,10 @@ fn radiance_factor(
 }
 
 impl Backward {
-    /// The radiance reflected at the end of a leg, from one direction. The direction is drawn by
-    /// the lobe or, where the leg begins at the light, towards a point of the light, with equal
-    /// probability; both use the density of the mixture (the balance heuristic of Veach and Guibas
-    /// 1995 for one sample).
+    /// The radiance reflected at the end of a leg, from one direction. With equal probability, the
+    /// direction is drawn by the lobe or, where the leg begins at the light, towards a point of the
+    /// light. Both use the density of the mixture (the balance heuristic of Veach and Guibas 1995
+    /// for one sample).
     fn reflected(
         &self,
         leg: usize,

@@ -76,8 +76,8 @@ mod tests {
     /// errors.
     fn deviations(drawn: &Mixture<'_>, claimed: &Mixture<'_>, wi: DVec3) -> Vec<f64> {
         const SAMPLES: u32 = 100_000;
-        // Integrals over the hemisphere; functions of one side of a plane detect lobes that lean to
-        // that side.
+        // Integrals over the hemisphere; functions that are non-zero on one side of a plane detect
+        // lobes that lean to that side.
         let functions: [(Weighting, f64); 3] = [
             (|v| v.z.powi(2), 2.0 * PI / 3.0),
             (|v| v.z * (1.0 + v.x), PI),

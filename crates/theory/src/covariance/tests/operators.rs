@@ -49,8 +49,8 @@ fn a_gaussian_field_has_what_is_traced() {
     assert!(off < 1e-12, "{off}"); // rounding of inverses of condition 10³
 }
 
-/// Tests the definition, ∫ ∇l ∇lᵀ/(4π² ∫ l²), by finite differences of the field itself in (x, u):
-/// rays are followed back through travel and windows, without matrices.
+/// Tests the definition, ∫ ∇l ∇lᵀ/(4π² ∫ l²), by finite differences of the field itself in (x, u).
+/// Its rays are followed back through travel and windows, without matrices.
 #[test]
 fn the_definition_gives_what_is_traced() {
     let [d, e] = [0.7, 0.4];

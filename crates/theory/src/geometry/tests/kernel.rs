@@ -69,8 +69,8 @@ fn laguerre_polynomials_at_even_orders() {
     }
 }
 
-/// Evaluates the definition with its path moved up to a height at which nothing oscillates fast:
-/// the vertical ends are where tan t = ± i coth.
+/// Evaluates the definition with its path moved up to a height at which nothing oscillates fast;
+/// the vertical parts at both ends are where tan t = ± i coth.
 fn by_definition(v: f64, theta: f64) -> f64 {
     let (a, b) = (TAU * v, TAU * theta);
     let height = 0.4;

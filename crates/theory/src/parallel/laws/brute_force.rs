@@ -59,7 +59,7 @@ pub(super) fn brute_force(
             radiance,
             exponent,
         } => (shape.area(), *exponent, *radiance),
-        // At the distance D √(1 + u² + v²).
+        // The distance of the point is D √(1 + u² + v²).
         Light::Point { intensity } => (1.0, -1.0, *intensity),
         other => panic!("no brute force for {other:?}"),
     };

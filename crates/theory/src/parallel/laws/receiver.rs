@@ -27,7 +27,7 @@ fn with_slopes(half: f64, profile: fn(f64) -> Profile) -> Window {
 }
 
 /// The light that leaves the floor is albedo/π times the integral of the incident light over all
-/// slopes, mirrored in x, times the slope window: two ways to compute the same numbers.
+/// slopes, mirrored in x, times the slope window. So the same numbers are computed in two ways.
 #[test]
 fn exitant_radiance_is_what_arrives() {
     let light = lambertian(square([0.05, -0.02], 0.3));

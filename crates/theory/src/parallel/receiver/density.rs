@@ -97,10 +97,10 @@ impl NodeCounts {
 /// Returns the number of nodes that integrate (1 + u² + v²)^(−p) e^(2πifu) over an interval of u to
 /// the error e^(−[`NATS`]).
 ///
-/// The error of the rule is ρ^(−2n) times the largest value on the ellipse around the interval that
-/// extends by b in the imaginary direction, ln ρ = arsinh(2b/length) (Trefethen 2013,
-/// *Approximation Theory and Approximation Practice*, Theorem 19.3). b < 1 avoids the poles, and
-/// the best of several b is taken.
+/// The error of the rule is ρ^(−2n) times the largest value on an ellipse around the interval,
+/// where the ellipse extends by b in the imaginary direction and ln ρ = arsinh(2b/length)
+/// (Trefethen 2013, *Approximation Theory and Approximation Practice*, Theorem 19.3). b < 1 avoids
+/// the poles, and the best of several b is taken.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

@@ -61,8 +61,8 @@ impl KernelAxis {
         sum
     }
 
-    /// Returns the spectrum of the profile in slopes, from its cosines: the factor of K if there is
-    /// no travel.
+    /// Returns the spectrum of the profile in slopes, from its cosines; this is the factor of K if
+    /// there is no travel.
     pub(crate) fn slope_spectrum(&self, nu: f64) -> f64 {
         let half = self.slope.half_width();
         let wave = |frequency: f64| crate::numerics::sinc::sinc(2.0 * half * frequency);

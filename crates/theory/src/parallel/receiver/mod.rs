@@ -4,8 +4,8 @@
 //! A light, masks in planes across the central ray, and the receiver are parallel. A ray that
 //! arrives at (x, y) with slopes (u, v) was at (x − h u, y − h v) a distance h before. So every
 //! shape upstream is seen from a point as the same shape, smaller. The irradiance E(x, y) = ∫ L(u,
-//! v) (1 + u² + v²)⁻² du dv is a signed sum over the light and blockers seen in this way, of
-//! integrals over rectangles and discs (docs/theory.md, section 4b).
+//! v) (1 + u² + v²)⁻² du dv is a signed sum of integrals over rectangles and discs: the light and
+//! the blockers as seen from the point (docs/theory.md, section 4b).
 
 mod density;
 mod exitant;
@@ -197,8 +197,8 @@ impl<'a> Receiver<'a> {
         )
     }
 
-    /// Returns the light of a region that passes barriers, one after the other: all of it, minus
-    /// the light that each shape stops.
+    /// Returns the light of a region that passes several barriers in turn: all of it, minus the
+    /// light that each shape stops.
     fn passed(
         &self,
         bundle: &SlopeProjection,
@@ -234,8 +234,8 @@ impl<'a> Receiver<'a> {
         }
     }
 
-    /// Returns the radiance that leaves the receiver, the same in all directions: albedo / π · E
-    /// (the paper's Eq. 6, whose ρ is the BRDF, albedo / π).
+    /// Returns the radiance that leaves the receiver, which is the same in all directions: albedo /
+    /// π · E (the paper's Eq. 6, whose ρ is the BRDF, albedo / π).
     fn exitance(&self) -> f64 {
         self.albedo / PI
     }

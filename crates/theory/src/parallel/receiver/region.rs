@@ -94,9 +94,9 @@ impl ReceiverRegion {
 
     /// Returns the integral of a density over the region.
     ///
-    /// By Green's theorem this is the integral of A(u, v) = ∫ density du along the boundary over v:
-    /// arcs of the circles, on which everything is smooth, and vertical edges of the rectangle
-    /// (docs/theory.md, formula 16).
+    /// By Green's theorem this is the integral of A(u, v) = ∫ density du along the boundary over v.
+    /// The boundary consists of arcs of the circles, on which everything is smooth, and of vertical
+    /// edges of the rectangle (docs/theory.md, formula 16).
     pub(crate) fn integral(&self, density: &ReceiverDensity<'_>) -> f64 {
         let Some(first) = self.discs.first() else {
             return density.rectangle(self.sides);

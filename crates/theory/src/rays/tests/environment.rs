@@ -135,7 +135,7 @@ fn by_rule(radiance: &dyn Fn([f64; 4]) -> f64, window: &Window, grid: &SliceGrid
 }
 
 /// Tests all quantities that a plane may record on a sphere, at normal and oblique incidence, for
-/// lobes and a picture; the curvature of a concave sphere, a missing cosine and a wrong turn each
+/// lobes and a picture. The curvature of a concave sphere, a missing cosine and a wrong turn each
 /// give a different result.
 #[test]
 fn the_sky_on_a_sphere() {

@@ -20,9 +20,9 @@ fn slices_of(grid: &SliceGrid, value: impl Fn([f64; 4]) -> Complex) -> Slices {
     slices
 }
 
-/// Returns the spectrum at distance d of a projector's field, computed by a Gauss rule over slopes:
-/// on x = d u, y = d v it is the image times √(1 + u² + v²), because off-axis positions are farther
-/// from the point (docs/theory.md, section 2). Omits that factor if not `exact`.
+/// Returns the spectrum at distance d of a projector's field, computed by a Gauss rule over slopes.
+/// On x = d u, y = d v the field is the image times √(1 + u² + v²), because off-axis positions are
+/// farther from the point (docs/theory.md, section 2). Omits that factor if not `exact`.
 fn at_distance(d: f64, width: f64, window: &Window, grid: &SliceGrid, exact: bool) -> Slices {
     let most = (window.x.half_width() / d).min(window.u.half_width());
     // Up to 22 cycles take 70 nodes.
@@ -207,8 +207,8 @@ fn plane_mirror_is_a_travel() {
 
 #[test]
 fn lens_images_a_slide() {
-    // A slide: a Lambertian light of 1 cm² with a grating directly on it, at a = 0.5 m from a lens
-    // of f = 0.3 m; its image is at b = 0.75 m.
+    // A slide: a Lambertian light of 1 cm² with a grating directly on it. It is at a = 0.5 m from a
+    // lens of f = 0.3 m, so its image is at b = 0.75 m.
     let (a, f) = (0.5, 0.3);
     let b = 1.0 / (1.0 / f - 1.0 / a);
     let patch = placed(&Frame::IDENTITY, a, 0.0, [0.0; 2], [0.0; 3]);
@@ -234,6 +234,7 @@ fn lens_images_a_slide() {
     // m/2 = 0.45 for a sharp grating; a window of a few of its periods preserves all but a few per
     // cent of it.
     assert!((sharp - 0.45).abs() < 0.02, "{sharp}");
-    // 5 cm out of focus, slopes of ± 0.05 blur by ± 2.5 mm, a third of a period of 7.5 mm.
+    // At 5 cm out of focus, slopes of ± 0.05 blur the image by ± 2.5 mm, a third of its period of
+    // 7.5 mm.
     assert!(contrast(b + 0.05) < 0.9 * sharp);
 }

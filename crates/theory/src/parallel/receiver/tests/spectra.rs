@@ -69,8 +69,8 @@ fn drawn(bench: &TestReceiver, after: f64, window: &Window, rays: u32) -> Vec<Co
     for point in cube(rays) {
         let [x, y, u, v] = [0, 1, 2, 3].map(|k| halves[k] * (2.0 * point[k] - 1.0));
         let weight = window.value(&TwoPlane { x, y, u, v });
-        // D' = −D, X' = −X and Y' = D' × X' = Y: back along the ray, x in the frame of arrival is
-        // −x'.
+        // D' = −D, X' = −X and Y' = D' × X' = Y. So back along the ray, x in the frame of arrival
+        // is −x'.
         let floor = [-(x - after * u), y - after * v];
         let at = [0, 1].map(|k| bounds.center[k] + bounds.size[k] * (point[4 + k] - 0.5));
         let radiance = 0.6 / PI * bench.added(at, floor) * weight;
@@ -169,7 +169,8 @@ fn error_falls_with_the_square_of_the_spacing() {
         let fine = slices(1024);
         let errors = [32, 64, 128, 256].map(|n| slices(n).relative_difference(&fine));
         let order = libm::log2(errors[0] / errors[3]) / 3.0;
-        // The position of kinks between nodes is random; otherwise the error is of second order.
+        // The position of kinks between nodes is random; apart from this the error is of second
+        // order.
         assert!((1.6..3.5).contains(&order), "{after}: {errors:?} {order}");
         assert!(errors[3] < 1e-4, "{errors:?}"); // the aim at the fewest nodes
     }
