@@ -130,7 +130,8 @@ fn joined(mut parts: Vec<Bvh2>, kind: TreeKind) -> Bvh2 {
         bvh.primitive_indices.extend(&part.primitive_indices);
     }
     bvh.parents = Vec::new();
-    // Parts overlap: some nodes belong elsewhere in the tree.
+    // The boxes of parts overlap, so some nodes belong elsewhere in the tree; reinsertion moves
+    // them.
     ReinsertionOptimizer::default().run(&mut bvh, 0.01, None);
     if kind == TreeKind::Binary {
         bvh.max_depth = bvh.max_depth.max(bvh.depth(0) + 1);

@@ -127,7 +127,7 @@ impl Collapse<'_> {
         let (of_first, _) = shared(&[self.costs[first], self.costs[first + 1]], boxes);
         for (child, mut boxes) in [(first, of_first), (first + 1, boxes - of_first)] {
             let costs = &self.costs[child];
-            // Uses fewer boxes at equal cost.
+            // At equal cost, fewer boxes are used.
             while boxes > 1 && costs[boxes - 1] >= costs[boxes - 2] {
                 boxes -= 1;
             }

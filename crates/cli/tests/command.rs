@@ -159,7 +159,7 @@ fn a_failing_chain_is_told_and_drawn() {
         (told, read("path.svg"), read("report.html"))
     };
     let (told, picture, page) = run("printed", &[]);
-    // cos² 37.24° of the radiance remains.
+    // Of the radiance, cos² 37.24° remains.
     assert!(told.contains("gives the central ray 63.375 %"), "{told}");
     assert!(!told.contains("its rays are off"), "{told}");
     assert!(picture.contains("chain 36.6") && picture.contains("off the chain"));
@@ -250,7 +250,7 @@ fn saved_photons_are_the_ones_measured() {
     let folder = tempfile::tempdir().unwrap();
     let output = run(folder.path(), &["--save", "photons"]);
     let told = String::from_utf8(output.stdout).unwrap();
-    // 20,000 photons at five planes, 40 bytes for each.
+    // 20,000 photons cross five planes, with 40 bytes for each.
     assert!(
         told.starts_with("--save photons: at most 4.0 MB on disk, 0.8 MB for each of 5 planes\n")
     );
@@ -262,12 +262,13 @@ fn saved_photons_are_the_ones_measured() {
         serde_json::from_slice(&fs::read(folder.path().join("light/photons.json")).unwrap())
             .unwrap();
     assert_eq!(index["batch_offsets"].as_array().unwrap().len(), 65);
-    // ∫ L W of the light: (0.1 + sin(0.2π)/2π)² metres² · (1/2)² of slope each way.
+    // The ∫ L W of the light is (0.1 + sin(0.2π)/2π)² metres² · (1/2)², where each direction of
+    // slope contributes 1/2.
     let row = |i: usize, column: usize| {
         let at = 128 + (i * 5 + column) * 8;
         f64::from_le_bytes(bytes[at..at + 8].try_into().unwrap())
     };
-    // Photons aimed at other planes leave at other slopes.
+    // Photons that are aimed at other planes leave the light with other slopes.
     let hann = |t: f64| {
         if t.abs() < 0.5 {
             (std::f64::consts::PI * t).cos().powi(2)

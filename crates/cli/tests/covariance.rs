@@ -137,7 +137,8 @@ fn a_probe_propagates_the_covariance_to_the_camera() {
         let [a, b] = ["measured", "propagated"].map(|of| number(of, "value", i, j));
         let error = ["measured", "propagated"].map(|of| number(of, "error", i, j));
         let both = error[0].hypot(error[1]);
-        // Travel shears the tails of the window beyond the band: a few thousandths of its moment.
+        // Travel shears the tails of the window beyond the band; they are a few thousandths of its
+        // moment.
         let scale = (number("measured", "value", i, i) * number("measured", "value", j, j)).sqrt();
         assert!(
             (a - b).abs() < 4.0 * both + 0.01 * scale,

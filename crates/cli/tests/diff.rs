@@ -205,7 +205,7 @@ fn damaged_folders_are_refused_by_name() {
     fs::remove_file(&summary).unwrap();
     refuses(path, &["cannot read b/summary.json"]);
 
-    // Indices rewritten to match changed files.
+    // The index is rewritten to match the changed files.
     let mut tree: serde_json::Value = serde_json::from_slice(&index).unwrap();
     tree["batches"] = 2.into();
     fs::write(&summary, sealed(tree.clone())).unwrap();
@@ -279,7 +279,7 @@ fn the_same_photons_are_compared_number_by_number() {
         light.ends_with("same") && light.contains("0.000 %"),
         "{text}"
     );
-    // A difference far below the noise, hidden by noise common to both.
+    // The difference is far below the noise, but the noise is common to both.
     found(
         &folder,
         "a fill",

@@ -141,7 +141,7 @@ fn planted_faults_are_seen() {
     let sound = resolved(folder.path(), &[]).unwrap();
     let [pass, fail] = [Verdict::Pass, Verdict::Fail];
     for (edits, expected) in [
-        // A bar of 3 mm made 1 mm wider.
+        // A bar of 3 mm is made 1 mm wider.
         (
             [(
                 "center: (0, 0), size: (0.003, 0.06)",
@@ -149,17 +149,17 @@ fn planted_faults_are_seen() {
             )],
             [pass, pass, fail, fail],
         ),
-        // The screen moved away by 0.5 mm.
+        // The screen is moved away by 0.5 mm.
         (
             [("center: (0, 0, 0.05)", "center: (0, 0, 0.0505)")],
             [pass, pass, pass, fail],
         ),
-        // One per cent more power.
+        // The power is one per cent larger.
         (
             [("file: \"led.tm25ray\"", "file: \"led.tm25ray\", flux: 0.8")],
             [fail; 4],
         ),
-        // Turned by six thousandths of a radian.
+        // The light is turned by six thousandths of a radian.
         (
             [(
                 "file: \"led.tm25ray\"",

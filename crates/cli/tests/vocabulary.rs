@@ -132,7 +132,7 @@ fn the_light_field_is_written_on_its_grid() {
         ["power", "predicted_power"].map(|name| array(&plane.join("full_radial.npz"), name));
     let sigma: Array2<f64> = array(&plane.join("full_radial.npz"), "sigma");
     let zero = [0, 0];
-    // Five jackknife errors: the noise of 20,000 photons.
+    // The tolerance is five jackknife errors, which are the noise of 20,000 photons.
     assert!(
         (power[zero] - predicted[zero]).abs() < 5.0 * sigma[zero],
         "{} {}",

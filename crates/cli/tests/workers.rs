@@ -125,7 +125,7 @@ fn runs_predictions_and_sweeps_have_the_bytes_of_one_process() {
         // therefore get nothing; the run is then repeated.
         let helped = (0..20).any(|_| {
             let sent = same_files(folder().path(), line, 3);
-            // One message reports the process as present, and one follows each order.
+            // A process reports its presence with one message, and answers each order with one.
             sent.iter().sum::<usize>() > 2
         });
         assert!(helped, "{line}: nobody helped");

@@ -183,7 +183,7 @@ fn surfaces_curve_as_they_do() {
     };
     let scaled = |radius: f64| DAffine3::from_scale(DVec3::splat(radius));
     for k in of(Geometry::Sphere, scaled(0.5)) {
-        // Finite differences over a few hundredths of the radius.
+        // Curvatures are finite differences over a few hundredths of the radius.
         assert!((k - 2.0).abs() < 0.03, "{k}");
     }
     // The axis is along X, perpendicular to the plane of incidence.
@@ -194,7 +194,7 @@ fn surfaces_curve_as_they_do() {
     // does not depend on it.
     assert!((along + across - 2.0).abs() < 0.03, "{along}, {across}");
     assert!(along > 1.9 && across < 0.1, "{along}, {across}");
-    // Seen from inside a large sphere.
+    // A large sphere is seen from inside.
     let [along, across] = of(Geometry::Sphere, scaled(5.0));
     assert!(
         (along + 0.2).abs() < 0.003 && (across + 0.2).abs() < 0.003,

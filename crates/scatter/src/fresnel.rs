@@ -24,7 +24,7 @@ fn dielectric(index: f64, cosine: f64) -> f64 {
     if inside <= 0.0 {
         return 1.0;
     }
-    // index · cos of the angle of refraction.
+    // This is the index times the cosine of the angle of refraction.
     let refracted = inside.sqrt();
     let s = (cosine - refracted) / (cosine + refracted);
     let p = (squared * cosine - refracted) / (squared * cosine + refracted);
@@ -144,7 +144,7 @@ mod tests {
                 close(reflectance(&bare, angle.cos()), plain),
                 "no absorption at {angle}"
             );
-            // The same interface from inside, at the angle of refraction.
+            // The same interface is met from inside, at the angle of refraction.
             let inside = libm::asin(libm::sin(angle) / 1.5);
             assert!(
                 close(reflectance(&air, inside.cos()), plain),

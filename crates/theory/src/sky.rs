@@ -71,7 +71,7 @@ impl<'a> SkyDensity<'a> {
             Self::Lobes(lobes) => {
                 let (i, a) = picked(&lobes.shares, a);
                 let (squared, least, axes) = lobes.each[i];
-                // 1 − cos γ, from the quantiles of exp((cos γ − 1)/σ²).
+                // This is 1 − cos γ, from the quantiles of exp((cos γ − 1)/σ²).
                 let fall = -squared * libm::log1p(a * least);
                 let fall = fall.clamp(0.0, 2.0);
                 let sin = (fall * (2.0 - fall)).sqrt();
@@ -134,7 +134,7 @@ impl<'a> Pixels<'a> {
         let (j, down) = picked(&self.rows, a);
         let (i, across) = picked(&self.cells[j], b);
         let h = self.rows.len();
-        // Uniform in the sine of the latitude.
+        // Within a row, the density is uniform in the sine of the latitude.
         let [top, bottom] = [j, j + 1].map(|j| libm::sin(latitude(h, j)));
         let sine = (top + down * (bottom - top)).clamp(-1.0, 1.0);
         let row = h as f64 * (0.5 - libm::asin(sine) / PI);
@@ -226,7 +226,7 @@ mod tests {
                 let (s, c) = libm::sincos(2.4 * t);
                 let cos = (t + 0.5) / 4000.0;
                 let sin = (1.0 - cos * cos).sqrt();
-                // Sums over forward directions.
+                // The sums are over forward directions.
                 let from = environment.origin_of(DVec3::new(sin * c, sin * s, cos));
                 assert!(sky.density(from, 1.0) > 0.0, "{w} x {h}: {from}");
             }

@@ -77,7 +77,7 @@ impl Emitter {
                     return Proposal::new(plane.distance, extent[axis], space, slope);
                 }
                 let (length, half) = (scene.path.first_hit(), half?[axis]);
-                // The slopes of all rays from the light to that region.
+                // These bounds hold for the slopes of all rays from the light to that region.
                 let [low, high] = extent[axis].map(f64::abs);
                 let steepest = (half + low.max(high)) / length;
                 let seen = slopes.map_or(f64::INFINITY, |slopes| slopes[axis]);

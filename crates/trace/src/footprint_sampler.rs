@@ -52,7 +52,7 @@ impl FootprintSampler {
             Object::Mesh(i) => {
                 let mesh = &scene.meshes[i];
                 let pieces = AreaSampler::triangles(&mesh.triangles);
-                // The triangles themselves, regardless of their normals.
+                // Lines are intersected with the triangles themselves, regardless of their normals.
                 let mesh = BlockerMesh::new(&mesh.triangles, None, Frame::IDENTITY);
                 let form = Primitive::Mesh(Box::new(mesh));
                 (vec![tagged(form)], PatternPoints::Flat(pieces))
@@ -91,7 +91,7 @@ impl FootprintSampler {
         self.primitives.each(ray, |at, primitive| {
             let point = start(ray) + at * along;
             let normal = primitive.normal(point);
-            // Per area of the surface.
+            // The density is per area of the surface.
             let density = match &self.points {
                 PatternPoints::Flat(pieces) => 1.0 / pieces.area(),
                 PatternPoints::Smooth(patch) => {

@@ -20,7 +20,7 @@ use std::ops::Range;
 /// A photon leaves the light and crosses the planes in front of the first thing it meets; gratings
 /// on the way attenuate it. Blockers absorb it, and a Lambertian surface absorbs the share 1 −
 /// albedo. Light that the surface at the end of a leg scatters, reflects or refracts crosses the
-/// planes on the next leg, and so on. Light that meets anything else ends there.
+/// planes on the next leg, and so on. A photon that meets anything else ends.
 ///
 /// Light that arrives at a surface with a BRDF, on the side that the surface faces, is booked as
 /// stopped, because the reflected share has no closed form. Light that is scattered onwards, by the

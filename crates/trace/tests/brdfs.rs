@@ -170,8 +170,8 @@ fn mirrored_light_is_what_a_mirror_sends_on() {
 /// from a separate quadrature.
 #[test]
 fn exitant_over_incident_flux_is_the_directional_albedo() {
-    // ∫ f cos θ dω of GGX with α = 0.5, Gauss-Legendre over cos θ and equal steps in azimuth,
-    // converged to 7 digits.
+    // The albedos are ∫ f cos θ dω of GGX with α = 0.5, by Gauss-Legendre over cos θ and equal
+    // steps in azimuth, converged to 7 digits.
     for (angle, albedo) in [(0.6_f64, 0.680_308_7), (1.2, 0.702_574_3)] {
         let (sin, cos) = angle.sin_cos();
         let text = format!(

@@ -144,8 +144,8 @@ fn a_map_is_where_its_axes_put_it() {
         let z = pairs.map(|(a, b)| (a[0] - b[0]).abs() / a[1].hypot(b[1]));
         z.fold(0.0, f64::max)
     };
-    // Six standard errors, and four for differences that share their random numbers. The faint
-    // pixels around the pole are equal.
+    // The bounds are six standard errors, and four for differences that share their random numbers.
+    // The faint pixels around the pole are equal.
     assert!(differs(0, 1) > 6.0, "{}: {found:?}", differs(0, 1));
     assert!(differs(0, 2) < 4.0, "{}: {found:?}", differs(0, 2));
 }
@@ -258,7 +258,7 @@ fn irradiance(light: &str) -> [[f64; 2]; 2] {
         ..Bench::default()
     };
     let scene = bench.scene("Aimed", 400_000);
-    // The integral of Hann windows in x, y, u and v.
+    // This is the integral of Hann windows in x, y, u and v.
     let window = 0.4_f64.powi(4);
     let found = [
         estimates(&Tracer::new(&scene), &scene).0,
@@ -269,7 +269,7 @@ fn irradiance(light: &str) -> [[f64; 2]; 2] {
 
 #[test]
 fn even_light_gives_a_wall_pi_times_its_radiance() {
-    // Uniform to a millionth.
+    // The light is uniform to a millionth.
     let even = "Environment(center: (0, 0, 0), map: Lobes([(from: (1, 2, -1), width: 1000, radiance: 1.5)]))";
     for [found, error] in irradiance(even) {
         assert!(error < 5e-3 * found, "{found} ± {error}");

@@ -143,7 +143,7 @@ impl Draw<'_> {
         let [a, b, _] = self.random;
         let whole = EmissionTarget {
             center: geometry.center,
-            // Slightly wider, for surfaces that touch the sphere.
+            // The disc is slightly wider, for surfaces that touch the sphere.
             radius: 1.001 * geometry.radius,
         };
         let aimed = self.target().unwrap_or(&whole);

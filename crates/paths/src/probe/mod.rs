@@ -40,9 +40,9 @@ pub struct Probe<'a> {
     paths: &'a Paths,
     /// The surfaces; the first is the one the camera sees.
     pub stops: Vec<Stop>,
-    /// The planes: `camera`, and for each surface `leaving_1`, `arriving_1` and so on. At the first
-    /// kind light leaves the surface towards the camera, at the second light arrives at it along
-    /// the mirror direction.
+    /// The planes: `camera`, and for each surface `leaving_1`, `arriving_1` and so on. A
+    /// `leaving` plane sees light that leaves the surface towards the camera, an `arriving` plane
+    /// light that arrives along the mirror direction.
     pub planes: Vec<VirtualPlane>,
     legs: Vec<SurfaceLeg>,
     /// The slope difference between adjacent pixels.

@@ -44,7 +44,7 @@ impl<'a> PhotonProbe<'a> {
         let targets = probe.stops.iter().zip(&probe.legs);
         let target = |(stop, leg): (&Stop, &SurfaceLeg)| EmissionTarget {
             center: stop.position,
-            // Covers the corners of the window, on an inclined surface.
+            // The sphere covers the corners of the window, also on an inclined surface.
             radius: 2.0 * leg.wide(stop.distance) / stop.cosine().max(0.1),
         };
         Self {

@@ -139,8 +139,8 @@ impl Form {
 /// The ray parameters at which the weighted squares of coordinates add up to 1.
 fn roots(start: DVec3, along: DVec3, weights: DVec3) -> Option<[f64; 2]> {
     let a = (weights * along).dot(along);
-    // Measured from the point of the line nearest to the axis or centre, to keep precision far
-    // away.
+    // Positions on the line are measured from its point nearest to the axis or centre, to keep
+    // precision far away.
     let middle = -(weights * start).dot(along) / a;
     let nearest = start + middle * along;
     let left = 1.0 - (weights * nearest).dot(nearest);

@@ -78,7 +78,8 @@ fn white_furnace() {
         let carried = |wi: DVec3| model.bsdf.value(wi, wo) * wi.z.abs();
         let exact: f64 = model.cells(wo).integrals(carried).iter().sum();
         let [[mean, error], [flux, flux_error]] = means(model, wo);
-        // Four and a half standard errors, and the error of the midpoint rule over the cells.
+        // The tolerance is four and a half standard errors, plus the error of the midpoint rule
+        // over the cells.
         let bound = 4.5 * error + 2e-3;
         assert!(
             (mean - exact).abs() < bound,
@@ -96,7 +97,8 @@ fn nothing_is_lost() {
         let wo = at(angle);
         for is_nonlinear in [false, true] {
             let [_, [flux, error]] = means(&plastic(None, is_nonlinear), wo);
-            // Error of the midpoint rule for the internal reflectance of the coat.
+            // The tolerance includes the error of the midpoint rule for the internal reflectance of
+            // the coat.
             assert!(
                 (flux - 1.0).abs() < 4.5 * error + 1e-5,
                 "{angle}: {flux} ± {error}"

@@ -81,7 +81,8 @@ impl SpectralCovariance {
     /// positions, and is infinite along both angles.
     #[must_use]
     pub fn diffused(&self) -> Self {
-        // The columns of P and Q span the pairs (C w, w). Columns without angular frequency stay.
+        // The columns of P and Q span the pairs (C w, w). Columns without angular frequency stay as
+        // they are.
         let mut columns = [0, 1, 2, 3].map(|j| [&self.q, &self.p].map(|m| m.map(|row| row[j])));
         let mut goes = [false; 4];
         for row in [2, 3] {

@@ -455,7 +455,7 @@ mod tests {
                 Complex::from_polar(node.weight, -TAU * phase)
             };
             let plain = rays.iter().map(term).sum::<Complex>() / f64::from(FIRST_NODES);
-            // The error bound of the transform, 2·10⁻⁷ of the mean weight.
+            // The tolerance is the error bound of the transform, 2·10⁻⁷ of the mean weight.
             assert!((value - plain).norm() < 4e-7, "{k} {m} {n}");
         }
     }

@@ -91,8 +91,8 @@ mod tests {
                     worst = f64::max(worst, (derivative - central).norm());
                     largest = f64::max(largest, central.norm());
                 }
-                // Half a second derivative times the forward step of 1e-4; phases here stay below
-                // 20.
+                // The error is half a second derivative times the forward step of 1e-4; phases here
+                // stay below 20.
                 let close = 2e-3 * largest;
                 assert!(worst < close, "{parameter:?}: {}", worst / largest);
             }

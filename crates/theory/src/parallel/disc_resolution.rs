@@ -168,8 +168,8 @@ impl EdgeBandwidth {
     }
 
     /// With the window alone the spectrum is concentrated near zero, so γ is both near Ωx and near
-    /// −Ωu/h. Edges in a plane at distance g spread the spectrum along Ωu = −g Ωx. The line meets
-    /// that direction at γ = (Ωu + g Ωx)/(g − h), and has little content far out.
+    /// −Ωu/h. Edges in a plane at distance g spread the spectrum along Ωu = −g Ωx. The line of
+    /// frequencies meets it at γ = (Ωu + g Ωx)/(g − h); the spectrum has little content far out.
     fn at(&self, plane: usize) -> f64 {
         let h = self.planes[plane];
         let [x, u] = self.frequency;

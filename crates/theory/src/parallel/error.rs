@@ -84,9 +84,10 @@ mod tests {
                 let smooth = errors(Profile::Hann, radius, distances);
                 let hard = errors(Profile::Box, radius, distances);
                 let said = format!("{radius} {distances:?}: {smooth:?} {hard:?}");
-                // Exponential convergence beyond π R Ω nodes.
+                // Convergence is exponential beyond π R Ω nodes.
                 assert!(smooth.iter().all(|e| *e < 1e-7), "{said}");
-                // Corners of the box: n⁻⁴. The largest disc lets 1/500 of the light past.
+                // With the corners of the box, the error falls as n⁻⁴. The largest disc lets 1/500
+                // of the light pass.
                 assert!(hard.iter().all(|e| *e < 5e-5), "{said}");
             }
         }

@@ -285,7 +285,8 @@ mod tests {
                     })
                     .sum();
                 let off = (sum * cells.cell_area() - spectrum.half[[0, m, n]]).norm();
-                // Cells of 1/128 of the half-width, and the neglected tail of pictures.
+                // The tolerance covers cells of 1/128 of the half-width, and the neglected tail of
+                // pictures.
                 assert!(
                     off < 1e-3 * spectrum.at_zero(),
                     "{exponent} {m} {n}: {off:e}"

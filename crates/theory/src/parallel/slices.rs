@@ -262,7 +262,7 @@ mod tests {
 
     #[test]
     fn agrees_far_from_unit_scales() {
-        // A millimetre window 1 km from a light of 10 m: shears of 10⁶ half-widths.
+        // A window of a millimetre, 1 km from a light of 10 m, causes shears of 10⁶ half-widths.
         let chain = chain(10.0, &[(999.0, blockers(2, 2e-3, 1e-3)), (1.0, vec![])]);
         let window = window(Profile::Hann(1e-3), Profile::Hann(0.02));
         let grid = SliceGrid {

@@ -308,7 +308,7 @@ mod tests {
                 for power in [0.5, -1.5, -2.0, -10.0, -50.0] {
                     let (worst, rank, terms) = check([profile, profile], power);
                     let scale = libm::pow(1.0 + 2.0 * half * half, f64::max(power, 0.0));
-                    // A few times the residuals of 6e-9 and 2e-9.
+                    // The tolerance is a few times the residuals of 6e-9 and 2e-9.
                     assert!(worst < 2e-8 * scale, "{profile:?} {power}: {worst:e}");
                     assert!(half > 0.5 || rank <= 5 && terms <= 24, "{rank} {terms}");
                 }

@@ -220,7 +220,8 @@ impl<'a> RaySampler<'a> {
                 let (point, normal) = plane.point([x, y])?;
                 let along = DVec3::new(slopes[0], slopes[1], 1.0);
                 let start = point - point.z * along;
-                // dx dy of the light over dx dy of the plane, from the area of the surface.
+                // This is dx dy of the light divided by dx dy of the plane, from the area of the
+                // surface.
                 let spread = (normal.dot(along) / normal.dot(plane.frame.d)).abs();
                 let density = of_x * of_y * of_light / spread;
                 // Light from behind meets the front of the surface at another point first.

@@ -87,7 +87,8 @@ impl<F: RayField> Finder<'_, F> {
     fn count(&self, grid: &SliceGrid) -> usize {
         let [rho, nu] = [grid.rho.max(), grid.nu.max()];
         let window = [self.window.x, self.window.y, self.window.u, self.window.v];
-        // Cycles per unit of a coordinate at the light, from phases and from the window.
+        // The number of cycles per unit of a coordinate at the light, from phases and from the
+        // window.
         let cycles = |k: usize| {
             let column = self.neighbourhood.1.map(|row| row[k]);
             let phase =

@@ -114,7 +114,7 @@ pub(crate) fn bent(
         Specular::Mirror => Some(direction - normal * (2.0 * direction.dot(normal))),
         Specular::Refraction { front, back } => {
             let cos = -direction.dot(normal);
-            // As seen from the incident side.
+            // Index ratio and normal are those seen from the incident side.
             let (normal, cos, ratio) = if cos > 0.0 {
                 (normal, cos, front / back)
             } else {

@@ -166,8 +166,8 @@ fn reflection<'a>(
             after: Factor::One,
             weight: None,
         }],
-        // Content of angles 0.04 wide reaches ± 30, shifted by the correlation of positions and
-        // angles.
+        // Content of angles 0.04 wide reaches to ± 30, and is shifted by the correlation of
+        // positions and angles.
         lattice: Lattice::circle(60.0),
     }
 }
@@ -258,7 +258,8 @@ fn traced(
     let mut sum = Complex::from(0.0);
     // 0.55 is eight standard deviations of the light on the surface.
     for (s, ds) in lattice(0.0, 0.55, 60) {
-        // Light of standard deviation 0.05, relative to the normal there.
+        // The light has a standard deviation of 0.05, and its angles are relative to the normal
+        // there.
         for (incident, di) in lattice(theta0 - k * s, 0.45, 60) {
             let ([x, theta], _) = seen(k, theta0, s, incident);
             let light: f64 = bells.iter().map(|bell| bell.value([-x, theta])).sum();

@@ -311,7 +311,7 @@ fn on_surface(
     scatterer: &ScatteringSurface,
 ) -> Option<Gaussian<4>> {
     let width = surface.width(surface.hit);
-    // The variance along an axis, for a disc or a rectangle.
+    // The variance is that along an axis, for a disc or a rectangle.
     let variance = match surface.outline {
         Some([x, y]) => (x * x + y * y) / 24.0,
         None => 0.25 * surface.patch.aperture * surface.patch.aperture,

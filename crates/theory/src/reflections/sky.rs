@@ -112,7 +112,7 @@ impl<'a> SkyRays<'a> {
         let [u, v] = [direction.x / forward, direction.y / forward];
         let ([x, y], per_area) = match (target, &self.aim) {
             (Some(target), DirectionCoordinates::Patch { patch, .. }) if target.z > -AT_LIGHT => {
-                // dx dy at the light over the area of the coordinates on the patch.
+                // This is dx dy at the light divided by the area of the coordinates on the patch.
                 let normal = patch.normal(target);
                 let spread = (normal.dot(direction) / normal.dot(patch.frame.d)).abs() / forward;
                 let start = target - target.z * DVec3::new(u, v, 1.0);

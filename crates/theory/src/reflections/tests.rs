@@ -281,7 +281,8 @@ fn two_diffuse_surfaces_are_a_sum_over_the_first() {
     }
     let wanted = 0.5 / PI * irradiance * (2.0 * small).powi(4);
     let off = found.slices.at_zero() / wanted - 1.0;
-    // Four standard errors of the paths (7·10⁻⁴), and the round edge of the wall in squares of 3 mm.
+    // The tolerance is four standard errors of the paths (7·10⁻⁴), plus the error from the round
+    // edge of the wall in squares of 3 mm.
     assert!(off.abs() < 3e-3, "{off:e} {:?}", found.error);
 }
 

@@ -133,8 +133,8 @@ impl Mirrored {
         let block = |map: &AffineMap<4>, row: usize, column: usize| -> Matrix<2> {
             crate::geometry::from_fn(|i, j| map.matrix[row + i][column + j])
         };
-        // The coordinates in which rays of the light's central point, or of the axis of a beam,
-        // vary.
+        // These are the coordinates in which rays of the light's central point, or of the axis of a
+        // beam, vary.
         let free = match system.light {
             Light::Environment { .. } => return None,
             Light::Beam { .. } => 0,
@@ -142,11 +142,12 @@ impl Mirrored {
         };
         let onto = &chain.onto;
         let (places, _) = inverted(&block(onto, 0, free))?;
-        // Change of the angles of incidence per position on the surface.
+        // This is the change of the angles of incidence per position on the surface.
         let per_place = product(&block(onto, 2, free), &places);
         let [s, t, theta, phi] = onto.offset;
         let arrives = times(&per_place, &[s, t]);
-        // The sum of the outgoing and incident angles: the angles from the mirror direction.
+        // The sum of the outgoing and the incident angles gives the angles from the mirror
+        // direction.
         let by = |column: usize| {
             let angles = block(&off, 2, column);
             let through = product(&per_place, &block(&off, 0, column));
@@ -380,7 +381,7 @@ impl LobeDensity {
             return 0.0;
         }
         let slopes = [half.x / half.z, half.y / half.z];
-        // Density per steradian of normals; four times their cosine converts to incident
+        // The density is per steradian of normals; four times their cosine converts it to incident
         // directions.
         let per_normal = bell_density(self.width, slopes) / half.z.powi(3);
         per_normal / (4.0 * half.dot(self.wo).abs())

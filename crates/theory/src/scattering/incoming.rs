@@ -48,7 +48,7 @@ impl Masks<'_> {
             // du dv = dω / cos³.
             LightPart::Sky { radiance, .. } => radiance * secant(slopes).powi(3),
             LightPart::Whole if light.is_distant() => emitted(light, [a, b, u, v]),
-            // Converts flux per du dv to radiance, with du dv = dx dy / z².
+            // Flux per du dv is converted to radiance, with du dv = dx dy / z².
             _ => emitted(light, [a, b, u, v]) * secant(slopes).powi(4) / (z * z),
         };
         // Light begins in its plane, even light from an environment.

@@ -20,7 +20,7 @@ pub fn energy_below<const N: usize>(
     let mut inside = 0.0;
     for i in 0..STEPS {
         let low = i as f64 * step;
-        // Counts both signs of the frequency.
+        // The factor counts both signs of the frequency.
         let here = 2.0 * step * hat(low + 0.5 * step).powi(2);
         for (found, share) in found.iter_mut().zip(shares) {
             let wanted = share * energy - inside;
@@ -48,9 +48,9 @@ mod tests {
         let expected = 1.959_964 / (4.0 * PI).sqrt();
         assert!((found.unwrap() - expected).abs() < 1e-6); // steps squared
         assert_eq!(most, None);
-        // ∫ cos² over the half-circle; ∫ (1 + v²)⁻³ over all slopes.
+        // The energies are ∫ cos² over the half-circle, and ∫ (1 + v²)⁻³ over all slopes.
         let [cosine] = energy_below(cosine_hat, FRAC_PI_2, [0.99], 4.0);
-        // 0.376183 from an independent sum of 2·10⁶ steps.
+        // The value 0.376183 is from an independent sum of 2·10⁶ steps.
         assert!((cosine.unwrap() - 0.376_183).abs() < 1e-5, "{cosine:?}"); // its digits, and steps squared
         let [slopes] = energy_below(g_hat, 0.375 * PI, [0.99], 4.0);
         assert!((slopes.unwrap() - 0.467).abs() < 1e-3, "{slopes:?}"); // three digits are known

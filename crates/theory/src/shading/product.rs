@@ -128,7 +128,8 @@ mod tests {
             spacing: 0.05,
             reach: 6.0,
         };
-        // A wide Gaussian modulation of frequency 2, compared with the wave itself.
+        // The texture is a wide Gaussian modulation of frequency 2; it is compared with the wave
+        // itself.
         let slow = |[x, _]: [f64; 2]| bell(1e3, x - 2.0);
         let fine = Lattice {
             spacing: 1e-4,

@@ -453,7 +453,7 @@ impl Backward {
         let (point, normal, area) = plane_on_leg.point([x, y])?;
         let (at_light, _) = connection(light, point)?;
         let along = DVec3::new(at_light.u, at_light.v, 1.0);
-        // dA over du dv of the light, or over its dx dy.
+        // This is dA over du dv of the light, or over its dx dy for distant light.
         let cosine = along.dot(normal).abs();
         let per_ray = if light.is_distant() {
             cosine

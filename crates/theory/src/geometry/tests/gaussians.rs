@@ -41,7 +41,7 @@ fn spectrum_of_a_mapped_gaussian() {
 
 #[test]
 fn spectrum_of_a_map_is_the_transform_of_the_mapped_field() {
-    // An asymmetric field, (1 + x − θ/2) exp(−π(…)), transformed numerically after the map.
+    // An asymmetric field, (1 + x − θ/2) exp(−π(…)), is transformed numerically after the map.
     let map = AffineMap::<2>::incidence(0.5).then(&AffineMap::<2>::curvature(0.8));
     let field = |[x, t]: [f64; 2]| {
         let gauss = libm::exp(-std::f64::consts::PI * (4.0 * x * x + 2.0 * x * t + 9.0 * t * t));

@@ -98,8 +98,8 @@ fn other_rules_of_refraction_do_not_converge() {
     let in_plane = AffineMap::<2>::refraction(theta0, &GLASS).unwrap();
     let across = AffineMap::<2>::refraction(0.0, &GLASS).unwrap();
     let off = AffineMap::<4>::incidence(theta2).inverse().unwrap();
-    // Three mistakes: latitudes refracted by the rule for longitudes; no refraction across the
-    // plane of incidence; the cosine of the incident side on the way back.
+    // There are three mistakes: latitudes refracted by the rule for longitudes; no refraction
+    // across the plane of incidence; and the cosine of the incident side on the way back.
     let wrong = [
         (AffineMap::<2>::linear(in_plane.matrix), theta0, theta2),
         (AffineMap::identity(), theta0, theta2),
@@ -142,7 +142,7 @@ fn foci_of_a_hollow_sphere() {
     ]; // Coddington
     for (axis, expected) in expected.into_iter().enumerate() {
         let traced = crossing(axis);
-        // e² = 1e-8, and a curvature of order one.
+        // The error is e² = 1e-8, times a curvature of order one.
         assert!((traced - expected).abs() < 1e-7, "{traced}");
         let got = -map[axis][axis] / map[axis + 2][axis];
         assert!((got - expected).abs() < 1e-14, "{got}"); // rounding

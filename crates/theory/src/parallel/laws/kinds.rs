@@ -40,7 +40,7 @@ fn error(chain: &Chain, value: impl Fn([f64; 4]) -> Complex) -> f64 {
 
 fn assert_agrees(name: &str, chain: &Chain) {
     let error = error(chain, |k| at(chain, &hann(), k));
-    // The error of quasi-random points with edges: better than 1/√200000 = 2.2e-3.
+    // The error of quasi-random points at edges is below 1/√200000 = 2.2e-3.
     assert!(error < 1e-3, "{name}: {error:e}");
 }
 

@@ -149,7 +149,7 @@ fn a_phase_is_a_place() {
         let value = |chain: &Chain| at(chain, &hann(), k);
         let scale = zero(&chain(0.3, &[(1.0, vec![])]));
         assert!((value(&full_turn) - value(&none)).norm() < 1e-14 * scale); // rounding of the phase
-        // The two add up to a neutral filter.
+        // The two gratings add up to a neutral filter.
         let sum = value(&half_turn) + value(&none);
         let open = value(&chain(0.3, &[(1.0, vec![])]));
         assert!((sum - open).norm() < 1e-14 * scale); // rounding

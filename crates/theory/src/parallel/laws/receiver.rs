@@ -56,7 +56,7 @@ fn exitant_radiance_is_what_arrives() {
             let expected =
                 at(&arriving, &all, [-x, y, 0.0, 0.0]) * (ALBEDO / PI * hann(u) * hann(v));
             let error = (at(&leaving, &seen, [x, y, u, v]) - expected).norm() / largest;
-            // The error of the receiver's rule of second order with about 400 nodes.
+            // The receiver's rule is of second order and has about 400 nodes; this is its error.
             assert!(error < 1e-5, "{error:e}");
         }
     }

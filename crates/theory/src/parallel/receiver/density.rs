@@ -342,7 +342,7 @@ mod tests {
             };
             for sides in [[[-0.2, 0.25], [-0.1, 0.3]], [[0.3, 0.8], [0.2, 0.21]]] {
                 let error = density.rectangle(sides) / brute(&density, sides) - 1.0;
-                // The accuracy stated at NATS.
+                // This is the accuracy stated at NATS.
                 assert!(error.abs() < 3e-12, "{frequency} {sides:?} {error:e}");
             }
         }

@@ -283,7 +283,8 @@ impl ExitantTable {
         let axis = &self.axes[1];
         let kernel = axis.at(&self.coordinates[1], [0.0; 2]).into_iter();
         let kernel: Array1<f64> = kernel.map(|k| k.re).collect();
-        // The table includes the area of a node; along x a value is needed.
+        // The values of the table include the area of a node; along x they are divided by the
+        // spacing, because a value per length is needed.
         let spacing = 2.0 * self.axes[0].reach() / self.coordinates[0].len() as f64;
         (self.values.dot(&kernel) / spacing).to_vec()
     }

@@ -321,7 +321,7 @@ fn all_ways_to_draw_the_sky_agree() {
         assert!(found.len() > 1, "{plane:?}");
         for other in &found[1..] {
             let off = other / found[0] - 1.0;
-            // Nets of 2¹⁸ rays, sampled in four coordinates.
+            // The tolerance is for nets of 2¹⁸ rays, sampled in four coordinates.
             assert!(off.abs() < 5e-3, "{found:?}");
         }
     }

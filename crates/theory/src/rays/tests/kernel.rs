@@ -18,7 +18,8 @@ fn nodes(count: usize) -> Vec<RayNode> {
 
 #[test]
 fn plain_summation() {
-    // An odd number of rays, larger than one block; more powers than between two recomputations.
+    // The number of rays is odd and larger than one block, and there are more powers than between
+    // two recomputations.
     let nodes = nodes(777);
     let axis = |half, spacing| FrequencyAxis { half, spacing };
     let grid = SliceGrid {

@@ -25,7 +25,7 @@ fn slices_of(grid: &SliceGrid, value: impl Fn([f64; 4]) -> Complex) -> Slices {
 /// farther from the point (docs/theory.md, section 2). Omits that factor if not `exact`.
 fn at_distance(d: f64, width: f64, window: &Window, grid: &SliceGrid, exact: bool) -> Slices {
     let most = (window.x.half_width() / d).min(window.u.half_width());
-    // Up to 22 cycles take 70 nodes.
+    // Seventy nodes are enough for up to 22 cycles.
     let nodes: Vec<_> = gauss_legendre(100)
         .into_iter()
         .map(|(t, weight)| {
@@ -70,7 +70,7 @@ fn projector_over_a_distance() {
         let expected = at_distance(d, 0.3, &window, &grid, true);
         let off = got.slices.relative_difference(&expected);
         assert!(off < GOOD && got.error.unwrap() < GOOD, "{off:e}");
-        // The test detects that factor.
+        // The test detects that the factor is left out.
         let without = at_distance(d, 0.3, &window, &grid, false);
         let told = got.slices.relative_difference(&without);
         assert!(told > 10.0 * GOOD, "{told}");
@@ -90,7 +90,7 @@ fn beam_over_a_distance() {
     let expected = slices_of(&grid, |[x, y, ..]| {
         Complex::from(a * b * libm::exp(-PI * (a * a * x * x + b * b * y * y)))
     });
-    // The cut excludes exp(−π (0.49/0.16 + 0.49/0.09)).
+    // The cut excludes a share exp(−π (0.49/0.16 + 0.49/0.09)).
     let off = got.slices.relative_difference(&expected);
     assert!(off < 1e-9, "{off:e}");
 }
@@ -187,7 +187,8 @@ fn plane_mirror_is_a_travel() {
     );
     let straight = system(light, vec![]);
     let got = exact(&folded, &after(&folded, 0.5), &window, &grid);
-    // The frame flips: x' = −x, so azimuths φ become π − φ and (ρ, ν) their negatives; y' = y.
+    // The frame flips, so that x' = −x and y' = y: azimuths φ become π − φ, and (ρ, ν) become their
+    // negatives.
     let expected = exact(&straight, &after(&straight, 1.5), &window, &grid);
     let full = expected.slices.full();
     let mut turned = Slices::zeros(grid);
@@ -231,8 +232,8 @@ fn lens_images_a_slide() {
         slices.half[[0, 1, 1]].norm() / slices.at_zero()
     };
     let sharp = contrast(b);
-    // m/2 = 0.45 for a sharp grating; a window of a few of its periods preserves all but a few per
-    // cent of it.
+    // A sharp grating has m/2 = 0.45; a window of a few of its periods preserves all but a few per
+    // cent of this.
     assert!((sharp - 0.45).abs() < 0.02, "{sharp}");
     // At 5 cm out of focus, slopes of ± 0.05 blur the image by ± 2.5 mm, a third of its period of
     // 7.5 mm.

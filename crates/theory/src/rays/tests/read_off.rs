@@ -121,7 +121,7 @@ fn chain_is_the_derivative_of_the_rays() {
         let mut plane = after(&system, 0.65);
         let off_by = off(&system, &plane, Edition::Corrected);
         assert!(off_by < CLOSE, "{off_by:e} {:?}", system.elements);
-        // A plane rotated about the ray, with its origin displaced.
+        // The plane is rotated about the ray, and its origin is displaced.
         let x = plane.frame.x * 0.8 + plane.frame.y * 0.6;
         let origin = plane.frame.origin + x * 0.01;
         plane.frame = Frame::new(origin, plane.frame.d, x).unwrap();

@@ -361,7 +361,8 @@ fn wrong_operators_are_seen() {
     };
     let least = error(&system, &sound);
     let mut turned = sound.clone();
-    // Treats the central ray as if it came along the normal: no cosine, and no mirror direction.
+    // The central ray is treated as if it came along the normal, so there is no cosine and no
+    // mirror direction.
     turned.onto.offset[2] = 0.0;
     assert!(error(&system, &turned) > 5.0 * least);
     let mut sheared = sound;
@@ -445,7 +446,7 @@ fn diffuse_sphere_under_an_environment_is_the_known_product() {
         EnvironmentMap::LatLong(Arc::new(map))
     };
     for (map, most) in [
-        // The error of a net of 2¹⁸ points.
+        // This is the error of a net of 2¹⁸ points.
         (EnvironmentMap::Lobes(vec![lobe]), 1e-5),
         // The net has the same error here, and there are kinks between pixels, which are 0.006 rad
         // apart over widths of 0.25: (1/40)²/24.
