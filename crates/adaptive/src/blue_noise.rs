@@ -225,7 +225,7 @@ impl PointGrid {
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "a number of a cell, clamped"
+    reason = "the number of a cell, clamped to the grid"
 )]
 fn cell(at: f64, cells: usize) -> usize {
     ((at / CELL as f64).max(0.0) as usize).min(cells - 1)

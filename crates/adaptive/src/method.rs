@@ -297,7 +297,7 @@ impl AdaptiveRun<'_> {
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
-            reason = "a number of samples"
+            reason = "a whole number of samples, not negative"
         )]
         let count = count.round() as usize;
         let seed = self.plan.seed.wrapping_add(round << 32);
@@ -439,7 +439,7 @@ const MIN_CONTRAST: f64 = 0.02;
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "a number of a pixel, clamped"
+    reason = "the number of a pixel, clamped to the picture"
 )]
 fn pixel_at(at: [f64; 2], size: [usize; 2]) -> [usize; 2] {
     [0, 1].map(|k: usize| (at[k].max(0.0) as usize).min(size[k] - 1))

@@ -226,7 +226,7 @@ fn unlike(place: &SeenSurface, sample: &SeenSurface) -> f64 {
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "numbers of pixels, clamped"
+    reason = "the numbers of pixels, clamped to the picture"
 )]
 fn pixels([low, high]: [f64; 2], count: usize) -> Range<usize> {
     let low = low.max(0.0) as usize;

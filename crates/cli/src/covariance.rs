@@ -32,7 +32,7 @@ const NAMES: [&str; 3] = ["covariance.png", "covariance.svg", "covariance.csv"];
 /// `etendue covariance`: returns the exit code.
 #[expect(
     clippy::too_many_lines,
-    reason = "one command from arguments to files, in the order in which it goes"
+    reason = "one command from arguments to files, in the order of its steps"
 )]
 pub(crate) fn covariance(args: &CovarianceArgs) -> Result<u8, Failure> {
     let mut scene = load::scene(&args.scene.source(), |run| args.photons.set(run))?;

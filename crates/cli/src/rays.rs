@@ -69,7 +69,7 @@ fn check_memory(path: &Path, length: usize) -> Result<(), Failure> {
     let free = machine::available_memory();
     if needed > free {
         return Err(Failure::cannot_run(format!(
-            "{}: reading it takes {:.1} GB, and {:.1} GB are free",
+            "{}: reading it takes {:.1} GB of memory, but only {:.1} GB are free",
             path.display(),
             needed as f64 / 1e9,
             free as f64 / 1e9

@@ -36,7 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 println!("{} {}", seconds()? - start, resident()? - memory);
             }
             Some((kind, file)) => {
-                let space = built.as_ref().ok_or("a mesh is built first")?;
+                let space = built.as_ref().ok_or("a build line must come first")?;
                 let rays = read(file)?;
                 let mut met = Vec::with_capacity(rays.len());
                 let start = seconds()?;

@@ -113,7 +113,7 @@ impl<'a> Bins<'a> {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "clamped first; what is not a number becomes zero"
+        reason = "the value is clamped first, and NaN becomes zero"
     )]
     fn cell(&self, axis: usize, coordinate: f64) -> usize {
         let cell = (coordinate - self.low[axis]) * self.per_length[axis];

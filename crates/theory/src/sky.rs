@@ -144,7 +144,7 @@ impl<'a> Pixels<'a> {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "not negative, and cut to the size of the map"
+        reason = "the value is not negative, and is limited to the size of the map"
     )]
     fn density(&self, from: DVec3) -> f64 {
         let [column, row] = self.map.place(from);

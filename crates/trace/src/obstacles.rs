@@ -323,7 +323,7 @@ impl Around {
     /// distances are exact.
     #[expect(
         clippy::float_cmp,
-        reason = "rounding would only take the exact way from it"
+        reason = "rounding errors would only prevent the use of the exact case"
     )]
     fn flat(frame: &Frame, shape: &Shape) -> Primitive {
         let across = frame.d.z.abs() == 1.0 && frame.x.x.abs() == 1.0;

@@ -177,7 +177,7 @@ pub(crate) fn chosen(targets: &[EmissionTarget], by: f64) -> Option<&EmissionTar
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "a number of a target, from 0"
+        reason = "the number of a target, counted from 0"
     )]
     let found = (number >= 0.0).then_some(number as usize);
     found.and_then(|number| targets.get(number))

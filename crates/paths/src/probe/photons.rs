@@ -85,7 +85,7 @@ impl<'a> PhotonProbe<'a> {
 
     #[expect(
         clippy::too_many_lines,
-        reason = "the life of a photon, from surface to surface"
+        reason = "one photon from surface to surface, in the order of events"
     )]
     fn photon(&self, number: u64, record: &mut dyn FnMut(usize, Crossing)) {
         let paths = self.probe.paths;

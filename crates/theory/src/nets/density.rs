@@ -79,7 +79,7 @@ impl LinearDensity {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "a share, 0 to 1, of the cells"
+        reason = "a share from 0 to 1 of the number of cells"
     )]
     pub(crate) fn draw(&self, share: f64) -> [f64; 2] {
         let last = self.below.len() - 2;
@@ -106,7 +106,7 @@ impl LinearDensity {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "checked to be within the interval first"
+        reason = "the coordinate was checked to be within the interval"
     )]
     pub(crate) fn value(&self, t: f64) -> f64 {
         let at = (t - self.low) / self.step;

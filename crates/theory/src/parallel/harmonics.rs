@@ -237,7 +237,7 @@ impl Folds {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "whole numbers within reach"
+        reason = "the values are whole numbers within reach"
     )]
     fn indices(self, index: usize) -> impl Iterator<Item = (usize, f64)> {
         let reach = self.reach() as f64;

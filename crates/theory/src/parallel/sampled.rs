@@ -24,7 +24,7 @@ impl Chain {
         over: Over<'_>,
         budget: RayBudget,
     ) -> Predicted {
-        const ONE_KIND: &str = "a parameter changes no kind of chain";
+        const ONE_KIND: &str = "a parameter does not change the kind of a chain";
         match self.followed(over.0) {
             NetDomain::Rays(view) => {
                 let moved = self.moved(parameters, over, |chain| match chain.followed(over.0) {

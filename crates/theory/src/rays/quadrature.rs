@@ -82,7 +82,7 @@ impl<F: RayField> Finder<'_, F> {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "not negative, and cut down"
+        reason = "the number is not negative, and has an upper limit"
     )]
     fn count(&self, grid: &SliceGrid) -> usize {
         let [rho, nu] = [grid.rho.max(), grid.nu.max()];

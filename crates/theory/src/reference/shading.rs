@@ -2,7 +2,7 @@
 
 #![expect(
     clippy::print_stdout,
-    reason = "how close each block is, and how far each planted fault, is worth a look"
+    reason = "the deviations of blocks and of planted faults are printed for the reader"
 )]
 
 use super::*;
@@ -25,7 +25,7 @@ fn assert_near(what: &str, off: f64) {
 }
 
 fn assert_seen(what: &str, off: f64) {
-    assert!(off > FAULT, "{what} is not seen: {off:e}");
+    assert!(off > FAULT, "{what} is not detected: {off:e}");
     println!("  {what}: {off:.2e}");
 }
 

@@ -82,7 +82,7 @@ impl NodeCounts {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "rounded, not below zero"
+        reason = "the value is rounded and not negative"
     )]
     fn of(&self, length: f64) -> [usize; 2] {
         let ratio = self.longest / length.abs();
@@ -104,7 +104,7 @@ impl NodeCounts {
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "a small positive number, rounded up"
+    reason = "the value is small, positive and rounded up"
 )]
 fn nodes(power: f64, frequency: f64, length: f64) -> usize {
     let power = power.abs();

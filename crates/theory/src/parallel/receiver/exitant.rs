@@ -293,7 +293,7 @@ impl ExitantTable {
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "a positive number, rounded up"
+    reason = "the value is positive and rounded up"
 )]
 fn places(nodes: f64) -> usize {
     nodes.ceil() as usize

@@ -193,7 +193,7 @@ impl ReceiverRegion {
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "1 to 4 parts"
+    reason = "there are 1 to 4 parts"
 )]
 fn along(disc: &Disc, [start, end]: [f64; 2], from: f64, density: &ReceiverDensity<'_>) -> f64 {
     let quarters = ((end - start) / FRAC_PI_2).ceil().max(1.0) as usize;
