@@ -118,7 +118,7 @@ fn step(operator: &Operator) -> RayStep<'_> {
         Operator::Travel { distance, .. } => RayStep::Travel(*distance),
         Operator::Visibility { mask, .. } => RayStep::Mask(Barrier::new(0.0, mask)),
         Operator::Cosine { .. } => RayStep::Cosine,
-        Operator::Diffuse { name, .. } => panic!("rays of a file cannot go past the diffuse {name}"),
+        Operator::Diffuse { name, .. } => panic!("rays of a file cannot pass the diffuse {name}"),
     }
 }
 
