@@ -124,8 +124,8 @@ fn largest_radius() -> f64 {
 impl Crowd {
     fn new(points: &[PicturePoint], wide: usize, high: usize) -> Self {
         let most = 2.0 * largest_radius();
-        // Limits the weight of candidates that are close by chance: they do not crowd their whole
-        // region (Yuksel 2015, Eq. 4).
+        // This limits the weight of candidates that are close by chance and do not crowd their
+        // whole region (Yuksel 2015, Eq. 4).
         let kept = (CANDIDATES as f64).recip();
         let least = most * (1.0 - kept * kept.sqrt()) * 0.65;
         let grid = PointGrid::new(points, wide, high);
@@ -244,8 +244,8 @@ mod tests {
         squares.fold(f64::INFINITY, f64::min).sqrt()
     }
 
-    /// Random points have some nearest neighbours at distance 0; Yuksel's keep three quarters of
-    /// the maximum radius (his Table 1 has 0.73 to 0.82 of 2 r).
+    /// Some nearest neighbours of random points are at distance 0. Yuksel's points keep three
+    /// quarters of the maximum radius (his Table 1 has 0.73 to 0.82 of 2 r).
     #[test]
     fn points_keep_their_distance() {
         let even = vec![Some(Metric::even(0.05)); 100 * 80];
@@ -256,7 +256,7 @@ mod tests {
         let closest = all
             .map(|i| nearest(&points, i))
             .fold(f64::INFINITY, f64::min);
-        // This many random points have a minimum distance of about 0.03.
+        // Random points of the same number have a minimum distance of about 0.03.
         assert!(closest > 0.6 * 2.0 * largest_radius(), "{closest}");
     }
 

@@ -7,8 +7,8 @@
 //! direction of the picture is Ω_ρ |∂r + ∂p/d'| cycles per pixel. In the plane of incidence of a
 //! sphere this is Ω_ρ |1 + d (cos θ₀/d' + 2k)/cos θ₁| times the angle of a pixel: Eq. 21 with its
 //! missing factors. Without the term in d' it is Eq. 20. Finite differences on the screen include
-//! the angle of view, the distance and both curvatures, as the paper states. As printed, the
-//! equations are functions of the larger curvature, and isotropic.
+//! the angle of view, the distance and both curvatures, as the paper states. The equations as
+//! printed use the larger curvature alone, and are isotropic.
 
 use crate::metric::Metric;
 use crate::visible::{OFFSETS, SeenPlace, SeenSurface, Visible};
@@ -32,7 +32,8 @@ pub(crate) fn criterion(
     Some(lobe.plus(shadow))
 }
 
-/// The squared bandwidth by Eqs. 20 and 21 as printed, seen from `eye`, if the surface has a lobe.
+/// The squared bandwidth by Eqs. 20 and 21 as printed, as seen from `eye`; `None` if the surface
+/// has no lobe.
 pub(crate) fn printed(
     visible: &Visible,
     pixel: [usize; 2],

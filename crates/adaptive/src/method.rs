@@ -314,8 +314,8 @@ impl AdaptiveRun<'_> {
         let wider: Vec<ShadedSample> = samples
             .iter()
             .map(|(sample, noise)| {
-                // Textures give no contrast on materials with one part: their factor is multiplied
-                // in later.
+                // Textures cause no contrast on materials with one part, because their factor is
+                // multiplied in later.
                 let factors = match sample.surface.factors {
                     [base, 0.0] => [1.0, base],
                     [base, lobe] => [base, lobe],

@@ -65,7 +65,8 @@ pub(crate) fn reconstruct(
     (0..bands).into_par_iter().flat_map_iter(of).collect()
 }
 
-/// Sums over samples at one point, with positions relative to it in units of the metric.
+/// Sums over samples at one point. The positions of samples are relative to the point, in units of
+/// the metric.
 #[derive(Clone, Copy, Debug)]
 struct LocalSums {
     weight: f64,
@@ -74,7 +75,7 @@ struct LocalSums {
     values: [ValueSums; 2],
 }
 
-/// The sums of one value.
+/// The sums for one value.
 #[derive(Clone, Copy, Debug)]
 struct ValueSums {
     value: f64,

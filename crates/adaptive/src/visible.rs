@@ -56,7 +56,7 @@ pub(crate) struct SeenSurface {
     /// The highest frequency that the material preserves around the axis, cycles per radian; 0 if
     /// it is black.
     pub(crate) cutoff: f64,
-    /// The texture factors of base and lobe. They are divided out of the shading.
+    /// The texture factors of base and lobe. The shading is divided by these factors.
     pub(crate) factors: [f64; 2],
 }
 

@@ -92,7 +92,7 @@ fn the_same_bytes_on_any_threads() {
     }
 }
 
-/// The number of samples is as requested, except for those whose points hit nothing.
+/// The number of samples is as requested, except for samples whose points hit nothing.
 #[test]
 fn samples_are_spent() {
     for method in ALL {

@@ -14,8 +14,8 @@ struct Collapse<'a> {
     costs: Vec<[f32; WIDTH]>,
 }
 
-/// Returns the eight-wide tree made from a binary tree, with its leaves: the first of their boxes,
-/// and the number of boxes.
+/// Returns the eight-wide tree made from a binary tree, with its leaves. A leaf is given by its
+/// first box and the number of its boxes.
 ///
 /// # Panics
 ///

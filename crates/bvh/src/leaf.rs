@@ -113,7 +113,7 @@ fn size<S: Simd>(p: [Lanes<S>; 2]) -> Lanes<S> {
     p[0].abs() + p[1].abs()
 }
 
-/// Leaves of triangles, which pass on the triangles that a ray may meet.
+/// Leaves of triangles; they pass on the triangles that a ray may meet.
 pub(crate) struct TriangleLeaves<'a, M> {
     pub(crate) leaves: &'a [Leaf],
     pub(crate) sight: LeafRay,

@@ -25,8 +25,8 @@ const PADDING: f64 = 1e-5;
 /// errors in f64.
 const ROUNDING: f64 = 1e-13;
 
-/// The largest coordinate of a box; f32 can represent four times as much. The farthest corner of a
-/// patch is at 1e28.
+/// The largest coordinate of a box; f32 can represent numbers four times as large. The farthest
+/// corner of a patch is at 1e28.
 const MAX_EXTENT: f64 = 1e36;
 
 impl Space {

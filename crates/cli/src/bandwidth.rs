@@ -225,9 +225,9 @@ fn beyond_criteria(plane: &VirtualPlane, applicability: &Applicability) -> Vec<S
     warnings
 }
 
-/// Warns of a bandwidth at the end of the grid: the grid limits it. The bandwidth of a spectrum
-/// that is flat over the grid is 95 % of the frequency at which the last cell ends, half a step
-/// beyond the largest frequency.
+/// Warns of a bandwidth at the end of the grid, where the grid limits it. The bandwidth of a
+/// spectrum that is flat over the grid is 95 % of the frequency at which the last cell ends, half a
+/// step beyond the largest frequency.
 fn warning(plane: &VirtualPlane, bandwidth: f64) -> Option<String> {
     const NEAR: f64 = 0.9;
     let nu = plane.grid.nu;

@@ -63,7 +63,7 @@ fn length(scene: &Scene) -> String {
     ends.collect::<Vec<_>>().join(", ")
 }
 
-/// The ray map of the light, z' = A z, and where parallel rays meet.
+/// The ray map of the light, z' = A z, and the foci of parallel rays.
 fn rays(chain: &AffineChain) -> Vec<String> {
     let matrix = chain.map.rays().matrix;
     let row = |(name, row): (&str, &[f64; 4])| {

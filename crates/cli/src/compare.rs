@@ -20,7 +20,7 @@ use serde_json::json;
 use std::ops::Range;
 use std::path::PathBuf;
 
-/// The fewest batches that errors are computed from; scenes have the same limit.
+/// The fewest batches from which errors are computed; scenes have the same limit.
 const LEAST_BATCHES: usize = 32;
 
 /// `etendue compare`: returns the exit code.
@@ -63,8 +63,8 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<u8, Failure> {
     })
 }
 
-/// Reads the measurement and the predictions, if they fit together, and returns the files they were
-/// read from.
+/// Reads the measurement and the predictions and checks that they fit together. Returns them with
+/// the files they were read from.
 fn read(args: &CompareArgs) -> Result<(MeasuredScene, Vec<PathBuf>), Failure> {
     let shards = args.measured.iter();
     let shards: Vec<Stored<Held>> = shards

@@ -59,8 +59,8 @@ pub(crate) fn conclude(
     Ok(exit_code(ending.expect, &summary))
 }
 
-/// The exit code under `--expect`: photons are expected to agree with every exact prediction, and a
-/// first-order chain to have a wrong map.
+/// The exit code under `--expect`: photons must agree with every exact prediction, and must show
+/// that the map of a first-order chain is wrong.
 fn exit_code(expect: Option<Expect>, summary: &Summary) -> u8 {
     let is_wrong = |plane: &PlaneReport| {
         let chain = plane.first_order.as_ref();

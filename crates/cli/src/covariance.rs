@@ -122,7 +122,7 @@ fn choose(scene: &mut Scene, names: &[String]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The numbers of a plane: traces its photons again, on a 4D grid.
+/// The numbers of a plane; for them, its photons are traced again, on a 4D grid.
 fn of_plane(
     (source, measurement, index): (&dyn PhotonSource, &Measurement, usize),
     applicability: &Applicability,

@@ -28,7 +28,7 @@ pub(crate) fn deliver(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Prints a message to standard error, whether it can be printed or not.
+/// Prints a message to standard error; a failure to print is ignored.
 pub(crate) fn tell(message: &str) {
     let message = if stderr().is_terminal() {
         wrapped(message)

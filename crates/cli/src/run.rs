@@ -69,7 +69,7 @@ pub(crate) fn run_with(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u
             if let Some(code) = finished(&folder, &scene, args) {
                 return Ok(code);
             }
-            // Other processes share the folder, so nobody owns the result until it is measured.
+            // Other processes share the folder, so no process owns the result until it is measured.
             results = None;
         }
         stages(

@@ -8,8 +8,8 @@ use std::path::Path;
 use std::process::{Output, Stdio};
 use std::time::{Duration, Instant};
 
-/// Runs `etendue run fig9b` into `out`, with more arguments. The noise of so few photons is 18 % of
-/// a spectrum.
+/// Runs `etendue run fig9b` into `out`, with more arguments. With so few photons, the noise is 18 %
+/// of a spectrum.
 fn run(out: &Path, arguments: &[&str]) -> Output {
     etendue()
         .arg("run")
@@ -181,7 +181,8 @@ fn noise_leaves_a_run_undecided() {
     );
 }
 
-/// Photons are doubled until noise is low, and the result is that of a run with as many.
+/// Photons are doubled until noise is low, and the result is that of a run with the final number of
+/// photons.
 #[test]
 fn a_target_error_is_reached() {
     let folder = tempfile::tempdir().unwrap();
@@ -293,7 +294,8 @@ fn saved_photons_are_the_ones_measured() {
     assert!(!folder.path().join("light/photons.npy").exists());
 }
 
-/// Bad input: one clear message, the right exit code, nothing written, no panic.
+/// Bad input leads to one clear message and the right exit code; nothing is written and nothing
+/// panics.
 #[test]
 fn bad_input_is_refused_with_a_message() {
     let folder = tempfile::tempdir().unwrap();

@@ -156,7 +156,8 @@ fn a_changed_index_is_refused() {
         let _index = changed(&folder.join(name), change);
         refused(folder, COMPARE, &[&[&name[..2]], parts].concat());
     }
-    // The cases above had a matching hash in the index; without it any changed bit is detected.
+    // In the cases above the index had a matching hash; without a matching hash, any changed bit is
+    // detected.
     for name in [a, p] {
         let whole = fs::read(folder.join(name)).unwrap();
         for i in 0..75 {
@@ -362,8 +363,8 @@ fn parts_are_regular_files_below_their_folder() {
     assert_eq!(call(folder, COMPARE).status.code(), Some(0));
 }
 
-/// The meshes are part of a scene: parts measured with another mesh do not fit, and the copies of
-/// meshes are checked.
+/// Meshes are part of a scene: parts that were measured with another mesh do not fit, and the
+/// copies of meshes are checked.
 #[test]
 fn meshes_are_part_of_the_scene() {
     let folder = tempfile::tempdir().unwrap();

@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// The small scene with enough photons for a verdict, and runs of it into folders.
+/// The small scene with enough photons for a verdict, and several runs of it, each in a folder.
 fn runs(each: &[&str]) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("small.ron"), SCENE).unwrap();

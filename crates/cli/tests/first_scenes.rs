@@ -279,7 +279,7 @@ fn what_is_set_is_told_by_what_has_set_it() {
     refused(&output.output().unwrap(), message);
 }
 
-/// Likely mistakes give warnings: the scene is described as usual, and the command succeeds.
+/// A likely mistake gives a warning; the scene is still described, and the command succeeds.
 #[test]
 fn likely_mistakes_are_warned_of() {
     for (from, to, warning) in [

@@ -173,7 +173,7 @@ fn planted_faults_are_seen() {
     }
 }
 
-/// Power is taken from the file, in W, whatever its unit; rays that go back are left out.
+/// Power is taken from the file, in W, whatever the file's unit; rays that go back are left out.
 #[test]
 fn power_is_in_watts() {
     let folder = folder();

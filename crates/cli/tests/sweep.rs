@@ -130,7 +130,7 @@ fn a_sweep_goes_on_from_what_is_there() {
     };
     let made = |i: usize| fs::metadata(summary(i)).unwrap().ino();
     let before = [0, 1, 3].map(made);
-    // One summary is lost, another was changed by hand.
+    // One summary is lost, and another one was changed by hand.
     fs::remove_file(summary(2)).unwrap();
     fs::write(summary(3), "{}").unwrap();
     let refused = call(path, PITCH);

@@ -81,8 +81,8 @@ fn in_crew_of(lines: &[String]) -> (u8, Vec<usize>) {
     )
 }
 
-/// Checks that `lines` on several processes leave the same files as `line` alone, whatever `{}`
-/// stands for, except for times.
+/// Checks that `lines`, run on several processes, leave the same files as `line` run alone, except
+/// for times.
 fn same_files(path: &Path, line: &str, processes: usize) -> Vec<usize> {
     let scene = path.join("small.ron").display().to_string();
     let with = |out: &str| {

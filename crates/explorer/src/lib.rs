@@ -3,8 +3,8 @@
 //!
 //! A [`Setup`] holds the settings. A [`PathPlace`] is a place on the path. Its light field and
 //! spectrum are those of [`etendue_theory`]. Between parallel planes they equal the results of
-//! `etendue predict` for the scene that [`scene`] writes. On a curved glossy receiver they are
-//! first-order, without the cosine, and rays off the sphere are traced on request.
+//! `etendue predict` for the scene that [`scene`] writes. On a curved glossy receiver they hold to
+//! first order and lack the cosine; exact rays reflected by the sphere are traced on request.
 //!
 //! For WebAssembly the crate is a JavaScript library (`page`); `.ci/explorer` builds the page.
 

@@ -68,7 +68,7 @@ impl Explorer {
         }
     }
 
-    /// The names of the planes, one per line; planes that take long to compute are marked with a *.
+    /// The names of the planes, one per line; a * marks planes that take long to compute.
     #[must_use]
     pub fn planes(&self) -> String {
         let all = PathPlace::all(&self.setup).into_iter();
@@ -98,8 +98,8 @@ impl Explorer {
             .collect()
     }
 
-    /// The spectrum and then the light field at a plane by ray tracing, in the same order; empty
-    /// where they are exact already.
+    /// The spectrum and then the light field at a plane by ray tracing, in the same order as above;
+    /// empty where the values above are exact already.
     #[must_use]
     pub fn follow(&self, plane: usize) -> Vec<f64> {
         let plane = PathPlace::all(&self.setup)[plane];

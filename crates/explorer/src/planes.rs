@@ -53,7 +53,7 @@ impl PathPlace {
     }
 
     /// Spectrum and light field on a glossy receiver by nets of rays, as in `etendue predict`;
-    /// `None` elsewhere, where nothing is first-order.
+    /// `None` for other planes, where nothing is approximated to first order.
     #[must_use]
     pub fn followed(self, setup: &Setup) -> Option<(Slices, Projection)> {
         let found = rays::followed(self, setup)?;

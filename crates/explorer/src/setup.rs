@@ -47,7 +47,7 @@ pub enum SettingKey {
     NuStep,
 }
 
-/// A setting with its name in URLs, its label and its range.
+/// A setting, with its name in URLs, its label and its range.
 #[derive(Clone, Copy, Debug)]
 pub struct SettingEntry {
     /// The key.

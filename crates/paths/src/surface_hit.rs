@@ -159,7 +159,8 @@ impl Paths {
             if let Some(shadow) = self.shadow(seen, numbers.draw()) {
                 if shadow.nearness > 0.0 {
                     blocked += shadow.light;
-                    // The geometric mean: a few very near blockers do not dominate the shadow.
+                    // This is the geometric mean, so that a few very near blockers do not dominate
+                    // the shadow.
                     sharp += shadow.light * libm::log(shadow.nearness.min(nearest.recip()));
                 } else {
                     lit += shadow.light;

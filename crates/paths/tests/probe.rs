@@ -190,8 +190,8 @@ fn surfaces_curve_as_they_do() {
     let turned = DMat3::from_cols(DVec3::Z * 0.5, DVec3::Y * 0.5, -4.0 * DVec3::X);
     let to_world = DAffine3::from_mat3_translation(turned, DVec3::X * 2.0);
     let [along, across] = of(Geometry::Cylinder, to_world);
-    // The ray is nearly along the normal, so the plane of incidence is off by some degrees; the sum
-    // does not depend on it.
+    // The ray is nearly along the normal, so the plane of incidence is inaccurate by some degrees;
+    // the sum of the curvatures does not depend on it.
     assert!((along + across - 2.0).abs() < 0.03, "{along}, {across}");
     assert!(along > 1.9 && across < 0.1, "{along}, {across}");
     // A large sphere is seen from inside.

@@ -4,7 +4,7 @@
 use etendue_field::Fresnel;
 use glam::DVec3;
 
-/// Returns the share that is reflected at an angle of incidence with this cosine, 0 to 1.
+/// Returns the share that is reflected at an angle of incidence whose cosine, 0 to 1, is given.
 #[inline]
 #[must_use]
 pub fn reflectance(fresnel: &Fresnel, cosine: f64) -> f64 {

@@ -80,7 +80,7 @@ impl Microfacets {
     }
 
     /// Returns the density of [`Self::sample_unmasked`], over the whole sphere. A normal that is
-    /// seen from behind mirrors like its opposite.
+    /// seen from behind reflects like its opposite.
     #[inline]
     #[must_use]
     pub fn unmasked_density(&self, wi: DVec3, wo: DVec3) -> f64 {
@@ -129,7 +129,8 @@ impl Microfacets {
     /// at most √π times.
     #[inline]
     pub(crate) fn sample_normal(&self, wo: DVec3, [a, b]: [f64; 2]) -> DVec3 {
-        // Transforms to the hemisphere from which the ellipsoid of normals is stretched.
+        // The direction is transformed to the space in which the ellipsoid of normals is a
+        // hemisphere.
         let stretch = DVec3::new(self.alpha[0], self.alpha[1], 1.0);
         let view = (stretch * wo).normalize();
         let across = DVec3::new(-view.y, view.x, 0.0).try_normalize();
@@ -165,7 +166,8 @@ impl Microfacets {
         1.0 / (PI * self.alpha[0] * self.alpha[1] * sum * sum)
     }
 
-    /// Returns (x/αx)² + (y/αy)². Unlike 1 − z² it keeps its digits for normals close to Z.
+    /// Returns (x/αx)² + (y/αy)². Unlike 1 − z², this expression keeps its digits for normals close
+    /// to Z.
     #[inline]
     fn spread(&self, normal: DVec3) -> f64 {
         let [x, y] = [normal.x / self.alpha[0], normal.y / self.alpha[1]];

@@ -22,8 +22,8 @@
 //! from the same surfaces. [`covariance`] follows second moments of spectra along the same paths.
 //! [`shading`] has cosines, BRDF lobes, Fresnel factors, textures and environments, in 2D.
 //!
-//! This crate has no access to scenes, photons or measured spectra; otherwise agreement would be no
-//! evidence.
+//! This crate has no access to scenes, photons or measured spectra; otherwise its agreement with a
+//! measurement would be no evidence.
 //!
 //! ```
 //! use etendue_field::{FrequencyAxis, Light, Mask, Profile, Rectangle, Shape, SliceGrid, Window};

@@ -28,8 +28,8 @@ pub enum Parameter {
     GratingPhase(usize),
     /// The angle of incidence θ₀ of the central ray: the patch alone turns about B.
     Incidence(usize),
-    /// A curvature of a patch, k₁ (0) or k₂ (1). Curvatures equal to it change with it, and so does
-    /// k₃. The vertex stays.
+    /// A curvature of a patch, k₁ (0) or k₂ (1). All curvatures equal to this one change with it,
+    /// and so does k₃. The vertex stays.
     Curvature(usize, usize),
     /// The index of refraction of the denser side of a surface.
     Index(usize),

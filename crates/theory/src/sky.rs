@@ -18,8 +18,8 @@ pub(crate) enum SkyDensity<'a> {
 pub(crate) struct Lobes {
     /// Cumulative shares of the light of the Gaussians.
     shares: Vec<f64>,
-    /// For each Gaussian: σ², exp(−2/σ²) − 1, and a frame with D towards where most of its light
-    /// comes from.
+    /// For each Gaussian: σ², exp(−2/σ²) − 1, and a frame whose D points towards where most of its
+    /// light comes from.
     each: Vec<(f64, f64, Frame)>,
     /// The integral of the radiance over all directions.
     total: f64,
@@ -97,7 +97,7 @@ impl<'a> Pixels<'a> {
         let raster = map.raster();
         let [w, h] = [raster.width(), raster.height()];
         let pixel = |i: usize, j: usize| raster.value(i as f64 + 0.5, j as f64 + 0.5, true);
-        // Between pixel centres the radiance interpolates the pixels, and so does the weight.
+        // Between pixel centres the radiance is interpolated from the pixels, and so is the weight.
         let weight = |i: usize, j: usize| {
             let columns = [i + w - 1, i, i + 1].map(|i| i % w);
             let rows = [j.saturating_sub(1), j, (j + 1).min(h - 1)];
@@ -107,7 +107,7 @@ impl<'a> Pixels<'a> {
             };
             let [a, b, c] = rows.map(row);
             let from = map.direction([i as f64 + 0.5, j as f64 + 0.5]);
-            // Environments shine forward; a cell on the border shines in part.
+            // Environments shine forward; a cell on the border shines through a part of itself.
             let shines = from.dot(forward) > -(0.5 * PI / h as f64 + PI / w as f64);
             let cosine = from.dot(normal).max(GRAZING);
             if shines {

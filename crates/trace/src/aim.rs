@@ -34,7 +34,7 @@ enum SkyStrategy {
     Onto(FootprintSampler),
 }
 
-/// A plane that looks at light which arrives on a surface.
+/// A plane that sees light arriving on a surface.
 #[derive(Debug)]
 struct Facing {
     plane_on_leg: PlaneOnLeg,
@@ -85,12 +85,12 @@ impl Facing {
 }
 
 impl FromSky {
-    /// Aimed emission has, for the window of each plane on the first leg, a strategy by the plane's
-    /// profiles and one by the environment. For each other plane it has one for the part of the
-    /// first surface that the plane sees, and one by the plane's profiles if the plane is on that
-    /// surface. Plain emission draws positions uniformly over the windows of the planes on the
-    /// first leg, over the first surface, and over the windows of planes on that surface. It always
-    /// draws directions by the environment.
+    /// Aimed emission has two strategies for the window of each plane on the first leg: one by the
+    /// plane's profiles and one by the environment. For each other plane it has a strategy for the
+    /// part of the first surface that the plane sees, and one by the plane's profiles if the plane
+    /// is on that surface. Plain emission draws positions uniformly over the windows of the planes
+    /// on the first leg, over the first surface, and over the windows of planes on that surface. It
+    /// always draws directions by the environment.
     pub(crate) fn new(scene: &Scene, environment: &Environment) -> Self {
         let aimed = scene.run.emission == Emission::Aimed;
         let mut strategies = Vec::new();

@@ -49,8 +49,8 @@ impl Emitter {
     /// Aimed emission is a mixture, with equal shares, of one proposal for each virtual plane whose
     /// window the light reaches. For a plane on a later leg, the proposal aims at the part of the
     /// first surface from which light can get to the plane. Where the light reaches no window,
-    /// emission is plain, and every window stays empty. For an environment, aimed or plain, only
-    /// rays that a plane may see are emitted, and the ledger counts only these.
+    /// emission is plain, and every window stays empty. For an environment, aimed or plain emission
+    /// covers only rays that a plane may see, and the ledger counts only these.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
         let light = scene.light.clone();
@@ -67,8 +67,8 @@ impl Emitter {
             let half = (!is_window)
                 .then(|| reach(scene, plane, 0, &corners))
                 .flatten();
-            // A plane on the surface that ends the leg sees some slopes only, a plane beyond it
-            // any.
+            // A plane on the surface that ends the leg sees some slopes only; a plane beyond it
+            // sees any slope.
             let slopes = PlaneOnLeg::new(scene, i, plane).slopes(w);
             let slopes = slopes.filter(|_| plane.leg == 0);
             let along = |axis: usize, space: &Profile, slope: &Profile| {

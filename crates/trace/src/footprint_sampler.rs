@@ -82,8 +82,8 @@ impl FootprintSampler {
         }
     }
 
-    /// The density of lines through a sampled point, with respect to the dx dy in which they cross
-    /// the beginning of the leg. It is summed over all points in which a line meets the surface,
+    /// The density of lines through a sampled point, with respect to dx dy where they cross the
+    /// beginning of the leg. It is summed over all points in which a line meets the surface,
     /// because the line can be drawn through each of them.
     pub(crate) fn density(&self, ray: &TwoPlane) -> f64 {
         let along = direction(ray);
@@ -192,8 +192,8 @@ mod tests {
                 whole += density * cell;
                 covered += if density > 0.0 { cell } else { 0.0 };
             }
-            // The mid-point rule: the density jumps at the outline, in 1 % of the cells, and has
-            // poles where lines graze.
+            // The mid-point rule has an error: the density jumps at the outline, in 1 % of the
+            // cells, and has poles where lines graze.
             assert!((whole - 1.0).abs() < 0.02, "{surface}: {whole}");
             let inverse = samples.iter().map(|ray| 1.0 / ground.density(ray));
             let mean = inverse.sum::<f64>() / samples.len() as f64;

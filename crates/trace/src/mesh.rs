@@ -53,7 +53,8 @@ impl BlockerMesh {
         first
     }
 
-    /// The last triangle on the line of a ray before `until`, as in [`Self::first`].
+    /// The last triangle on the line of a ray before `until`; of several at the same distance, it
+    /// is chosen as in [`Self::first`].
     pub(crate) fn last(&self, ray: &TwoPlane, until: f64) -> Option<(f64, usize)> {
         let mut last: Option<(f64, Reverse<usize>)> = None;
         self.along(ray, -1.0, [until, f64::NEG_INFINITY], |at, i| {
@@ -92,7 +93,7 @@ impl BlockerMesh {
     }
 
     /// Visits triangles along a ray, forward or back (`way` 1 or −1). `meet` returns the distance
-    /// up to which they still matter.
+    /// up to which triangles still matter.
     #[inline]
     fn along(
         &self,
@@ -241,7 +242,7 @@ mod tests {
         }
     }
 
-    /// Rays at the common edges and corners of a sheet of triangles never pass through it.
+    /// Rays at the common edges and corners of a sheet of triangles never pass through the sheet.
     #[test]
     fn triangles_that_share_edges_leak_nothing() {
         const N: u32 = 16;

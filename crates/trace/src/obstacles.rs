@@ -206,7 +206,7 @@ impl Obstacles {
         met.product()
     }
 
-    /// Whether a ray meets an object anywhere beyond `from`, whatever it meets first.
+    /// Whether a ray meets an object anywhere beyond `from`, even if it meets other things first.
     pub(crate) fn meets(&self, object: Option<Object>, ray: &TwoPlane, from: f64) -> bool {
         let other = |what: &HitKind| !what.is(object);
         self.primitives
@@ -319,8 +319,8 @@ impl Around {
         Primitive::Mesh(Box::new(BlockerMesh::new(&mesh.triangles, normals, self.0)))
     }
 
-    /// A shape in the plane of a frame. Where it lies across the leg with axes along the leg's own,
-    /// distances are exact.
+    /// A shape in the plane of a frame. If the frame is across the leg and its axes are along the
+    /// leg's own, distances are exact.
     #[expect(
         clippy::float_cmp,
         reason = "rounding errors would only prevent the use of the exact case"

@@ -55,9 +55,10 @@ fn points(patch: &Patch, start: DVec3, along: DVec3) -> impl Iterator<Item = DVe
 
 impl PlaneOnLeg {
     /// The ray at the beginning of the leg that has the coordinates `seen` at the plane, and dA
-    /// over dx dy there; `None` if there is none.
+    /// over dx dy there; `None` if there is no such ray.
     ///
-    /// On a surface itself, light is counted per area of it (docs/theory.md, section 8); everywhere else dA is dx dy.
+    /// On a surface itself, light is counted per area of the surface (docs/theory.md, section 8);
+    /// everywhere else dA is dx dy.
     pub(crate) fn leg_ray(&self, seen: &TwoPlane) -> Option<(TwoPlane, f64)> {
         match &self.surface {
             None => Some((seen.travelled(-self.distance), 1.0)),
@@ -129,8 +130,8 @@ impl PlaneOnLeg {
         }
     }
 
-    /// The distance along its heading, from `from` on, at which light on a ray of the leg comes to
-    /// the plane; `None` if it does not.
+    /// The distance along its heading, from `from` on, at which light on a ray of the leg reaches
+    /// the plane; `None` if it does not reach it.
     ///
     /// A plane on a surface records light where it meets the surface. An oblique surface extends
     /// before and behind its central hit, so an occluder may shade one part of it alone. Light that
@@ -181,7 +182,7 @@ impl PlaneOnLeg {
     }
 
     /// A ray of the leg in the coordinates of the plane, with its contribution there; `None` when
-    /// it does not meet the surface.
+    /// the ray does not meet the surface.
     #[inline]
     pub(crate) fn at_plane(&self, ray: &TwoPlane, weight: f64) -> Option<(TwoPlane, f64)> {
         match &self.surface {
@@ -194,7 +195,7 @@ impl PlaneOnLeg {
 impl SurfaceCoordinates {
     /// The frame of the local normal at a point, on the side of the normal at the central hit;
     /// `None` where the normals differ by a right angle or more. Of two points with the same
-    /// coordinates only one remains, because a line meets the surface once from each side.
+    /// coordinates only one has such a frame, because a line meets the surface once from each side.
     fn local(&self, patch: &Patch, point: DVec3) -> Option<Frame> {
         let side = patch.normal(self.frame.origin).dot(self.frame.d).signum();
         let normal = side * patch.normal(point);

@@ -29,7 +29,7 @@ pub(crate) struct PrimitiveSet<T> {
     primitives: Vec<TaggedPrimitive<T>>,
 }
 
-/// The number of primitives up to which all are tested in turn, as fast as the start of a
+/// The number of primitives up to which all are tested in turn, which is as fast as the start of a
 /// traversal.
 const MAX_TRIED_IN_TURN: usize = 4;
 

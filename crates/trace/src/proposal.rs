@@ -38,8 +38,8 @@ impl ProfileDensity {
         Self { half, kind }
     }
 
-    /// For slopes, up to `half`, of light that a surface receives: weighted by the cosine as in 2D
-    /// (docs/theory.md (6)).
+    /// The density for slopes, up to `half`, of light that a surface receives. It is weighted by
+    /// the cosine as in 2D (docs/theory.md (6)).
     pub(crate) fn cosine(half: f64) -> Self {
         let kind = ProposalKind::Cosine;
         Self { half, kind }
@@ -73,8 +73,8 @@ impl ProfileDensity {
     pub(crate) fn quantile(&self, p: f64) -> f64 {
         let s = match self.kind {
             ProposalKind::Constant => 2.0 * p - 1.0,
-            // One formula serves both sides, because a branch would be mispredicted every other
-            // time.
+            // One formula serves both signs of t, because a branch would be mispredicted every
+            // other time.
             ProposalKind::Tent => {
                 let beyond = p.min(1.0 - p).max(0.0);
                 (1.0 - (2.0 * beyond).sqrt()).copysign(p - 0.5)

@@ -36,7 +36,7 @@ pub(crate) fn reach(
             if leg > 0 && ahead < MIN_COSINE * this.length {
                 return None;
             }
-            // Points behind the light cannot be reached from it.
+            // Points behind the light cannot be reached from the light.
             let share = (this.length - from.z) / ahead.max(MIN_COSINE * this.length);
             let at = from.lerp(*to, share);
             half = [half[0].max(at.x.abs()), half[1].max(at.y.abs())];
@@ -93,7 +93,7 @@ fn corners(scene: &Scene, plane: &VirtualPlane) -> Vec<DVec3> {
     box_corners(-half, half).map(to_light).to_vec()
 }
 
-/// The corners of the part of its surface that a plane's window sees, or of a larger part.
+/// The corners of the part of a plane's surface that the plane's window sees, or of a larger part.
 fn seen(scene: &Scene, plane: &VirtualPlane) -> Vec<DVec3> {
     let leg = &scene.path.legs[plane.leg];
     let arriving = looks_at_surface(plane);
@@ -252,7 +252,7 @@ fn tube(plane: &VirtualPlane, along: f64, leg: &Leg) -> Vec<[DVec3; 2]> {
 }
 
 /// The point where the line through two points meets the plane of a surface, in the surface's
-/// frame; `None` when the line leaves to the other side of the surface or along it.
+/// frame. `None` when the line runs to the other side of the surface or along it.
 fn meets(from: DVec3, to: DVec3, surface: &Frame, side: f64) -> Option<DVec3> {
     let [a, b] = [from, to].map(|p| surface.to_local(p));
     let leaves = (b - a).z;

@@ -52,7 +52,7 @@ pub(crate) enum Spread<'a> {
     },
 }
 
-/// Practically no bound: slopes towards a surface are bounded by its size alone.
+/// Practically no bound; slopes towards a surface are bounded by the surface's size alone.
 const ANY_SLOPE: f64 = 1e6;
 
 impl Spread<'_> {
@@ -143,8 +143,8 @@ impl Scatterer {
                 ]))
             } else {
                 let half = reach(scene, plane, leg, &origins).filter(|_| is_ahead)?;
-                // A plane on the surface that ends the leg sees some slopes only, a plane beyond it
-                // any.
+                // A plane on the surface that ends the leg sees some slopes only; a plane beyond it
+                // sees any slope.
                 let slopes = plane_on_leg.slopes(w).filter(|_| plane.leg == leg);
                 let slopes = slopes.unwrap_or([ANY_SLOPE; 2]).map(ProfileDensity::cosine);
                 Some(SamplingStrategy::Window([0, 1].map(|axis| {
@@ -158,8 +158,8 @@ impl Scatterer {
         looking.peek()?;
         let aims = looking.map(aim);
         let strategies: Vec<SamplingStrategy> = if by_brdf {
-            // A lobe may be narrower than any window, or wider than all; it gets half of the
-            // shares.
+            // A lobe may be narrower than any window or wider than all of them, so it gets half of
+            // the shares.
             let mut strategies: Vec<SamplingStrategy> = aims.flatten().collect();
             let lobes = strategies.len().max(1);
             strategies.extend((0..lobes).map(|_| SamplingStrategy::Lobe));

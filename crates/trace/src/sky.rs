@@ -12,8 +12,8 @@ use glam::DVec3;
 pub(crate) struct Sky {
     environment: Environment,
     choice: Choice,
-    /// The share of slopes that are drawn by the cosine instead. It is needed where most light goes
-    /// backwards and the rest would be drawn too rarely.
+    /// The share of slopes that are drawn by the cosine instead. This share is needed where most
+    /// light goes backwards and the rest would be drawn too rarely.
     by_cosine: f64,
 }
 

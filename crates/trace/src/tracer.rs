@@ -125,12 +125,12 @@ impl Tracer {
         ledger: &mut Ledger,
     ) {
         for first in range.clone().step_by(ABREAST) {
-            // Beyond the end the last photon is emitted again and discarded.
+            // Beyond the end of the range, the last photon is emitted again and discarded.
             let index = |i: usize| (first + i as u64).min(range.end - 1);
             let (rays, weights) = self.emitter.emit(|i, block| numbers.words(index(i), block));
             for ((index, ray), weight) in (first..range.end).zip(rays).zip(weights) {
-                // A point drawn in the bounds of a disc but outside it is counted, and carries no
-                // light.
+                // A point drawn within the bounds of a disc but outside the disc is counted, and
+                // carries no light.
                 if weight > 0.0 {
                     ledger.emitted += weight / radiance_per_flux(&ray);
                     photons.push(Photon {
@@ -295,7 +295,7 @@ impl FlightLeg {
                 Side::After => distance < end,
             };
             // A surface that is not flat, or not across the leg, may begin before the plane that
-            // records the light it receives.
+            // records the light that the surface receives.
             let ends = |what: &HitKind| what.is(self.ends);
             let crossed =
                 crossed || on_path && obstacles.visibility(&ray, from, distance, side, ends) > 0.0;

@@ -166,8 +166,8 @@ fn mirrored_light_is_what_a_mirror_sends_on() {
     }
 }
 
-/// A beam on a rough plane: the ratio of leaving to arriving light is the directional albedo, known
-/// from a separate quadrature.
+/// A beam hits a rough plane. The ratio of leaving to arriving light is the directional albedo,
+/// which is known from a separate quadrature.
 #[test]
 fn exitant_over_incident_flux_is_the_directional_albedo() {
     // The albedos are ∫ f cos θ dω of GGX with α = 0.5, by Gauss-Legendre over cos θ and equal

@@ -113,7 +113,7 @@ fn write_map(folder: &Path, name: &str, bright: (usize, usize)) {
     image.write().to_file(folder.join(name)).unwrap();
 }
 
-/// Shifting the picture by a pixel has an effect, and rotating the axes back undoes it.
+/// Shifting the picture by a pixel changes the light, and rotating the axes back undoes the change.
 #[test]
 fn a_map_is_where_its_axes_put_it() {
     let folder = tempfile::tempdir().unwrap();
@@ -249,7 +249,8 @@ fn all_ways_agree() {
     assert!(tests > 150, "{tests} tests");
 }
 
-/// Light that leaves a Lambertian wall has the radiance ρ E/π: ∫ L W is that times the integral of the window.
+/// Light that leaves a Lambertian wall has the radiance ρ E/π, so ∫ L W is this radiance times the
+/// integral of the window.
 fn irradiance(light: &str) -> [[f64; 2]; 2] {
     let planes = r#"(name: "leaving", at: After("wall"), window: (x: Hann(0.4), u: Hann(0.4)))"#;
     let bench = Bench {

@@ -65,7 +65,8 @@ fn agree(scene: &Scene, other: &dyn PhotonSource, what: &str) {
     }
 }
 
-/// Each route to a plane: the objects of the scene, those that the path visits, and the planes.
+/// The routes to a plane; each is given by the objects of the scene, the objects that the path
+/// visits, and the planes.
 type Way<'a> = (String, &'a str, &'a [&'a str]);
 
 #[test]
@@ -130,8 +131,8 @@ fn windows_before_a_small_mirror_are_sent_evenly() {
     }
 }
 
-/// A point light whose emission is uniform is not aimed: otherwise the check would share the aim
-/// that it checks.
+/// A point light with uniform emission is not aimed; otherwise the check would share the aim that
+/// it checks.
 #[test]
 fn what_is_sent_evenly_has_one_density() {
     let mirror = BALL.replace("EVENT", "Mirror");

@@ -118,7 +118,7 @@ fn plain_flux_is_radiance_times_area_times_pi() {
     ); // every photon carries the same: rounding
 }
 
-/// Blockers that close the plane let nothing through; without blockers both sides of the plane see
+/// Blockers that fill the plane let nothing through; without blockers, both sides of the plane see
 /// the same photons.
 #[test]
 fn blockers_block() {

@@ -63,7 +63,8 @@ pub const SCENE: &str = r#"(
     run: (photons: 20000, seed: 18446744073709551557),
 )"#;
 
-/// The scene as `small.ron`, measured in two parts `a` (batches 0..20) and `b` (20..64), and its prediction `p`.
+/// The scene as `small.ron`, its measurement in two parts `a` (batches 0..20) and `b` (20..64), and
+/// its prediction `p`.
 pub fn stages() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("small.ron"), SCENE).unwrap();

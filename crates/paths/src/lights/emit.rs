@@ -1,4 +1,5 @@
-//! Emission of photons from lights: half of them by the natural distribution, half of them aimed.
+//! Emission of photons from lights: half of them follow the natural distribution, and half of them
+//! are aimed.
 
 use super::{LightSampler, SampledLight};
 use crate::space::{Ray, SceneGeometry};

@@ -12,7 +12,7 @@ use glam::DVec3;
 
 /// Photons of a [`Probe`], the independent check of [`BackwardProbe`](super::BackwardProbe).
 ///
-/// They leave the lights. Wherever one hits a surface or leaves one, a direction through the
+/// They leave the lights. Wherever a photon hits or leaves a surface, a direction through the
 /// windows is drawn for it. They miss light that a mirror or smooth glass sends into a window, and
 /// the sky itself: [`PhotonProbe::misses`] reports where.
 #[derive(Debug)]
@@ -254,7 +254,7 @@ impl<'a> PhotonProbe<'a> {
     fn is_seen(&self, leg: usize, position: DVec3, along: DVec3) -> bool {
         let Probe { paths, legs, .. } = self.probe;
         let line = legs[leg].through(&paths.geometry, position, along);
-        // The line may begin at the point itself: then light leaves on the other side of the
+        // The line may begin at the point itself; light then leaves on the other side of the
         // surface.
         let is_before = (position - line.from).dot(line.along) > 1e-6 * legs[leg].reach;
         is_before && paths.geometry.is_clear(line.from, position)

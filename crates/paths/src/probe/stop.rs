@@ -93,8 +93,8 @@ pub(super) fn followed(paths: &Paths, look: &Look, most: usize, half: f64) -> Ve
 /// Maximum number of halvings of a curvature's step.
 const HALVINGS: i32 = 16;
 
-/// Curvatures from normals one step to either side, with the largest step that stays on the
-/// surface.
+/// Returns the curvatures, from normals one step to either side; the step is the largest that stays
+/// on the surface.
 fn curvature(
     geometry: &SceneGeometry,
     hit: &Hit,
@@ -127,7 +127,8 @@ fn between(geometry: &SceneGeometry, hit: &Hit, normal: DVec3, step: DVec3) -> O
     Some((m - n).dot(step) / (p - q).dot(step))
 }
 
-/// The component of a normal across a direction, normalised; `None` if it is along the direction.
+/// Returns the component of a normal across a direction, normalised; `None` if the normal is along
+/// the direction.
 pub(super) fn across(normal: DVec3, along: DVec3) -> Option<DVec3> {
     let across = normal - normal.dot(along) * along;
     (across.length() > 1e-6).then(|| across.normalize())

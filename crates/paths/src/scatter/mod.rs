@@ -2,8 +2,8 @@
 //! incident direction `wi`.
 //!
 //! Directions are unit vectors away from the surface, in a frame with its normal along Z. Values
-//! are BSDFs times |cos| of wi, for radiance: light through an interface is radiance on the other
-//! side over the squared index.
+//! are BSDFs times |cos| of wi, for radiance. Light that passes an interface is the radiance on the
+//! other side divided by the squared index.
 
 mod place;
 mod reflects;

@@ -59,8 +59,8 @@ impl WorldMesh {
         self.hierarchy.along(start, along, [from, until], |i| {
             if let Some((at, place)) = sight.meets(places(&self.triangles, self.ordered[i]))
                 && at > from
-                // Ties in distance are broken by index, so the result does not depend on the
-                // traversal order.
+                // Hits at the same distance are ordered by index, so the result does not depend on
+                // the traversal order.
                 && (at < end || first.is_some_and(|(first, j, _)| (at, i) < (first, j)))
             {
                 first = Some((at, i, place));

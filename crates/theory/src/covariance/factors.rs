@@ -1,7 +1,7 @@
 //! Covariances of the factors and lobes that a light field is multiplied by or convolved with.
 //!
 //! The covariance of a factor f is its second moment of power, ∫ f'²/(4π² ∫ f²), where that exists.
-//! A factor with edges has none; the Gaussian of the same variance replaces it by choice.
+//! A factor with edges has no such moment; it is replaced by the Gaussian of the same variance.
 
 use crate::geometry::{Matrix, diagonal};
 use etendue_field::{Grating, Lobe, Mask, Profile, Shape, Window};

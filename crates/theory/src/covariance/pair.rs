@@ -12,9 +12,9 @@ const POWER: f64 = 8.0 * PI * PI;
 /// cycles² per squared unit of the coordinates.
 ///
 /// Stored as C = P Q⁻¹. Light that is unbounded along a coordinate has a rank-deficient P there;
-/// light from a point or in one direction has a rank-deficient Q. Both are handled like any other
-/// matrix, so no operator needs a smallest or a largest number. Rays represent a Gaussian beam in
-/// the same way.
+/// light from a point or in one direction has a rank-deficient Q. Both cases are handled like any
+/// other matrix, so no operator needs a bound on small or large numbers. A Gaussian beam is
+/// represented by rays in the same way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpectralCovariance {
     p: Matrix<4>,
@@ -78,7 +78,7 @@ impl SpectralCovariance {
 
     /// Returns the covariance after light is integrated over all directions and spread uniformly
     /// over them again, so that only the spectrum at ν = 0 remains. C⁻¹ keeps its block of
-    /// positions, and is infinite along both angles.
+    /// positions, and becomes infinite along both angles.
     #[must_use]
     pub fn diffused(&self) -> Self {
         // The columns of P and Q span the pairs (C w, w). Columns without angular frequency stay as

@@ -13,7 +13,7 @@ use std::f64::consts::{PI, TAU};
 /// effect.
 ///
 /// Computed as S (1 + diag(1/std²) S)⁻¹, which allows a singular S, such as light from a point.
-/// `None` if that inverse does not exist, which no covariance causes.
+/// `None` if that inverse does not exist, which does not occur for any covariance.
 #[must_use]
 pub fn gaussian_window<const N: usize>(before: &Matrix<N>, std: [f64; N]) -> Option<Matrix<N>> {
     let narrowing = product(&diagonal(std.map(|s| 1.0 / (s * s))), before);

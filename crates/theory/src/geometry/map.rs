@@ -180,7 +180,8 @@ impl<const N: usize> AffineMap<N> {
     ///
     /// The result is zero between two planes perpendicular to the light, whatever is between them.
     /// In 2D, n dx du is conserved (J then gives |det A − r|); in 4D, the Lagrange invariant of
-    /// every pair of rays is. Maps onto or off a surface have one cosine too many or too few.
+    /// every pair of rays is. Maps onto or off a surface have one cosine too many or too few, so
+    /// their result is not zero.
     #[must_use]
     pub fn symplectic_defect(&self, index_ratio: f64) -> f64 {
         let half = N / 2;

@@ -29,13 +29,13 @@ pub const REPLICATES: usize = 32;
 const OF_DERIVATIVES: usize = 8;
 /// Number of independent nets for choosing a sampling strategy.
 const OF_TRIALS: usize = 16;
-/// Fewest and most nodes of each net of a derivative.
+/// The fewest and the most nodes in each net of a derivative.
 const DERIVATIVE_NODES: [u32; 2] = [1 << 12, 1 << 15];
 /// The relative error ‖error‖/‖D‖ at which a derivative is accurate enough. It causes a relative
 /// error of its square in a measured parameter, whose scale is the parameter's distance from the
 /// scene's value.
 const DERIVATIVE_ERROR: f64 = 0.03;
-/// Nodes of a net before its error is first estimated.
+/// Number of nodes of a net at which its error is first estimated.
 const FIRST_NODES: u32 = 1 << 11;
 
 /// The fewest nodes of a net before a prediction may stop because its error is small: nets that
@@ -45,8 +45,7 @@ const MIN_NODES: u32 = 1 << 14;
 /// Criterion for when to stop adding nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayBudget {
-    /// The most nodes in total; if the budget ends the prediction, between half of them and all are
-    /// used.
+    /// The most nodes in total; if the budget ends the prediction, at least half of them are used.
     pub nodes: f64,
     /// The relative error ‖error‖/‖F‖ that is small enough.
     pub error: f64,
@@ -332,7 +331,7 @@ fn finished(running: Vec<Running>, grid: ProjectionGrid, error: f64) -> Predicte
     }
 }
 
-/// Returns the mean of slices on one grid.
+/// Returns the mean of several slices on one grid.
 ///
 /// # Panics
 /// If there are no slices.

@@ -11,7 +11,8 @@ use etendue_transform::sobol_directions;
 /// The largest number of coordinates of a point.
 pub(crate) const DIMENSIONS: usize = 10;
 
-/// The contribution of each bit of a point's index to its coordinates, combined without carry.
+/// The contribution of each bit of a point's index to its coordinates; contributions are combined
+/// by exclusive or.
 static DIRECTIONS: [[u32; 32]; DIMENSIONS] = {
     let mut all = [[0; 32]; DIMENSIONS];
     let mut dimension = 0;
@@ -32,8 +33,8 @@ pub(crate) struct NetPoints {
 }
 
 impl NetPoints {
-    /// Returns the net scrambled with key `replicate`, with the given number of coordinates; the
-    /// others are 0.
+    /// Returns the net scrambled with key `replicate`. Points have the given number of coordinates;
+    /// all others are 0.
     pub(crate) fn new(replicate: u32, dimensions: usize) -> Self {
         let key = |dimension: u32| {
             let mixed = replicate.wrapping_mul(0x9E37_79B9) ^ dimension.wrapping_mul(0x85EB_CA6B);

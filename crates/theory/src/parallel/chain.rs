@@ -98,8 +98,8 @@ pub(crate) struct ParallelEmitter {
 
 impl ParallelEmitter {
     /// # Panics
-    /// If light passes through a picture or comes from infinity: `rays` and `scattering` predict
-    /// that.
+    /// If light passes through a picture or comes from infinity; `rays` and `scattering` predict
+    /// such light.
     pub(crate) fn new(light: &Light) -> Self {
         let (brightness, power) = match *light {
             Light::Area {
@@ -116,7 +116,7 @@ impl ParallelEmitter {
     }
 }
 
-/// A chain up to its end, or up to its diffuse surface, relative to that end.
+/// A chain up to its end, or up to its diffuse surface; quantities are relative to that end.
 #[derive(Clone, Debug)]
 pub(crate) struct ChainSegment<'a> {
     pub(crate) light: ParallelEmitter,

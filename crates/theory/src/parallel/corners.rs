@@ -6,9 +6,10 @@
 //!
 //! F(k) = 1/(4π²) Σ (d × e) / ((k·d)(k·e)) · exp(−2πi k·p)
 //!
-//! The quotient depends on the pair of directions alone, and a chain has few; the exponential is
-//! the product of one in the position and one in the slope. Each exponential of the window shifts k
-//! by ± s, so a corner needs, with θ = 2π s·p and c± the quotients at k ± s,
+//! The quotient depends only on the pair of directions, and a chain has few such pairs. The
+//! exponential is the product of one exponential in the position and one in the slope. Each
+//! exponential of the window shifts k by ± s, so a corner needs, with θ = 2π s·p and c± the
+//! quotients at k ± s,
 //!
 //! exp(−2πi k·p) Σ_s (c₊ + c₋) cos θ + i (c₋ − c₊) sin θ.
 //!
@@ -52,7 +53,7 @@ pub(crate) struct Corners<'a> {
     /// Pairs of directions that meet at a corner, the lower index first; the indices are equal at
     /// the end of a segment.
     pairs: Vec<[usize; 2]>,
-    /// Directions of an edge, each with the largest |k·d| at which it is nearly zero.
+    /// Directions of edges, each with the largest |k·d| at which k·d is considered nearly zero.
     edges: Vec<(usize, f64)>,
 }
 
@@ -203,7 +204,8 @@ impl SectionWave {
     }
 }
 
-/// Returns the longest edge along a direction within the square, as a multiple of the direction.
+/// Returns the longest edge along a direction that fits in the square, as a multiple of the
+/// direction.
 fn longest(direction: [f64; 2]) -> f64 {
     2.0 / direction[0].abs().max(direction[1].abs())
 }

@@ -7,9 +7,10 @@ use std::f64::consts::FRAC_PI_2;
 /// The method for splitting a disc into rectangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Discs {
-    /// n × n rectangles about its centre, with weights: for spectra.
+    /// n × n rectangles about the disc's centre, with weights; used for spectra.
     Rule(usize),
-    /// n strips of constant x, each with the area of its slice: for the light field itself.
+    /// n strips of constant x, each with the area of its slice of the disc; used for the light
+    /// field itself.
     Strips(usize),
 }
 

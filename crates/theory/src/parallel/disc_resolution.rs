@@ -109,7 +109,8 @@ impl DiscResolution {
         })
     }
 
-    /// `discs` chooses from the largest radius in a plane and the index of the plane.
+    /// `discs` chooses how the discs of a plane are split, from the largest radius in the plane and
+    /// the index of the plane.
     fn of(path: &ChainSegment<'_>, discs: impl Fn(f64, usize) -> Discs) -> Self {
         let planes = path.planes().into_iter().enumerate();
         Self(

@@ -55,7 +55,7 @@ pub(crate) type Sum = Vec<(f64, usize)>;
 pub(crate) struct SectionColumns {
     /// Sums of polygons of (y, v).
     pub(crate) sums: Vec<Sum>,
-    /// Sums of those sums, one for each polygon of (x, u).
+    /// Sums of the sums of polygons of (y, v), one for each polygon of (x, u).
     pub(crate) beside: Vec<Sum>,
 }
 

@@ -233,7 +233,8 @@ impl Folds {
         })
     }
 
-    /// Returns the harmonics as `of` does, as indices among all within [`reach`](Self::reach).
+    /// Returns the same harmonics as `of`, as indices among all harmonics within
+    /// [`reach`](Self::reach).
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,

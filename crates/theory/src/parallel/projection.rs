@@ -23,11 +23,11 @@ const NODES_PER_CYCLE: f64 = 5.0;
 /// undersampled.
 const MOST_NODES: f64 = 200.0;
 
-/// Returns the windowed light field integrated over y and v, as means over cells of (x, u).
+/// Returns the windowed light field, integrated over y and v, as means over cells of (x, u).
 ///
 /// Exact in y and v (the factor at frequency zero). Each polygon is clipped to each cell, where the
-/// window is integrated by a Gauss rule: no aliasing at edges. Discs are split into strips of a
-/// twentieth of a cell or wider. Unit: W m⁻² sr⁻¹ · m.
+/// window is integrated by a Gauss rule, so edges cause no aliasing. Discs are split into strips of
+/// a twentieth of a cell or wider. Unit: W m⁻² sr⁻¹ · m.
 #[must_use]
 pub fn projection(chain: &Chain, window: &Window, grid: &ProjectionGrid) -> Projection {
     let path = chain.path();

@@ -123,13 +123,14 @@ fn step(operator: &Operator) -> RayStep<'_> {
 }
 
 /// Returns a ray at the end of a chain with its contribution to the windowed light field; `None` if
-/// that is zero.
+/// the contribution is zero.
 fn arrives(
     FluxRay { ray, flux }: &FluxRay,
     steps: &[RayStep<'_>],
     window: &Window,
 ) -> Option<(TwoPlane, f64)> {
-    // Radiance is flux over dx dy cos θ dω, and cos θ dω = du dv / (1 + u² + v²)² (docs/conventions.md).
+    // Radiance is flux divided by dx dy cos θ dω, and cos θ dω = du dv / (1 + u² + v²)²
+    // (docs/conventions.md).
     let secant_squared = 1.0 + ray.u * ray.u + ray.v * ray.v;
     let measure = secant_squared * secant_squared;
     let (mut ray, mut weight) = (*ray, flux * measure);
@@ -224,7 +225,7 @@ mod tests {
         let mut wrong = given;
         wrong.operators.remove(0);
         assert!(off(&predicted(&wrong, &rays, over).slices) > 0.1);
-        // Compares with the plain sum at one frequency.
+        // The result is compared with the plain sum at one frequency.
         let (rho, nu) = (1.5, -1.0);
         let mut plain = Complex::ZERO;
         for FluxRay { ray, flux } in rays.rays() {

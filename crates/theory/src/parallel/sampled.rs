@@ -81,7 +81,8 @@ impl Chain {
         moved.expect("parameters of the chain")
     }
 
-    /// Returns the chain as a system of rays, or as a flat surface that scatters.
+    /// Returns the chain as a system of rays or, if it ends in a diffuse reflection, as a flat
+    /// surface that scatters.
     fn followed(&self, window: &Window) -> NetDomain {
         let path = self.path();
         let layers = path.layers.iter();

@@ -92,7 +92,8 @@ fn eliminate(nodes: &[Vec<f64>; 2], value: impl Fn(f64, f64) -> f64) -> Vec<[Vec
         if largest <= RANK_RESIDUAL * first || factors.len() == NODES {
             return factors;
         }
-        // Splits the magnitude evenly between a and b, which makes fits of both equally accurate.
+        // The magnitude is split evenly between a and b, so that the fits of both are equally
+        // accurate.
         let root = largest.sqrt();
         let a: Vec<f64> = rest.iter().map(|row| row[j] / root).collect();
         let b: Vec<f64> = rest[i]

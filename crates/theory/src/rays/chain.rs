@@ -12,7 +12,7 @@ use glam::DVec3;
 #[derive(Clone, Debug, PartialEq)]
 pub struct AffineChain {
     /// The effect of the chain on spectra of radiance. Its factor is the product of |det A| of its
-    /// maps and of (n₂/n₁)² for each refraction, by which radiance grows.
+    /// maps and of (n₂/n₁)² for each refraction, which is the factor by which radiance grows there.
     pub map: SpectrumMap<4>,
     /// The maps of the chain, in the order light meets them.
     pub maps: Vec<SpectrumMap<4>>,
@@ -240,7 +240,8 @@ impl Walk {
             ..hit.arriving
         };
         if plane.frame.d.dot(n) < 0.0 {
-            // As seen from the other side: −T, B and −N, and directions are no longer flipped.
+            // The axes are those seen from the other side, −T, B and −N, and directions are no
+            // longer flipped.
             (at.x, at.d) = (-t, -n);
             let other = crate::geometry::diagonal([-1.0, 1.0, 1.0, -1.0]);
             self.step(
@@ -357,7 +358,7 @@ fn lens(frame: &Frame, hit: &CentralHit, focal_length: f64) -> Option<AffineMap<
 }
 
 /// Returns the derivative of positions and slopes in a plane with respect to those in the frame of
-/// a leg that meets it obliquely.
+/// a leg that meets the plane obliquely.
 fn seen_across(plane: &Frame, leg: &Frame) -> Matrix<4> {
     let towards = plane.vector_to_local(leg.d);
     let axes = [leg.x, leg.y].map(|axis| plane.vector_to_local(axis));

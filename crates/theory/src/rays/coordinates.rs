@@ -7,8 +7,8 @@ use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
 impl Plane {
-    /// Returns the coordinates of a ray on its last leg, and the quantity in ray space per flux.
-    /// `None` if the ray misses.
+    /// Returns the coordinates of a ray on its last leg, and the factor from its flux to the
+    /// quantity in ray space. `None` if the ray misses.
     pub(crate) fn coordinates(&self, ray: &LegRay) -> Option<([f64; 4], f64)> {
         match self.orientation {
             Orientation::Orthogonal => self.across(ray),
@@ -39,7 +39,7 @@ impl Plane {
 
     /// The inverse of [`Self::coordinates`]: returns the ray, in the direction of light, that has
     /// the given coordinates on the plane or on the surface it is on; and étendue over dx dy du dv
-    /// there. `None` if there is none.
+    /// there. `None` if there is no such ray.
     pub(crate) fn ray(&self, [x, y, u, v]: [f64; 4]) -> Option<(LegRay, f64)> {
         let foot = self.frame.to_world(DVec3::new(x, y, 0.0));
         if self.orientation == Orientation::Orthogonal {

@@ -1,11 +1,11 @@
 //! Sampling of the light's rays, by the light or by target points at the plane.
 //!
 //! To first order a ray of the light lands where the linearisation about the central ray maps it.
-//! So a target position or slope in the window determines which ray of the light to follow; the
-//! actual landing point is found by following the ray. The sampling density is known exactly,
-//! whatever the rays do. If the window is narrow compared with the error of the first order, few of
-//! these rays meet it. In that case all four coordinates of rays are sampled in the window, and the
-//! rays are followed back through the exact geometry.
+//! So a target position or slope in the window determines which ray of the light to follow. The ray
+//! is then followed to its actual landing point. The sampling density is known exactly, whatever
+//! the rays do. If the window is narrow compared with the error of the first order, few of these
+//! rays meet it. In that case all four coordinates of rays are sampled in the window, and the rays
+//! are followed back through the exact geometry.
 
 use super::backward::Back;
 use super::emission::{EmissionMeasure, point_of};
@@ -16,8 +16,8 @@ use crate::sky::SkyDensity;
 use etendue_field::{Environment, Light, Shape, Window};
 use glam::DVec3;
 
-/// The strategy for sampling rays. No strategy is best for every scene; they are tried on the
-/// scene.
+/// The strategy for sampling rays. No strategy is best for every scene, so all of them are tried on
+/// the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RayStrategy {
     /// By the picture of the light.

@@ -17,7 +17,7 @@
 //!
 //! On a surface itself (`LocalNormals`) the integral is over the surface's area.
 //!
-//! This module shares no intersection or sampling code with the tracers.
+//! This module shares neither intersection code nor sampling code with the tracers.
 //!
 //! ```
 //! use etendue_field::{FrequencyAxis, Frame, Image, Light, Patch, Profile,
@@ -88,7 +88,7 @@ use etendue_field::{Light, Mask, Patch, Specular};
 
 /// The distance, in metres, that a point of a plane may seem to be behind the plane of the light
 /// and still be lit. It covers the rounding errors of a tilted plane at the light itself. No object
-/// is this close.
+/// is this close to the light.
 pub(crate) const AT_LIGHT: f64 = 1e-9;
 
 /// A light and the specular surfaces that its central ray visits, in the frame at the light.
@@ -96,7 +96,7 @@ pub(crate) const AT_LIGHT: f64 = 1e-9;
 pub struct SpecularSystem {
     /// The light, which emits from the plane z = 0, along Z.
     pub light: Light,
-    /// Masks across the first leg and their distances from the light, metres. If one is opaque,
+    /// Masks across the first leg and their distances from the light, metres. If a mask is opaque,
     /// rays are summed over nets and not by a rule.
     pub layers: Vec<(f64, Mask)>,
     /// Other occluders, on any leg.

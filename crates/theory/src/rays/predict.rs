@@ -29,8 +29,8 @@ const FOR_PICTURES: RayBudget = RayBudget {
 ///
 /// For a projector, point or beam this uses a midpoint rule if no sharp edge cuts the light and the
 /// rule converges; otherwise it uses nets of rays. Derivatives are central differences whose two
-/// sides sample the same rays: accurate to about a per cent. The result is bitwise identical on any
-/// number of threads.
+/// sides sample the same rays, so they are accurate to about a per cent. The result is bitwise
+/// identical on any number of threads.
 pub(crate) fn predict(
     view: &Observed<SpecularSystem>,
     moved: &[ShiftedModels<Observed<SpecularSystem>>],
@@ -91,7 +91,7 @@ pub fn linear(
     budget: RayBudget,
 ) -> Predicted {
     let system = &view.system;
-    // Rays land where the map takes them.
+    // In the chain, rays land where the map takes them.
     let mapped = (system, None);
     let masks = Masks::new(&system.layers, &system.obstacles);
     let rays = map.rays();

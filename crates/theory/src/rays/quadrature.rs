@@ -18,14 +18,14 @@ const MAX_NODES: usize = 1500;
 const MIN_NODES: f64 = 16.0;
 /// The largest relative error of an acceptable rule.
 const MAX_ERROR: f64 = 1e-4;
-/// Steps of a ray, and of its contribution to the sum at a frequency.
+/// Steps to follow a ray, and to add its contribution to the sum at a frequency.
 const RAY: f64 = 300.0;
 const FREQUENCY: f64 = 0.5;
 /// The relative error at which a rule is not refined further. It is below the error of the
 /// transform of photons, 2·10⁻⁷, and so is invisible for any number of photons.
 const TARGET_ERROR: f64 = 1e-7;
-/// The error of the finer of two rules over their difference: with a Hann window it falls as n⁻³
-/// beyond the window's frequencies, and (5/4)³ is 2.
+/// The error of the finer of two rules, divided by their difference. With a Hann window the error
+/// falls as n⁻³ beyond the window's frequencies, and (5/4)³ is 2.
 const FINER_ERROR: f64 = 1.0;
 
 impl<F: RayField> Finder<'_, F> {

@@ -11,7 +11,7 @@ pub(super) type Region = [[f64; 2]; 2];
 
 /// A light field as a function of rays. It takes a ray (x, y, u, v) at the light to the ray's
 /// coordinates at the plane, and to its contribution to ray space there, per unit of the emission's
-/// coordinates. `None` if it does not arrive.
+/// coordinates. `None` if the ray does not arrive.
 pub(super) trait RayField: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync {}
 impl<F: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync> RayField for F {}
 

@@ -23,7 +23,7 @@ impl LegRay {
         }
     }
 
-    /// Returns the line through a point along a unit vector, started from beyond all its
+    /// Returns the line through a point along a unit vector. The line starts beyond all its
     /// intersections with a patch.
     pub(crate) fn back(patch: &Patch, through: DVec3, along: DVec3) -> Self {
         let far = 4.0 * patch.aperture + (through - patch.frame.origin).length();
@@ -64,8 +64,8 @@ impl LegRay {
         let a = (DVec3::from(patch.curvature) * direction).dot(direction);
         let b = patch.gradient(near).dot(direction);
         let c = patch.value(near);
-        // The mirror image about the extremum is an equally good start for the root on its other
-        // side.
+        // The mirror image of one root about the extremum is an equally good start for the root on
+        // the other side.
         let leaves = side.is_some_and(|side| side * b > 0.0);
         let mut s = if leaves { -2.0 * b / a } else { 0.0 };
         for _ in 0..MOST_STEPS {

@@ -188,7 +188,7 @@ fn dawson(x: f64) -> f64 {
     })
 }
 
-/// Returns the same light after a grating: Σ cₙ I(D; Ωx − n f, Ωv + n f d) a distance d below it.
+/// Returns the same light at a distance d below a grating: Σ cₙ I(D; Ωx − n f, Ωv + n f d).
 #[must_use]
 pub(crate) fn through_grating(
     bench: &GaussianBlock,

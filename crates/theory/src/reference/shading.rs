@@ -82,7 +82,7 @@ fn fresnel_and_cosine() {
         assert_near("reflectance", deviation(5, pairs));
         let hat = |omega| fresnel.cosine_hat(omega);
         assert_near("Fresnel · cos⁺", curve(material, 15, hat));
-        // A planted fault: one polarisation instead of the mean of both.
+        // A planted fault uses one polarisation instead of the mean of both.
         let square = Complex::new(index, extinction) * Complex::new(index, extinction);
         let across = |omega: f64| {
             let kernel = |theta: f64| {

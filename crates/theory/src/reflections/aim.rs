@@ -2,7 +2,8 @@
 //!
 //! If a leg runs straight to the next scattering surface, or to a plane across the leg, the
 //! coordinates are a position there. Rays from anywhere on a wide surface can then be aimed at a
-//! narrow window. Otherwise they are angles, and the landing point is known only to first order.
+//! narrow window. Otherwise the coordinates are angles, and the landing point is known only to
+//! first order.
 
 use super::chain::{ScatteringSurface, towards};
 use super::guide::Gaussian;
@@ -32,8 +33,8 @@ pub(super) enum DirectionCoordinates {
     Plane(Frame),
 }
 
-/// The smallest distance of a plane that rays may be aimed at, in widths of the surface: none of
-/// the surface then lies beyond the plane.
+/// The smallest distance of a plane at which rays may be aimed, in widths of the surface; at this
+/// distance no part of the surface lies beyond the plane.
 const MIN_DISTANCE: f64 = 2.0;
 
 impl DirectionCoordinates {

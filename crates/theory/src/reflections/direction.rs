@@ -2,7 +2,7 @@
 //!
 //! Most directions are aimed at positions at the end of the leg. Where the next surface is near,
 //! such as in a corner, the solid angle of a position there is unbounded. So some directions follow
-//! the lobe in angles, whatever is ahead: they bound the weights of all paths.
+//! the lobe in angles, whatever is ahead, which bounds the weights of all paths.
 
 use super::PathSurface;
 use super::aim::DirectionCoordinates;
@@ -110,7 +110,8 @@ impl OutgoingDirections<'_> {
         [longitude - outgoing[0], latitude - outgoing[1]]
     }
 
-    /// Returns where a direction ends the leg, in the coordinates of the aim; `None` if it does not.
+    /// Returns the point at which a direction ends the leg, in the coordinates of the aim; `None`
+    /// if it does not end there.
     fn end(&self, direction: DVec3) -> Option<[f64; 2]> {
         let DirectionCoordinates::Patch { patch, .. } = self.aim else {
             return self.aim.end(self.point, direction);

@@ -2,8 +2,8 @@
 //!
 //! The window is approximated by a Gaussian with the same variances. An affine map takes this
 //! Gaussian back to the previous leg, a lobe blurs its angles, and the edge of a surface narrows
-//! its positions. The resulting Gaussian at a surface gives the relevant directions at each of its
-//! points, and at the light the relevant rays.
+//! its positions. The resulting Gaussian at a surface gives the relevant directions at each of the
+//! surface's points; the Gaussian at the light gives the relevant rays.
 
 use crate::geometry::{
     AffineMap, Matrix, congruent, diagonal, from_fn, inverse, product, sum, times,
@@ -162,7 +162,7 @@ pub(super) struct HeavyTailedGaussian {
     root: [f64; 3],
 }
 
-/// Width of a density over the standard deviation of its Gaussian.
+/// The width of a density divided by the standard deviation of its Gaussian.
 const BROADENED: f64 = 1.8;
 
 impl HeavyTailedGaussian {

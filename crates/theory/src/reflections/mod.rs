@@ -2,11 +2,11 @@
 //!
 //! The inputs are a [`ReflectionSystem`] and a [`Plane`](crate::rays::Plane) beyond some of its
 //! surfaces. The system has a light, masks and obstacles anywhere, and the surfaces that the
-//! central ray visits, each a mirror, a refracting surface, a lens, a diffuse rectangle or a
-//! surface with a BRDF. The [`Observed`](crate::Observed) of both is a [`Model`](crate::Model): it
-//! sums paths from the light over scrambled nets. A path leaves the light, is redirected by each
-//! specular surface, and leaves each scattering surface in a sampled direction (docs/theory.md,
-//! section 10b):
+//! central ray visits. Each surface is a mirror, a refracting surface, a lens, a diffuse rectangle
+//! or a surface with a BRDF. The [`Observed`](crate::Observed) of both is a
+//! [`Model`](crate::Model): it sums paths from the light over scrambled nets. A path leaves the
+//! light, is redirected by each specular surface, and leaves each scattering surface in a sampled
+//! direction (docs/theory.md, section 10b):
 //!
 //! L(p, ωo) = ∫ L(p, ωi) f(p, ωi, ωo) cos θi dωi, once per scattering surface.
 //!
@@ -53,8 +53,8 @@ pub struct ReflectionSystem {
     pub obstacles: Vec<Obstacle>,
     /// All surfaces of the path, in the order light meets them.
     pub surfaces: Vec<PathSurface>,
-    /// The number of surfaces that light has left before the plane. The next one, if any, ends the
-    /// last leg and occludes nothing on it.
+    /// The number of surfaces that light has left before the plane. The next surface, if any, ends
+    /// the last leg and occludes nothing on it.
     pub visited: usize,
 }
 

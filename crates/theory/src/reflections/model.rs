@@ -61,7 +61,7 @@ impl PathSurface {
         }
     }
 
-    /// Checks whether all light that the surface scatters is proportional to its albedo.
+    /// Checks whether all light that the surface scatters is proportional to the surface's albedo.
     fn is_in_proportion(&self) -> bool {
         match &self.interaction {
             Interaction::Reflects(reflectance) => reflectance.only().is_some(),

@@ -1,8 +1,8 @@
 //! Rays of an environment that are sampled by its radiance and by the window.
 //!
 //! A direction is sampled first, then a position: on the first surface if that scatters, otherwise
-//! at the light. Some directions follow the radiance of the environment and the others the guide,
-//! so that neither a bright lobe of the environment nor a narrow one of a BRDF is missed.
+//! at the light. Some directions follow the radiance of the environment and the others follow the
+//! guide. So neither a bright lobe of the environment nor a narrow lobe of a BRDF is missed.
 
 use super::aim::DirectionCoordinates;
 use super::chain::{ScatteringSurface, towards};

@@ -17,7 +17,7 @@ use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// A sampling strategy. No strategy is best for every scene; they are tried on the scene.
+/// A sampling strategy. No strategy is best for every scene, so all of them are tried on the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct LightStrategy {
     /// Whether half of the slopes are sampled about the mirrored light.
@@ -29,7 +29,7 @@ pub(super) struct LightStrategy {
 }
 
 impl LightStrategy {
-    /// Returns the strategies that differ from this one in one choice.
+    /// Returns the strategies that differ from this one in a single choice.
     pub(super) fn neighbours(self) -> [Self; 3] {
         [
             Self {
@@ -59,8 +59,8 @@ impl LightStrategy {
         }
     }
 
-    /// Returns the approximate time of a ray, in units of a ray sampled by the window with one part
-    /// of the light.
+    /// Returns the approximate time of a ray, relative to a ray that is sampled by the window with
+    /// one part of the light.
     pub(super) fn time(self) -> f64 {
         if self.quarters { 1.7 } else { 1.0 }
     }
@@ -191,9 +191,9 @@ impl Mirrored {
 pub(super) struct Lights<'a> {
     system: &'a ScatteringSystem,
     sky: Option<Arc<SkyDensity<'a>>>,
-    /// Whether half of them are sampled by the lobe.
+    /// Whether half of the parts are sampled by the lobe.
     by_lobe: bool,
-    /// The number of cells along each side of the square, one sample being drawn in each.
+    /// The number of cells along each side of the square; one sample is drawn in each cell.
     side: usize,
 }
 

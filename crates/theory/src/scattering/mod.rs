@@ -11,8 +11,8 @@
 //!
 //! In addition there is the chain of first-order operators (Durand et al. 2005, section 4): affine
 //! maps onto the surface and off it, a product with the clamped cosine, and a convolution with the
-//! lobe of the BRDF at the central ray. The error of the chain, and derivatives, are sums over the
-//! same rays.
+//! lobe of the BRDF at the central ray. The error of the chain, and the derivatives, are sums over
+//! the same rays.
 //!
 //! This module shares no intersection, BRDF evaluation or sampling code with the tracers; only the
 //! variation of a BRDF over a surface is shared, in `etendue_field`.

@@ -22,9 +22,9 @@ use glam::DVec3;
 ///
 /// The prediction of the chain, and the derivatives, are differences of the radiance of the same
 /// rays. They are accurate to about a per cent of their values. Parts of the light move with the
-/// light, so its edges cause no edges in a difference. Shadows do not move with masks. Points that
-/// are lit on only one side of a difference add noise, which decreases with the distance between
-/// the sides.
+/// light, so the edges of the light cause no edges in a difference. Shadows do not move with masks.
+/// Points that are lit on only one side of a difference add noise, which decreases with the
+/// distance between the sides.
 pub(crate) fn predict(
     view: &Observed<ScatteringSystem>,
     chain: Option<&ScatteringChain>,
@@ -60,7 +60,7 @@ pub(crate) fn with_rays(
     ));
 }
 
-/// Returns the strategy with the least error in the same time.
+/// Returns the strategy that has the least error for the same time.
 fn fastest(
     view: &Observed<ScatteringSystem>,
     chain: Option<&ScatteringChain>,
@@ -72,7 +72,7 @@ fn fastest(
     })
 }
 
-/// Returns the number of nodes that take as long as a full budget does with few lobes of light.
+/// Returns the number of nodes that take as long as a full budget takes with few lobes of light.
 fn affordable(system: &ScatteringSystem, budget: RayBudget) -> RayBudget {
     RayBudget {
         nodes: budget.nodes / cost(system),

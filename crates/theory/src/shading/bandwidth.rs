@@ -37,8 +37,8 @@ impl Criterion {
         self.lobe_cutoff * self.doubled_shear().abs()
     }
 
-    /// Eq. 20 at any distance for an environment with the cutoff Ω_e: the lower of both cutoffs
-    /// instead of Ω_ρ.
+    /// Eq. 20 at any distance for an environment with the cutoff Ω_e, where the lower one of Ω_ρ
+    /// and Ω_e replaces Ω_ρ.
     #[must_use]
     pub fn limited_environment(&self) -> f64 {
         self.lobe_cutoff.min(self.environment_cutoff) * self.doubled_shear().abs()
@@ -71,15 +71,15 @@ impl Criterion {
         (self.nearness() * behind + turned) / libm::cos(self.outgoing)
     }
 
-    /// Eq. 20 as printed, d 2k/cos θ₁ Ω_ρ, as an absolute value: an approximation for a distant
-    /// eye, without the 1. It requires a large |2kd/cos θ₁|; the paper says d ≫ 1.
+    /// Eq. 20 as printed, d 2k/cos θ₁ Ω_ρ, as an absolute value: an approximation for a distant eye
+    /// that leaves out the 1. It requires a large |2kd/cos θ₁|; the paper says d ≫ 1.
     #[must_use]
     pub fn printed_environment(&self) -> f64 {
         self.lobe_cutoff * (self.doubled_shear() - 1.0).abs()
     }
 
-    /// Eq. 21 as printed, d/cos θ₁ (1/d' + 2k) Ω_ρ, with |k|, as in the text: an approximation for
-    /// a distant eye and light along the normal, without the 1 and cos θ₀.
+    /// Eq. 21 as printed, d/cos θ₁ (1/d' + 2k) Ω_ρ, with |k|, as in the text. It is an
+    /// approximation for a distant eye and light along the normal that leaves out the 1 and cos θ₀.
     #[must_use]
     pub fn printed_blocker(&self) -> f64 {
         let nearness = self.blocker_distance.map_or(0.0, f64::recip);

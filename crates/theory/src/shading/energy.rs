@@ -41,8 +41,8 @@ mod tests {
 
     #[test]
     fn shares_of_known_spectra() {
-        // exp(−πt²) is its own transform; its square has the standard deviation 1/√(4π), and 95 %
-        // lies within 1.96 of these.
+        // exp(−πt²) is its own transform. Its square has the standard deviation 1/√(4π), and 95 %
+        // of it lies within 1.96 standard deviations.
         let bell = |t: f64| libm::exp(-PI * t * t);
         let [found, most] = energy_below(bell, 0.5_f64.sqrt(), [0.95, 1.1], 2.0);
         let expected = 1.959_964 / (4.0 * PI).sqrt();

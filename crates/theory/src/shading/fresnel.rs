@@ -56,8 +56,8 @@ impl FresnelFactor {
     /// Fresnel reflection and cosine (Durand et al. 2005, Fig. 12-b, who give no formula). Real and
     /// even.
     ///
-    /// By quadrature to 10⁻¹²; for Schlick in closed form, F₀ C₁ + (1 − F₀) Σ (−1)ⁱ (5 over i) Cᵢ₊₁
-    /// with the transforms Cₙ of cosⁿ.
+    /// The value is found by quadrature to 10⁻¹²; for Schlick it has the closed form F₀ C₁ + (1 −
+    /// F₀) Σ (−1)ⁱ (5 over i) Cᵢ₊₁ with the transforms Cₙ of cosⁿ.
     #[must_use]
     pub fn cosine_hat(&self, omega: f64) -> f64 {
         if let Self::Schlick { normal_reflectance } = *self {

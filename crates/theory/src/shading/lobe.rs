@@ -75,8 +75,8 @@ impl PlanarLobe {
 
     /// Returns ρ̂'(Ω), Ω in cycles per radian: real, even, 1 at zero (Durand et al. 2005, Eq. 16).
     ///
-    /// Phong: Γ(1 + n/2)²/(Γ(1 + n/2 + πΩ) Γ(1 + n/2 − πΩ)); Gaussian: exp(−2π²σ²Ω²); the others by
-    /// quadrature, to 10⁻¹².
+    /// Phong: Γ(1 + n/2)²/(Γ(1 + n/2 + πΩ) Γ(1 + n/2 − πΩ)); Gaussian: exp(−2π²σ²Ω²); the others
+    /// are found by quadrature, to 10⁻¹².
     #[must_use]
     pub fn spectrum(&self, omega: f64) -> f64 {
         match *self {

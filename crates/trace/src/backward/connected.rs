@@ -42,8 +42,8 @@ pub(super) fn connection(light: &Light, point: DVec3) -> Option<(TwoPlane, f64)>
     let [u, v] = [x / point.z, y / point.z];
     let (x, y) = (0.0, 0.0);
     let ray = TwoPlane { x, y, u, v };
-    // dω = du dv / (1 + u² + v²)^(3/2), and r² = z² (1 + u² + v²); the value the ray carries
-    // already includes one of these roots.
+    // dω = du dv / (1 + u² + v²)^(3/2), and r² = z² (1 + u² + v²); the value that the ray carries
+    // already includes one root of 1 + u² + v².
     let secant_squared = ray.secant_squared();
     let spread = point.z * point.z * secant_squared * secant_squared.sqrt();
     Some((ray, 1.0 / spread))

@@ -227,7 +227,8 @@ impl Backward {
         }
     }
 
-    /// The radiance that arrives in a direction at a point of the surface that ends a leg, both in the frame at the light.
+    /// The radiance that arrives in a direction at a point of the surface that ends a leg;
+    /// direction and point are in the frame at the light.
     fn along(
         &self,
         leg: usize,
@@ -275,7 +276,7 @@ impl Backward {
     }
 
     /// The irradiance at a point with a normal at the end of a leg, from one point of the surface
-    /// or light at the beginning of the leg; in the frame at the light.
+    /// or light at the beginning of the leg. All are in the frame at the light.
     fn irradiance(
         &self,
         leg: usize,
@@ -346,7 +347,8 @@ impl Backward {
 }
 
 impl Backward {
-    /// The irradiance at a point behind a mirror, an interface or a lens, from one direction, drawn by the cosine.
+    /// The irradiance at a point behind a mirror, an interface or a lens, from one direction that
+    /// is drawn by the cosine.
     fn through_turn(
         &self,
         leg: usize,

@@ -37,8 +37,8 @@ fn factor(table: Option<&AngleTable>, direction: DVec3) -> f64 {
     table.map_or(1.0, |table| table.value(direction.z))
 }
 
-/// A direction wo for wi in front of the surface, from two numbers in (0, 1). It may lie below the
-/// surface and then carries no light.
+/// A direction wo for wi in front of the surface, from two numbers in (0, 1). The direction may lie
+/// below the surface; it then carries no light.
 ///
 /// Backward rays draw wi for a given wo by the same lobes, which are symmetric. The albedo and
 /// angular factors are part of the weight.

@@ -147,8 +147,8 @@ fn specular_steps_keep_etendue() {
     let flat = AffineMap::<2>::refracting_surface(0.7, 0.4, &GLASS).unwrap();
     assert!(flat.symplectic_defect(ratio) < ROUNDING);
     assert!((flat.det() - ratio).abs() < ROUNDING);
-    // A surface is not perpendicular to the light, so it has a defect; and a shear by M without the
-    // cosine is not a physical map.
+    // A surface is not perpendicular to the light, so the map onto it has a defect. A shear by M
+    // without the cosine is not a physical map.
     assert!(AffineMap::<4>::incidence(0.7).symplectic_defect(1.0) > 0.3);
     let nan = AffineMap::<2>::travel(f64::NAN);
     assert!(nan.symplectic_defect(1.0).is_nan());

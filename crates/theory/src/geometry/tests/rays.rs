@@ -25,7 +25,7 @@ pub(super) fn error_and_order<const N: usize>(
     (narrow, libm::log2(wide / narrow))
 }
 
-/// The next term of the error is e times smaller and changes the order by about as much.
+/// The next term of the error is smaller by a factor e, and changes the order by about as much.
 const ORDER: f64 = 0.02;
 
 fn assert_order<const N: usize>(

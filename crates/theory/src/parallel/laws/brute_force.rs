@@ -4,7 +4,7 @@ use crate::{Chain, Operator};
 use etendue_field::{Complex, Light, Mask, Shape, TwoPlane, Window};
 use std::f64::consts::TAU;
 
-/// A chain traced back from its end by hand: distances and masks, and factors G.
+/// A chain traced back from its end by hand, with its distances, masks and factors G.
 struct WalkedRay<'a> {
     distance: f64,
     masks: Vec<(f64, &'a Mask)>,

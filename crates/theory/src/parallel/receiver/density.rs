@@ -9,7 +9,8 @@ use std::f64::consts::TAU;
 const NATS: f64 = 28.0;
 /// The most nodes a rule has; longer intervals are cut into panels.
 const MAX_NODES: usize = 48;
-/// Nodes on an arc in addition to those its length needs, for the turn of its direction.
+/// Nodes on an arc, in addition to those that its length requires, because the direction of the arc
+/// turns.
 const ARC: usize = 10;
 /// Number of halvings of the longest panel with a precomputed number of nodes.
 const LEVELS: usize = 24;

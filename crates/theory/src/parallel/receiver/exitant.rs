@@ -65,7 +65,7 @@ impl Receiver<'_> {
     }
 
     /// Returns the relative L2 error of slices: their change with half as many nodes along each
-    /// axis, divided by 2² − 1 since the error is of second order in the spacing. `None` if the
+    /// axis, divided by 2² − 1, because the error is of second order in the spacing. `None` if the
     /// slices are zero.
     pub(crate) fn quadrature_error(
         &self,
@@ -82,7 +82,7 @@ impl Receiver<'_> {
     }
 
     /// Returns the number of nodes along each axis: enough for the narrowest penumbra or period,
-    /// and for the highest frequency. It is even, to allow halving.
+    /// and for the highest frequency. The number is even, so that it can be halved.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,

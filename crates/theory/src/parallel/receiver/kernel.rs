@@ -106,8 +106,8 @@ impl KernelAxis {
         gauss_legendre(self.nodes(frequency) as usize)
     }
 
-    /// Returns the number of nodes of the rule for a frequency: those for the waves, and some for
-    /// an accuracy of 10⁻¹⁴.
+    /// Returns the number of nodes of the rule for a frequency: the number that the waves require,
+    /// and some more for an accuracy of 10⁻¹⁴.
     pub(super) fn nodes(&self, frequency: [f64; 2]) -> f64 {
         let waves = 2.0 * self.slope.half_width() * self.fastest(frequency);
         // Gauss rules begin to converge at one node per half radian, π/2 per wave.

@@ -2,10 +2,10 @@
 //! leaves it.
 //!
 //! A light, masks in planes across the central ray, and the receiver are parallel. A ray that
-//! arrives at (x, y) with slopes (u, v) was at (x − h u, y − h v) a distance h before. So every
-//! shape upstream is seen from a point as the same shape, smaller. The irradiance E(x, y) = ∫ L(u,
-//! v) (1 + u² + v²)⁻² du dv is a signed sum of integrals over rectangles and discs: the light and
-//! the blockers as seen from the point (docs/theory.md, section 4b).
+//! arrives at (x, y) with slopes (u, v) was at (x − h u, y − h v) a distance h before. So from the
+//! point, every shape upstream is seen as the same shape, but smaller. The irradiance E(x, y) = ∫
+//! L(u, v) (1 + u² + v²)⁻² du dv is a signed sum of integrals over rectangles and discs: the light
+//! and the blockers as seen from the point (docs/theory.md, section 4b).
 
 mod density;
 mod exitant;
@@ -110,8 +110,8 @@ impl SlopeProjection {
 }
 
 impl<'a> Receiver<'a> {
-    /// Builds a receiver with an albedo, `distance` from the light with `layers` between them,
-    /// whose reflected light travels `after`; metres.
+    /// Builds a receiver with an albedo, at `distance` from the light, with `layers` between them.
+    /// The reflected light travels the distance `after`. All lengths are in metres.
     ///
     /// Without `cosine`, radiance is integrated over slopes without (1 + u² + v²)⁻², which is
     /// deliberately wrong.

@@ -181,7 +181,7 @@ impl ReceiverRegion {
             let middle = libm::atan2(dv, du);
             angles.extend([middle - half, middle + half]);
         }
-        // NaN if they do not cross.
+        // The angles are NaN if the circles or sides do not cross.
         angles.retain(|a| a.is_finite());
         angles.iter_mut().for_each(|a| *a = a.rem_euclid(TAU));
         angles.sort_by(f64::total_cmp);

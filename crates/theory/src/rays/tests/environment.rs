@@ -37,7 +37,7 @@ fn lobes() -> Environment {
     }
 }
 
-/// Approximately the same light as a picture.
+/// Approximately the same light, given as a picture.
 fn map() -> Environment {
     let Environment { frame, map } = lobes();
     let picture = LatLong::from_fn(256, 128, |from| map.radiance(from));
@@ -289,7 +289,7 @@ fn all_ways_to_draw_the_sky_agree() {
     );
     let plain = under(&environment, vec![]);
     let local = on_sphere(0.4, Orientation::LocalNormals, Quantity::Radiance);
-    // A small sphere seen from the side: some rays also meet it in the window from behind.
+    // A small sphere seen from the side; some rays also meet it from behind, within the window.
     let mut aside = on_sphere(0.9, Orientation::LocalNormals, Quantity::Radiance);
     if let Some(patch) = &mut aside.patch {
         patch.curvature = [2.5; 3];
@@ -327,8 +327,9 @@ fn all_ways_to_draw_the_sky_agree() {
     }
 }
 
-/// The line of section 6.1 of Durand et al. 2005: on a curved surface light of an environment has
-/// its spectrum where Ωx = k Ωθ. The spectrum of light from one direction is exactly that line.
+/// This is the line of section 6.1 of Durand et al. 2005: on a curved surface, light of an
+/// environment has its spectrum where Ωx = k Ωθ. The spectrum of light from one direction is
+/// exactly that line.
 #[test]
 fn curvature_shears_the_sky_onto_a_line() {
     let narrow = SphericalGaussian {

@@ -124,7 +124,7 @@ fn area_lights_agree_with_polygons() {
         let off = got.slices.relative_difference(&expected);
         let said = got.error.unwrap();
         assert!(off < OF_NETS && off < 2.0 * said, "{off:e}, said {said:e}");
-        // A grating one centimetre farther away is distinguished.
+        // A grating that is one centimetre farther away gives a different result.
         system.layers = vec![(0.61, Mask::Grating(grating))];
         let moved = exact(&system, &after(&system, 1.5), &window, &grid);
         let told = moved.slices.relative_difference(&expected);

@@ -1,4 +1,4 @@
-//! Tests of how fast the first-order prediction converges to the exact one as everything but the
+//! Tests how fast the first-order prediction converges to the exact one as everything but the
 //! geometry shrinks.
 
 use super::*;

@@ -316,8 +316,8 @@ fn a_wrong_map_leaves_a_defect() {
     }
 }
 
-/// Behind a mesh a plane is perpendicular to the path given by the mesh's normals, and tilted
-/// relative to that of its patch.
+/// Behind a mesh, a plane is perpendicular to the path that follows the mesh's normals, and tilted
+/// relative to the path of the mesh's patch.
 #[test]
 fn a_plane_may_lean_against_the_leg() {
     for system in systems() {

@@ -204,7 +204,7 @@ fn flat_lambertian_surface_is_the_receiver() {
     let plane = across(0.0, 0.2);
     let found = exact(&system, &plane, &window, &grid);
     let apart = found.slices.relative_difference(&known);
-    // The stated error matches the actual error: over so many frequencies the two differ little.
+    // The stated error matches the actual error; over so many frequencies the two differ little.
     let error = found.error.unwrap();
     let ratio = apart / error;
     assert!((0.6..1.6).contains(&ratio), "{apart:e} {error:e}");
@@ -302,8 +302,8 @@ fn first_order_is_of_its_order() {
     }
 }
 
-/// Two lobes with factors of both angles, and weights with a wavelength of the size of the
-/// neighbourhood.
+/// The BRDF has two lobes with factors of both angles, and weights whose wavelength is the size of
+/// the neighbourhood.
 #[test]
 fn weighted_and_separable_brdfs_are_of_first_order() {
     let table = |values: [f64; 2]| {
