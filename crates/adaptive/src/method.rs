@@ -17,7 +17,7 @@ use etendue_world::Camera;
 pub enum SampleMethod {
     /// Uniformly over all shaded pixels.
     Uniform,
-    /// By the criteria of Durand et al. 2005, Eqs. 20 and 21, corrected.
+    /// By the criteria of Durand et al. 2005, Eqs. 20 and 21, with corrections.
     Predicted,
     /// By the same criteria as printed, to show the cost of their approximations.
     Printed,

@@ -1,8 +1,8 @@
 //! Tests of a few triangles together in f32, to find those that a ray may meet.
 //!
-//! As seen along the ray, a triangle is hit if the ray is on the same side of its three edges
+//! As seen along the ray, a triangle is hit if the ray is on the same side of all three edges
 //! (Woop, Benthin and Wald 2013, *Watertight ray/triangle intersection*). Here a triangle is
-//! rejected only if the ray is on different sides by more than all rounding errors.
+//! rejected only if the ray is on different sides of its edges by more than all rounding errors.
 
 use crate::single::single;
 use crate::wide::Visit;

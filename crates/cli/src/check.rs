@@ -37,7 +37,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<u8, Failure> {
         say(&format!("\ndrawn in {}", path.display()));
     }
     warnings::tell(&scene, false);
-    // As many threads as `run` uses by default.
+    // The number of threads that `run` uses by default.
     let threads = available_parallelism().map_or(1, NonZero::get);
     limits::check(&scene, &theories, threads)?;
     say(&expected(&scene, &theories, threads));

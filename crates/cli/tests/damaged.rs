@@ -200,8 +200,8 @@ fn changed_files_are_refused() {
     assert_eq!(call(folder, COMPARE).status.code(), Some(0));
 }
 
-/// Each array of each file in turn is missing, of another type, too large for memory, or not an
-/// array.
+/// In turn, each array of each file is missing, has another type, is too large for memory, or is
+/// not an array.
 #[test]
 fn foreign_arrays_are_refused() {
     let stages = stages();

@@ -67,7 +67,8 @@ fn light_from_far_away_is_no_lamp() {
 
 #[test]
 fn planes_stand_where_they_are() {
-    // All seven planes of this scene are at one place: there is one line for them, drawn seven times in each cut.
+    // All seven planes of this scene are at one place, so a single line stands for them, drawn
+    // seven times in each cut.
     let svg = drawing("fig10");
     let lines: Vec<&str> = svg
         .lines()

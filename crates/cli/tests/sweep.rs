@@ -143,7 +143,7 @@ fn a_sweep_goes_on_from_what_is_there() {
     assert_eq!(call(path, PITCH).status.code(), Some(0));
     assert_eq!([0, 1].map(made), before[..2], "not run again");
     assert!(files(&path.join("s")) == whole, "the same bytes");
-    // With more values, only new points are run.
+    // If values are added, only new points are run.
     let more = PITCH.replace(":4", ":7");
     assert_eq!(call(path, &more).status.code(), Some(0));
     assert_eq!([0, 1].map(made), before[..2]);

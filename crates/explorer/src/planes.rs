@@ -123,7 +123,7 @@ fn imaged(setup: &Setup, times: f64) -> Chain {
         .expect("an even light and opaque blockers")
 }
 
-/// In the frame of the surface positions are reversed and directions are not: S(ρ, ν) is the
+/// In the frame of the surface, positions are reversed and directions are not: S(ρ, ν) is the
 /// previous S(−ρ, ν).
 fn on_the_surface(before: &Slices) -> Slices {
     let mut after = before.clone();

@@ -65,8 +65,8 @@ impl Microfacets {
     /// Samples the mirror direction of wo at any normal, visible from wo or not, in proportion to D
     /// cos θ (Walter et al., Eqs. 28 f. and 35 f.).
     ///
-    /// For Beckmann, weights are closer to 1 than with [`Self::sample`] if light comes from near
-    /// the normal, but grow without bound towards grazing.
+    /// For Beckmann, weights are closer to 1 than those of [`Self::sample`] if light comes from
+    /// near the normal, but they grow without bound towards grazing.
     #[inline]
     #[must_use]
     pub fn sample_unmasked(&self, wo: DVec3, [a, b]: [f64; 2]) -> DVec3 {

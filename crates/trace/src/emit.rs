@@ -15,7 +15,7 @@ use glam::DVec3;
 use plain::Plain;
 
 /// How rays leave the light: a density over (x, y, u, v) at the light, and a strategy to sample it.
-/// For a point light the density is over (u, v) alone, for a beam over (x, y).
+/// For a point light the density is over (u, v) alone, and for a beam over (x, y) alone.
 #[derive(Debug)]
 pub struct Emitter {
     light: Light,
@@ -26,14 +26,14 @@ pub struct Emitter {
 /// The strategy that rays are drawn by.
 #[derive(Debug)]
 enum EmissionStrategy {
-    /// One proposal for each plane, as factors over (x, u) and (y, v).
+    /// One proposal for each plane, given by its factors over (x, u) and (y, v).
     Aimed(Vec<[Proposal; 2]>),
     /// Light from an environment.
     Sky(FromSky),
     /// Light without extent, drawn uniformly within bounds, each of which has an equal share.
     /// Bounds are slopes along x and y, or positions for a beam.
     Even(Vec<AxisBounds>),
-    /// In proportion to the emission of the light.
+    /// Light drawn in proportion to the emission of the light source.
     Plain(Plain),
 }
 

@@ -98,7 +98,7 @@ impl FootprintSampler {
                     normal.dot(patch.frame.d) / (PI * patch.aperture * patch.aperture)
                 }
             };
-            // Along the line, an area dA is projected to |n · (u, v, 1)| dA of the plane.
+            // Along the line, an area dA is projected onto |n · (u, v, 1)| dA of the plane.
             sum += density / normal.dot(along).abs();
         });
         sum

@@ -24,8 +24,8 @@ pub(crate) enum Primitive {
 
 impl Primitive {
     /// The distance along the central ray at which a ray meets the primitive, and the part of the
-    /// primitive that the ray meets. Of several hits it is the first beyond `from`; hits of a mesh
-    /// beyond `until` are ignored.
+    /// primitive that the ray meets. Of several hits it returns the first beyond `from`; hits of a
+    /// mesh beyond `until` are ignored.
     #[inline]
     pub(crate) fn closest_hit(
         &self,

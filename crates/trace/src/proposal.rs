@@ -6,7 +6,7 @@ use etendue_field::Profile;
 ///
 /// A Hann profile is approximated by a tent, 1 − |t|/half. The ratio of the two stays in 0..1.14
 /// and falls to zero at the edge, so the weights are bounded. Other profiles do not vanish at their
-/// edge and are approximated by a constant. For light that a surface receives the density follows
+/// edge and are approximated by a constant. For light that a surface receives, the density follows
 /// the cosine.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ProfileDensity {
@@ -198,8 +198,8 @@ pub(crate) struct Proposal {
 }
 
 impl Proposal {
-    /// For light of extent `extent` and a window with the profiles `space` and `slope` at
-    /// `distance`.
+    /// Builds the proposal for light of extent `extent` and a window with the profiles `space` and
+    /// `slope` at `distance`.
     ///
     /// `None` when no ray both leaves the light and crosses the window.
     pub(crate) fn new(

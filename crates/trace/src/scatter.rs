@@ -23,11 +23,11 @@ pub(crate) struct Scatterer {
 /// One strategy to draw a ray.
 #[derive(Clone, Debug)]
 enum SamplingStrategy {
-    /// Towards a window, along X and along Y.
+    /// Directions towards a window, along X and along Y.
     Window([Aim; 2]),
-    /// In the directions that a plane on the surface sees.
+    /// Directions that a plane on the surface sees.
     Angles(Box<Angles>),
-    /// In proportion to the surface's own scattering.
+    /// Directions in proportion to the surface's own scattering.
     Lobe,
 }
 
@@ -41,10 +41,10 @@ struct Angles {
 /// How a surface scatters light from one of its points.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Spread<'a> {
-    /// By the cosine of the angle to the normal.
+    /// Scattering by the cosine of the angle to the normal.
     Cosine,
-    /// By a sum of BRDFs, in a frame with D along the normal, for light from a direction in that
-    /// frame.
+    /// Scattering by a sum of BRDFs, in a frame with D along the normal, for light from a direction
+    /// in that frame.
     Lobe {
         brdf: Mixture<'a>,
         frame: Frame,

@@ -297,7 +297,8 @@ fn a_lobe_gives_a_wall_what_a_plain_sum_says() {
     sum *= 0.5 * PI * TAU / f64::from(n * n);
     for [found, error] in irradiance(lobe) {
         assert!(error < 5e-3 * found, "{found} ± {error}");
-        // Four standard errors; the mid-point rule is accurate to (step)²/24 of the whole, 1e-6.
+        // The tolerance is four standard errors; the mid-point rule is accurate to (step)²/24 of
+        // the whole, 1e-6.
         assert!(
             (found - sum).abs() < 4.0 * error,
             "{found} ± {error}, {sum}"

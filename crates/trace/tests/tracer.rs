@@ -74,7 +74,7 @@ fn aimed_and_plain_emission_agree_at_every_plane() {
     for (plane, (aimed, plain)) in estimate("Aimed").iter().zip(estimate("Plain")).enumerate() {
         let z = (aimed[0] - plain[0]) / aimed[1].hypot(plain[1]);
         assert!(aimed[1] < plain[1], "aiming does not pay at plane {plane}");
-        // Four planes; 3.7 standard errors are exceeded once in a thousand runs.
+        // Four planes are tested; 3.7 standard errors are exceeded once in a thousand runs.
         assert!(z.abs() < 3.7, "plane {plane}: {aimed:?} and {plain:?}");
     }
 }

@@ -48,8 +48,8 @@ fn total(rays: &[(DVec3, DVec3, f64)]) -> f64 {
     rays.iter().map(|(.., watts)| watts).sum()
 }
 
-/// All light that a Lambertian rectangle emits: π L A. With plain emission each photon has the same
-/// flux.
+/// All light that a Lambertian rectangle emits is π L A. With plain emission each photon has the
+/// same flux.
 #[test]
 fn at_the_light_it_is_the_flux_of_the_light() {
     let scene = scene(

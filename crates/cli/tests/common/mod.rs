@@ -27,7 +27,7 @@ pub fn etendue() -> Command {
     Command::new(env!("CARGO_BIN_EXE_etendue"))
 }
 
-/// All files of a folder by relative name.
+/// All files of a folder, by their relative names.
 pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut found = BTreeMap::new();
     let mut folders = vec![folder.to_owned()];

@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Emitted {
     pub(crate) ray: Ray,
-    /// Its flux, W, times the number of photons.
+    /// The photon's flux, W, times the number of photons.
     pub(crate) flux: f64,
     /// The surface point that it was emitted from.
     pub(crate) flash: Option<EmissionPoint>,

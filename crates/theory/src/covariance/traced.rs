@@ -138,7 +138,7 @@ fn of_light(light: &Light) -> Result<SpectralCovariance, Untraced> {
         Light::Environment { environment } => {
             light_of([endless; 2], [sky_variance(environment)?; 2])
         }
-        // Not a Gaussian: each ray is infinitely narrow.
+        // The light is not a Gaussian: each ray is infinitely narrow.
         Light::Rays { .. } => return Err(Untraced::Light),
     })
 }

@@ -33,7 +33,7 @@ pub fn gaussian_lobe<const N: usize>(before: &Matrix<N>, std: f64) -> Matrix<N> 
 /// Returns the covariance of |L|² for a Gaussian field of covariance S: S⁻¹/8π². The covariance of
 /// |L| is twice as large.
 ///
-/// In cycles per unit, squared. `None` for a singular S, whose spectrum is unbounded.
+/// The result is in cycles per unit, squared. `None` for a singular S, whose spectrum is unbounded.
 #[must_use]
 pub fn power_spectrum<const N: usize>(field: &Matrix<N>) -> Option<Matrix<N>> {
     let inverse = matrix::inverse(field)?;

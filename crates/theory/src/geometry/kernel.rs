@@ -52,7 +52,7 @@ fn scaled(a: f64, b: f64) -> f64 {
 /// Integrates f(t) over t > 0, for integrands that fall as e^(−t) or faster and vary on no other
 /// scale than ln t.
 fn integral(f: impl Fn(f64) -> f64) -> f64 {
-    // From e^−40 to e^4.2 = 67; the rest is less than 1e-17.
+    // The integral runs from e^−40 to e^4.2 = 67; the rest is less than 1e-17.
     let nodes = (-1280..=134).map(|i| libm::exp(f64::from(i) * STEP));
     nodes.map(|t| t * f(t)).sum::<f64>() * STEP
 }

@@ -6,8 +6,8 @@ use etendue_field::Complex;
 
 /// An affine map of rays, z' = A z + t, that preserves radiance (docs/theory.md (1)).
 ///
-/// Coordinates are positions, then slopes or angles: (x, u) for N = 2, (x, y, u, v) for N = 4. No
-/// other N has constructors.
+/// Coordinates are positions, then slopes or angles: (x, u) for N = 2, (x, y, u, v) for N = 4.
+/// Other values of N have no constructors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AffineMap<const N: usize> {
     /// The matrix A, as rows.

@@ -92,7 +92,7 @@ mod tests {
         (1..n).take_while(|i| *i as f64 <= x * n as f64).count()
     }
 
-    /// Each box of volume 2⁻ᵐ from halving pairs of sides holds one of 2ᵐ points.
+    /// Each box of volume 2⁻ᵐ that comes from halving pairs of sides holds one of 2ᵐ points.
     #[test]
     fn pairs_of_first_coordinates_are_nets() {
         for replicate in 0..3 {

@@ -109,7 +109,7 @@ mod tests {
     fn transform(patches: &[WeightedRectangle], omega: f64, azimuth: f64) -> f64 {
         let k = [libm::cos(azimuth), libm::sin(azimuth)].map(|c| c * omega);
         let side = |p: &WeightedRectangle, i: usize| p.extent[i][1] - p.extent[i][0];
-        // By symmetry only the even part remains.
+        // Because of symmetry, only the even part remains.
         let middle = |p: &WeightedRectangle, i: usize| 0.5 * (p.extent[i][1] + p.extent[i][0]);
         let value = |p: &WeightedRectangle| {
             let phase = TAU * (k[0] * middle(p, 0) + k[1] * middle(p, 1));

@@ -100,7 +100,7 @@ impl DiscResolution {
         )
     }
 
-    /// For the light field on a grid of `bins` positions.
+    /// Chooses strips for the light field on a grid of `bins` positions.
     pub(crate) fn for_projection(path: &ChainSegment<'_>, window: &Window, bins: usize) -> Self {
         let cell = 2.0 * window.x.half_width() / bins as f64;
         Self::of(path, |radius, _| {

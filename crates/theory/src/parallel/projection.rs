@@ -107,7 +107,8 @@ struct Cells<'a> {
     /// The lowest frequency of the series in u, cycles per unit slope.
     series: f64,
     bins: usize,
-    /// Half-widths of the grid in those units: 1 if the grid covers the support.
+    /// Half-widths of the grid in units of the window's half-widths: 1 if the grid covers the
+    /// support.
     half: [f64; 2],
     /// Gauss rule on (0, 1).
     nodes: Vec<(f64, f64)>,

@@ -2,8 +2,8 @@
 //! (docs/theory.md, section 2).
 //!
 //! Each ray is followed through the chain separately: travel moves it, masks attenuate it, the
-//! window weights it. So the only error of the prediction is that of the transform, and the
-//! prediction shares neither random numbers nor the tracer's intersections with the photons.
+//! window weights it. So the only error of the prediction is that of the transform. The prediction
+//! shares neither random numbers nor the tracer's code for intersections with the photons.
 
 use crate::barrier::Barrier;
 use crate::model::Over;

@@ -348,8 +348,8 @@ impl Walk {
 /// Returns the map of a thin lens, from the frame of one leg to that of the next. It holds to first
 /// order about a central ray, which may cross the lens at any point and slope.
 ///
-/// In the lens's own frame positions stay and slopes decrease by position over focal length; at the
-/// centre and along the axis that is [`AffineMap::thin_lens`].
+/// In the lens's own frame positions stay, and slopes decrease by the position divided by the focal
+/// length. At the centre and along the axis this is [`AffineMap::thin_lens`].
 fn lens(frame: &Frame, hit: &CentralHit, focal_length: f64) -> Option<AffineMap<4>> {
     let [before, after] = [&hit.arriving, &hit.leaving].map(|leg| seen_across(frame, leg));
     let power = AffineMap::<4>::thin_lens(focal_length);

@@ -20,14 +20,14 @@ use glam::DVec3;
 /// the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RayStrategy {
-    /// By the picture of the light.
+    /// Rays are sampled by the picture of the light.
     Picture,
-    /// By positions at the plane; for an area light also by points of the light, and for an
-    /// environment by directions.
+    /// Rays are sampled by positions at the plane. For an area light they are also sampled by
+    /// points of the light, and for an environment by directions.
     Positions,
-    /// By slopes at the plane, with the same additions.
+    /// Rays are sampled by slopes at the plane, with the same additions.
     Slopes,
-    /// By positions and slopes at the plane, for a light with extent.
+    /// Rays of a light with extent are sampled by positions and slopes at the plane.
     Plane,
 }
 
@@ -74,12 +74,12 @@ enum By {
         inverse: Matrix<2>,
         determinant: f64,
     },
-    /// All four coordinates, by exact backward rays.
+    /// All four coordinates are sampled, by exact backward rays.
     Back {
         window: Box<[LinearDensity; 4]>,
         back: Back,
     },
-    /// All four coordinates, to first order.
+    /// All four coordinates are sampled, to first order.
     Map {
         targets: Box<[Target; 4]>,
         map: AffineMap<4>,
@@ -120,7 +120,8 @@ impl<'a> Outer<'a> {
 
 impl<'a> RaySampler<'a> {
     /// `center` is where the central ray lands, and `jacobian` is how that changes with the ray;
-    /// `None` if they do not determine the ray. Without a plane all rays land as targeted.
+    /// `None` if they do not determine the ray. Without a plane, all rays are taken to land as
+    /// targeted.
     #[expect(
         clippy::too_many_lines,
         reason = "the coordinates by which each kind of light is aimed, side by side"

@@ -189,7 +189,7 @@ fn linear_field<'a>(
 
 /// Converts a ray to angles: when light of an environment arrives on a surface, it is a function of
 /// angles, and slopes are not small there. Travel over a distance moves the ray to its landing
-/// point. Also returns dθ dφ over du dv.
+/// point. Also returns dθ dφ divided by du dv.
 fn angles([x, y, u, v]: [f64; 4], distance: f64) -> ([f64; 4], f64) {
     let across = (1.0 + u * u).sqrt();
     let (longitude, latitude) = (libm::atan(u), libm::atan(v / across));

@@ -59,7 +59,7 @@ impl LegRay {
         } else {
             -point.dot(direction)
         };
-        // Along the ray the patch's function is a s² + 2 b s + c, from a point near it.
+        // Along the ray, counted from a point near it, the patch's function is a s² + 2 b s + c.
         let near = point + direction * t;
         let a = (DVec3::from(patch.curvature) * direction).dot(direction);
         let b = patch.gradient(near).dot(direction);

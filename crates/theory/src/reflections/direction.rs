@@ -1,8 +1,8 @@
 //! Sampled directions away from a scattering surface.
 //!
-//! Most directions are aimed at positions at the end of the leg. Where the next surface is near,
-//! such as in a corner, the solid angle of a position there is unbounded. So some directions follow
-//! the lobe in angles, whatever is ahead, which bounds the weights of all paths.
+//! Most directions are aimed at positions at the end of the leg. If the next surface is near, as in
+//! a corner, the solid angle of a position on it is unbounded. So some directions follow the lobe
+//! in angles, whatever is ahead, which bounds the weights of all paths.
 
 use super::PathSurface;
 use super::aim::DirectionCoordinates;

@@ -16,11 +16,11 @@ use glam::DVec3;
 /// in the plane of incidence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScatteringChain {
-    /// From (x, y, u, v) at the light to local coordinates of the direction of incidence: travel,
-    /// incidence, curvature.
+    /// The map from (x, y, u, v) at the light to local coordinates of the direction of incidence:
+    /// travel, incidence, curvature.
     pub onto: AffineMap<4>,
-    /// From local coordinates of the outgoing direction to those of the plane: back, outgoing
-    /// angle, travel.
+    /// The map from local coordinates of the outgoing direction to those of the plane: back,
+    /// outgoing angle, travel.
     pub off: AffineMap<4>,
     /// Longitude θ₀ of the direction the central ray comes from.
     pub incidence: f64,

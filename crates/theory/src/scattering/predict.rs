@@ -232,7 +232,8 @@ type DrawnPart = Option<(LightPart, f64)>;
 
 /// A light field with a parameter changed.
 ///
-/// If the change does not affect a ray or the light, they are taken from the original light field.
+/// If the change does not affect a ray or the light, the values are taken from the original light
+/// field.
 struct VariedField<'a> {
     view: &'a Observed<ScatteringSystem>,
     moves_surface: bool,

@@ -112,7 +112,8 @@ mod tests {
     fn brewster_and_total_reflection() {
         let glass = FresnelFactor::Dielectric { index: 1.5 };
         let at = libm::atan(1.5_f64);
-        // At Brewster's angle one polarisation is not reflected: half of (n² − 1)²/(n² + 1)².
+        // At Brewster's angle one polarisation is not reflected, and the mean is half of (n² −
+        // 1)²/(n² + 1)².
         let expected = 0.5 * (1.25_f64 / 3.25).powi(2);
         assert!((glass.reflectance(at) - expected).abs() < 1e-15); // rounding
         let inside = FresnelFactor::Dielectric { index: 1.0 / 1.5 };

@@ -3,8 +3,8 @@
 use crate::numerics::quadrature::gauss_legendre;
 use std::f64::consts::TAU;
 
-/// Number of nodes of a panel. With two cycles, or a pole no nearer than the panel is long, the
-/// error is below 10⁻¹⁵.
+/// Number of nodes of a panel. With two cycles in a panel, or a pole no nearer than the panel is
+/// long, the error is below 10⁻¹⁵.
 const NODES: usize = 24;
 const CYCLES: f64 = 2.0;
 

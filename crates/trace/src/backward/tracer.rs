@@ -80,7 +80,7 @@ impl Backward {
 
     /// The ray of one plane with number `index`, and its weight in radiance space.
     fn sample(&self, sampler: &PlaneSampler, plane: u32, index: u64) -> Crossing {
-        // One block for the ray, and one for each surface on its way.
+        // The ray takes one block, and each surface on its way takes one.
         let blocks = u32::try_from(self.legs.len().max(2)).unwrap_or(u32::MAX);
         let words = |block| {
             let block = blocks * plane + block;
@@ -443,7 +443,7 @@ impl Backward {
 
 impl Backward {
     /// The radiance of a light without extent at a plane on the first leg. From a point drawn in
-    /// the plane's window the direction to the light is known.
+    /// the plane's window, the direction to the light is known.
     fn look_at_light(
         &self,
         sampler: &PlaneSampler,

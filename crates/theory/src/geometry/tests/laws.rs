@@ -173,7 +173,7 @@ fn paths_are_reversible() {
         .then(&AffineMap::<4>::refracting_surface(theta1, SHAPE, &GLASS).unwrap())
         .then(&AffineMap::thin_lens(0.7));
     let [[m11, m12], [m21, m22]] = SHAPE;
-    // From behind, concave becomes convex and T is reversed; B is not.
+    // Seen from behind, concave becomes convex, and T is reversed but B is not.
     let behind = [[-m11, m12], [m21, -m22]];
     let back = |behind| {
         AffineMap::<4>::thin_lens(0.7)

@@ -147,7 +147,7 @@ fn foci_of_a_hollow_sphere() {
         let got = -map[axis][axis] / map[axis + 2][axis];
         assert!((got - expected).abs() < 1e-14, "{got}"); // rounding
     }
-    // Without the cosine of the sagittal plane the second would be R/2 = 1.
+    // Without the cosine of the sagittal plane, the second distance would be R/2 = 1.
     assert!((expected[1] - 1.307_459).abs() < 1e-6); // the number in print has six digits
 }
 

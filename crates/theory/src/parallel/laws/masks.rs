@@ -85,7 +85,7 @@ fn a_grating_is_three_copies() {
 /// neither grating alone has any.
 #[test]
 fn two_gratings_leave_the_wedge() {
-    // At a zero of the transform of the window, whose half-widths are 0.5 and 0.3.
+    // The frequency is at a zero of the transform of the window, whose half-widths are 0.5 and 0.3.
     let (f, between) = (5.0, 1.0);
     let mask = || Some(grating(0, f, 0.0));
     let wide = || lambertian(square([0.0, 0.0], 8.0));

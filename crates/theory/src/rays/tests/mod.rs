@@ -9,7 +9,7 @@ use etendue_field::{
 };
 use glam::DVec3;
 
-/// Two million nodes: errors are far below the deviations that these tests detect.
+/// Two million nodes, so errors are far below the deviations that these tests detect.
 const BUDGET: RayBudget = RayBudget {
     nodes: 2e6,
     error: 1e-5,

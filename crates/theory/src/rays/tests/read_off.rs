@@ -93,8 +93,8 @@ fn systems() -> Vec<SpecularSystem> {
             }
         }
     }
-    // Two mirrors with different planes of incidence, then a lens that is met off-centre and
-    // obliquely.
+    // The path has two mirrors with different planes of incidence, then a lens that is met
+    // off-centre and obliquely.
     let first = mirror(light(), 0.5, [0.3, 0.2], [-0.5, 0.3, 0.0]);
     let patch = placed(&leg(&first), 0.7, -0.6, [1.2, 0.4], [0.4, 0.1, 0.0]);
     let second = with(first, "second", patch, Specular::Mirror);

@@ -95,7 +95,7 @@ fn derivatives_by_every_parameter() {
         forward.half -= &prediction.slices.half;
         forward.half /= Complex::from(1e-4);
         let off = forward.relative_difference(slope);
-        // Half the second derivative times 10⁻⁴; quadrature errors do not cancel.
+        // The error is half the second derivative times 10⁻⁴; quadrature errors do not cancel.
         assert!(off < 0.02, "{name}: {off}");
         assert!(
             slope

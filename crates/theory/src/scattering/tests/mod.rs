@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 const DISTANCE: f64 = 1.0;
 
-/// Two million nodes: errors are far below the deviations that these tests detect.
+/// Two million nodes, so errors are far below the deviations that these tests detect.
 fn exact(system: &ScatteringSystem, plane: &Plane, window: &Window, grid: &SliceGrid) -> Predicted {
     by(
         system,

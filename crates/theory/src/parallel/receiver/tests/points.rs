@@ -128,7 +128,7 @@ fn tiles_that_fill_the_plane_leave_nothing() {
 
 #[test]
 fn two_discs_meet_in_a_lens() {
-    // Without the cosine the integral is an area; a lens is the sum of two segments.
+    // Without the cosine the integral is an area; the area of a lens is the sum of two segments.
     let light = area(disc([0.0, 0.0], 0.5), 0.0);
     let segment = |r: f64, x: f64| r * r * libm::acos(x / r) - x * (r * r - x * x).sqrt();
     for (offset, radius) in [

@@ -56,8 +56,8 @@ pub(super) fn cube(count: u32) -> impl Iterator<Item = [f64; 6]> {
     (1..=count).map(move |n| steps.map(|s| (0.5 + s * f64::from(n)).fract()))
 }
 
-/// Estimates the spectrum at frequencies from rays sampled at random through the window and from
-/// the light, followed back.
+/// Estimates the spectrum at some frequencies from rays that are sampled at random through the
+/// window and on the light, and followed back.
 fn drawn(bench: &TestReceiver, after: f64, window: &Window, rays: u32) -> Vec<Complex> {
     let Light::Area { shape, .. } = bench.light else {
         unreachable!("area lights only")
