@@ -115,7 +115,7 @@ fn merged(shards: &[Stored<Held>], scene: &Scene) -> Result<Measurement, Failure
         let Range { start, end } = held.batches;
         if start >= end || end > scene.run.batches {
             let all = scene.run.batches;
-            return Err(shard.fault(format!("batches {start}..{end}; must lie within 0..{all}")));
+            return Err(shard.fault(format!("batches {start}..{end}; allowed: within 0..{all}")));
         }
         let part = batches::read(shard, &scene.planes)?;
         all = all.merge(part).map_err(|e| {

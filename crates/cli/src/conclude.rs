@@ -52,7 +52,7 @@ pub(crate) fn conclude(
         if !gone.is_empty() {
             let names = gone.join(", ");
             say(&format!(
-                "removed with the earlier result and not saved again: {names}"
+                "these files were removed with the earlier result and not saved again: {names}"
             ));
         }
     }

@@ -93,8 +93,8 @@ fn two_gratings_leave_the_wedge() {
     let k = [0.0, 0.0, f * between, 0.0];
     let value = |chain: &Chain| at(chain, &hann(), k).norm() / zero(chain);
     let both = value(&seen(mask(), mask()));
-    // The ratio is (m/4)² to (½)²: the component at the difference of the two frequencies to that at
-    // zero. Half of the tolerance is for the edge of the window.
+    // The ratio is (m/4)² to (½)²: the component at the difference of the two frequencies to the
+    // component at zero. Half of the tolerance is for the edge of the window.
     assert!(
         (both / (0.9_f64.powi(2) / 4.0) - 1.0).abs() < 0.05,
         "{both}"
