@@ -240,7 +240,7 @@ fn both_ways_agree_behind_smooth_surfaces() {
 const WIDE: &str = r#"Rectangle(name: "wall", center: (-0.5, 0, 1.2), size: (2, 3), facing: (0, 0, -1), albedo: 0.9)"#;
 const GLOSSY: &str = r#"Smooth(name: "wall", center: (-0.3, 0, 1.2), facing: (0, 0, -1), form: Plane, aperture: 1, event: Reflects(brdf: (lobe: Phong(2), albedo: 0.9)))"#;
 const NEAR: &str = r#"Rectangle(name: "floor", center: (-0.5, 0, 1), size: (0.4, 0.5), facing: (0, 0, 1), albedo: 0.5)"#;
-/// A blocker of light that travels backwards.
+/// A blocker in the path of light that travels backwards.
 const CARD: &str = r#"Shapes(name: "card", center: (-0.8, 0, 1.1), shapes: [Rectangle(center: (0, 0), size: (0.15, 0.2))])"#;
 const ABOVE: &str = r#"Rectangle(name: "ceiling", center: (-0.9, 0, 1.16), size: (0.3, 0.4), facing: (0, 0, -1), albedo: 0.5)"#;
 

@@ -148,7 +148,7 @@ impl Target {
     }
 
     /// Returns the coordinate below which a share of the density lies; small shares give points
-    /// anywhere, the others points near the window.
+    /// anywhere, and larger shares give points near the window.
     pub(crate) fn quantile(&self, share: f64) -> f64 {
         if share >= ANYWHERE_SHARE {
             return self

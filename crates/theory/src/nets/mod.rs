@@ -31,9 +31,8 @@ const OF_DERIVATIVES: usize = 8;
 const OF_TRIALS: usize = 16;
 /// The fewest and the most nodes in each net of a derivative.
 const DERIVATIVE_NODES: [u32; 2] = [1 << 12, 1 << 15];
-/// The relative error ‖error‖/‖D‖ at which a derivative is accurate enough. It causes a relative
-/// error of its square in a measured parameter, whose scale is the parameter's distance from the
-/// scene's value.
+/// The relative error ‖error‖/‖D‖ at which a derivative is accurate enough. It changes a measured
+/// parameter by about its square, relative to the parameter's distance from the scene's value.
 const DERIVATIVE_ERROR: f64 = 0.03;
 /// Number of nodes of a net at which its error is first estimated.
 const FIRST_NODES: u32 = 1 << 11;

@@ -187,9 +187,9 @@ fn reach(lobe: &PlanarLobe, share: f64) -> f64 {
     outside
 }
 
-/// Returns a frequency beyond which the spectrum of a lobe is negligible. It is that of a Gaussian
-/// with the same reach, or three times that for lobes that end at a right angle, whose transforms
-/// have tails.
+/// Returns a frequency beyond which the spectrum of a lobe is negligible. It is the frequency for a
+/// Gaussian with the same reach. For lobes that end at a right angle, whose transforms have tails,
+/// it is three times as high.
 fn highest(reach: f64) -> f64 {
     let deviations = (-2.0 * libm::log(TAIL)).sqrt();
     let tail = if reach < BROAD { 1.0 } else { 3.0 };

@@ -192,8 +192,7 @@ fn the_sky_on_a_sphere() {
     }
 }
 
-/// Tests light that has passed a grating: its slopes across the central ray, and the light that
-/// reaches an oblique surface.
+/// Tests light that has passed a grating, on a plane in slopes and on an oblique surface.
 #[test]
 fn the_sky_past_a_grating() {
     let (window, grid) = (window(WINDOW[0], Profile::Hann(0.5)), grid(2, [0.3, 0.5]));
