@@ -14,12 +14,12 @@ use rayon::prelude::*;
 /// 2005.
 const STEP: usize = 4;
 
-/// Default number of rays per point: a sixth of the hundred of Durand et al. 2005, which would
-/// dominate the cost.
+/// Default number of rays per point: a sixth of the hundred rays of Durand et al. 2005, whose cost
+/// would dominate.
 pub const BLOCKER_RAYS: u32 = 16;
 
-/// The nearness at each pixel, from `rays` rays of each point to what is reflected, and as many to
-/// lights.
+/// Returns the nearness at each pixel. From each point, `rays` rays go towards what it reflects,
+/// and as many towards lights.
 pub(crate) fn nearness(
     visible: &Visible,
     (paths, camera, cutoffs, seed): (&Paths, &Camera, &Cutoffs, u64),

@@ -2,8 +2,8 @@
 //! Elimination for Generating Poisson Disk Sample Sets*).
 //!
 //! More candidates than needed are drawn from the density. The candidate most crowded by its
-//! neighbours is removed repeatedly until the required number is left. Distances use the metric, in
-//! which the density is 1 everywhere.
+//! neighbours is removed repeatedly until the required number is left. Distances are measured with
+//! the metric in which the density is 1 everywhere.
 
 use crate::metric::Metric;
 use etendue_sampling::DiscreteDistribution;
@@ -30,7 +30,7 @@ pub(crate) struct PicturePoint {
     pub(crate) metric: Metric,
 }
 
-/// At most `count` points over a picture `wide` pixels across, in order of pixels.
+/// Returns at most `count` points over a picture `wide` pixels across, in order of pixels.
 pub(crate) fn blue_noise(
     metrics: &[Option<Metric>],
     wide: usize,
@@ -53,8 +53,8 @@ pub(crate) fn blue_noise(
         .collect()
 }
 
-/// Random points drawn from the density. They are independent: stratified points would be less
-/// crowded in dense regions, and elimination would leave too many there.
+/// Random points drawn from the density. They are drawn independently. Stratified points would be
+/// less crowded in dense regions, so elimination would leave too many there.
 fn candidates(
     metrics: &[Option<Metric>],
     wide: usize,
@@ -124,8 +124,8 @@ fn largest_radius() -> f64 {
 impl Crowd {
     fn new(points: &[PicturePoint], wide: usize, high: usize) -> Self {
         let most = 2.0 * largest_radius();
-        // Limits the weight of candidates that are close by chance: they do not crowd their whole
-        // region (Yuksel 2015, Eq. 4).
+        // This limits the weight of candidates that are close by chance and do not crowd their
+        // whole region (Yuksel 2015, Eq. 4).
         let kept = (CANDIDATES as f64).recip();
         let least = most * (1.0 - kept * kept.sqrt()) * 0.65;
         let grid = PointGrid::new(points, wide, high);
@@ -225,7 +225,7 @@ impl PointGrid {
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "a number of a cell, clamped"
+    reason = "the number of a cell, clamped to the grid"
 )]
 fn cell(at: f64, cells: usize) -> usize {
     ((at / CELL as f64).max(0.0) as usize).min(cells - 1)
@@ -244,8 +244,8 @@ mod tests {
         squares.fold(f64::INFINITY, f64::min).sqrt()
     }
 
-    /// Random points have some nearest neighbours at distance 0; Yuksel's keep three quarters of
-    /// the maximum radius (his Table 1 has 0.73 to 0.82 of 2 r).
+    /// Some nearest neighbours of random points are at distance 0. Yuksel's points keep three
+    /// quarters of the maximum radius (his Table 1 has 0.73 to 0.82 of 2 r).
     #[test]
     fn points_keep_their_distance() {
         let even = vec![Some(Metric::even(0.05)); 100 * 80];
@@ -256,7 +256,7 @@ mod tests {
         let closest = all
             .map(|i| nearest(&points, i))
             .fold(f64::INFINITY, f64::min);
-        // This many random points have a minimum distance of about 0.03.
+        // Random points of the same number have a minimum distance of about 0.03.
         assert!(closest > 0.6 * 2.0 * largest_radius(), "{closest}");
     }
 
@@ -271,8 +271,8 @@ mod tests {
         assert!((left as f64 - 120.0).abs() < 12.0, "{left}");
     }
 
-    /// Below the frequency of neighbours blue noise has almost no power, whereas random points have
-    /// 1.
+    /// At frequencies below the inverse distance of neighbours, blue noise has almost no power,
+    /// whereas random points have 1.
     #[test]
     fn low_frequencies_are_quiet() {
         let even = vec![Some(Metric::even(0.1)); 100 * 100];

@@ -1,14 +1,14 @@
 //! The bandwidth of light across the picture, by the criteria of Durand et al. 2005, Eqs. 20 and
 //! 21, corrected.
 //!
-//! A lobe reflects light about its axis, up to its cutoff Ω_ρ. From pixel to pixel the axis turns
-//! by ∂r, and objects at a distance d' move relative to it by the component across r of the step ∂p
-//! on the surface, divided by d'. So the bandwidth along a direction of the picture is Ω_ρ |∂r +
-//! ∂p/d'| cycles per pixel. In the plane of incidence of a sphere this is Ω_ρ |1 + d (cos θ₀/d' +
-//! 2k)/cos θ₁| times the angle of a pixel: Eq. 21 with its missing factors, and without d' it is
-//! Eq. 20. Finite differences on the screen include the angle of view, the distance and both
-//! curvatures, as the paper states. As printed, the equations are functions of the larger
-//! curvature, and isotropic.
+//! A lobe reflects light about its axis, up to its cutoff Ω_ρ. From one pixel to the next, the axis
+//! r turns by ∂r and the point on the surface moves by ∂p. An object at a distance d' then moves
+//! relative to the axis by the component of ∂p across r, divided by d'. So the bandwidth along a
+//! direction of the picture is Ω_ρ |∂r + ∂p/d'| cycles per pixel. In the plane of incidence of a
+//! sphere this is Ω_ρ |1 + d (cos θ₀/d' + 2k)/cos θ₁| times the angle of a pixel: Eq. 21 with its
+//! missing factors. Without the term in d' it is Eq. 20. Finite differences on the screen include
+//! the angle of view, the distance and both curvatures, as the paper states. The equations as
+//! printed use the larger curvature alone, and are isotropic.
 
 use crate::metric::Metric;
 use crate::visible::{OFFSETS, SeenPlace, SeenSurface, Visible};
@@ -32,7 +32,8 @@ pub(crate) fn criterion(
     Some(lobe.plus(shadow))
 }
 
-/// The squared bandwidth by Eqs. 20 and 21 as printed, seen from `eye`, if the surface has a lobe.
+/// The squared bandwidth by Eqs. 20 and 21 as printed, as seen from `eye`; `None` if the surface
+/// has no lobe.
 pub(crate) fn printed(
     visible: &Visible,
     pixel: [usize; 2],
@@ -113,8 +114,8 @@ struct PixelStep {
     position: DVec3,
 }
 
-/// Steps to the right and down: slopes of the plane through the points of a pixel, if they are all
-/// on one shape.
+/// Returns the steps to the right and down: the slopes of the plane fitted to the points of a
+/// pixel. They are zero unless all points are on one shape.
 fn steps(places: &[SeenPlace], shape: usize) -> [PixelStep; 2] {
     let mut steps = [PixelStep::default(); 2];
     for (place, offset) in places.iter().zip(OFFSETS) {

@@ -8,11 +8,11 @@ const DENSEST: f64 = 4.0;
 /// Maximum distance of samples in pixels.
 const MAX_SPACING: f64 = 32.0;
 
-/// Maximum anisotropy of the density: finite differences are not more accurate.
+/// Maximum anisotropy of the density: finite differences are not accurate enough for a larger one.
 const LONGEST: f64 = 3.0;
 
-/// Metrics whose root determinants, the samples per pixel, add up to `samples`, proportional to
-/// `wanted` within the bounds.
+/// Returns metrics proportional to `wanted` within the bounds. The roots of their determinants are
+/// the samples per pixel, and their sum is `samples`.
 pub(crate) fn scaled(wanted: &[Option<Metric>], samples: f64) -> Vec<Option<Metric>> {
     let rates: Vec<Option<f64>> = wanted
         .iter()
@@ -24,7 +24,7 @@ pub(crate) fn scaled(wanted: &[Option<Metric>], samples: f64) -> Vec<Option<Metr
         let rates = rates.iter().flatten();
         rates.map(|rate| bounded(*rate, scale)).sum()
     };
-    // The sum increases with the scale: bisection until rounding.
+    // The sum increases with the scale, so bisection finds the scale.
     let [mut low, mut high] = [-100.0, 100.0];
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
@@ -47,8 +47,8 @@ pub(crate) fn scaled(wanted: &[Option<Metric>], samples: f64) -> Vec<Option<Metr
     wanted.iter().zip(&rates).map(of).collect()
 }
 
-/// The metric for a squared bandwidth: isotropic by the larger eigenvalue, as in the paper, or
-/// anisotropic.
+/// Returns the metric for a squared bandwidth. If `is_even`, it is isotropic and uses the larger
+/// eigenvalue, as in the paper; otherwise it is anisotropic.
 pub(crate) fn wanted(squared: Metric, is_even: bool) -> Metric {
     // Twice the bandwidth along each direction (Shannon), plus a minimum for pixels without
     // bandwidth.

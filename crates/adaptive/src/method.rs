@@ -17,15 +17,16 @@ use etendue_world::Camera;
 pub enum SampleMethod {
     /// Uniformly over all shaded pixels.
     Uniform,
-    /// By the criteria of Durand et al. 2005, Eqs. 20 and 21, corrected.
+    /// By the criteria of Durand et al. 2005, Eqs. 20 and 21, with corrections.
     Predicted,
     /// By the same criteria as printed, to show the cost of their approximations.
     Printed,
-    /// By the criteria and, in equal parts, by the measured light: by the error that planes through
-    /// half of a first quarter of the samples have at the other half.
+    /// In equal parts by the criteria and by the measured light. A first quarter of the samples
+    /// measures the light: planes are fitted to one half of this quarter, and their error is
+    /// evaluated at the other half.
     Weighted,
-    /// By measured light alone: the standard deviation of a first quarter of the samples, which is
-    /// uniform.
+    /// By the measured light alone: the standard deviation of a first quarter of the samples, which
+    /// are distributed uniformly.
     Variance,
 }
 
@@ -66,7 +67,7 @@ pub enum Stage {
 /// Layers with a number for each pixel, rows from the top; NaN where nothing is shaded.
 #[derive(Clone, Debug, Default)]
 pub struct Layers {
-    /// The larger bandwidth by the criterion, cycles per pixel.
+    /// The larger of the two principal bandwidths by the criterion, cycles per pixel.
     pub bandwidth: Vec<f64>,
     /// The larger curvature by finite differences on the screen, per unit of length, positive if
     /// convex.
@@ -98,12 +99,12 @@ pub struct Rendered {
     pub layers: Layers,
 }
 
-/// The share of samples taken first, if they determine the others.
+/// The share of samples that are taken first, if the first samples determine where the others go.
 const FIRST_SHARE: f64 = 0.25;
 
-/// The squared error of a plane through samples decreases as the fourth power of their distance,
-/// the inverse square of their density n. Its sum over the picture is minimal for a fixed number of
-/// samples if n ∝ (c² B⁴)^(1/3), with the contrast c and the bandwidth B.
+/// The squared error of a plane through samples is proportional to the fourth power of their
+/// distance, and so to 1/n² for a density n of samples. Its sum over the picture is minimal for a
+/// fixed number of samples if n ∝ (c² B⁴)^(1/3), with the contrast c and the bandwidth B.
 const POWER: f64 = 2.0 / 3.0;
 
 /// Renders a picture; `stage` receives the next stage and its number of steps, `progress` the
@@ -149,7 +150,7 @@ struct AdaptiveRun<'a> {
 }
 
 impl AdaptiveRun<'_> {
-    /// Takes all samples of the method, each with the metric of all samples.
+    /// Takes all samples of the method, and stores the metric of all samples with each of them.
     fn samples(&mut self) -> Vec<ShadedSample> {
         let even = self.visible.pixels(|pixel| {
             let places = self.visible.of_pixel(pixel);
@@ -220,7 +221,7 @@ impl AdaptiveRun<'_> {
         let dark = 0.01 * lights.sum::<f64>() / samples.len().max(1) as f64;
         let mut found = Vec::new();
         for half in 0..2 {
-            // Alternates in the order of pixels, so that both halves cover the picture.
+            // The halves alternate in the order of pixels, so that both cover the picture.
             let of = |odd: usize| samples.iter().skip(odd).step_by(2);
             let sparse: Vec<ShadedSample> = of(half)
                 .map(|(sample, _)| ShadedSample {
@@ -296,7 +297,7 @@ impl AdaptiveRun<'_> {
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
-            reason = "a number of samples"
+            reason = "a whole number of samples, not negative"
         )]
         let count = count.round() as usize;
         let seed = self.plan.seed.wrapping_add(round << 32);
@@ -313,8 +314,8 @@ impl AdaptiveRun<'_> {
         let wider: Vec<ShadedSample> = samples
             .iter()
             .map(|(sample, noise)| {
-                // Textures give no contrast on materials with one part: their factor is multiplied
-                // in later.
+                // Textures cause no contrast on materials with one part, because their factor is
+                // multiplied in later.
                 let factors = match sample.surface.factors {
                     [base, 0.0] => [1.0, base],
                     [base, lobe] => [base, lobe],
@@ -426,19 +427,19 @@ impl AdaptiveRun<'_> {
 /// Width in pixels of a patch far from all samples.
 const PATCH: f64 = 2.0;
 
-/// Number of recent samples that are checked for nearness: those of some rows.
+/// Number of recent samples whose distance is checked: those of the last few rows.
 const RECENT: usize = 256;
 
-/// Contrasts use neighbours this many times farther away than the reconstruction.
+/// Contrasts use neighbours up to this many times farther away than those of the reconstruction.
 const WIDER: f64 = 2.0;
 
-/// Minimum contrast: a first sample in four may have missed it.
+/// Minimum contrast, because the first samples, one in four, may have missed the contrast.
 const MIN_CONTRAST: f64 = 0.02;
 
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "a number of a pixel, clamped"
+    reason = "the number of a pixel, clamped to the picture"
 )]
 fn pixel_at(at: [f64; 2], size: [usize; 2]) -> [usize; 2] {
     [0, 1].map(|k: usize| (at[k].max(0.0) as usize).min(size[k] - 1))

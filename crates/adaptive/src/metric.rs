@@ -2,8 +2,8 @@
 
 /// A symmetric 2 × 2 matrix over the picture, columns to the right and rows down, per pixel².
 ///
-/// For a criterion it is the squared bandwidth in cycles per pixel along each direction; for
-/// samples it defines distances, in which neighbours are about 1 apart.
+/// For a criterion, the matrix is the squared bandwidth in cycles per pixel along each direction.
+/// For samples, it defines distances in which neighbours are about 1 apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Metric {
     /// The entry along columns.
@@ -68,8 +68,8 @@ impl Metric {
         [self.yy, self.xx].map(|across| radius * (across / determinant).sqrt())
     }
 
-    /// The metric made rounder until the lengths of directions differ by at most a factor of
-    /// `most`.
+    /// Returns the metric made rounder, so that the lengths of a step in different directions
+    /// differ by at most a factor of `most`.
     #[must_use]
     pub(crate) fn rounder(self, most: f64) -> Self {
         let large = self.largest();

@@ -1,6 +1,6 @@
-//! Reconstruction between samples: at each point a plane is fitted to the samples around it,
-//! weighted by similarity in shape, normal and position (a bilateral filter, Tomasi and Manduchi
-//! 1998, whose width is that of the samples' metric, as in Durand et al. 2005, section 6.2).
+//! Reconstruction between samples. At each point a plane is fitted to the samples around it,
+//! weighted by similarity in shape, normal and position. This is a bilateral filter (Tomasi and
+//! Manduchi 1998), whose width follows the samples' metric, as in Durand et al. 2005, section 6.2.
 
 use crate::blue_noise::PixelPosition;
 use crate::criterion::shaded;
@@ -27,16 +27,16 @@ impl ShadedSample {
     }
 }
 
-/// Standard deviation of the filter in units in which neighbours are about 1 apart: with less, some
-/// points use only one sample; with more, sampled detail is lost.
+/// Standard deviation of the filter, in units in which neighbours are about 1 apart. With a smaller
+/// one, some points would use only one sample; with a larger one, sampled detail would be lost.
 const WIDTH: f64 = 0.5;
 
-/// Cutoffs of the filter in standard deviations: for the first round, and for later rounds at
-/// points that no sample reached.
+/// Cutoffs of the filter in standard deviations. The first is that of the first round. The others
+/// are those of later rounds, at points that no sample has reached.
 const REACHES: [f64; 3] = [3.0, 9.0, 27.0];
 
-/// Standard deviation of normals: a right angle is another face, but the turn over a metric's
-/// distance is not.
+/// Standard deviation of normals. It separates faces that meet at a right angle, but not normals
+/// that turn within the distance of samples.
 const NORMALS: f64 = 0.35;
 
 /// Standard deviation of the elevation angle of a sample above the surface at a point.
@@ -65,7 +65,8 @@ pub(crate) fn reconstruct(
     (0..bands).into_par_iter().flat_map_iter(of).collect()
 }
 
-/// Sums over samples at one point, with positions relative to it in units of the metric.
+/// Sums over samples at one point. The positions of samples are relative to the point, in units of
+/// the metric.
 #[derive(Clone, Copy, Debug)]
 struct LocalSums {
     weight: f64,
@@ -74,7 +75,7 @@ struct LocalSums {
     values: [ValueSums; 2],
 }
 
-/// The sums of one value.
+/// The sums for one value.
 #[derive(Clone, Copy, Debug)]
 struct ValueSums {
     value: f64,
@@ -118,7 +119,7 @@ impl LocalSums {
 
     /// The value of the fitted plane at the point.
     fn plane(&self, of: &ValueSums) -> f64 {
-        // Relative to the mean position, with added spread to keep the slope from few samples
+        // Positions are relative to their mean. Spread is added to keep the slope from few samples
         // small.
         let [x, y] = self.x.map(|x| x / self.weight);
         let mean = of.value / self.weight;
@@ -217,7 +218,8 @@ fn unlike(place: &SeenSurface, sample: &SeenSurface) -> f64 {
         return turned;
     }
     let height = between.dot(place.normal);
-    // On a curved surface normals turn by twice that angle; a larger angle means another sheet.
+    // On a curved surface, normals turn by twice the elevation angle; a larger elevation angle
+    // means another sheet.
     turned + height * height / (length * HEIGHTS * HEIGHTS)
 }
 
@@ -225,7 +227,7 @@ fn unlike(place: &SeenSurface, sample: &SeenSurface) -> f64 {
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "numbers of pixels, clamped"
+    reason = "the numbers of pixels, clamped to the picture"
 )]
 fn pixels([low, high]: [f64; 2], count: usize) -> Range<usize> {
     let low = low.max(0.0) as usize;

@@ -20,9 +20,9 @@ pub(crate) struct Shader<'a> {
 }
 
 impl Shader<'_> {
-    /// Shades points, without the factors of their surface, and estimates the variance of each with
-    /// them; points where nothing is visible are left out. Point i uses random numbers of index
-    /// `first` + i.
+    /// Shades points without the texture factors of their surface, and estimates the variance of
+    /// each with these factors. Points where nothing is visible are left out. Point i uses random
+    /// numbers of index `first` + i.
     pub(crate) fn shade(
         &self,
         points: &[PicturePoint],

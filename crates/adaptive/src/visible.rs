@@ -10,8 +10,8 @@ use std::ops::Range;
 /// Number of points per pixel.
 pub(crate) const FOUR: usize = 4;
 
-/// Positions of the points in a pixel. No two share a row or column, so edges near these directions
-/// get four steps instead of two.
+/// Positions of the points in a pixel. No two share a row or a column, so a nearly horizontal or
+/// vertical edge gets four steps instead of two.
 pub(crate) const OFFSETS: [[f64; 2]; FOUR] = [
     [0.375, 0.125],
     [0.875, 0.375],
@@ -56,7 +56,7 @@ pub(crate) struct SeenSurface {
     /// The highest frequency that the material preserves around the axis, cycles per radian; 0 if
     /// it is black.
     pub(crate) cutoff: f64,
-    /// The texture factors of base and lobe. They are divided out of the shading.
+    /// The texture factors of base and lobe. The shading is divided by these factors.
     pub(crate) factors: [f64; 2],
 }
 

@@ -67,7 +67,8 @@ fn even_light_stays_even() {
         let lit = found.radiance.iter().filter(|x| **x < 2.0).count();
         assert!(lit > 1000, "{method:?}: {lit} pixels of the ball");
         for radiance in &found.radiance {
-            // Pixels at the edge mix both in quarters; the rest is noise of 128 paths.
+            // A pixel at the edge mixes ball and background in quarters; the rest is noise of 128
+            // paths.
             let quarters = (radiance - 1.5) / 0.375;
             assert!(
                 (quarters - quarters.round()).abs() < 0.15,
@@ -91,7 +92,7 @@ fn the_same_bytes_on_any_threads() {
     }
 }
 
-/// The number of samples is as requested, except for those whose points hit nothing.
+/// The number of samples is as requested, except for samples whose points hit nothing.
 #[test]
 fn samples_are_spent() {
     for method in ALL {
@@ -102,8 +103,8 @@ fn samples_are_spent() {
     }
 }
 
-/// The criterion of a sphere increases towards its edge, and samples with it; uniform samples do
-/// not.
+/// The criterion of a sphere increases towards its edge, and so does the density of predicted
+/// samples, but not that of uniform samples.
 #[test]
 fn predicted_samples_gather_at_the_edge() {
     let far = |method: SampleMethod| {
@@ -112,7 +113,8 @@ fn predicted_samples_gather_at_the_edge() {
         let outside = found.points.iter().filter(edge).count() as f64;
         outside / found.points.len() as f64
     };
-    // The visible disc has a radius of about 31 pixels: 30 % of its area is beyond 26.
+    // The visible disc has a radius of about 31 pixels; 30 % of its area is more than 26 pixels
+    // from the centre.
     let [even, predicted] = [SampleMethod::Uniform, SampleMethod::Predicted].map(far);
     assert!((even - 0.3).abs() < 0.06, "{even}");
     assert!(predicted > even + 0.1, "{predicted} {even}");

@@ -31,8 +31,8 @@ impl BinaryHierarchy {
     }
 
     /// Visits the boxes that a ray may meet beyond `from`, approximately front to back. Distances
-    /// are in lengths of `direction`, which is at least 1 long. `meet` returns the distance up to
-    /// which boxes still matter; before anything is met, that is `until`.
+    /// are multiples of the length of `direction`, which is at least 1. `meet` returns the distance
+    /// up to which boxes still matter; before any hit, this is `until`.
     #[inline]
     pub fn along(
         &self,

@@ -25,8 +25,9 @@ pub(crate) enum TreeKind {
 /// about 150 bytes for each box, is then needed for one part at a time.
 const PART: usize = 1 << 15;
 
-/// The most boxes for which the tree is optimised by reinsertion: a tenth of a second makes rays up
-/// to twice as fast. With more boxes it takes seconds and gains a few per cent.
+/// The most boxes for which the tree is optimised by reinsertion, which then takes a tenth of a
+/// second and makes rays up to twice as fast. With more boxes, reinsertion takes seconds and makes
+/// rays a few per cent faster.
 const MAX_REINSERTED: usize = 1 << 13;
 
 /// Cost of opening a node, in triangle tests of a leaf, several of which run at a time.
@@ -61,7 +62,7 @@ fn built(numbers: Vec<u32>, kind: TreeKind, boxed: impl Fn(&u32) -> Aabb) -> Bvh
     } else {
         BvhBuildParams::fast_build()
     };
-    // Without pre-splits, which are for triangles.
+    // Pre-splits are not used: they are for triangles.
     let parameters = BvhBuildParams {
         pre_split: false,
         ..preset
@@ -129,7 +130,8 @@ fn joined(mut parts: Vec<Bvh2>, kind: TreeKind) -> Bvh2 {
         bvh.primitive_indices.extend(&part.primitive_indices);
     }
     bvh.parents = Vec::new();
-    // Parts overlap: some nodes belong elsewhere in the tree.
+    // The boxes of parts overlap, so some nodes belong elsewhere in the tree; reinsertion moves
+    // them.
     ReinsertionOptimizer::default().run(&mut bvh, 0.01, None);
     if kind == TreeKind::Binary {
         bvh.max_depth = bvh.max_depth.max(bvh.depth(0) + 1);

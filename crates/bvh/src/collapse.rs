@@ -8,21 +8,20 @@ use obvhs::bvh2::Bvh2;
 /// Cost of visiting a leaf, in openings of a node.
 const VISIT: f32 = 1.5;
 
-/// The largest number of boxes that together represent the subtree of a node of the binary tree,
-/// and the choice of them: see [`costs`].
+/// A binary tree, and the [`costs`] that decide which of its nodes become boxes.
 struct Collapse<'a> {
     bvh: &'a Bvh2,
     costs: Vec<[f32; WIDTH]>,
 }
 
-/// Returns the eight-wide tree made from a binary tree, with its leaves: the first of their boxes,
-/// and the number of boxes.
+/// Returns the eight-wide tree made from a binary tree, with its leaves. A leaf is given by its
+/// first box and the number of its boxes.
 ///
 /// # Panics
 ///
 /// If a leaf has more than [`MAX_LEAF`].
 pub(crate) fn collapsed(bvh: &Bvh2) -> (Wide, Vec<[u32; 2]>) {
-    // The largest possible number: memory is only used once it is written to.
+    // The largest possible number of nodes; memory counts as used only once it is written to.
     let most = bvh.nodes.len() / 2 + 1;
     let (mut nodes, mut leaves) = (Vec::with_capacity(most), Vec::with_capacity(most));
     nodes.push(Node::EMPTY);
@@ -43,7 +42,7 @@ pub(crate) fn collapsed(bvh: &Bvh2) -> (Wide, Vec<[u32; 2]>) {
             let number = if of.is_leaf() {
                 assert!(
                     of.prim_count as usize <= MAX_LEAF,
-                    "more than was asked for"
+                    "a leaf has more boxes than were asked for"
                 );
                 leaves.push([of.first_index, of.prim_count]);
                 Node::leaf(leaves.len() - 1)
@@ -60,9 +59,10 @@ pub(crate) fn collapsed(bvh: &Bvh2) -> (Wide, Vec<[u32; 2]>) {
     (Wide::new(nodes, deepest), leaves)
 }
 
-/// Returns the cost of rays below each node of the binary tree if it becomes at most 1, 2 … boxes
-/// of an eight-wide node: areas times the cost of opening (Ylitie, Karras and Laine 2017,
-/// *Efficient incoherent ray traversal on GPUs through compressed wide BVHs*, section 3.1).
+/// Returns, for each node of the binary tree, the cost of rays below it if it becomes at most 1, 2
+/// … boxes of an eight-wide node. A cost is a sum of areas times the cost of opening (Ylitie,
+/// Karras and Laine 2017, *Efficient incoherent ray traversal on GPUs through compressed wide
+/// BVHs*, section 3.1).
 fn costs(bvh: &Bvh2) -> Vec<[f32; WIDTH]> {
     let mut costs = vec![[0.0; WIDTH]; bvh.nodes.len()];
     let mut order = Vec::with_capacity(bvh.nodes.len());
@@ -127,7 +127,7 @@ impl Collapse<'_> {
         let (of_first, _) = shared(&[self.costs[first], self.costs[first + 1]], boxes);
         for (child, mut boxes) in [(first, of_first), (first + 1, boxes - of_first)] {
             let costs = &self.costs[child];
-            // Uses fewer boxes at equal cost.
+            // At equal cost, fewer boxes are used.
             while boxes > 1 && costs[boxes - 1] >= costs[boxes - 2] {
                 boxes -= 1;
             }

@@ -1,8 +1,8 @@
 //! Tests of a few triangles together in f32, to find those that a ray may meet.
 //!
-//! As seen along the ray, a triangle is hit if the ray is on the same side of its three edges
+//! As seen along the ray, a triangle is hit if the ray is on the same side of all three edges
 //! (Woop, Benthin and Wald 2013, *Watertight ray/triangle intersection*). Here a triangle is
-//! rejected only if the ray is on different sides by more than all rounding errors.
+//! rejected only if the ray is on different sides of its edges by more than all rounding errors.
 
 use crate::single::single;
 use crate::wide::Visit;
@@ -30,7 +30,7 @@ pub(crate) struct LeafRay {
     axes: [usize; 3],
     slopes: [f32; 2],
     /// Bound on the error of coordinates across the ray. Rounding of corners, origin and slopes
-    /// causes 4e-6 of it.
+    /// accounts for 4e-6 of it.
     tolerance: f32,
 }
 
@@ -82,10 +82,10 @@ impl Leaf {
         let b = self.across(simd, sight, 1);
         let c = self.across(simd, sight, 2);
         let [u, v, w] = [side(b, c), side(c, a), side(a, b)];
-        // The error of a product due to the errors of two coordinates, for all products.
+        // A bound on the error of any of the products, due to the errors of its two coordinates.
         let size = size(a) + size(b) + size(c) + 2.0 * sight.tolerance;
         let error = size * sight.tolerance;
-        // NaN does not lead to rejection.
+        // Comparisons with NaN are false, so NaN does not lead to rejection.
         let out = u.min(v).min(w).simd_lt(-error) & u.max(v).max(w).simd_gt(error);
         !u32::try_from(out.to_bitmask()).unwrap_or_default() & ((1 << self.count) - 1)
     }
@@ -113,7 +113,7 @@ fn size<S: Simd>(p: [Lanes<S>; 2]) -> Lanes<S> {
     p[0].abs() + p[1].abs()
 }
 
-/// Leaves of triangles, which pass on the triangles that a ray may meet.
+/// Leaves of triangles; they pass on the triangles that a ray may meet.
 pub(crate) struct TriangleLeaves<'a, M> {
     pub(crate) leaves: &'a [Leaf],
     pub(crate) sight: LeafRay,

@@ -3,7 +3,7 @@
 #[inline]
 #[expect(
     clippy::cast_possible_truncation,
-    reason = "f32 only names candidates; padding covers its rounding"
+    reason = "f32 is used only to find candidates, and padding covers its rounding errors"
 )]
 pub(crate) fn single(x: f64) -> f32 {
     x as f32

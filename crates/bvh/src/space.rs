@@ -13,19 +13,20 @@ pub(crate) struct Space {
     size: f64,
     /// The padding of boxes.
     pub(crate) padding: f64,
-    /// The factor to the coordinates of `leaf`, which are at most about 1.
+    /// The factor that scales coordinates to those of `leaf`, which are at most about 1.
     pub(crate) unit: f64,
 }
 
-/// Padding relative to `Space::size`: f32 rounding is 6e-8 of it, and a ray adds a few roundings.
+/// Padding relative to `Space::size`. A rounding error in f32 is 6e-8 of the size, and a ray adds a
+/// few of them.
 const PADDING: f64 = 1e-5;
 
-/// Additional padding relative to the largest coordinate that a ray begins at: several roundings of
-/// f64.
+/// Additional padding relative to the largest coordinate that a ray begins at: several rounding
+/// errors in f64.
 const ROUNDING: f64 = 1e-13;
 
-/// The largest coordinate of a box; f32 can represent four times as much. The farthest corner of a
-/// patch is at 1e28.
+/// The largest coordinate of a box; f32 can represent numbers four times as large. The farthest
+/// corner of a patch is at 1e28.
 const MAX_EXTENT: f64 = 1e36;
 
 impl Space {
@@ -68,12 +69,12 @@ impl Space {
     /// Returns the position of the centre of a box on a space-filling curve.
     pub(crate) fn place(&self, [low, high]: [DVec3; 2]) -> u64 {
         let middle = 0.5 * (low + high) - self.center;
-        // In the range from 0 to below 1.
+        // The coordinates are in the range from 0 to below 1.
         morton_encode_u64_unorm(0.5 + 0.49 * middle / self.size)
     }
 
-    /// Returns where to begin along a ray: at `from`, or, if that is far from everything, where the
-    /// ray comes near, because f32 would lose precision on the way.
+    /// Returns the distance along a ray at which to begin. It is `from` or, if that point is far
+    /// from everything, where the ray comes near, because f32 would lose precision on the way.
     #[inline]
     pub(crate) fn begin(&self, start: DVec3, direction: DVec3, from: f64) -> f64 {
         let start = start - self.center;
@@ -88,8 +89,8 @@ impl Space {
         near.fold(from, f64::max)
     }
 
-    /// Returns how far a ray that begins at `begin` along itself is followed in f32 for boxes up to
-    /// `at`: boxes up to this distance are opened, and intersections are decided in f64.
+    /// Returns the distance in f32, counted from `begin`, up to which boxes are opened so that none
+    /// up to `at` is missed. Intersections are decided in f64.
     #[inline]
     pub(crate) fn limit(&self, at: f64, begin: f64) -> f32 {
         single((at - begin) * (1.0 + PADDING) + self.padding)

@@ -35,13 +35,13 @@ pub(crate) struct NodeRay {
     origin: [f32; 3],
     /// The reciprocal of its direction.
     turned: [f32; 3],
-    /// The plane that comes first, along each axis.
+    /// Index of the plane that the ray crosses first, along each axis.
     first: [usize; 3],
     until: f32,
 }
 
-/// The smallest absolute component of a direction: over any distance it does not move a ray, and
-/// its reciprocal is finite.
+/// The smallest absolute component of a direction. So small a component does not move a ray over
+/// any distance, and its reciprocal is finite.
 const MIN_COMPONENT: f32 = 1e-20;
 
 /// A child still to be visited, and the distance along the ray at which its box begins.
@@ -53,7 +53,7 @@ struct Waiting {
 
 /// The operation on the leaves that a ray reaches.
 pub(crate) trait Visit {
-    /// Returns the distance up to which boxes still matter.
+    /// Visits a leaf and returns the distance up to which boxes still matter.
     fn visit<S: Simd>(&mut self, simd: S, leaf: usize) -> f32;
 }
 
@@ -112,7 +112,7 @@ impl Wide {
                 node = &self.nodes[only as usize];
                 continue;
             }
-            // The nearest child ends on top.
+            // The nearest child ends on top of the stack.
             let before = count;
             while met != 0 {
                 let i = met.trailing_zeros() as usize % WIDTH;
@@ -157,7 +157,7 @@ impl Node {
     };
 
     pub(crate) fn inner(place: usize) -> u32 {
-        // There are fewer than boxes, of which there are at most 2³².
+        // There are fewer nodes than boxes, and at most 2³² boxes.
         u32::try_from(place).unwrap_or(LEAF) & !LEAF
     }
 
@@ -190,7 +190,7 @@ impl Node {
         (u32::try_from(met).unwrap_or_default(), near.into())
     }
 
-    /// Returns the distances along the ray at which it crosses planes.
+    /// Returns the distances along the ray at which it crosses one side of each box.
     #[inline(always)]
     fn crossing<S: Simd>(&self, simd: S, ray: &NodeRay, axis: usize, plane: usize) -> f32x8<S> {
         let plane = f32x8::simd_from(simd, self.planes[plane]);

@@ -77,8 +77,9 @@ impl WideHierarchy {
     }
 
     /// Visits the boxes or triangles that a ray may meet beyond `from`, approximately front to
-    /// back. Distances are in lengths of `direction`, which is at least 1 long. `meet` returns the
-    /// distance up to which they still matter; before anything is met, that is `until`.
+    /// back. Distances are multiples of the length of `direction`, which is at least 1. `meet`
+    /// returns the distance up to which boxes or triangles still matter; before any hit, this is
+    /// `until`.
     #[inline]
     pub fn along(
         &self,

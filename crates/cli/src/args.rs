@@ -146,7 +146,7 @@ impl Cli {
     }
 }
 
-/// The error with the command that was probably meant: clap finds no swapped letters.
+/// The error, with the command that was probably meant; clap itself does not find swapped letters.
 fn suggesting(mut error: clap::Error, names: &[String]) -> clap::Error {
     let unknown = error.get(ContextKind::InvalidSubcommand).cloned();
     let has_tip = error.get(ContextKind::SuggestedSubcommand).is_some();

@@ -108,7 +108,7 @@ struct BandwidthRow {
     /// The values swept.
     point: Vec<f64>,
     plane: String,
-    /// The numbers in the order of the header; `None` where there is none.
+    /// The numbers in the order of the header; `None` for a missing number.
     numbers: Vec<Option<f64>>,
     warnings: Vec<String>,
 }
@@ -225,8 +225,9 @@ fn beyond_criteria(plane: &VirtualPlane, applicability: &Applicability) -> Vec<S
     warnings
 }
 
-/// Warns of a bandwidth at the end of the grid: the grid limits it. For a spectrum that is flat
-/// over the grid, it is 95 % of where the last cell ends, half a step beyond the largest frequency.
+/// Warns of a bandwidth at the end of the grid, where the grid limits it. The bandwidth of a
+/// spectrum that is flat over the grid is 95 % of the frequency at which the last cell ends, half a
+/// step beyond the largest frequency.
 fn warning(plane: &VirtualPlane, bandwidth: f64) -> Option<String> {
     const NEAR: f64 = 0.9;
     let nu = plane.grid.nu;

@@ -37,7 +37,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<u8, Failure> {
         say(&format!("\ndrawn in {}", path.display()));
     }
     warnings::tell(&scene, false);
-    // As many threads as `run` uses by default.
+    // The number of threads that `run` uses by default.
     let threads = available_parallelism().map_or(1, NonZero::get);
     limits::check(&scene, &theories, threads)?;
     say(&expected(&scene, &theories, threads));
@@ -63,7 +63,7 @@ fn length(scene: &Scene) -> String {
     ends.collect::<Vec<_>>().join(", ")
 }
 
-/// The ray map of the light, z' = A z, and where parallel rays meet.
+/// The ray map of the light, z' = A z, and the foci of parallel rays.
 fn rays(chain: &AffineChain) -> Vec<String> {
     let matrix = chain.map.rays().matrix;
     let row = |(name, row): (&str, &[f64; 4])| {

@@ -20,7 +20,7 @@ use serde_json::json;
 use std::ops::Range;
 use std::path::PathBuf;
 
-/// The fewest batches that errors are computed from; scenes have the same limit.
+/// The fewest batches from which errors are computed; scenes have the same limit.
 const LEAST_BATCHES: usize = 32;
 
 /// `etendue compare`: returns the exit code.
@@ -63,8 +63,8 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<u8, Failure> {
     })
 }
 
-/// Reads the measurement and the predictions, if they fit together, and returns the files they were
-/// read from.
+/// Reads the measurement and the predictions and checks that they fit together. Returns them with
+/// the files they were read from.
 fn read(args: &CompareArgs) -> Result<(MeasuredScene, Vec<PathBuf>), Failure> {
     let shards = args.measured.iter();
     let shards: Vec<Stored<Held>> = shards
@@ -97,7 +97,8 @@ fn read(args: &CompareArgs) -> Result<(MeasuredScene, Vec<PathBuf>), Failure> {
     Ok((case, inputs))
 }
 
-/// Checks that batches belong to the same experiment: others are not replicates of each other.
+/// Checks that batches belong to the same experiment: batches of different experiments are not
+/// replicates of each other.
 fn same_experiment(first: &Stored<Held>, shard: &Stored<Held>) -> Result<(), Failure> {
     first.check_scene(shard, true)?;
     let words = |stored: &Stored<Held>| {
@@ -114,7 +115,7 @@ fn merged(shards: &[Stored<Held>], scene: &Scene) -> Result<Measurement, Failure
         let Range { start, end } = held.batches;
         if start >= end || end > scene.run.batches {
             let all = scene.run.batches;
-            return Err(shard.fault(format!("batches {start}..{end}; must lie within 0..{all}")));
+            return Err(shard.fault(format!("batches {start}..{end}; allowed: within 0..{all}")));
         }
         let part = batches::read(shard, &scene.planes)?;
         all = all.merge(part).map_err(|e| {

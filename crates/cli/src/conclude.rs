@@ -52,15 +52,15 @@ pub(crate) fn conclude(
         if !gone.is_empty() {
             let names = gone.join(", ");
             say(&format!(
-                "removed with the earlier result and not saved again: {names}"
+                "these files were removed with the earlier result and not saved again: {names}"
             ));
         }
     }
     Ok(exit_code(ending.expect, &summary))
 }
 
-/// The exit code under `--expect`: photons are expected to agree with every exact prediction, and a
-/// first-order chain to have a wrong map.
+/// The exit code under `--expect`: photons must agree with every exact prediction, and must show
+/// that the map of a first-order chain is wrong.
 fn exit_code(expect: Option<Expect>, summary: &Summary) -> u8 {
     let is_wrong = |plane: &PlaneReport| {
         let chain = plane.first_order.as_ref();

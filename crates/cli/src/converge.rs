@@ -18,7 +18,7 @@ pub(crate) fn converge(args: &ConvergeArgs) -> Result<u8, Failure> {
     let planes = on_threads(&args.threads, || Ok(shrunk(&scene, &theories)))?;
     if planes.is_empty() {
         return Err(Failure::bad_input(
-            "this scene has no plane behind mirrors, interfaces and lenses only; this command skips planes behind BRDFs",
+            "this scene has no plane whose light has met only mirrors, interfaces and lenses; this command skips planes behind BRDFs",
         ));
     }
     say(&format!(

@@ -32,7 +32,7 @@ const NAMES: [&str; 3] = ["covariance.png", "covariance.svg", "covariance.csv"];
 /// `etendue covariance`: returns the exit code.
 #[expect(
     clippy::too_many_lines,
-    reason = "one command from arguments to files, in the order in which it goes"
+    reason = "one command from arguments to files, in the order of its steps"
 )]
 pub(crate) fn covariance(args: &CovarianceArgs) -> Result<u8, Failure> {
     let mut scene = load::scene(&args.scene.source(), |run| args.photons.set(run))?;
@@ -122,7 +122,7 @@ fn choose(scene: &mut Scene, names: &[String]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The numbers of a plane: traces its photons again, on a 4D grid.
+/// The numbers of a plane; for them, its photons are traced again, on a 4D grid.
 fn of_plane(
     (source, measurement, index): (&dyn PhotonSource, &Measurement, usize),
     applicability: &Applicability,

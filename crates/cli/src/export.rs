@@ -12,7 +12,7 @@ use serde_json::json as tree_of;
 /// `etendue export`: returns the exit code.
 pub(crate) fn export(args: &ExportArgs) -> Result<u8, Failure> {
     let scene = load::scene(&args.scene.source(), |_| ())?;
-    // Only one other program is supported so far, and clap has checked its name.
+    // Only one other program is supported so far, and clap has checked that it is named.
     let export = etendue_export::mitsuba(&scene).map_err(Failure::bad_input)?;
     let folder = args.out.or_named(format!("{}-mitsuba", scene.name));
     let plan = Plan {

@@ -2,8 +2,8 @@
 //!
 //! The first SIGINT, SIGTERM or SIGHUP removes the unfinished files of a result and ends the
 //! process with exit code 3; a second one ends the process at once. If an allocation fails, Rust
-//! prints a message and aborts: this is exit code 3 too. A file that reaches the system's size
-//! limit is a write error and does not kill the process.
+//! prints a message and aborts; the exit code is 3 then too. Writing a file beyond the system's
+//! size limit is a write error and does not kill the process.
 
 use etendue_store::{CANNOT_RUN, Failure, unfinished};
 
@@ -39,13 +39,13 @@ pub(crate) fn install() -> Result<(), Failure> {
         let code = CANNOT_RUN.into();
         let asked = Arc::new(AtomicBool::new(false));
         let mut signals = vec![SIGINT, SIGTERM];
-        // `nohup` makes the process ignore SIGHUP, and this is kept.
+        // `nohup` makes the process ignore SIGHUP, and the process keeps ignoring it.
         if !machine::ignores(SIGHUP) {
             signals.push(SIGHUP);
         }
         let mut each = Signals::new(&signals)?;
         for signal in signals {
-            // In this order the first signal finds the flag clear, and sets it.
+            // With this order, the first signal finds the flag clear and sets it.
             register_conditional_shutdown(signal, code, Arc::clone(&asked))?;
             register(signal, Arc::clone(&asked))?;
         }
@@ -60,7 +60,7 @@ pub(crate) fn install() -> Result<(), Failure> {
     install().map(drop).map_err(Failure::cannot_run)
 }
 
-/// On other systems the process ends at once, and the next one removes what it left.
+/// On other systems the process ends at once, and the next process removes the files that it left.
 #[cfg(not(unix))]
 pub(crate) fn install() -> Result<(), Failure> {
     Ok(())

@@ -1,7 +1,7 @@
 //! The `etendue` command: parses arguments, calls the stages and writes their results.
 //!
-//! `run` measures a scene, predicts it, compares and draws; `measure`, `predict` and `compare` are
-//! its stages over files; `check` describes a scene.
+//! `run` measures a scene, predicts it, compares and draws. `measure`, `predict` and `compare` are
+//! its stages, which exchange files. `check` describes a scene.
 
 mod args;
 mod bandwidth;

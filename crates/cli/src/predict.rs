@@ -19,7 +19,7 @@ pub(crate) fn predict(args: &PredictArgs) -> Result<u8, Failure> {
     predict_with(args, None)
 }
 
-/// Like [`predict()`], with other processes that predict as well.
+/// Like [`predict()`], but shares the work with other processes.
 pub(crate) fn predict_with(
     args: &PredictArgs,
     workers: Option<&Leader<'_>>,

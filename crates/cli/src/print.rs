@@ -11,7 +11,7 @@ pub(crate) fn say(text: &str) {
     let _ = deliver(text);
 }
 
-/// Prints the main output of a command: failing to write it is an error, unless the reader has
+/// Prints the main output of a command. Failing to write it is an error, unless the reader has
 /// closed the pipe.
 pub(crate) fn deliver(text: &str) -> Result<(), Failure> {
     let text = printable(text, usize::MAX);
@@ -28,7 +28,7 @@ pub(crate) fn deliver(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Prints a message to standard error, whether it can be printed or not.
+/// Prints a message to standard error; a failure to print is ignored.
 pub(crate) fn tell(message: &str) {
     let message = if stderr().is_terminal() {
         wrapped(message)
@@ -42,8 +42,8 @@ pub(crate) fn tell(message: &str) {
 /// each message in a line of its own.
 const COLUMNS: usize = 100;
 
-/// Sentences wrapped between words, with continued lines indented; rows of tables, whose columns
-/// are two spaces apart, stay as they are.
+/// Wraps sentences between words and indents continued lines. Rows of tables, whose columns are two
+/// spaces apart, stay as they are.
 fn wrapped(text: &str) -> String {
     let lines = text.lines().map(|line| {
         let start = line.len() - line.trim_start().len();
@@ -70,7 +70,7 @@ fn wrapped(text: &str) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// Names the files of others that were replaced because of `--force`.
+/// Prints the names of the files of others that `--force` has replaced.
 pub(crate) fn say_replaced(finished: &Finished, quiet: bool) {
     if let Some(message) = finished.replaced_message().filter(|_| !quiet) {
         say(&message);
@@ -81,8 +81,8 @@ pub(crate) fn say_replaced(finished: &Finished, quiet: bool) {
 pub(crate) const MAX_ERROR_LINES: usize = 20;
 const MAX_LINE_LENGTH: usize = 2000;
 
-/// Text cut to so many lines, in characters that are safe on a terminal: file names and their
-/// content may hold anything.
+/// Returns text cut to this many lines, in characters that are safe on a terminal; names and
+/// contents of files may hold any characters.
 pub(crate) fn printable(text: &str, lines: usize) -> String {
     let mut all = text.split('\n');
     let shown = all

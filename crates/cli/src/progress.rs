@@ -87,7 +87,8 @@ pub(crate) fn photons(total: u64, quiet: bool) -> ProgressBar {
     bar
 }
 
-/// Steps done, name of the current one, and time left: on a terminal, if there are several.
+/// Steps done, the name of the current step, and the time left; shown on a terminal, if there are
+/// several steps.
 pub(crate) fn steps(
     verb: &'static str,
     total: usize,

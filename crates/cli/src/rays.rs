@@ -13,9 +13,9 @@ use etendue_store::machine;
 use etendue_store::output::OutputFile;
 use std::path::Path;
 
-/// Most bytes of a ray file.
+/// The largest size of a ray file, in bytes.
 const MOST_BYTES: u64 = 1 << 34;
-/// Maximum number of characters of a text that are shown, and of texts.
+/// The largest number of characters shown of a text, and the largest number of texts shown.
 const LONGEST: usize = 200;
 const MOST_TEXTS: usize = 20;
 
@@ -64,12 +64,12 @@ fn format_of(path: &Path) -> Result<Format, Failure> {
 /// Checks that there is enough memory to read a file; the unpacked size of gzip is known only
 /// afterwards.
 fn check_memory(path: &Path, length: usize) -> Result<(), Failure> {
-    // The file itself, and its description.
+    // The memory of the file itself and of its description.
     let needed = (length * (MEMORY + 2) + MEMORY_FREE) as u64;
     let free = machine::available_memory();
     if needed > free {
         return Err(Failure::cannot_run(format!(
-            "{}: reading it takes {:.1} GB, and {:.1} GB are free",
+            "{}: reading it takes {:.1} GB of memory, but only {:.1} GB are free",
             path.display(),
             needed as f64 / 1e9,
             free as f64 / 1e9

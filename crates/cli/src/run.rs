@@ -29,7 +29,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<u8, Failure> {
     run_with(args, None)
 }
 
-/// Like [`run()`], with other processes that measure as well.
+/// Like [`run()`], but shares the measurement with other processes.
 pub(crate) fn run_with(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u8, Failure> {
     check_saved(&args.save)?;
     let scene = load::scene(&args.scene.source(), |run| args.photons.set(run))?;
@@ -69,7 +69,7 @@ pub(crate) fn run_with(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u
             if let Some(code) = finished(&folder, &scene, args) {
                 return Ok(code);
             }
-            // Other processes share the folder, so nobody owns the result until it is measured.
+            // Other processes share the folder, so no process owns the result until it is measured.
             results = None;
         }
         stages(
@@ -122,7 +122,7 @@ fn finished(folder: &Path, scene: &Scene, args: &RunArgs) -> Option<u8> {
     Some(code_of(verdict))
 }
 
-/// The error that somebody has just removed the result.
+/// The error if somebody has just removed the result.
 fn gone(folder: &Path) -> Failure {
     Failure::cannot_run(format!(
         "the result in {} no longer exists",

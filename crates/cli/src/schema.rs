@@ -19,7 +19,7 @@ pub(crate) fn schema(args: &SchemaArgs) -> Result<u8, Failure> {
 /// The text above the tables.
 const HEAD: &str = include_str!("schema/head.md");
 
-/// All types in order of first use, with their fields.
+/// All types with their fields, in the order of their first use.
 fn page(schema: &Value) -> String {
     let mut types = vec![("Scene", schema)];
     let mut next = 0;

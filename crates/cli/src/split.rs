@@ -24,7 +24,7 @@ pub(crate) fn split(args: &SplitArgs) -> Result<u8, Failure> {
         scene: scene_words(args),
         parts,
         batches,
-        // A prefix; digits follow it.
+        // The beginning of a name; digits follow it.
         part: below("parts/"),
         predicted: below("predicted"),
         out: shell_word(&out.to_string_lossy()),

@@ -10,7 +10,7 @@ use etendue_pipeline::table::aligned;
 use etendue_store::Failure;
 use etendue_sweep::{FinishedSweep, SweepPoints, run};
 
-/// Undecided planes whose reasons are printed.
+/// Maximum number of undecided planes whose reasons are printed.
 const MAX_REASONS: usize = 4;
 
 /// `etendue sweep`: returns the exit code.
@@ -18,7 +18,7 @@ pub(crate) fn sweep(args: &SweepArgs) -> Result<u8, Failure> {
     sweep_with(args, None)
 }
 
-/// Like [`sweep()`], with other processes that run points as well.
+/// Like [`sweep()`], but shares the points with other processes.
 pub(crate) fn sweep_with(args: &SweepArgs, workers: Option<&Leader<'_>>) -> Result<u8, Failure> {
     on_threads(&args.work.threads, || {
         let request = args.request();

@@ -18,7 +18,7 @@ pub fn command_of_workers(line: impl IntoIterator<Item = OsString>, workers: &dy
     let command = match Cli::parse_line(line) {
         Ok(cli) => cli.command,
         Err(error) => {
-            // Only the process with the terminal prints it.
+            // Only the process with the terminal prints the error.
             if leads {
                 return not_parsed(&error);
             }
@@ -41,7 +41,7 @@ pub fn command_of_workers(line: impl IntoIterator<Item = OsString>, workers: &dy
         Command::Sweep(args) => sweep::sweep_with(args, Some(&led)),
         _ => Ok(0),
     });
-    // The other processes are idle: there is no more work, or something failed.
+    // The other processes are idle, because no work is left or because something failed.
     let dismissed = led.dismiss_all();
     ended(outcome.and_then(|code| dismissed.map(|()| code)), false)
 }

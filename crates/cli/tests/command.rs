@@ -8,8 +8,8 @@ use std::path::Path;
 use std::process::{Output, Stdio};
 use std::time::{Duration, Instant};
 
-/// Runs `etendue run fig9b` into `out`, with more arguments. The noise of so few photons is 18 % of
-/// a spectrum.
+/// Runs `etendue run fig9b` into `out`, with more arguments. With so few photons, the noise is 18 %
+/// of a spectrum.
 fn run(out: &Path, arguments: &[&str]) -> Output {
     etendue()
         .arg("run")
@@ -21,7 +21,8 @@ fn run(out: &Path, arguments: &[&str]) -> Output {
         .unwrap()
 }
 
-/// Whether a folder is a result: its summary lists files that are there with those hashes.
+/// Whether a folder is a result: all files that its summary lists are there, with the hashes that
+/// it states.
 fn is_result(folder: &Path) -> bool {
     let Ok(text) = fs::read(folder.join("summary.json")) else {
         return false;
@@ -34,8 +35,8 @@ fn is_result(folder: &Path) -> bool {
     })
 }
 
-/// A plane crossed by photons aimed at another plane does not fail because these cover only part of
-/// it.
+/// A plane that is crossed by photons aimed at another plane does not fail, although these photons
+/// cover only part of it.
 #[test]
 fn a_window_seen_in_part_is_undecided() {
     let folder = tempfile::tempdir().unwrap();
@@ -142,8 +143,8 @@ fn expecting_disagreement_turns_the_exit_code() {
     assert_eq!(code("few", &[few, expect].concat()), Some(4));
 }
 
-/// A chain that is wrong only in amplitude is not reported to have a wrong map; its failure is in
-/// the picture and on the page.
+/// A chain that is wrong only in amplitude is not reported to have a wrong map; the picture and the
+/// page show its failure.
 #[test]
 fn a_failing_chain_is_told_and_drawn() {
     let folder = tempfile::tempdir().unwrap();
@@ -158,7 +159,7 @@ fn a_failing_chain_is_told_and_drawn() {
         (told, read("path.svg"), read("report.html"))
     };
     let (told, picture, page) = run("printed", &[]);
-    // cos² 37.24° of the radiance remains.
+    // Of the radiance, cos² 37.24° remains.
     assert!(told.contains("gives the central ray 63.375 %"), "{told}");
     assert!(!told.contains("its rays are off"), "{told}");
     assert!(picture.contains("chain 36.6") && picture.contains("off the chain"));
@@ -180,7 +181,8 @@ fn noise_leaves_a_run_undecided() {
     );
 }
 
-/// Photons are doubled until noise is low, and the result is that of a run with as many.
+/// Photons are doubled until noise is low, and the result is that of a run with the final number of
+/// photons.
 #[test]
 fn a_target_error_is_reached() {
     let folder = tempfile::tempdir().unwrap();
@@ -249,7 +251,7 @@ fn saved_photons_are_the_ones_measured() {
     let folder = tempfile::tempdir().unwrap();
     let output = run(folder.path(), &["--save", "photons"]);
     let told = String::from_utf8(output.stdout).unwrap();
-    // 20,000 photons at five planes, 40 bytes for each.
+    // 20,000 photons cross five planes, with 40 bytes for each.
     assert!(
         told.starts_with("--save photons: at most 4.0 MB on disk, 0.8 MB for each of 5 planes\n")
     );
@@ -261,12 +263,13 @@ fn saved_photons_are_the_ones_measured() {
         serde_json::from_slice(&fs::read(folder.path().join("light/photons.json")).unwrap())
             .unwrap();
     assert_eq!(index["batch_offsets"].as_array().unwrap().len(), 65);
-    // ∫ L W of the light: (0.1 + sin(0.2π)/2π)² metres² · (1/2)² of slope each way.
+    // The ∫ L W of the light is (0.1 + sin(0.2π)/2π)² metres² · (1/2)², where each direction of
+    // slope contributes 1/2.
     let row = |i: usize, column: usize| {
         let at = 128 + (i * 5 + column) * 8;
         f64::from_le_bytes(bytes[at..at + 8].try_into().unwrap())
     };
-    // Photons aimed at other planes leave at other slopes.
+    // Photons that are aimed at other planes leave the light with other slopes.
     let hann = |t: f64| {
         if t.abs() < 0.5 {
             (std::f64::consts::PI * t).cos().powi(2)
@@ -291,7 +294,8 @@ fn saved_photons_are_the_ones_measured() {
     assert!(!folder.path().join("light/photons.npy").exists());
 }
 
-/// Bad input: one clear message, the right exit code, nothing written, no panic.
+/// Bad input leads to one clear message and the right exit code; nothing is written and nothing
+/// panics.
 #[test]
 fn bad_input_is_refused_with_a_message() {
     let folder = tempfile::tempdir().unwrap();
@@ -441,8 +445,8 @@ fn a_killed_run_leaves_no_half_result() {
     let whole = start.elapsed();
     let mut complete = 0;
     for i in 0..20u32 {
-        // All runs use one folder: an earlier result must not vouch for the files of a later,
-        // killed run.
+        // All runs use one folder, which tests that the summary of an earlier result does not cover
+        // the files of a later, killed run.
         let out = folder.path().join("killed");
         let mut child = etendue()
             .arg("run")
@@ -459,8 +463,8 @@ fn a_killed_run_leaves_no_half_result() {
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        // Moments follow the golden ratio over twice the time of a run: half of them hit it, and on
-        // a machine that has slowed down some still come after its end.
+        // The moments follow the golden ratio over twice the time of a run. Half of them hit the
+        // run, and some come after its end even on a machine that has slowed down.
         let share = f64::from(i) * 0.618_034 % 1.0 * 2.0;
         std::thread::sleep(Duration::from_secs_f64(whole.as_secs_f64() * share));
         child.kill().unwrap();

@@ -41,14 +41,14 @@ fn light_that_fills_the_window_has_its_covariance_and_edges_are_told() {
     done(folder.path(), "covariance lamp.ron --out out");
     let index = json(&folder.path().join("out/covariance.json"));
     let full = &index["planes"][0];
-    // Of a Hann window of half-width h: 1/12h².
+    // The variance of a Hann window of half-width h is 1/12h².
     for (i, h) in [0.1, 0.1, 0.2, 0.2].into_iter().enumerate() {
         let expected = 1.0 / (12.0 * h * h);
         let traced = entry(full, "traced", i, i);
         // The lamp's variance is 1/(8π² · 4/3), after travel of half a metre.
         assert!((traced / expected - 1.0).abs() < 2e-3, "{i}: {traced}");
         let exact = entry(full, "exact", i, i);
-        // On its own grid such a window has three frequencies, all within the band.
+        // On its own grid such a window has three frequencies, all of them within the band.
         assert!((exact / expected - 1.0).abs() < 2e-3, "{i}: {exact}");
         let off = entry(full, "measured", i, i) - exact;
         assert!(off.abs() < 4.0 * entry(full, "error", i, i), "{i}: {off}");
@@ -117,8 +117,8 @@ const ROOM: &str = r#"<scene version="3.0.0">
 </scene>
 "#;
 
-/// A diffuse floor lit evenly: the spectrum leaving it is that of the window, which travel to the
-/// camera shears.
+/// A diffuse floor is lit evenly. The spectrum of the light that leaves it is that of the window,
+/// and travel to the camera shears it.
 #[test]
 fn a_probe_propagates_the_covariance_to_the_camera() {
     let folder = tempfile::tempdir().unwrap();
@@ -137,7 +137,8 @@ fn a_probe_propagates_the_covariance_to_the_camera() {
         let [a, b] = ["measured", "propagated"].map(|of| number(of, "value", i, j));
         let error = ["measured", "propagated"].map(|of| number(of, "error", i, j));
         let both = error[0].hypot(error[1]);
-        // Travel shears the tails of the window beyond the band: a few thousandths of its moment.
+        // Travel shears the tails of the window beyond the band; they are a few thousandths of its
+        // moment.
         let scale = (number("measured", "value", i, i) * number("measured", "value", j, j)).sqrt();
         assert!(
             (a - b).abs() < 4.0 * both + 0.01 * scale,

@@ -156,7 +156,8 @@ fn a_changed_index_is_refused() {
         let _index = changed(&folder.join(name), change);
         refused(folder, COMPARE, &[&[&name[..2]], parts].concat());
     }
-    // The cases above had a matching hash in the index; without it any changed bit is detected.
+    // In the cases above the index had a matching hash; without a matching hash, any changed bit is
+    // detected.
     for name in [a, p] {
         let whole = fs::read(folder.join(name)).unwrap();
         for i in 0..75 {
@@ -189,7 +190,7 @@ fn changed_files_are_refused() {
                 let _file = Swap::new(folder.join(file), bytes);
                 refused(folder, COMPARE, &[file, "is damaged"]);
             }
-            // With a matching hash it is detected all the same.
+            // With a matching hash, a changed bit is detected all the same.
             refused_with(folder, file, bytes, &[]);
         }
         fs::remove_file(folder.join(file)).unwrap();
@@ -199,8 +200,8 @@ fn changed_files_are_refused() {
     assert_eq!(call(folder, COMPARE).status.code(), Some(0));
 }
 
-/// Each array of each file in turn is missing, of another type, too large for memory, or not an
-/// array.
+/// In turn, each array of each file is missing, has another type, is too large for memory, or is
+/// not an array.
 #[test]
 fn foreign_arrays_are_refused() {
     let stages = stages();
@@ -362,8 +363,8 @@ fn parts_are_regular_files_below_their_folder() {
     assert_eq!(call(folder, COMPARE).status.code(), Some(0));
 }
 
-/// The meshes are part of a scene: parts measured with another mesh do not fit, and the copies of
-/// meshes are checked.
+/// Meshes are part of a scene: parts that were measured with another mesh do not fit, and the
+/// copies of meshes are checked.
 #[test]
 fn meshes_are_part_of_the_scene() {
     let folder = tempfile::tempdir().unwrap();

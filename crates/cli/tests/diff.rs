@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// The small scene with enough photons for a verdict, and runs of it into folders.
+/// The small scene with enough photons for a verdict, and several runs of it, each in a folder.
 fn runs(each: &[&str]) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("small.ron"), SCENE).unwrap();
@@ -70,7 +70,7 @@ fn two_results_are_told_apart_when_they_differ() {
         &[&seeds[..], &[same, "the same, with other settings"]].concat(),
     );
     found(&folder, "a backward", 0, &["method backward", same]);
-    // Shared photons: identical bytes, or undecided.
+    // Results that share photons have identical bytes, or the comparison is undecided.
     found(
         &folder,
         "a again",
@@ -96,7 +96,7 @@ fn two_results_are_told_apart_when_they_differ() {
         "different: slices at light; slices at receiver",
     ];
     found(&folder, "a bright", 1, &bright);
-    // Noise, windows and frequencies.
+    // Results may differ in noise, windows and frequencies.
     found(&folder, "a few", 4, &["undecided:", "light: noise is"]);
     found(
         &folder,
@@ -150,7 +150,7 @@ fn planes_that_one_result_lacks_are_named() {
     assert!(message.contains("no plane in common"), "{message}");
 }
 
-/// Refuses in one line that names the file.
+/// Checks that `diff` refuses in one line that names the file.
 #[track_caller]
 fn refuses(folder: &Path, parts: &[&str]) {
     for arguments in ["a b", "b a"] {
@@ -205,7 +205,7 @@ fn damaged_folders_are_refused_by_name() {
     fs::remove_file(&summary).unwrap();
     refuses(path, &["cannot read b/summary.json"]);
 
-    // Indices rewritten to match changed files.
+    // The index is rewritten to match the changed files.
     let mut tree: serde_json::Value = serde_json::from_slice(&index).unwrap();
     tree["batches"] = 2.into();
     fs::write(&summary, sealed(tree.clone())).unwrap();
@@ -279,7 +279,7 @@ fn the_same_photons_are_compared_number_by_number() {
         light.ends_with("same") && light.contains("0.000 %"),
         "{text}"
     );
-    // A difference far below the noise, hidden by noise common to both.
+    // The difference is far below the noise, but the noise is common to both.
     found(
         &folder,
         "a fill",

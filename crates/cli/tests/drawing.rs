@@ -21,7 +21,8 @@ fn drawing(scene: &str) -> String {
 
 #[test]
 fn a_cut_through_y_is_drawn_where_it_shows_something_else() {
-    // Bars along Y, and squares that are irregular only through jitter.
+    // The first scene has bars along Y; the others have squares that are irregular only through
+    // jitter.
     for (scene, is_other) in [
         ("grating", true),
         ("fig9b", false),
@@ -66,7 +67,8 @@ fn light_from_far_away_is_no_lamp() {
 
 #[test]
 fn planes_stand_where_they_are() {
-    // All seven planes of this scene are at one place: there is one line for them, drawn seven times in each cut.
+    // All seven planes of this scene are at one place, so a single line stands for them, drawn
+    // seven times in each cut.
     let svg = drawing("fig10");
     let lines: Vec<&str> = svg
         .lines()

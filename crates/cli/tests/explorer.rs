@@ -20,7 +20,8 @@ fn predicted(folder: &Path, plane: PathPlace) -> (Array3<Complex>, Array2<f64>) 
     )
 }
 
-/// The largest difference at azimuth 0 and in the picture, each over the largest value.
+/// Returns the largest difference of the slices at azimuth 0 and of the picture, each relative to
+/// its largest value.
 fn apart(
     (slices, field): &(Slices, Projection),
     (command, picture): &(Array3<Complex>, Array2<f64>),
@@ -56,8 +57,8 @@ fn numbers_are_those_of_the_saved_scene() {
             let closed = (plane.spectrum(&setup), plane.field(&setup, CELLS));
             let followed = plane.followed(&setup);
             let off = apart(followed.as_ref().unwrap_or(&closed), &command);
-            // Both compute the same sums; where frames differ by rounding, the digits of the
-            // explorer do.
+            // Both compute the same sums. Where their frames differ by rounding errors, the results
+            // differ by as much.
             assert!(off < 1e-12, "{text}, {}: {off:e}", plane.name());
             if plane == PathPlace::Arrived {
                 let mut moved = setup.clone();

@@ -43,7 +43,8 @@ fn a_figure_is_pictures_arrays_and_recipe() {
     let (one, other, both) = (slice("fig7_one"), slice("fig7_other"), slice("fig7_two"));
     assert_eq!(one.dim().0, rho.len());
     assert!(both.iter().all(|s| s.norm() == 0.0));
-    // The occluders are mirror images, and so are their slices, S(−ρ, −ν) = S*(ρ, ν), up to noise.
+    // The occluders are mirror images of each other, and so are their slices, S(−ρ, −ν) = S*(ρ, ν),
+    // up to noise.
     let peak = one.iter().map(|s| s.norm()).fold(0.0, f64::max);
     let off = (&one - &other.mapv(|s| s.conj()))
         .iter()
@@ -75,7 +76,7 @@ fn curves_have_a_table() {
     assert!((at_zero("3D").unwrap() - std::f64::consts::PI).abs() < 1e-9);
 }
 
-/// Eqs. 20 and 21: photons lie on the corrected lines, and off the printed ones.
+/// Photons lie on the lines of the corrected Eqs. 20 and 21, and off those of the printed ones.
 #[test]
 #[ignore = "long: half a minute; .ci/long runs it"]
 fn photons_tell_the_criteria_from_their_print() {
@@ -117,8 +118,8 @@ fn photons_tell_the_criteria_from_their_print() {
                 (found.unwrap()[1] - measured).abs()
             };
             let [corrected, printed] = [0, 1].map(|i| nearest(&lines[i]));
-            // Nearest points of lines are off by 0.12, the criteria by 1 %. Below 2 the window
-            // determines the spectrum.
+            // The nearest points of the lines are off by 0.12, and the criteria by 1 %. For
+            // bandwidths below 2 the window determines the spectrum.
             let slack = 4.0 * error + 0.2;
             if measured > 2.0 {
                 assert!(corrected < slack, "{panel} at {x}: off by {corrected}");

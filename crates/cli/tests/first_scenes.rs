@@ -48,19 +48,19 @@ fn refused(output: &Output, message: &str) {
 
 /// The text in the scene, the beginner's text, and the whole message after the file name.
 const MISTAKES: &[[&str; 3]] = &[
-    // A number for a vector.
+    // A number in place of a vector.
     [
         "size: (0.2, 0.2)",
         "size: 0.2",
         "line 2, column 47: light.size is 0.2; allowed: side lengths along X and Y, in metres, such as (0.2, 0.1)",
     ],
-    // Two coordinates of three.
+    // Two coordinates instead of three.
     [
         "center: (0, 0, 1)",
         "center: (0, 1)",
         "line 5, column 38: blockers[0].center is (0, 1); allowed: a place in the world, in metres, such as (0, 0, 1)",
     ],
-    // Brackets of a list.
+    // Brackets instead of parentheses.
     [
         "center: (0, 0, 2)",
         "center: [0, 0, 2]",
@@ -72,7 +72,7 @@ const MISTAKES: &[[&str; 3]] = &[
         "x: 0.5",
         "line 16, column 17: window.x is 0.5; allowed: a profile with its half-width in metres, such as Hann(0.5)",
     ],
-    // A name for a place.
+    // A name in place of a position.
     [
         r#"Before("floor")"#,
         r#""floor""#,
@@ -84,7 +84,7 @@ const MISTAKES: &[[&str; 3]] = &[
         "[floor]",
         r#"line 12, column 62: path.visits[0] is floor; allowed: the name of a surface in quotes, such as "floor""#,
     ],
-    // One name for a list of them.
+    // One name in place of a list of names.
     [
         r#"["floor"]"#,
         r#""floor""#,
@@ -96,7 +96,7 @@ const MISTAKES: &[[&str; 3]] = &[
         "pich:",
         "line 6, column 13: blockers[0].pich is no field (did you mean pitch?); allowed: name, center, count, pitch, fill, jitter, seed",
     ],
-    // A field left out.
+    // A missing field.
     [
         " pitch: 0.2,",
         "",
@@ -108,7 +108,7 @@ const MISTAKES: &[[&str; 3]] = &[
         "Rectangel(name",
         r#"line 10, column 9: surfaces[0] is Rectangel (did you mean Rectangle?); allowed: Rectangle, Mesh, Smooth, such as Rectangle(name: "floor", center: (0, 0, 2), size: (6, 6))"#,
     ],
-    // A variant in small letters.
+    // A variant in lower case.
     [
         "x: Hann",
         "x: hann",
@@ -126,13 +126,13 @@ const MISTAKES: &[[&str; 3]] = &[
         r#"After("sqares")"#,
         r#"line 14, column 31: planes[0].at is After("sqares") (did you mean squares?); allowed: one of squares, floor"#,
     ],
-    // A comma left out.
+    // A missing comma.
     [
         "(0.2, 0.2)),",
         "(0.2, 0.2))",
         "line 3, column 5: the scene: unexpected `blockers`; allowed: a comma before it, or a closing bracket",
     ],
-    // A bracket left out.
+    // A missing bracket.
     [
         "size: (6, 6)),",
         "size: (6, 6),",
@@ -162,7 +162,7 @@ const MISTAKES: &[[&str; 3]] = &[
         r#"pitch: "0.2""#,
         r#"line 6, column 20: blockers[0].pitch is "0.2"; allowed: a length in metres, such as 0.2"#,
     ],
-    // Percent for a share.
+    // A percentage in place of a share.
     [
         "fill: 0.6",
         "fill: 60",
@@ -192,25 +192,25 @@ const MISTAKES: &[[&str; 3]] = &[
         "Distance(4.5)",
         "line 14, column 31: planes[0].at is Distance(4.5); allowed: 0 to 2 m, where the last surface is, and from there to 4 m, where an object ends the path",
     ],
-    // Jitter that makes squares overlap.
+    // Jitter with which squares would overlap.
     [
         "fill: 0.6",
         "fill: 0.6, jitter: 0.7",
         "line 6, column 44: blockers[0].jitter is 0.7; allowed: 0 to 1 − fill, which is 0.4",
     ],
-    // A window of no width.
+    // A window of zero width.
     [
         "x: Hann(0.5)",
         "x: Hann(0)",
         "line 16, column 17: window.x is 0; allowed: 1e-9 to 1e9",
     ],
-    // Two planes of one name.
+    // Two planes with the same name.
     [
         r#"Before("floor")),"#,
         r#"Before("floor")), (name: "arrival", at: Emission),"#,
         r#"line 14, column 56: planes[1].name is "arrival"; allowed: a name no other plane has"#,
     ],
-    // Blockers on the floor.
+    // Blockers at the distance of the floor.
     [
         "(0, 0, 1), count",
         "(0, 0, 2), count",
@@ -279,7 +279,7 @@ fn what_is_set_is_told_by_what_has_set_it() {
     refused(&output.output().unwrap(), message);
 }
 
-/// Likely mistakes give warnings: the scene is described as usual, and the command succeeds.
+/// A likely mistake gives a warning; the scene is still described, and the command succeeds.
 #[test]
 fn likely_mistakes_are_warned_of() {
     for (from, to, warning) in [

@@ -1,4 +1,4 @@
-//! Commands refuse work that would take too long or not fit in memory, before they begin.
+//! Commands refuse, before they begin, work that would take too long or not fit in memory.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 

@@ -50,7 +50,7 @@ fn stays(folder: &Path, arguments: &str, parts: &[&str]) {
         assert!(message.contains(part), "{arguments}: {part}: {message}");
     }
     assert!(files(folder) == before, "{arguments} changed something");
-    // The command is refused before the work, not after it.
+    // The command is refused before the work begins.
     assert!(start.elapsed() < Duration::from_secs(20), "{arguments}");
 }
 
@@ -106,8 +106,8 @@ fn files_of_somebody_else_stay() {
         );
         fs::remove_dir_all(at("out")).unwrap();
     }
-    // A file of an earlier result that was changed since is protected too; an unrelated file in the
-    // folder is no obstacle.
+    // A file of an earlier result is protected too if it was changed since; an unrelated file in
+    // the folder does not stop the command.
     passes(folder.path(), "run s.ron --out out");
     fs::write(at("out/light/notes.txt"), "mine").unwrap();
     passes(folder.path(), "run s.ron --out out");
@@ -282,8 +282,8 @@ fn call_without_quiet(folder: &Path, arguments: &str) -> String {
     String::from_utf8(output.stderr).unwrap()
 }
 
-/// If a process died while its files moved, the next one completes the move, at whichever step it
-/// was.
+/// If a process dies while its files are moved, the next process completes the move, whichever step
+/// it had reached.
 #[test]
 fn a_move_that_was_cut_short_is_ended() {
     let folder = folder();
@@ -327,7 +327,7 @@ fn quoted(arguments: &str) -> String {
     words.collect::<Vec<_>>().join(" ")
 }
 
-/// A move that fails is undone, with all before it.
+/// If a move fails, this move and all moves before it are undone.
 #[test]
 fn a_failed_move_is_undone() {
     let folder = folder();
@@ -375,7 +375,7 @@ fn a_full_disk_takes_nothing_away() {
     let folder = folder();
     passes(folder.path(), "run s.ron --out out");
     let before = files(folder.path());
-    // Files may grow to 8 blocks: the arrays do not fit.
+    // Files may grow to 8 blocks, so the arrays do not fit.
     let program = env!("CARGO_BIN_EXE_etendue");
     for command in [
         "run s.ron --seed 2 --quiet --out out",

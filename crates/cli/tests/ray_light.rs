@@ -13,7 +13,8 @@ use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// Rays from a chip of 2 mm at heights of its own, a third of them going sideways or back, with power of their own.
+/// Returns rays from a chip of 2 mm. Each has a height and a power of its own, and a third of them
+/// go sideways or back.
 fn rays(unit: PowerUnit) -> RaySet {
     let count = 3000;
     let wave = |i: usize, step: f64| 2.0 * (i as f64 * step).fract() - 1.0;
@@ -59,7 +60,8 @@ fn folder() -> TempDir {
     folder
 }
 
-/// The scene of the repository with some of its text replaced, and as many photons as leave noise of a few per cent.
+/// The scene of the repository with some of its text replaced, and enough photons for a noise of a
+/// few per cent.
 fn text(edits: &[(&str, &str)]) -> String {
     let mut text = fs::read_to_string(scene("ray_file.ron")).unwrap();
     let edits = [
@@ -111,7 +113,7 @@ fn photons_agree_with_the_sum_over_rays() {
     for edits in [
         vec![],
         vec![("run: (", "run: (sampling: Random, ")],
-        // Turned, and behind a grating.
+        // The light is turned and shines through a grating.
         vec![
             (
                 "file: \"led.tm25ray\"",
@@ -139,7 +141,7 @@ fn planted_faults_are_seen() {
     let sound = resolved(folder.path(), &[]).unwrap();
     let [pass, fail] = [Verdict::Pass, Verdict::Fail];
     for (edits, expected) in [
-        // A bar of 3 mm made 1 mm wider.
+        // A bar of 3 mm is made 1 mm wider.
         (
             [(
                 "center: (0, 0), size: (0.003, 0.06)",
@@ -147,17 +149,17 @@ fn planted_faults_are_seen() {
             )],
             [pass, pass, fail, fail],
         ),
-        // The screen moved away by 0.5 mm.
+        // The screen is moved away by 0.5 mm.
         (
             [("center: (0, 0, 0.05)", "center: (0, 0, 0.0505)")],
             [pass, pass, pass, fail],
         ),
-        // One per cent more power.
+        // The power is one per cent larger.
         (
             [("file: \"led.tm25ray\"", "file: \"led.tm25ray\", flux: 0.8")],
             [fail; 4],
         ),
-        // Turned by six thousandths of a radian.
+        // The light is turned by six thousandths of a radian.
         (
             [(
                 "file: \"led.tm25ray\"",
@@ -171,7 +173,7 @@ fn planted_faults_are_seen() {
     }
 }
 
-/// Power is taken from the file, in W, whatever its unit; rays that go back are left out.
+/// Power is taken from the file, in W, whatever the file's unit; rays that go back are left out.
 #[test]
 fn power_is_in_watts() {
     let folder = folder();

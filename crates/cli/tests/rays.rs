@@ -117,8 +117,8 @@ fn refused_rays(folder: &TempDir, arguments: &str, code: i32, part: &str) {
     );
 }
 
-/// A light of radiance 1 emits π times its area; the received flux is that times the form factor,
-/// computed independently from the flux of the NPY file.
+/// A light of radiance 1 emits π times its area. The received flux is this flux times the form
+/// factor, which is computed independently of the flux of the NPY file.
 #[test]
 fn saved_rays_have_the_flux_of_their_plane() {
     let folder = tempfile::tempdir().unwrap();
@@ -136,7 +136,7 @@ fn saved_rays_have_the_flux_of_their_plane() {
     let mcpl = read(&out.join("light/photons.mcpl"));
     let flux = PI * 0.2 * 0.173_205_080_756_887_73;
     assert_eq!((mcpl.len(), mcpl.unit), (20_000, PowerUnit::Watt));
-    // A sum of 20000 roundings.
+    // The rounding errors of a sum of 20,000 numbers.
     assert!(
         (mcpl.total_power() / flux - 1.0).abs() < 1e-11,
         "{}",
@@ -173,7 +173,7 @@ fn saved_rays_have_the_flux_of_their_plane() {
     for (p, d) in floor.positions.iter().zip(&floor.directions) {
         let back = (p[2] - 0.3) / d[2];
         let from = [p[0] - back * d[0], p[1] - back * d[1]];
-        // The X axis of the scene is oblique: within the circle around the light.
+        // The X axis of the scene is oblique, so the circle around the square light is the bound.
         assert!(
             (from[0] - 0.1).hypot(from[1] - 0.2) < 0.1323 + 1e-9,
             "{from:?}"

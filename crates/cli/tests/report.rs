@@ -7,8 +7,8 @@ use crate::common::{SCENE, call, json};
 use std::fs;
 use std::path::Path;
 
-/// Runs of the small scene in `a` and, with another pitch and a name that would close the page's
-/// data tag, in `b`.
+/// Two runs: the small scene in `a`; and in `b`, the same with another pitch and a name that would
+/// close the page's data tag.
 fn runs() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();

@@ -19,7 +19,7 @@ fn folder() -> tempfile::TempDir {
     folder
 }
 
-/// Checks that the result is that of the uninterrupted run, with no other files beside it.
+/// Checks that the result is that of the uninterrupted run, and that no other files are beside it.
 fn is_whole(folder: &Path, out: &str) {
     let [mut found, mut whole] = [out, "whole"].map(|name| files(&folder.join(name)));
     for files in [&mut found, &mut whole] {
@@ -150,7 +150,8 @@ fn batches_of_another_run_are_not_taken() {
     }
 }
 
-/// Another process has written the result and removed the batches while this one worked on one.
+/// Another process has written the result and removed the batches while this process worked on one
+/// batch.
 #[test]
 fn what_another_process_ends_is_not_begun_anew() {
     let folder = folder();

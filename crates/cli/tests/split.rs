@@ -8,7 +8,7 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::process::Command;
 
-/// A folder with the scene, under a name that needs quoting, and in `whole` the result of one run.
+/// A folder with the scene, whose name needs quoting, and with the result of one run in `whole`.
 fn folder() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("my scene.ron"), SCENE).unwrap();

@@ -80,7 +80,7 @@ fn points_have_one_seed_where_that_is_asked_for() {
     );
     assert_eq!(seeds("--seed 7"), own);
     assert_eq!(seeds("--seed 7 --common-seed"), ["7".to_owned()].into());
-    // A swept seed is the seed used.
+    // If the seed is swept, its values are the seeds used.
     let line = "sweep small.ron --photons 4096 --out t --set run.seed=3,4";
     assert_eq!(call(path, line).status.code(), Some(0));
     let seeds: BTreeSet<String> = rows(&path.join("t/sweep.csv"))
@@ -130,7 +130,7 @@ fn a_sweep_goes_on_from_what_is_there() {
     };
     let made = |i: usize| fs::metadata(summary(i)).unwrap().ino();
     let before = [0, 1, 3].map(made);
-    // One summary is lost, another was changed by hand.
+    // One summary is lost, and another one was changed by hand.
     fs::remove_file(summary(2)).unwrap();
     fs::write(summary(3), "{}").unwrap();
     let refused = call(path, PITCH);
@@ -143,7 +143,7 @@ fn a_sweep_goes_on_from_what_is_there() {
     assert_eq!(call(path, PITCH).status.code(), Some(0));
     assert_eq!([0, 1].map(made), before[..2], "not run again");
     assert!(files(&path.join("s")) == whole, "the same bytes");
-    // With more values, only new points are run.
+    // If values are added, only new points are run.
     let more = PITCH.replace(":4", ":7");
     assert_eq!(call(path, &more).status.code(), Some(0));
     assert_eq!([0, 1].map(made), before[..2]);

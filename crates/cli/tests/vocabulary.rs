@@ -8,7 +8,7 @@ use ndarray::{Array2, Array4};
 use ndarray_npy::ReadNpyExt;
 use std::fs::{self, File};
 
-/// The small scene in a folder of its own, with other text in place of some.
+/// The small scene in a folder of its own, with some of its text replaced.
 fn folder(edits: &[(&str, &str)]) -> tempfile::TempDir {
     let mut text = SCENE.to_owned();
     for (from, to) in edits {
@@ -24,8 +24,8 @@ const LIGHT: &str =
     "Rectangle(center: (0.1, 0.2, 0.30000000000000004), size: (0.2, 0.17320508075688773))";
 const POINT: &str = "Point(center: (0.1, 0.2, 0.30000000000000004))";
 const LAYER: &str = "blockers: [";
-/// A mesh from a file, and one with too many triangles for the exact prediction, so that another
-/// tracer judges.
+/// Runs a scene with a mesh from a file, and one with a mesh of too many triangles for the exact
+/// prediction, so that the other tracer is the check.
 const MESH: &str = r#"blockers: [Mesh(name: "tetra", center: (0.1, 0.2, 1), mesh: File("meshes/tetra.obj"), scale: 0.1),
     Mesh(name: "ball", center: (-0.1, 0.1, 1), mesh: Star(radius: 0.03, relief: 0, lobes: 0, rings: 20)), "#;
 const TETRA: &str =
@@ -45,8 +45,8 @@ fn backward_rays_agree_and_keep_no_ledger() {
     assert!(summary["planes"][1]["in_window"].as_u64().unwrap() > 1000);
 }
 
-/// An aim point is searched for at its place, but not behind a mirror that reflects the light
-/// first.
+/// Backward rays find a point light where nothing deflects its light, but not behind a mirror that
+/// reflects the light first.
 #[test]
 fn a_point_is_found_backwards_unless_a_mirror_turns_its_light() {
     let beyond = ("at: Emission", "at: Distance(0.5)");
@@ -132,7 +132,7 @@ fn the_light_field_is_written_on_its_grid() {
         ["power", "predicted_power"].map(|name| array(&plane.join("full_radial.npz"), name));
     let sigma: Array2<f64> = array(&plane.join("full_radial.npz"), "sigma");
     let zero = [0, 0];
-    // Five jackknife errors: the noise of 20,000 photons.
+    // The tolerance is five jackknife errors, which are the noise of 20,000 photons.
     assert!(
         (power[zero] - predicted[zero]).abs() < 5.0 * sigma[zero],
         "{} {}",

@@ -1,4 +1,4 @@
-//! Several processes on one job: here threads that exchange bytes, as MPI ranks do.
+//! Several processes share one job; here they are threads that exchange bytes, as MPI ranks do.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -44,8 +44,8 @@ impl Workers for Member {
     }
 }
 
-/// Runs `lines`, one for each process; returns the exit code of the first, and the number of
-/// messages each other process has sent.
+/// Runs `lines`, one for each process. Returns the exit code of the first process, and the number
+/// of messages that each other process has sent.
 fn in_crew_of(lines: &[String]) -> (u8, Vec<usize>) {
     let (to, inboxes): (Vec<_>, Vec<_>) = lines.iter().map(|_| channel()).unzip();
     let members = inboxes.into_iter().enumerate();
@@ -64,8 +64,8 @@ fn in_crew_of(lines: &[String]) -> (u8, Vec<usize>) {
             scope.spawn(move || command_of_workers(words, member))
         };
         let others: Vec<_> = (1..lines.len()).map(begin).collect();
-        // The leader begins when the others have reported: otherwise work this small is done before
-        // they do.
+        // The leader begins when the others have reported; otherwise it would finish so little work
+        // before they begin.
         for (member, process) in members[1..].iter().zip(&others) {
             while member.sent.load(Ordering::Relaxed) == 0 && !process.is_finished() {
                 thread::yield_now();
@@ -81,8 +81,8 @@ fn in_crew_of(lines: &[String]) -> (u8, Vec<usize>) {
     )
 }
 
-/// Checks that `lines` on several processes leave the same files as `line` alone, whatever `{}`
-/// stands for, except for times.
+/// Checks that `lines`, run on several processes, leave the same files as `line` run alone, except
+/// for times.
 fn same_files(path: &Path, line: &str, processes: usize) -> Vec<usize> {
     let scene = path.join("small.ron").display().to_string();
     let with = |out: &str| {
@@ -121,11 +121,11 @@ fn runs_predictions_and_sweeps_have_the_bytes_of_one_process() {
         "predict SCENE --threads 1 --photons 2^16 --out OUT",
         "sweep SCENE --threads 1 --photons 4096 --set blockers.0.pitch=0.05..0.2:4 --out OUT",
     ] {
-        // Whichever process is first takes the next piece, so on a busy machine the others may get
-        // nothing: then it is repeated.
+        // Whichever process is first takes the next piece. On a busy machine the others may
+        // therefore get nothing; the run is then repeated.
         let helped = (0..20).any(|_| {
             let sent = same_files(folder().path(), line, 3);
-            // One message reports the process as present, and one follows each order.
+            // A process reports its presence with one message, and answers each order with one.
             sent.iter().sum::<usize>() > 2
         });
         assert!(helped, "{line}: nobody helped");

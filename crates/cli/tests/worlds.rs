@@ -161,7 +161,7 @@ fn a_probe_names_surfaces_and_judges_planes() {
     let surface = &found["surfaces"][0];
     assert_eq!(surface["shape"], "ball");
     let curvature = surface["curvature"][0].as_f64().unwrap();
-    // Estimated by finite differences over a few pixels.
+    // The curvature is estimated by finite differences over a few pixels.
     assert!((curvature - 2.0).abs() < 0.05, "{curvature}");
     let names = found["planes"].as_array().unwrap().iter();
     let names: Vec<&str> = names

@@ -25,8 +25,8 @@ impl Explorer {
         }
     }
 
-    /// Keeps every other frequency, if the window needs no more, and enlarges the cells, for fast
-    /// updates during interaction; each number remains as exact.
+    /// Makes updates during interaction fast: keeps every other frequency, if the window needs no
+    /// more, and enlarges the cells. Each number remains as exact as before.
     pub fn coarsen(&mut self) {
         for key in [SettingKey::RhoStep, SettingKey::NuStep] {
             self.setup.set(key, 2.0 * self.setup.get(key));
@@ -68,7 +68,7 @@ impl Explorer {
         }
     }
 
-    /// The names of the planes, one per line; planes that take long to compute are marked with a *.
+    /// The names of the planes, one per line; a * marks planes that take long to compute.
     #[must_use]
     pub fn planes(&self) -> String {
         let all = PathPlace::all(&self.setup).into_iter();
@@ -76,7 +76,8 @@ impl Explorer {
         all.map(shown).collect::<Vec<_>>().join("\n")
     }
 
-    /// The light field at a plane: number of cells along x, along u, then the values, u fastest.
+    /// The light field at a plane: the number of cells along x and along u, then the values, with u
+    /// varying fastest.
     #[must_use]
     pub fn field(&self, plane: usize) -> Vec<f64> {
         let values = PathPlace::all(&self.setup)[plane]
@@ -85,8 +86,8 @@ impl Explorer {
         values.iter().copied().collect()
     }
 
-    /// The spectrum at a plane at azimuth 0, for ρ ≥ 0: alternating real and imaginary parts, ν
-    /// fastest.
+    /// The spectrum at a plane at azimuth 0, for ρ ≥ 0: alternating real and imaginary parts, with
+    /// ν varying fastest.
     #[must_use]
     pub fn spectrum(&self, plane: usize) -> Vec<f64> {
         let slices = PathPlace::all(&self.setup)[plane].spectrum(&self.setup);
@@ -97,8 +98,8 @@ impl Explorer {
             .collect()
     }
 
-    /// The spectrum and then the light field at a plane by ray tracing, in the same order; empty
-    /// where they are exact already.
+    /// The spectrum and then the light field at a plane by ray tracing, in the same order as above;
+    /// empty where the values above are exact already.
     #[must_use]
     pub fn follow(&self, plane: usize) -> Vec<f64> {
         let plane = PathPlace::all(&self.setup)[plane];

@@ -13,13 +13,13 @@ pub enum PathPlace {
     Blocked,
     /// At the receiver.
     Arrived,
-    /// At the receiver, times the cosine.
+    /// Light at the receiver, times the cosine.
     Irradiance,
     /// Light that leaves the diffuse receiver.
     Diffuse,
-    /// On the glossy receiver, in the frames of its local normals.
+    /// Light on the glossy receiver, in the frames of its local normals.
     Curved,
-    /// On the glossy receiver, after the lobe.
+    /// Light on the glossy receiver, after the lobe.
     Blurred,
     /// Light that leaves the glossy receiver.
     Glossy,

@@ -53,7 +53,7 @@ impl PathPlace {
     }
 
     /// Spectrum and light field on a glossy receiver by nets of rays, as in `etendue predict`;
-    /// `None` elsewhere, where nothing is first-order.
+    /// `None` for other planes, where nothing is approximated to first order.
     #[must_use]
     pub fn followed(self, setup: &Setup) -> Option<(Slices, Projection)> {
         let found = rays::followed(self, setup)?;
@@ -113,8 +113,8 @@ fn travel(from: &str, to: &str, distance: f64) -> Operator {
     }
 }
 
-/// The light that arrives at the receiver, with `times` curvature times position added to its
-/// slopes.
+/// Returns the chain of the light that arrives at the receiver, after `times` · curvature ·
+/// position has been added to its slopes.
 fn imaged(setup: &Setup, times: f64) -> Chain {
     let chain = PathPlace::Arrived.chain(setup);
     let power = times * setup.get(SettingKey::Curvature);
@@ -123,7 +123,7 @@ fn imaged(setup: &Setup, times: f64) -> Chain {
         .expect("an even light and opaque blockers")
 }
 
-/// In the frame of the surface positions are reversed and directions are not: S(ρ, ν) is the
+/// In the frame of the surface, positions are reversed and directions are not: S(ρ, ν) is the
 /// previous S(−ρ, ν).
 fn on_the_surface(before: &Slices) -> Slices {
     let mut after = before.clone();

@@ -92,7 +92,7 @@ fn reflectance(setup: &Setup) -> Reflectance {
     Brdf::new(lobe, setup.get(SettingKey::Albedo), Fresnel::White).into()
 }
 
-/// A plane where the central ray meets the receiver; straight back, X is reversed.
+/// A plane where the central ray meets the receiver. The ray goes straight back, so X is reversed.
 fn seen(patch: &Patch, orientation: Orientation, arriving: bool) -> rays::Plane {
     let frame = Frame::new(patch.frame.origin, DVec3::NEG_Z, DVec3::NEG_X);
     rays::Plane {

@@ -104,7 +104,7 @@ fn receiver(setup: &Setup, x: f64, end: f64) -> String {
     )
 }
 
-/// A plane; without blockers, planes beside them keep their position.
+/// A plane of the scene file; if there are no blockers, the planes beside them keep their position.
 fn plane(plane: PathPlace, setup: &Setup) -> String {
     let distance = setup.get(SettingKey::Distance);
     let are_there = setup.get(SettingKey::Fill) > 0.0;

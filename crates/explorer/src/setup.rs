@@ -47,7 +47,7 @@ pub enum SettingKey {
     NuStep,
 }
 
-/// A setting with its name in URLs, its label and its range.
+/// A setting, with its name in URLs, its label and its range.
 #[derive(Clone, Copy, Debug)]
 pub struct SettingEntry {
     /// The key.
@@ -62,7 +62,7 @@ pub struct SettingEntry {
     pub range: [f64; 2],
     /// Step of the slider; 0 for a logarithmic slider.
     pub step: f64,
-    /// Initial value of a page.
+    /// The initial value on a page.
     pub default: f64,
 }
 
@@ -266,13 +266,14 @@ impl Setup {
         self.values[key as usize]
     }
 
-    /// Whether a setting that is 0 or 1 is 1.
+    /// Whether a setting with the values 0 and 1 is 1.
     #[must_use]
     pub fn is(&self, key: SettingKey) -> bool {
         self.get(key) > 0.5
     }
 
-    /// Changes a setting to the value nearest to the given one that its range and the scene permit.
+    /// Changes a setting to the permitted value that is nearest to the given one; its range and the
+    /// scene limit it.
     pub fn set(&mut self, key: SettingKey, value: f64) {
         let SettingEntry {
             range: [low, high],

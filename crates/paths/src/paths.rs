@@ -26,7 +26,7 @@ pub struct Paths {
 pub(crate) const ROULETTE: u32 = 6;
 
 /// Maximum path length, for endless paths between mirrors; the remaining throughput is below the
-/// rounding of a picture.
+/// rounding error of a picture.
 const LONGEST: u32 = 10_000;
 
 impl Paths {
@@ -45,7 +45,7 @@ impl Paths {
     }
 
     /// The radiance arriving at the origin of a ray, from distances within the visible range: an
-    /// unbiased estimate by one path. `before` is the number of surfaces between there and the
+    /// unbiased estimate by one path. `before` is the number of surfaces between the origin and the
     /// camera.
     pub(crate) fn radiance(
         &self,
@@ -71,9 +71,9 @@ impl Paths {
         }
     }
 
-    /// The radiance that a hit surface scatters back along the ray, as the parts found by one path,
-    /// each with its incident direction in the frame of the hit. `before` is the number of surfaces
-    /// between there and the camera.
+    /// The radiance that a hit surface scatters back along the ray, as the parts that one path
+    /// finds. Each part has its incident direction in the frame of the hit. `before` is the number
+    /// of surfaces between the hit and the camera.
     pub(crate) fn scattered(
         &self,
         mut ray: Ray,

@@ -20,7 +20,7 @@ pub struct Picture {
 
 impl Paths {
     /// Renders the picture of a camera with `samples` paths per pixel; `progress` receives the
-    /// number of finished pixels. Pixels depend only on seed and index.
+    /// number of finished pixels. Each pixel depends only on the seed and its index.
     #[must_use]
     pub fn picture(
         &self,
@@ -31,7 +31,7 @@ impl Paths {
     ) -> Picture {
         let [w, h] = camera.size;
         let row = |row: usize| {
-            // If `progress` unwinds, waiting rows end before they begin.
+            // If `progress` unwinds, rows that have not begun end here.
             progress(0);
             let pixels = (0..w).map(|column| self.pixel(camera, [column, row], samples, seed));
             let pixels: Vec<[f64; 2]> = pixels.collect();

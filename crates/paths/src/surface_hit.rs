@@ -110,7 +110,7 @@ impl Paths {
     }
 
     /// The radiance that base and lobe scatter to the eye, W m⁻² sr⁻¹, as means of `paths` paths;
-    /// and the variance of their sum divided by the number of paths. It depends only on the point,
+    /// and the variance of their sum, divided by the number of paths. It depends only on the point,
     /// the seed and `number`.
     ///
     /// Paths of one point use a scrambled net for their first numbers, so the error of the mean is
@@ -159,7 +159,8 @@ impl Paths {
             if let Some(shadow) = self.shadow(seen, numbers.draw()) {
                 if shadow.nearness > 0.0 {
                     blocked += shadow.light;
-                    // The geometric mean: a few very near blockers do not dominate the shadow.
+                    // This is the geometric mean, so that a few very near blockers do not dominate
+                    // the shadow.
                     sharp += shadow.light * libm::log(shadow.nearness.min(nearest.recip()));
                 } else {
                     lit += shadow.light;
@@ -175,7 +176,7 @@ impl Paths {
                 })
                 .map_or(0.0, |hit| hit.distance.max(nearest).recip());
         }
-        // No penumbra is fully lit, or fully blocked.
+        // A point that is fully lit or fully blocked is in no penumbra.
         let contrast = 4.0 * lit * blocked / (lit + blocked).powi(2);
         Nearness {
             reflected: reflected / f64::from(rays.max(1)),

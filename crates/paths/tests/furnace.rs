@@ -87,7 +87,7 @@ fn mask(of: Material) -> Material {
 enum Behind {
     /// The same medium as in front.
     Same,
-    /// A medium of this index, in which radiance is larger by its square.
+    /// A medium of this index, in which radiance is larger by the square of the index.
     Medium(f64),
     /// No light is transmitted.
     Nothing,
@@ -288,7 +288,7 @@ fn no_surface_changes_the_energy_of_a_furnace() {
                 (View::SphereInside, Behind::Medium(index)) => index * index,
                 _ => 1.0,
             };
-            // Each row by itself, and the whole picture.
+            // Each row alone and the whole picture are tested.
             for row in 0..=SIDE {
                 let (mean, error) = mean(&picture, |i| row == SIDE || i / SIDE == row);
                 let place = format!("{name} {view:?} row {row}: {mean} ± {error}");

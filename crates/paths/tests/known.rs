@@ -71,8 +71,8 @@ fn seen(world: &World, from: DVec3, at: DVec3, samples: u32) -> (f64, f64) {
     (picture.mean[0], picture.variance[0].sqrt())
 }
 
-/// Checks agreement within five standard errors, or within rounding if all paths find the same
-/// value; the error must be small.
+/// Checks agreement within five standard errors, or within rounding error if all paths find the
+/// same value; the standard error must be small.
 fn assert_seen(world: &World, from: DVec3, at: DVec3, expected: f64) {
     let (mean, error) = seen(world, from, at, 20_000);
     assert!(
@@ -94,7 +94,7 @@ fn a_closed_sphere_gathers_light() {
         ..World::default()
     };
     let at = DVec3::new(0.1, 0.2, -1.9);
-    // 1 + ½ + ¼ + …, up to the given depth.
+    // The sum is 1 + ½ + ¼ + …, up to the given depth.
     for (depth, expected) in [
         (None, 2.0),
         (Some(0), 1.0),
@@ -138,7 +138,7 @@ fn lights_shine_by_their_units() {
         DVec3::ZERO,
         0.35,
     );
-    // A point in the falloff of the spot.
+    // The camera sees a point in the falloff of the spot.
     let down = DAffine3::from_mat3_translation(
         DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0)),
         DVec3::new(0.0, 0.0, 1.0),
@@ -190,7 +190,7 @@ fn surfaces_shine_by_their_area() {
         DVec3::ZERO,
         0.5 * 6.0 * 0.25 / 4.0,
     );
-    // A square as a rectangle and as two triangles; it emits only on its front.
+    // The same square is given as a rectangle and as two triangles; it emits only on its front.
     let square = Triangles::new(
         vec![
             DVec3::new(-1.0, -1.0, 0.0),
@@ -250,7 +250,7 @@ fn glass_keeps_the_light_around_it() {
 #[test]
 fn a_sky_is_where_its_pixels_are() {
     let mut values = vec![0.0; 64 * 32];
-    // Column 16 of 64 is a quarter turn from −Z to X; row 8 of 0 to 31 is at 46° from Y.
+    // Column 16 of 64 is a quarter turn from −Z to X; row 8 of the rows 0 to 31 is at 46° from Y.
     values[8 * 64 + 16] = 100.0;
     let raster = Raster::new(64, 32, values).unwrap();
     let map = Arc::new(LatLong::from_pole_to_pole(raster));

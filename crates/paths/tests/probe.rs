@@ -129,7 +129,7 @@ fn assert_even(world: &World, question: &Question, planes: &[&str], radiance: f6
                 "{what} at {}: {mean} ± {error}, not {expected}",
                 plane.name
             );
-            // Small enough to detect a missing cosine or half-width.
+            // The error is small enough to detect a missing cosine or half-width.
             assert!(
                 error < 0.06 * expected,
                 "{what} at {}: ± {error} of {expected}",
@@ -183,18 +183,18 @@ fn surfaces_curve_as_they_do() {
     };
     let scaled = |radius: f64| DAffine3::from_scale(DVec3::splat(radius));
     for k in of(Geometry::Sphere, scaled(0.5)) {
-        // Finite differences over a few hundredths of the radius.
+        // Curvatures are finite differences over a few hundredths of the radius.
         assert!((k - 2.0).abs() < 0.03, "{k}");
     }
     // The axis is along X, perpendicular to the plane of incidence.
     let turned = DMat3::from_cols(DVec3::Z * 0.5, DVec3::Y * 0.5, -4.0 * DVec3::X);
     let to_world = DAffine3::from_mat3_translation(turned, DVec3::X * 2.0);
     let [along, across] = of(Geometry::Cylinder, to_world);
-    // The ray is nearly along the normal, so the plane of incidence is off by some degrees; the sum
-    // does not depend on it.
+    // The ray is nearly along the normal, so the plane of incidence is inaccurate by some degrees;
+    // the sum of the curvatures does not depend on it.
     assert!((along + across - 2.0).abs() < 0.03, "{along}, {across}");
     assert!(along > 1.9 && across < 0.1, "{along}, {across}");
-    // Seen from inside a large sphere.
+    // A large sphere is seen from inside.
     let [along, across] = of(Geometry::Sphere, scaled(5.0));
     assert!(
         (along + 0.2).abs() < 0.003 && (across + 0.2).abs() < 0.003,

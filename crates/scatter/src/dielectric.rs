@@ -1,5 +1,5 @@
 //! Transmitting interfaces of two media, smooth or rough. wo is in front of the interface; `index`
-//! is that of the far side over that of the side of wo.
+//! is the index of the far side divided by that of the side of wo.
 //!
 //! Values refer to radiance, which is larger on the far side by the squared index.
 
@@ -19,7 +19,7 @@ pub struct SmoothDielectric {
 }
 
 impl SmoothDielectric {
-    /// Reflects or refracts, with the probabilities of the light.
+    /// Reflects or refracts; the shares of light are the probabilities.
     #[inline]
     #[must_use]
     pub fn sample(&self, wo: DVec3, random: f64) -> BsdfSample {
@@ -93,7 +93,7 @@ impl Bsdf for RoughDielectric {
             return 0.25 * facet.reflected * common;
         }
         let sum = o + self.index * i;
-        // Radiance is that of the far side over the squared index, and solid angles there are
+        // Radiance on the far side is divided by the squared index, and solid angles there are
         // smaller by the same factor.
         (1.0 - facet.reflected) * common * (o * i).abs() / (sum * sum)
     }
@@ -113,8 +113,8 @@ impl Bsdf for RoughDielectric {
         (1.0 - facet.reflected) * of_normal * self.index * self.index * i.abs() / (sum * sum)
     }
 
-    /// Mirrors or refracts at a facet, with the probabilities of the light; `None` if light would
-    /// meet another facet.
+    /// Mirrors or refracts at a facet, with the shares of light as probabilities; `None` if light
+    /// would meet another facet.
     #[inline]
     fn direction(&self, wo: DVec3, [a, b, c]: [f64; 3]) -> Option<DVec3> {
         let normal = self.facets.sample_normal(wo, [a, b]);

@@ -4,7 +4,7 @@
 use etendue_field::Fresnel;
 use glam::DVec3;
 
-/// Returns the share that is reflected at an angle of incidence with this cosine, 0 to 1.
+/// Returns the share that is reflected at an angle of incidence whose cosine, 0 to 1, is given.
 #[inline]
 #[must_use]
 pub fn reflectance(fresnel: &Fresnel, cosine: f64) -> f64 {
@@ -15,7 +15,8 @@ pub fn reflectance(fresnel: &Fresnel, cosine: f64) -> f64 {
     }
 }
 
-/// At a dielectric: all light beyond the critical angle of an index below 1.
+/// Returns the reflectance of a dielectric. With an index below 1, all light beyond the critical
+/// angle is reflected.
 #[inline]
 fn dielectric(index: f64, cosine: f64) -> f64 {
     let squared = index * index;
@@ -23,14 +24,14 @@ fn dielectric(index: f64, cosine: f64) -> f64 {
     if inside <= 0.0 {
         return 1.0;
     }
-    // index · cos of the angle of refraction.
+    // This is the index times the cosine of the angle of refraction.
     let refracted = inside.sqrt();
     let s = (cosine - refracted) / (cosine + refracted);
     let p = (squared * cosine - refracted) / (squared * cosine + refracted);
     0.5 * (s * s + p * p)
 }
 
-/// At a conductor with index n + i k: (n + i k)² − sin²θ = (a + i b)².
+/// For a conductor with index n + i k, (n + i k)² − sin²θ = (a + i b)².
 fn conductor(n: f64, k: f64, cosine: f64) -> f64 {
     let c2 = cosine * cosine;
     let s2 = 1.0 - c2;
@@ -55,8 +56,8 @@ pub(crate) struct Interface {
 }
 
 impl Interface {
-    /// Builds an interface whose far side has `index` times the index of the near side, where the
-    /// angle has this cosine, above 0.
+    /// Builds an interface for an angle of incidence with this cosine, above 0; the index of the
+    /// far side is `index` times that of the near side.
     #[inline]
     pub(crate) fn new(index: f64, cosine: f64) -> Self {
         let cosine = cosine.min(1.0);
@@ -143,7 +144,7 @@ mod tests {
                 close(reflectance(&bare, angle.cos()), plain),
                 "no absorption at {angle}"
             );
-            // The same interface from inside, at the angle of refraction.
+            // The same interface is met from inside, at the angle of refraction.
             let inside = libm::asin(libm::sin(angle) / 1.5);
             assert!(
                 close(reflectance(&air, inside.cos()), plain),

@@ -1,5 +1,5 @@
 //! Lambert's BRDF of albedo 1, the same in all directions in front of the surface. Directions are
-//! sampled by their cosine.
+//! sampled in proportion to their cosine.
 
 pub use etendue_sampling::{cosine_hemisphere as sample, cosine_hemisphere_density as density};
 use std::f64::consts::FRAC_1_PI;

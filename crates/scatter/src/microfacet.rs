@@ -29,8 +29,9 @@ impl Microfacets {
         }
     }
 
-    /// Returns the BRDF of perfect mirrors, with both directions in front of the surface (Walter et
-    /// al., Eq. 20), and the cosine of the angle of incidence on them, for a Fresnel factor.
+    /// Returns the BRDF of perfect mirrors, for two directions in front of the surface (Walter et
+    /// al., Eq. 20). Also returns the cosine of the angle of incidence on the mirrors, for a
+    /// Fresnel factor.
     #[inline]
     #[must_use]
     pub fn value(&self, wi: DVec3, wo: DVec3) -> (f64, f64) {
@@ -48,8 +49,8 @@ impl Microfacets {
         mirrored(wo, self.sample_normal(wo, random))
     }
 
-    /// Returns the density of [`Self::sample`], over the whole sphere: that of the normal over 4 h
-    /// · ωo (Walter et al., Eq. 14).
+    /// Returns the density of [`Self::sample`], over the whole sphere. It is the density of the
+    /// normal, divided by 4 h · ωo (Walter et al., Eq. 14).
     #[inline]
     #[must_use]
     pub fn density(&self, wi: DVec3, wo: DVec3) -> f64 {
@@ -61,11 +62,11 @@ impl Microfacets {
         }
     }
 
-    /// Samples the mirror direction of wo at any normal, visible from wo or not, by D cos θ (Walter
-    /// et al., Eqs. 28 f. and 35 f.).
+    /// Samples the mirror direction of wo at any normal, visible from wo or not, in proportion to D
+    /// cos θ (Walter et al., Eqs. 28 f. and 35 f.).
     ///
-    /// For Beckmann, weights are closer to 1 than with [`Self::sample`] if light comes from near
-    /// the normal, but grow without bound towards grazing.
+    /// For Beckmann, weights are closer to 1 than those of [`Self::sample`] if light comes from
+    /// near the normal, but they grow without bound towards grazing.
     #[inline]
     #[must_use]
     pub fn sample_unmasked(&self, wo: DVec3, [a, b]: [f64; 2]) -> DVec3 {
@@ -79,7 +80,7 @@ impl Microfacets {
     }
 
     /// Returns the density of [`Self::sample_unmasked`], over the whole sphere. A normal that is
-    /// seen from behind mirrors like its opposite.
+    /// seen from behind reflects like its opposite.
     #[inline]
     #[must_use]
     pub fn unmasked_density(&self, wi: DVec3, wo: DVec3) -> f64 {
@@ -111,7 +112,7 @@ impl Microfacets {
         match self.distribution {
             MicrofacetDistribution::Beckmann => {
                 let a = 1.0 / slope;
-                // Beyond this, erfc(6) is below rounding.
+                // Beyond this, erfc is below erfc(6), which is below rounding error.
                 if a > 6.0 {
                     return 1.0;
                 }
@@ -128,7 +129,8 @@ impl Microfacets {
     /// at most √π times.
     #[inline]
     pub(crate) fn sample_normal(&self, wo: DVec3, [a, b]: [f64; 2]) -> DVec3 {
-        // Transforms to the hemisphere from which the ellipsoid of normals is stretched.
+        // The direction is transformed to the space in which the ellipsoid of normals is a
+        // hemisphere.
         let stretch = DVec3::new(self.alpha[0], self.alpha[1], 1.0);
         let view = (stretch * wo).normalize();
         let across = DVec3::new(-view.y, view.x, 0.0).try_normalize();
@@ -164,7 +166,8 @@ impl Microfacets {
         1.0 / (PI * self.alpha[0] * self.alpha[1] * sum * sum)
     }
 
-    /// Returns (x/αx)² + (y/αy)². Unlike 1 − z² it keeps its digits for normals close to Z.
+    /// Returns (x/αx)² + (y/αy)². Unlike 1 − z², this expression keeps its digits for normals close
+    /// to Z.
     #[inline]
     fn spread(&self, normal: DVec3) -> f64 {
         let [x, y] = [normal.x / self.alpha[0], normal.y / self.alpha[1]];

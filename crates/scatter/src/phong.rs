@@ -59,7 +59,7 @@ pub struct ModifiedPhong {
 
 impl ModifiedPhong {
     /// Returns the share of directions that are sampled by the lobe, given by ks. The others are
-    /// sampled by the cosine.
+    /// sampled in proportion to the cosine.
     #[inline]
     fn specular_share(&self) -> f64 {
         let sum = self.diffuse + self.specular;

@@ -9,7 +9,7 @@ use glam::DVec3;
 /// Number of steps of the cosine in the table of a rough coat.
 const STEPS: usize = 64;
 
-/// A coat, with its transmittance.
+/// A coat, prepared with its transmittance.
 #[derive(Clone, Debug)]
 pub struct Coat {
     index: f64,
@@ -141,7 +141,7 @@ impl Bsdf for Plastic<'_> {
     }
 
     fn mirrored(&self, wo: DVec3, c: f64) -> Option<BsdfSample> {
-        // A smooth coat takes its share of samples; the base has the rest of the density.
+        // A smooth coat takes its share of the samples; the base has the rest of them.
         let share = self.coat_share(wo);
         (self.coat.facets.is_none() && c < share).then(|| {
             let reflected = Interface::new(self.coat.index, wo.z).reflected;

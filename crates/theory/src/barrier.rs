@@ -9,8 +9,8 @@ pub(crate) type Bounds = [[f64; 2]; 2];
 /// A mask prepared for many queries.
 #[derive(Debug)]
 pub(crate) struct Barrier<'a> {
-    /// The distance of the mask, metres: from the light or before a receiver, as the owner counts
-    /// it.
+    /// The distance of the mask, metres. The owner of the barrier counts it from the light, or back
+    /// from a receiver.
     pub(crate) distance: f64,
     /// The region that half-planes leave open.
     pub(crate) open: Bounds,
@@ -113,7 +113,7 @@ impl<'a> Bins<'a> {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "clamped first; what is not a number becomes zero"
+        reason = "the value is clamped first, and NaN becomes zero"
     )]
     fn cell(&self, axis: usize, coordinate: f64) -> usize {
         let cell = (coordinate - self.low[axis]) * self.per_length[axis];

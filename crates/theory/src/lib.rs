@@ -9,21 +9,21 @@
 //! error ([`quadrature_error`]), their [`derivative`] by any number of the chain, and the
 //! [`projection`] on (x, u).
 //!
-//! Travel is a shear of (position, slope), so every edge stays a straight line and every field is a
-//! signed sum of products of convex polygons, one in (x, u) and one in (y, v); windows and gratings
-//! are sums of cosines. The transform of such a polygon is known in closed form: no quadrature, no
-//! grid, no aliasing. A disc is a weighted sum of rectangles, a factor of slope a sum of products
-//! of cosine series; both converge exponentially.
+//! Travel is a shear of (position, slope), so every edge stays a straight line. Every field is then
+//! a signed sum of products of two convex polygons, one in (x, u) and one in (y, v); windows and
+//! gratings are sums of cosines. The transform of such a polygon is known in closed form: no
+//! quadrature, no grid, no aliasing. A disc is a weighted sum of rectangles, and a factor of slope
+//! is a sum of products of cosine series; both sums converge exponentially.
 //!
 //! [`geometry`] has the steps of a light path that bend it (incidence, curvature, mirrors,
 //! refraction, lenses) as affine maps of rays, with their effect on spectra and covariances; a
-//! chain does not use them. [`rays`] predicts light behind mirrors, refracting surfaces and lenses:
-//! exactly, by following rays, and to first order, by a chain of those maps derived from the same
-//! surfaces. [`covariance`] follows second moments of spectra along the same paths. [`shading`] has
-//! cosines, BRDF lobes, Fresnel factors, textures and environments, in 2D.
+//! chain does not use them. [`rays`] predicts light behind mirrors, refracting surfaces and lenses
+//! in two ways: exactly, by following rays; and to first order, by a chain of those maps derived
+//! from the same surfaces. [`covariance`] follows second moments of spectra along the same paths.
+//! [`shading`] has cosines, BRDF lobes, Fresnel factors, textures and environments, in 2D.
 //!
-//! This crate has no access to scenes, photons or measured spectra; otherwise agreement would be no
-//! evidence.
+//! This crate has no access to scenes, photons or measured spectra; otherwise its agreement with a
+//! measurement would be no evidence.
 //!
 //! ```
 //! use etendue_field::{FrequencyAxis, Light, Mask, Profile, Rectangle, Shape, SliceGrid, Window};

@@ -31,7 +31,7 @@ pub trait Model: Clone {
     fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: RayBudget) -> Predicted;
 
     /// Calls `then` with the light field as nets of rays, drawn as [`predict`](Self::predict) draws
-    /// them. Does not call it if no ray arrives.
+    /// them. Does not call `then` if no ray arrives.
     fn with_rays(&self, over: Over<'_>, budget: RayBudget, then: &mut dyn FnMut(&dyn RayNets));
 
     /// Estimates the work of a prediction.

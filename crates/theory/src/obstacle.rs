@@ -57,7 +57,7 @@ enum Ready<'a> {
     },
 }
 
-/// Relative error of a distance that rounding may cause.
+/// Relative error of a distance that may come from rounding.
 pub(crate) const ROUNDING: f64 = 1e-9;
 
 impl<'a> PreparedObstacles<'a> {
@@ -154,15 +154,15 @@ pub(crate) fn on_patch(patch: &Patch, ray: &LegRay) -> [Option<f64>; 2] {
     let curved = DVec3::from(patch.curvature) * direction;
     let (a, b) = (curved.dot(direction), curved.dot(point) + direction.z);
     let c = patch.value(point);
-    // To avoid cancellation, the other root is computed as the constant term divided by this one.
+    // To avoid cancellation, the other root is computed as the constant term divided by this root.
     let root = (b * b - a * c).sqrt();
     let q = -(b + root.copysign(b));
     [q / a, c / q]
         .map(|t| Some(t).filter(|t| t.is_finite() && patch.contains(point + *t * direction)))
 }
 
-/// Returns the distance along a ray to a triangle. The ray meets it where the volumes that it spans
-/// with the edges have one sign (Plücker coordinates).
+/// Returns the distance along a ray to a triangle. The ray meets the triangle where the volumes
+/// that the ray spans with the edges have the same sign (Plücker coordinates).
 fn on([a, b, c]: &[DVec3; 3], ray: &LegRay) -> Option<f64> {
     let [p, q, r] = [*a, *b, *c].map(|corner| corner - ray.point);
     let volumes = [p.cross(q), q.cross(r), r.cross(p)].map(|face| face.dot(ray.direction));

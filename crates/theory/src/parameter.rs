@@ -13,8 +13,9 @@ pub enum Parameter {
     SpotExponent,
     /// The first width of a picture; the second keeps the proportion.
     ImageWidth,
-    /// The distance of a travel. In a system: the length of the central ray from an element, or
-    /// from the light (0), to the next element or the plane. Everything later moves along D.
+    /// The distance of a step of travel. In a system, the length of the central ray from an
+    /// element, or from the light (0), to the next element or the plane. Everything later moves
+    /// along D.
     Travel(usize),
     /// The side along X, or the radius, of the first shape of an opaque mask. All shapes of the
     /// mask scale by the same factor; their centres stay.
@@ -27,8 +28,8 @@ pub enum Parameter {
     GratingPhase(usize),
     /// The angle of incidence θ₀ of the central ray: the patch alone turns about B.
     Incidence(usize),
-    /// A curvature of a patch, k₁ (0) or k₂ (1). Curvatures equal to it change with it, and so does
-    /// k₃. The vertex stays.
+    /// A curvature of a patch, k₁ (0) or k₂ (1). All curvatures equal to this one change with it,
+    /// and so does k₃. The vertex stays.
     Curvature(usize, usize),
     /// The index of refraction of the denser side of a surface.
     Index(usize),
@@ -69,7 +70,8 @@ impl Parameter {
         }
     }
 
-    /// Returns the scale against which a small change of the parameter is small.
+    /// Returns the scale of the parameter: a change is small if it is small compared with this
+    /// scale.
     pub(crate) fn scale(self, value: f64) -> f64 {
         match self {
             Self::Incidence(_) | Self::Curvature(..) | Self::Albedo | Self::Lobe => {
@@ -129,7 +131,7 @@ pub(crate) fn change_curvature(patch: &mut Patch, axis: usize, new: New<'_>) -> 
     Some(())
 }
 
-/// Checks whether two curvatures are equal up to rounding.
+/// Checks whether two curvatures are equal up to rounding error.
 fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-12 * a.abs().max(b.abs())
 }

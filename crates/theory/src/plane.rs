@@ -6,17 +6,18 @@ use etendue_field::{Frame, Orientation, Patch, Quantity};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
     /// The plane's frame, in coordinates of the frame at the light: O on the central ray, D along
-    /// it. On a surface: T, B and the normal there, on the side to which directions point.
+    /// it. On a surface: On a surface its axes are T, B and the normal there, on the side to which
+    /// directions point.
     pub frame: Frame,
-    /// What the coordinates are relative to.
+    /// The reference of the coordinates: the central ray, the tangent plane or the surface itself.
     pub orientation: Orientation,
-    /// On a surface: θ of the central ray, radians. The coordinates are then (s, t, θ − longitude,
-    /// φ).
+    /// On a surface, θ of the central ray in radians. The coordinates are then (s, t, θ −
+    /// longitude, φ).
     pub longitude: f64,
     /// The surface, for local normals; without it all normals are along D.
     pub patch: Option<Patch>,
-    /// On a surface: whether the light is arriving, with directions reversed. If so, the surface is
-    /// not among the elements; otherwise it is the last one.
+    /// On a surface, whether the light is arriving; directions are then reversed. If so, the
+    /// surface is not among the elements; otherwise it is the last one.
     pub arriving: bool,
     /// The quantity recorded. Differential irradiance on a surface is radiance times cos θ cos² φ.
     pub quantity: Quantity,

@@ -15,8 +15,8 @@ pub struct Predicted {
     /// The relative error ‖error‖/‖F‖: the standard error of the mean of the replicates, or the
     /// change under finer quadrature rules. `None` for a closed form; infinite if no ray arrives.
     pub error: Option<f64>,
-    /// ∫ L W without occluders, the scale to compare the slices of a closed form with; zero for
-    /// nets.
+    /// ∫ L W without occluders: the scale with which the slices of a closed form are compared; zero
+    /// for nets.
     pub unblocked: f64,
     /// The windowed light field integrated over y and v, as means over cells of (x, u).
     pub projection: Projection,

@@ -18,8 +18,8 @@ pub(crate) enum SkyDensity<'a> {
 pub(crate) struct Lobes {
     /// Cumulative shares of the light of the Gaussians.
     shares: Vec<f64>,
-    /// For each Gaussian: σ², exp(−2/σ²) − 1, and a frame with D towards where most of its light
-    /// comes from.
+    /// For each Gaussian: σ², exp(−2/σ²) − 1, and a frame whose D points towards where most of its
+    /// light comes from.
     each: Vec<(f64, f64, Frame)>,
     /// The integral of the radiance over all directions.
     total: f64,
@@ -71,7 +71,7 @@ impl<'a> SkyDensity<'a> {
             Self::Lobes(lobes) => {
                 let (i, a) = picked(&lobes.shares, a);
                 let (squared, least, axes) = lobes.each[i];
-                // 1 − cos γ, from the quantiles of exp((cos γ − 1)/σ²).
+                // This is 1 − cos γ, from the quantiles of exp((cos γ − 1)/σ²).
                 let fall = -squared * libm::log1p(a * least);
                 let fall = fall.clamp(0.0, 2.0);
                 let sin = (fall * (2.0 - fall)).sqrt();
@@ -97,7 +97,7 @@ impl<'a> Pixels<'a> {
         let raster = map.raster();
         let [w, h] = [raster.width(), raster.height()];
         let pixel = |i: usize, j: usize| raster.value(i as f64 + 0.5, j as f64 + 0.5, true);
-        // Between pixel centres the radiance interpolates the pixels, and so does the weight.
+        // Between pixel centres the radiance is interpolated from the pixels, and so is the weight.
         let weight = |i: usize, j: usize| {
             let columns = [i + w - 1, i, i + 1].map(|i| i % w);
             let rows = [j.saturating_sub(1), j, (j + 1).min(h - 1)];
@@ -107,7 +107,7 @@ impl<'a> Pixels<'a> {
             };
             let [a, b, c] = rows.map(row);
             let from = map.direction([i as f64 + 0.5, j as f64 + 0.5]);
-            // Environments shine forward; a cell on the border shines in part.
+            // Environments shine forward; a cell on the border shines through a part of itself.
             let shines = from.dot(forward) > -(0.5 * PI / h as f64 + PI / w as f64);
             let cosine = from.dot(normal).max(GRAZING);
             if shines {
@@ -134,7 +134,7 @@ impl<'a> Pixels<'a> {
         let (j, down) = picked(&self.rows, a);
         let (i, across) = picked(&self.cells[j], b);
         let h = self.rows.len();
-        // Uniform in the sine of the latitude.
+        // Within a row, the density is uniform in the sine of the latitude.
         let [top, bottom] = [j, j + 1].map(|j| libm::sin(latitude(h, j)));
         let sine = (top + down * (bottom - top)).clamp(-1.0, 1.0);
         let row = h as f64 * (0.5 - libm::asin(sine) / PI);
@@ -144,7 +144,7 @@ impl<'a> Pixels<'a> {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "not negative, and cut to the size of the map"
+        reason = "the value is not negative, and is limited to the size of the map"
     )]
     fn density(&self, from: DVec3) -> f64 {
         let [column, row] = self.map.place(from);
@@ -226,7 +226,7 @@ mod tests {
                 let (s, c) = libm::sincos(2.4 * t);
                 let cos = (t + 0.5) / 4000.0;
                 let sin = (1.0 - cos * cos).sqrt();
-                // Sums over forward directions.
+                // The sums are over forward directions.
                 let from = environment.origin_of(DVec3::new(sin * c, sin * s, cos));
                 assert!(sky.density(from, 1.0) > 0.0, "{w} x {h}: {from}");
             }

@@ -38,7 +38,7 @@ pub(crate) fn curvature([[a, b], [c, d]]: Matrix<2>) -> String {
     }
 }
 
-/// Describes the effect of a mask; `named` goes before it, such as "bars: ".
+/// Describes the effect of a mask; the text `named` precedes it, such as "bars: ".
 pub(crate) fn mask(named: &str, mask: &Mask) -> String {
     match mask {
         Mask::Opaque {

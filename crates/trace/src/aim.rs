@@ -8,8 +8,8 @@ use etendue_field::{Environment, Orientation, Profile, TwoPlane, VirtualPlane};
 use etendue_scene::{Emission, Scene};
 use etendue_transform::random;
 
-/// A mixture, with equal shares, of strategies that draw rays of an environment: a density over (x,
-/// y, u, v) at the beginning of the first leg.
+/// A mixture, with equal shares, of strategies that draw rays of an environment. Its density is
+/// over (x, y, u, v) at the beginning of the first leg.
 ///
 /// Emission, aimed or plain, covers only rays that some plane may see, because the flux of an
 /// environment through all space is infinite.
@@ -34,7 +34,7 @@ enum SkyStrategy {
     Onto(FootprintSampler),
 }
 
-/// A plane that looks at light which arrives on a surface.
+/// A plane that sees light arriving on a surface.
 #[derive(Debug)]
 struct Facing {
     plane_on_leg: PlaneOnLeg,
@@ -85,12 +85,12 @@ impl Facing {
 }
 
 impl FromSky {
-    /// Aimed emission has, for the window of each plane on the first leg, a strategy by the plane's
-    /// profiles and one by the environment. For each other plane it has one for the part of the
-    /// first surface that the plane sees, and one by the plane's profiles if the plane is on that
-    /// surface. Plain emission draws positions uniformly over the windows of the planes on the first
-    /// leg, over the first surface and over the windows of planes on that surface; directions are
-    /// always drawn by the environment.
+    /// Aimed emission has two strategies for the window of each plane on the first leg: one by the
+    /// plane's profiles and one by the environment. For each other plane it has a strategy for the
+    /// part of the first surface that the plane sees, and one by the plane's profiles if the plane
+    /// is on that surface. Plain emission draws positions uniformly over the windows of the planes
+    /// on the first leg, over the first surface, and over the windows of planes on that surface. It
+    /// always draws directions by the environment.
     pub(crate) fn new(scene: &Scene, environment: &Environment) -> Self {
         let aimed = scene.run.emission == Emission::Aimed;
         let mut strategies = Vec::new();
@@ -158,7 +158,7 @@ impl FromSky {
                 by_sky * position[0].density(x) * position[1].density(y)
             }
             SkyStrategy::Facing(facing) => facing.density(ray),
-            // No light is aimed from directions without light.
+            // Rays are not aimed from directions that no light comes from.
             SkyStrategy::Onto(_) if by_sky <= 0.0 => 0.0,
             SkyStrategy::Onto(ground) => by_sky * ground.density(ray),
         });
@@ -166,7 +166,7 @@ impl FromSky {
     }
 }
 
-/// Whether a plane lies across the first leg. The light it sees may not have met anything.
+/// Whether a plane lies across the first leg. The light that it sees need not have met anything.
 pub(crate) fn looks_across(plane: &VirtualPlane) -> bool {
     plane.leg == 0 && plane.orientation == Orientation::Orthogonal
 }

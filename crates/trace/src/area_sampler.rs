@@ -7,7 +7,7 @@ use glam::DVec3;
 /// A surface that consists of flat pieces.
 #[derive(Debug)]
 pub(crate) enum AreaSampler {
-    /// A parallelogram, given by a corner and the two next to it.
+    /// A parallelogram, given by a corner and the two corners next to it.
     One([DVec3; 3]),
     /// Triangles, selected in proportion to area.
     Many(Triangles, DiscreteDistribution),

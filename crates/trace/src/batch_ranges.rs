@@ -33,7 +33,8 @@ impl BatchRanges {
         start(batch)..start(batch + 1)
     }
 
-    /// The number of parts of a batch: at least one, and none is empty unless the batch is.
+    /// The number of parts of a batch. It is at least one, and no part is empty unless the batch
+    /// is.
     pub(crate) fn parts(&self, batch: u32) -> u32 {
         let parts = self.count(batch).div_ceil(self.part_length(batch));
         u32::try_from(parts).unwrap_or(u32::MAX).max(1)

@@ -19,7 +19,7 @@ pub(crate) enum Bounce {
         reflectance: Box<Reflectance>,
         scatterer: Option<Scatterer>,
     },
-    /// Reflection, refraction or a lens; the lens's frame, in the frame of the leg.
+    /// Reflection, refraction or a lens, with the lens's frame in the frame of the leg.
     Specular(Frame, Specular),
 }
 
@@ -62,7 +62,7 @@ impl Bounce {
                 let scatterer = scatterer.as_ref()?;
                 let (point, normal) = (arrival.point, arrival.normal);
                 let (towards, density) = scatterer.sample(point, normal, &Spread::Cosine, words)?;
-                // Radiance is albedo/π · E, and a photon's flux stands for E at its point.
+                // Radiance is albedo/π · E, and a photon's flux represents E at its point.
                 Some((towards, albedo * arrival.flux / (LAMBERTIAN * density)))
             }
             Self::Reflects {

@@ -33,9 +33,9 @@ impl<T> Both<T> {
     }
 }
 
-/// Whether light may travel back along a leg: to a part of the surface at its end that lies behind
-/// a part of the one at its beginning, or to where a plane on one of them sees it. Light of the
-/// first leg always goes forward.
+/// Whether light may travel back along a leg. It may if part of the surface at the leg's end lies
+/// behind part of the surface at its beginning, or if a plane on one of these surfaces sees such
+/// light. Light of the first leg always goes forward.
 fn goes_back(scene: &Scene, leg: usize) -> bool {
     let this = &scene.path.legs[leg];
     let Some(leaves) = &this.leaves else {

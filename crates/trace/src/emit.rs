@@ -15,7 +15,7 @@ use glam::DVec3;
 use plain::Plain;
 
 /// How rays leave the light: a density over (x, y, u, v) at the light, and a strategy to sample it.
-/// For a point light the density is over (u, v) alone, for a beam over (x, y).
+/// For a point light the density is over (u, v) alone, and for a beam over (x, y) alone.
 #[derive(Debug)]
 pub struct Emitter {
     light: Light,
@@ -26,14 +26,14 @@ pub struct Emitter {
 /// The strategy that rays are drawn by.
 #[derive(Debug)]
 enum EmissionStrategy {
-    /// One proposal for each plane, as factors over (x, u) and (y, v).
+    /// One proposal for each plane, given by its factors over (x, u) and (y, v).
     Aimed(Vec<[Proposal; 2]>),
     /// Light from an environment.
     Sky(FromSky),
-    /// Light without extent, uniform within each of these bounds with equal shares: bounds of
-    /// slopes along x and y, or of positions of a beam.
+    /// Light without extent, drawn uniformly within bounds, each of which has an equal share.
+    /// Bounds are slopes along x and y, or positions for a beam.
     Even(Vec<AxisBounds>),
-    /// In proportion to the emission of the light.
+    /// Light drawn in proportion to the emission of the light source.
     Plain(Plain),
 }
 
@@ -47,10 +47,10 @@ impl Emitter {
     /// The emitter of a scene.
     ///
     /// Aimed emission is a mixture, with equal shares, of one proposal for each virtual plane whose
-    /// window the light reaches; for a plane on a later leg, the proposal aims at the part of the
+    /// window the light reaches. For a plane on a later leg, the proposal aims at the part of the
     /// first surface from which light can get to the plane. Where the light reaches no window,
-    /// emission is plain, and every window stays empty. For an environment, aimed or plain, only
-    /// rays that a plane may see are emitted, and the ledger counts only these.
+    /// emission is plain, and every window stays empty. For an environment, aimed or plain emission
+    /// covers only rays that a plane may see, and the ledger counts only these.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
         let light = scene.light.clone();
@@ -67,8 +67,8 @@ impl Emitter {
             let half = (!is_window)
                 .then(|| reach(scene, plane, 0, &corners))
                 .flatten();
-            // A plane on the surface that ends the leg sees some slopes only, a plane beyond it
-            // any.
+            // A plane on the surface that ends the leg sees some slopes only; a plane beyond it
+            // sees any slope.
             let slopes = PlaneOnLeg::new(scene, i, plane).slopes(w);
             let slopes = slopes.filter(|_| plane.leg == 0);
             let along = |axis: usize, space: &Profile, slope: &Profile| {
@@ -77,7 +77,7 @@ impl Emitter {
                     return Proposal::new(plane.distance, extent[axis], space, slope);
                 }
                 let (length, half) = (scene.path.first_hit(), half?[axis]);
-                // The slopes of all rays from the light to that region.
+                // These bounds hold for the slopes of all rays from the light to that region.
                 let [low, high] = extent[axis].map(f64::abs);
                 let steepest = (half + low.max(high)) / length;
                 let seen = slopes.map_or(f64::INFINITY, |slopes| slopes[axis]);
@@ -107,7 +107,8 @@ impl Emitter {
             // Pictures have their own proposal.
             Light::Projector { image, .. } => EmissionStrategy::Plain(Plain::Slopes(image)),
             Light::Beam { image, .. } => EmissionStrategy::Plain(Plain::Positions(image)),
-            // Rays of a file have their own proposal too: there are no neighbouring rays to aim.
+            // Rays of a file have their own proposal too, because they have no neighbouring rays at
+            // which to aim.
             Light::Rays { ref rays } => EmissionStrategy::Plain(Plain::Rays(rays.clone())),
             Light::Environment { ref environment } => {
                 EmissionStrategy::Sky(FromSky::new(scene, environment))
@@ -121,7 +122,7 @@ impl Emitter {
     }
 
     /// The emitter of a scene in which light without extent shines uniformly at the whole first
-    /// surface, and at the windows of planes before it, whatever else planes see.
+    /// surface, and at the windows of planes before that surface, whatever else planes see.
     ///
     /// For any other light, and where the surface reaches back to the light, it is the emitter of
     /// [`Self::new`].
@@ -138,8 +139,8 @@ impl Emitter {
     }
 
     /// The first block of random words that a photon's bounces use. Of block 1 the emission uses
-    /// the last word, which selects the plane that a ray is aimed at; light from an environment
-    /// uses all of them.
+    /// only the last word, which selects the plane at which a ray is aimed; light from an
+    /// environment uses all words.
     pub(crate) fn bounces_from(&self) -> u32 {
         if let EmissionStrategy::Sky(_) = self.strategy {
             2
@@ -187,7 +188,8 @@ impl Emitter {
         (rays, weights)
     }
 
-    /// Rays aimed at planes, each of which is drawn at random as well: columns of x, y, u and v.
+    /// Rays aimed at planes, as columns of x, y, u and v; the plane of each ray is drawn at random
+    /// as well.
     #[inline]
     fn aimed(
         &self,
@@ -241,8 +243,8 @@ impl Emitter {
     /// Radiance over density.
     #[inline]
     fn weight(&self, ray: &TwoPlane, density: f64) -> f64 {
-        // Rounding can put a ray exactly on the edge, where the density is zero; the ray then
-        // carries nothing.
+        // Because of rounding, a ray can lie exactly on the edge, where the density is zero; the
+        // ray then carries nothing.
         if density > 0.0 {
             radiance(&self.light, ray) / density
         } else {
@@ -268,9 +270,10 @@ fn densities(proposals: &[[Proposal; 2]], [x, y, u, v]: &Columns) -> [f64; ABREA
 /// Lowest and highest coordinate along two axes.
 type AxisBounds = [[f64; 2]; 2];
 
-/// The bounds of slopes of a point or a projector, or of positions of a beam, at which light
-/// crosses the window of each plane before the first surface, and at which it meets that surface
-/// for other planes; empty where they are not known.
+/// For each plane across the first leg, the bounds within which light crosses its window; for all
+/// other planes together, the bounds within which light meets the first surface. Bounds are slopes
+/// for a point or a projector, and positions for a beam. Empty if any of them is unknown or
+/// receives no light.
 fn even(scene: &Scene) -> Vec<AxisBounds> {
     let light = &scene.light;
     if light.has_extent() || matches!(light, Light::Rays { .. }) {

@@ -52,7 +52,7 @@ impl FootprintSampler {
             Object::Mesh(i) => {
                 let mesh = &scene.meshes[i];
                 let pieces = AreaSampler::triangles(&mesh.triangles);
-                // The triangles themselves, regardless of their normals.
+                // Lines are intersected with the triangles themselves, regardless of their normals.
                 let mesh = BlockerMesh::new(&mesh.triangles, None, Frame::IDENTITY);
                 let form = Primitive::Mesh(Box::new(mesh));
                 (vec![tagged(form)], PatternPoints::Flat(pieces))
@@ -82,8 +82,8 @@ impl FootprintSampler {
         }
     }
 
-    /// The density of lines through a sampled point, with respect to the dx dy in which they cross
-    /// the beginning of the leg. It is summed over all points in which a line meets the surface,
+    /// The density of lines through a sampled point, with respect to dx dy where they cross the
+    /// beginning of the leg. It is summed over all points in which a line meets the surface,
     /// because the line can be drawn through each of them.
     pub(crate) fn density(&self, ray: &TwoPlane) -> f64 {
         let along = direction(ray);
@@ -91,14 +91,14 @@ impl FootprintSampler {
         self.primitives.each(ray, |at, primitive| {
             let point = start(ray) + at * along;
             let normal = primitive.normal(point);
-            // Per area of the surface.
+            // The density is per area of the surface.
             let density = match &self.points {
                 PatternPoints::Flat(pieces) => 1.0 / pieces.area(),
                 PatternPoints::Smooth(patch) => {
                     normal.dot(patch.frame.d) / (PI * patch.aperture * patch.aperture)
                 }
             };
-            // Along the line, an area dA is projected to |n · (u, v, 1)| dA of the plane.
+            // Along the line, an area dA is projected onto |n · (u, v, 1)| dA of the plane.
             sum += density / normal.dot(along).abs();
         });
         sum
@@ -131,9 +131,9 @@ mod tests {
         .unwrap()
     }
 
-    /// For any direction the density over (x, y) integrates to 1, also where lines meet the surface
-    /// twice, and points follow the density: the mean over points of a function over the density is
-    /// the integral of the function.
+    /// Two laws hold. For any direction the density over (x, y) integrates to 1, also where lines
+    /// meet the surface twice. Points follow the density: the mean over points of a function
+    /// divided by the density is the integral of the function.
     #[test]
     #[expect(clippy::too_many_lines, reason = "a test may be a list of cases")]
     fn lines_follow_the_density() {
@@ -192,8 +192,8 @@ mod tests {
                 whole += density * cell;
                 covered += if density > 0.0 { cell } else { 0.0 };
             }
-            // The mid-point rule: the density jumps at the outline, in 1 % of the cells, and has
-            // poles where lines graze.
+            // The mid-point rule has an error: the density jumps at the outline, in 1 % of the
+            // cells, and has poles where lines graze.
             assert!((whole - 1.0).abs() < 0.02, "{surface}: {whole}");
             let inverse = samples.iter().map(|ray| 1.0 / ground.density(ray));
             let mean = inverse.sum::<f64>() / samples.len() as f64;

@@ -22,11 +22,12 @@ pub(crate) struct Grid {
 /// Cells per shape, chosen so that most cells hold one shape or none.
 const FINENESS: f64 = 4.0;
 
-/// The largest average number of cells per shape; more are needed only where shapes overlap.
+/// The largest average number of cells per shape; more cells would be needed only where shapes
+/// overlap.
 const COPIES: usize = 16;
 
-/// The extent of a shape with a small margin: by rounding, a point just beyond the edge may count
-/// as inside.
+/// The extent of a shape with a small margin, because rounding errors may make a point just beyond
+/// the edge count as inside.
 fn reach(shape: &Shape, axis: usize) -> [f64; 2] {
     const ROUNDING: f64 = 1e-12;
     let [low, high] = shape.bounds().extent(axis);

@@ -35,8 +35,8 @@ impl BlockerMesh {
         }
     }
 
-    /// The first triangle that a ray meets beyond `from`, and its distance; of several there, the
-    /// one with the lowest number. Hits beyond `until` may be ignored.
+    /// The first triangle that a ray meets beyond `from`, and its distance; of several at that
+    /// distance, the one with the lowest number. Hits beyond `until` may be ignored.
     pub(crate) fn closest_hit(
         &self,
         ray: &TwoPlane,
@@ -53,7 +53,8 @@ impl BlockerMesh {
         first
     }
 
-    /// The last triangle on the line of a ray before `until`, as in [`Self::first`].
+    /// The last triangle on the line of a ray before `until`; of several at the same distance, it
+    /// is chosen as in [`Self::first`].
     pub(crate) fn last(&self, ray: &TwoPlane, until: f64) -> Option<(f64, usize)> {
         let mut last: Option<(f64, Reverse<usize>)> = None;
         self.along(ray, -1.0, [until, f64::NEG_INFINITY], |at, i| {
@@ -66,8 +67,8 @@ impl BlockerMesh {
         last.map(|(at, Reverse(i))| (at, i))
     }
 
-    /// Whether a ray meets a triangle at a distance between `from` and `distance` that satisfies
-    /// `does`; searched backwards.
+    /// Whether a ray meets a triangle at a distance that satisfies `does`, between `from` and
+    /// `distance`. The search goes backwards.
     pub(crate) fn is_occluded(
         &self,
         ray: &TwoPlane,
@@ -92,7 +93,7 @@ impl BlockerMesh {
     }
 
     /// Visits triangles along a ray, forward or back (`way` 1 or −1). `meet` returns the distance
-    /// up to which they still matter.
+    /// up to which triangles still matter.
     #[inline]
     fn along(
         &self,
@@ -241,7 +242,7 @@ mod tests {
         }
     }
 
-    /// Rays at the common edges and corners of a sheet of triangles never pass through it.
+    /// Rays at the common edges and corners of a sheet of triangles never pass through the sheet.
     #[test]
     fn triangles_that_share_edges_leak_nothing() {
         const N: u32 = 16;

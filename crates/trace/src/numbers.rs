@@ -35,7 +35,7 @@ impl PhotonNumbers {
             sampling: run.sampling,
             seed: run.seed,
             streams,
-            // Two blocks for the emission, and one for each surface.
+            // The emission takes two blocks, and each surface takes one.
             blocks: u32::try_from(legs + 1).unwrap_or(u32::MAX),
         }
     }

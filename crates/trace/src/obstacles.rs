@@ -206,7 +206,7 @@ impl Obstacles {
         met.product()
     }
 
-    /// Whether a ray meets an object anywhere beyond `from`, whatever it meets first.
+    /// Whether a ray meets an object anywhere beyond `from`, even if it meets other things first.
     pub(crate) fn meets(&self, object: Option<Object>, ray: &TwoPlane, from: f64) -> bool {
         let other = |what: &HitKind| !what.is(object);
         self.primitives
@@ -223,7 +223,7 @@ impl Obstacles {
         distance: f64,
     ) -> bool {
         let other = |what: &HitKind| !what.is(own);
-        // The point itself is at the same distance, but for rounding.
+        // The point itself is at the same distance, up to rounding error.
         let distance = distance - ROUNDING * distance.abs();
         self.primitives
             .is_occluded(ray, from, distance, false, other)
@@ -257,7 +257,7 @@ impl Obstacles {
     }
 }
 
-/// The relative difference that rounding may make between two computations of a distance.
+/// The relative difference that rounding errors may make between two computations of a distance.
 const ROUNDING: f64 = 1e-9;
 
 /// The primitive for a hit on a half-plane.
@@ -319,11 +319,11 @@ impl Around {
         Primitive::Mesh(Box::new(BlockerMesh::new(&mesh.triangles, normals, self.0)))
     }
 
-    /// A shape in the plane of a frame. Where it lies across the leg with axes along the leg's own,
-    /// distances are exact.
+    /// A shape in the plane of a frame. If the frame is across the leg and its axes are along the
+    /// leg's own, distances are exact.
     #[expect(
         clippy::float_cmp,
-        reason = "rounding would only take the exact way from it"
+        reason = "rounding errors would only prevent the use of the exact case"
     )]
     fn flat(frame: &Frame, shape: &Shape) -> Primitive {
         let across = frame.d.z.abs() == 1.0 && frame.x.x.abs() == 1.0;

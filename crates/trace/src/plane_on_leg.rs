@@ -45,7 +45,8 @@ const MAX_AIMED_ANGLE: f64 = 0.8;
 fn points(patch: &Patch, start: DVec3, along: DVec3) -> impl Iterator<Item = DVec3> {
     let local = patch.frame.to_local(start);
     let direction = patch.frame.vector_to_local(along);
-    // A ray nearly across its leg starts far away, and a quadratic loses digits from there.
+    // A ray nearly across its leg starts far away, and a quadratic equation loses digits from
+    // there.
     let near = -local.dot(direction) / direction.length_squared();
     let hits = patch.hits(local + near * direction, direction);
     let met = hits.into_iter().filter(|t| !t.is_nan());
@@ -54,9 +55,10 @@ fn points(patch: &Patch, start: DVec3, along: DVec3) -> impl Iterator<Item = DVe
 
 impl PlaneOnLeg {
     /// The ray at the beginning of the leg that has the coordinates `seen` at the plane, and dA
-    /// over dx dy there; `None` if there is none.
+    /// over dx dy there; `None` if there is no such ray.
     ///
-    /// On a surface itself, light is counted per area of it (docs/theory.md, section 8); everywhere else dA is dx dy.
+    /// On a surface itself, light is counted per area of the surface (docs/theory.md, section 8);
+    /// everywhere else dA is dx dy.
     pub(crate) fn leg_ray(&self, seen: &TwoPlane) -> Option<(TwoPlane, f64)> {
         match &self.surface {
             None => Some((seen.travelled(-self.distance), 1.0)),
@@ -128,12 +130,12 @@ impl PlaneOnLeg {
         }
     }
 
-    /// The distance along its heading, from `from` on, at which light on a ray of the leg comes to
-    /// the plane; `None` if it does not.
+    /// The distance along its heading, from `from` on, at which light on a ray of the leg reaches
+    /// the plane; `None` if it does not reach it.
     ///
-    /// A plane on a surface records light where it meets the surface: an oblique surface reaches
-    /// before and behind its central hit, and what lies between may stand in the light of one part
-    /// alone. Light that travels back along the leg only reaches planes on a surface.
+    /// A plane on a surface records light where it meets the surface. An oblique surface extends
+    /// before and behind its central hit, so an occluder may shade one part of it alone. Light that
+    /// travels back along the leg only reaches planes on a surface.
     #[inline]
     pub(crate) fn crossing(&self, ray: &TwoPlane, from: f64) -> Option<f64> {
         let Some(surface) = &self.surface else {
@@ -143,9 +145,9 @@ impl PlaneOnLeg {
         (self.side == Side::After || point.z > from).then_some(point.z)
     }
 
-    /// The same for a photon that starts at `from` and arrives at the surface at the end of the leg
-    /// first, or at something else (`None`): what starts or ends on the surface of the plane is there
-    /// already.
+    /// Returns the same for a photon that starts at `from` and first arrives at the surface at the
+    /// end of the leg, or at something else (`None`). A photon that starts or ends on the surface
+    /// of the plane is at the plane already.
     #[inline]
     pub(crate) fn crossing_of_photon(
         &self,
@@ -162,7 +164,7 @@ impl PlaneOnLeg {
     }
 
     /// The largest slopes in the leg, along x and y, of light that arrives on a surface in the
-    /// window of a plane; `None` across the leg, and where they are too large to aim by.
+    /// window of a plane. `None` across the leg, and where the slopes are too large to aim by.
     pub(crate) fn slopes(&self, window: &Window) -> Option<[f64; 2]> {
         self.surface.as_ref()?.slopes(window)
     }
@@ -180,7 +182,7 @@ impl PlaneOnLeg {
     }
 
     /// A ray of the leg in the coordinates of the plane, with its contribution there; `None` when
-    /// it does not meet the surface.
+    /// the ray does not meet the surface.
     #[inline]
     pub(crate) fn at_plane(&self, ray: &TwoPlane, weight: f64) -> Option<(TwoPlane, f64)> {
         match &self.surface {
@@ -193,7 +195,7 @@ impl PlaneOnLeg {
 impl SurfaceCoordinates {
     /// The frame of the local normal at a point, on the side of the normal at the central hit;
     /// `None` where the normals differ by a right angle or more. Of two points with the same
-    /// coordinates only one remains, because a line meets the surface once from each side.
+    /// coordinates only one has such a frame, because a line meets the surface once from each side.
     fn local(&self, patch: &Patch, point: DVec3) -> Option<Frame> {
         let side = patch.normal(self.frame.origin).dot(self.frame.d).signum();
         let normal = side * patch.normal(point);

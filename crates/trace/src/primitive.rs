@@ -23,9 +23,9 @@ pub(crate) enum Primitive {
 }
 
 impl Primitive {
-    /// The distance, along the central ray, at which a ray meets the primitive, and the part that
-    /// it meets. Of several hits it is the first beyond `from`; hits of a mesh beyond `until` are
-    /// ignored.
+    /// The distance along the central ray at which a ray meets the primitive, and the part of the
+    /// primitive that the ray meets. Of several hits it returns the first beyond `from`; hits of a
+    /// mesh beyond `until` are ignored.
     #[inline]
     pub(crate) fn closest_hit(
         &self,
@@ -66,7 +66,7 @@ impl Primitive {
     }
 
     /// The largest distance below `until` at which the line of a ray meets the primitive, and the
-    /// part that it meets.
+    /// part of the primitive that it meets.
     pub(crate) fn last(&self, ray: &TwoPlane, until: f64) -> Option<(f64, usize)> {
         match self {
             Self::Mesh(mesh) => mesh.last(ray, until),
@@ -81,8 +81,8 @@ impl Primitive {
         }
     }
 
-    /// Whether a ray meets the primitive at a distance between `from` and `until` that satisfies
-    /// `does`.
+    /// Whether a ray meets the primitive at a distance that satisfies `does`, between `from` and
+    /// `until`.
     #[inline]
     pub(crate) fn is_occluded(
         &self,

@@ -29,7 +29,7 @@ pub(crate) struct PrimitiveSet<T> {
     primitives: Vec<TaggedPrimitive<T>>,
 }
 
-/// The number of primitives up to which all are tested in turn, as fast as the start of a
+/// The number of primitives up to which all are tested in turn, which is as fast as the start of a
 /// traversal.
 const MAX_TRIED_IN_TURN: usize = 4;
 
@@ -139,8 +139,8 @@ impl<T: Clone> PrimitiveSet<T> {
         });
     }
 
-    /// Whether light on a ray meets a primitive between `from` and `distance`, or exactly at
-    /// `distance` when `inclusive`. The search goes backwards from there and skips primitives that
+    /// Whether light on a ray meets a primitive between `from` and `distance`; if `inclusive`, also
+    /// exactly at `distance`. The search goes backwards from `distance` and skips primitives that
     /// `ignored` accepts.
     pub(crate) fn is_occluded(
         &self,
@@ -180,8 +180,8 @@ mod tests {
         )))
     }
 
-    /// Squares that share edges, discs and triangles: the cases in which rounding could let rays
-    /// through.
+    /// Squares that share edges, discs and triangles: the cases in which rounding errors could let
+    /// rays through.
     fn primitives(scale: f64) -> Vec<TaggedPrimitive<u32>> {
         let mut primitives = Vec::new();
         for layer in 1..4u32 {
@@ -284,8 +284,8 @@ mod tests {
         }
     }
 
-    /// Invalid primitives, which no legal scene has, are kept from the builder, and the valid ones
-    /// beside them are found.
+    /// Invalid primitives, which no legal scene has, are not passed to the builder, and the valid
+    /// ones beside them are found.
     #[test]
     fn forms_without_a_box_are_candidates_everywhere() {
         for bad in [f64::NAN, f64::INFINITY, 1e300] {

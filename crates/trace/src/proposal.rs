@@ -4,10 +4,10 @@ use etendue_field::Profile;
 
 /// A density on |t| < half that follows a window's profile and can be sampled on any interval.
 ///
-/// A Hann profile is approximated by a tent, 1 − |t|/half: their ratio stays in 0..1.14 and falls
-/// to zero at the edge, so the weights are bounded. Other profiles do not vanish at their edge and
-/// are approximated by a constant. For light that a surface receives the density follows the
-/// cosine.
+/// A Hann profile is approximated by a tent, 1 − |t|/half. The ratio of the two stays in 0..1.14
+/// and falls to zero at the edge, so the weights are bounded. Other profiles do not vanish at their
+/// edge and are approximated by a constant. For light that a surface receives, the density follows
+/// the cosine.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ProfileDensity {
     half: f64,
@@ -38,8 +38,8 @@ impl ProfileDensity {
         Self { half, kind }
     }
 
-    /// For slopes, up to `half`, of light that a surface receives: weighted by the cosine as in 2D
-    /// (docs/theory.md (6)).
+    /// The density for slopes, up to `half`, of light that a surface receives. It is weighted by
+    /// the cosine as in 2D (docs/theory.md (6)).
     pub(crate) fn cosine(half: f64) -> Self {
         let kind = ProposalKind::Cosine;
         Self { half, kind }
@@ -73,8 +73,8 @@ impl ProfileDensity {
     pub(crate) fn quantile(&self, p: f64) -> f64 {
         let s = match self.kind {
             ProposalKind::Constant => 2.0 * p - 1.0,
-            // One formula serves both sides, because a branch would be mispredicted every other
-            // time.
+            // One formula serves both signs of t, because a branch would be mispredicted every
+            // other time.
             ProposalKind::Tent => {
                 let beyond = p.min(1.0 - p).max(0.0);
                 (1.0 - (2.0 * beyond).sqrt()).copysign(p - 0.5)
@@ -127,8 +127,8 @@ pub(crate) fn lanes<const N: usize>(f: impl Fn(usize) -> f64) -> [f64; N] {
     all
 }
 
-/// Slopes along one axis, at a point of a surface, of rays that cross a window at some distance:
-/// distributed by the window's profile over the slopes that cross it.
+/// Slopes along one axis, at a point of a surface, of rays that cross a window at some distance.
+/// They are distributed by the window's profile over the slopes that cross it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Aim {
     distance: f64,
@@ -145,8 +145,8 @@ impl Aim {
         }
     }
 
-    /// The cumulative of the slope at the ends of the range that crosses the window from `x` at
-    /// distance `from`; `None` if the range is empty.
+    /// The cumulative density of the slope at the ends of the range that crosses the window from
+    /// `x` at distance `from`; `None` if the range is empty.
     #[inline]
     fn range(&self, x: f64, from: f64) -> Option<[f64; 2]> {
         let distance = self.distance - from;
@@ -182,9 +182,9 @@ impl Aim {
 
 /// Rays in one pair of coordinates, (x, u) or (y, v), that leave the light and cross a window.
 ///
-/// Draws u first, by the window's profile over the slopes of rays that do both, then x, by the
-/// profile over the light's image at that slope. No sample misses the light or the window. For a
-/// point light x is fixed, and the density is that of u alone.
+/// Draws u first, by the window's profile over the slopes of rays that leave the light and cross
+/// the window. Then draws x, by the profile over the light's image at that slope. No sample misses
+/// the light or the window. For a point light x is fixed, and the density is that of u alone.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Proposal {
     /// Distance of the window from the light.
@@ -193,13 +193,13 @@ pub(crate) struct Proposal {
     light: [f64; 2],
     space: ProfileDensity,
     slope: ProfileDensity,
-    /// The cumulative of the slope at the ends of its range.
+    /// The cumulative density of the slope at the ends of its range.
     range: [f64; 2],
 }
 
 impl Proposal {
-    /// For light of extent `extent` and a window with the profiles `space` and `slope` at
-    /// `distance`.
+    /// Builds the proposal for light of extent `extent` and a window with the profiles `space` and
+    /// `slope` at `distance`.
     ///
     /// `None` when no ray both leaves the light and crosses the window.
     pub(crate) fn new(
@@ -234,7 +234,8 @@ impl Proposal {
         self.light[1] <= self.light[0]
     }
 
-    /// The cumulative of the position in the window at the ends of the light's image at slopes `u`.
+    /// The cumulative density of the position in the window, at the ends of the light's image at
+    /// slopes `u`.
     #[inline(always)]
     fn images<const N: usize>(&self, u: &[f64; N]) -> [[f64; N]; 2] {
         let at = |x: f64| {

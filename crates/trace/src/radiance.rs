@@ -4,8 +4,8 @@ use crate::sky;
 use etendue_field::{Light, TwoPlane, power};
 
 /// The radiance along a ray given at the light. It is with respect to du dv alone for a point
-/// light, to dx dy for a beam, and per share of flux for rays of a file: dω is du dv / (1 + u² +
-/// v²)^(3/2), and a ray of flux Φ adds Φ (1 + u² + v²)² to radiance space.
+/// light, to dx dy for a beam, and per share of flux for rays of a file. It uses that dω is du dv
+/// / (1 + u² + v²)^(3/2), and that a ray of flux Φ adds Φ (1 + u² + v²)² to radiance space.
 #[inline]
 pub(crate) fn radiance(light: &Light, ray: &TwoPlane) -> f64 {
     match light {
@@ -28,7 +28,7 @@ pub(crate) fn radiance(light: &Light, ray: &TwoPlane) -> f64 {
         }
         Light::Beam { irradiance, image } => irradiance * image.value(ray.x, ray.y),
         Light::Environment { environment } => sky::radiance(environment, ray),
-        // Divided by the share of the flux with which the ray is drawn.
+        // The value is divided by the share of the flux with which the ray is drawn.
         Light::Rays { rays } => rays.flux() * ray.secant_squared() * ray.secant_squared(),
     }
 }

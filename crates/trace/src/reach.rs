@@ -9,10 +9,10 @@ use etendue_field::{
 use etendue_scene::{Event, Hit, Leg, Object, Scene, Surface};
 use glam::{DVec2, DVec3};
 
-/// Half-widths, across the end of `leg`, of a box around the central ray through which all light
-/// from `origins` (in the frame of the leg) passes that can reach the window of `plane`, on a later
-/// leg or on the surface that ends this one. `None` if there is none, and where light of a later
-/// leg must go across or back along that leg.
+/// Half-widths, across the end of `leg`, of a box around the central ray. All light from `origins`
+/// (in the frame of the leg) that can reach the window of `plane` passes through it. The plane is
+/// on a later leg, or on the surface that ends this one. `None` if there is no such light, and
+/// where light of a later leg must go across or back along that leg.
 pub(crate) fn reach(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -36,7 +36,7 @@ pub(crate) fn reach(
             if leg > 0 && ahead < MIN_COSINE * this.length {
                 return None;
             }
-            // Points behind the light cannot be reached from it.
+            // Points behind the light cannot be reached from the light.
             let share = (this.length - from.z) / ahead.max(MIN_COSINE * this.length);
             let at = from.lerp(*to, share);
             half = [half[0].max(at.x.abs()), half[1].max(at.y.abs())];
@@ -59,8 +59,8 @@ pub(crate) fn outline(scene: &Scene, object: Object) -> Vec<DVec3> {
 }
 
 /// The part of the first surface on the path, if flat, from which light can reach the window of a
-/// plane on or beyond it, as lowest and highest coordinates in the surface's frame; `None` if there
-/// is none.
+/// plane on or beyond the surface. It is given by its lowest and highest coordinates in the
+/// surface's frame; `None` if there is no such part.
 pub(crate) fn footprint(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -93,7 +93,7 @@ fn corners(scene: &Scene, plane: &VirtualPlane) -> Vec<DVec3> {
     box_corners(-half, half).map(to_light).to_vec()
 }
 
-/// The corners of the part of its surface that a plane's window sees, or of a larger part.
+/// The corners of the part of a plane's surface that the plane's window sees, or of a larger part.
 fn seen(scene: &Scene, plane: &VirtualPlane) -> Vec<DVec3> {
     let leg = &scene.path.legs[plane.leg];
     let arriving = looks_at_surface(plane);
@@ -208,7 +208,7 @@ fn seen_of_patch(
     let corners = patch.corners().map(|p| at.to_local(p));
     let [mut low, mut high] = enclosing(&corners);
     // A point of the patch at distance r from the normal at the hit is at most |k| r² off the
-    // tangent plane, and lines of the window meet the slab of that thickness in a box. The bound is
+    // tangent plane. Lines of the window meet the slab of that thickness in a box. The bound is
     // iterated, starting from the whole patch.
     for _ in 0..8 {
         let [x, y] = [low.x.abs().max(high.x.abs()), low.y.abs().max(high.y.abs())];
@@ -231,7 +231,8 @@ fn seen_of_patch(
     })
 }
 
-/// The rays through the corners of a window with its extreme slopes, by two points each, in the frame at the light.
+/// The rays through the corners of a window with its extreme slopes, each given by two points in
+/// the frame at the light.
 fn tube(plane: &VirtualPlane, along: f64, leg: &Leg) -> Vec<[DVec3; 2]> {
     let w = &plane.window;
     let ends = |profile: &Profile| [-1.0, 1.0].map(|s| s * profile.half_width());
@@ -251,7 +252,7 @@ fn tube(plane: &VirtualPlane, along: f64, leg: &Leg) -> Vec<[DVec3; 2]> {
 }
 
 /// The point where the line through two points meets the plane of a surface, in the surface's
-/// frame; `None` when the line leaves to the other side of the surface or along it.
+/// frame. `None` when the line runs to the other side of the surface or along it.
 fn meets(from: DVec3, to: DVec3, surface: &Frame, side: f64) -> Option<DVec3> {
     let [a, b] = [from, to].map(|p| surface.to_local(p));
     let leaves = (b - a).z;
@@ -260,5 +261,5 @@ fn meets(from: DVec3, to: DVec3, surface: &Frame, side: f64) -> Option<DVec3> {
 
 /// The cosine, and the share of a leg, below which light counts as parallel to a surface.
 const MIN_COSINE: f64 = 1e-3;
-/// The margin, larger than rounding, by which the aimed region exceeds the visible one.
+/// The margin, larger than rounding errors, by which the aimed region exceeds the visible one.
 const MARGIN: f64 = 1e-9;

@@ -23,11 +23,11 @@ pub(crate) struct Scatterer {
 /// One strategy to draw a ray.
 #[derive(Clone, Debug)]
 enum SamplingStrategy {
-    /// Towards a window, along X and along Y.
+    /// Directions towards a window, along X and along Y.
     Window([Aim; 2]),
-    /// In the directions that a plane on the surface sees.
+    /// Directions that a plane on the surface sees.
     Angles(Box<Angles>),
-    /// In proportion to the surface's own scattering.
+    /// Directions in proportion to the surface's own scattering.
     Lobe,
 }
 
@@ -41,10 +41,10 @@ struct Angles {
 /// How a surface scatters light from one of its points.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Spread<'a> {
-    /// By the cosine of the angle to the normal.
+    /// Scattering by the cosine of the angle to the normal.
     Cosine,
-    /// By a sum of BRDFs, in a frame with D along the normal, for light from a direction in that
-    /// frame.
+    /// Scattering by a sum of BRDFs, in a frame with D along the normal, for light from a direction
+    /// in that frame.
     Lobe {
         brdf: Mixture<'a>,
         frame: Frame,
@@ -52,7 +52,7 @@ pub(crate) enum Spread<'a> {
     },
 }
 
-/// Practically no bound: slopes towards a surface are bounded by its size alone.
+/// Practically no bound; slopes towards a surface are bounded by the surface's size alone.
 const ANY_SLOPE: f64 = 1e6;
 
 impl Spread<'_> {
@@ -143,8 +143,8 @@ impl Scatterer {
                 ]))
             } else {
                 let half = reach(scene, plane, leg, &origins).filter(|_| is_ahead)?;
-                // A plane on the surface that ends the leg sees some slopes only, a plane beyond it
-                // any.
+                // A plane on the surface that ends the leg sees some slopes only; a plane beyond it
+                // sees any slope.
                 let slopes = plane_on_leg.slopes(w).filter(|_| plane.leg == leg);
                 let slopes = slopes.unwrap_or([ANY_SLOPE; 2]).map(ProfileDensity::cosine);
                 Some(SamplingStrategy::Window([0, 1].map(|axis| {
@@ -158,8 +158,8 @@ impl Scatterer {
         looking.peek()?;
         let aims = looking.map(aim);
         let strategies: Vec<SamplingStrategy> = if by_brdf {
-            // A lobe may be narrower than any window, or wider than all; it gets half of the
-            // shares.
+            // A lobe may be narrower than any window or wider than all of them, so it gets half of
+            // the shares.
             let mut strategies: Vec<SamplingStrategy> = aims.flatten().collect();
             let lobes = strategies.len().max(1);
             strategies.extend((0..lobes).map(|_| SamplingStrategy::Lobe));
@@ -172,7 +172,7 @@ impl Scatterer {
     }
 
     /// A direction in which light leaves a point where the surface has this normal, and its density
-    /// with respect to du dv over n · (u, v, ±1); `None` when the chosen plane cannot be reached
+    /// with respect to du dv over n · (u, v, ±1). `None` when the chosen plane cannot be reached
     /// from the point, or the direction goes behind the surface.
     #[inline]
     pub(crate) fn sample(

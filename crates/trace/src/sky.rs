@@ -12,8 +12,8 @@ use glam::DVec3;
 pub(crate) struct Sky {
     environment: Environment,
     choice: Choice,
-    /// The share of slopes that are drawn by the cosine instead. It is needed where most light goes
-    /// backwards and the rest would be drawn too rarely.
+    /// The share of slopes that are drawn by the cosine instead. This share is needed where most
+    /// light goes backwards and the rest would be drawn too rarely.
     by_cosine: f64,
 }
 
@@ -59,7 +59,7 @@ impl Sky {
             Choice::Lobes(lobes, flux) => {
                 let lobe = &lobes[flux.sample(r[0])];
                 let squared = lobe.width * lobe.width;
-                // 1 − cos γ.
+                // This is 1 − cos γ.
                 let fall = -squared * libm::log1p(r[1] * libm::expm1(-2.0 / squared));
                 about(lobe.from, polar(fall.clamp(0.0, 2.0), r[2]))
             }
@@ -123,7 +123,7 @@ impl Sky {
         let Some(ray) = ray_through(point, -towards).filter(|_| cosine > 0.0) else {
             return 0.0;
         };
-        // Veach and Guibas 1995: the balance heuristic of one sample.
+        // This is the balance heuristic of one sample (Veach and Guibas 1995).
         let density = 0.5 * (cosine / LAMBERTIAN + self.density(-towards));
         cosine * incident(&ray, point.z) / density
     }
@@ -160,7 +160,7 @@ mod tests {
             lobe(DVec3::NEG_Y, 0.8, 0.5),
             lobe(DVec3::X, 1000.0, 0.1),
         ];
-        // Bright pixels at the left edge, where longitude wraps around, and at the poles.
+        // Bright pixels are at the left edge, where longitude wraps around, and at the poles.
         let map = LatLong::from_fn(12, 7, |d| {
             let edge = d.z < -0.8 && d.x > 0.0;
             if edge { 4.0 } else { 0.2 * d.y * d.y }

@@ -20,7 +20,7 @@ use std::ops::Range;
 /// A photon leaves the light and crosses the planes in front of the first thing it meets; gratings
 /// on the way attenuate it. Blockers absorb it, and a Lambertian surface absorbs the share 1 −
 /// albedo. Light that the surface at the end of a leg scatters, reflects or refracts crosses the
-/// planes on the next leg, and so on; anything else ends the photon.
+/// planes on the next leg, and so on. A photon that meets anything else ends.
 ///
 /// Light that arrives at a surface with a BRDF, on the side that the surface faces, is booked as
 /// stopped, because the reflected share has no closed form. Light that is scattered onwards, by the
@@ -46,7 +46,7 @@ struct FlightLeg {
     /// The object on which the leg begins, if light may meet it again; light never meets a flat
     /// surface again.
     rejoins: Option<Object>,
-    /// Distances up to which a hit counts as rounding.
+    /// Distances up to which a hit is attributed to rounding errors.
     rounding: f64,
 }
 
@@ -125,12 +125,12 @@ impl Tracer {
         ledger: &mut Ledger,
     ) {
         for first in range.clone().step_by(ABREAST) {
-            // Beyond the end the last photon is emitted again and discarded.
+            // Beyond the end of the range, the last photon is emitted again and discarded.
             let index = |i: usize| (first + i as u64).min(range.end - 1);
             let (rays, weights) = self.emitter.emit(|i, block| numbers.words(index(i), block));
             for ((index, ray), weight) in (first..range.end).zip(rays).zip(weights) {
-                // A point drawn in the bounds of a disc but outside it is counted, and carries no
-                // light.
+                // A point drawn within the bounds of a disc but outside the disc is counted, and
+                // carries no light.
                 if weight > 0.0 {
                     ledger.emitted += weight / radiance_per_flux(&ray);
                     photons.push(Photon {
@@ -274,8 +274,8 @@ impl FlightLeg {
             planes_on_leg,
             ..
         } = course;
-        // Light that would meet again the object it has left is lost, even if something stops it
-        // before: a blocker beyond a plane does not add light.
+        // Light that has left an object and would meet it again is lost, even if something stops
+        // the light before: a blocker beyond a plane does not add light.
         let stopped = self.rejoins.is_some() && met.is_some();
         if stopped && obstacles.meets(self.rejoins, &ray, from) {
             return;
@@ -288,14 +288,14 @@ impl FlightLeg {
             let Some(distance) = plane_on_leg.crossing_of_photon(&ray, from, arrival) else {
                 continue;
             };
-            // A plane beside an object is at exactly the same distance, so rounding cannot separate
-            // them.
+            // A plane beside an object is at exactly the same distance, so rounding errors cannot
+            // separate them.
             let crossed = match side {
                 Side::Before => distance <= end,
                 Side::After => distance < end,
             };
             // A surface that is not flat, or not across the leg, may begin before the plane that
-            // records the light it receives.
+            // records the light that the surface receives.
             let ends = |what: &HitKind| what.is(self.ends);
             let crossed =
                 crossed || on_path && obstacles.visibility(&ray, from, distance, side, ends) > 0.0;
@@ -373,7 +373,8 @@ impl PhotonSource for Tracer {
                 record(plane, crossings);
                 crossings.clear();
             }
-            // Sums of sums: rounding grows with the number of blocks, not with that of photons.
+            // The sums of blocks are summed, so rounding errors grow with the number of blocks, not
+            // with that of photons.
             total.add(&block);
             progress(end - start);
         }

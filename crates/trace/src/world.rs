@@ -42,8 +42,9 @@ impl PlaneInWorld {
         Some([self.leg.to_world(point), along])
     }
 
-    /// The flux of a photon times the number of photons emitted, W: its weight without the factor
-    /// that converts to radiance space, 1 over cos θ dω / du dv (docs/conventions.md).
+    /// The flux of a photon times the number of photons emitted, W. It is the photon's weight
+    /// without the factor that converts to radiance space, 1 over cos θ dω / du dv
+    /// (docs/conventions.md).
     #[must_use]
     pub fn flux(&self, crossing: &Crossing) -> f64 {
         crossing.weight * self.plane_on_leg.flux_per_radiance(&crossing.ray)

@@ -127,7 +127,7 @@ fn all_ways_agree(cases: &[Case]) {
         let plain = scene(case, "Plain", 1_600_000, 2);
         let (backward, _) = estimates(&Backward::new(&aimed).unwrap(), &aimed);
         let (photons, ledger) = estimates(&Tracer::new(&aimed), &aimed);
-        // Rounding of some 10^5 additions.
+        // The rounding error of some 10^5 additions.
         assert!(ledger.imbalance().abs() < 1e-12, "{}: {ledger:?}", case.0);
         let (plain, ledger) = estimates(&Tracer::new(&plain), &plain);
         assert!(ledger.imbalance().abs() < 1e-12, "{}: {ledger:?}", case.0); // as above
@@ -158,7 +158,7 @@ fn mirrored_light_is_what_a_mirror_sends_on() {
     let scene = scene(&case, "Aimed", 100_000, 1);
     let (photons, _) = estimates(&Tracer::new(&scene), &scene);
     for (a, b) in photons[0].iter().zip(&photons[1]) {
-        // The photons are the same, so the difference is rounding.
+        // The photons are the same, so the difference is rounding error.
         assert!(
             (a[0] - b[0]).abs() < 1e-9 * photons[0][0][0],
             "{a:?} and {b:?}"
@@ -166,12 +166,12 @@ fn mirrored_light_is_what_a_mirror_sends_on() {
     }
 }
 
-/// A beam on a rough plane: the ratio of leaving to arriving light is the directional albedo, known
-/// from a separate quadrature.
+/// A beam hits a rough plane. The ratio of leaving to arriving light is the directional albedo,
+/// which is known from a separate quadrature.
 #[test]
 fn exitant_over_incident_flux_is_the_directional_albedo() {
-    // ∫ f cos θ dω of GGX with α = 0.5, Gauss-Legendre over cos θ and equal steps in azimuth,
-    // converged to 7 digits.
+    // The albedos are ∫ f cos θ dω of GGX with α = 0.5, by Gauss-Legendre over cos θ and equal
+    // steps in azimuth, converged to 7 digits.
     for (angle, albedo) in [(0.6_f64, 0.680_308_7), (1.2, 0.702_574_3)] {
         let (sin, cos) = angle.sin_cos();
         let text = format!(
@@ -211,7 +211,7 @@ fn both_ways_agree_on_the_sphere_of_table_1() {
     let scene = resolve("test", file, ".".as_ref(), u64::MAX).unwrap();
     let (backward, _) = estimates(&Backward::new(&scene).unwrap(), &scene);
     let (photons, ledger) = estimates(&Tracer::new(&scene), &scene);
-    // Rounding of some 10^5 additions.
+    // The rounding error of some 10^5 additions.
     assert!(ledger.imbalance().abs() < 1e-12, "{ledger:?}");
     for (plane, (a, b)) in backward.iter().zip(&photons).enumerate() {
         let name = &scene.planes[plane].name;

@@ -72,7 +72,7 @@ impl Bench<'_> {
         let aimed = self.scene("Aimed", 600_000);
         let plain = self.scene("Plain", 2_000_000);
         let (photons, ledger) = estimates(&Tracer::new(&aimed), &aimed);
-        // Rounding of some 10^5 additions.
+        // The rounding error of some 10^5 additions.
         assert!(ledger.imbalance().abs() < 1e-12, "{what}: {ledger:?}");
         let (plain, ledger) = estimates(&Tracer::new(&plain), &plain);
         assert!(ledger.imbalance().abs() < 1e-12, "{what}: {ledger:?}"); // likewise
@@ -113,7 +113,7 @@ fn write_map(folder: &Path, name: &str, bright: (usize, usize)) {
     image.write().to_file(folder.join(name)).unwrap();
 }
 
-/// Shifting the picture by a pixel has an effect, and rotating the axes back undoes it.
+/// Shifting the picture by a pixel changes the light, and rotating the axes back undoes the change.
 #[test]
 fn a_map_is_where_its_axes_put_it() {
     let folder = tempfile::tempdir().unwrap();
@@ -144,8 +144,8 @@ fn a_map_is_where_its_axes_put_it() {
         let z = pairs.map(|(a, b)| (a[0] - b[0]).abs() / a[1].hypot(b[1]));
         z.fold(0.0, f64::max)
     };
-    // Six standard errors, and four for differences that share their random numbers. The faint
-    // pixels around the pole are equal.
+    // The bounds are six standard errors, and four for differences that share their random numbers.
+    // The faint pixels around the pole are equal.
     assert!(differs(0, 1) > 6.0, "{}: {found:?}", differs(0, 1));
     assert!(differs(0, 2) < 4.0, "{}: {found:?}", differs(0, 2));
 }
@@ -249,7 +249,8 @@ fn all_ways_agree() {
     assert!(tests > 150, "{tests} tests");
 }
 
-/// Light that leaves a Lambertian wall has the radiance ρ E/π: ∫ L W is that times the integral of the window.
+/// Light that leaves a Lambertian wall has the radiance ρ E/π, so ∫ L W is this radiance times the
+/// integral of the window.
 fn irradiance(light: &str) -> [[f64; 2]; 2] {
     let planes = r#"(name: "leaving", at: After("wall"), window: (x: Hann(0.4), u: Hann(0.4)))"#;
     let bench = Bench {
@@ -258,7 +259,7 @@ fn irradiance(light: &str) -> [[f64; 2]; 2] {
         ..Bench::default()
     };
     let scene = bench.scene("Aimed", 400_000);
-    // The integral of Hann windows in x, y, u and v.
+    // This is the integral of Hann windows in x, y, u and v.
     let window = 0.4_f64.powi(4);
     let found = [
         estimates(&Tracer::new(&scene), &scene).0,
@@ -269,7 +270,7 @@ fn irradiance(light: &str) -> [[f64; 2]; 2] {
 
 #[test]
 fn even_light_gives_a_wall_pi_times_its_radiance() {
-    // Uniform to a millionth.
+    // The light is uniform to a millionth.
     let even = "Environment(center: (0, 0, 0), map: Lobes([(from: (1, 2, -1), width: 1000, radiance: 1.5)]))";
     for [found, error] in irradiance(even) {
         assert!(error < 5e-3 * found, "{found} ± {error}");
@@ -296,7 +297,8 @@ fn a_lobe_gives_a_wall_what_a_plain_sum_says() {
     sum *= 0.5 * PI * TAU / f64::from(n * n);
     for [found, error] in irradiance(lobe) {
         assert!(error < 5e-3 * found, "{found} ± {error}");
-        // Four standard errors; the mid-point rule is accurate to (step)²/24 of the whole, 1e-6.
+        // The tolerance is four standard errors; the mid-point rule is accurate to (step)²/24 of
+        // the whole, 1e-6.
         assert!(
             (found - sum).abs() < 4.0 * error,
             "{found} ± {error}, {sum}"

@@ -15,7 +15,7 @@ const WALL: &str = r#"Rectangle(name: "wall", center: (0.1, 0, 2), size: (2, 1.6
 const STAR: &str = r#"Mesh(name: "wall", center: (0, 0, 2), mesh: Star(radius: 0.5, relief: 0.3, lobes: 4, rings: 30), albedo: 0.8)"#;
 const FLOOR: &str = r#"Rectangle(name: "floor", center: (1.5, 0.3, 1.8), size: (2, 2), facing: (-1, 0, 0.1), albedo: 0.5)"#;
 const CEILING: &str = r#"Rectangle(name: "ceiling", center: (0.6, 1.2, 3), size: (1.5, 1.5), facing: (0, -1, -0.2), albedo: 0.9)"#;
-/// Stands beside the light's path, and in the path of light that leaves the wall.
+/// A blocker beside the light's path, and in the path of light that leaves the wall.
 const BLACK: &str =
     r#"Shapes(name: "black", center: (0.7, 0, 1.6), shapes: [Disc(center: (0, 0), radius: 0.2)])"#;
 const GRATING: &str =
@@ -85,7 +85,7 @@ fn all_ways_agree_on_every_leg() {
         let plain = scene(wall, blockers, visits, "Plain", 2_500_000);
         let (backward, _) = estimates(&Backward::new(&aimed).unwrap(), &aimed);
         let (photons, ledger) = estimates(&Tracer::new(&aimed), &aimed);
-        // Rounding of some 10^5 additions.
+        // The rounding error of some 10^5 additions.
         assert!(ledger.imbalance().abs() < 1e-12, "{ledger:?}");
         let (plain, _) = estimates(&Tracer::new(&plain), &plain);
         for (way, other) in [("aimed", &photons), ("plain", &plain)] {
@@ -111,7 +111,8 @@ fn all_ways_agree_on_every_leg() {
     assert!(tests > 100, "{tests} tests");
 }
 
-/// ∫ L W at the plane before the floor, whose light left the wall: every integral as a plain sum, in world coordinates.
+/// ∫ L W at the plane before the floor, whose light left the wall. Every integral is a plain sum,
+/// in world coordinates.
 #[test]
 fn light_that_left_an_oblique_wall_is_what_a_plain_sum_says() {
     // The mid-point rule for Hann windows converges faster than any power.
@@ -215,7 +216,7 @@ fn both_ways_agree_behind_smooth_surfaces() {
         let scene = resolve("test", file, ".".as_ref(), u64::MAX).unwrap();
         let (backward, _) = estimates(&Backward::new(&scene).unwrap(), &scene);
         let (photons, ledger) = estimates(&Tracer::new(&scene), &scene);
-        // Rounding of some 10^5 additions.
+        // The rounding error of some 10^5 additions.
         assert!(ledger.imbalance().abs() < 1e-12, "{ledger:?}");
         for (plane, (a, b)) in backward.iter().zip(&photons).enumerate() {
             let name = &scene.planes[plane].name;
@@ -239,7 +240,7 @@ fn both_ways_agree_behind_smooth_surfaces() {
 const WIDE: &str = r#"Rectangle(name: "wall", center: (-0.5, 0, 1.2), size: (2, 3), facing: (0, 0, -1), albedo: 0.9)"#;
 const GLOSSY: &str = r#"Smooth(name: "wall", center: (-0.3, 0, 1.2), facing: (0, 0, -1), form: Plane, aperture: 1, event: Reflects(brdf: (lobe: Phong(2), albedo: 0.9)))"#;
 const NEAR: &str = r#"Rectangle(name: "floor", center: (-0.5, 0, 1), size: (0.4, 0.5), facing: (0, 0, 1), albedo: 0.5)"#;
-/// Occludes light that travels backwards.
+/// A blocker in the path of light that travels backwards.
 const CARD: &str = r#"Shapes(name: "card", center: (-0.8, 0, 1.1), shapes: [Rectangle(center: (0, 0), size: (0.15, 0.2))])"#;
 const ABOVE: &str = r#"Rectangle(name: "ceiling", center: (-0.9, 0, 1.16), size: (0.3, 0.4), facing: (0, 0, -1), albedo: 0.5)"#;
 

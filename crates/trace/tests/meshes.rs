@@ -110,7 +110,7 @@ fn parts(draw: &Draw, kind: u64) -> Parts {
     let any = draw.below(parts.triangles.len());
     let [a, b, c] = parts.triangles[any];
     match kind {
-        // A reversed triangle, a duplicate, and one present from both sides.
+        // The changes are a reversed triangle, a duplicate, and a triangle present from both sides.
         3 => parts.triangles[any] = [a, c, b],
         4 => parts.triangles.extend([parts.triangles[any]; 2]),
         5 => parts.triangles.push([a, c, b]),
@@ -120,7 +120,7 @@ fn parts(draw: &Draw, kind: u64) -> Parts {
             let other: Vec<_> = parts.triangles.iter().map(other).collect();
             parts.triangles.extend(other);
         }
-        // Vertices that nearly coincide, or nearly lie on a line.
+        // Vertices nearly coincide, or nearly lie on a line.
         7 => {
             let near = 10_f64.powf(draw.between(-40.0, -3.0));
             parts.vertices[a] = parts.vertices[b] + near * draw.point(1.0);

@@ -15,7 +15,7 @@ const LIGHTS: [&str; 3] = [
         grating: (axis: X, frequency: 3, modulation: 0.8, phase: 0.5)))",
     "Beam(center: (0, 0, 0), irradiance: 2, image: (width: (0.5, 0.4)))",
 ];
-/// Stands in the light's path, a little beside its middle.
+/// A blocker in the light's path, a little beside its middle.
 const BLACK: &str =
     r#"Shapes(name: "black", center: (0.1, 0, 0.4), shapes: [Disc(center: (0, 0), radius: 0.05)])"#;
 const BALL: &str = r#"Smooth(name: "s", center: (0, 0, 1), facing: (0.3, -0.5, -0.8),
@@ -25,7 +25,7 @@ const WALL: &str = r#"Rectangle(name: "s", center: (0, 0, 1), size: (2, 1.6),
 const STAR: &str = r#"Mesh(name: "s", center: (0, 0, 1),
     mesh: Star(radius: 0.5, relief: 0.3, lobes: 4, rings: 30), albedo: 0.8)"#;
 const SPHERE: &str = r#"Mesh(name: "m", center: (0.2, -0.1, 0.5), mesh: Star(radius: 0.08, relief: 0.3, lobes: 4, rings: 10), albedo: 0.8)"#;
-/// In the path of light that leaves the wall, by mirror reflection or upwards.
+/// A surface in the path of light that leaves the wall, by mirror reflection or upwards.
 const MIRROR: &str = r#"Smooth(name: "mirror", center: (0.5, -0.8, 0), facing: (-0.4, 1, 0.2),
     form: Sphere(-0.1), aperture: 1.5, event: Mirror)"#;
 
@@ -65,7 +65,8 @@ fn agree(scene: &Scene, other: &dyn PhotonSource, what: &str) {
     }
 }
 
-/// Each route to a plane: the objects of the scene, those that the path visits, and the planes.
+/// The routes to a plane; each is given by the objects of the scene, the objects that the path
+/// visits, and the planes.
 type Way<'a> = (String, &'a str, &'a [&'a str]);
 
 #[test]
@@ -130,8 +131,8 @@ fn windows_before_a_small_mirror_are_sent_evenly() {
     }
 }
 
-/// A point light whose emission is uniform is not aimed: otherwise the check would share the aim
-/// that it checks.
+/// A point light with uniform emission is not aimed; otherwise the check would share the aim that
+/// it checks.
 #[test]
 fn what_is_sent_evenly_has_one_density() {
     let mirror = BALL.replace("EVENT", "Mirror");

@@ -6,7 +6,7 @@ use crate::common::estimates;
 use etendue_scene::{SceneFile, resolve};
 use etendue_trace::{Backward, Tracer};
 
-/// Towards the arriving light, rotated out of the plane of X and the central ray.
+/// The direction towards the arriving light, rotated out of the plane of X and the central ray.
 const FACING: &str = "(0.3, -0.5, -0.8)";
 
 fn smooth(event: &str) -> String {
@@ -74,7 +74,7 @@ fn arriving() {
     agree(&wall, &[tangent]);
 }
 
-/// A surface that reaches back beside the light is dark there.
+/// A surface that reaches back beside the light is dark where it does.
 #[test]
 fn arriving_behind_the_light() {
     let near = smooth("Mirror").replace("(0, 0, 1)", "(0, 0, 0.04)");
@@ -85,7 +85,8 @@ fn arriving_behind_the_light() {
     }
 }
 
-/// A tangent plane that extends beyond its surface records light that passes beside.
+/// A tangent plane that extends beyond its surface also records light that passes beside the
+/// surface.
 #[test]
 fn arriving_beside() {
     for event in ["Mirror", "Reflects(brdf: (lobe: Lambertian))"] {
@@ -119,7 +120,7 @@ fn leaving_along_the_wall() {
     agree_in(window, "\"s\"", wall, &["at: Distance(1.6)"]);
 }
 
-/// Narrow slopes, too, are found from the whole of a wide light.
+/// Light with narrow slopes, too, is found from the whole of a wide light.
 #[test]
 fn narrow_slopes() {
     let window = "(x: Hann(0.1), u: Box(0.001))";

@@ -74,7 +74,7 @@ fn aimed_and_plain_emission_agree_at_every_plane() {
     for (plane, (aimed, plain)) in estimate("Aimed").iter().zip(estimate("Plain")).enumerate() {
         let z = (aimed[0] - plain[0]) / aimed[1].hypot(plain[1]);
         assert!(aimed[1] < plain[1], "aiming does not pay at plane {plane}");
-        // Four planes; 3.7 standard errors are exceeded once in a thousand runs.
+        // Four planes are tested; 3.7 standard errors are exceeded once in a thousand runs.
         assert!(z.abs() < 3.7, "plane {plane}: {aimed:?} and {plain:?}");
     }
 }
@@ -86,7 +86,7 @@ fn ledger_closes() {
             ("run.photons", "1e6"),
             ("run.emission", emission),
         ]));
-        // Rounding of 10^6 additions in blocks of 4096: below 1e-13.
+        // The rounding error of 10^6 additions in blocks of 4096 is below 1e-13.
         assert!(
             ledger.imbalance().abs() < 1e-12,
             "{emission}: {}",
@@ -118,7 +118,7 @@ fn plain_flux_is_radiance_times_area_times_pi() {
     ); // every photon carries the same: rounding
 }
 
-/// Blockers that close the plane let nothing through; without blockers both sides of the plane see
+/// Blockers that fill the plane let nothing through; without blockers, both sides of the plane see
 /// the same photons.
 #[test]
 fn blockers_block() {

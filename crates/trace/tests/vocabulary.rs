@@ -57,7 +57,7 @@ fn all_ways_agree() {
             let aimed = scene(light, &blockers, "Aimed", 400_000);
             let plain = scene(light, &blockers, "Plain", 1_500_000);
             let (reference, ledger) = estimates(&Tracer::new(&aimed), &aimed);
-            // Rounding of some 10^5 additions.
+            // The rounding error of some 10^5 additions.
             assert!(ledger.imbalance().abs() < 1e-12, "{of}: {ledger:?}");
             let mut others = vec![("plain", estimates(&Tracer::new(&plain), &plain).0)];
             let backward = Backward::new(&aimed).unwrap();

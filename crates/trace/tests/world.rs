@@ -48,8 +48,8 @@ fn total(rays: &[(DVec3, DVec3, f64)]) -> f64 {
     rays.iter().map(|(.., watts)| watts).sum()
 }
 
-/// All light that a Lambertian rectangle emits: π L A. With plain emission each photon has the same
-/// flux.
+/// All light that a Lambertian rectangle emits is π L A. With plain emission each photon has the
+/// same flux.
 #[test]
 fn at_the_light_it_is_the_flux_of_the_light() {
     let scene = scene(
@@ -74,7 +74,7 @@ fn at_the_light_it_is_the_flux_of_the_light() {
             let back = (point - center).dot(d) / along.dot(d);
             let from = point - back * along - center;
             let y = DVec3::new(0.0, 0.8, -0.6);
-            // Half-sides, plus rounding, which steep rays magnify.
+            // The bounds are the half-sides, plus rounding errors, which steep rays magnify.
             let steep = 1.0 / along.dot(d);
             assert!(
                 from.x.abs() < 0.03 + 1e-12 * steep && from.dot(y).abs() < 0.02 + 1e-12 * steep,

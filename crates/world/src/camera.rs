@@ -50,7 +50,7 @@ pub struct Look {
     pub from: DVec3,
     /// Its direction, of unit length.
     pub along: DVec3,
-    /// The visible range of distances along it.
+    /// The range of distances along it that is visible.
     pub seen: [f64; 2],
 }
 
@@ -82,7 +82,7 @@ impl Camera {
             Projection::Orthographic => (DVec3::new(across, up, 0.0), DVec3::Z),
         };
         let world = self.to_world.transform_vector3(along);
-        // Clip planes are perpendicular to Z: an oblique ray reaches them later.
+        // Clip planes are perpendicular to Z, so an oblique ray reaches them later.
         let longer = along.length();
         Look {
             from: self.to_world.transform_point3(from),

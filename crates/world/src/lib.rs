@@ -1,8 +1,9 @@
 //! A world: surfaces, each with a geometry and a material, lights, and cameras.
 //!
 //! Scenes of other programs are read into worlds. Coordinates are right-handed, or left-handed if
-//! the file's are: then maps of cameras mirror. They are in the units of the file, metres by
-//! default. Light is one number: the luminance of a colour in the file, or one of its channels.
+//! the file's are: the maps of cameras then contain a reflection. They are in the units of the
+//! file, metres by default. Light is one number: the luminance of a colour in the file, or one of
+//! its channels.
 
 mod camera;
 mod light;

@@ -19,11 +19,11 @@ pub enum Light {
     Spot {
         /// Its position and orientation; without scale.
         to_world: DAffine3,
-        /// W sr⁻¹ within `beam`.
+        /// Intensity within `beam`, W sr⁻¹.
         intensity: f64,
         /// Half-angle of the cone of full intensity, radians.
         beam: f64,
-        /// Half-angle beyond which it is dark, radians.
+        /// Half-angle beyond which the spot is dark, radians.
         cutoff: f64,
         /// The falloff of intensity between both angles.
         falloff: Falloff,
@@ -32,7 +32,7 @@ pub enum Light {
     Directional {
         /// The direction of light, of unit length.
         direction: DVec3,
-        /// W m⁻² on a surface across that direction.
+        /// Irradiance of a surface across that direction, W m⁻².
         irradiance: f64,
     },
     /// Uniform radiance from all directions.
@@ -47,11 +47,12 @@ pub enum Light {
 /// The falloff of a spot's intensity from its beam to the dark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Falloff {
-    /// Linear in the angle, as in Mitsuba 3.
+    /// Falloff that is linear in the angle, as in Mitsuba 3.
     Angle,
-    /// As t² (3 − 2t), with t from 1 to 0 linearly with the cosine of the angle, as in pbrt-v4.
+    /// Falloff as t² (3 − 2t), as in pbrt-v4; t goes from 1 to 0 linearly with the cosine of the
+    /// angle.
     SmoothCosine,
-    /// As t², as recommended by glTF 2.0.
+    /// Falloff as t², as recommended by glTF 2.0.
     SquaredCosine,
 }
 
@@ -59,7 +60,7 @@ impl Falloff {
     /// The fraction of the intensity at an angle, for a beam and a cutoff.
     #[must_use]
     pub fn share(self, angle: f64, beam: f64, cutoff: f64) -> f64 {
-        // With equal angles, the beam has a sharp edge.
+        // If both angles are equal, the beam has a sharp edge.
         let between = |at: f64, full: f64, dark: f64| match full - dark {
             0.0 if at >= full => 1.0,
             0.0 => 0.0,

@@ -6,7 +6,7 @@ use etendue_field::MicrofacetDistribution;
 /// The material of a surface.
 ///
 /// The front is the side to which the normal of the [`Shape`](crate::Shape) points. A material that
-/// scatters light only on its front is opaque: its back is black.
+/// scatters light only on its front is opaque, and its back is black.
 #[derive(Clone, Debug)]
 pub enum Material {
     /// Lambert's BRDF on the front, reflectance / π.
@@ -29,7 +29,7 @@ pub enum Material {
         /// n.
         exponent: Texture,
     },
-    /// One opaque material on each side, each acting as on its front.
+    /// One opaque material on each side; each scatters as it does on its front.
     TwoSided(Box<[Self; 2]>),
     /// A partly transparent surface: light passes unchanged except for a fraction that hits the
     /// material.
@@ -62,7 +62,7 @@ pub struct Conductor {
 /// An interface that reflects and refracts light.
 #[derive(Clone, Debug)]
 pub struct Dielectric {
-    /// Ratio of the index of refraction behind the front to that before it.
+    /// Ratio of the index of refraction behind the surface to that in front of it.
     pub index: f64,
     /// A factor on the reflected light.
     pub reflectance: Texture,

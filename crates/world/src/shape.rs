@@ -19,7 +19,7 @@ pub struct Shape {
     pub is_flipped: bool,
     /// The index of its material.
     pub material: usize,
-    /// Radiance emitted on its front, W m⁻² sr⁻¹; `None` for none.
+    /// Radiance emitted on its front, W m⁻² sr⁻¹; `None` if it does not emit.
     pub emission: Option<EmittedRadiance>,
 }
 

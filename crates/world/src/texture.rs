@@ -9,8 +9,8 @@ use std::sync::Arc;
 pub enum Texture {
     /// A constant.
     Constant(f64),
-    /// Alternating squares of half a unit: the first number where (u, v) mod 1 are both below ½ or
-    /// both above.
+    /// Alternating squares of half a unit. The first number applies where both components of (u, v)
+    /// mod 1 are below ½ or both are above ½.
     Checkerboard {
         /// The map from the surface's (u, v) to the board's.
         to_uv: DAffine2,
@@ -148,7 +148,7 @@ mod tests {
             (Wrap::Clamp, 7.5, 4.0),
             (Wrap::Clamp, -7.5, 1.0),
         ] {
-            // The tolerance for rounding of u / 3.
+            // The tolerance for the rounding error of u / 3.
             assert!(
                 (at(wrap, Filter::Nearest, u) - nearest).abs() < 1e-12,
                 "{wrap:?} {u}"

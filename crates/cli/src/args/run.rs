@@ -293,7 +293,7 @@ pub(crate) enum Expect {
     Disagreement,
 }
 
-/// Parses batches A..B, at least one.
+/// Parses a range of batches A..B that holds at least one batch.
 fn range(text: &str) -> Result<Range<u32>, String> {
     let ends = text.split_once("..").map(|(a, b)| (a.parse(), b.parse()));
     match ends {

@@ -150,7 +150,7 @@ impl RenderArgs {
     }
 }
 
-/// How the samples of a picture are distributed; `None` for a reference.
+/// How the samples of a picture are distributed; `None` if all pixels have the same number of them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RenderMethod(Option<SampleMethod>);
 

@@ -12,7 +12,8 @@ pub(super) fn text(reports: &[CovarianceReport]) -> String {
     let mut lines = vec![
         "Covariance of the power spectrum, in cycles² per m², per m × slope and per slope²."
             .to_owned(),
-        "The column \"traced\" covers all frequencies, the others only the band.".to_owned(),
+        "The column \"traced\" covers all frequencies; the other columns cover only the band."
+            .to_owned(),
     ];
     for report in reports {
         lines.push(String::new());

@@ -27,7 +27,7 @@ pub fn etendue() -> Command {
     Command::new(env!("CARGO_BIN_EXE_etendue"))
 }
 
-/// All files of a folder by relative name.
+/// All files of a folder, by their relative names.
 pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut found = BTreeMap::new();
     let mut folders = vec![folder.to_owned()];
@@ -49,7 +49,7 @@ pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     found
 }
 
-/// A small scene with many numbers whose decimals are easily read back as a neighbouring number.
+/// A small scene with many numbers whose decimal form is easily read back as a neighbouring number.
 pub const SCENE: &str = r#"(
     light: Rectangle(center: (0.1, 0.2, 0.30000000000000004), size: (0.2, 0.17320508075688773)),
     blockers: [JitteredSquares(name: "blockers", center: (0.1234567890123456, 0.2, 1.3000000000000003),
@@ -63,7 +63,8 @@ pub const SCENE: &str = r#"(
     run: (photons: 20000, seed: 18446744073709551557),
 )"#;
 
-/// The scene as `small.ron`, measured in two parts `a` (batches 0..20) and `b` (20..64), and its prediction `p`.
+/// The scene as `small.ron`, its measurement in two parts `a` (batches 0..20) and `b` (20..64), and
+/// its prediction `p`.
 pub fn stages() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("small.ron"), SCENE).unwrap();

@@ -26,7 +26,8 @@ impl ShiningSphere {
         }
     }
 
-    /// The cone that the sphere subtends; `None` from inside, where it does not emit.
+    /// The cone that the sphere subtends; `None` for a point inside, where the sphere does not
+    /// emit.
     fn cone(&self, at: DVec3) -> Option<Cone> {
         Cone::around_sphere(self.center - at, self.radius)
     }
@@ -64,7 +65,7 @@ impl ShiningSphere {
 
     pub(super) fn of_hit(&self, from: DVec3, along: DVec3, hit: &Hit) -> (f64, f64) {
         let radiance = emitted(&self.emission, hit.uv, hit.normal, -along);
-        // A hit is within the cone, despite rounding at its edge.
+        // A hit is within the cone, despite rounding errors at its edge.
         let density = self.cone(from).map(|cone| 1.0 / cone.solid_angle());
         (radiance, density.unwrap_or(0.0))
     }

@@ -1,4 +1,5 @@
-//! Emission of photons from lights: half of them by the natural distribution, half of them aimed.
+//! Emission of photons from lights: half of them follow the natural distribution, and half of them
+//! are aimed.
 
 use super::{LightSampler, SampledLight};
 use crate::space::{Ray, SceneGeometry};
@@ -10,7 +11,7 @@ use std::f64::consts::PI;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Emitted {
     pub(crate) ray: Ray,
-    /// Its flux, W, times the number of photons.
+    /// The photon's flux, W, times the number of photons.
     pub(crate) flux: f64,
     /// The surface point that it was emitted from.
     pub(crate) flash: Option<EmissionPoint>,
@@ -35,7 +36,7 @@ pub(crate) struct EmissionTarget {
 /// Random numbers and targets for photon directions.
 struct Draw<'a> {
     targets: &'a [EmissionTarget],
-    /// For the direction, and for the choice of its distribution.
+    /// Random numbers for the direction, and for the choice of its distribution.
     random: [f64; 3],
 }
 
@@ -137,12 +138,13 @@ impl Draw<'_> {
         }
     }
 
-    /// A photon from a distant light: across a disc that covers all surfaces, or a target.
+    /// A photon of a distant light, sent through a disc that covers all surfaces or through a
+    /// target.
     fn afar(&self, geometry: &SceneGeometry, toward: DVec3, irradiance: f64) -> Emitted {
         let [a, b, _] = self.random;
         let whole = EmissionTarget {
             center: geometry.center,
-            // Slightly wider, for surfaces that touch the sphere.
+            // The disc is slightly wider, for surfaces that touch the sphere.
             radius: 1.001 * geometry.radius,
         };
         let aimed = self.target().unwrap_or(&whole);
@@ -169,14 +171,14 @@ impl Draw<'_> {
     }
 }
 
-/// The target at which a photon is aimed: half of the photons are aimed, equally many at each
-/// target.
+/// Returns the target at which a photon is aimed, if any. Half of the photons are aimed, equally
+/// many at each target.
 pub(crate) fn chosen(targets: &[EmissionTarget], by: f64) -> Option<&EmissionTarget> {
     let number = (2.0 * by - 1.0) * targets.len() as f64;
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "a number of a target, from 0"
+        reason = "the number of a target, counted from 0"
     )]
     let found = (number >= 0.0).then_some(number as usize);
     found.and_then(|number| targets.get(number))
@@ -197,7 +199,7 @@ pub(crate) fn mixed(
 }
 
 impl EmissionTarget {
-    /// The cone that the sphere subtends; all directions from inside.
+    /// The cone that the sphere subtends; for a point inside, all directions.
     fn cone(&self, from: DVec3) -> Cone {
         Cone::around_sphere(self.center - from, self.radius).unwrap_or(Cone::SPHERE)
     }

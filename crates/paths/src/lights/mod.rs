@@ -78,7 +78,8 @@ impl LightSampler {
         })
     }
 
-    /// Picks a light uniformly, and returns the remaining number in (0, 1) of the one used.
+    /// Picks a light uniformly by a random number, and returns with it a remaining number in (0, 1)
+    /// for further use.
     fn pick(&self, r: f64) -> Option<(&SampledLight, f64)> {
         let place = r * self.lights.len() as f64;
         let light = self.lights.get(whole(place))?;

@@ -4,8 +4,8 @@ use super::{Budget, Probe};
 use crate::numbers::PathNumbers;
 use etendue_field::{Crossing, Ledger, PhotonSource, TwoPlane, VirtualPlane};
 
-/// Backward rays of a [`Probe`]: for each plane separately, lines drawn uniformly over its window,
-/// with the radiance that a path finds along each.
+/// Backward rays of a [`Probe`]. For each plane separately, lines are drawn uniformly over the
+/// plane's window, and a path finds the radiance along each line.
 #[derive(Debug)]
 pub struct BackwardProbe<'a> {
     probe: &'a Probe<'a>,
@@ -54,7 +54,7 @@ impl<'a> BackwardProbe<'a> {
         let line = legs[plane.leg].line(&paths.geometry, &plane.frame, &ray);
         let before = u32::try_from(plane.leg).unwrap_or(u32::MAX);
         let radiance = paths.radiance(line, [0.0, f64::INFINITY], before, &mut numbers);
-        // The window's volume; the mean over rays divides by their number.
+        // The last factor is the window's volume; the mean over rays divides by their number.
         let weight = radiance * half.iter().map(|half| 2.0 * half).product::<f64>();
         Crossing { ray, weight }
     }

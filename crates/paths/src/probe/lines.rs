@@ -11,21 +11,22 @@ pub(super) struct SurfaceLeg {
     pub(super) frame: Frame,
     /// The shape at the end of the leg; `None` at the camera.
     pub(super) shape: Option<usize>,
-    /// The maximum distance from the plane at the end at which the shape is searched for.
+    /// The maximum distance from the plane at the end of the leg at which lines are searched for
+    /// hits of the shape.
     pub(super) reach: f64,
     /// Half-width of the windows in slope.
     pub(super) slope: f64,
 }
 
 impl SurfaceLeg {
-    /// The maximum distance of window lines from the central ray, at a distance before the end of
-    /// the leg.
+    /// Returns the largest distance between the central ray and a line of the window, at a given
+    /// distance before the end of the leg.
     pub(super) fn wide(&self, distance: f64) -> f64 {
         0.25 * self.reach + self.slope * distance
     }
 
-    /// The line with coordinates `seen` in a plane of this leg, traced back from the end of the
-    /// leg: the camera, or the surface there.
+    /// Returns the line with the coordinates `seen` in a plane of this leg. It is traced back from
+    /// the end of the leg, which is the camera or a surface.
     pub(super) fn line(&self, geometry: &SceneGeometry, plane: &Frame, seen: &TwoPlane) -> Ray {
         let point = plane.to_world(DVec3::new(seen.x, seen.y, 0.0));
         let along = plane

@@ -40,8 +40,9 @@ pub struct Probe<'a> {
     paths: &'a Paths,
     /// The surfaces; the first is the one the camera sees.
     pub stops: Vec<Stop>,
-    /// The planes: `camera`, and for each surface `leaving_1`, `arriving_1` and so on: light that
-    /// leaves it towards the camera, and light that arrives along the mirror direction.
+    /// The planes: `camera`, and for each surface `leaving_1`, `arriving_1` and so on. A
+    /// `leaving` plane sees light that leaves the surface towards the camera, an `arriving` plane
+    /// light that arrives along the mirror direction.
     pub planes: Vec<VirtualPlane>,
     legs: Vec<SurfaceLeg>,
     /// The slope difference between adjacent pixels.
@@ -203,7 +204,7 @@ impl<'a> Probe<'a> {
 /// The number of rays or photons per batch, and the seed.
 #[derive(Clone, Copy, Debug)]
 pub struct Budget {
-    /// Number in each batch.
+    /// Number of rays or photons in each batch.
     pub each: u64,
     /// Seed of all batches.
     pub seed: u64,

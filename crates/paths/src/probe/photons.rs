@@ -12,7 +12,7 @@ use glam::DVec3;
 
 /// Photons of a [`Probe`], the independent check of [`BackwardProbe`](super::BackwardProbe).
 ///
-/// They leave the lights. Wherever one hits a surface or leaves one, a direction through the
+/// They leave the lights. Wherever a photon hits or leaves a surface, a direction through the
 /// windows is drawn for it. They miss light that a mirror or smooth glass sends into a window, and
 /// the sky itself: [`PhotonProbe::misses`] reports where.
 #[derive(Debug)]
@@ -44,7 +44,7 @@ impl<'a> PhotonProbe<'a> {
         let targets = probe.stops.iter().zip(&probe.legs);
         let target = |(stop, leg): (&Stop, &SurfaceLeg)| EmissionTarget {
             center: stop.position,
-            // Covers the corners of the window, on an inclined surface.
+            // The sphere covers the corners of the window, also on an inclined surface.
             radius: 2.0 * leg.wide(stop.distance) / stop.cosine().max(0.1),
         };
         Self {
@@ -85,7 +85,7 @@ impl<'a> PhotonProbe<'a> {
 
     #[expect(
         clippy::too_many_lines,
-        reason = "the life of a photon, from surface to surface"
+        reason = "one photon from surface to surface, in the order of events"
     )]
     fn photon(&self, number: u64, record: &mut dyn FnMut(usize, Crossing)) {
         let paths = self.probe.paths;
@@ -163,8 +163,8 @@ impl<'a> PhotonProbe<'a> {
         }
     }
 
-    /// The continuation of a photon from a hit, and its share of flux: half of the photons follow
-    /// the material, half are aimed at the regions that the windows see.
+    /// The continuation of a photon from a hit, and its share of flux. Half of the photons follow
+    /// the material; the other half are aimed at the regions that the windows see.
     fn onward(
         &self,
         hit: &Hit,
@@ -254,15 +254,15 @@ impl<'a> PhotonProbe<'a> {
     fn is_seen(&self, leg: usize, position: DVec3, along: DVec3) -> bool {
         let Probe { paths, legs, .. } = self.probe;
         let line = legs[leg].through(&paths.geometry, position, along);
-        // The line may begin at the point itself: then light leaves on the other side of the
+        // The line may begin at the point itself; light then leaves on the other side of the
         // surface.
         let is_before = (position - line.from).dot(line.along) > 1e-6 * legs[leg].reach;
         is_before && paths.geometry.is_clear(line.from, position)
     }
 }
 
-/// The factor from BSDF times the cosine to the shading normal to flux: both cosines refer to the
-/// geometric normal.
+/// Returns the factor that converts the BSDF times the cosine to the shading normal into flux, for
+/// which both cosines refer to the geometric normal.
 fn tilt(hit: &Hit, arriving: DVec3, leaving: DVec3) -> f64 {
     (leaving.dot(hit.normal) / arriving.dot(hit.normal)).abs()
 }

@@ -15,9 +15,10 @@ pub struct Stop {
     pub position: DVec3,
     /// The shading normal, on the visible side.
     pub normal: DVec3,
-    /// The direction in which light leaves towards the camera: of unit length.
+    /// The direction, of unit length, in which light leaves towards the camera.
     pub leaving: DVec3,
-    /// The direction in which light arrives that a mirror would send to the camera: of unit length.
+    /// The direction, of unit length, in which light arrives that a mirror here would send to the
+    /// camera.
     pub arriving: DVec3,
     /// The distance to the camera, or to the previous surface.
     pub distance: f64,
@@ -35,8 +36,8 @@ impl Stop {
         self.normal.dot(self.leaving)
     }
 
-    /// The factor by which a mirror reflection spreads slopes of rays from one point at `travelled`
-    /// before the surface.
+    /// Returns the factor by which a mirror reflection spreads the slopes of rays that start at one
+    /// point, at the distance `travelled` before the surface.
     pub(super) fn spreading(&self, travelled: f64) -> f64 {
         let [along, across] = self.curvature;
         let turned = |k: f64, cosine: f64| (1.0 + 2.0 * k * travelled * cosine).abs();
@@ -92,8 +93,8 @@ pub(super) fn followed(paths: &Paths, look: &Look, most: usize, half: f64) -> Ve
 /// Maximum number of halvings of a curvature's step.
 const HALVINGS: i32 = 16;
 
-/// Curvatures from normals one step to either side, with the largest step that stays on the
-/// surface.
+/// Returns the curvatures, from normals one step to either side; the step is the largest that stays
+/// on the surface.
 fn curvature(
     geometry: &SceneGeometry,
     hit: &Hit,
@@ -126,7 +127,8 @@ fn between(geometry: &SceneGeometry, hit: &Hit, normal: DVec3, step: DVec3) -> O
     Some((m - n).dot(step) / (p - q).dot(step))
 }
 
-/// The component of a normal across a direction, normalised; `None` if it is along the direction.
+/// Returns the component of a normal across a direction, normalised; `None` if the normal is along
+/// the direction.
 pub(super) fn across(normal: DVec3, along: DVec3) -> Option<DVec3> {
     let across = normal - normal.dot(along) * along;
     (across.length() > 1e-6).then(|| across.normalize())

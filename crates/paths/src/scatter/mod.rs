@@ -2,8 +2,8 @@
 //! incident direction `wi`.
 //!
 //! Directions are unit vectors away from the surface, in a frame with its normal along Z. Values
-//! are BSDFs times |cos| of wi, for radiance: light through an interface is radiance on the other
-//! side over the squared index.
+//! are BSDFs times |cos| of wi, for radiance. Light that passes an interface is the radiance on the
+//! other side divided by the squared index.
 
 mod place;
 mod reflects;
@@ -193,8 +193,8 @@ impl Scatter {
         })
     }
 
-    /// The squared index on the side of `to`, over that on the side of `from`: 1 unless light is
-    /// refracted.
+    /// Returns the squared index on the side of `to` divided by that on the side of `from`. It is 1
+    /// unless light is refracted.
     pub(crate) fn squared_index(&self, from: DVec3, to: DVec3) -> f64 {
         match self {
             Self::Dielectric(of) if !of.is_thin && from.z * to.z < 0.0 => {

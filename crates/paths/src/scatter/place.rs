@@ -12,7 +12,7 @@ use glam::{DVec2, DVec3};
 pub(super) fn facets(roughness: Option<&Roughness>, uv: DVec2) -> Option<Microfacets> {
     roughness.map(|of| Microfacets {
         distribution: of.distribution,
-        // The minimum is what directions in f64 still resolve.
+        // The minimum is the smallest roughness that directions in f64 resolve.
         alpha: [0, 1].map(|axis: usize| of.alpha[axis].value(uv).max(1e-4)),
     })
 }
@@ -42,8 +42,8 @@ pub(super) fn phong([diffuse, specular, exponent]: &[Texture; 3], uv: DVec2) -> 
     }
 }
 
-/// The ratio of the index behind an interface to that on the side of `wo`. A thin sheet has the
-/// same medium on both sides.
+/// The ratio of the index on the far side of an interface to that on the side of `wo`. A thin sheet
+/// has the same medium on both sides.
 fn index(of: &world::Dielectric, wo: DVec3) -> f64 {
     if of.is_thin || wo.z > 0.0 {
         of.index

@@ -152,7 +152,8 @@ fn samples_follow_value_and_density() {
                 (sampled - plain).abs() < 0.015 * (1.0 + plain),
                 "{name} {wo}: {sampled} {plain}"
             );
-            // Samples below the front, or from the coat, carry nothing but are part of the density.
+            // Samples below the front, or from the coat, carry no light but are part of the
+            // density.
             assert!(
                 density < 1.015 && density > shining - 0.015,
                 "{name} {wo}: {density} {shining}"

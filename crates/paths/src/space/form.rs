@@ -97,8 +97,8 @@ impl Form {
         }
     }
 
-    /// The areas of its pieces once placed: triangles, or the whole geometry. Spheres and cylinders
-    /// are scaled as described at [`etendue_world::Shape`].
+    /// The areas of its pieces in the world: triangles, or the whole geometry. Spheres and
+    /// cylinders are scaled as described at [`etendue_world::Shape`].
     pub(crate) fn areas(&self, to_world: &DAffine3) -> Vec<f64> {
         let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| to_world.transform_vector3(axis));
         let whole = match self {
@@ -139,12 +139,12 @@ impl Form {
 /// The ray parameters at which the weighted squares of coordinates add up to 1.
 fn roots(start: DVec3, along: DVec3, weights: DVec3) -> Option<[f64; 2]> {
     let a = (weights * along).dot(along);
-    // Measured from the point of the line nearest to the axis or centre, to keep precision far
-    // away.
+    // Positions on the line are measured from its point nearest to the axis or centre, to keep
+    // precision far away.
     let middle = -(weights * start).dot(along) / a;
     let nearest = start + middle * along;
     let left = 1.0 - (weights * nearest).dot(nearest);
-    // Along the axis of a cylinder a is 0, and there is no hit.
+    // For a ray along the axis of a cylinder, a is 0 and there is no hit.
     let half = (left / a).sqrt();
     (half.is_finite() && left >= 0.0).then_some([middle - half, middle + half])
 }

@@ -59,8 +59,8 @@ impl WorldMesh {
         self.hierarchy.along(start, along, [from, until], |i| {
             if let Some((at, place)) = sight.meets(places(&self.triangles, self.ordered[i]))
                 && at > from
-                // Ties in distance are broken by index, so the result does not depend on the
-                // traversal order.
+                // Hits at the same distance are ordered by index, so the result does not depend on
+                // the traversal order.
                 && (at < end || first.is_some_and(|(first, j, _)| (at, i) < (first, j)))
             {
                 first = Some((at, i, place));
@@ -116,7 +116,7 @@ impl WorldMesh {
         }
     }
 
-    /// The area of each triangle once placed.
+    /// The area of each triangle in the world.
     pub(super) fn areas(&self, to_world: &DAffine3) -> impl Iterator<Item = f64> {
         self.triangles.corners().iter().map(|corners| {
             let [a, b, c] = places(&self.triangles, *corners);

@@ -13,7 +13,7 @@ use local::Local;
 use mesh::WorldMesh;
 use std::sync::Arc;
 
-/// A ray; distances along it are in units of `along`, which has length 1.
+/// A ray; distances along it are multiples of `along`, which has length 1.
 #[derive(Clone, Copy, Debug)]
 pub struct Ray {
     /// Its origin.
@@ -51,7 +51,7 @@ pub struct Hit {
 pub struct SceneGeometry {
     placed: Vec<Placed>,
     hierarchy: WideHierarchy,
-    /// Minimum hit distance: nearer hits are the surface at the ray's origin.
+    /// Minimum hit distance: a nearer hit is on the surface at the ray's origin.
     nearest: f64,
     /// Centre of a sphere around all surfaces.
     pub(crate) center: DVec3,

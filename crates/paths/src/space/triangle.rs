@@ -2,7 +2,8 @@
 
 use glam::{DVec2, DVec3};
 
-/// A ray prepared for triangle tests, on axes in which its direction is (x, y, 1).
+/// A ray prepared for triangle tests. The axes are permuted and scaled so that its direction is (x,
+/// y, 1).
 pub(super) struct TriangleRay {
     start: DVec3,
     /// The largest component of the direction, used as last axis.
@@ -26,7 +27,7 @@ impl TriangleRay {
 
     /// The distance, and barycentric coordinates of the second and the third corner (Woop, Benthin
     /// and Wald 2013, *Watertight ray/triangle intersection*). A shared edge gives both triangles
-    /// the same number with opposite sign: no ray passes between them.
+    /// the same number with opposite sign, so no ray passes between them.
     #[inline]
     pub(super) fn meets(&self, corners: [DVec3; 3]) -> Option<(f64, DVec2)> {
         let seen = corners.map(|corner| turned(corner, self.last) - self.start);
@@ -76,7 +77,7 @@ mod tests {
             let place = a.lerp(b, 0.1 + 0.4 * (1.0 + numbers(index, 4).x));
             let (start, aside) = (4.0 * start, aside.cross(b - a));
             let sight = TriangleRay::new(start, (place - start).normalize());
-            // The same edge, traversed in both directions.
+            // Both triangles have the same edge, traversed in opposite directions.
             let [one, other] = [[a, b, place + aside], [b, a, place - aside]];
             let met = [sight.meets(one), sight.meets(other)];
             assert!(met.iter().any(Option::is_some), "{start} to {a}, {b}");

@@ -46,8 +46,8 @@ fn samples_know_their_density() {
     });
 }
 
-/// Returns means over samples, with the standard error of each: of the weights of samples with a
-/// density, and of all flux that leaves.
+/// Returns the means over samples of two quantities, each with its standard error: the weights of
+/// samples with a density, and all flux that leaves.
 fn means(model: &Model, wo: DVec3) -> [[f64; 2]; 2] {
     let mut sums = [[0.0; 2]; 2];
     for bounce in numbers().filter_map(|random| model.bsdf.sample(wo, random)) {
@@ -78,7 +78,8 @@ fn white_furnace() {
         let carried = |wi: DVec3| model.bsdf.value(wi, wo) * wi.z.abs();
         let exact: f64 = model.cells(wo).integrals(carried).iter().sum();
         let [[mean, error], [flux, flux_error]] = means(model, wo);
-        // Four and a half standard errors, and the error of the midpoint rule over the cells.
+        // The tolerance is four and a half standard errors, plus the error of the midpoint rule
+        // over the cells.
         let bound = 4.5 * error + 2e-3;
         assert!(
             (mean - exact).abs() < bound,
@@ -96,7 +97,8 @@ fn nothing_is_lost() {
         let wo = at(angle);
         for is_nonlinear in [false, true] {
             let [_, [flux, error]] = means(&plastic(None, is_nonlinear), wo);
-            // Error of the midpoint rule for the internal reflectance of the coat.
+            // The tolerance includes the error of the midpoint rule for the internal reflectance of
+            // the coat.
             assert!(
                 (flux - 1.0).abs() < 4.5 * error + 1e-5,
                 "{angle}: {flux} ± {error}"
@@ -126,7 +128,7 @@ fn smooth_interfaces_refract_by_snell() {
                 continue;
             }
             let behind = if is_thin { 1.0 } else { index };
-            // Radiance divided by the squared index, and rounding.
+            // Radiance is divided by the squared index; the rest is rounding error.
             assert!((far.weight * behind * behind - 1.0).abs() < 1e-12);
             assert!((far.wi.truncate() * behind + wo.truncate()).length() < 1e-12);
             assert!(far.density.is_none() && (far.wi.length() - 1.0).abs() < 1e-12);
@@ -148,7 +150,7 @@ fn light_goes_both_ways() {
     for model in all() {
         for [a, b] in pairs() {
             let [there, back] = [model.bsdf.value(a, b), model.bsdf.value(b, a)];
-            // Rounding, in the exponent of a narrow lobe.
+            // The tolerance covers rounding errors in the exponent of a narrow lobe.
             let close = (there - back).abs() <= 1e-9 * there.abs();
             assert!(close, "{}: {there} and {back}", model.name);
         }

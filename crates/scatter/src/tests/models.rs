@@ -12,7 +12,7 @@ use glam::DVec3;
 pub(super) struct Model {
     pub(super) name: String,
     pub(super) bsdf: Box<dyn Bsdf>,
-    /// The index behind the surface over the index in front of it.
+    /// The index behind the surface divided by the index in front of it.
     pub(super) index: f64,
     /// An upper bound of the weights.
     pub(super) max_weight: f64,
@@ -75,9 +75,9 @@ where
     }
 }
 
-/// Returns the largest weight for sampling by visible normals: for GGX, Smith's masking of one
-/// direction, and rounding; for Beckmann, which is sampled by GGX, the same times the ratios of D,
-/// 4/e, and of G₁, √π.
+/// Returns the largest weight for sampling by visible normals. For GGX it is Smith's masking of one
+/// direction, plus rounding error. Beckmann's normals are sampled by GGX, so their weight is larger
+/// by the ratios of D, 4/e, and of G₁, √π.
 fn masked(facets: Microfacets) -> f64 {
     match facets.distribution {
         MicrofacetDistribution::Beckmann => 2.61,
@@ -108,8 +108,8 @@ fn unmasked(facets: Microfacets) -> Model {
     let value = move |wi, wo| facets.value(wi, wo).0;
     let sample = move |wo, random| facets.sample_unmasked(wo, random);
     let density = move |wi, wo| facets.unmasked_density(wi, wo);
-    // The weight is h·ωi/(cos θi cos θh) times G₁ ≤ 2√π/(α tan θi), at most 3.5 tan θh/α; with
-    // 32-bit random numbers tan θh/α is at most 4.8.
+    // The weight is h·ωi/(cos θi cos θh) times G₁ ≤ 2√π/(α tan θi), so it is at most 3.5 tan θh/α;
+    // with 32-bit random numbers, tan θh/α is at most 4.8.
     model(
         format!("{facets:?}, unmasked"),
         17.0,
@@ -128,7 +128,8 @@ pub(super) fn modified_phong(diffuse: f64, specular: f64, exponent: f64) -> Mode
         specular,
         lobe: Phong { exponent },
     };
-    // kd over its share for the cosine, and (n + 2)/(n + 1) of that for the lobe.
+    // The weight of the cosine is at most kd divided by its share; for the lobe the ratio is larger
+    // by (n + 2)/(n + 1).
     let bound = (diffuse + specular) * (exponent + 2.0) / (exponent + 1.0) + 1e-9;
     model(format!("{phong:?}"), bound, phong)
 }
@@ -150,8 +151,8 @@ pub(super) fn plastic(facets: Option<Microfacets>, is_nonlinear: bool) -> Model 
         is_nonlinear,
     };
     let name = format!("plastic of {facets:?}, nonlinear: {is_nonlinear}");
-    // The weight of coat or base over its share of samples, which is approximately its share of the
-    // light.
+    // The weight is that of coat or base divided by its share of samples, which is approximately
+    // its share of the light.
     model(name, 4.0, plastic)
 }
 

@@ -1,7 +1,7 @@
 //! Covariances of the factors and lobes that a light field is multiplied by or convolved with.
 //!
 //! The covariance of a factor f is its second moment of power, ∫ f'²/(4π² ∫ f²), where that exists.
-//! A factor with edges has none; the Gaussian of the same variance replaces it by choice.
+//! A factor with edges has no such moment; it is replaced by the Gaussian of the same variance.
 
 use crate::geometry::{Matrix, diagonal};
 use etendue_field::{Grating, Lobe, Mask, Profile, Shape, Window};
@@ -17,8 +17,9 @@ fn opening(half_width: f64) -> f64 {
     gaussian(half_width * half_width / 3.0)
 }
 
-/// Returns the covariance of one profile of a window, in cycles per unit, squared: 1/12h² for Hann,
-/// 1/4πw² for exp(−πt²/w²), ignoring its truncation. A box has edges.
+/// Returns the covariance of one profile of a window, in cycles per unit, squared. It is 1/12h² for
+/// Hann, and 1/4πw² for exp(−πt²/w²), ignoring its truncation. A box has edges, so the Gaussian of
+/// its variance replaces it.
 #[must_use]
 pub fn profile(profile: &Profile) -> f64 {
     match *profile {
@@ -44,10 +45,10 @@ pub fn grating(grating: &Grating) -> f64 {
     grating.frequency * grating.frequency * square / (2.0 + square)
 }
 
-/// Returns the covariance of a mask in the plane where light is now. An opaque mask is an opening
-/// about the central ray: the largest disc that is free of shapes, narrowed along an axis by
-/// half-planes (the course notes of Belcour 2016 take the largest unoccluded disc). `None` if the
-/// central ray is blocked, or touches an edge.
+/// Returns the covariance of a mask in the plane where light is now. An opaque mask is treated as
+/// an opening about the central ray. The opening is the largest disc that is free of shapes,
+/// narrowed along an axis by half-planes. (The course notes of Belcour 2016 take the largest
+/// unoccluded disc.) `None` if the central ray is blocked, or touches an edge.
 #[must_use]
 pub fn mask(mask: &Mask) -> Option<Matrix<4>> {
     let mut factor = [[0.0; 4]; 4];

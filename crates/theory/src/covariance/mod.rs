@@ -14,9 +14,9 @@
 //! | lobe of a BRDF | [`convolved`](SpectralCovariance::convolved) | (C⁻¹ + B⁻¹)⁻¹ |
 //! | diffuse reflection | [`diffused`](SpectralCovariance::diffused) | the same with B = 0 along both angles |
 //!
-//! [`window`], [`mask`], [`grating`], [`cosine`] and [`lobe`] are W and B of the elements of a
-//! scene; [`Traced`] follows a whole chain. A field with edges has no moments, and covariance
-//! tracing treats it as a Gaussian all the same. docs/covariance.md shows where that holds.
+//! [`window`], [`mask`], [`grating`], [`cosine`] and [`lobe`] give W and B of the elements of a
+//! scene; [`Traced`] follows a whole chain. A field with edges has no moments, but covariance
+//! tracing treats it as a Gaussian. docs/covariance.md shows where this holds.
 
 mod factors;
 mod pair;

@@ -8,13 +8,13 @@ use std::f64::consts::PI;
 /// S⁻¹ = 8π² C for the power spectrum; for |L| it would be 4π² C.
 const POWER: f64 = 8.0 * PI * PI;
 
-/// The covariance C of the power spectrum of a Gaussian light field, [ρx, ρy, νu, νv], cycles² per
-/// unit of the coordinates, squared.
+/// The covariance C of the power spectrum of a Gaussian light field over [ρx, ρy, νu, νv], in
+/// cycles² per squared unit of the coordinates.
 ///
 /// Stored as C = P Q⁻¹. Light that is unbounded along a coordinate has a rank-deficient P there;
-/// light from a point or in one direction has a rank-deficient Q. Both are handled like any other
-/// matrix, so no operator needs a smallest or a largest number. Rays represent a Gaussian beam in
-/// the same way.
+/// light from a point or in one direction has a rank-deficient Q. Both cases are handled like any
+/// other matrix, so no operator needs a bound on small or large numbers. A Gaussian beam is
+/// represented by rays in the same way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpectralCovariance {
     p: Matrix<4>,
@@ -23,8 +23,8 @@ pub struct SpectralCovariance {
 
 impl SpectralCovariance {
     /// Returns the covariance of light with the variances S of a Gaussian over (x, y, u, v), in
-    /// squares of metres and slopes. Zero is a point or a single direction; infinite is unbounded
-    /// light.
+    /// squares of metres and slopes. A variance of zero stands for a point or a single direction,
+    /// an infinite one for unbounded light.
     #[must_use]
     pub fn new(variance: [f64; 4]) -> Self {
         let is_flat = |s: f64| s == f64::INFINITY;
@@ -65,8 +65,8 @@ impl SpectralCovariance {
     }
 
     /// Returns the covariance after a convolution with a Gaussian of covariance s in the light
-    /// field, in squares of metres and radians: C⁻¹ grows by 8π² s. Zero, as for a mirror, changes
-    /// nothing.
+    /// field, in squares of metres and radians: C⁻¹ grows by 8π² s. A covariance of zero, as for a
+    /// mirror, changes nothing.
     #[must_use]
     pub fn convolved(&self, kernel: &Matrix<4>) -> Self {
         let grown = product(kernel, &self.p).map(|row| row.map(|entry| POWER * entry));
@@ -76,12 +76,13 @@ impl SpectralCovariance {
         }
     }
 
-    /// Returns the covariance after an integral over all directions that is spread uniformly over
-    /// directions again: the spectrum at ν = 0 alone. C⁻¹ keeps its block of positions, and is
-    /// infinite along both angles.
+    /// Returns the covariance after light is integrated over all directions and spread uniformly
+    /// over them again, so that only the spectrum at ν = 0 remains. C⁻¹ keeps its block of
+    /// positions, and becomes infinite along both angles.
     #[must_use]
     pub fn diffused(&self) -> Self {
-        // The columns of P and Q span the pairs (C w, w). Columns without angular frequency stay.
+        // The columns of P and Q span the pairs (C w, w). Columns without angular frequency stay as
+        // they are.
         let mut columns = [0, 1, 2, 3].map(|j| [&self.q, &self.p].map(|m| m.map(|row| row[j])));
         let mut goes = [false; 4];
         for row in [2, 3] {
@@ -132,7 +133,7 @@ impl SpectralCovariance {
     }
 }
 
-/// Removes the asymmetry that rounding leaves.
+/// Removes the asymmetry that rounding errors leave.
 fn symmetric(a: &Matrix<4>) -> Matrix<4> {
     from_fn(|i, j| 0.5 * (a[i][j] + a[j][i]))
 }

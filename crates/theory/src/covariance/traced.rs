@@ -15,9 +15,10 @@ use std::fmt::{self, Display};
 /// The reason why covariance cannot be traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Untraced {
-    /// A mask stops the central ray, or has an edge on it, so it is not a window about the ray.
+    /// A mask stops the central ray or has an edge on it, so the mask is not a window about the
+    /// ray.
     Blocked,
-    /// An obstacle stands around the path, so it is not a window about the ray.
+    /// An obstacle stands around the path, so the obstacle is not a window about the ray.
     Obstacles,
     /// The light is a map or several lobes, which no Gaussian represents.
     Light,
@@ -137,7 +138,7 @@ fn of_light(light: &Light) -> Result<SpectralCovariance, Untraced> {
         Light::Environment { environment } => {
             light_of([endless; 2], [sky_variance(environment)?; 2])
         }
-        // Not a Gaussian: each ray is infinitely narrow.
+        // The light is not a Gaussian: each ray is infinitely narrow.
         Light::Rays { .. } => return Err(Untraced::Light),
     })
 }
@@ -207,7 +208,7 @@ fn counted(
     }
 }
 
-/// Returns a covariance along one direction of positions.
+/// Returns the covariance of a variance along one direction of positions.
 fn along_line([a, b]: [f64; 2], variance: f64) -> Matrix<4> {
     let entry = |p: f64, q: f64| p * q * variance;
     let none = [0.0; 4];

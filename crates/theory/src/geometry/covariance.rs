@@ -9,10 +9,11 @@ use std::array;
 use std::f64::consts::{PI, TAU};
 
 /// Returns the covariance after a product with a Gaussian window of standard deviations `std`, one
-/// for each coordinate: S⁻¹ becomes S⁻¹ + diag(1/std²). Infinite ones have no effect.
+/// for each coordinate: S⁻¹ becomes S⁻¹ + diag(1/std²). Infinite standard deviations have no
+/// effect.
 ///
 /// Computed as S (1 + diag(1/std²) S)⁻¹, which allows a singular S, such as light from a point.
-/// `None` if that inverse does not exist, which no covariance causes.
+/// `None` if that inverse does not exist, which does not occur for any covariance.
 #[must_use]
 pub fn gaussian_window<const N: usize>(before: &Matrix<N>, std: [f64; N]) -> Option<Matrix<N>> {
     let narrowing = product(&diagonal(std.map(|s| 1.0 / (s * s))), before);
@@ -32,7 +33,7 @@ pub fn gaussian_lobe<const N: usize>(before: &Matrix<N>, std: f64) -> Matrix<N> 
 /// Returns the covariance of |L|² for a Gaussian field of covariance S: S⁻¹/8π². The covariance of
 /// |L| is twice as large.
 ///
-/// In cycles per unit, squared. `None` for a singular S, whose spectrum is unbounded.
+/// The result is in cycles per unit, squared. `None` for a singular S, whose spectrum is unbounded.
 #[must_use]
 pub fn power_spectrum<const N: usize>(field: &Matrix<N>) -> Option<Matrix<N>> {
     let inverse = matrix::inverse(field)?;

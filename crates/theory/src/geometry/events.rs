@@ -48,7 +48,7 @@ impl AffineMap<4> {
     /// at the angle θ₀.
     ///
     /// The product is x' = −x, y' = y, θ' = −θ − (2 M₁₁/c₀) x + 2 M₁₂ y, φ' = φ − 2 M₁₂ x + 2 c₀
-    /// M₂₂ y: a sphere of radius R focuses at R/2 · cos θ₀ in the plane of incidence and at R/(2
+    /// M₂₂ y. So a sphere of radius R focuses at R/2 · cos θ₀ in the plane of incidence and at R/(2
     /// cos θ₀) across it (Coddington's equations).
     #[must_use]
     pub fn mirror_reflection(theta0: f64, shape: Matrix<2>) -> Self {
@@ -59,8 +59,8 @@ impl AffineMap<4> {
             .then(&Self::outgoing(-theta0))
     }
 
-    /// Refraction at a surface with the shape operator M, met at the angle θ₀: as in 2D, and back
-    /// with the cosine of θ₂.
+    /// Refraction at a surface with the shape operator M, met at the angle θ₀. It is composed as in
+    /// 2D; the step back uses the cosine of θ₂.
     #[must_use]
     pub fn refracting_surface(theta0: f64, shape: Matrix<2>, media: &Media) -> Option<Self> {
         let theta2 = media.refracted(theta0)?;

@@ -6,8 +6,8 @@ use etendue_field::Complex;
 
 /// An affine map of rays, z' = A z + t, that preserves radiance (docs/theory.md (1)).
 ///
-/// Coordinates are positions, then slopes or angles: (x, u) for N = 2, (x, y, u, v) for N = 4. No
-/// other N has constructors.
+/// Coordinates are positions, then slopes or angles: (x, u) for N = 2, (x, y, u, v) for N = 4.
+/// Other values of N have no constructors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AffineMap<const N: usize> {
     /// The matrix A, as rows.
@@ -47,7 +47,8 @@ impl<const N: usize> AffineMap<N> {
     }
 
     /// Returns the distance of this map from the tangent at zero of another map of rays, measured
-    /// as by [`apart`](Self::apart), beyond the error of the differences where that map bends fast.
+    /// as by [`apart`](Self::apart). Subtracts the error of the finite differences, which matters
+    /// where the other map bends fast.
     pub(crate) fn off_touching(
         &self,
         map: impl Fn([f64; N]) -> Option<[f64; N]>,
@@ -58,8 +59,8 @@ impl<const N: usize> AffineMap<N> {
         Some((self.apart(&fine, half) - open).max(0.0))
     }
 
-    /// Returns the distance of this map from another, in half-widths of a window: the largest
-    /// difference between the two images of a ray, over rays that either map keeps within the
+    /// Returns the distance of this map from another, in half-widths of a window. It is the largest
+    /// difference between the two images of a ray, over all rays that either map keeps within the
     /// window.
     pub(crate) fn apart(&self, other: &Self, half: &[f64; N]) -> f64 {
         let mut most = 0.0_f64;
@@ -173,12 +174,14 @@ impl<const N: usize> AffineMap<N> {
         Some(congruent(&transpose(&inverse), before))
     }
 
-    /// Returns how far the map is from conserving étendue: the largest entry of |Aᵀ J A − r J|, J =
-    /// [[0, 1], [−1, 0]] in blocks, where r is the index of refraction before over the index after.
+    /// Returns how far the map is from conserving étendue: the largest entry of |Aᵀ J A − r J|,
+    /// with J = [[0, 1], [−1, 0]] in blocks, and r the index of refraction before the map divided
+    /// by that after it.
     ///
-    /// The result is zero between two planes perpendicular to the light, whatever is between them:
-    /// n dx du is conserved in 2D (J then gives |det A − r|), and the Lagrange invariant of every
-    /// pair of rays in 4D. Maps onto or off a surface have one cosine too many or too few.
+    /// The result is zero between two planes perpendicular to the light, whatever is between them.
+    /// In 2D, n dx du is conserved (J then gives |det A − r|); in 4D, the Lagrange invariant of
+    /// every pair of rays is. Maps onto or off a surface have one cosine too many or too few, so
+    /// their result is not zero.
     #[must_use]
     pub fn symplectic_defect(&self, index_ratio: f64) -> f64 {
         let half = N / 2;

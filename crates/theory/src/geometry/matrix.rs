@@ -111,7 +111,7 @@ mod tests {
             [0.0, 1.0, 0.0, -1.0],
             [2.0, 0.0, -1.0, 0.5],
         ];
-        // Rows swapped by hand: det = 21 from the blocks (0, 2) and (1, 3).
+        // The rows were swapped by hand: det = 21 from the blocks (0, 2) and (1, 3).
         assert!((determinant(&a) - 21.0).abs() < 1e-13); // rounding of 21
         let unit = product(&a, &inverse(&a).unwrap());
         let one = diagonal([1.0; 4]);

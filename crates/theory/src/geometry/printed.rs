@@ -13,8 +13,8 @@ pub enum Edition {
     Corrected,
     /// The numbered equations: 9, 11, 10, and for a surface in 3D the shear by M in the text after 19.
     Equations,
-    /// Table 1: its light incidence, curvature and outgoing angle. It has no row for 3D, where the
-    /// shear by M takes the table's sign.
+    /// Table 1: its light incidence, curvature and outgoing angle. Table 1 has no row for 3D, where
+    /// the shear by M takes the table's sign.
     Table,
 }
 

@@ -12,8 +12,8 @@ impl AffineMap<2> {
     /// directions are flipped.
     ///
     /// L'(Ωx, Ωθ) = e^(−2πi Ωθ θ₀)/cos θ₀ · L(−Ωx/cos θ₀, Ωθ). Eq. 9 of Durand et al. 2005 has cos
-    /// θ₀ instead of 1/cos θ₀, in the factor and in the argument; Table 1 has it in the argument.
-    /// Both omit 2π from the phase ([`Edition`](super::Edition)).
+    /// θ₀ instead of 1/cos θ₀, in the factor and in the argument; Table 1 has cos θ₀ in the
+    /// argument alone. Both Eq. 9 and Table 1 omit 2π from the phase ([`Edition`](super::Edition)).
     #[must_use]
     pub fn incidence(theta0: f64) -> Self {
         Self {
@@ -56,7 +56,7 @@ impl AffineMap<4> {
     /// Light incidence in the plane of (X, D): s_x = −x/cos θ₀, s_y = y, θᵢ = θ + θ₀, φᵢ = −φ.
     ///
     /// Flipping directions also flips the latitude, which section 5.2 of Durand et al. 2005 does
-    /// not mention. In 2D this is its Eq. 9.
+    /// not mention. In 2D the step is Eq. 9 of that paper.
     #[must_use]
     pub fn incidence(theta0: f64) -> Self {
         Self::sections(&AffineMap::<2>::incidence(theta0), &AffineMap::mirror())
@@ -66,9 +66,9 @@ impl AffineMap<4> {
     /// directions about the longitude θ₀.
     ///
     /// `shape` is M, the derivative of the normal along (T, B), symmetric, in 1/m, convex positive:
-    /// diag(k₁, k₂) in principal axes. Eq. 19 of Durand et al. 2005 is this M. Their text describes
-    /// the step as a shear by M, without cos θ₀; but tilting the normal about T moves a direction
-    /// at longitude θ₀ by a factor cos θ₀ less.
+    /// diag(k₁, k₂) in principal axes. Eq. 19 of Durand et al. 2005 is this matrix M. Their text
+    /// describes the step as a shear by M, without cos θ₀. But tilting the normal about T moves a
+    /// direction at longitude θ₀ by an amount smaller by the factor cos θ₀.
     #[must_use]
     pub fn curvature(shape: Matrix2, theta0: f64) -> Self {
         Self::tilt(shape, -1.0, theta0)

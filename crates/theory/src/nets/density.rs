@@ -4,7 +4,8 @@ use etendue_field::Profile;
 
 /// Number of cells in which the density is linear.
 const CELLS: usize = 512;
-/// Lookup shares per cell: with more shares, the first cell tried is more often the right one.
+/// Lookup shares per cell. With more shares, the first cell that is tried is more often the right
+/// one.
 const SHARES: usize = 4;
 
 /// A density on an interval, linear between values at equal steps.
@@ -60,8 +61,8 @@ impl LinearDensity {
         }
     }
 
-    /// Returns the density of a window's profile. Next to the border it is slightly larger than the
-    /// profile, which bounds the weight of rays there.
+    /// Returns the density of a window's profile. Next to the border the density is slightly larger
+    /// than the profile, which bounds the weight of rays there.
     pub(crate) fn of(profile: &Profile) -> Self {
         let half = profile.half_width();
         let inside = |t: f64| profile.value(t * (1.0 - 1e-9)) + 1e-3;
@@ -78,7 +79,7 @@ impl LinearDensity {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "a share, 0 to 1, of the cells"
+        reason = "a share from 0 to 1 of the number of cells"
     )]
     pub(crate) fn draw(&self, share: f64) -> [f64; 2] {
         let last = self.below.len() - 2;
@@ -105,7 +106,7 @@ impl LinearDensity {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "checked to be within the interval first"
+        reason = "the coordinate was checked to be within the interval"
     )]
     pub(crate) fn value(&self, t: f64) -> f64 {
         let at = (t - self.low) / self.step;
@@ -129,11 +130,12 @@ pub(crate) struct Target {
 
 /// The share of rays that are aimed without regard to the window.
 const ANYWHERE_SHARE: f64 = 0.04;
-/// How much wider than the window the density of the other rays is.
+/// The width of the density of the other rays, relative to the window.
 const WIDER: f64 = 1.2;
 
 impl Target {
-    /// Returns the density around the window of a coordinate.
+    /// Returns the density of aimed points along one coordinate, given the window's profile along
+    /// it.
     pub(crate) fn new(profile: &Profile) -> Self {
         let half = profile.half_width();
         let reach = 1.2 * WIDER * half;
@@ -145,7 +147,8 @@ impl Target {
         }
     }
 
-    /// Returns the coordinate below which a share lies, separately for near and far points.
+    /// Returns the coordinate below which a share of the density lies; small shares give points
+    /// anywhere, and larger shares give points near the window.
     pub(crate) fn quantile(&self, share: f64) -> f64 {
         if share >= ANYWHERE_SHARE {
             return self

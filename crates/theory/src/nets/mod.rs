@@ -2,9 +2,9 @@
 //!
 //! Light fields without a closed form are integrals over rays: positions and slopes at the plane,
 //! and points of the light. The nodes are those of scrambled nets ([`sobol`]). Each of
-//! [`REPLICATES`] independent nets is an unbiased prediction of its own, and their spread is the
-//! error of their mean: if the rule is too coarse, the nets disagree. Nodes are added until the
-//! error is below the requested one, or a budget is spent.
+//! [`REPLICATES`] independent nets is an unbiased prediction, and the error of their mean is
+//! computed from their spread. If the rule is too coarse, the nets disagree. Nodes are added until
+//! the error is below the requested one, or a budget is spent.
 
 mod density;
 mod rays;
@@ -29,12 +29,12 @@ pub const REPLICATES: usize = 32;
 const OF_DERIVATIVES: usize = 8;
 /// Number of independent nets for choosing a sampling strategy.
 const OF_TRIALS: usize = 16;
-/// Fewest and most nodes of each net of a derivative.
+/// The fewest and the most nodes in each net of a derivative.
 const DERIVATIVE_NODES: [u32; 2] = [1 << 12, 1 << 15];
-/// The relative error ‖error‖/‖D‖ at which a derivative is accurate enough. It causes an error of
-/// its square in a measured parameter, relative to the parameter's distance from the scene's value.
+/// The relative error ‖error‖/‖D‖ at which a derivative is accurate enough. It changes a measured
+/// parameter by about its square, relative to the parameter's distance from the scene's value.
 const DERIVATIVE_ERROR: f64 = 0.03;
-/// Nodes of a net before its error is first estimated.
+/// Number of nodes of a net at which its error is first estimated.
 const FIRST_NODES: u32 = 1 << 11;
 
 /// The fewest nodes of a net before a prediction may stop because its error is small: nets that
@@ -44,8 +44,7 @@ const MIN_NODES: u32 = 1 << 14;
 /// Criterion for when to stop adding nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayBudget {
-    /// The most nodes in total; if the budget ends the prediction, between half of them and all are
-    /// used.
+    /// The most nodes in total; if the budget ends the prediction, at least half of them are used.
     pub nodes: f64,
     /// The relative error ‖error‖/‖F‖ that is small enough.
     pub error: f64,
@@ -82,7 +81,8 @@ pub(crate) trait Integrand: Sync {
     fn rays(&self) -> usize {
         1
     }
-    /// Computes the rays of each field at a point, field by field. All are dark before the call.
+    /// Computes the rays of each field at a point, field by field. All rays are dark before the
+    /// call.
     fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [RayNode]);
 }
 
@@ -130,8 +130,9 @@ pub(crate) fn sums(
 }
 
 /// Returns ‖error‖/‖F‖ of a small number of rays, for choosing a sampling strategy. With too few
-/// rays, strategies that are best only with few rays would win. The nets differ from those of
-/// predictions: otherwise the strategy whose heavy rays these nets happen to miss would win.
+/// rays, this would prefer strategies that are best only with few rays. The nets differ from those
+/// of predictions; otherwise this would prefer the strategy whose heavy rays these nets happen to
+/// miss.
 pub(crate) fn trial(
     integrand: &(impl Integrand + ?Sized),
     (window, grid): (&Window, &SliceGrid),
@@ -215,10 +216,10 @@ pub(crate) fn means(
     }
 }
 
-/// Steps of a ray, and of spreading it over an azimuth.
+/// Steps to follow a ray, and to spread it over an azimuth.
 const RAY: f64 = 400.0;
 const SPREAD: f64 = 15.0;
-/// Approximate number of fields of a pass over derivatives.
+/// Approximate number of fields in one pass over derivatives.
 const FIELDS: f64 = 12.0;
 /// Steps of a transform per frequency.
 const TRANSFORM: f64 = 300.0;
@@ -329,7 +330,7 @@ fn finished(running: Vec<Running>, grid: ProjectionGrid, error: f64) -> Predicte
     }
 }
 
-/// Returns the mean of slices on one grid.
+/// Returns the mean of several slices on one grid.
 ///
 /// # Panics
 /// If there are no slices.
@@ -452,7 +453,7 @@ mod tests {
                 Complex::from_polar(node.weight, -TAU * phase)
             };
             let plain = rays.iter().map(term).sum::<Complex>() / f64::from(FIRST_NODES);
-            // The error bound of the transform, 2·10⁻⁷ of the mean weight.
+            // The tolerance is the error bound of the transform, 2·10⁻⁷ of the mean weight.
             assert!((value - plain).norm() < 4e-7, "{k} {m} {n}");
         }
     }

@@ -27,7 +27,7 @@ impl<'a, I: Integrand> SampledNets<'a, I> {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "between 1 and 2^29"
+        reason = "the number is between 1 and 2^29"
     )]
     pub(crate) fn new(integrand: &'a I, budget: RayBudget) -> Self {
         let allowed = (budget.nodes / REPLICATES as f64).clamp(1.0, MAX_NODES) as u32;

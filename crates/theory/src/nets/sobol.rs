@@ -11,7 +11,8 @@ use etendue_transform::sobol_directions;
 /// The largest number of coordinates of a point.
 pub(crate) const DIMENSIONS: usize = 10;
 
-/// The contribution of each bit of a point's index to its coordinates, combined without carry.
+/// The contribution of each bit of a point's index to its coordinates; contributions are combined
+/// by exclusive or.
 static DIRECTIONS: [[u32; 32]; DIMENSIONS] = {
     let mut all = [[0; 32]; DIMENSIONS];
     let mut dimension = 0;
@@ -32,8 +33,8 @@ pub(crate) struct NetPoints {
 }
 
 impl NetPoints {
-    /// Returns the net scrambled with key `replicate`, with the given number of coordinates; the
-    /// others are 0.
+    /// Returns the net scrambled with key `replicate`. Points have the given number of coordinates;
+    /// all others are 0.
     pub(crate) fn new(replicate: u32, dimensions: usize) -> Self {
         let key = |dimension: u32| {
             let mixed = replicate.wrapping_mul(0x9E37_79B9) ^ dimension.wrapping_mul(0x85EB_CA6B);
@@ -91,7 +92,7 @@ mod tests {
         (1..n).take_while(|i| *i as f64 <= x * n as f64).count()
     }
 
-    /// Each box of volume 2⁻ᵐ from halving pairs of sides holds one of 2ᵐ points.
+    /// Each box of volume 2⁻ᵐ that comes from halving pairs of sides holds one of 2ᵐ points.
     #[test]
     fn pairs_of_first_coordinates_are_nets() {
         for replicate in 0..3 {

@@ -9,10 +9,10 @@ use etendue_field::{Complex, Window};
 /// The spectrum ℓ̂(Ωx, Ωy, Ωu, Ωv) of the windowed light field at one frequency.
 ///
 /// Computes brightness · Σ terms ± F(Ωx, Ωu) F(Ωy, Ωv), where the factors are transforms of convex
-/// polygons, evaluated one by one. It is exact for uniform rectangles, half-planes and gratings,
-/// accurate to 10⁻⁸ for factors of slope, and a quadrature for discs (see
-/// [`quadrature_error`](crate::quadrature_error)) and for diffuse reflection. It is the reference
-/// for [`slices`](crate::slices). Unit: W m⁻² sr⁻¹ · m².
+/// polygons, evaluated one by one. The result is exact for uniform rectangles, half-planes and
+/// gratings, and accurate to 10⁻⁸ for factors of slope. For discs (see
+/// [`quadrature_error`](crate::quadrature_error)) and for diffuse reflection it is a quadrature. It
+/// is the reference for [`slices`](crate::slices). Unit: W m⁻² sr⁻¹ · m².
 #[must_use]
 pub fn at(chain: &Chain, window: &Window, frequency: [f64; 4]) -> Complex {
     let path = chain.path();

@@ -16,7 +16,7 @@ pub struct Source {
 pub enum Operator {
     /// Free travel (docs/theory.md (2)): ℓ'(x, u) = ℓ(x − d u, u), ℓ̂'(Ωx, Ωu) = ℓ̂(Ωx, Ωu + d Ωx)
     /// (Durand et al. 2005, Eq. 3). [`AffineMap::travel`](crate::geometry::AffineMap::travel) is
-    /// the same as a map; here distances are added, and polygons are sheared.
+    /// the same step as a map; here distances are added, and polygons are sheared.
     Travel {
         /// Name of the plane where the light comes from.
         from: String,
@@ -25,8 +25,9 @@ pub enum Operator {
         /// The distance d, in metres.
         distance: f64,
     },
-    /// A mask in the plane where the light is now: a product with 1 − Σ shapes and half-planes,
-    /// which must not overlap each other, or with a cosine grating (Durand et al. 2005, Eq. 4).
+    /// A mask in the plane where the light is now. It is a product with 1 − Σ shapes and
+    /// half-planes, which must not overlap each other, or with a cosine grating (Durand et al.
+    /// 2005, Eq. 4).
     Visibility {
         /// Name of the mask.
         name: String,
@@ -69,8 +70,8 @@ pub struct Chain {
 /// A plane with a mask, relative to the end of a [`ChainSegment`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MaskLayer<'a> {
-    /// The distance the light has travelled since the mask, in metres: the ray (x, u) was at x −
-    /// distance · u there.
+    /// The distance that light has travelled since the mask, in metres: the ray (x, u) crossed the
+    /// mask at x − distance · u.
     pub(crate) distance: f64,
     pub(crate) mask: &'a Mask,
 }
@@ -97,8 +98,8 @@ pub(crate) struct ParallelEmitter {
 
 impl ParallelEmitter {
     /// # Panics
-    /// If light passes through a picture or comes from infinity: `rays` and `scattering` predict
-    /// that.
+    /// If light passes through a picture or comes from infinity; `rays` and `scattering` predict
+    /// such light.
     pub(crate) fn new(light: &Light) -> Self {
         let (brightness, power) = match *light {
             Light::Area {
@@ -115,7 +116,7 @@ impl ParallelEmitter {
     }
 }
 
-/// A chain up to its end, or up to its diffuse surface, relative to that end.
+/// A chain up to its end, or up to its diffuse surface; quantities are relative to that end.
 #[derive(Clone, Debug)]
 pub(crate) struct ChainSegment<'a> {
     pub(crate) light: ParallelEmitter,
@@ -177,7 +178,8 @@ impl ChainSegment<'_> {
         self.light.power - 2.0 * f64::from(self.cosines)
     }
 
-    /// Returns the shapes in each plane with edges: the light's, then those of opaque masks.
+    /// Returns the shapes of each plane that has edges: those of the light, then those of opaque
+    /// masks.
     pub(crate) fn planes(&self) -> Vec<&[Shape]> {
         let of_masks = self.layers.iter().filter_map(|layer| match layer.mask {
             Mask::Opaque { shapes, .. } => Some(&shapes[..]),

@@ -1,14 +1,15 @@
 //! The transforms of many polygons along a row of frequencies, without one exponential per polygon
 //! and frequency (docs/theory.md, section 3).
 //!
-//! Eq. 5 there with the field k exp(−2πi k·p) telescopes to the corners p, where edges of
+//! With the field k exp(−2πi k·p), Eq. 5 there becomes a sum over the corners p, at which edges of
 //! directions d and e meet:
 //!
 //! F(k) = 1/(4π²) Σ (d × e) / ((k·d)(k·e)) · exp(−2πi k·p)
 //!
-//! The quotient depends on the pair of directions alone, and a chain has few; the exponential is
-//! the product of one in the position and one in the slope. Each exponential of the window shifts k
-//! by ± s, so a corner needs, with θ = 2π s·p and c± the quotients at k ± s,
+//! The quotient depends only on the pair of directions, and a chain has few such pairs. The
+//! exponential is the product of one exponential in the position and one in the slope. Each
+//! exponential of the window shifts k by ± s, so a corner needs, with θ = 2π s·p and c± the
+//! quotients at k ± s,
 //!
 //! exp(−2πi k·p) Σ_s (c₊ + c₋) cos θ + i (c₋ − c₊) sin θ.
 //!
@@ -24,7 +25,7 @@ use etendue_field::Complex;
 use std::f64::consts::{PI, TAU};
 
 /// The smallest |k·edge|, for the longest edge of a direction, at which corners are used. Two such
-/// edges in one quotient amplify rounding by 1/CANCELLATION² = 1000.
+/// edges in one quotient amplify rounding errors by 1/CANCELLATION² = 1000.
 const CANCELLATION: f64 = 0.03;
 /// Number of waves processed at a time, chosen to keep their quotients in the cache.
 const WAVES_AT_A_TIME: usize = 32;
@@ -35,7 +36,7 @@ struct Corner {
     at: [f64; 2],
     /// Index of the corner's pair of directions.
     pair: usize,
-    /// The sign of the order of the directions; ±i for the ends of a segment.
+    /// The sign given by the order of the two directions; ±i for the ends of a segment.
     sign: Complex,
     /// Index of the corner's polygon.
     polygon: usize,
@@ -52,14 +53,14 @@ pub(crate) struct Corners<'a> {
     /// Pairs of directions that meet at a corner, the lower index first; the indices are equal at
     /// the end of a segment.
     pairs: Vec<[usize; 2]>,
-    /// Directions of an edge, each with the largest |k·d| at which it is nearly zero.
+    /// Directions of edges, each with the largest |k·d| at which k·d is considered nearly zero.
     edges: Vec<(usize, f64)>,
 }
 
 /// The quotients of some waves along a row.
 struct Quotients {
-    /// weight · (c₊ + c₋) and weight · (c₋ − c₊), [pair, wave, n]; `re` and `im` in the form in
-    /// which they are multiplied.
+    /// weight · (c₊ + c₋) and weight · (c₋ − c₊), [pair, wave, n]. `re` and `im` are stored in the
+    /// form in which they are multiplied.
     values: ComplexRow,
     /// Cells that need the plain transform: n, the shifted frequency, the weight.
     left: Vec<(usize, [f64; 2], Complex)>,
@@ -203,7 +204,8 @@ impl SectionWave {
     }
 }
 
-/// Returns the longest edge along a direction within the square, as a multiple of the direction.
+/// Returns the longest edge along a direction that fits in the square, as a multiple of the
+/// direction.
 fn longest(direction: [f64; 2]) -> f64 {
     2.0 / direction[0].abs().max(direction[1].abs())
 }

@@ -9,11 +9,12 @@ use etendue_field::{SliceGrid, Slices, Window};
 ///
 /// The error of the difference is half the second derivative times the step. Since a parameter
 /// changes phases by at most some tens of radians, this error is about 10⁻³ of the derivative.
-/// Rounding adds 10⁻¹²/10⁻⁴ = 10⁻⁸ of the spectrum.
+/// Rounding errors add 10⁻¹²/10⁻⁴ = 10⁻⁸ of the spectrum.
 const RELATIVE_STEP: f64 = 1e-4;
 
-/// Returns the derivative of the slices with respect to a parameter, per its unit: the forward
-/// difference with a step of 10⁻⁴ of the parameter's value (of its unit, if the value is zero).
+/// Returns the derivative of the slices with respect to a parameter, per unit of the parameter. It
+/// is the forward difference with a step of 10⁻⁴ of the parameter's value (or of its unit, if the
+/// value is zero).
 ///
 /// `prediction` must be the slices of the chain itself, on the same window and grid.
 ///
@@ -90,8 +91,8 @@ mod tests {
                     worst = f64::max(worst, (derivative - central).norm());
                     largest = f64::max(largest, central.norm());
                 }
-                // Half a second derivative times the forward step of 1e-4; phases here stay below
-                // 20.
+                // The error is half a second derivative times the forward step of 1e-4; phases here
+                // stay below 20.
                 let close = 2e-3 * largest;
                 assert!(worst < close, "{parameter:?}: {}", worst / largest);
             }

@@ -7,9 +7,10 @@ use std::f64::consts::FRAC_PI_2;
 /// The method for splitting a disc into rectangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Discs {
-    /// n × n rectangles about its centre, with weights: for spectra.
+    /// n × n rectangles about the disc's centre, with weights; used for spectra.
     Rule(usize),
-    /// n strips of constant x, each with the area of its slice: for the light field itself.
+    /// n strips of constant x, each with the area of its slice of the disc; used for the light
+    /// field itself.
     Strips(usize),
 }
 
@@ -38,10 +39,10 @@ pub(crate) fn patches_of(shape: &Shape, discs: Discs) -> Vec<WeightedRectangle> 
 
 /// Σ w_jk 1[|x| < R cos t_j] 1[|y| < R sin t_k], t_j = π (2j + 1)/4n (docs/theory.md (5b)).
 ///
-/// The sum replaces the disc under every integral with a smooth function: ∫ A(R cos t) dB(R sin t),
-/// A and B being the integrals over the two rectangles' sides, once A and B are expanded in the
-/// cosines and sines of odd multiples of t (A and B are odd). With the sum over multiples m < 2n in
-/// closed form, π/n² Σ m cos(m t_j) sin(m t_k) = π/2n (c(k + j + 1) + c(k − j)), with
+/// Under an integral with a smooth function, the sum replaces the disc. That integral is ∫ A(R cos
+/// t) dB(R sin t), where A and B are the integrals along the two sides of a rectangle. A and B are
+/// odd, so they are expanded in the cosines and sines of odd multiples of t. The sum over multiples
+/// m < 2n has a closed form, π/n² Σ m cos(m t_j) sin(m t_k) = π/2n (c(k + j + 1) + c(k − j)), with
 /// c(i) = −(−1)^i / sin(π i/2n) and c(0) = 0.
 fn rule(disc: &Disc, n: usize) -> Vec<WeightedRectangle> {
     let angle = FRAC_PI_2 / n as f64;
@@ -67,7 +68,7 @@ fn rule(disc: &Disc, n: usize) -> Vec<WeightedRectangle> {
 /// Returns strips between x = R sin t at n + 1 evenly spaced t. Second order in 1/n.
 fn strips(disc: &Disc, n: usize) -> Vec<WeightedRectangle> {
     let angle = |i: usize| FRAC_PI_2 * (2.0 * i as f64 / n as f64 - 1.0);
-    // The area below sin t, for a radius of 1.
+    // The area of the unit disc below sin t.
     let area = |t: f64| t + 0.5 * libm::sin(2.0 * t);
     (0..n)
         .map(|i| {
@@ -108,7 +109,7 @@ mod tests {
     fn transform(patches: &[WeightedRectangle], omega: f64, azimuth: f64) -> f64 {
         let k = [libm::cos(azimuth), libm::sin(azimuth)].map(|c| c * omega);
         let side = |p: &WeightedRectangle, i: usize| p.extent[i][1] - p.extent[i][0];
-        // By symmetry only the even part remains.
+        // Because of symmetry, only the even part remains.
         let middle = |p: &WeightedRectangle, i: usize| 0.5 * (p.extent[i][1] + p.extent[i][0]);
         let value = |p: &WeightedRectangle| {
             let phase = TAU * (k[0] * middle(p, 0) + k[1] * middle(p, 1));
@@ -134,7 +135,8 @@ mod tests {
 
     #[test]
     fn the_rule_has_the_transform_of_a_disc() {
-        // π R Ω = 15.1 at the last frequency: the error falls with every node from there on.
+        // At the last frequency π R Ω is 15.1; from this number of nodes on, the error falls with
+        // every node.
         let errors = [16, 20, 24].map(|n| worst(Discs::Rule(n)));
         assert!(errors[0] < 1e-8, "{errors:?}");
         assert!(errors[1] < 1e-12, "{errors:?}");
@@ -158,9 +160,9 @@ mod tests {
     #[test]
     fn strips_are_of_second_order() {
         let [coarse, fine] = [64, 128].map(|n| worst(Discs::Strips(n)));
-        // The ratio is 4; the next order is small.
+        // The errors have a ratio of 4; the next order is small.
         assert!((coarse / fine - 4.0).abs() < 0.2, "{}", coarse / fine);
-        // (π Ω R)² / 128² is 0.014, relative to the remainder at such frequencies.
+        // The error relative to the remainder at such frequencies is (π Ω R)² / 128² = 0.014.
         assert!(fine < 1e-4, "{fine}");
     }
 }

@@ -11,9 +11,10 @@ use std::f64::consts::PI;
 const SPARE_NODES: f64 = 6.0;
 /// The most nodes: a disc becomes 72² rectangles.
 const MOST_NODES: f64 = 72.0;
-/// How far out edges in other planes are followed, in multiples of the largest frequency.
+/// The largest frequency up to which edges in other planes are considered, in multiples of the
+/// largest frequency of the spectra.
 const MAX_FREQUENCIES: f64 = 4.0;
-/// The share of that bandwidth that is resolved: the rest lies in the corners of the grid of
+/// The share of that bandwidth that is resolved; the rest lies in the corners of the grid of
 /// frequencies, where there is little content.
 const FAR_SHARE: f64 = 0.7;
 /// The most terms of an expansion that discs may cause.
@@ -41,9 +42,9 @@ impl DiscResolution {
         }
     }
 
-    /// Checks whether the affordable resolution of discs is about fine enough for spectra up to
-    /// `frequency`. It is not for a wide disc behind a narrow window, and a comparison with finer
-    /// rules then does not estimate the error.
+    /// Checks whether the affordable resolution of discs is approximately fine enough for spectra
+    /// up to `frequency`. It is too coarse for a wide disc behind a narrow window; a comparison
+    /// with finer rules then does not estimate the error.
     pub(crate) fn is_enough(path: &ChainSegment<'_>, window: &Window, frequency: [f64; 2]) -> bool {
         if !path.has_discs() {
             return true;
@@ -99,7 +100,7 @@ impl DiscResolution {
         )
     }
 
-    /// For the light field on a grid of `bins` positions.
+    /// Chooses strips for the light field on a grid of `bins` positions.
     pub(crate) fn for_projection(path: &ChainSegment<'_>, window: &Window, bins: usize) -> Self {
         let cell = 2.0 * window.x.half_width() / bins as f64;
         Self::of(path, |radius, _| {
@@ -108,7 +109,8 @@ impl DiscResolution {
         })
     }
 
-    /// `discs` chooses from the largest radius in a plane and the index of the plane.
+    /// `discs` chooses how the discs of a plane are split, from the largest radius in the plane and
+    /// the index of the plane.
     fn of(path: &ChainSegment<'_>, discs: impl Fn(f64, usize) -> Discs) -> Self {
         let planes = path.planes().into_iter().enumerate();
         Self(
@@ -133,8 +135,8 @@ impl DiscResolution {
     }
 }
 
-/// How fast integrals over the lines x − h u = c may change with c: the spectrum of the rest of the
-/// field along the line of frequencies (Ωx − γ, Ωu + h γ).
+/// A bound on how fast integrals over the lines x − h u = c change with c. Their spectrum is that
+/// of the rest of the field along the line of frequencies (Ωx − γ, Ωu + h γ).
 struct EdgeBandwidth {
     /// The largest |Ωx| and |Ωu|, shifted by gratings.
     frequency: [f64; 2],
@@ -167,8 +169,8 @@ impl EdgeBandwidth {
     }
 
     /// With the window alone the spectrum is concentrated near zero, so γ is both near Ωx and near
-    /// −Ωu/h. Edges in a plane at distance g spread it along Ωu = −g Ωx, which the line meets at γ
-    /// = (Ωu + g Ωx)/(g − h); there is little content far out on it.
+    /// −Ωu/h. Edges in a plane at distance g spread the spectrum along Ωu = −g Ωx. The line of
+    /// frequencies meets it at γ = (Ωu + g Ωx)/(g − h); the spectrum has little content far out.
     fn at(&self, plane: usize) -> f64 {
         let h = self.planes[plane];
         let [x, u] = self.frequency;

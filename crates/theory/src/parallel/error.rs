@@ -11,11 +11,11 @@ const ORDER: i32 = 4;
 /// Estimates the error of `slices`, the prediction of the same chain: ‖error‖/‖F‖ over the grid.
 /// `None` if the prediction is a closed form.
 ///
-/// * Discs: the difference to a prediction that takes them apart a quarter finer, over 1 − 0.8⁴.
+/// * Discs: the difference from a prediction that splits them a quarter finer, divided by 1 − 0.8⁴.
 ///   Where masks and windows have corners within a disc the error falls as n⁻⁴, elsewhere faster
-///   than exponentially (docs/theory.md, section 3), so that the difference is nearly all of it.
-/// * Diffuse reflection: a third of the difference to half as many nodes, since the rule is of
-///   second order.
+///   than exponentially (docs/theory.md, section 3). So the difference is nearly the whole error.
+/// * Diffuse reflection: a third of the difference from a prediction with half as many nodes, since
+///   the rule is of second order.
 /// * Spots, points and cosines: the residual of the series of (1 + u² + v²)^p over the window,
 ///   about 10⁻⁹.
 #[must_use]
@@ -84,9 +84,10 @@ mod tests {
                 let smooth = errors(Profile::Hann, radius, distances);
                 let hard = errors(Profile::Box, radius, distances);
                 let said = format!("{radius} {distances:?}: {smooth:?} {hard:?}");
-                // Exponential convergence beyond π R Ω nodes.
+                // Convergence is exponential beyond π R Ω nodes.
                 assert!(smooth.iter().all(|e| *e < 1e-7), "{said}");
-                // Corners of the box: n⁻⁴. The largest disc lets 1/500 of the light past.
+                // With the corners of the box, the error falls as n⁻⁴. The largest disc lets 1/500
+                // of the light pass.
                 assert!(hard.iter().all(|e| *e < 5e-5), "{said}");
             }
         }
@@ -102,7 +103,8 @@ mod tests {
         let coarse = slices_at_fineness(&path, &window, &grid(), &coarse);
         let said = quadrature_error(&chain, &window, &grid(), &coarse).unwrap();
         let true_error = coarse.relative_difference(&slices(&chain, &window, &grid()));
-        // The coarse rule is far worse than either; four fifths to the fourth for a lower order.
+        // The coarse rule is far worse than the finer ones, so the estimate exceeds the error by
+        // 1/(1 − 0.8⁴), the factor for a lower order.
         let most = 1.0 / (1.0 - 0.8_f64.powi(ORDER));
         assert!((said / true_error / most - 1.0).abs() < 1e-3);
         assert!(said > 1e-5, "{said}"); // π R Ω = 15 > 12

@@ -9,15 +9,15 @@ use crate::parallel::weighted_rectangle::WeightedRectangle;
 use etendue_field::{Complex, Mask, Profile, Window};
 use std::collections::HashMap;
 
-/// Polygons with a measure below this, in units of the window's half-widths, are dropped: they are
-/// below rounding.
+/// Polygons with a measure below this, in units of the window's half-widths, are dropped, because
+/// they are below rounding error.
 const SMALLEST_MEASURE: f64 = 1e-15;
-/// Pairs of a term and a patch that may be tested for each term allowed.
+/// Number of pairs of a term and a patch that may be tested, for each term that is allowed.
 const PAIRS_PER_TERM: usize = 8;
 /// A range without bounds.
 const EVERYWHERE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
-/// The (position, slope) plane of one axis: the polygons that light fills in the plane, in units of
+/// The (position, slope) plane of one axis, and the polygons in it that light fills, in units of
 /// the half-widths of the window.
 #[derive(Debug)]
 pub(crate) struct AxisSection {
@@ -42,8 +42,8 @@ pub(crate) struct PolygonTerm {
     pub(crate) weight: f64,
     /// Indices of P and Q.
     pub(crate) polygons: [usize; 2],
-    /// The term it is a part of, and an index of the Q that the patches of one extent along x leave
-    /// of that term's Q. Terms with equal values of both have the same P.
+    /// The index of the term that it is a part of, and the index of the part of that term's Q that
+    /// patches of one extent along x leave. Terms for which both indices are equal have the same P.
     column: [usize; 2],
 }
 
@@ -55,16 +55,17 @@ pub(crate) type Sum = Vec<(f64, usize)>;
 pub(crate) struct SectionColumns {
     /// Sums of polygons of (y, v).
     pub(crate) sums: Vec<Sum>,
-    /// Sums of those sums, one for each polygon of (x, u).
+    /// Sums of the sums of polygons of (y, v), one for each polygon of (x, u).
     pub(crate) beside: Vec<Sum>,
 }
 
 /// The light field of a path inside a window, multiplied out: brightness · Σ products · Σ terms
 /// (docs/theory.md (4) and (5d)).
 ///
-/// A rectangle in a plane at distance h is a strip x − h u ∈ [low, high] times one in (y, v), so
-/// the product source · Π_layers (1 − Σ blockers) is a signed sum of products of convex polygons.
-/// All other factors are products of waves, with an outer sum if the two sections do not separate.
+/// A rectangle in a plane at distance h is a strip x − h u ∈ [low, high] times a strip in (y, v),
+/// so the product source · Π_layers (1 − Σ blockers) is a signed sum of products of convex
+/// polygons. All other factors are products of waves, with an outer sum over them if the two
+/// sections do not separate.
 #[derive(Debug)]
 pub(crate) struct Expansion {
     /// The sections (x, u) and (y, v).
@@ -282,9 +283,9 @@ impl Expansion {
         parts
     }
 
-    /// Returns the terms with sums along y taken first. The terms of n × n patches of a disc behind
-    /// n × n others are n⁴; they become n³ with as many summands, because the sum along y over n²
-    /// of them is the same for all n polygons of (x, u) that a patch's extent along x cuts.
+    /// Returns the terms with sums along y taken first. n × n patches of a disc behind n × n others
+    /// make n⁴ terms. The sum along y over n² of them is the same for all n polygons of (x, u) that
+    /// a patch's extent along x cuts. So n³ terms with n³ summands are enough.
     pub(crate) fn columns(&self) -> SectionColumns {
         let mut known = HashMap::new();
         let mut sums: Vec<Sum> = Vec::new();

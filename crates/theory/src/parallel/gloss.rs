@@ -7,10 +7,10 @@
 //! S(ρ, ν) = ∫ Ŵ(ν − q) ρ̂'(q) I(ρ, q) dq,
 //!
 //! where I is the spectrum under a window that contains all slopes whose lobes reach the plane's
-//! window. The integral is a sum over q: that field is bounded, so the sum is exact up to the
-//! lobe's tail once the spacing separates the copies of the field. Along y the same operation takes
-//! a share of all light out of the window, which is exact if the field is a product of one of (x,
-//! u) and one of (y, v), as behind slats along y.
+//! window. The integral is a sum over q. The field under this window is bounded, so the sum is
+//! exact up to the lobe's tail once the spacing separates the copies of the field. Along y the same
+//! operation moves a share of all light out of the window. This is exact if the field is a product
+//! of one of (x, u) and one of (y, v), as behind slats along y.
 
 use super::{projection, slices};
 use crate::Chain;
@@ -27,7 +27,7 @@ const TAIL: f64 = 1e-10;
 const SEEN_TAIL: f64 = 1e-4;
 /// Distance between the copies of the field, in field widths.
 const APART: f64 = 1.05;
-/// Lobes of this reach, in radians, count as cut off.
+/// Lobes that reach farther than this, in radians, count as cut off at a right angle.
 const BROAD: f64 = 1.5;
 /// The most frequencies on each side for a narrow lobe.
 const MAX_FREQUENCIES: usize = 512;
@@ -137,7 +137,7 @@ impl Blur {
         }
     }
 
-    /// Returns the weight of each frequency before the lobe in ν after it.
+    /// Returns the weights with which the frequencies before the lobe contribute to ν after it.
     fn weights(&self, nu: f64) -> Vec<f64> {
         let frequencies = self.lattice.values().into_iter().zip(&self.hats);
         frequencies
@@ -146,7 +146,7 @@ impl Blur {
     }
 }
 
-/// Returns the picture of the chain's field after a lobe, like [`projection`] without a lobe:
+/// Returns the picture of the chain's field after a lobe, like [`projection`] without a lobe. It is
 /// accurate to a fraction of a cell, over which the lobe is taken as constant.
 #[must_use]
 pub fn blurred_projection(
@@ -187,9 +187,9 @@ fn reach(lobe: &PlanarLobe, share: f64) -> f64 {
     outside
 }
 
-/// Returns a frequency beyond which the spectrum of a lobe is negligible: that of a Gaussian with
-/// the same reach, and three times that for lobes that end at a right angle, whose transforms have
-/// tails.
+/// Returns a frequency beyond which the spectrum of a lobe is negligible. It is the frequency for a
+/// Gaussian with the same reach. For lobes that end at a right angle, whose transforms have tails,
+/// it is three times as high.
 fn highest(reach: f64) -> f64 {
     let deviations = (-2.0 * libm::log(TAIL)).sqrt();
     let tail = if reach < BROAD { 1.0 } else { 3.0 };
@@ -262,7 +262,7 @@ mod tests {
         let plain = slices(&chain, &window, &grid).at_zero();
         let left = blurred_slices(&chain, &lobe, &window, &grid).at_zero() / plain;
         let along_y = share(&chain, &lobe, &window);
-        // Rounding of about a hundred terms.
+        // The rounding error of about a hundred terms.
         assert!(along_y < 0.9 && (left / along_y.powi(2) - 1.0).abs() < 1e-12);
     }
 
@@ -285,7 +285,8 @@ mod tests {
                     })
                     .sum();
                 let off = (sum * cells.cell_area() - spectrum.half[[0, m, n]]).norm();
-                // Cells of 1/128 of the half-width, and the neglected tail of pictures.
+                // The tolerance covers cells of 1/128 of the half-width, and the neglected tail of
+                // pictures.
                 assert!(
                     off < 1e-3 * spectrum.at_zero(),
                     "{exponent} {m} {n}: {off:e}"

@@ -13,8 +13,8 @@ use rayon::prelude::*;
 
 /// The spectrum of a chain on a 4D grid of frequencies: multiples of a spacing along each axis.
 ///
-/// The spectrum is a sum of products of a factor over (Ωx, Ωu) and one over (Ωy, Ωv), so only
-/// tables of the factors are stored, and frequencies are computed from the tables on demand.
+/// The spectrum is a sum of products of two factors, one over (Ωx, Ωu) and one over (Ωy, Ωv). So
+/// only tables of the factors are stored, and frequencies are computed from the tables on demand.
 #[derive(Debug)]
 pub struct Harmonics {
     expansion: Expansion,
@@ -51,8 +51,8 @@ impl Harmonics {
     }
 
     /// Builds the tables of the expected spectrum of rays that are splatted onto the cells of a
-    /// grid, after division by the assignment spline: the spectrum of the chain, with aliases from
-    /// beyond Nyquist added.
+    /// grid, after division by the assignment spline. It is the spectrum of the chain, plus aliases
+    /// from beyond Nyquist.
     ///
     /// Σₙ ℓ̂(Ω + n/Δ) Πᵢ ((−1)^nᵢ fᵢ/(fᵢ + nᵢ))^p, where f = ΔΩ is in cycles per cell and p is the
     /// order of the spline (docs/theory.md (44); Hockney and Eastwood 1981, chapter 5). Summed to
@@ -233,11 +233,12 @@ impl Folds {
         })
     }
 
-    /// Returns the harmonics as `of` does, as indices among all within [`reach`](Self::reach).
+    /// Returns the same harmonics as `of`, as indices among all harmonics within
+    /// [`reach`](Self::reach).
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "whole numbers within reach"
+        reason = "the values are whole numbers within reach"
     )]
     fn indices(self, index: usize) -> impl Iterator<Item = (usize, f64)> {
         let reach = self.reach() as f64;

@@ -4,8 +4,7 @@ use crate::{Chain, Operator, Source};
 use etendue_field::{Disc, Grating, HalfPlane, Light, Mask, Rectangle, Shape};
 
 /// The smallest distance of a plane from the focal plane, relative to the plane's distance. The
-/// image of the focal plane is at infinity, and positions on an image near there lose digits
-/// accordingly.
+/// image of the focal plane is at infinity, so positions on an image near it lose digits.
 const NEAREST: f64 = 1e-6;
 
 impl Chain {
@@ -13,9 +12,9 @@ impl Chain {
     /// its end. A thin lens of focal length −1/power has this effect, and to first order a curved
     /// mirror at normal incidence.
     ///
-    /// A ray that arrives at (x, u') was at x − h u = m (x − h/m u') in a plane at distance h, m =
-    /// 1 + power · h: the plane is seen at the distance h/m, 1/m times as large. `None` if light
-    /// varies with slope or leaves a surface: there is no image then.
+    /// A ray that arrives at (x, u') was at x − h u = m (x − h/m u') in a plane at distance h, with
+    /// m = 1 + power · h. So the plane is seen at the distance h/m, and 1/m times as large. `None`
+    /// if light varies with slope or leaves a surface, because no image exists then.
     #[must_use]
     pub fn imaged(&self, power: f64) -> Option<Self> {
         let Light::Area {
@@ -157,7 +156,7 @@ mod tests {
             let window = open(0.3);
             let sheared = AffineMap::<2>::back(power);
             for [rho, nu] in [[0.0, 0.0], [1.3, 0.8], [2.0, -1.7]] {
-                // Applied in both sections, as an image is.
+                // The shear is applied in both sections, as an image is formed in both.
                 let [x, u] = sheared.transpose_apply([rho, nu]);
                 let before = at(&chain, &window, [x, 0.5 * x, u, 0.5 * u]);
                 let after = at(&imaged, &window, [rho, 0.5 * rho, nu, 0.5 * nu]);

@@ -228,7 +228,8 @@ mod tests {
         );
     }
 
-    /// For a wide disc behind a narrow window, a quarter finer rule does not reveal the error.
+    /// For a wide disc behind a narrow window, a rule that is a quarter finer does not reveal the
+    /// error.
     #[test]
     fn wide_discs_behind_narrow_windows_are_sampled() {
         let sampled = |radius: f64| {

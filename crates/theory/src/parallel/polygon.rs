@@ -173,8 +173,9 @@ impl Polygon {
         }
     }
 
-    /// Returns the transform from half as many exponentials if opposite sides are parallel:
-    /// exp(−2πi k·c) sinc(k·a) sinc(k·b) times the area, for sides a and b about a centre c.
+    /// Returns the transform of a polygon whose opposite sides are parallel, from half as many
+    /// exponentials: exp(−2πi k·c) sinc(k·a) sinc(k·b) times the area, for sides a and b about a
+    /// centre c.
     pub(crate) fn transform_by_sides(&self, k: [f64; 2]) -> Complex {
         let [p, q, r, s] = &self.0[..] else {
             return self.transform(k);
@@ -276,8 +277,8 @@ mod tests {
             let k = [direction.re, direction.im].map(|c| c * SERIES_PHASE / (TAU * 3.0));
             let corner = triangle.0[0].at;
             let series = triangle.series(k) * cis(-TAU * dot(k, corner));
-            // At a phase of 0.1 the edge form cancels to about ten roundings of its terms, which
-            // are about 1.
+            // At a phase of 0.1 the edge form cancels to about ten rounding errors of its terms,
+            // which are about 1.
             assert!((series - triangle.edge_form(k)).norm() < 1e-14);
         }
     }
@@ -289,8 +290,8 @@ mod tests {
         let strip = Polygon::square([0, 1]).strip(shear, [-0.5 * width, 0.5 * width], 2);
         let cuts = |p: Polygon| p.clipped(cut[0], 0.3, 3).clipped(cut[1], 0.2, 4);
         let (strip, segment) = (cuts(strip), cuts(Polygon::segment(shear, 2)));
-        // The ends of the strip are slanted: an error of second order in the width, about 1e-10,
-        // and 1e-16/width of rounding.
+        // The ends of the strip are slanted, which causes an error of second order in the width,
+        // about 1e-10; rounding causes an error of 1e-16/width.
         assert!((strip.measure() / width - segment.measure()).abs() < 1e-9);
         for k in FREQUENCIES {
             let difference = strip.transform(k) / width - segment.transform(k);

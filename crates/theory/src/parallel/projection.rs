@@ -14,19 +14,20 @@ use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// Number of nodes along each direction of a triangle. The window is smooth inside a cell: with
-/// Hann profiles the error is below 1e-11 for 8 bins and below rounding for 32. Each cycle of a
-/// grating in a cell adds nodes.
+/// Hann profiles the error is below 1e-11 for 8 bins and below rounding error for 32. Each cycle of
+/// a grating in a cell adds nodes.
 const NODES: usize = 5;
 /// Number of nodes for each cycle.
 const NODES_PER_CYCLE: f64 = 5.0;
-/// The most nodes; bars so fine that a cell of a picture holds dozens are undersampled.
+/// The most nodes; gratings so fine that a cell of a picture holds dozens of periods are
+/// undersampled.
 const MOST_NODES: f64 = 200.0;
 
-/// Returns the windowed light field integrated over y and v, as means over cells of (x, u).
+/// Returns the windowed light field, integrated over y and v, as means over cells of (x, u).
 ///
 /// Exact in y and v (the factor at frequency zero). Each polygon is clipped to each cell, where the
-/// window is integrated by a Gauss rule: no aliasing at edges. Discs are split into strips of a
-/// twentieth of a cell or wider. Unit: W m⁻² sr⁻¹ · m.
+/// window is integrated by a Gauss rule, so edges cause no aliasing. Discs are split into strips of
+/// a twentieth of a cell or wider. Unit: W m⁻² sr⁻¹ · m.
 #[must_use]
 pub fn projection(chain: &Chain, window: &Window, grid: &ProjectionGrid) -> Projection {
     let path = chain.path();
@@ -106,7 +107,8 @@ struct Cells<'a> {
     /// The lowest frequency of the series in u, cycles per unit slope.
     series: f64,
     bins: usize,
-    /// Half-widths of the grid in those units: 1 if the grid covers the support.
+    /// Half-widths of the grid in units of the window's half-widths: 1 if the grid covers the
+    /// support.
     half: [f64; 2],
     /// Gauss rule on (0, 1).
     nodes: Vec<(f64, f64)>,
@@ -387,7 +389,7 @@ mod tests {
             // integral.
             assert!((projection.values[index] - expected).abs() < all / 200.0);
         }
-        // The cells above are partly lit, partly blocked, and differ by far more than that.
+        // The cells above are partly lit and partly blocked, and their values differ by far more.
         assert!(behind > 0.1 * all);
     }
 }

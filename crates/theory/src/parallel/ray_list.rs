@@ -2,8 +2,8 @@
 //! (docs/theory.md, section 2).
 //!
 //! Each ray is followed through the chain separately: travel moves it, masks attenuate it, the
-//! window weights it. So the only error of the prediction is that of the transform, and the
-//! prediction shares neither random numbers nor the tracer's intersections with the photons.
+//! window weights it. So the only error of the prediction is that of the transform. The prediction
+//! shares neither random numbers nor the tracer's code for intersections with the photons.
 
 use crate::barrier::Barrier;
 use crate::model::Over;
@@ -118,18 +118,19 @@ fn step(operator: &Operator) -> RayStep<'_> {
         Operator::Travel { distance, .. } => RayStep::Travel(*distance),
         Operator::Visibility { mask, .. } => RayStep::Mask(Barrier::new(0.0, mask)),
         Operator::Cosine { .. } => RayStep::Cosine,
-        Operator::Diffuse { name, .. } => panic!("rays of a file end at the diffuse {name}"),
+        Operator::Diffuse { name, .. } => panic!("rays of a file cannot pass the diffuse {name}"),
     }
 }
 
 /// Returns a ray at the end of a chain with its contribution to the windowed light field; `None` if
-/// that is zero.
+/// the contribution is zero.
 fn arrives(
     FluxRay { ray, flux }: &FluxRay,
     steps: &[RayStep<'_>],
     window: &Window,
 ) -> Option<(TwoPlane, f64)> {
-    // Radiance is flux over dx dy cos θ dω, and cos θ dω = du dv / (1 + u² + v²)² (docs/conventions.md).
+    // Radiance is flux divided by dx dy cos θ dω, and cos θ dω = du dv / (1 + u² + v²)²
+    // (docs/conventions.md).
     let secant_squared = 1.0 + ray.u * ray.u + ray.v * ray.v;
     let measure = secant_squared * secant_squared;
     let (mut ray, mut weight) = (*ray, flux * measure);
@@ -217,13 +218,14 @@ mod tests {
             let worst = pairs.map(|(a, b)| (a - b).norm_sqr().sqrt());
             worst.fold(0.0, f64::max) / expected.at_zero()
         };
-        // A midpoint rule of 24 cells at an edge of light: of order 1/24², the square of a cell.
+        // A midpoint rule of 24 cells at an edge of light has an error of order 1/24², the square
+        // of a cell.
         assert!(off(&found.slices) < 4e-3, "{}", off(&found.slices));
         // A planted fault is detected: travel left out.
         let mut wrong = given;
         wrong.operators.remove(0);
         assert!(off(&predicted(&wrong, &rays, over).slices) > 0.1);
-        // Compares with the plain sum at one frequency.
+        // The result is compared with the plain sum at one frequency.
         let (rho, nu) = (1.5, -1.0);
         let mut plain = Complex::ZERO;
         for FluxRay { ray, flux } in rays.rays() {

@@ -24,7 +24,7 @@ impl Chain {
         over: Over<'_>,
         budget: RayBudget,
     ) -> Predicted {
-        const ONE_KIND: &str = "a parameter changes no kind of chain";
+        const ONE_KIND: &str = "a parameter does not change the kind of a chain";
         match self.followed(over.0) {
             NetDomain::Rays(view) => {
                 let moved = self.moved(parameters, over, |chain| match chain.followed(over.0) {
@@ -64,8 +64,8 @@ impl Chain {
         over: Over<'_>,
         into: impl Fn(Self) -> V,
     ) -> Vec<ShiftedModels<V>> {
-        // Step for parameters of masks, whose shadows move: large enough that some rays cross the
-        // shadow's edge, and small enough that phases turn by a third of a radian at most.
+        // Step for parameters of masks, whose shadows move. It is so large that some rays cross the
+        // shadow's edge, and so small that phases turn by a third of a radian at most.
         const STEP: f64 = 1e-2;
         const PHASE: f64 = 0.05;
         let moved = |parameter: &Parameter| {
@@ -81,7 +81,8 @@ impl Chain {
         moved.expect("parameters of the chain")
     }
 
-    /// Returns the chain as a system of rays, or as a flat surface that scatters.
+    /// Returns the chain as a system of rays or, if it ends in a diffuse reflection, as a flat
+    /// surface that scatters.
     fn followed(&self, window: &Window) -> NetDomain {
         let path = self.path();
         let layers = path.layers.iter();

@@ -12,7 +12,7 @@ use etendue_field::{Complex, SliceGrid, Slices, Window};
 use rayon::prelude::*;
 
 /// Below this, the cosine or sine of an azimuth is treated as exactly zero (azimuths of π/2 and 0
-/// up to rounding).
+/// up to rounding error).
 const ORTHOGONAL: f64 = 1e-15;
 
 /// Returns the slices of the spectrum on a grid: the values of [`at`](crate::at), from sums over
@@ -95,8 +95,8 @@ impl<'a> Product<'a> {
         }
     }
 
-    /// Returns the factors of all polygons of section `axis` in the row at ρ, [polygon, ν]; `along`
-    /// is the cosine of the angle between the azimuth and the axis.
+    /// Returns the factors of all polygons of section `axis` in the row at ρ, as [polygon, ν].
+    /// `along` is the cosine of the angle between the azimuth and the axis.
     fn factors(&self, axis: usize, rho: f64, along: f64, grid: &SliceGrid) -> Vec<Complex> {
         let section = &self.expansion.sections[axis];
         if along.abs() < ORTHOGONAL {
@@ -244,8 +244,8 @@ mod tests {
         for chain in chains() {
             for window in [window(hann, hann), window(Profile::Box(half), hann), mixed] {
                 let worst = difference(&chain, &window, &singular_grid(4, 6));
-                // A thousand roundings where two directions nearly cancel, divided by a lit part of
-                // about 1/20.
+                // The tolerance is a thousand rounding errors, from two directions that nearly
+                // cancel, divided by a lit part of about 1/20.
                 assert!(worst < 1e-12, "{worst:e} {:?}", chain.describe());
             }
         }
@@ -262,7 +262,7 @@ mod tests {
 
     #[test]
     fn agrees_far_from_unit_scales() {
-        // A millimetre window 1 km from a light of 10 m: shears of 10⁶ half-widths.
+        // A window of a millimetre, 1 km from a light of 10 m, causes shears of 10⁶ half-widths.
         let chain = chain(10.0, &[(999.0, blockers(2, 2e-3, 1e-3)), (1.0, vec![])]);
         let window = window(Profile::Hann(1e-3), Profile::Hann(0.02));
         let grid = SliceGrid {
@@ -303,7 +303,7 @@ mod tests {
         let slices = slices(&chain, &window, &singular_grid(5, 3));
         for slice in slices.half.outer_iter() {
             let difference = slice[[0, 3]] - slices.at_zero();
-            // Rounding of one sum in two different orders.
+            // The rounding error of one sum in two different orders.
             assert!(difference.norm() < 1e-13 * slices.at_zero());
         }
     }

@@ -3,8 +3,8 @@
 //!
 //! The function is decomposed by elimination with complete pivoting, one product a(u) b(v) at a
 //! time (Townsend and Trefethen 2013). Each factor is smooth in the window and is fitted there by
-//! cosines whose period is longer than the window (a Fourier extension, Huybrechs 2010). Both stop
-//! at a measured residual.
+//! cosines whose period is longer than the window (a Fourier extension, Huybrechs 2010). The
+//! decomposition and the fits each stop at a measured residual.
 
 use crate::numerics::quadrature::gauss_legendre;
 use etendue_field::{CosineTerm, Profile};
@@ -92,7 +92,8 @@ fn eliminate(nodes: &[Vec<f64>; 2], value: impl Fn(f64, f64) -> f64) -> Vec<[Vec
         if largest <= RANK_RESIDUAL * first || factors.len() == NODES {
             return factors;
         }
-        // Splits the magnitude evenly between a and b, which makes fits of both equally accurate.
+        // The magnitude is split evenly between a and b, so that the fits of both are equally
+        // accurate.
         let root = largest.sqrt();
         let a: Vec<f64> = rest.iter().map(|row| row[j] / root).collect();
         let b: Vec<f64> = rest[i]
@@ -308,7 +309,7 @@ mod tests {
                 for power in [0.5, -1.5, -2.0, -10.0, -50.0] {
                     let (worst, rank, terms) = check([profile, profile], power);
                     let scale = libm::pow(1.0 + 2.0 * half * half, f64::max(power, 0.0));
-                    // A few times the residuals of 6e-9 and 2e-9.
+                    // The tolerance is a few times the residuals of 6e-9 and 2e-9.
                     assert!(worst < 2e-8 * scale, "{profile:?} {power}: {worst:e}");
                     assert!(half > 0.5 || rank <= 5 && terms <= 24, "{rank} {terms}");
                 }

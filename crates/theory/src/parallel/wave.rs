@@ -2,8 +2,8 @@
 
 use etendue_field::{Complex, CosineTerm, Grating, cis};
 
-/// One term amplitude · cos(2π s·p + phase) of a factor of a section inside its box, p = (position,
-/// slope) in units of the half-widths.
+/// One term amplitude · cos(2π s·p + phase) of a factor of a section inside its box, where p =
+/// (position, slope) is in units of the half-widths.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SectionWave {
     /// The frequency s, cycles per half-width.

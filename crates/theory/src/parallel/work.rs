@@ -1,7 +1,7 @@
 //! Estimates of the work of a prediction before it is made.
 //!
 //! The estimate counts what the prediction itself uses: corners, nodes, shapes, frequencies. It
-//! serves to refuse a scene that would run for days at once. Each kind of prediction has its own
+//! serves to refuse at once a scene that would run for days. Each kind of prediction has its own
 //! estimate; this file has that of the closed form.
 
 use crate::Chain;
@@ -121,7 +121,7 @@ fn of_slices(
         bytes: products * (16.0 * phases + 64.0 * (waves[0] + waves[1]))
             + 48.0 * expansion.terms.len() as f64
             + 400.0 * (p + q),
-        // Factors of all polygons, and quotients of several waves at a time.
+        // A thread holds the factors of all polygons, and the quotients of several waves at a time.
         bytes_each: count * (64.0 * (p + q) + 16.0 * 32.0 * pairs[0].max(pairs[1])),
         drivers: format!(
             "{azimuths} x {rows} x {count} frequencies x ({terms} products of shapes + {} corners of polygons x {} waves x {products} products of series)",

@@ -1,4 +1,4 @@
-//! Exact backward rays: rays of a plane followed back to the light through the geometry.
+//! Exact backward rays: rays of a plane are followed back to the light through the geometry.
 
 use super::trace::LegRay;
 use super::{AT_LIGHT, Plane, SpecularSurface, SpecularSystem};
@@ -21,7 +21,7 @@ impl Back {
     }
 
     /// Returns the ray (x, y, u, v) of the light's plane that arrives at z, and |∂z/∂ray|. `None`
-    /// if there is none.
+    /// if there is no such ray.
     ///
     /// Surfaces conserve n² dx dy du dv / (1 + u² + v²)² of rays (docs/theory.md (29)).
     pub(super) fn ray(&self, z: [f64; 4]) -> Option<([f64; 4], f64)> {
@@ -54,9 +54,9 @@ impl Back {
         Some(([at.x, at.y, u, v], spread / width))
     }
 
-    /// Returns the backward ray from the last surface for the last leg. The leg is started from
-    /// beyond all its possible intersections with that surface, because half of a plane at an
-    /// oblique surface lies behind the surface. On a curved surface itself the point is known.
+    /// Returns the backward ray from the last surface for the last leg. The leg starts beyond all
+    /// its possible intersections with that surface, because half of a plane at an oblique surface
+    /// lies behind the surface. If the plane is on a curved surface, the point is known.
     fn off_last(&self, element: &SpecularSurface, last: &LegRay) -> Option<LegRay> {
         let SpecularSurface { patch, .. } = element;
         let back = -last.direction;
@@ -70,8 +70,8 @@ impl Back {
 }
 
 impl SpecularSurface {
-    /// Returns the factor by which dx dy du dv / (1 + u² + v²)² grows if light that returns along
-    /// `before` has left along `after`.
+    /// Returns the factor by which dx dy du dv / (1 + u² + v²)² grows on the way back through the
+    /// surface, where light that returns along `before` has left along `after`.
     fn spread(&self, before: &LegRay, after: DVec3) -> f64 {
         let frame = &self.patch.frame;
         match self.event {
@@ -86,7 +86,7 @@ impl SpecularSurface {
                 };
                 ratio * ratio
             }
-            // A lens conserves dx dy du dv of its own slopes.
+            // A lens conserves dx dy du dv, with slopes in its own frame.
             Specular::ThinLens { .. } => {
                 (after.dot(frame.d) / before.direction.dot(frame.d)).powi(4)
             }

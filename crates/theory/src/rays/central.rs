@@ -6,7 +6,8 @@ use crate::geometry::{Matrix, Media};
 use etendue_field::{Frame, Patch, Specular};
 use glam::DVec3;
 
-/// Below this sine light arrives along the normal, and any plane is a plane of incidence.
+/// Below this sine, light arrives along the normal, and any plane through the normal is a plane of
+/// incidence.
 const NORMAL: f64 = 1e-9;
 
 /// The incidence of the central ray on a surface (docs/theory.md, section 7).
@@ -26,7 +27,7 @@ impl Incidence {
     /// `frame` is the frame of the leg; `normal` may be on either side.
     pub(crate) fn new(frame: &Frame, normal: DVec3) -> Self {
         let n = normal * -normal.dot(frame.d).signum();
-        // With X and Y = B turned, N + c₀ D = sin θ₀ X.
+        // With the turned axes X and Y = B, N + c₀ D = sin θ₀ X.
         let across = n + frame.d * -n.dot(frame.d);
         let (x, theta0) = if across.length() < NORMAL {
             (frame.x, 0.0)
@@ -47,7 +48,7 @@ impl Incidence {
         }
     }
 
-    /// Returns the derivative of the normal along (T, B) at a point of a patch: its shape operator,
+    /// Returns the shape operator of a patch at a point: the derivative of the normal along (T, B),
     /// per metre, convex positive as seen along N.
     pub(crate) fn shape(&self, patch: &Patch, point: DVec3) -> Matrix<2> {
         let gradient = patch.gradient(patch.frame.to_local(point));
@@ -97,8 +98,8 @@ impl SpecularSystem {
 }
 
 impl SpecularSurface {
-    /// Returns the frame of the next leg: mirrored, (−X, Y, D), at a mirror; otherwise turned to
-    /// the new direction by the smallest angle.
+    /// Returns the frame of the next leg. At a mirror it is mirrored, (−X, Y, D); otherwise it is
+    /// turned to the new direction by the smallest angle.
     fn leaving(&self, arriving: &Frame, normal: DVec3, direction: DVec3) -> Frame {
         if !matches!(self.event, Specular::Mirror) {
             return arriving.turned_to(direction);

@@ -12,22 +12,22 @@ use glam::DVec3;
 #[derive(Clone, Debug, PartialEq)]
 pub struct AffineChain {
     /// The effect of the chain on spectra of radiance. Its factor is the product of |det A| of its
-    /// maps and of (n₂/n₁)² for each refraction, by which radiance grows.
+    /// maps and of (n₂/n₁)² for each refraction, which is the factor by which radiance grows there.
     pub map: SpectrumMap<4>,
     /// The maps of the chain, in the order light meets them.
     pub maps: Vec<SpectrumMap<4>>,
-    /// The steps in words, in the order light meets them, without steps inside the plane's surface
-    /// or the light.
+    /// The steps in words, in the order light meets them, without the steps inside the light or
+    /// inside the surface of the plane.
     pub steps: Vec<String>,
-    /// Distances on the last leg, in metres from the last surface, at which rays meet that left the
-    /// light parallel; ascending, negative if behind. There are at most two: in the plane of
-    /// incidence and across it, if these are its principal planes.
+    /// Distances on the last leg at which rays that left the light parallel meet, in metres from
+    /// the last surface; ascending, and negative if behind it. There are at most two: in the plane
+    /// of incidence and across it, if these are its principal planes.
     pub foci: Vec<f64>,
 }
 
 /// Derives the chain from the geometry: distances, angles and curvatures along the central ray.
-/// `None` if the ray misses an element or is totally reflected, and on a lens itself, which has no
-/// side from which to count angles.
+/// `None` if the ray misses an element or is totally reflected. Also `None` for a plane on a lens
+/// itself, which has no side from which to count angles.
 ///
 /// The printed versions differ in incidence, curvature and outgoing angle; the paper has no
 /// refraction and no lens.
@@ -173,9 +173,9 @@ impl Walk {
         Some(self)
     }
 
-    /// Appends the steps onto a surface, into its local normals, and the event there. Returns the
-    /// shape operator, and the longitude of the central ray afterwards (directions of refracted
-    /// light stay flipped).
+    /// Appends the steps onto a surface and into its local normals, and the step of the event at
+    /// the surface. Returns the shape operator, and the longitude of the central ray afterwards
+    /// (directions of refracted light stay flipped).
     fn event(&mut self, element: &SpecularSurface, hit: &CentralHit) -> Option<(Matrix<2>, f64)> {
         let incidence = &hit.incidence;
         let theta0 = incidence.theta0;
@@ -240,7 +240,8 @@ impl Walk {
             ..hit.arriving
         };
         if plane.frame.d.dot(n) < 0.0 {
-            // As seen from the other side: −T, B and −N, and directions are no longer flipped.
+            // The axes are those seen from the other side, −T, B and −N, and directions are no
+            // longer flipped.
             (at.x, at.d) = (-t, -n);
             let other = crate::geometry::diagonal([-1.0, 1.0, 1.0, -1.0]);
             self.step(
@@ -344,11 +345,11 @@ impl Walk {
     }
 }
 
-/// Returns the map of a thin lens, from the frame of one leg to that of the next, to first order
-/// about a central ray that may cross the lens at any point and slope.
+/// Returns the map of a thin lens, from the frame of one leg to that of the next. It holds to first
+/// order about a central ray, which may cross the lens at any point and slope.
 ///
-/// In the lens's own frame positions stay and slopes decrease by position over focal length; at the
-/// centre and along the axis that is [`AffineMap::thin_lens`].
+/// In the lens's own frame positions stay, and slopes decrease by the position divided by the focal
+/// length. At the centre and along the axis this is [`AffineMap::thin_lens`].
 fn lens(frame: &Frame, hit: &CentralHit, focal_length: f64) -> Option<AffineMap<4>> {
     let [before, after] = [&hit.arriving, &hit.leaving].map(|leg| seen_across(frame, leg));
     let power = AffineMap::<4>::thin_lens(focal_length);
@@ -357,7 +358,7 @@ fn lens(frame: &Frame, hit: &CentralHit, focal_length: f64) -> Option<AffineMap<
 }
 
 /// Returns the derivative of positions and slopes in a plane with respect to those in the frame of
-/// a leg that meets it obliquely.
+/// a leg that meets the plane obliquely.
 fn seen_across(plane: &Frame, leg: &Frame) -> Matrix<4> {
     let towards = plane.vector_to_local(leg.d);
     let axes = [leg.x, leg.y].map(|axis| plane.vector_to_local(axis));
@@ -365,7 +366,7 @@ fn seen_across(plane: &Frame, leg: &Frame) -> Matrix<4> {
     let mut matrix = [[0.0; 4]; 4];
     for (column, axis) in axes.iter().enumerate() {
         for (row, (across, slope)) in [axis.x, axis.y].into_iter().zip(slopes).enumerate() {
-            // Along the ray to the plane; the slope of D + u X.
+            // The point moves along the ray to the plane; the slopes are those of D + u X.
             let moved = across - slope * axis.z;
             matrix[row][column] = moved;
             matrix[row + 2][column + 2] = moved / towards.z.abs();
@@ -374,15 +375,15 @@ fn seen_across(plane: &Frame, leg: &Frame) -> Matrix<4> {
     matrix
 }
 
-/// Returns the map from positions and angles in the plane of a frame, where `theta` is the
-/// longitude of the central ray, to those of a plane on a surface that is tilted or displaced
-/// relative to it.
+/// Returns the map from positions and angles in the plane of a frame to those of a plane on a
+/// surface that is tilted or displaced relative to that frame; `theta` is the longitude of the
+/// central ray.
 fn onto_leaning(plane: &Plane, at: &Frame, theta: f64) -> AffineMap<4> {
     let local = |v: DVec3| plane.frame.vector_to_local(v);
     let (sin, cos) = libm::sincos(theta);
     let start = plane.frame.to_local(at.origin);
     let away = local(sin * at.x + cos * at.d);
-    // In longitude and latitude.
+    // The derivatives of the direction are with respect to longitude and latitude.
     let turned = [cos * at.x - sin * at.d, at.y].map(local);
     let slope = [away.x, away.y].map(|w| w / away.z);
     let (flat, up) = (

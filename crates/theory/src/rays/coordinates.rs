@@ -7,8 +7,8 @@ use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
 impl Plane {
-    /// Returns the coordinates of a ray on its last leg, and the quantity in ray space per flux.
-    /// `None` if the ray misses.
+    /// Returns the coordinates of a ray on its last leg, and the factor from its flux to the
+    /// quantity in ray space. `None` if the ray misses.
     pub(crate) fn coordinates(&self, ray: &LegRay) -> Option<([f64; 4], f64)> {
         match self.orientation {
             Orientation::Orthogonal => self.across(ray),
@@ -37,9 +37,9 @@ impl Plane {
         t.is_finite().then_some(t)
     }
 
-    /// The inverse of [`Self::coordinates`]: returns a ray, in the direction of light, from a point
-    /// of the plane or of the surface it is on; and étendue over dx dy du dv there. `None` if there
-    /// is none.
+    /// The inverse of [`Self::coordinates`]: returns the ray, in the direction of light, that has
+    /// the given coordinates on the plane or on the surface it is on; and étendue over dx dy du dv
+    /// there. `None` if there is no such ray.
     pub(crate) fn ray(&self, [x, y, u, v]: [f64; 4]) -> Option<(LegRay, f64)> {
         let foot = self.frame.to_world(DVec3::new(x, y, 0.0));
         if self.orientation == Orientation::Orthogonal {
@@ -59,8 +59,8 @@ impl Plane {
         Some((LegRay { point, direction }, etendue))
     }
 
-    /// Returns the point at two coordinates, of the plane or of the surface it is on, and the
-    /// normal there on the side of D. `None` if the surface has no such point.
+    /// Returns the point with two given coordinates on the plane, or on the surface the plane is
+    /// on; and the normal at this point, on the side of D. `None` if the surface has no such point.
     pub(crate) fn point(&self, [x, y]: [f64; 2]) -> Option<(DVec3, DVec3)> {
         let foot = self.frame.to_world(DVec3::new(x, y, 0.0));
         match &self.patch {
@@ -114,8 +114,8 @@ impl Plane {
         Some((z, secant_squared * secant_squared * self.factor(z)))
     }
 
-    /// Returns the point where light leaves the surface it met last, or meets this one; and the
-    /// unit normal there, on the side of the plane's D.
+    /// Returns the point where light leaves the surface that it met last, or meets this one. Also
+    /// returns the unit normal at this point, on the side of the plane's D.
     fn hit(&self, ray: &LegRay) -> Option<(DVec3, DVec3)> {
         let Some(patch) = &self.patch else {
             let (s, t) = crossing(&self.frame, ray)?;

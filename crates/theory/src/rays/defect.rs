@@ -9,10 +9,10 @@ use etendue_field::Window;
 /// limit of a small neighbourhood of the central ray.
 ///
 /// The maps of a chain must be the derivatives of the paths of rays through the real geometry. Then
-/// its error falls with the size of the neighbourhood, or with its square, and this limit is zero
-/// up to 10⁻⁹ from differences and rounding. With a wrong sign, cosine or factor in any map the
-/// error converges to this number instead: the error of rays, in half-widths of the window, or the
-/// relative error of radiance.
+/// the chain's error falls with the size of the neighbourhood, or with its square, and this limit
+/// is zero up to 10⁻⁹ from differences and rounding errors. With a wrong sign, cosine or factor in
+/// any map, the error converges to the number returned instead: the error of rays, in half-widths
+/// of the window, or the relative error of radiance.
 ///
 /// `None` if the central ray does not arrive.
 #[must_use]
@@ -29,11 +29,12 @@ pub fn defect(
 }
 
 /// Returns the part of [`defect`] due to the factor of the chain: the radiance that the chain gives
-/// the central ray over the ray's actual radiance, minus 1.
+/// the central ray, divided by the ray's actual radiance, minus 1.
 #[must_use]
 pub fn radiance_defect(view: &Observed<SpecularSystem>, map: &SpectrumMap<4>) -> Option<f64> {
     let Observed { system, plane } = view;
-    // The change of flux along the central ray; at the light flux represents radiance.
+    // The flux that arrives along the central ray is its radiance at the light, so `per_flux` is
+    // the change of radiance.
     let (center, per_flux) = plane.coordinates(&system.follow([0.0; 4])?)?;
     Some(map.factor * plane.factor(center) / per_flux - 1.0)
 }

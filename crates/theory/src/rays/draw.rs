@@ -1,11 +1,11 @@
 //! Sampling of the light's rays, by the light or by target points at the plane.
 //!
 //! To first order a ray of the light lands where the linearisation about the central ray maps it.
-//! So a target position or slope in the window determines which ray of the light to follow; the
-//! actual landing point is found by following the ray. The sampling density is known exactly,
-//! whatever the rays do. Few of these rays meet a window that is narrow compared with the error of
-//! the first order; in that case rays of all four coordinates are followed back from the window
-//! through the exact geometry.
+//! So a target position or slope in the window determines which ray of the light to follow. The ray
+//! is then followed to its actual landing point. The sampling density is known exactly, whatever
+//! the rays do. If the window is narrow compared with the error of the first order, few of these
+//! rays meet it. In that case all four coordinates of rays are sampled in the window, and the rays
+//! are followed back through the exact geometry.
 
 use super::backward::Back;
 use super::emission::{EmissionMeasure, point_of};
@@ -16,18 +16,18 @@ use crate::sky::SkyDensity;
 use etendue_field::{Environment, Light, Shape, Window};
 use glam::DVec3;
 
-/// The strategy for sampling rays. No strategy is best for every scene; they are tried on the
-/// scene.
+/// The strategy for sampling rays. No strategy is best for every scene, so all of them are tried on
+/// the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RayStrategy {
-    /// By the picture of the light.
+    /// Rays are sampled by the picture of the light.
     Picture,
-    /// By positions at the plane; for an area light also by points of the light, and for an
-    /// environment by directions.
+    /// Rays are sampled by positions at the plane. For an area light they are also sampled by
+    /// points of the light, and for an environment by directions.
     Positions,
-    /// By slopes at the plane, with the same additions.
+    /// Rays are sampled by slopes at the plane, with the same additions.
     Slopes,
-    /// By positions and slopes at the plane, for a light with extent.
+    /// Rays of a light with extent are sampled by positions and slopes at the plane.
     Plane,
 }
 
@@ -43,8 +43,8 @@ pub(super) struct RaySampler<'a> {
     by: By,
 }
 
-/// The sampling of the two coordinates that the emission of a light with extent is not parametrised
-/// by.
+/// The sampling of the other two coordinates of a light with extent, which do not parametrise its
+/// emission.
 #[derive(Clone, Debug)]
 enum Outer<'a> {
     /// Not sampled: all rays have the same values.
@@ -74,12 +74,12 @@ enum By {
         inverse: Matrix<2>,
         determinant: f64,
     },
-    /// All four coordinates, by exact backward rays.
+    /// All four coordinates are sampled, by exact backward rays.
     Back {
         window: Box<[LinearDensity; 4]>,
         back: Back,
     },
-    /// All four coordinates, to first order.
+    /// All four coordinates are sampled, to first order.
     Map {
         targets: Box<[Target; 4]>,
         map: AffineMap<4>,
@@ -119,8 +119,9 @@ impl<'a> Outer<'a> {
 }
 
 impl<'a> RaySampler<'a> {
-    /// `center` is where the central ray lands and `jacobian` how that changes with the ray; `None`
-    /// if they do not determine the ray. Without a plane all rays land as targeted.
+    /// `center` is where the central ray lands, and `jacobian` is how that changes with the ray;
+    /// `None` if they do not determine the ray. Without a plane, all rays are taken to land as
+    /// targeted.
     #[expect(
         clippy::too_many_lines,
         reason = "the coordinates by which each kind of light is aimed, side by side"
@@ -220,7 +221,8 @@ impl<'a> RaySampler<'a> {
                 let (point, normal) = plane.point([x, y])?;
                 let along = DVec3::new(slopes[0], slopes[1], 1.0);
                 let start = point - point.z * along;
-                // dx dy of the light over dx dy of the plane, from the area of the surface.
+                // This is dx dy of the light divided by dx dy of the plane, from the area of the
+                // surface.
                 let spread = (normal.dot(along) / normal.dot(plane.frame.d)).abs();
                 let density = of_x * of_y * of_light / spread;
                 // Light from behind meets the front of the surface at another point first.

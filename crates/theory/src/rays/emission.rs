@@ -6,8 +6,8 @@ use etendue_field::{Light, Shape};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// The parametrisation of a light's rays: two of the coordinates x, y, u, v, and for a light with
-/// extent the other two as well.
+/// The parameters of a light's rays: two of the coordinates x, y, u, v, and for a light with extent
+/// the other two as well.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct EmissionMeasure {
     /// Indices of those two coordinates.

@@ -2,22 +2,22 @@
 //!
 //! The inputs are a [`SpecularSystem`] and a [`Plane`]. The system has a light, masks across its
 //! first leg, obstacles on any leg, and the mirrors, refracting surfaces and lenses that the
-//! central ray visits. The [`Observed`](crate::Observed) of both is a [`Model`](crate::Model): it
-//! follows rays through the real geometry and sums them, by a quadrature rule if that converges and
-//! over scrambled nets otherwise. In addition there are the [`chain`](chain()) of first-order maps
-//! ([`geometry`](crate::geometry)) derived from the same system, and the [`linear()`] prediction of
-//! that chain. So a measured difference from the first-order chain splits into noise, linearisation
-//! and faults.
+//! central ray visits. The [`Observed`](crate::Observed) of both is a [`Model`](crate::Model). It
+//! follows rays through the real geometry and sums them, by a quadrature rule if the rule converges
+//! and over scrambled nets otherwise. In addition there are the [`chain`](chain()) of first-order
+//! maps ([`geometry`](crate::geometry)) derived from the same system, and the [`linear()`]
+//! prediction of that chain. So a measured difference from the first-order chain splits into noise,
+//! linearisation and faults.
 //!
 //! All coordinates are in the frame at the light: the central ray starts at the origin along Z, and
 //! (x, y) are along X and Y. A ray carries flux; `emission.rs` has the flux of each light. Flux is
 //! conserved at every surface. A ray that misses a patch, is totally reflected, or would have to go
-//! back is lost. At a plane across the central ray flux Φ corresponds to Φ (1 + u² + v²)² in
-//! radiance space, on a surface to Φ/(cos θ cos² φ): docs/theory.md, section 8.
+//! back is lost. Flux Φ corresponds to Φ (1 + u² + v²)² in radiance space at a plane across the
+//! central ray, and to Φ/(cos θ cos² φ) on a surface: docs/theory.md, section 8.
 //!
 //! On a surface itself (`LocalNormals`) the integral is over the surface's area.
 //!
-//! This module shares no intersection or sampling code with the tracers.
+//! This module shares neither intersection code nor sampling code with the tracers.
 //!
 //! ```
 //! use etendue_field::{FrequencyAxis, Frame, Image, Light, Patch, Profile,
@@ -86,8 +86,9 @@ pub(crate) use trace::{LegRay, bent};
 use crate::obstacle::Obstacle;
 use etendue_field::{Light, Mask, Patch, Specular};
 
-/// How far behind the plane of the light a point of a plane may seem to be and still be lit, in
-/// metres: the rounding of a tilted plane at the light itself. No object is this close.
+/// The distance, in metres, that a point of a plane may seem to be behind the plane of the light
+/// and still be lit. It covers the rounding errors of a tilted plane at the light itself. No object
+/// is this close to the light.
 pub(crate) const AT_LIGHT: f64 = 1e-9;
 
 /// A light and the specular surfaces that its central ray visits, in the frame at the light.
@@ -95,7 +96,7 @@ pub(crate) const AT_LIGHT: f64 = 1e-9;
 pub struct SpecularSystem {
     /// The light, which emits from the plane z = 0, along Z.
     pub light: Light,
-    /// Masks across the first leg and their distances from the light, metres. If one is opaque,
+    /// Masks across the first leg and their distances from the light, metres. If a mask is opaque,
     /// rays are summed over nets and not by a rule.
     pub layers: Vec<(f64, Mask)>,
     /// Other occluders, on any leg.
@@ -112,6 +113,7 @@ pub struct SpecularSurface {
     /// The geometry of the surface.
     pub patch: Patch,
     /// The event at the surface. Refraction goes from the side the ray comes from. A thin lens is
-    /// flat; its slopes are those in the patch's frame (X, Y and the side light goes to).
+    /// flat; its slopes are relative to the patch's frame (X, Y and the normal on the side to which
+    /// light goes).
     pub event: Specular,
 }

@@ -27,10 +27,10 @@ const FOR_PICTURES: RayBudget = RayBudget {
 /// Returns the prediction from rays followed through the exact geometry, with the derivatives with
 /// respect to given parameters.
 ///
-/// For a projector, point or beam this uses a midpoint rule, if no sharp edge cuts its light and
-/// the rule converges; otherwise nets of rays. Derivatives are central differences whose two sides
-/// sample the same rays: accurate to about a per cent. The result is bitwise identical on any
-/// number of threads.
+/// For a projector, point or beam this uses a midpoint rule if no sharp edge cuts the light and the
+/// rule converges; otherwise it uses nets of rays. Derivatives are central differences whose two
+/// sides sample the same rays, so they are accurate to about a per cent. The result is bitwise
+/// identical on any number of threads.
 pub(crate) fn predict(
     view: &Observed<SpecularSystem>,
     moved: &[ShiftedModels<Observed<SpecularSystem>>],
@@ -78,11 +78,11 @@ pub(crate) fn with_rays(
 /// Returns the prediction of a first-order chain, such as that of [`chain`](super::chain()), over
 /// the same rays.
 ///
-/// The map takes the radiance of ray z at the light to A z + t, A being the transpose of the map's
-/// matrix and t its phase, and multiplies its spectrum by the map's factor: F = factor · ∫ ℓ(z) W(A
-/// z + t) e^(−2πi Ω·(A z + t)) dz. Masks of the first leg are exact; obstacles are tested with the
-/// first-order rays of each leg. On a surface lit by an environment, z has angles instead of
-/// slopes.
+/// The map moves the radiance of ray z at the light to A z + t, where A is the transpose of the
+/// map's matrix and t its phase. It multiplies the spectrum by the map's factor: F = factor · ∫
+/// ℓ(z) W(A z + t) e^(−2πi Ω·(A z + t)) dz. Masks of the first leg are exact; obstacles are tested
+/// with the first-order rays of each leg. On a surface lit by an environment, z has angles instead
+/// of slopes.
 #[must_use]
 pub fn linear(
     view: &Observed<SpecularSystem>,
@@ -91,7 +91,7 @@ pub fn linear(
     budget: RayBudget,
 ) -> Predicted {
     let system = &view.system;
-    // Rays land where the map takes them.
+    // In the chain, rays land where the map takes them.
     let mapped = (system, None);
     let masks = Masks::new(&system.layers, &system.obstacles);
     let rays = map.rays();
@@ -187,9 +187,9 @@ fn linear_field<'a>(
     }
 }
 
-/// Converts a ray to angles: the light of an environment that arrives on a surface is a function of
+/// Converts a ray to angles: when light of an environment arrives on a surface, it is a function of
 /// angles, and slopes are not small there. Travel over a distance moves the ray to its landing
-/// point. Also returns dθ dφ over du dv.
+/// point. Also returns dθ dφ divided by du dv.
 fn angles([x, y, u, v]: [f64; 4], distance: f64) -> ([f64; 4], f64) {
     let across = (1.0 + u * u).sqrt();
     let (longitude, latitude) = (libm::atan(u), libm::atan(v / across));

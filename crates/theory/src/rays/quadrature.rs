@@ -2,7 +2,7 @@
 //! beam.
 //!
 //! If no light reaches the border of the region that lands in the window, the only error is
-//! aliasing, which vanishes once there are more nodes than cycles. An edge that cuts light, of a
+//! aliasing. Aliasing vanishes once there are more nodes than cycles. An edge that cuts light, of a
 //! window or of a surface, is misplaced by up to half a node. Light with such an edge is left to
 //! nets, because two rules may agree on it by chance.
 
@@ -18,20 +18,20 @@ const MAX_NODES: usize = 1500;
 const MIN_NODES: f64 = 16.0;
 /// The largest relative error of an acceptable rule.
 const MAX_ERROR: f64 = 1e-4;
-/// Steps of a ray, and of its contribution to the sum at a frequency.
+/// Steps to follow a ray, and to add its contribution to the sum at a frequency.
 const RAY: f64 = 300.0;
 const FREQUENCY: f64 = 0.5;
-/// The relative error at which a rule is not refined further: below the error of the transform of
-/// photons, 2·10⁻⁷, so it is invisible for any number of photons.
+/// The relative error at which a rule is not refined further. It is below the error of the
+/// transform of photons, 2·10⁻⁷, and so is invisible for any number of photons.
 const TARGET_ERROR: f64 = 1e-7;
-/// The error of the finer of two rules over their difference: with a Hann window it falls as n⁻³
-/// beyond the window's frequencies, and (5/4)³ is 2.
+/// The error of the finer of two rules, divided by their difference. With a Hann window the error
+/// falls as n⁻³ beyond the window's frequencies, and (5/4)³ is 2.
 const FINER_ERROR: f64 = 1.0;
 
 impl<F: RayField> Finder<'_, F> {
-    /// Returns the slices and ‖error‖/‖F‖: the change by the last refinement on slices at right
-    /// angles, and the possible error from edges. Rules are refined to 10⁻⁷, or until the next
-    /// takes more than `max_steps`. `None` if the error stays above 10⁻⁴.
+    /// Returns the slices and ‖error‖/‖F‖. The error includes the change by the last refinement, on
+    /// slices at right angles, and the possible error from edges. Rules are refined to 10⁻⁷, or
+    /// until the next takes more than `max_steps`. `None` if the error stays above 10⁻⁴.
     pub(super) fn slices(&self, grid: &SliceGrid, max_steps: f64) -> Option<(Slices, f64)> {
         let trial = SliceGrid {
             azimuths: grid.azimuths.min(2),
@@ -82,12 +82,13 @@ impl<F: RayField> Finder<'_, F> {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "not negative, and cut down"
+        reason = "the number is not negative, and has an upper limit"
     )]
     fn count(&self, grid: &SliceGrid) -> usize {
         let [rho, nu] = [grid.rho.max(), grid.nu.max()];
         let window = [self.window.x, self.window.y, self.window.u, self.window.v];
-        // Cycles per unit of a coordinate at the light, from phases and from the window.
+        // The number of cycles per unit of a coordinate at the light, from phases and from the
+        // window.
         let cycles = |k: usize| {
             let column = self.neighbourhood.1.map(|row| row[k]);
             let phase =

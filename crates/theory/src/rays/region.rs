@@ -9,9 +9,9 @@ use etendue_field::{TwoPlane, Window};
 /// A box in two coordinates: the lowest and highest value along each.
 pub(super) type Region = [[f64; 2]; 2];
 
-/// A light field as a function of rays: from a ray at the light (x, y, u, v) to its coordinates at
-/// the plane and its contribution to ray space there per unit of the emission's coordinates. `None`
-/// if it does not arrive.
+/// A light field as a function of rays. It takes a ray (x, y, u, v) at the light to the ray's
+/// coordinates at the plane, and to its contribution to ray space there, per unit of the emission's
+/// coordinates. `None` if the ray does not arrive.
 pub(super) trait RayField: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync {}
 impl<F: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync> RayField for F {}
 
@@ -19,7 +19,7 @@ impl<F: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync> RayField for F {}
 const CELLS: usize = 32;
 /// Rays below this share of the strongest are ignored.
 const MIN_SHARE: f64 = 1e-13;
-/// Number of bisections of a cell that locate an edge to rounding.
+/// Number of bisections of a cell that locate an edge up to rounding error.
 const HALVINGS: usize = 40;
 /// Number of boxes tried before the last is taken.
 const ROUNDS: usize = 24;
@@ -74,9 +74,9 @@ impl<F: RayField> Finder<'_, F> {
         RayNode { z, weight }
     }
 
-    /// Returns the region of rays that land in the window: starting from the bounding box of the
-    /// parallelogram that a linear map gives, the box is moved, widened and narrowed until it
-    /// contains all arriving light. `None` if nothing arrives.
+    /// Returns the region of rays that land in the window. The search starts from the bounding box
+    /// of the parallelogram that a linear map gives; the box is moved, widened and narrowed until
+    /// it contains all arriving light. `None` if nothing arrives.
     pub(super) fn region(&self) -> Option<Region> {
         let mut region = self.linear_region()?;
         let reach = self.emission.reach;
@@ -122,7 +122,7 @@ impl<F: RayField> Finder<'_, F> {
     }
 
     /// Returns the strength of light next to edges that cut it, relative to all light in a row of
-    /// cells: divided by the number of nodes along a coordinate, it bounds the error of a rule.
+    /// cells. Divided by the number of nodes along a coordinate, this bounds the error of a rule.
     pub(super) fn edges(&self) -> f64 {
         let Some(region) = self.region() else {
             return 0.0;

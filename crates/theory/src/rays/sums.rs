@@ -1,8 +1,8 @@
 //! Σ w e^(−2πi Ω·z) over rays, at all frequencies of a grid of slices.
 //!
 //! On one azimuth a ray is a point (a, b), and its exponential at (m Δρ, n Δν) is the product of
-//! one factor along ρ and one along ν. Summed over rays this is a matrix product of the factors'
-//! real and imaginary parts, shared by ± ν.
+//! one factor along ρ and one along ν. Summed over rays, this is a matrix product of the real and
+//! imaginary parts of the factors; each product serves both + ν and − ν.
 
 use crate::nets::RayNode;
 use etendue_field::{Complex, SliceGrid, Slices, cis};
@@ -15,10 +15,10 @@ use std::f64::consts::TAU;
 const BLOCK: usize = 256;
 /// The most partial sums over rays, computed in parallel and added in order.
 const PARTS: usize = 16;
-/// Number of powers of a factor before it is recomputed: each step adds a rounding.
+/// Number of powers of a factor before it is recomputed, because each step adds a rounding error.
 const POWERS: usize = 32;
-/// Number of powers computed side by side; each is the one `LANES` before times e^(i angle) to the
-/// power `LANES`.
+/// Number of powers computed side by side. Each is the power `LANES` steps before, multiplied by
+/// e^(i angle) to the power `LANES`.
 const LANES: usize = 8;
 
 /// Returns the sums on all slices. Bitwise identical on any number of threads; rounding is below

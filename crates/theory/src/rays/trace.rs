@@ -23,7 +23,7 @@ impl LegRay {
         }
     }
 
-    /// Returns the line through a point along a unit vector, started from beyond all its
+    /// Returns the line through a point along a unit vector. The line starts beyond all its
     /// intersections with a patch.
     pub(crate) fn back(patch: &Patch, through: DVec3, along: DVec3) -> Self {
         let far = 4.0 * patch.aperture + (through - patch.frame.origin).length();
@@ -37,14 +37,14 @@ impl LegRay {
     /// `None` if the patch is missed or behind.
     ///
     /// Uses Newton's method from the tangent plane at the vertex. Along a ray the quadric is a
-    /// polynomial of degree two, so there is one root on either side of its extremum, and the root
-    /// nearer to the tangent plane is found.
+    /// polynomial of degree two, so it has at most one root on either side of its extremum; the
+    /// root nearer to the tangent plane is found.
     pub(crate) fn met(&self, patch: &Patch) -> Option<(f64, DVec3)> {
         self.met_facing(patch, None)
     }
 
-    /// Returns the intersection at which the ray meets a patch from one side, even if another is
-    /// nearer: the side of D, or the opposite one for −1.
+    /// Returns the intersection at which the ray meets a patch from one side, even if another one
+    /// is nearer. The side is that of D, or the opposite one for −1.
     ///
     /// A ray meets a quadric once from either side, so there is at most one such point.
     pub(crate) fn met_from(&self, patch: &Patch, side: f64) -> Option<(f64, DVec3)> {
@@ -59,19 +59,19 @@ impl LegRay {
         } else {
             -point.dot(direction)
         };
-        // Along the ray the patch's function is a s² + 2 b s + c, from a point near it.
+        // Along the ray, counted from a point near it, the patch's function is a s² + 2 b s + c.
         let near = point + direction * t;
         let a = (DVec3::from(patch.curvature) * direction).dot(direction);
         let b = patch.gradient(near).dot(direction);
         let c = patch.value(near);
-        // The mirror image about the extremum is an equally good start for the root on its other
-        // side.
+        // The mirror image of one root about the extremum is an equally good start for the root on
+        // the other side.
         let leaves = side.is_some_and(|side| side * b > 0.0);
         let mut s = if leaves { -2.0 * b / a } else { 0.0 };
         for _ in 0..MOST_STEPS {
             let step = ((a * s + 2.0 * b) * s + c) / (2.0 * (a * s + b));
             s -= step;
-            // The error is squared with each step, so the next would be below rounding.
+            // The error is squared with each step, so the next would be below rounding error.
             if step.abs() <= 1e-8 * ((t + s).abs() + point.length()) {
                 t += s;
                 let here = point + direction * t;
@@ -114,7 +114,7 @@ pub(crate) fn bent(
         Specular::Mirror => Some(direction - normal * (2.0 * direction.dot(normal))),
         Specular::Refraction { front, back } => {
             let cos = -direction.dot(normal);
-            // As seen from the incident side.
+            // Index ratio and normal are those seen from the incident side.
             let (normal, cos, ratio) = if cos > 0.0 {
                 (normal, cos, front / back)
             } else {

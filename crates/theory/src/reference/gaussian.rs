@@ -1,8 +1,8 @@
 //! Closed forms under an untruncated Gaussian window, for checks only.
 //!
 //! A [`Window`](etendue_field::Window) has a finite support, so this window exists nowhere else.
-//! All but the disc are in 2D; frequencies are (Ωx, Ωv), in cycles per metre and per unit slope;
-//! the slope is called v, as in the paper.
+//! All but the disc are in 2D. Frequencies are (Ωx, Ωv), in cycles per metre and per unit slope.
+//! The slope is called v, as in the paper.
 
 use crate::numerics::quadrature::integrate;
 use crate::numerics::sinc::sinc;
@@ -188,7 +188,7 @@ fn dawson(x: f64) -> f64 {
     })
 }
 
-/// Returns the same light after a grating: Σ cₙ I(D; Ωx − n f, Ωv + n f d) a distance d below it.
+/// Returns the same light at a distance d below a grating: Σ cₙ I(D; Ωx − n f, Ωv + n f d).
 #[must_use]
 pub(crate) fn through_grating(
     bench: &GaussianBlock,
@@ -203,8 +203,8 @@ pub(crate) fn through_grating(
         .sum()
 }
 
-/// Returns the part of the light that a strip, (lowest, highest) in metres, blocks: a double
-/// integral over strip and light, v = (y − y₀)/d₁ and x = y + d₂ v.
+/// Returns the part of the light that a strip, (lowest, highest) in metres, blocks. It is a double
+/// integral over strip and light, with v = (y − y₀)/d₁ and x = y + d₂ v.
 #[must_use]
 pub(crate) fn blocked_by_strip(
     bench: &GaussianBlock,
@@ -238,8 +238,8 @@ pub(crate) fn shaded(
     window: &GaussianWindow,
     field: impl Fn(&GaussianWindow) -> Complex,
 ) -> Complex {
-    // The error from the step 0.25 is exp(−π²/0.25²) = 1e-69, from the end at 6.5 exp(−6.5²) =
-    // 5e-19.
+    // The error from the step 0.25 is exp(−π²/0.25²) = 1e-69, and that from the end at 6.5 is
+    // exp(−6.5²) = 5e-19.
     const STEP: f64 = 0.25;
     let nodes = (1..=26).map(|j| STEP * f64::from(j));
     let sum: Complex = nodes

@@ -96,7 +96,7 @@ fn assert_chain<const N: usize>(block: &Value, steps: &[BlockStep<N>]) {
     }
     assert_close("matrices", deviation(N * N * 7, matrices));
     assert_close("covariances", deviation(N * N * 8, fields));
-    // The rounding of terms a hundred times larger.
+    // The rounding errors of terms a hundred times larger.
     let off = deviation(8, volumes);
     assert!(off < 1e-12, "determinants: {off:e}");
     if N == 2 {

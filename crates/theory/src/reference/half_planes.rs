@@ -1,5 +1,5 @@
-//! Checks of two half-planes that meet: each lets half of the light pass, both together none
-//! (Durand et al. 2005, Fig. 7).
+//! Checks of two half-planes that meet. Each lets half of the light pass, and both together let
+//! none pass (Durand et al. 2005, Fig. 7).
 
 use super::*;
 use crate::at;
@@ -36,7 +36,7 @@ fn phases_make_both_halves_dark() {
         // The light that passes both is all light minus the parts that each blocks: F₀ − (F₀ − F_A)
         // − (F₀ − F_B).
         let both = a + b - open;
-        // The sum of a number and its conjugate.
+        // This is the sum of a number and its conjugate.
         assert!((both - complex(&sample["both"])).norm() < 1e-16);
         // The moduli alone would leave some light.
         let blind = a.norm() + b.norm() - open.norm();

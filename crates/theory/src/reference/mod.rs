@@ -1,9 +1,9 @@
 //! Checks against `tests/reference.json`: numbers computed with mpmath at 25 digits, independently
 //! of this crate.
 //!
-//! If a block uses the untruncated Gaussian window, its closed form is checked, and if the field is
-//! made of polygons, the polygon code is checked too, truncated at 3.4 widths, where the window is
-//! 2e-16.
+//! If a block uses the untruncated Gaussian window, its closed form is checked. If its field is
+//! also made of polygons, the polygon code is checked too, with the window truncated at 3.4 widths,
+//! where it is 2e-16.
 
 mod area;
 pub(crate) mod gaussian;
@@ -22,8 +22,8 @@ use gaussian::{GaussianBlock, GaussianWindow};
 use jitter::{JitteredArray, jittered_array_power};
 use serde_json::Value;
 
-/// Relative to the largest value of a block: the file is accurate to 14 digits, of which rounding
-/// takes one.
+/// The tolerance relative to the largest value of a block. The file is accurate to 14 digits, and
+/// rounding takes one of them.
 const CLOSE: f64 = 1e-13;
 /// Side of rectangles that represent strips: wider than any window.
 const ENDLESS: f64 = 1e3;

@@ -2,7 +2,7 @@
 
 #![expect(
     clippy::print_stdout,
-    reason = "how close each block is, and how far each planted fault, is worth a look"
+    reason = "the deviations of blocks and of planted faults are printed for the reader"
 )]
 
 use super::*;
@@ -13,8 +13,8 @@ use crate::shading::{
 };
 use std::f64::consts::{PI, TAU};
 
-/// Relative to the largest value of a block: the values here are closed forms, or quadratures
-/// accurate to 10⁻¹².
+/// The tolerance relative to the largest value of a block. The values here are closed forms, or
+/// quadratures accurate to 10⁻¹².
 const NEAR: f64 = 1e-9;
 /// The smallest error of a planted fault that must be detected; actual errors are much larger.
 const FAULT: f64 = 1e-3;
@@ -25,7 +25,7 @@ fn assert_near(what: &str, off: f64) {
 }
 
 fn assert_seen(what: &str, off: f64) {
-    assert!(off > FAULT, "{what} is not seen: {off:e}");
+    assert!(off > FAULT, "{what} is not detected: {off:e}");
     println!("  {what}: {off:.2e}");
 }
 
@@ -82,7 +82,7 @@ fn fresnel_and_cosine() {
         assert_near("reflectance", deviation(5, pairs));
         let hat = |omega| fresnel.cosine_hat(omega);
         assert_near("Fresnel · cos⁺", curve(material, 15, hat));
-        // A planted fault: one polarisation instead of the mean of both.
+        // A planted fault uses one polarisation instead of the mean of both.
         let square = Complex::new(index, extinction) * Complex::new(index, extinction);
         let across = |omega: f64| {
             let kernel = |theta: f64| {
@@ -166,8 +166,8 @@ fn reflection<'a>(
             after: Factor::One,
             weight: None,
         }],
-        // Content of angles 0.04 wide reaches ± 30, shifted by the correlation of positions and
-        // angles.
+        // Content of angles 0.04 wide reaches to ± 30, and is shifted by the correlation of
+        // positions and angles.
         lattice: Lattice::circle(60.0),
     }
 }
@@ -218,8 +218,9 @@ fn every_step_of_a_reflection() {
     assert_seen("a lobe 5 % wider", last(&wider));
 }
 
-/// Returns the coordinates (x, θ), in the frame of central rays at an angle, of a ray that leaves
-/// the circle at arc length s with the local direction θ, and ∂x/∂s at a fixed direction.
+/// Returns the coordinates (x, θ) of a ray that leaves the circle at arc length s with the local
+/// direction θ, and ∂x/∂s at a fixed direction. The coordinates are in the frame of central rays at
+/// an angle.
 ///
 /// The frame is the one after the reflection: X = c T − sin N. Before it, rays are reversed and X
 /// points the other way.
@@ -257,7 +258,8 @@ fn traced(
     let mut sum = Complex::from(0.0);
     // 0.55 is eight standard deviations of the light on the surface.
     for (s, ds) in lattice(0.0, 0.55, 60) {
-        // Light of standard deviation 0.05, relative to the normal there.
+        // The light has a standard deviation of 0.05, and its angles are relative to the normal
+        // there.
         for (incident, di) in lattice(theta0 - k * s, 0.45, 60) {
             let ([x, theta], _) = seen(k, theta0, s, incident);
             let light: f64 = bells.iter().map(|bell| bell.value([-x, theta])).sum();
@@ -269,8 +271,8 @@ fn traced(
                 sum += wave(s, -incident) * share;
                 continue;
             };
-            // A normal distribution by trapezoids 0.4 standard deviations long: accurate to
-            // rounding.
+            // A normal distribution by the trapezoid rule with steps of 0.4 standard deviations,
+            // accurate up to rounding error.
             for (z, dz) in lattice(0.0, 8.0, 20) {
                 let density = libm::exp(-0.5 * z * z) / TAU.sqrt() * dz;
                 sum += wave(s, deviation * z - incident) * (share * density);

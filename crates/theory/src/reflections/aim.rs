@@ -1,8 +1,9 @@
 //! The coordinates that aim a leg: directions away from a point, parametrised by two coordinates.
 //!
-//! If a leg runs straight to the next scattering surface, or to a plane across it, the coordinates
-//! are a position there, which lets rays from anywhere on a wide surface meet a narrow window.
-//! Otherwise they are angles, and the landing point is known only to first order.
+//! If a leg runs straight to the next scattering surface, or to a plane across the leg, the
+//! coordinates are a position there. Rays from anywhere on a wide surface can then be aimed at a
+//! narrow window. Otherwise the coordinates are angles, and the landing point is known only to
+//! first order.
 
 use super::chain::{ScatteringSurface, towards};
 use super::guide::Gaussian;
@@ -32,8 +33,8 @@ pub(super) enum DirectionCoordinates {
     Plane(Frame),
 }
 
-/// The smallest distance of a plane that rays may be aimed at, in widths of the surface: none of
-/// the surface then lies beyond the plane.
+/// The smallest distance of a plane at which rays may be aimed, in widths of the surface; at this
+/// distance no part of the surface lies beyond the plane.
 const MIN_DISTANCE: f64 = 2.0;
 
 impl DirectionCoordinates {

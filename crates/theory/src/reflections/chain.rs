@@ -19,9 +19,9 @@ pub struct ReflectionChain {
     /// The scattering surfaces, in the order light meets them.
     pub scatterers: Vec<ScatteringSurface>,
     /// The affine maps, one more than there are scatterers. The first maps (x, y, u, v) at the
-    /// light to local coordinates of the direction of incidence at the first scatterer. Each other
-    /// maps local coordinates of the outgoing direction at a scatterer, minus those of the central
-    /// ray, to the next scatterer, and the last to the coordinates of the plane.
+    /// light to local coordinates of the direction of incidence at the first scatterer. Each of the
+    /// others maps local coordinates of the outgoing direction at a scatterer, minus those of the
+    /// central ray, to the next scatterer; the last map leads to the coordinates of the plane.
     pub maps: Vec<AffineMap<4>>,
     /// The steps in words, in the order light meets them.
     pub steps: Vec<String>,
@@ -54,8 +54,8 @@ pub fn chain(view: &Observed<ReflectionSystem>) -> Option<ReflectionChain> {
     })
 }
 
-/// Returns how far the maps of a chain are from those of the exact rays, in radians, metres, or
-/// relative to these: zero for the chain of [`chain`].
+/// Returns how far the maps of a chain are from those of the exact rays, in metres or radians, or
+/// as a ratio of these: zero for the chain of [`chain`].
 #[must_use]
 pub fn defect(view: &Observed<ReflectionSystem>, tried: &ReflectionChain) -> Option<f64> {
     let traced = chain(view)?;
@@ -112,7 +112,7 @@ fn scatterers(view: &Observed<ReflectionSystem>) -> Option<Vec<ScatteringSurface
     Some(found)
 }
 
-/// Returns the map from a scatterer, or the light, to the next, or the plane.
+/// Returns the map from the light or a scatterer to the next scatterer or the plane.
 fn map(
     view: &Observed<ReflectionSystem>,
     scatterers: &[ScatteringSurface],

@@ -1,8 +1,8 @@
 //! Sampled directions away from a scattering surface.
 //!
-//! Most directions are aimed at positions at the end of the leg. Where the next surface is near,
-//! such as in a corner, the solid angle of a position there is unbounded. So some directions follow
-//! the lobe in angles, whatever is ahead: they bound the weights of all paths.
+//! Most directions are aimed at positions at the end of the leg. If the next surface is near, as in
+//! a corner, the solid angle of a position on it is unbounded. So some directions follow the lobe
+//! in angles, whatever is ahead, which bounds the weights of all paths.
 
 use super::PathSurface;
 use super::aim::DirectionCoordinates;
@@ -43,7 +43,8 @@ impl OutgoingDirections<'_> {
     /// Samples a direction for a point of the unit square.
     ///
     /// `st` is the local position of the point. `guide` gives the angles that reach the window from
-    /// there, `lobe` those that the surface scatters into, with the mirror direction if there is one.
+    /// this position. `lobe` gives the angles that the surface scatters into, with the mirror
+    /// direction if there is one.
     pub(super) fn draw(
         &self,
         [a, b]: [f64; 2],
@@ -109,7 +110,8 @@ impl OutgoingDirections<'_> {
         [longitude - outgoing[0], latitude - outgoing[1]]
     }
 
-    /// Returns where a direction ends the leg, in the coordinates of the aim; `None` if it does not.
+    /// Returns the point at which a direction ends the leg, in the coordinates of the aim; `None`
+    /// if it does not end there.
     fn end(&self, direction: DVec3) -> Option<[f64; 2]> {
         let DirectionCoordinates::Patch { patch, .. } = self.aim else {
             return self.aim.end(self.point, direction);

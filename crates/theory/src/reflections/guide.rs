@@ -1,9 +1,9 @@
 //! Gaussians that guide light into the window, and sampling by them.
 //!
-//! The window is approximated by a Gaussian with the same variances. An affine map takes that back
-//! to the previous leg; a lobe blurs its angles there; the edge of a surface narrows its positions.
-//! The resulting Gaussian at a surface gives the relevant directions at each of its points, and at
-//! the light the relevant rays.
+//! The window is approximated by a Gaussian with the same variances. An affine map takes this
+//! Gaussian back to the previous leg, a lobe blurs its angles, and the edge of a surface narrows
+//! its positions. The resulting Gaussian at a surface gives the relevant directions at each of the
+//! surface's points; the Gaussian at the light gives the relevant rays.
 
 use crate::geometry::{
     AffineMap, Matrix, congruent, diagonal, from_fn, inverse, product, sum, times,
@@ -40,9 +40,9 @@ impl Gaussian<4> {
         })
     }
 
-    /// Returns the Gaussian of incident light that a lobe scatters into this one, whose angles are
-    /// relative to the central ray: blurred about the mirror direction; for diffuse light the
-    /// angles are arbitrary.
+    /// Returns the Gaussian of the incident light that a lobe scatters into this one, whose angles
+    /// are relative to the central ray. The lobe blurs it about the mirror direction; for diffuse
+    /// light its angles are arbitrary.
     pub(super) fn before_lobe(&self, width: Option<f64>, outgoing: [f64; 2]) -> Self {
         let [s, t, theta, phi] = self.mean;
         let Some(width) = width else {
@@ -77,7 +77,7 @@ impl Gaussian<4> {
         })
     }
 
-    /// Returns the Gaussian of two coordinates, whatever the other two.
+    /// Returns the marginal Gaussian of two coordinates, with the other two arbitrary.
     pub(super) fn marginal(&self, of: [usize; 2]) -> Gaussian<2> {
         Gaussian {
             mean: of.map(|i| self.mean[i]),
@@ -162,7 +162,7 @@ pub(super) struct HeavyTailedGaussian {
     root: [f64; 3],
 }
 
-/// Width of a density over the standard deviation of its Gaussian.
+/// The width of a density divided by the standard deviation of its Gaussian.
 const BROADENED: f64 = 1.8;
 
 impl HeavyTailedGaussian {

@@ -2,11 +2,11 @@
 //!
 //! The inputs are a [`ReflectionSystem`] and a [`Plane`](crate::rays::Plane) beyond some of its
 //! surfaces. The system has a light, masks and obstacles anywhere, and the surfaces that the
-//! central ray visits, each a mirror, a refracting surface, a lens, a diffuse rectangle or a
-//! surface with a BRDF. The [`Observed`](crate::Observed) of both is a [`Model`](crate::Model): it
-//! sums paths from the light over scrambled nets. A path leaves the light, is redirected by each
-//! specular surface, and leaves each scattering surface in a sampled direction (docs/theory.md,
-//! section 10b):
+//! central ray visits. Each surface is a mirror, a refracting surface, a lens, a diffuse rectangle
+//! or a surface with a BRDF. The [`Observed`](crate::Observed) of both is a
+//! [`Model`](crate::Model): it sums paths from the light over scrambled nets. A path leaves the
+//! light, is redirected by each specular surface, and leaves each scattering surface in a sampled
+//! direction (docs/theory.md, section 10b):
 //!
 //! L(p, ωo) = ∫ L(p, ωi) f(p, ωi, ωo) cos θi dωi, once per scattering surface.
 //!
@@ -16,10 +16,10 @@
 //! A path ends if it meets a surface out of order, or a surface of the path for a second time. So
 //! no assumption is made about the positions of surfaces.
 //!
-//! In addition there is the chain of first-order operators (Durand et al. 2005, Table 1): affine
-//! maps from one scattering surface to the next, and at each a product with the cosine and a
-//! convolution with the lobe at the central ray. The error of the chain is a sum over the same
-//! paths.
+//! In addition there is the chain of first-order operators (Durand et al. 2005, Table 1). It has
+//! affine maps from one scattering surface to the next; at each surface it has a product with the
+//! cosine and a convolution with the lobe at the central ray. The error of the chain is a sum over
+//! the same paths.
 //!
 //! This module shares no intersection, BRDF evaluation or sampling code with the tracers.
 
@@ -53,8 +53,8 @@ pub struct ReflectionSystem {
     pub obstacles: Vec<Obstacle>,
     /// All surfaces of the path, in the order light meets them.
     pub surfaces: Vec<PathSurface>,
-    /// The number of surfaces that light has left before the plane. The next one, if any, ends the
-    /// last leg and occludes nothing on it.
+    /// The number of surfaces that light has left before the plane. The next surface, if any, ends
+    /// the last leg and occludes nothing on it.
     pub visited: usize,
 }
 

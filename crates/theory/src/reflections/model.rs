@@ -42,8 +42,8 @@ impl ReflectionSystem {
 }
 
 impl PathSurface {
-    /// Returns the factor of the surface's BRDF, if it scatters; for a sum of BRDFs, of the first
-    /// alone.
+    /// Returns the factor of the surface's BRDF, if it scatters. For a sum of BRDFs this is the
+    /// factor of the first one.
     fn albedo_mut(&mut self) -> Option<&mut f64> {
         match &mut self.interaction {
             Interaction::Specular(_) => None,
@@ -61,7 +61,7 @@ impl PathSurface {
         }
     }
 
-    /// Checks whether all light that the surface scatters is proportional to its albedo.
+    /// Checks whether all light that the surface scatters is proportional to the surface's albedo.
     fn is_in_proportion(&self) -> bool {
         match &self.interaction {
             Interaction::Reflects(reflectance) => reflectance.only().is_some(),

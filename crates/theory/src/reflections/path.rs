@@ -32,16 +32,16 @@ pub(super) struct FieldPaths<'a> {
 /// The sampling of the light's rays.
 #[derive(Debug)]
 enum Start<'a> {
-    /// Positions in a beam, by the Gaussian of the rays that reach the window.
+    /// Positions in a beam, drawn by the Gaussian of the rays that reach the window.
     Beam(Conditional),
-    /// Directions from points of the light, likewise.
+    /// Directions from points of the light, drawn in the same way.
     Points(Conditional),
     Sky(Box<SkyRays<'a>>),
 }
 
 impl<'a> Start<'a> {
-    /// `guide` is the Gaussian of the light at the first scatterer that reaches the window, and `aim`
-    /// the coordinates of the leg from the light.
+    /// `guide` is the Gaussian of the light that arrives at the first scatterer and reaches the
+    /// window; `aim` are the coordinates of the leg from the light.
     fn new(
         view: &'a Observed<ReflectionSystem>,
         chain: &ReflectionChain,
@@ -184,7 +184,8 @@ impl<'a> FieldPaths<'a> {
         })
     }
 
-    /// Returns the point where light meets the surface at the end of a leg; `None` if it does not.
+    /// Returns the point where light meets the surface at the end of a leg; `None` if the light
+    /// misses it.
     fn arrive(&self, leg: usize, going: &mut Going) -> Option<DVec3> {
         let Going { ray, .. } = going;
         let surfaces = &self.view.system.surfaces;
@@ -197,7 +198,7 @@ impl<'a> FieldPaths<'a> {
         going.flux *= passes;
         going.radiance *= passes;
         let point = ray.point + end * ray.direction;
-        // If a ray meets a surface at two points, only the first generates it.
+        // If a ray meets a surface at two points, it counts only if it was aimed at the first one.
         let beside = |target: DVec3| target.distance(point) > SAME_DISTANCE * end;
         let is_second = going.target.take().is_some_and(beside);
         (passes > 0.0 && !is_second).then_some(point)
@@ -311,7 +312,7 @@ fn on_surface(
     scatterer: &ScatteringSurface,
 ) -> Option<Gaussian<4>> {
     let width = surface.width(surface.hit);
-    // The variance along an axis, for a disc or a rectangle.
+    // The variance is that along an axis, for a disc or a rectangle.
     let variance = match surface.outline {
         Some([x, y]) => (x * x + y * y) / 24.0,
         None => 0.25 * surface.patch.aperture * surface.patch.aperture,

@@ -1,8 +1,8 @@
 //! Rays of an environment that are sampled by its radiance and by the window.
 //!
-//! A direction is sampled, then a position: on the first surface if it scatters, otherwise at the
-//! light. Some directions follow the radiance of the environment and the others the guide, so that
-//! neither a bright lobe of the environment nor a narrow one of a BRDF is missed.
+//! A direction is sampled first, then a position: on the first surface if that scatters, otherwise
+//! at the light. Some directions follow the radiance of the environment and the others follow the
+//! guide. So neither a bright lobe of the environment nor a narrow lobe of a BRDF is missed.
 
 use super::aim::DirectionCoordinates;
 use super::chain::{ScatteringSurface, towards};
@@ -22,9 +22,10 @@ const GUIDED: f64 = 0.5;
 pub(super) struct SkyRays<'a> {
     environment: &'a Environment,
     radiance: SkyDensity<'a>,
-    /// Directions that reach the window, if the guide knows any.
+    /// Directions that reach the window, if the guide determines any.
     guide: Option<HeavyTailedGaussian>,
-    /// Positions that reach the window from a direction, and from all of them.
+    /// Positions from which light reaches the window: for a given direction, and for all
+    /// directions.
     positions: (Conditional, Option<Gaussian<2>>),
     coordinates: Coordinates,
     aim: DirectionCoordinates,
@@ -44,9 +45,9 @@ enum Coordinates {
 pub(super) type SkyRay = ([f64; 4], f64, Option<DVec3>);
 
 impl<'a> SkyRays<'a> {
-    /// `guide` describes the light at the first scatterer if `aim` is a position there, otherwise
-    /// the rays at the light. `has_lobe` is false if the first scatterer is diffuse: the guide
-    /// then knows nothing of directions. Returns `None` if the environment is dark.
+    /// `guide` describes the light at the first scatterer if `aim` is a position on it; otherwise
+    /// it describes the rays at the light. `has_lobe` is false if the first scatterer is diffuse:
+    /// the guide then does not restrict directions. Returns `None` if the environment is dark.
     pub(super) fn new(
         environment: &'a Environment,
         guide: &Gaussian<4>,
@@ -111,7 +112,7 @@ impl<'a> SkyRays<'a> {
         let [u, v] = [direction.x / forward, direction.y / forward];
         let ([x, y], per_area) = match (target, &self.aim) {
             (Some(target), DirectionCoordinates::Patch { patch, .. }) if target.z > -AT_LIGHT => {
-                // dx dy at the light over the area of the coordinates on the patch.
+                // This is dx dy at the light divided by the area of the coordinates on the patch.
                 let normal = patch.normal(target);
                 let spread = (normal.dot(direction) / normal.dot(patch.frame.d)).abs() / forward;
                 let start = target - target.z * DVec3::new(u, v, 1.0);

@@ -125,11 +125,11 @@ fn apart(a: &Predicted, b: &Predicted) -> f64 {
     a.slices.relative_difference(&b.slices) / error
 }
 
-/// Largest difference of two predictions in units of their errors: the mean over this many
-/// frequencies exceeds 1.3 once in a thousand.
+/// Largest difference of two predictions in units of their errors. The mean over this many
+/// frequencies exceeds 1.3 once in a thousand tests.
 const CLOSE: f64 = 1.3;
 
-/// One surface, against rays sampled from the plane back to the light.
+/// One surface is compared with rays that are sampled from the plane back to the light.
 #[test]
 fn one_surface_is_that_of_scattering() {
     let normal = DVec3::new(FRAC_1_SQRT_2, 0.0, -FRAC_1_SQRT_2);
@@ -180,11 +180,12 @@ fn one_surface_is_that_of_scattering() {
         assert!(other.error.unwrap() < most, "{lobe:?} {:?}", other.error);
         let off = apart(&one, &other);
         assert!(off < CLOSE, "{lobe:?} {off}");
-        // The chain of `scattering` takes a sky's directions at the surface, this one at the light.
+        // The chain of `scattering` takes a sky's directions at the surface; this chain takes them
+        // at the light.
         if is_sky {
             continue;
         }
-        // The chains differ only in where rays meet the mask.
+        // The chains differ only in the points where rays meet the mask.
         let [one, other] = [one, other].map(|found| {
             let size = found.slices.at_zero();
             found.to_first_order.unwrap().at_zero() / size
@@ -193,8 +194,8 @@ fn one_surface_is_that_of_scattering() {
     }
 }
 
-/// A flat mirror before and a flat mirror behind a surface, against the light and the plane at
-/// their mirror images.
+/// A flat mirror before a surface and a flat mirror behind it are compared with the light and the
+/// plane at their mirror images.
 #[test]
 fn flat_mirrors_unfold() {
     let mirror = || Interaction::Specular(Specular::Mirror);
@@ -281,12 +282,14 @@ fn two_diffuse_surfaces_are_a_sum_over_the_first() {
     }
     let wanted = 0.5 / PI * irradiance * (2.0 * small).powi(4);
     let off = found.slices.at_zero() / wanted - 1.0;
-    // Four standard errors of the paths (7·10⁻⁴), and the round edge of the wall in squares of 3 mm.
+    // The tolerance is four standard errors of the paths (7·10⁻⁴), plus the error from the round
+    // edge of the wall in squares of 3 mm.
     assert!(off.abs() < 3e-3, "{off:e} {:?}", found.error);
 }
 
-/// In a corner the next surface is arbitrarily near. The paths toward it have bounded weights, so the
-/// error of the sum falls as that of other sums, and is what it states.
+/// In a corner the next surface may be arbitrarily near. The paths toward the next surface have
+/// bounded weights. So the error of the sum falls as fast as that of other sums, and is as large as
+/// it states.
 #[test]
 fn a_corner_has_no_heavy_paths() {
     let (x, z) = (DVec3::X, DVec3::Z);
@@ -331,7 +334,7 @@ fn surfaces_and_masks_hide_later_legs() {
         form: ObstacleForm::Patch(card),
     });
     let stopped = predicted(&open, &plane, &window).slices.at_zero();
-    // The card is 0.4 m wide, half-way from the wall, which is lit over more than a metre.
+    // The card is 0.4 m wide and half-way to the wall, which is lit over more than a metre.
     assert!(hidden < 0.9 * whole && (hidden / stopped - 1.0).abs() < 0.02); // errors of both nets
 }
 

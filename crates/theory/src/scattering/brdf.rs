@@ -170,8 +170,8 @@ mod tests {
         assert!((inside - 1.0).abs() < 1e-14); // rounding
     }
 
-    /// ∫ D cos dω = 1 through the lobe at normal incidence, where f = D G₁/(4 cos): the weak white
-    /// furnace without shadowing.
+    /// This is ∫ D cos dω = 1, through the lobe at normal incidence, where f = D G₁/(4 cos): the
+    /// weak white furnace without shadowing.
     #[test]
     fn lobes_hold_what_they_say() {
         let normal = DVec3::Z;

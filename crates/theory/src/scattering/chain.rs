@@ -16,11 +16,11 @@ use glam::DVec3;
 /// in the plane of incidence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScatteringChain {
-    /// From (x, y, u, v) at the light to local coordinates of the direction of incidence: travel,
-    /// incidence, curvature.
+    /// The map from (x, y, u, v) at the light to local coordinates of the direction of incidence:
+    /// travel, incidence, curvature.
     pub onto: AffineMap<4>,
-    /// From local coordinates of the outgoing direction to those of the plane: back, outgoing
-    /// angle, travel.
+    /// The map from local coordinates of the outgoing direction to those of the plane: back,
+    /// outgoing angle, travel.
     pub off: AffineMap<4>,
     /// Longitude θ₀ of the direction the central ray comes from.
     pub incidence: f64,
@@ -39,8 +39,8 @@ pub struct ScatteringChain {
 /// Returns the chain of a system up to a plane on its surface or beyond; `None` if the central ray
 /// does not arrive there.
 ///
-/// Its maps are the derivatives of the exact rays; without twist they are those of Durand et al.
-/// 2005, Eqs. 9–11 and 19, corrected (docs/theory.md, section 7), as the tests verify.
+/// Its maps are the derivatives of the exact rays. Without twist they are the corrected maps of
+/// Durand et al. 2005, Eqs. 9–11 and 19 (docs/theory.md, section 7), as the tests verify.
 #[must_use]
 pub fn chain(view: &Observed<ScatteringSystem>) -> Option<ScatteringChain> {
     let Observed { system, plane } = view;
@@ -97,8 +97,8 @@ pub fn chain(view: &Observed<ScatteringSystem>) -> Option<ScatteringChain> {
     })
 }
 
-/// Returns how far the maps of a chain are from those of the exact rays, in radians, metres, or
-/// relative to these: zero for the chain of [`chain`].
+/// Returns how far the maps of a chain are from those of the exact rays, in metres or radians, or
+/// as a ratio of these: zero for the chain of [`chain`].
 #[must_use]
 pub fn defect(view: &Observed<ScatteringSystem>, tried: &ScatteringChain) -> Option<f64> {
     let traced = chain(view)?;
@@ -201,8 +201,8 @@ pub(crate) fn reflection(reflectance: &Reflectance) -> Vec<String> {
     words
 }
 
-/// Describes the factors of angles before and after a lobe, with the lobe between them; verbs
-/// first.
+/// Describes the factors of angles before and after a lobe, with the lobe between them; each
+/// description begins with a verb.
 fn term_in_words(term: &Term) -> impl Iterator<Item = [String; 2]> {
     let brdf = &term.brdf;
     let lobe = match brdf.lobe {

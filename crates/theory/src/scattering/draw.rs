@@ -1,9 +1,9 @@
 //! Importance sampling of rays at a plane, and of the light that shines on their starting points.
 //!
 //! Any density that is non-zero wherever there is light gives the same integral. These densities
-//! follow the window, the lobe of the BRDF and the light; if two of them compete, half of the rays
-//! are sampled from each and all are weighted by the mixture (the balance heuristic, Veach and
-//! Guibas 1995).
+//! follow the window, the lobe of the BRDF and the light. If two of them compete, half of the rays
+//! are sampled from each, and all rays are weighted by the mixture (the balance heuristic, Veach
+//! and Guibas 1995).
 
 use super::brdf::narrowest;
 use super::exact::Leaving;
@@ -17,19 +17,19 @@ use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// A sampling strategy. No strategy is best for every scene; they are tried on the scene.
+/// A sampling strategy. No strategy is best for every scene, so all of them are tried on the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct LightStrategy {
-    /// Samples half of the slopes about the mirrored light.
+    /// Whether half of the slopes are sampled about the mirrored light.
     pub(super) mirrored: bool,
-    /// Samples half of the parts of the light by the lobe.
+    /// Whether half of the parts of the light are sampled by the lobe.
     pub(super) by_lobe: bool,
-    /// Samples four parts of the light for each point of the surface.
+    /// Whether four parts of the light are sampled for each point of the surface.
     pub(super) quarters: bool,
 }
 
 impl LightStrategy {
-    /// Returns the strategies that differ from this one in one choice.
+    /// Returns the strategies that differ from this one in a single choice.
     pub(super) fn neighbours(self) -> [Self; 3] {
         [
             Self {
@@ -47,7 +47,7 @@ impl LightStrategy {
         ]
     }
 
-    /// Returns this strategy without the choices that make no difference to a system.
+    /// Returns this strategy without the choices that make no difference for a system.
     pub(super) fn in_effect(self, system: &ScatteringSystem) -> Self {
         let has_extent = system.light.has_extent();
         let has_lobe = narrowest_of(system).is_some();
@@ -59,8 +59,8 @@ impl LightStrategy {
         }
     }
 
-    /// Returns the approximate time of a ray, in units of a ray sampled by the window with one part
-    /// of the light.
+    /// Returns the approximate time of a ray, relative to a ray that is sampled by the window with
+    /// one part of the light.
     pub(super) fn time(self) -> f64 {
         if self.quarters { 1.7 } else { 1.0 }
     }
@@ -133,8 +133,8 @@ impl Mirrored {
         let block = |map: &AffineMap<4>, row: usize, column: usize| -> Matrix<2> {
             crate::geometry::from_fn(|i, j| map.matrix[row + i][column + j])
         };
-        // The coordinates in which rays of the light's central point, or of the axis of a beam,
-        // vary.
+        // These are the coordinates in which rays of the light's central point, or of the axis of a
+        // beam, vary.
         let free = match system.light {
             Light::Environment { .. } => return None,
             Light::Beam { .. } => 0,
@@ -142,11 +142,12 @@ impl Mirrored {
         };
         let onto = &chain.onto;
         let (places, _) = inverted(&block(onto, 0, free))?;
-        // Change of the angles of incidence per position on the surface.
+        // This is the change of the angles of incidence per position on the surface.
         let per_place = product(&block(onto, 2, free), &places);
         let [s, t, theta, phi] = onto.offset;
         let arrives = times(&per_place, &[s, t]);
-        // The sum of the outgoing and incident angles: the angles from the mirror direction.
+        // The sum of the outgoing and the incident angles gives the angles from the mirror
+        // direction.
         let by = |column: usize| {
             let angles = block(&off, 2, column);
             let through = product(&per_place, &block(&off, 0, column));
@@ -190,9 +191,9 @@ impl Mirrored {
 pub(super) struct Lights<'a> {
     system: &'a ScatteringSystem,
     sky: Option<Arc<SkyDensity<'a>>>,
-    /// Whether half of them are sampled by the lobe.
+    /// Whether half of the parts are sampled by the lobe.
     by_lobe: bool,
-    /// The number of cells along each side of the square, one sample being drawn in each.
+    /// The number of cells along each side of the square; one sample is drawn in each cell.
     side: usize,
 }
 
@@ -240,8 +241,8 @@ impl<'a> Lights<'a> {
         self.by_lobe
     }
 
-    /// Returns the sampled parts of the light for a point of the surface, with their densities over
-    /// their share of the mean: one part, or one in each quarter of the unit square.
+    /// Returns the sampled parts of the light for a point of the surface: one part, or one in each
+    /// quarter of the unit square. Each part's density is divided by its share of the mean.
     pub(super) fn each<'b>(
         &'b self,
         leaving: &'b Leaving,
@@ -290,8 +291,8 @@ impl<'a> Lights<'a> {
         }
     }
 
-    /// Returns the light of an environment along a direction, given a direction in the axes of its
-    /// map; with its density.
+    /// Returns the part of an environment from which light travels along `along`, with its density;
+    /// `from` is the direction it comes from, in the axes of the map.
     fn of_sky(&self, along: DVec3, from: DVec3) -> Option<(LightPart, f64)> {
         let (Light::Environment { environment }, Some(sky)) = (&self.system.light, &self.sky)
         else {
@@ -380,7 +381,7 @@ impl LobeDensity {
             return 0.0;
         }
         let slopes = [half.x / half.z, half.y / half.z];
-        // Density per steradian of normals; four times their cosine converts to incident
+        // The density is per steradian of normals; four times their cosine converts it to incident
         // directions.
         let per_normal = bell_density(self.width, slopes) / half.z.powi(3);
         per_normal / (4.0 * half.dot(self.wo).abs())

@@ -45,7 +45,8 @@ impl ScatteringSystem {
         })
     }
 
-    /// Returns where a line exits through the surface: point, normal and the line's direction.
+    /// Returns the point where a line exits through the surface, the normal there, and the
+    /// direction of the line.
     fn on_line(&self, at: DVec3, direction: DVec3) -> Option<(DVec3, DVec3, DVec3)> {
         let ray = LegRay::back(&self.patch, at, direction);
         let (distance, normal) = ray.met(&self.patch)?;

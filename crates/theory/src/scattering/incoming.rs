@@ -8,7 +8,7 @@ use glam::DVec3;
 /// A sampled part of the light.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum LightPart {
-    /// All of the light, which a point of the surface sees from one direction alone.
+    /// All of the light, if a point of the surface sees it from one direction alone.
     Whole,
     /// A point of an area light. Its densities are per square metre.
     Point([f64; 2]),
@@ -26,14 +26,13 @@ pub(super) enum LightPart {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct IncomingLight {
     pub(super) slopes: [f64; 2],
-    /// Radiance times du dv per unit of the part's measure; for the whole light, the product of
-    /// radiance and du dv.
+    /// Radiance times du dv, per unit of the part's measure; if the part is all of the light, the
+    /// product of radiance and du dv.
     pub(super) weight: f64,
 }
 
 impl Masks<'_> {
-    /// Returns the light from a part of a light that is incident on a point, in the frame at the
-    /// light.
+    /// Returns the light that a point receives from a part of a light, in the frame at the light.
     pub(super) fn incoming(&self, light: &Light, point: DVec3, part: LightPart) -> IncomingLight {
         let DVec3 { x, y, z } = point;
         // The point where the ray leaves the light's plane, and its slopes.
@@ -48,10 +47,10 @@ impl Masks<'_> {
             // du dv = dω / cos³.
             LightPart::Sky { radiance, .. } => radiance * secant(slopes).powi(3),
             LightPart::Whole if light.is_distant() => emitted(light, [a, b, u, v]),
-            // Converts flux per du dv to radiance, with du dv = dx dy / z².
+            // Flux per du dv is converted to radiance, with du dv = dx dy / z².
             _ => emitted(light, [a, b, u, v]) * secant(slopes).powi(4) / (z * z),
         };
-        // Light begins in its plane, even light from an environment.
+        // Light begins in the plane of its source; so does light from an environment.
         let passes = if weight > 0.0 && z > 0.0 {
             self.transmittance(point, slopes) * self.past_obstacles(point, slopes)
         } else {
@@ -77,7 +76,7 @@ impl Masks<'_> {
     }
 }
 
-/// Relative error of a distance by rounding, within which an occluder at the point itself is
+/// Relative error of a distance due to rounding, within which an occluder at the point itself is
 /// ignored.
 const ROUNDING: f64 = 1e-9;
 

@@ -33,8 +33,8 @@ impl<'a> Linear<'a> {
         let [[a, b], [c, d]] = [[m[0][0], m[0][1]], [m[1][0], m[1][1]]];
         let det = a * d - b * c;
         let across = [[d / det, -b / det], [-c / det, a / det]];
-        // u at a point with a fixed position across the axis: the position at the light moves back
-        // by the distance.
+        // At a fixed position across the axis, u also changes the position at the light, which
+        // moves back by u times the distance.
         let slope =
             |row: usize, column: usize| m[row][2 + column] - chain.distance * m[row][column];
         Some(Self {
@@ -71,7 +71,7 @@ impl<'a> Linear<'a> {
         let across = (1.0 + u * u).sqrt();
         let (longitude, latitude) = (libm::atan(u), libm::atan(v / across));
         let per_angle = 1.0 / ((1.0 + u * u + v * v) * across);
-        // The angles of the ray along the axis through the position.
+        // These are the angles of the ray that runs along the axis through the position.
         let [_, _, theta, phi] = self.chain.onto.apply([point.x, point.y, 0.0, 0.0]);
         let [[a, b], [c, d]] = self.angles;
         let (theta, phi) = (
@@ -92,8 +92,8 @@ impl<'a> Linear<'a> {
 }
 
 /// Returns a BRDF as at the central ray, which arrives at the angle `incidence`, for light from and
-/// to a longitude and a latitude: a function of the angles from the mirror direction. Factors of
-/// the angles of incidence and departure still depend on those angles.
+/// to a longitude and a latitude. It is a function of the angles from the mirror direction. Factors
+/// of the angles of incidence and departure are still functions of those angles.
 pub(crate) fn kernel(
     brdf: &Brdf,
     incidence: f64,

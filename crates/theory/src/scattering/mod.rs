@@ -1,17 +1,18 @@
 //! Windowed spectra behind a surface that reflects by a BRDF (docs/theory.md, section 10).
 //!
 //! The inputs are a [`ScatteringSystem`] and a [`Plane`](crate::rays::Plane). The system has a
-//! light, masks across its path, obstacles, and a curved surface with a BRDF that may vary over it;
-//! the plane is on the surface, with light leaving it, or across the light's path onwards. The
-//! [`Observed`](crate::Observed) of both is a [`Model`](crate::Model): it sums rays of the plane
-//! over scrambled nets, and for each ray a part of the light that shines on its starting point,
+//! light, masks across its path, obstacles, and a curved surface with a BRDF that may vary over it.
+//! The plane is on the surface and records light that leaves it, or is across the path of that
+//! light. The [`Observed`](crate::Observed) of both is a [`Model`](crate::Model): it sums rays of
+//! the plane over scrambled nets, and for each ray a part of the light that shines on its starting
+//! point,
 //!
 //! L(p, ωo) = ∫ L(p, ωi) f(p, ωi, ωo) cos θi dωi.
 //!
 //! In addition there is the chain of first-order operators (Durand et al. 2005, section 4): affine
 //! maps onto the surface and off it, a product with the clamped cosine, and a convolution with the
-//! lobe of the BRDF at the central ray. The error of the chain, and derivatives, are sums over the
-//! same rays.
+//! lobe of the BRDF at the central ray. The error of the chain, and the derivatives, are sums over
+//! the same rays.
 //!
 //! This module shares no intersection, BRDF evaluation or sampling code with the tracers; only the
 //! variation of a BRDF over a surface is shared, in `etendue_field`.

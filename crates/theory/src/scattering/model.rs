@@ -49,7 +49,7 @@ impl Model for Observed<ScatteringSystem> {
         }
     }
 
-    /// For a sum of BRDFs, of the first alone.
+    /// For a sum of BRDFs, the albedo and the lobe are those of the first one.
     fn change(&mut self, parameter: Parameter, new: New<'_>) -> Option<()> {
         let ScatteringSystem {
             light,
@@ -72,8 +72,8 @@ impl Model for Observed<ScatteringSystem> {
         Some(())
     }
 
-    /// Includes the difference to the first-order chain. All light is proportional to an albedo if
-    /// no other BRDF is added.
+    /// Includes the difference to the first-order chain. All light is proportional to the albedo of
+    /// a BRDF if no other BRDF is added.
     fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: RayBudget) -> Predicted {
         let only = self.system.reflectance.only().map(|brdf| brdf.albedo);
         let factor = only.filter(|albedo| *albedo > 0.0);

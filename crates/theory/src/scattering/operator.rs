@@ -4,11 +4,11 @@ use crate::shading::cosine_power_hat;
 use etendue_field::{Brdf, Complex, Fresnel, Lobe, Pattern, Reflectance, Weight};
 use std::f64::consts::TAU;
 
-/// Returns the spectrum at Ω = (Ωx, Ωy, Ωθ, Ωφ) of the light that leaves a surface in the frames of
-/// its local normals, from the spectrum `before` of the differential irradiance rotated about the
-/// normals. For each BRDF it is the product with the transform of its lobe over (Ωθ, Ωφ), convolved
-/// over (Ωx, Ωy) alone with the transform of its weight (Durand et al. 2005, section 4.5, the
-/// "semi-convolution" in 4D).
+/// Returns the spectrum at Ω = (Ωx, Ωy, Ωθ, Ωφ) of the light that leaves a surface, in the frames
+/// of its local normals. `before` is the spectrum of the differential irradiance, rotated about the
+/// normals. Each BRDF multiplies `before` by the transform of its lobe over (Ωθ, Ωφ); the product
+/// is convolved over (Ωx, Ωy) alone with the transform of the BRDF's weight (Durand et al. 2005,
+/// section 4.5, the "semi-convolution" in 4D).
 ///
 /// Holds to first order, like the chain; it includes all angles, and any window over positions is
 /// in `before`. `axes` are X and Y of the surface's patch in the coordinates (x, y). `None` if a

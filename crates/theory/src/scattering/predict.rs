@@ -16,14 +16,15 @@ use glam::DVec3;
 /// Returns the windowed spectrum of the light that a surface scatters, with the derivatives with
 /// respect to given parameters.
 ///
-/// Rays are sampled at the plane, and for each ray one or four parts of the light that shines on
-/// its starting point (docs/theory.md (40)). `chain` is that of [`chain`](super::chain()); it
-/// guides the sampling. The result is bitwise identical on any number of threads.
+/// Rays are sampled at the plane. For each ray, one or four parts of the light that shines on its
+/// starting point are sampled (docs/theory.md (40)). `chain` is that of [`chain`](super::chain());
+/// it guides the sampling. The result is bitwise identical on any number of threads.
 ///
 /// The prediction of the chain, and the derivatives, are differences of the radiance of the same
-/// rays: accurate to about a per cent of their values. Parts of the light move with the light, so
-/// its edges cause no edges in a difference. Shadows do not move with masks: points lit on one side
-/// of a difference alone add noise, which decreases with the distance between the sides.
+/// rays. They are accurate to about a per cent of their values. Parts of the light move with the
+/// light, so the edges of the light cause no edges in a difference. Shadows do not move with masks.
+/// Points that are lit on only one side of a difference add noise, which decreases with the
+/// distance between the sides.
 pub(crate) fn predict(
     view: &Observed<ScatteringSystem>,
     chain: Option<&ScatteringChain>,
@@ -59,7 +60,7 @@ pub(crate) fn with_rays(
     ));
 }
 
-/// Returns the strategy with the least error in the same time.
+/// Returns the strategy that has the least error for the same time.
 fn fastest(
     view: &Observed<ScatteringSystem>,
     chain: Option<&ScatteringChain>,
@@ -71,7 +72,7 @@ fn fastest(
     })
 }
 
-/// Returns the number of nodes that take as long as a full budget does with few lobes of light.
+/// Returns the number of nodes that take as long as a full budget takes with few lobes of light.
 fn affordable(system: &ScatteringSystem, budget: RayBudget) -> RayBudget {
     RayBudget {
         nodes: budget.nodes / cost(system),
@@ -79,8 +80,8 @@ fn affordable(system: &ScatteringSystem, budget: RayBudget) -> RayBudget {
     }
 }
 
-/// Returns the prediction of a chain that may differ from that of [`chain`](super::chain()): the
-/// exact field of the surface, and its difference to the chain.
+/// Returns the prediction of a chain, which may differ from that of [`chain`](super::chain()): the
+/// exact field of the surface, and the difference between it and the chain.
 #[must_use]
 pub fn beside(
     view: &Observed<ScatteringSystem>,
@@ -231,7 +232,8 @@ type DrawnPart = Option<(LightPart, f64)>;
 
 /// A light field with a parameter changed.
 ///
-/// If the change does not affect a ray or the light, they are taken from the original light field.
+/// If the change does not affect a ray or the light, the values are taken from the original light
+/// field.
 struct VariedField<'a> {
     view: &'a Observed<ScatteringSystem>,
     moves_surface: bool,

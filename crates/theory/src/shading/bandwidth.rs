@@ -7,8 +7,9 @@ pub const COSINE_CUTOFF: f64 = 0.376;
 /// The parameters of the image of a glossy surface in an environment (Durand et al. 2005, section
 /// 6.2).
 ///
-/// Bandwidths are the largest |Ωv| at a fixed point, the eye, in cycles per unit slope there. They
-/// assume a distant eye: if d is not zero the blur by the cosine, [`COSINE_CUTOFF`], is neglected.
+/// Bandwidths are the largest |Ωv| at a fixed point, the eye, in cycles per unit slope at the eye.
+/// They assume a distant eye: if d is not zero the blur by the cosine, [`COSINE_CUTOFF`], is
+/// neglected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Criterion {
     /// Curvature k, in 1/m, convex positive. The sign matters: a concave surface first reverses the
@@ -36,8 +37,8 @@ impl Criterion {
         self.lobe_cutoff * self.doubled_shear().abs()
     }
 
-    /// Eq. 20 at any distance for an environment with the cutoff Ω_e: the lower of both cutoffs
-    /// instead of Ω_ρ.
+    /// Eq. 20 at any distance for an environment with the cutoff Ω_e, where the lower one of Ω_ρ
+    /// and Ω_e replaces Ω_ρ.
     #[must_use]
     pub fn limited_environment(&self) -> f64 {
         self.lobe_cutoff.min(self.environment_cutoff) * self.doubled_shear().abs()
@@ -70,15 +71,15 @@ impl Criterion {
         (self.nearness() * behind + turned) / libm::cos(self.outgoing)
     }
 
-    /// Eq. 20 as printed, d 2k/cos θ₁ Ω_ρ, as an absolute value: an approximation for a distant
-    /// eye, without the 1. It requires a large |2kd/cos θ₁|; the paper says d ≫ 1.
+    /// Eq. 20 as printed, d 2k/cos θ₁ Ω_ρ, as an absolute value: an approximation for a distant eye
+    /// that leaves out the 1. It requires a large |2kd/cos θ₁|; the paper says d ≫ 1.
     #[must_use]
     pub fn printed_environment(&self) -> f64 {
         self.lobe_cutoff * (self.doubled_shear() - 1.0).abs()
     }
 
-    /// Eq. 21 as printed, d/cos θ₁ (1/d' + 2k) Ω_ρ, with |k|, as in the text: an approximation for
-    /// a distant eye and light along the normal, without the 1 and cos θ₀.
+    /// Eq. 21 as printed, d/cos θ₁ (1/d' + 2k) Ω_ρ, with |k|, as in the text. It is an
+    /// approximation for a distant eye and light along the normal that leaves out the 1 and cos θ₀.
     #[must_use]
     pub fn printed_blocker(&self) -> f64 {
         let nearness = self.blocker_distance.map_or(0.0, f64::recip);
@@ -107,9 +108,9 @@ impl Criterion {
 mod tests {
     use super::*;
 
-    /// Samples per metre of the surface by Eq. 21, over Ω_ρ, beside the error per metre of
-    /// irradiance caching, Δ/R + √(1 − n·n₀) (Ward et al. 1988), on a sphere: both contain the
-    /// inverse of the harmonic mean distance, and then the curvature, 2k here and k/√2 there.
+    /// Compares the samples per metre of the surface by Eq. 21, divided by Ω_ρ, with the error per
+    /// metre of irradiance caching, Δ/R + √(1 − n·n₀) (Ward et al. 1988), on a sphere. Both contain
+    /// the inverse of the harmonic mean distance, and then the curvature: 2k here and k/√2 there.
     #[test]
     fn eq_21_spaces_samples_as_irradiance_caching_does() {
         let step: f64 = 1e-3;

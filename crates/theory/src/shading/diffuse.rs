@@ -21,7 +21,7 @@ pub fn g_hat_3d(omega_u: f64, omega_v: f64) -> f64 {
 /// The integrand is even and analytic: sums with equal steps h converge as exp(−π²/h), and as
 /// exp(−2π²/(z h²)) for large z.
 fn z_k1(z: f64) -> f64 {
-    // 1 + z²/2 ln(z/2) is 1 up to rounding.
+    // 1 + z²/2 ln(z/2) is 1 up to rounding error.
     if z < 1e-9 {
         return 1.0;
     }
@@ -49,7 +49,7 @@ mod tests {
             2e-9, 1e-4, 0.03, 0.4, 1.0, 2.7, 7.8, 9.0, 31.0, 300.0, 600.0,
         ] {
             let k1 = complex_bessel::besselk(1.0, z.into()).expect("in range").re;
-            // Rounding of z cosh t, which is an absolute error in the exponent.
+            // The rounding error of z cosh t, which is an absolute error in the exponent.
             let rounding = 4e-16 * (2.0 + z);
             assert!(
                 (z_k1(z) / (z * k1) - 1.0).abs() < rounding,

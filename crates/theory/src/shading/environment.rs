@@ -2,8 +2,8 @@
 //!
 //! ℓ(s, θ) = env(θ) has the spectrum env^(Ωθ) δ(Ωx), and after the curvature step a spectrum on the
 //! line Ωx = kΩθ. Each Ωx then has one value, and the convolution with the cosine becomes a product
-//! (Durand et al. 2005, section 6.1 and Fig. 14). k ≠ 0 is the curvature in 1/m, convex positive;
-//! angles are on the surface, those of flipped light. `environment` is env^.
+//! (Durand et al. 2005, section 6.1 and Fig. 14). k ≠ 0 is the curvature in 1/m, convex positive.
+//! Angles are those on the surface, for flipped light. `environment` is env^.
 
 use super::cosine_hat;
 use etendue_field::{Complex, cis};

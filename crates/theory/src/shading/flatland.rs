@@ -260,7 +260,7 @@ mod tests {
 
     #[test]
     fn reflection_is_half_the_line_of_space() {
-        // A window that contains all light.
+        // The window contains all light.
         let [x, u] = [Profile::Hann(0.5), Profile::Box(0.5)];
         let (rho, nu) = (axis(5, 1.7), axis(1, 0.7));
         let cosine = flatland().spectrum(DiffuseStep::Cosine, [&x, &u], [&rho, &nu]);

@@ -56,8 +56,8 @@ impl FresnelFactor {
     /// Fresnel reflection and cosine (Durand et al. 2005, Fig. 12-b, who give no formula). Real and
     /// even.
     ///
-    /// By quadrature to 10⁻¹²; for Schlick in closed form, F₀ C₁ + (1 − F₀) Σ (−1)ⁱ (5 over i) Cᵢ₊₁
-    /// with the transforms Cₙ of cosⁿ.
+    /// The value is found by quadrature to 10⁻¹²; for Schlick it has the closed form F₀ C₁ + (1 −
+    /// F₀) Σ (−1)ⁱ (5 over i) Cᵢ₊₁ with the transforms Cₙ of cosⁿ.
     #[must_use]
     pub fn cosine_hat(&self, omega: f64) -> f64 {
         if let Self::Schlick { normal_reflectance } = *self {
@@ -112,7 +112,8 @@ mod tests {
     fn brewster_and_total_reflection() {
         let glass = FresnelFactor::Dielectric { index: 1.5 };
         let at = libm::atan(1.5_f64);
-        // At Brewster's angle one polarisation is not reflected: half of (n² − 1)²/(n² + 1)².
+        // At Brewster's angle one polarisation is not reflected, and the mean is half of (n² −
+        // 1)²/(n² + 1)².
         let expected = 0.5 * (1.25_f64 / 3.25).powi(2);
         assert!((glass.reflectance(at) - expected).abs() < 1e-15); // rounding
         let inside = FresnelFactor::Dielectric { index: 1.0 / 1.5 };

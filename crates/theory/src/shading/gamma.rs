@@ -11,7 +11,8 @@ pub(super) fn reciprocal_gamma(z: f64) -> (f64, f64) {
     if z > 0.0 {
         return (1.0, -ln_gamma(z));
     }
-    // Subtracts the nearest whole number first: sin(πz) of a large z would have the rounding of πz.
+    // Subtracts the nearest whole number first, because sin(πz) of a large z would have the
+    // rounding error of πz.
     let whole = z.round();
     let sign = if whole.rem_euclid(2.0) < 0.5 {
         1.0
@@ -34,7 +35,7 @@ mod tests {
     fn factorials_and_halves() {
         let mut factorial = 1.0;
         for n in 1..=20 {
-            // Rounding of ln Γ up to 40.
+            // The rounding error of ln Γ up to 40.
             assert!((ln_gamma(f64::from(n)).exp() / factorial - 1.0).abs() < 1e-13);
             factorial *= f64::from(n);
         }
@@ -51,7 +52,7 @@ mod tests {
             // 1/Γ(z) = z/Γ(z + 1) on both sides of each pole.
             for z in [z + 0.1, z - 0.1] {
                 let step = z * reciprocal(z + 1.0);
-                // Rounding of ln Γ up to 20.
+                // The rounding error of ln Γ up to 20.
                 assert!((reciprocal(z) / step - 1.0).abs() < 1e-13, "{z}");
             }
         }

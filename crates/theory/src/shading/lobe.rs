@@ -10,9 +10,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 ///
 /// Beckmann and GGX are models of narrow lobes: ρ' ∝ D(δ/2), where D is the distribution of
 /// microfacet normals, whose tilt is half of δ. The factor 1/(4 cos θ_i' cos θ_o') and the
-/// shadowing of a microfacet BRDF are omitted, because they depend on more than δ, and so is the
-/// Fresnel factor ([`FresnelFactor`](super::FresnelFactor)). The distributions are the slices of
-/// the 3D ones through the plane of incidence.
+/// shadowing of a microfacet BRDF are omitted, because they depend on more than δ. The Fresnel
+/// factor ([`FresnelFactor`](super::FresnelFactor)) is omitted for the same reason. The
+/// distributions are the slices of the 3D ones through the plane of incidence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlanarLobe {
     /// cosⁿ δ on |δ| < π/2.
@@ -75,8 +75,8 @@ impl PlanarLobe {
 
     /// Returns ρ̂'(Ω), Ω in cycles per radian: real, even, 1 at zero (Durand et al. 2005, Eq. 16).
     ///
-    /// Phong: Γ(1 + n/2)²/(Γ(1 + n/2 + πΩ) Γ(1 + n/2 − πΩ)); Gaussian: exp(−2π²σ²Ω²); the others by
-    /// quadrature, to 10⁻¹².
+    /// Phong: Γ(1 + n/2)²/(Γ(1 + n/2 + πΩ) Γ(1 + n/2 − πΩ)); Gaussian: exp(−2π²σ²Ω²); the others
+    /// are found by quadrature, to 10⁻¹².
     #[must_use]
     pub fn spectrum(&self, omega: f64) -> f64 {
         match *self {
@@ -94,8 +94,9 @@ impl PlanarLobe {
     /// radian; `fraction` in (0, 1).
     ///
     /// Gaussian: 0.2899/σ for 99 %, 0.2206/σ for 95 %. Durand et al. 2005, section 6.2, call this
-    /// Ω_ρ and choose it by hand. Computed by summation to 10⁻⁹; if a lobe has a jump, as GGX has
-    /// at the end, the last part in 10⁶ may lie beyond the range searched, and the result is NaN.
+    /// Ω_ρ and choose it by hand. The value is computed by summation to 10⁻⁹. If a lobe has a jump,
+    /// as GGX has at the end, the last part in 10⁶ may lie beyond the range searched, and the
+    /// result is NaN.
     #[must_use]
     pub fn cutoff(&self, fraction: f64) -> f64 {
         const NODES: usize = 16;
@@ -112,7 +113,7 @@ impl PlanarLobe {
                 missing -= next;
                 continue;
             }
-            // Bisects until the interval is at rounding.
+            // Bisects until the interval is as small as rounding error.
             let (mut inside, mut outside) = (low, low + step);
             for _ in 0..50 {
                 let middle = 0.5 * (inside + outside);

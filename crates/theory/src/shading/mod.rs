@@ -3,8 +3,8 @@
 //!
 //! Angles follow the [geometry](crate::geometry): on a surface, directions point away from it, θ is
 //! counted from the normal towards T, and a mirror has θ_o = −θ_i. Frequencies are in cycles per
-//! metre and per radian. A product of a light field with a factor convolves its spectrum, a
-//! convolution over angles multiplies it, and neither involves a constant:
+//! metre and per radian. A product of a light field with a factor convolves the field's spectrum,
+//! and a convolution over angles multiplies it; neither involves a constant:
 //!
 //! | step | here | in Durand et al. 2005 |
 //! |---|---|---|

@@ -3,13 +3,13 @@
 use crate::numerics::quadrature::gauss_legendre;
 use std::f64::consts::TAU;
 
-/// Number of nodes of a panel. With two cycles, or a pole no nearer than the panel is long, the
-/// error is below 10⁻¹⁵.
+/// Number of nodes of a panel. With two cycles in a panel, or a pole no nearer than the panel is
+/// long, the error is below 10⁻¹⁵.
 const NODES: usize = 24;
 const CYCLES: f64 = 2.0;
 
-/// Returns 2 ∫ f(θ) cos(2πΩθ) dθ over the panels between `ends`: the transform of an even function
-/// given for θ > 0.
+/// Returns 2 ∫ f(θ) cos(2πΩθ) dθ over the panels between `ends`, which is the transform of an even
+/// function given for θ > 0.
 pub(super) fn even_transform(ends: &[f64], omega: f64, f: impl Fn(f64) -> f64) -> f64 {
     let rule = gauss_legendre(NODES);
     let panel = |ends: &[f64]| {
@@ -30,8 +30,8 @@ pub(super) fn even_transform(ends: &[f64], omega: f64, f: impl Fn(f64) -> f64) -
     2.0 * ends.windows(2).map(panel).sum::<f64>()
 }
 
-/// Returns the ends of panels from 0 to `end`, the first one `first` long and each next one as long
-/// as all before.
+/// Returns the ends of panels from 0 to `end`. The first is `first` long, and each next one is as
+/// long as all panels before it.
 pub(super) fn doubling(first: f64, end: f64) -> Vec<f64> {
     let mut ends = vec![0.0];
     let mut at = first;

@@ -6,9 +6,9 @@ use std::f64::consts::TAU;
 
 /// Frequencies n·`spacing` up to `reach` on both sides, over which spectra are summed.
 ///
-/// The sum is exact if light and factor are bounded: its error is the product of the factor with
-/// copies of the light displaced by 1/`spacing` along the axis (Poisson's formula), and the light's
-/// content beyond `reach`.
+/// The sum is exact if light and factor are bounded. Its error has two parts: the product of the
+/// factor with copies of the light displaced by 1/`spacing` along the axis (Poisson's formula), and
+/// the light's content beyond `reach`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lattice {
     /// Distance between two frequencies, in cycles per unit of the axis.
@@ -128,7 +128,8 @@ mod tests {
             spacing: 0.05,
             reach: 6.0,
         };
-        // A wide Gaussian modulation of frequency 2, compared with the wave itself.
+        // The texture is a wide Gaussian modulation of frequency 2; it is compared with the wave
+        // itself.
         let slow = |[x, _]: [f64; 2]| bell(1e3, x - 2.0);
         let fine = Lattice {
             spacing: 1e-4,

@@ -135,8 +135,8 @@ impl PlanarReflection<'_> {
     /// sum of their differential irradiances.
     ///
     /// L_o(Ω) = ρ̂'(Ωθ) ∫ L_i(Ωx + k Ωθ − k q, q) f̂(−Ωθ − q) dq after step 6 for one term without
-    /// h (docs/theory.md (36)). For an asymmetric f that is f̂(−Ωθ); Table 1 of Durand et al. 2005
-    /// drops this sign and the hat of ρ̂', and their Eqs. 15 and 17 lack primes.
+    /// h (docs/theory.md (36)). The sign of −Ωθ matters for an asymmetric f. Table 1 of Durand et
+    /// al. 2005 drops it and the hat of ρ̂', and their Eqs. 15 and 17 lack primes.
     #[must_use]
     pub fn spectrum(
         &self,

@@ -5,8 +5,8 @@ use etendue_field::AngleTable;
 use std::f64::consts::FRAC_PI_2;
 
 /// Returns the transform of t(|θ|) g(θ) on |θ| < π/2, for a table t and an even function g, with Ω
-/// in cycles per radian: the factor f(θi) or h(θo) of a separable BRDF (Durand et al. 2005, section
-/// 4.3), with the cosine as g if it applies. Real and even.
+/// in cycles per radian. This is the transform of the factor f(θi) or h(θo) of a separable BRDF
+/// (Durand et al. 2005, section 4.3), with the cosine as g if it applies. Real and even.
 ///
 /// Computed by Gauss rules between the values of the table, to 10⁻¹² for a smooth g.
 #[must_use]

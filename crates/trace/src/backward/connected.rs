@@ -1,14 +1,14 @@
 //! Connects points to light without extent, which no ray hits by chance: point lights, projectors
 //! and beams.
 //!
-//! From a given point the path to such a light is known, so only this path is traced.
+//! For a given point the path to such a light is known, so only this path is traced.
 
 use etendue_field::{Light, TwoPlane, VirtualPlane};
 use etendue_scene::{Event, Object, Scene};
 use glam::DVec3;
 
 /// Whether rays traced back from a plane find the light. Light without extent is found only where
-/// nothing deflects it before the plane, or before the first surface that scatters it; a point
+/// nothing deflects it before it reaches the plane, or the first surface that scatters it. A point
 /// light is not found from its own position. Rays of a file are never found.
 #[must_use]
 pub fn finds(scene: &Scene, plane: &VirtualPlane) -> bool {
@@ -19,7 +19,7 @@ pub fn finds(scene: &Scene, plane: &VirtualPlane) -> bool {
         Object::Patch(i) => matches!(scene.patches[i].event, Event::Specular(_)),
     });
     let light = &scene.light;
-    // A randomly drawn ray meets none of a file's.
+    // A randomly drawn ray meets none of the rays of a file.
     if matches!(light, Light::Rays { .. }) {
         return false;
     }
@@ -27,8 +27,9 @@ pub fn finds(scene: &Scene, plane: &VirtualPlane) -> bool {
     light.has_extent() || !is_at_point && (plane.leg == 0 || !turns)
 }
 
-/// The ray, given at the light, from a light without extent to a point in the frame at the light;
-/// and the irradiance there across the ray, over what the ray carries per du dv or dx dy.
+/// Returns the ray from a light without extent to a point in the frame at the light, given at the
+/// light. Also returns the irradiance at the point across the ray, divided by the value that the
+/// ray carries per du dv or dx dy.
 pub(super) fn connection(light: &Light, point: DVec3) -> Option<(TwoPlane, f64)> {
     let [x, y] = [point.x, point.y];
     if point.z < 0.0 || point.z == 0.0 && !light.is_distant() {
@@ -41,8 +42,8 @@ pub(super) fn connection(light: &Light, point: DVec3) -> Option<(TwoPlane, f64)>
     let [u, v] = [x / point.z, y / point.z];
     let (x, y) = (0.0, 0.0);
     let ray = TwoPlane { x, y, u, v };
-    // dω = du dv / (1 + u² + v²)^(3/2), and r² = z² (1 + u² + v²); the value the ray carries
-    // already includes one of these roots.
+    // dω = du dv / (1 + u² + v²)^(3/2), and r² = z² (1 + u² + v²); the value that the ray carries
+    // already includes one root of 1 + u² + v².
     let secant_squared = ray.secant_squared();
     let spread = point.z * point.z * secant_squared * secant_squared.sqrt();
     Some((ray, 1.0 / spread))

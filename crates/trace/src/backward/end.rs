@@ -1,12 +1,13 @@
-//! The point where a ray traced back begins, and what this implies about the surface it comes to.
+//! The point where a ray traced back begins, and what it implies about the surface that the ray
+//! reaches.
 
 use etendue_field::Side;
 
 /// The point at which a ray is evaluated, along its leg.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum End {
-    /// At a plane. Light that would meet again, beyond the plane, the surface it has left does not
-    /// count.
+    /// At a plane. Light that has left a surface, and would meet it again beyond the plane, does
+    /// not count.
     Plane(f64, Side),
     /// At a surface that ends the ray.
     Surface(f64),

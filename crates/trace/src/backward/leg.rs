@@ -55,7 +55,7 @@ pub(super) enum Scattering {
         patch: Patch,
         reflectance: Box<Reflectance>,
     },
-    /// By reflection, refraction or a lens; the lens's frame, in the frame of the course.
+    /// Reflection, refraction or a lens, with the lens's frame in the frame of the course.
     Turned { lens: Frame, event: Specular },
 }
 

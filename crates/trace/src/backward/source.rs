@@ -17,7 +17,8 @@ pub(super) enum TracedLight {
 }
 
 impl TracedLight {
-    /// The radiance along an unoccluded ray; for light without extent per du dv or dx dy.
+    /// The radiance along an unoccluded ray; for light without extent, the value per du dv or dx
+    /// dy.
     pub(super) fn radiance(&self, ray: &TwoPlane) -> f64 {
         match self {
             Self::Area { light, .. } | Self::Narrow(light) => radiance(light, ray),

@@ -21,9 +21,9 @@ use glam::DVec3;
 
 /// The backward tracer of a scene, the independent check of [`Tracer`](crate::Tracer).
 ///
-/// For each plane separately, and for each photon, it draws a ray in the plane's window, traces it
-/// back and finds the radiance that arrives along it. Nothing is emitted, aimed or absorbed, and
-/// there is no ledger.
+/// For each plane separately, and for each photon, it draws a ray in the plane's window, traces the
+/// ray back and finds the radiance that arrives along it. Nothing is emitted, aimed or absorbed,
+/// and there is no ledger.
 #[derive(Debug)]
 pub struct Backward {
     light: TracedLight,
@@ -80,7 +80,7 @@ impl Backward {
 
     /// The ray of one plane with number `index`, and its weight in radiance space.
     fn sample(&self, sampler: &PlaneSampler, plane: u32, index: u64) -> Crossing {
-        // One block for the ray, and one for each surface on its way.
+        // The ray takes one block, and each surface on its way takes one.
         let blocks = u32::try_from(self.legs.len().max(2)).unwrap_or(u32::MAX);
         let words = |block| {
             let block = blocks * plane + block;
@@ -188,7 +188,7 @@ impl Backward {
         let point = start(ray) + begin * along;
         match &leaves.how {
             Scattering::Diffuse { albedo, .. } => {
-                // Light left the surface on the side that it travels away from.
+                // Light left the surface on the side to which it travels.
                 let normal = primitive.normal(point);
                 let normal = frame.vector_to_world(normal.dot(along).signum() * normal);
                 let point = frame.to_world(point);
@@ -227,7 +227,8 @@ impl Backward {
         }
     }
 
-    /// The radiance that arrives in a direction at a point of the surface that ends a leg, both in the frame at the light.
+    /// The radiance that arrives in a direction at a point of the surface that ends a leg;
+    /// direction and point are in the frame at the light.
     fn along(
         &self,
         leg: usize,
@@ -275,7 +276,7 @@ impl Backward {
     }
 
     /// The irradiance at a point with a normal at the end of a leg, from one point of the surface
-    /// or light at the beginning of the leg; in the frame at the light.
+    /// or light at the beginning of the leg. All are in the frame at the light.
     fn irradiance(
         &self,
         leg: usize,
@@ -346,7 +347,8 @@ impl Backward {
 }
 
 impl Backward {
-    /// The irradiance at a point behind a mirror, an interface or a lens, from one direction, drawn by the cosine.
+    /// The irradiance at a point behind a mirror, an interface or a lens, from one direction that
+    /// is drawn by the cosine.
     fn through_turn(
         &self,
         leg: usize,
@@ -361,9 +363,9 @@ impl Backward {
     }
 }
 
-/// The ratio of the radiance after a deflection at a point to that before, for light that goes
-/// along `along` and arrived against `came`: (n'/n)² at an interface; at an ideal lens, the value
-/// that conserves flux in two-plane coordinates.
+/// The ratio of the radiance after a deflection at a point to that before, for light that arrived
+/// from the direction `came` and leaves along `along`: (n'/n)² at an interface; at an ideal lens,
+/// the value that conserves flux in two-plane coordinates.
 fn radiance_factor(
     lens: &Frame,
     event: Specular,
@@ -385,10 +387,10 @@ fn radiance_factor(
 }
 
 impl Backward {
-    /// The radiance reflected at the end of a leg, from one direction. The direction is drawn by
-    /// the lobe or, where the leg begins at the light, towards a point of the light, with equal
-    /// probability; both use the density of the mixture (the balance heuristic of Veach and Guibas
-    /// 1995 for one sample).
+    /// The radiance reflected at the end of a leg, from one direction. With equal probability, the
+    /// direction is drawn by the lobe or, where the leg begins at the light, towards a point of the
+    /// light. Both use the density of the mixture (the balance heuristic of Veach and Guibas 1995
+    /// for one sample).
     fn reflected(
         &self,
         leg: usize,
@@ -441,7 +443,7 @@ impl Backward {
 
 impl Backward {
     /// The radiance of a light without extent at a plane on the first leg. From a point drawn in
-    /// the plane's window the direction to the light is known.
+    /// the plane's window, the direction to the light is known.
     fn look_at_light(
         &self,
         sampler: &PlaneSampler,
@@ -453,7 +455,7 @@ impl Backward {
         let (point, normal, area) = plane_on_leg.point([x, y])?;
         let (at_light, _) = connection(light, point)?;
         let along = DVec3::new(at_light.u, at_light.v, 1.0);
-        // dA over du dv of the light, or over its dx dy.
+        // This is dA over du dv of the light, or over its dx dy for distant light.
         let cosine = along.dot(normal).abs();
         let per_ray = if light.is_distant() {
             cosine

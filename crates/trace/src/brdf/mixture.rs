@@ -1,5 +1,5 @@
-//! Weighted sums of BRDFs: the value is the sum, and a direction is drawn by one of them, selected
-//! by its share of the albedo.
+//! Weighted sums of BRDFs: the value is the sum, and a direction is drawn by one of them, whose
+//! probability is its share of the albedo.
 
 use super::{density, sample, value};
 use etendue_field::Mixture;
@@ -22,7 +22,7 @@ pub(crate) fn towards(mixture: &Mixture<'_>, wi: DVec3, [a, b]: [f64; 2]) -> DVe
     for (weight, of) in mixture.weighted() {
         let share = weight * of.albedo / total;
         if share > 0.0 {
-            // By rounding the number left for the last BRDF may exceed 1.
+            // Because of rounding errors, the number left for the last BRDF may exceed 1.
             chosen = Some((of, (left / share).min(BELOW_ONE)));
         }
         if left < share {
@@ -72,11 +72,12 @@ mod tests {
         }
     }
 
-    /// The distance, in standard errors, of means of f over the density from ∫ f, for several f.
+    /// Returns, for several f, the distance of the mean of f over the density from ∫ f, in standard
+    /// errors.
     fn deviations(drawn: &Mixture<'_>, claimed: &Mixture<'_>, wi: DVec3) -> Vec<f64> {
         const SAMPLES: u32 = 100_000;
-        // Integrals over the hemisphere; functions of one side of a plane detect lobes that lean to
-        // that side.
+        // Integrals over the hemisphere; functions that are non-zero on one side of a plane detect
+        // lobes that lean to that side.
         let functions: [(Weighting, f64); 3] = [
             (|v| v.z.powi(2), 2.0 * PI / 3.0),
             (|v| v.z * (1.0 + v.x), PI),

@@ -1,4 +1,4 @@
-//! The BRDFs of scenes, by the lobes of `etendue_scatter`: light comes from wi and goes to wo.
+//! The BRDFs of scenes, with the lobes of `etendue_scatter`: light comes from wi and goes to wo.
 //!
 //! Directions are unit vectors away from the surface, in a frame with the normal along Z. [`Brdf`]
 //! defines the lobes.
@@ -37,11 +37,11 @@ fn factor(table: Option<&AngleTable>, direction: DVec3) -> f64 {
     table.map_or(1.0, |table| table.value(direction.z))
 }
 
-/// A direction wo for wi in front of the surface, from two numbers in (0, 1). It may lie below the
-/// surface and then carries no light.
+/// A direction wo for wi in front of the surface, from two numbers in (0, 1). The direction may lie
+/// below the surface; it then carries no light.
 ///
-/// Backward rays draw wi for wo by the same lobes, which are symmetric. The albedo and angular
-/// factors are part of the weight.
+/// Backward rays draw wi for a given wo by the same lobes, which are symmetric. The albedo and
+/// angular factors are part of the weight.
 #[inline]
 pub(crate) fn sample(brdf: &Brdf, wi: DVec3, random: [f64; 2]) -> DVec3 {
     match brdf.lobe {

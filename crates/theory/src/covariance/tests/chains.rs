@@ -96,7 +96,7 @@ fn patch() -> Patch {
     }
 }
 
-/// A plane 0.7 m along the path after the mirror.
+/// The cosine acts as a window of variances ½ and ⅜ over the angles.
 fn beyond() -> Plane {
     let leg = Frame::IDENTITY.travelled(1.0);
     let normal = patch().frame.d;
@@ -199,7 +199,7 @@ fn pictures_of_projectors_and_beams() {
             phase: 0.0,
         }),
     };
-    // Both spectra are unbounded, but not after a lobe.
+    // Both spectra are unbounded before a lobe, but not after it.
     let blurred = |c: SpectralCovariance| c.convolved(&diagonal([0.01; 4])).matrix().unwrap();
     let near = |light: Light| blurred(chain_of(light, []).spectral_covariance().unwrap());
     let [a, b] = [0.09 / TAU, 0.04 / TAU];

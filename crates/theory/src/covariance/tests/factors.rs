@@ -58,11 +58,12 @@ fn cosines_have_the_moment_of_their_power() {
 #[test]
 fn lobes_have_the_moment_of_their_power() {
     let variance = |c: f64| 1.0 / (8.0 * PI * PI * c);
-    // cosⁿ itself: 1/n to first order in 1/n.
+    // cosⁿ itself has the variance 1/n, to first order in 1/n.
     let phong = lobe(&Lobe::Phong { exponent: 400.0 }, 0.3).unwrap();
     let traced = variance(moment(|t| libm::pow(libm::cos(t), 400.0), 1.0));
     assert!((phong[2][2] / traced - 1.0).abs() < 2.0 / 400.0);
-    // Distributions of normals over slopes, integrated by rings; light turns by twice the tilt.
+    // Distributions of normals are given over slopes and integrated by rings; light turns by twice
+    // the tilt.
     let of_rings = |f: &dyn Fn(f64) -> f64| {
         let [mut slopes, mut squares] = [0.0; 2];
         let step = 1e-5;
@@ -126,7 +127,7 @@ fn blockers_are_openings_about_the_central_ray() {
     let beside = opaque(vec![wall(-0.5, 0.1), wall(0.3, 0.5)], vec![]).unwrap();
     is(beside[0][0], of(0.13_f64.sqrt()));
     is(beside[1][1], of(0.13_f64.sqrt()));
-    // A half-plane narrows along its own axis alone.
+    // A half-plane narrows the opening along its own axis alone.
     let half = HalfPlane {
         axis: 1,
         edge: -0.3,
@@ -142,7 +143,7 @@ fn blockers_are_openings_about_the_central_ray() {
         radius: 0.2,
     });
     is(opaque(vec![disc], vec![]).unwrap()[0][0], of(0.3));
-    // A mask on the central ray, and one with an edge on it.
+    // The first mask is on the central ray, and the second has an edge on it.
     assert!(opaque(vec![wall(0.0, 0.1)], vec![]).is_none());
     assert!(opaque(vec![wall(0.1, 0.0)], vec![]).is_none());
 }

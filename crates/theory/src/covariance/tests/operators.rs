@@ -49,8 +49,8 @@ fn a_gaussian_field_has_what_is_traced() {
     assert!(off < 1e-12, "{off}"); // rounding of inverses of condition 10³
 }
 
-/// Tests the definition, ∫ ∇l ∇lᵀ/(4π² ∫ l²), by finite differences of the field itself in (x, u):
-/// rays are followed back through travel and windows, without matrices.
+/// Tests the definition, ∫ ∇l ∇lᵀ/(4π² ∫ l²), by finite differences of the field itself in (x, u).
+/// Its rays are followed back through travel and windows, without matrices.
 #[test]
 fn the_definition_gives_what_is_traced() {
     let [d, e] = [0.7, 0.4];
@@ -140,7 +140,8 @@ fn diffuse_reflection_is_the_limit_of_lobes() {
         .zip(limit.iter().flatten())
         .enumerate()
     {
-        // A lobe of 10⁷ leaves 1/(8π² 10⁷) along angles, and the square root of that elsewhere.
+        // A lobe of variance 10⁷ leaves 1/(8π² 10⁷) along angles, and the square root of that
+        // elsewhere.
         assert!((got - near).abs() < 1e-4, "{i}: {got} {near}");
     }
     assert_eq!(diffuse[2..], [[0.0; 4]; 2]);

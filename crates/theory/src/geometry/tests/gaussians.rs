@@ -41,7 +41,7 @@ fn spectrum_of_a_mapped_gaussian() {
 
 #[test]
 fn spectrum_of_a_map_is_the_transform_of_the_mapped_field() {
-    // An asymmetric field, (1 + x − θ/2) exp(−π(…)), transformed numerically after the map.
+    // An asymmetric field, (1 + x − θ/2) exp(−π(…)), is transformed numerically after the map.
     let map = AffineMap::<2>::incidence(0.5).then(&AffineMap::<2>::curvature(0.8));
     let field = |[x, t]: [f64; 2]| {
         let gauss = libm::exp(-std::f64::consts::PI * (4.0 * x * x + 2.0 * x * t + 9.0 * t * t));
@@ -101,7 +101,7 @@ fn covariance_of_sampled_rays() {
 fn windows_and_lobes() {
     let wide = gaussian_window(&FIELD, [f64::INFINITY; 4]).unwrap();
     assert!(apart(&AffineMap::linear(wide), &AffineMap::linear(FIELD)) < 1e-16); // rounding
-    // The covariance of light from a point is singular, after a window it is not: on x = D u, 1/σ²
+    // The covariance of light from a point is singular; after a window it is not. On x = D u, 1/σ²
     // is the sum 1/σu² + D²/σx².
     let point = [[4.0, 2.0], [2.0, 1.0]];
     let seen = gaussian_window(&point, [0.5, 0.3]).unwrap();

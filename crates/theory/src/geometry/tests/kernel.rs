@@ -46,7 +46,7 @@ fn symmetry_and_zero() {
         } else {
             2.0 * libm::sin(0.5 * PI * b) / b
         };
-        // At zero and next to it, where the kink is a ln a.
+        // Values at zero and next to it, where the kink behaves as a ln a.
         assert!((plane_sphere_kernel(0.0, theta) - expected).abs() < STATED);
         assert!((plane_sphere_kernel(1e-15, theta) - expected).abs() < 1e-11);
     }
@@ -69,8 +69,8 @@ fn laguerre_polynomials_at_even_orders() {
     }
 }
 
-/// Evaluates the definition with its path moved up to a height at which nothing oscillates fast:
-/// the vertical ends are where tan t = ± i coth.
+/// Evaluates the definition with its path moved up to a height at which nothing oscillates fast;
+/// the vertical parts at both ends are where tan t = ± i coth.
 fn by_definition(v: f64, theta: f64) -> f64 {
     let (a, b) = (TAU * v, TAU * theta);
     let height = 0.4;

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// Rounding of products of a few entries of order one.
+/// The rounding error of products of a few entries of order one.
 const ROUNDING: f64 = 1e-14;
 
 #[test]
@@ -147,8 +147,8 @@ fn specular_steps_keep_etendue() {
     let flat = AffineMap::<2>::refracting_surface(0.7, 0.4, &GLASS).unwrap();
     assert!(flat.symplectic_defect(ratio) < ROUNDING);
     assert!((flat.det() - ratio).abs() < ROUNDING);
-    // A surface is not perpendicular to the light, so it has a defect; and a shear by M without the
-    // cosine is not a physical map.
+    // A surface is not perpendicular to the light, so the map onto it has a defect. A shear by M
+    // without the cosine is not a physical map.
     assert!(AffineMap::<4>::incidence(0.7).symplectic_defect(1.0) > 0.3);
     let nan = AffineMap::<2>::travel(f64::NAN);
     assert!(nan.symplectic_defect(1.0).is_nan());
@@ -173,7 +173,7 @@ fn paths_are_reversible() {
         .then(&AffineMap::<4>::refracting_surface(theta1, SHAPE, &GLASS).unwrap())
         .then(&AffineMap::thin_lens(0.7));
     let [[m11, m12], [m21, m22]] = SHAPE;
-    // From behind, concave becomes convex and T is reversed; B is not.
+    // Seen from behind, concave becomes convex, and T is reversed but B is not.
     let behind = [[-m11, m12], [m21, -m22]];
     let back = |behind| {
         AffineMap::<4>::thin_lens(0.7)

@@ -128,7 +128,8 @@ fn planar_mirrors_keep_magnitudes() {
 
 #[test]
 fn constant_fields_keep_their_value() {
-    // δ(Ωx) S(Ωθ) with the factor f and Ωx → a Ωx becomes f/|a| of itself.
+    // δ(Ωx) S(Ωθ), with the factor f and the argument a Ωx in place of Ωx, becomes f/|a| times
+    // itself.
     let value = |step: SpectrumMap<2>| step.factor / step.matrix[0][0].abs();
     let cos = libm::cos(THETA0);
     let close = |a: f64, b: f64| (a - b).abs() < 1e-15; // rounding

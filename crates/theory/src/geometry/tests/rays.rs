@@ -8,8 +8,8 @@ use crate::geometry::plane_sphere::{to_angles, to_slopes};
 /// Half the size of the largest neighbourhood.
 const SIZE: f64 = 1e-3;
 
-/// Returns the largest error of a map over rays in a neighbourhood of size e, relative to e, and
-/// the order in e at which it falls.
+/// Returns the largest error of a map over rays in a neighbourhood of size e, relative to e; and
+/// the power of e with which this error falls.
 pub(super) fn error_and_order<const N: usize>(
     map: &AffineMap<N>,
     traced: impl Fn([f64; N]) -> [f64; N],
@@ -25,7 +25,7 @@ pub(super) fn error_and_order<const N: usize>(
     (narrow, libm::log2(wide / narrow))
 }
 
-/// The next term of the error is e times smaller and changes the order by about as much.
+/// The next term of the error is smaller by a factor e, and changes the order by about as much.
 const ORDER: f64 = 0.02;
 
 fn assert_order<const N: usize>(
@@ -98,8 +98,8 @@ fn other_rules_of_refraction_do_not_converge() {
     let in_plane = AffineMap::<2>::refraction(theta0, &GLASS).unwrap();
     let across = AffineMap::<2>::refraction(0.0, &GLASS).unwrap();
     let off = AffineMap::<4>::incidence(theta2).inverse().unwrap();
-    // Three mistakes: latitudes refracted by the rule for longitudes; no refraction across the
-    // plane of incidence; the cosine of the incident side on the way back.
+    // There are three mistakes: latitudes refracted by the rule for longitudes; no refraction
+    // across the plane of incidence; and the cosine of the incident side on the way back.
     let wrong = [
         (AffineMap::<2>::linear(in_plane.matrix), theta0, theta2),
         (AffineMap::identity(), theta0, theta2),
@@ -142,12 +142,12 @@ fn foci_of_a_hollow_sphere() {
     ]; // Coddington
     for (axis, expected) in expected.into_iter().enumerate() {
         let traced = crossing(axis);
-        // e² = 1e-8, and a curvature of order one.
+        // The error is e² = 1e-8, times a curvature of order one.
         assert!((traced - expected).abs() < 1e-7, "{traced}");
         let got = -map[axis][axis] / map[axis + 2][axis];
         assert!((got - expected).abs() < 1e-14, "{got}"); // rounding
     }
-    // Without the cosine of the sagittal plane the second would be R/2 = 1.
+    // Without the cosine of the sagittal plane, the second distance would be R/2 = 1.
     assert!((expected[1] - 1.307_459).abs() < 1e-6); // the number in print has six digits
 }
 

@@ -43,7 +43,8 @@ fn jacobians_are_derivatives() {
         let [ut, vt] = difference(slopes(theta + h, phi), slopes(theta - h, phi));
         let [up, vp] = difference(slopes(theta, phi + h), slopes(theta, phi - h));
         let (got, expected) = (ut * vp - up * vt, jacobian([theta, phi]));
-        // h² = 1e-10 times third derivatives, which are about 30 times the first at 1.1 rad.
+        // The error is h² = 1e-10 times third derivatives, which are about 30 times the first
+        // derivatives at 1.1 rad.
         assert!((got - expected).abs() < 1e-8 * expected);
         assert!((ut - jacobian_2d(theta)).abs() < 1e-8 * ut); // the same
         // cos dω = du dv / (1 + u² + v²)² = cos θ cos² φ dθ dφ.

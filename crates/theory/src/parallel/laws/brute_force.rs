@@ -4,7 +4,7 @@ use crate::{Chain, Operator};
 use etendue_field::{Complex, Light, Mask, Shape, TwoPlane, Window};
 use std::f64::consts::TAU;
 
-/// A chain traced back from its end by hand: distances and masks, and factors G.
+/// A chain traced back from its end by hand, with its distances, masks and factors G.
 struct WalkedRay<'a> {
     distance: f64,
     masks: Vec<(f64, &'a Mask)>,
@@ -59,7 +59,7 @@ pub(super) fn brute_force(
             radiance,
             exponent,
         } => (shape.area(), *exponent, *radiance),
-        // At the distance D √(1 + u² + v²).
+        // The distance of the point is D √(1 + u² + v²).
         Light::Point { intensity } => (1.0, -1.0, *intensity),
         other => panic!("no brute force for {other:?}"),
     };

@@ -40,7 +40,7 @@ fn error(chain: &Chain, value: impl Fn([f64; 4]) -> Complex) -> f64 {
 
 fn assert_agrees(name: &str, chain: &Chain) {
     let error = error(chain, |k| at(chain, &hann(), k));
-    // The error of quasi-random points with edges: better than 1/√200000 = 2.2e-3.
+    // The error of quasi-random points at edges is below 1/√200000 = 2.2e-3.
     assert!(error < 1e-3, "{name}: {error:e}");
 }
 
@@ -165,7 +165,7 @@ fn discs_and_points_agree_with_closed_forms() {
     let round = chain_of(spot(disc([0.0; 2], radius), 0.0), [(distance, None)]);
     let point = chain_of(Light::Point { intensity: 1.0 }, [(distance, None)]);
     let closed_disc = |k| disc_light(radius, distance, &gaussian, k);
-    // Constant in slope, without the root.
+    // A closed form that is constant in slope and so lacks the root.
     let closed_point = |[x, y, u, v]: [f64; 4]| {
         let along = |k| point_light(distance, &gaussian, k);
         along([x, u]) * along([y, v])

@@ -26,7 +26,7 @@ fn two_half_planes_let_nothing_through_together() {
         assert!((sum - value(&open())).norm() < 1e-14 * zero(&open())); // rounding
         assert!(value(&both).norm() < 1e-12 * zero(&open())); // rounding of four products
     }
-    // The moduli alone do not add up: at the frequency of the shear they are far off.
+    // The moduli alone do not add up; at the frequency of the shear their sum is far off.
     let k = [2.0, 0.0, -3.4, 0.0];
     let value = |chain: &Chain| at(chain, &hann(), k).norm();
     let blind = value(&alone[0]) + value(&alone[1]) - value(&open());
@@ -44,7 +44,7 @@ fn two_half_planes_in_one_mask_leave_a_slit() {
         shapes: vec![],
         half_planes: half_planes.to_vec(),
     };
-    // The same result from blockers that are large enough.
+    // Blockers that are large enough give the same result.
     let blocks = rectangles(&[-50.1, 50.15].map(|y| square([0.0, y], 100.0)));
     let behind = |mask| {
         chain_of(
@@ -85,7 +85,7 @@ fn a_grating_is_three_copies() {
 /// neither grating alone has any.
 #[test]
 fn two_gratings_leave_the_wedge() {
-    // At a zero of the transform of the window, whose half-widths are 0.5 and 0.3.
+    // The frequency is at a zero of the transform of the window, whose half-widths are 0.5 and 0.3.
     let (f, between) = (5.0, 1.0);
     let mask = || Some(grating(0, f, 0.0));
     let wide = || lambertian(square([0.0, 0.0], 8.0));
@@ -93,8 +93,8 @@ fn two_gratings_leave_the_wedge() {
     let k = [0.0, 0.0, f * between, 0.0];
     let value = |chain: &Chain| at(chain, &hann(), k).norm() / zero(chain);
     let both = value(&seen(mask(), mask()));
-    // (m/4)² relative to (½)², from the difference of the two frequencies; half of it is the edge
-    // of the window.
+    // The ratio is (m/4)² to (½)²: the component at the difference of the two frequencies to the
+    // component at zero. Half of the tolerance is for the edge of the window.
     assert!(
         (both / (0.9_f64.powi(2) / 4.0) - 1.0).abs() < 0.05,
         "{both}"
@@ -149,7 +149,7 @@ fn a_phase_is_a_place() {
         let value = |chain: &Chain| at(chain, &hann(), k);
         let scale = zero(&chain(0.3, &[(1.0, vec![])]));
         assert!((value(&full_turn) - value(&none)).norm() < 1e-14 * scale); // rounding of the phase
-        // The two add up to a neutral filter.
+        // The two gratings add up to a neutral filter.
         let sum = value(&half_turn) + value(&none);
         let open = value(&chain(0.3, &[(1.0, vec![])]));
         assert!((sum - open).norm() < 1e-14 * scale); // rounding

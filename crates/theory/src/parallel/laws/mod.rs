@@ -42,7 +42,7 @@ fn two_layers_agree_with_brute_force() {
     ];
     for (k, truth) in FREQUENCIES.iter().zip(truth) {
         let value = |chain: &Chain| at(chain, &hann(), *k);
-        // The error of quasi-random points with edges: somewhat better than 1/√400000 = 1.6e-3.
+        // The error of quasi-random points at edges is somewhat below 1/√400000 = 1.6e-3.
         assert!((value(&both) - truth).norm() < 1e-3 * zero(&open));
     }
     // Ignoring the rays that both layers block makes a visible difference.
@@ -87,7 +87,7 @@ fn two_halves_in_one_plane_block_everything() {
     let half = |side: f64| vec![square([side * 0.95, 0.0], 2.0)];
     let one = chain(0.2, &[(1.0, half(1.0)), (1.0, vec![])]);
     let both = chain(0.2, &[(1.0, half(1.0)), (0.0, half(-1.0)), (1.0, vec![])]);
-    // Some light passes a single half-plane.
+    // A single half-plane lets some light pass.
     assert!(zero(&one) > 0.01 * zero(&chain(0.2, &[(2.0, vec![])])));
     for k in FREQUENCIES {
         assert!(at(&both, &hann(), k).norm() < 1e-13 * zero(&one)); // rounding of four products
@@ -133,7 +133,7 @@ fn a_wrong_sign_of_the_shear_shows() {
             *distance = -*distance;
         }
     }
-    // On the line Ωu = −2 Ωx, onto which the shear of 2 m moves the light.
+    // The frequency is on the line Ωu = −2 Ωx, onto which the shear of 2 m moves the light.
     let k = [1.0, 0.0, -2.0, 0.0];
     let difference = at(&right, &hann(), k) - at(&wrong, &hann(), k);
     assert!(difference.norm() > 0.3 * zero(&right)); // a third of everything

@@ -27,7 +27,7 @@ fn with_slopes(half: f64, profile: fn(f64) -> Profile) -> Window {
 }
 
 /// The light that leaves the floor is albedo/π times the integral of the incident light over all
-/// slopes, mirrored in x, times the slope window: two ways to compute the same numbers.
+/// slopes, mirrored in x, times the slope window. So the same numbers are computed in two ways.
 #[test]
 fn exitant_radiance_is_what_arrives() {
     let light = lambertian(square([0.05, -0.02], 0.3));
@@ -56,7 +56,7 @@ fn exitant_radiance_is_what_arrives() {
             let expected =
                 at(&arriving, &all, [-x, y, 0.0, 0.0]) * (ALBEDO / PI * hann(u) * hann(v));
             let error = (at(&leaving, &seen, [x, y, u, v]) - expected).norm() / largest;
-            // The error of the receiver's rule of second order with about 400 nodes.
+            // The receiver's rule is of second order and has about 400 nodes; this is its error.
             assert!(error < 1e-5, "{error:e}");
         }
     }

@@ -9,11 +9,12 @@ use std::f64::consts::TAU;
 const NATS: f64 = 28.0;
 /// The most nodes a rule has; longer intervals are cut into panels.
 const MAX_NODES: usize = 48;
-/// Nodes on an arc in addition to those its length needs, for the turn of its direction.
+/// Nodes on an arc, in addition to those that its length requires, because the direction of the arc
+/// turns.
 const ARC: usize = 10;
 /// Number of halvings of the longest panel with a precomputed number of nodes.
 const LEVELS: usize = 24;
-/// Steps of a closed form.
+/// Steps to evaluate a closed form.
 const CLOSED: f64 = 100.0;
 /// The most nodes for which a rectangle is integrated numerically: in the closed form the corners
 /// of so small a rectangle cancel.
@@ -82,7 +83,7 @@ impl NodeCounts {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "rounded, not below zero"
+        reason = "the value is rounded and not negative"
     )]
     fn of(&self, length: f64) -> [usize; 2] {
         let ratio = self.longest / length.abs();
@@ -97,14 +98,14 @@ impl NodeCounts {
 /// Returns the number of nodes that integrate (1 + u² + v²)^(−p) e^(2πifu) over an interval of u to
 /// the error e^(−[`NATS`]).
 ///
-/// The error of the rule is ρ^(−2n) times the largest value on the ellipse around the interval that
-/// extends by b in the imaginary direction, ln ρ = arsinh(2b/length) (Trefethen 2013,
-/// *Approximation Theory and Approximation Practice*, Theorem 19.3). b < 1 avoids the poles, and
-/// the best of several b is taken.
+/// The error of the rule is ρ^(−2n) times the largest value on an ellipse around the interval,
+/// where the ellipse extends by b in the imaginary direction and ln ρ = arsinh(2b/length)
+/// (Trefethen 2013, *Approximation Theory and Approximation Practice*, Theorem 19.3). b < 1 avoids
+/// the poles, and the best of several b is taken.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "a small positive number, rounded up"
+    reason = "the value is small, positive and rounded up"
 )]
 fn nodes(power: f64, frequency: f64, length: f64) -> usize {
     let power = power.abs();
@@ -342,7 +343,7 @@ mod tests {
             };
             for sides in [[[-0.2, 0.25], [-0.1, 0.3]], [[0.3, 0.8], [0.2, 0.21]]] {
                 let error = density.rectangle(sides) / brute(&density, sides) - 1.0;
-                // The accuracy stated at NATS.
+                // This is the accuracy stated at NATS.
                 assert!(error.abs() < 3e-12, "{frequency} {sides:?} {error:e}");
             }
         }

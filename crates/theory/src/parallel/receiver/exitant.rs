@@ -65,7 +65,7 @@ impl Receiver<'_> {
     }
 
     /// Returns the relative L2 error of slices: their change with half as many nodes along each
-    /// axis, divided by 2² − 1 since the error is of second order in the spacing. `None` if the
+    /// axis, divided by 2² − 1, because the error is of second order in the spacing. `None` if the
     /// slices are zero.
     pub(crate) fn quadrature_error(
         &self,
@@ -82,7 +82,7 @@ impl Receiver<'_> {
     }
 
     /// Returns the number of nodes along each axis: enough for the narrowest penumbra or period,
-    /// and for the highest frequency. It is even, to allow halving.
+    /// and for the highest frequency. The number is even, so that it can be halved.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -283,7 +283,8 @@ impl ExitantTable {
         let axis = &self.axes[1];
         let kernel = axis.at(&self.coordinates[1], [0.0; 2]).into_iter();
         let kernel: Array1<f64> = kernel.map(|k| k.re).collect();
-        // The table includes the area of a node; along x a value is needed.
+        // The values of the table include the area of a node; along x they are divided by the
+        // spacing, because a value per length is needed.
         let spacing = 2.0 * self.axes[0].reach() / self.coordinates[0].len() as f64;
         (self.values.dot(&kernel) / spacing).to_vec()
     }
@@ -292,7 +293,7 @@ impl ExitantTable {
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "a positive number, rounded up"
+    reason = "the value is positive and rounded up"
 )]
 fn places(nodes: f64) -> usize {
     nodes.ceil() as usize

@@ -61,8 +61,8 @@ impl KernelAxis {
         sum
     }
 
-    /// Returns the spectrum of the profile in slopes, from its cosines: the factor of K if there is
-    /// no travel.
+    /// Returns the spectrum of the profile in slopes, from its cosines; this is the factor of K if
+    /// there is no travel.
     pub(crate) fn slope_spectrum(&self, nu: f64) -> f64 {
         let half = self.slope.half_width();
         let wave = |frequency: f64| crate::numerics::sinc::sinc(2.0 * half * frequency);
@@ -106,8 +106,8 @@ impl KernelAxis {
         gauss_legendre(self.nodes(frequency) as usize)
     }
 
-    /// Returns the number of nodes of the rule for a frequency: those for the waves, and some for
-    /// an accuracy of 10⁻¹⁴.
+    /// Returns the number of nodes of the rule for a frequency: the number that the waves require,
+    /// and some more for an accuracy of 10⁻¹⁴.
     pub(super) fn nodes(&self, frequency: [f64; 2]) -> f64 {
         let waves = 2.0 * self.slope.half_width() * self.fastest(frequency);
         // Gauss rules begin to converge at one node per half radian, π/2 per wave.

@@ -2,10 +2,10 @@
 //! leaves it.
 //!
 //! A light, masks in planes across the central ray, and the receiver are parallel. A ray that
-//! arrives at (x, y) with slopes (u, v) was at (x − h u, y − h v) a distance h before. So every
-//! shape upstream is seen from a point as the same shape, smaller. The irradiance E(x, y) = ∫ L(u,
-//! v) (1 + u² + v²)⁻² du dv is a signed sum over the light and blockers seen in this way, of
-//! integrals over rectangles and discs (docs/theory.md, section 4b).
+//! arrives at (x, y) with slopes (u, v) was at (x − h u, y − h v) a distance h before. So from the
+//! point, every shape upstream is seen as the same shape, but smaller. The irradiance E(x, y) = ∫
+//! L(u, v) (1 + u² + v²)⁻² du dv is a signed sum of integrals over rectangles and discs: the light
+//! and the blockers as seen from the point (docs/theory.md, section 4b).
 
 mod density;
 mod exitant;
@@ -110,8 +110,8 @@ impl SlopeProjection {
 }
 
 impl<'a> Receiver<'a> {
-    /// Builds a receiver with an albedo, `distance` from the light with `layers` between them,
-    /// whose reflected light travels `after`; metres.
+    /// Builds a receiver with an albedo, at `distance` from the light, with `layers` between them.
+    /// The reflected light travels the distance `after`. All lengths are in metres.
     ///
     /// Without `cosine`, radiance is integrated over slopes without (1 + u² + v²)⁻², which is
     /// deliberately wrong.
@@ -172,9 +172,9 @@ impl<'a> Receiver<'a> {
         through.product::<f64>() * brightness * lobe / self.distance.powi(2)
     }
 
-    /// Returns the mean irradiance over a rectangle of the receiver around a point if the light is
-    /// a point; otherwise the irradiance at the centre. Shadows of a point light have sharp edges,
-    /// so a value at the centre of a cell would not represent the cell.
+    /// Returns the mean irradiance over a rectangle of the receiver if the light is a point;
+    /// otherwise the irradiance at the rectangle's centre. Shadows of a point light have sharp
+    /// edges, so a value at the centre of a cell would not represent the cell.
     fn cell(&self, center: [f64; 2], size: [f64; 2]) -> f64 {
         if self.light.shape.is_some() {
             return self.irradiance(center[0], center[1]);
@@ -187,7 +187,7 @@ impl<'a> Receiver<'a> {
         self.light.brightness * self.received(&bundle, region) / sides.area()
     }
 
-    /// Returns the integral over those slopes of a region that no blocker stops.
+    /// Returns the integral over those slopes of a region at which no blocker stops light.
     fn received(&self, bundle: &SlopeProjection, region: ReceiverRegion) -> f64 {
         self.passed(
             bundle,
@@ -197,8 +197,8 @@ impl<'a> Receiver<'a> {
         )
     }
 
-    /// Returns the light of a region that passes barriers, one after the other: all of it, minus
-    /// the light that each shape stops.
+    /// Returns the light of a region that passes several barriers in turn: all of it, minus the
+    /// light that each shape stops.
     fn passed(
         &self,
         bundle: &SlopeProjection,
@@ -234,8 +234,8 @@ impl<'a> Receiver<'a> {
         }
     }
 
-    /// Returns the radiance that leaves the receiver, the same in all directions: albedo / π · E
-    /// (the paper's Eq. 6, whose ρ is the BRDF, albedo / π).
+    /// Returns the radiance that leaves the receiver, which is the same in all directions: albedo /
+    /// π · E (the paper's Eq. 6, whose ρ is the BRDF, albedo / π).
     fn exitance(&self) -> f64 {
         self.albedo / PI
     }

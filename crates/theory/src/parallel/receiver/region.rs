@@ -94,9 +94,9 @@ impl ReceiverRegion {
 
     /// Returns the integral of a density over the region.
     ///
-    /// By Green's theorem this is the integral of A(u, v) = ∫ density du along the boundary over v:
-    /// arcs of the circles, on which everything is smooth, and vertical edges of the rectangle
-    /// (docs/theory.md, formula 16).
+    /// By Green's theorem this is the integral of A(u, v) = ∫ density du along the boundary over v.
+    /// The boundary consists of arcs of the circles, on which everything is smooth, and of vertical
+    /// edges of the rectangle (docs/theory.md, formula 16).
     pub(crate) fn integral(&self, density: &ReceiverDensity<'_>) -> f64 {
         let Some(first) = self.discs.first() else {
             return density.rectangle(self.sides);
@@ -122,8 +122,8 @@ impl ReceiverRegion {
         nodes * density.steps_along_u(bounds[0][1] - bounds[0][0]) + edges
     }
 
-    /// Returns ∫ A dv up the part of the line at u inside the discs and between the lower and upper
-    /// side.
+    /// Returns ∫ A dv upwards along the line at u, over its part that lies inside the discs and
+    /// between the lower and the upper side.
     fn edge(&self, u: f64, from: f64, density: &ReceiverDensity<'_>) -> f64 {
         let chords = self.discs.iter().map(|disc| {
             let across = u - disc.center[0];
@@ -181,7 +181,7 @@ impl ReceiverRegion {
             let middle = libm::atan2(dv, du);
             angles.extend([middle - half, middle + half]);
         }
-        // NaN if they do not cross.
+        // The angles are NaN if the circles or sides do not cross.
         angles.retain(|a| a.is_finite());
         angles.iter_mut().for_each(|a| *a = a.rem_euclid(TAU));
         angles.sort_by(f64::total_cmp);
@@ -193,7 +193,7 @@ impl ReceiverRegion {
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "1 to 4 parts"
+    reason = "there are 1 to 4 parts"
 )]
 fn along(disc: &Disc, [start, end]: [f64; 2], from: f64, density: &ReceiverDensity<'_>) -> f64 {
     let quarters = ((end - start) / FRAC_PI_2).ceil().max(1.0) as usize;

@@ -37,7 +37,7 @@ fn lobes() -> Environment {
     }
 }
 
-/// Approximately the same light as a picture.
+/// Approximately the same light, given as a picture.
 fn map() -> Environment {
     let Environment { frame, map } = lobes();
     let picture = LatLong::from_fn(256, 128, |from| map.radiance(from));
@@ -135,7 +135,7 @@ fn by_rule(radiance: &dyn Fn([f64; 4]) -> f64, window: &Window, grid: &SliceGrid
 }
 
 /// Tests all quantities that a plane may record on a sphere, at normal and oblique incidence, for
-/// lobes and a picture; the curvature of a concave sphere, a missing cosine and a wrong turn each
+/// lobes and a picture. The curvature of a concave sphere, a missing cosine and a wrong turn each
 /// give a different result.
 #[test]
 fn the_sky_on_a_sphere() {
@@ -192,7 +192,7 @@ fn the_sky_on_a_sphere() {
     }
 }
 
-/// Past a grating, by slopes, and on an oblique surface that light reaches past the grating.
+/// Tests light that has passed a grating, on a plane in slopes and on an oblique surface.
 #[test]
 fn the_sky_past_a_grating() {
     let (window, grid) = (window(WINDOW[0], Profile::Hann(0.5)), grid(2, [0.3, 0.5]));
@@ -288,14 +288,14 @@ fn all_ways_to_draw_the_sky_agree() {
     );
     let plain = under(&environment, vec![]);
     let local = on_sphere(0.4, Orientation::LocalNormals, Quantity::Radiance);
-    // A small sphere seen from the side: some rays also meet it in the window from behind.
+    // A small sphere seen from the side; some rays also meet it from behind, within the window.
     let mut aside = on_sphere(0.9, Orientation::LocalNormals, Quantity::Radiance);
     if let Some(patch) = &mut aside.patch {
         patch.curvature = [2.5; 3];
     }
     let cases = [
         (&plain, after(&plain, 1.0)),
-        // The plane of the light itself, as rounding leaves it in a tilted scene.
+        // The plane of the light itself, as rounding errors leave it in a tilted scene.
         (&plain, after(&plain, -1e-16)),
         (&plain, local),
         (&plain, aside),
@@ -320,14 +320,15 @@ fn all_ways_to_draw_the_sky_agree() {
         assert!(found.len() > 1, "{plane:?}");
         for other in &found[1..] {
             let off = other / found[0] - 1.0;
-            // Nets of 2¹⁸ rays, sampled in four coordinates.
+            // The tolerance is for nets of 2¹⁸ rays, sampled in four coordinates.
             assert!(off.abs() < 5e-3, "{found:?}");
         }
     }
 }
 
-/// The line of section 6.1 of Durand et al. 2005: on a curved surface light of an environment has
-/// its spectrum where Ωx = k Ωθ. The spectrum of light from one direction is exactly that line.
+/// This is the line of section 6.1 of Durand et al. 2005: on a curved surface, light of an
+/// environment has its spectrum where Ωx = k Ωθ. The spectrum of light from one direction is
+/// exactly that line.
 #[test]
 fn curvature_shears_the_sky_onto_a_line() {
     let narrow = SphericalGaussian {

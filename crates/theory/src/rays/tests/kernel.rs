@@ -18,7 +18,8 @@ fn nodes(count: usize) -> Vec<RayNode> {
 
 #[test]
 fn plain_summation() {
-    // An odd number of rays, larger than one block; more powers than between two recomputations.
+    // The number of rays is odd and larger than one block, and there are more powers than between
+    // two recomputations.
     let nodes = nodes(777);
     let axis = |half, spacing| FrequencyAxis { half, spacing };
     let grid = SliceGrid {
@@ -35,7 +36,8 @@ fn plain_summation() {
             Complex::from_polar(node.weight, -TAU * phase)
         };
         let plain: Complex = nodes.iter().map(term).sum();
-        // 32 roundings of a factor, and the rounding of phases up to 400.
+        // The tolerance is 32 rounding errors of a factor, and the rounding error of phases up to
+        // 400.
         assert!((value - plain).norm() < 1e-12 * total, "{k} {m} {n}");
     }
 }

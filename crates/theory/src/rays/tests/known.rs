@@ -20,12 +20,12 @@ fn slices_of(grid: &SliceGrid, value: impl Fn([f64; 4]) -> Complex) -> Slices {
     slices
 }
 
-/// Returns the spectrum at distance d of a projector's field, computed by a Gauss rule over slopes:
-/// on x = d u, y = d v it is the image times √(1 + u² + v²), because off-axis positions are farther
-/// from the point (docs/theory.md, section 2). Omits that factor if not `exact`.
+/// Returns the spectrum at distance d of a projector's field, computed by a Gauss rule over slopes.
+/// On x = d u, y = d v the field is the image times √(1 + u² + v²), because off-axis positions are
+/// farther from the point (docs/theory.md, section 2). Omits that factor if not `exact`.
 fn at_distance(d: f64, width: f64, window: &Window, grid: &SliceGrid, exact: bool) -> Slices {
     let most = (window.x.half_width() / d).min(window.u.half_width());
-    // Up to 22 cycles take 70 nodes.
+    // Seventy nodes are enough for up to 22 cycles.
     let nodes: Vec<_> = gauss_legendre(100)
         .into_iter()
         .map(|(t, weight)| {
@@ -70,7 +70,7 @@ fn projector_over_a_distance() {
         let expected = at_distance(d, 0.3, &window, &grid, true);
         let off = got.slices.relative_difference(&expected);
         assert!(off < GOOD && got.error.unwrap() < GOOD, "{off:e}");
-        // The test detects that factor.
+        // The test detects that the factor is left out.
         let without = at_distance(d, 0.3, &window, &grid, false);
         let told = got.slices.relative_difference(&without);
         assert!(told > 10.0 * GOOD, "{told}");
@@ -90,7 +90,7 @@ fn beam_over_a_distance() {
     let expected = slices_of(&grid, |[x, y, ..]| {
         Complex::from(a * b * libm::exp(-PI * (a * a * x * x + b * b * y * y)))
     });
-    // The cut excludes exp(−π (0.49/0.16 + 0.49/0.09)).
+    // The cut excludes a share exp(−π (0.49/0.16 + 0.49/0.09)).
     let off = got.slices.relative_difference(&expected);
     assert!(off < 1e-9, "{off:e}");
 }
@@ -124,7 +124,7 @@ fn area_lights_agree_with_polygons() {
         let off = got.slices.relative_difference(&expected);
         let said = got.error.unwrap();
         assert!(off < OF_NETS && off < 2.0 * said, "{off:e}, said {said:e}");
-        // A grating one centimetre farther away is distinguished.
+        // A grating that is one centimetre farther away gives a different result.
         system.layers = vec![(0.61, Mask::Grating(grating))];
         let moved = exact(&system, &after(&system, 1.5), &window, &grid);
         let told = moved.slices.relative_difference(&expected);
@@ -187,7 +187,8 @@ fn plane_mirror_is_a_travel() {
     );
     let straight = system(light, vec![]);
     let got = exact(&folded, &after(&folded, 0.5), &window, &grid);
-    // The frame flips: x' = −x, so azimuths φ become π − φ and (ρ, ν) their negatives; y' = y.
+    // The frame flips, so that x' = −x and y' = y: azimuths φ become π − φ, and (ρ, ν) become their
+    // negatives.
     let expected = exact(&straight, &after(&straight, 1.5), &window, &grid);
     let full = expected.slices.full();
     let mut turned = Slices::zeros(grid);
@@ -207,8 +208,8 @@ fn plane_mirror_is_a_travel() {
 
 #[test]
 fn lens_images_a_slide() {
-    // A slide: a Lambertian light of 1 cm² with a grating directly on it, at a = 0.5 m from a lens
-    // of f = 0.3 m; its image is at b = 0.75 m.
+    // A slide: a Lambertian light of 1 cm² with a grating directly on it. It is at a = 0.5 m from a
+    // lens of f = 0.3 m, so its image is at b = 0.75 m.
     let (a, f) = (0.5, 0.3);
     let b = 1.0 / (1.0 / f - 1.0 / a);
     let patch = placed(&Frame::IDENTITY, a, 0.0, [0.0; 2], [0.0; 3]);
@@ -231,9 +232,10 @@ fn lens_images_a_slide() {
         slices.half[[0, 1, 1]].norm() / slices.at_zero()
     };
     let sharp = contrast(b);
-    // m/2 = 0.45 for a sharp grating; a window of a few of its periods preserves all but a few per
-    // cent of it.
+    // A sharp grating has m/2 = 0.45; a window of a few of its periods preserves all but a few per
+    // cent of this.
     assert!((sharp - 0.45).abs() < 0.02, "{sharp}");
-    // 5 cm out of focus, slopes of ± 0.05 blur by ± 2.5 mm, a third of a period of 7.5 mm.
+    // At 5 cm out of focus, slopes of ± 0.05 blur the image by ± 2.5 mm, a third of its period of
+    // 7.5 mm.
     assert!(contrast(b + 0.05) < 0.9 * sharp);
 }

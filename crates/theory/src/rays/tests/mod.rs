@@ -9,7 +9,7 @@ use etendue_field::{
 };
 use glam::DVec3;
 
-/// Two million nodes: errors are far below the deviations that these tests detect.
+/// Two million nodes, so errors are far below the deviations that these tests detect.
 const BUDGET: RayBudget = RayBudget {
     nodes: 2e6,
     error: 1e-5,
@@ -103,8 +103,8 @@ fn after(system: &SpecularSystem, distance: f64) -> Plane {
     Plane::orthogonal(last.travelled(distance))
 }
 
-/// Places a surface across a leg: its normal is −D turned by θ₀ within the plane at the angle
-/// `azimuth` about D, and its principal axes are turned by `twist` about the normal.
+/// Places a surface across a leg. Its normal is −D turned by θ₀ within the plane at the angle
+/// `azimuth` about D; its principal axes are turned by `twist` about the normal.
 fn placed(
     leg: &Frame,
     distance: f64,

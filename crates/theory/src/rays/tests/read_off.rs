@@ -38,7 +38,8 @@ fn off(system: &SpecularSystem, plane: &Plane, print: Edition) -> f64 {
     offsets.chain(entries).fold(0.0, f64::max)
 }
 
-/// Error of central differences of rays: a step of 10⁻⁵ squared, and rounding over the step.
+/// Error of central differences of rays: the square of a step of 10⁻⁵, and rounding error divided
+/// by the step.
 const CLOSE: f64 = 1e-8;
 
 /// A point with a narrow picture; only its geometry matters here.
@@ -92,8 +93,8 @@ fn systems() -> Vec<SpecularSystem> {
             }
         }
     }
-    // Two mirrors with different planes of incidence, then a lens that is met off-centre and
-    // obliquely.
+    // The path has two mirrors with different planes of incidence, then a lens that is met
+    // off-centre and obliquely.
     let first = mirror(light(), 0.5, [0.3, 0.2], [-0.5, 0.3, 0.0]);
     let patch = placed(&leg(&first), 0.7, -0.6, [1.2, 0.4], [0.4, 0.1, 0.0]);
     let second = with(first, "second", patch, Specular::Mirror);
@@ -120,7 +121,7 @@ fn chain_is_the_derivative_of_the_rays() {
         let mut plane = after(&system, 0.65);
         let off_by = off(&system, &plane, Edition::Corrected);
         assert!(off_by < CLOSE, "{off_by:e} {:?}", system.elements);
-        // A plane rotated about the ray, with its origin displaced.
+        // The plane is rotated about the ray, and its origin is displaced.
         let x = plane.frame.x * 0.8 + plane.frame.y * 0.6;
         let origin = plane.frame.origin + x * 0.01;
         plane.frame = Frame::new(origin, plane.frame.d, x).unwrap();
@@ -315,8 +316,8 @@ fn a_wrong_map_leaves_a_defect() {
     }
 }
 
-/// Behind a mesh a plane is perpendicular to the path given by the mesh's normals, and tilted
-/// relative to that of its patch.
+/// Behind a mesh, a plane is perpendicular to the path that follows the mesh's normals, and tilted
+/// relative to the path of the mesh's patch.
 #[test]
 fn a_plane_may_lean_against_the_leg() {
     for system in systems() {

@@ -22,7 +22,7 @@ fn covariance_of_a_gaussian_beam() {
     let expected = map.covariance(&before);
     for i in 0..16 {
         let off = (got[i / 4][i % 4] - expected[i / 4][i % 4]).abs();
-        // A mirror of 100 m bends it slightly: of order (x/R)² of slopes 2x/R.
+        // A mirror of 100 m bends the light slightly: by an order of (x/R)² of slopes 2x/R.
         assert!(off < 1e-5 * variance, "{i}: {off:e}");
     }
     assert!(got[0][2].abs() > 1e-4 * variance); // slopes follow positions
@@ -89,13 +89,13 @@ fn derivatives_by_every_parameter() {
         let other = view.with(parameter, value + 1e-4).unwrap();
         let read = other.value(parameter).unwrap();
         assert!((read - value - 1e-4).abs() < 1e-12, "{name}"); // rounding
-        // A forward difference with another step, from converged predictions.
+        // The reference is a forward difference with another step, from converged predictions.
         let moved = exact(&other.system, &other.plane, &window, &grid);
         let mut forward = moved.slices.clone();
         forward.half -= &prediction.slices.half;
         forward.half /= Complex::from(1e-4);
         let off = forward.relative_difference(slope);
-        // Half the second derivative times 10⁻⁴; quadrature errors do not cancel.
+        // The error is half the second derivative times 10⁻⁴; quadrature errors do not cancel.
         assert!(off < 0.02, "{name}: {off}");
         assert!(
             slope
@@ -121,7 +121,7 @@ fn rays_are_lost() {
     let mut small = system.clone();
     small.elements[0].patch.aperture = 0.2;
     assert!(lands(&small, [0.3, 0.0, 0.0, 0.0]).is_none());
-    // Total reflection at 0.73 rad.
+    // Total reflection begins at 0.73 rad.
     let glass = Specular::Refraction {
         front: 1.5,
         back: 1.0,

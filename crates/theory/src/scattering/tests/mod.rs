@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 const DISTANCE: f64 = 1.0;
 
-/// Two million nodes: errors are far below the deviations that these tests detect.
+/// Two million nodes, so errors are far below the deviations that these tests detect.
 fn exact(system: &ScatteringSystem, plane: &Plane, window: &Window, grid: &SliceGrid) -> Predicted {
     by(
         system,
@@ -204,7 +204,7 @@ fn flat_lambertian_surface_is_the_receiver() {
     let plane = across(0.0, 0.2);
     let found = exact(&system, &plane, &window, &grid);
     let apart = found.slices.relative_difference(&known);
-    // The stated error matches the actual error: over so many frequencies the two differ little.
+    // The stated error matches the actual error; over so many frequencies the two differ little.
     let error = found.error.unwrap();
     let ratio = apart / error;
     assert!((0.6..1.6).contains(&ratio), "{apart:e} {error:e}");
@@ -239,7 +239,7 @@ fn chain_is_the_product_of_operators() {
             let a = read.matrix.as_flattened().iter().chain(&read.offset);
             let b = put.matrix.as_flattened().iter().chain(&put.offset);
             let worst = a.zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            // Rounding of 1e-16 over a step of 1e-5.
+            // A rounding error of 1e-16 divided by a step of 1e-5.
             assert!(worst < 1e-8, "{theta0} {k}: {worst:e}\n{read:?}\n{put:?}");
         }
     }
@@ -273,7 +273,8 @@ fn errors(
         .to_vec()
 }
 
-/// Returns a Phong lobe as wide as the neighbourhood: 1/√n of the size.
+/// Returns a Phong lobe as wide as the neighbourhood: its width 1/√n is the size of the
+/// neighbourhood.
 fn phong(e: f64) -> Lobe {
     Lobe::Phong {
         exponent: 1.0 / (0.25 * e * e),
@@ -291,7 +292,8 @@ fn first_order_is_of_its_order() {
         let errors = errors(theta0, k, |e| white(phong(e)), orientation);
         let order = libm::log2(errors[1] / errors[2]);
         let due = if theta0 == 0.0 { 2.0 } else { 1.0 };
-        // Three sizes; terms beyond the first neglected order are at most a quarter of it.
+        // Three sizes are tested; terms beyond the first neglected order are at most a quarter of
+        // it.
         assert!(
             (order - due).abs() < 0.25,
             "{theta0} {orientation:?}: {order} {errors:?}"
@@ -300,8 +302,8 @@ fn first_order_is_of_its_order() {
     }
 }
 
-/// Two lobes with factors of both angles, and weights with a wavelength of the size of the
-/// neighbourhood.
+/// The BRDF has two lobes with factors of both angles, and weights whose wavelength is the size of
+/// the neighbourhood.
 #[test]
 fn weighted_and_separable_brdfs_are_of_first_order() {
     let table = |values: [f64; 2]| {
@@ -359,7 +361,8 @@ fn wrong_operators_are_seen() {
     };
     let least = error(&system, &sound);
     let mut turned = sound.clone();
-    // Treats the central ray as if it came along the normal: no cosine, and no mirror direction.
+    // The central ray is treated as if it came along the normal, so there is no cosine and no
+    // mirror direction.
     turned.onto.offset[2] = 0.0;
     assert!(error(&system, &turned) > 5.0 * least);
     let mut sheared = sound;
@@ -443,11 +446,13 @@ fn diffuse_sphere_under_an_environment_is_the_known_product() {
         EnvironmentMap::LatLong(Arc::new(map))
     };
     for (map, most) in [
-        // The error of a net of 2¹⁸ points.
+        // This is the error of a net of 2¹⁸ points.
         (EnvironmentMap::Lobes(vec![lobe]), 1e-5),
-        // Likewise, with kinks between pixels, which are 0.006 rad over widths of 0.25: (1/40)²/24.
+        // The net has the same error here, and there are kinks between pixels, which are 0.006 rad
+        // apart over widths of 0.25: (1/40)²/24.
         (map([1024, 512]), 1e-4),
-        // Bilinear between pixel centres, 0.03 rad apart: (1/8)²/12 of the lobe's curvature.
+        // The map is interpolated bilinearly between pixel centres, 0.03 rad apart: (1/8)²/12 of
+        // the lobe's curvature.
         (map([200, 100]), 4e-4),
     ] {
         let system = under(map);
@@ -482,6 +487,6 @@ fn diffuse_sphere_under_an_environment_is_the_known_product() {
     let grid = grid([0.1, 0.4]);
     let chain = chain(&view(&system, &plane)).unwrap();
     let error = linearised(&system, &plane, &window, &grid, &chain);
-    // (k s)³ of 0.08³, and the interaction of tilts about both axes.
+    // The neglected terms are (k s)³, here 0.08³, and the interaction of tilts about both axes.
     assert!(error < 3e-3, "{error}");
 }

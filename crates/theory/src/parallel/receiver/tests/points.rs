@@ -69,7 +69,8 @@ fn what_a_receiver_of_albedo_one_gives_off_is_what_it_receives() {
     let bench = alone(area(rectangle([0.0; 2], [0.3; 2]), 0.0), 1.0);
     let mut receiver = bench.receiver();
     receiver.albedo = 1.0;
-    // ∫ L G du dv over all slopes, from the irradiance under an infinite sky of that radiance.
+    // ∫ L G du dv over all slopes is the irradiance under an infinite sky with the radiance that
+    // leaves the receiver.
     let sky = Light::Area {
         shape: rectangle([0.0; 2], [2e6; 2]),
         radiance: receiver.exitance() * receiver.irradiance(0.1, 0.2),
@@ -82,8 +83,7 @@ fn what_a_receiver_of_albedo_one_gives_off_is_what_it_receives() {
 #[test]
 fn benches_against_sums_over_the_light() {
     const POINTS: u32 = 1_000_000;
-    // A quasi-random set instead of a grid, on which all vertical edges would cause an error at
-    // once.
+    // The set is quasi-random; on a grid, all vertical edges would cause an error at once.
     let spread: Vec<_> = cube(POINTS).map(|[s, t, ..]| [s, t]).collect();
     for (number, bench) in benches().iter().enumerate() {
         let receiver = bench.receiver();
@@ -128,7 +128,7 @@ fn tiles_that_fill_the_plane_leave_nothing() {
 
 #[test]
 fn two_discs_meet_in_a_lens() {
-    // Without the cosine the integral is an area; a lens is the sum of two segments.
+    // Without the cosine the integral is an area; the area of a lens is the sum of two segments.
     let light = area(disc([0.0, 0.0], 0.5), 0.0);
     let segment = |r: f64, x: f64| r * r * libm::acos(x / r) - x * (r * r - x * x).sqrt();
     for (offset, radius) in [

@@ -42,7 +42,7 @@ fn fast_and_plain_sums_agree() {
                 let (rho, nu) = (m as f64 * grid.rho.spacing, grid.nu.value(n));
                 let plain = table.at(grid.frequency(k, rho, nu));
                 let error = (slices.half[[k, m, n]] - plain).norm() / slices.at_zero();
-                // Rounding, and Gauss rules accurate to 1e-14.
+                // Rounding error, and the error of Gauss rules accurate to 1e-14.
                 assert!(error < 1e-12, "{after} {k} {m} {n}: {error:e}");
             }
         }
@@ -56,8 +56,8 @@ pub(super) fn cube(count: u32) -> impl Iterator<Item = [f64; 6]> {
     (1..=count).map(move |n| steps.map(|s| (0.5 + s * f64::from(n)).fract()))
 }
 
-/// Estimates the spectrum at frequencies from rays sampled at random through the window and from
-/// the light, followed back.
+/// Estimates the spectrum at some frequencies from rays that are sampled at random through the
+/// window and on the light, and followed back.
 fn drawn(bench: &TestReceiver, after: f64, window: &Window, rays: u32) -> Vec<Complex> {
     let Light::Area { shape, .. } = bench.light else {
         unreachable!("area lights only")
@@ -69,8 +69,8 @@ fn drawn(bench: &TestReceiver, after: f64, window: &Window, rays: u32) -> Vec<Co
     for point in cube(rays) {
         let [x, y, u, v] = [0, 1, 2, 3].map(|k| halves[k] * (2.0 * point[k] - 1.0));
         let weight = window.value(&TwoPlane { x, y, u, v });
-        // D' = −D, X' = −X and Y' = D' × X' = Y: back along the ray, x in the frame of arrival is
-        // −x'.
+        // D' = −D, X' = −X and Y' = D' × X' = Y. So back along the ray, x in the frame of arrival
+        // is −x'.
         let floor = [-(x - after * u), y - after * v];
         let at = [0, 1].map(|k| bounds.center[k] + bounds.size[k] * (point[4 + k] - 0.5));
         let radiance = 0.6 / PI * bench.added(at, floor) * weight;
@@ -169,7 +169,8 @@ fn error_falls_with_the_square_of_the_spacing() {
         let fine = slices(1024);
         let errors = [32, 64, 128, 256].map(|n| slices(n).relative_difference(&fine));
         let order = libm::log2(errors[0] / errors[3]) / 3.0;
-        // The position of kinks between nodes is random; otherwise the error is of second order.
+        // The position of kinks between nodes is random; apart from this the error is of second
+        // order.
         assert!((1.6..3.5).contains(&order), "{after}: {errors:?} {order}");
         assert!(errors[3] < 1e-4, "{errors:?}"); // the aim at the fewest nodes
     }
@@ -188,7 +189,8 @@ fn error_is_told() {
         assert!((slices.at_zero() - zero).norm() < 1e-12 * zero.norm()); // rounding of two sums
         let told = receiver.quadrature_error(&window, &grid, &slices).unwrap();
         let truth = slices.relative_difference(&receiver.table(&window, 1000).slices(&grid));
-        // An estimate, not a bound: correct to a factor of a few, both below the requested error.
+        // The estimate is not a bound, but it is correct to a factor of a few, and below the
+        // requested error.
         assert!(
             truth < 3.0 * told + 1e-9 && told < 1e-4,
             "{number}: {told:e} {truth:e}"
@@ -253,8 +255,8 @@ fn hard_shadows_of_a_point_light() {
     let bench = TestReceiver::new(Light::Point { intensity: 3.0 }, vec![(0.5, mask)]);
     let receiver = bench.receiver();
     let [x, y, u, v] = [2.0, -3.0, 1.0, 0.5];
-    // In the turned frame, over a rectangle of the receiver; the shadow is 4/3 as large as the
-    // mask.
+    // The frame is turned, and the integral is over a rectangle of the receiver; the shadow is 4/3
+    // as large as the mask.
     let lit = |along_x: [f64; 2], along_y: [f64; 2]| -> Complex {
         integrate(40, along_x, |s| {
             integrate(40, along_y, |t| {
