@@ -45,7 +45,11 @@ class Probe:
     surfaces: list[dict[str, Any]]
     """The surfaces on the central ray, in order from the camera, with angle, curvatures and criterion."""
     planes: list[dict[str, Any]]
-    """The planes, with report, verdict and bandwidths [value, standard error], in cycles per unit slope and per metre."""
+    """The planes, with report, verdict and bandwidths of the light less its mean [value, standard error], in cycles per unit slope and per
+    metre."""
+    picture: dict[str, Any]
+    """The bandwidth of the picture around the pixel, less its mean: `largest` [value, standard error] in cycles per unit slope, with its
+    `azimuth`; `across` it; `window`, that of the window alone; `samples` per pixel along a direction; `None` where the picture is smooth."""
     folder: Path
     """The folder of the arrays and pictures of all planes."""
     text: str
@@ -220,7 +224,7 @@ def probe(
     """Measures the light field behind a pixel (column, row), by rays traced back and by photons.
 
     `depth` is the maximum number of surfaces along the ray, 1 to 16, by default 1; `window` is the width of the window in pixels, by default
-    16. `rays` is the number of rays traced back for each plane, by default 2**20, and `photons` is the number of photons that check them,
+    the narrowest that shows the bandwidth of the picture. `rays` is the number of rays traced back for each plane, by default 2**20, and `photons` is the number of photons that check them,
     by default 2**25. `covariance` also measures the covariance of each plane's spectrum. All other arguments are those of `render`.
     """
     arguments = given(
@@ -247,4 +251,4 @@ def probe(
     with told(progress) as tell:
         lines = _etendue.probe(scene, pixel, out, arguments, threads, tell)
     found = json.loads((Path(out) / "probe.json").read_text(encoding="utf-8"))
-    return Probe(found["verdict"], found["surfaces"], found["planes"], Path(out), "\n".join(lines))
+    return Probe(found["verdict"], found["surfaces"], found["planes"], found["picture"], Path(out), "\n".join(lines))
