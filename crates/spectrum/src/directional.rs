@@ -26,6 +26,8 @@ pub struct DirectionalBandwidth {
     pub across: Uncertain,
     /// The total power, ∫ |F|² dν.
     pub power: Uncertain,
+    /// The power that noise adds to that of the mean spectrum, which `power` leaves out.
+    pub noise: f64,
 }
 
 impl DirectionalBandwidth {
@@ -62,6 +64,8 @@ impl DirectionalBandwidth {
         found.widest.value.error = errors[0];
         found.across.error = errors[1];
         found.power.error = errors[2];
+        let noise = power.noise_at_azimuths();
+        found.noise = PolarPower::new(noise.view(), &grid).map_or(0.0, |noise| noise.total);
         Ok(Some(found))
     }
 
@@ -92,6 +96,7 @@ impl DirectionalBandwidth {
             },
             across: exact(polar.bandwidth(azimuth + FRAC_PI_2)),
             power: exact(polar.total),
+            noise: 0.0,
             along,
         })
     }

@@ -176,6 +176,12 @@ impl<'m> CrossPower<'m> {
         row
     }
 
+    /// Returns the contribution of noise to the power of the mean spectrum, [azimuth, ρ ≥ 0, ν].
+    pub(crate) fn noise_at_azimuths(&self) -> Array3<f64> {
+        let r = self.batches.len() as f64;
+        self.sum.mapv(|s| s.norm_sqr() / (r * r)) - &self.pairs / (r * (r - 1.0))
+    }
+
     /// Returns the power at each azimuth, [azimuth, ρ ≥ 0, ν], from all batches and then with each
     /// batch left out.
     pub(crate) fn at_azimuths(&self) -> impl Iterator<Item = Array3<f64>> {

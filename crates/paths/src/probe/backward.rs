@@ -1,8 +1,10 @@
 //! Backward rays of a probe.
 
 use super::{Budget, Probe};
-use crate::numbers::PathNumbers;
+use crate::numbers::{JOINT, PathNumbers};
 use etendue_field::{Crossing, Ledger, PhotonSource, TwoPlane, VirtualPlane};
+use etendue_transform::Net;
+use etendue_transform::random::Stream;
 
 /// Backward rays of a [`Probe`]. For each plane separately, lines are drawn uniformly over the
 /// plane's window, and a path finds the radiance along each line.
@@ -37,10 +39,10 @@ impl<'a> BackwardProbe<'a> {
         }
     }
 
-    /// One ray of a plane.
-    fn crossing(&self, plane: &VirtualPlane, number: u64) -> Crossing {
+    /// One ray of a plane: the one with this number of all rays, and a point of a net.
+    fn crossing(&self, plane: &VirtualPlane, number: u64, (net, point): (&Net, u32)) -> Crossing {
         let Probe { paths, legs, .. } = self.probe;
-        let mut numbers = PathNumbers::new(self.budget.seed, number);
+        let mut numbers = PathNumbers::new(self.budget.seed, number).of_net(net, point);
         let half = [
             plane.window.x,
             plane.window.y,
@@ -78,10 +80,12 @@ impl PhotonSource for BackwardProbe<'_> {
             let count = BLOCK.min(self.budget.each - start);
             let wanted = |i: usize| self.only.is_none_or(|only| only == i);
             for (i, plane) in planes.iter().enumerate().filter(|(i, _)| wanted(*i)) {
-                // Different planes use different numbers.
-                let of = |ray: u64| (first + start + ray) * planes.len() as u64 + i as u64;
-                let crossings: Vec<Crossing> = (0..count)
-                    .map(|ray| self.crossing(plane, of(ray)))
+                // Different planes and batches use different numbers.
+                let of = |ray: u64| (first + ray) * planes.len() as u64 + i as u64;
+                let index = u64::from(batch) * planes.len() as u64 + i as u64;
+                let net = Net::new(self.budget.seed, Stream::Net, index, JOINT);
+                let crossings: Vec<Crossing> = (start..start + count)
+                    .map(|ray| self.crossing(plane, of(ray), (&net, point_of(ray))))
                     .collect();
                 record(i, &crossings);
             }
@@ -89,4 +93,14 @@ impl PhotonSource for BackwardProbe<'_> {
         }
         Ledger::default()
     }
+}
+
+/// Returns the point of a net for a ray of a batch. A net has 2³² points, more than any batch.
+fn point_of(ray: u64) -> u32 {
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "only the lower bits count beyond all points"
+    )]
+    let point = ray as u32;
+    point
 }

@@ -17,12 +17,15 @@ const CLEAR: f64 = 3.0;
 /// The ratio up to which a bandwidth may be due to the window: light that is linear across it has
 /// 1.49 times the bandwidth of the window, and quadratic light 1.89.
 const SMOOTH: f64 = 1.9;
-/// A variation is found if its power exceeds this many standard errors: with three, one window in
-/// two hundred shows a variation where there is none, and a map has thousands.
+/// A variation is found if its power exceeds this many standard errors.
 const FOUND: f64 = 5.0;
+/// Largest power of noise, relative to that of the variation. A bandwidth leaves a twentieth of the
+/// power out. The noise has some 450 independent frequencies, so this share of it fluctuates by a
+/// 150th of the power.
+const MAX_NOISE: f64 = 0.1;
 /// A bandwidth with a larger relative standard error is not reported, because with few rays its
 /// jackknife is unreliable.
-const MAX_ERROR: f64 = 0.2;
+const MAX_ERROR: f64 = 0.1;
 /// The most rays that choose the window.
 const RAYS_OF_TRIAL: u64 = 1 << 17;
 
@@ -32,8 +35,10 @@ const RAYS_OF_TRIAL: u64 = 1 << 17;
 pub(super) struct PictureBandwidth {
     /// Width of the window, pixels.
     pub(super) across: f64,
-    /// Of the picture less its mean; `None` if it does not vary by more than noise.
+    /// Of the picture less its mean; `None` if noise hides it.
     pub(super) variation: Option<DirectionalBandwidth>,
+    /// Whether the picture varies by more than noise.
+    pub(super) varies: bool,
     /// Of all power; `None` without light.
     pub(super) whole: Option<DirectionalBandwidth>,
     /// Of the window alone.
@@ -122,6 +127,7 @@ impl PictureBandwidth {
             "azimuth": widest.map(|it| it.azimuth),
             "across": self.across().map(pair),
             "unblurred": self.unblurred(),
+            "varies": self.varies,
             "samples": widest.map(|it| self.samples(it.value.value)),
         })
     }
@@ -176,14 +182,18 @@ fn measured(
     let varying = pictures.iter().map(|picture| mean.removed_from(picture));
     let varying: Vec<Slices> = varying.collect();
     let of = |slices: &[Slices]| DirectionalBandwidth::new(slices).map_err(Failure::cannot_run);
-    let variation = of(&varying)?.filter(|found| {
-        let widest = found.widest.value;
-        let is_found = found.power.value > FOUND * found.power.error;
-        is_found && widest.error <= MAX_ERROR * widest.value
+    let variation = of(&varying)?;
+    let relative = |of: Uncertain| of.error / of.value;
+    let varies = variation
+        .as_ref()
+        .map(|found| relative(found.power) < 1.0 / FOUND);
+    let variation = variation.filter(|found| {
+        found.noise <= MAX_NOISE * found.power.value && relative(found.widest.value) <= MAX_ERROR
     });
     Ok(Some(PictureBandwidth {
         across,
         variation,
+        varies: varies.unwrap_or(false),
         whole: of(&pictures)?,
         window: DirectionalBandwidth::of_window(&plane.window, &plane.grid),
         pixel_slope: probe.pixel_slope,

@@ -227,7 +227,7 @@ fn bandwidths(
                 value,
             ));
         }
-    } else {
+    } else if picture.variation.is_some() || !picture.varies {
         lines.push(line("below", number(limit), limit));
     }
     lines.push(line("of the window alone", number(own), own));
@@ -240,11 +240,11 @@ fn bandwidths(
         None => "  Eq. 20 describes lobes: it does not apply to this surface".to_owned(),
     });
     if widest.is_none() {
-        let name = arguments.name("window");
+        let [window, rays] = ["window", "rays"].map(|name| arguments.name(name));
         lines.push(if picture.variation.is_some() {
-            format!(
-                "  The picture is smooth in this window: a wider one ({name}) shows its bandwidth."
-            )
+            format!("  The picture is smooth in this window; a wider one ({window}) shows its bandwidth.")
+        } else if picture.varies {
+            format!("  The picture varies, but noise hides its bandwidth: more {rays} show it.")
         } else {
             "  The picture is even in this window, within noise.".to_owned()
         });
