@@ -182,7 +182,7 @@ def main():
             mean, (has_used, has_seconds) = job(args, scene, reference, method, samples)
             cells = [scene.stem, method, str(samples), f"{mean['used']:.0f}" if has_used else f"({mean['used']:.0f})", f"{mean['relmse']:.3e}"]
             cells += ["" if mean["spread"] is None else f"{mean['spread']:.1e}", f"{mean['less']:.3e}", f"{mean['kept']:.3e}"]
-            cells += [f"{mean['flip']:.4f}"] * (args.flip is not None) + [f"{mean['seconds']:.2f}" if has_seconds else f"({mean['seconds']:.2f})"]
+            cells += ([f"{mean['flip']:.4f}"] if args.flip is not None else []) + [f"{mean['seconds']:.2f}" if has_seconds else f"({mean['seconds']:.2f})"]
             line(cells)
             found[method, samples] = mean
             return mean

@@ -3,10 +3,12 @@
 //!
 //! Points visible to the camera are found at full resolution (`visible`). From these points and
 //! from the distance of blockers at sparse points (`blockers`), the criteria give the bandwidth of
-//! light across the picture (`criterion`), and so the sampling density (`density`). Samples are
+//! light across the picture (`criterion`), and so the sampling density (`density`). The default
+//! calibrates them by the errors of first, even samples (`auto`). Samples are
 //! blue noise of that density (`blue_noise`); only they are shaded. The picture between them is
 //! reconstructed from similar points (`reconstruct`).
 
+mod auto;
 mod blockers;
 mod blue_noise;
 mod criterion;

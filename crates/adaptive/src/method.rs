@@ -25,6 +25,10 @@ pub enum SampleMethod {
     /// measures the light: planes are fitted to one half of this quarter, and their error is
     /// evaluated at the other half.
     Weighted,
+    /// The default: evenly at first, then in equal parts by the criteria and by the errors that the
+    /// first samples find. These errors also decide, object by object, how many samples the
+    /// criteria are worth.
+    Auto,
     /// By the measured light alone: the standard deviation of a first quarter of the samples, which
     /// are distributed uniformly.
     Variance,
@@ -105,7 +109,7 @@ const FIRST_SHARE: f64 = 0.25;
 /// The squared error of a plane through samples is proportional to the fourth power of their
 /// distance, and so to 1/n² for a density n of samples. Its sum over the picture is minimal for a
 /// fixed number of samples if n ∝ (c² B⁴)^(1/3), with the contrast c and the bandwidth B.
-const POWER: f64 = 2.0 / 3.0;
+pub(crate) const POWER: f64 = 2.0 / 3.0;
 
 /// Renders a picture; `stage` receives the next stage and its number of steps, `progress` the
 /// number of finished steps.
@@ -140,10 +144,10 @@ pub fn render(
     work.picture(samples)
 }
 
-struct AdaptiveRun<'a> {
-    visible: &'a Visible,
+pub(crate) struct AdaptiveRun<'a> {
+    pub(crate) visible: &'a Visible,
     shader: Shader<'a>,
-    plan: &'a SamplePlan,
+    pub(crate) plan: &'a SamplePlan,
     stage: &'a dyn Fn(Stage, usize),
     progress: &'a (dyn Fn(u64) + Sync),
     layers: Layers,
@@ -152,23 +156,15 @@ struct AdaptiveRun<'a> {
 impl AdaptiveRun<'_> {
     /// Takes all samples of the method, and stores the metric of all samples with each of them.
     fn samples(&mut self) -> Vec<ShadedSample> {
-        let even = self.visible.pixels(|pixel| {
-            let places = self.visible.of_pixel(pixel);
-            let is_shaded = places.iter().any(|place| shaded(place).is_some());
-            is_shaded.then_some(Metric::even(1.0))
-        });
         let method = self.plan.method;
-        let wanted = match method {
-            SampleMethod::Uniform | SampleMethod::Variance => even,
+        let (wanted, power) = match method {
+            SampleMethod::Auto => return self.auto(),
+            SampleMethod::Uniform | SampleMethod::Variance => (self.even(), 1.0),
             SampleMethod::Predicted | SampleMethod::Printed | SampleMethod::Weighted => {
-                self.predicted()
+                (self.predicted(), POWER)
             }
         };
         let count = self.plan.samples as f64;
-        let power = match method {
-            SampleMethod::Uniform | SampleMethod::Variance => 1.0,
-            SampleMethod::Predicted | SampleMethod::Printed | SampleMethod::Weighted => POWER,
-        };
         let wanted: Vec<Option<Metric>> = wanted
             .iter()
             .map(|metric| metric.map(|metric| to_power(metric, power)))
@@ -186,13 +182,7 @@ impl AdaptiveRun<'_> {
         let contrast = self.contrast(&pilot);
         let rest = (1.0 - FIRST_SHARE) * count;
         let then = if method == SampleMethod::Weighted {
-            let missed = self.missed(&pilot);
-            let found = first.iter().zip(&missed);
-            let by_error = |(metric, missed): (&Option<Metric>, &f64)| {
-                let metric = (*metric)?;
-                Some(metric.times(libm::cbrt(missed.max(1e-12) / metric.determinant().sqrt())))
-            };
-            let found: Vec<Option<Metric>> = found.map(by_error).collect();
+            let found = by_error(&first, &self.around(&self.missed(&pilot)));
             let halves = [scaled(&wanted, 0.5 * rest), scaled(&found, 0.5 * rest)];
             sums(&halves[0], &halves[1])
         } else {
@@ -202,9 +192,29 @@ impl AdaptiveRun<'_> {
             let wanted: Vec<_> = wanted.iter().zip(&contrast).map(by_contrast).collect();
             scaled(&wanted, rest)
         };
-        let points = self.points(&then, rest, 1);
+        self.both(&first, pilot, &then, rest)
+    }
+
+    /// The metric of evenly distributed samples.
+    pub(crate) fn even(&self) -> Vec<Option<Metric>> {
+        self.visible.pixels(|pixel| {
+            let places = self.visible.of_pixel(pixel);
+            let is_shaded = places.iter().any(|place| shaded(place).is_some());
+            is_shaded.then_some(Metric::even(1.0))
+        })
+    }
+
+    /// Takes the `rest` of the samples, and returns all of them with the metric of all.
+    pub(crate) fn both(
+        &mut self,
+        first: &[Option<Metric>],
+        pilot: Vec<(ShadedSample, f64)>,
+        then: &[Option<Metric>],
+        rest: f64,
+    ) -> Vec<ShadedSample> {
+        let points = self.points(then, rest, 1);
         let later = self.shaded(&points, pilot.len() as u64);
-        let both = sums(&first, &then);
+        let both = sums(first, then);
         self.told(&both);
         let all = pilot.into_iter().chain(later);
         all.map(|(sample, _)| ShadedSample {
@@ -215,8 +225,8 @@ impl AdaptiveRun<'_> {
     }
 
     /// Fits planes to one half of the samples, compares them with the other half, and returns the
-    /// squared relative error around each pixel after noise removal.
-    fn missed(&self, samples: &[(ShadedSample, f64)]) -> Vec<f64> {
+    /// squared relative error at each sample after noise removal, as its value.
+    pub(crate) fn missed(&self, samples: &[(ShadedSample, f64)]) -> Vec<ShadedSample> {
         let lights = samples.iter().map(|(sample, _)| sample.light(sample.value));
         let dark = 0.01 * lights.sum::<f64>() / samples.len().max(1) as f64;
         let mut found = Vec::new();
@@ -250,7 +260,12 @@ impl AdaptiveRun<'_> {
                 });
             }
         }
-        let places = reconstruct(self.visible, &found, SampleFit::Mean);
+        found
+    }
+
+    /// The mean of such errors around each pixel.
+    pub(crate) fn around(&self, missed: &[ShadedSample]) -> Vec<f64> {
+        let places = reconstruct(self.visible, missed, SampleFit::Mean);
         self.visible.pixels(|pixel| {
             let mut of = places[self.visible.range(pixel)].iter().flatten();
             of.next().map_or(0.0, |value| value[0])
@@ -258,7 +273,7 @@ impl AdaptiveRun<'_> {
     }
 
     /// The metrics by the criteria.
-    fn predicted(&mut self) -> Vec<Option<Metric>> {
+    pub(crate) fn predicted(&mut self) -> Vec<Option<Metric>> {
         let [w, h] = self.visible.size;
         let Shader {
             paths,
@@ -292,7 +307,12 @@ impl AdaptiveRun<'_> {
         squared.iter().map(wanted_of).collect()
     }
 
-    fn points(&self, metrics: &[Option<Metric>], count: f64, round: u64) -> Vec<PicturePoint> {
+    pub(crate) fn points(
+        &self,
+        metrics: &[Option<Metric>],
+        count: f64,
+        round: u64,
+    ) -> Vec<PicturePoint> {
         (self.stage)(Stage::Samples, 1);
         #[expect(
             clippy::cast_possible_truncation,
@@ -304,7 +324,7 @@ impl AdaptiveRun<'_> {
         blue_noise(metrics, self.visible.size[0], count, seed)
     }
 
-    fn shaded(&self, points: &[PicturePoint], first: u64) -> Vec<(ShadedSample, f64)> {
+    pub(crate) fn shaded(&self, points: &[PicturePoint], first: u64) -> Vec<(ShadedSample, f64)> {
         (self.stage)(Stage::Shading, points.len());
         self.shader.shade(points, first, self.progress)
     }
@@ -446,13 +466,24 @@ fn pixel_at(at: [f64; 2], size: [usize; 2]) -> [usize; 2] {
 }
 
 /// The index of the pixel at a position.
-fn pixel_of(at: [f64; 2], size: [usize; 2]) -> usize {
+pub(crate) fn pixel_of(at: [f64; 2], size: [usize; 2]) -> usize {
     let [column, row] = pixel_at(at, size);
     row * size[0] + column
 }
 
+/// The metrics that minimise errors found at samples with the metrics of `first`: the density
+/// (e² n²)^(1/3) for a squared error e² at a density n.
+pub(crate) fn by_error(first: &[Option<Metric>], missed: &[f64]) -> Vec<Option<Metric>> {
+    let pairs = first.iter().zip(missed);
+    let of = |(metric, missed): (&Option<Metric>, &f64)| {
+        let metric = (*metric)?;
+        Some(metric.times(libm::cbrt(missed.max(1e-12) / metric.determinant().sqrt())))
+    };
+    pairs.map(of).collect()
+}
+
 /// The sums of the metrics of two sets of samples.
-fn sums(a: &[Option<Metric>], b: &[Option<Metric>]) -> Vec<Option<Metric>> {
+pub(crate) fn sums(a: &[Option<Metric>], b: &[Option<Metric>]) -> Vec<Option<Metric>> {
     let both = a.iter().zip(b);
     both.map(|(a, b)| Some(a.as_ref()?.plus(*b.as_ref()?)))
         .collect()

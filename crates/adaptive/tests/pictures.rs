@@ -5,7 +5,8 @@ use etendue_paths::Paths;
 use etendue_world::{Camera, Geometry, Light, Material, Projection, Shape, Texture, World};
 use glam::{DAffine3, DMat3, DVec3};
 
-const ALL: [SampleMethod; 4] = [
+const ALL: [SampleMethod; 5] = [
+    SampleMethod::Auto,
     SampleMethod::Uniform,
     SampleMethod::Predicted,
     SampleMethod::Weighted,

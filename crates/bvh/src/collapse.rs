@@ -19,7 +19,7 @@ struct Collapse<'a> {
 ///
 /// # Panics
 ///
-/// If a leaf has more than [`MAX_LEAF`].
+/// If a leaf has more than [`MAX_LEAF`] boxes.
 pub(crate) fn collapsed(bvh: &Bvh2) -> (Wide, Vec<[u32; 2]>) {
     // The largest possible number of nodes; memory counts as used only once it is written to.
     let most = bvh.nodes.len() / 2 + 1;

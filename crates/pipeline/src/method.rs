@@ -32,8 +32,8 @@ pub fn judge_of(method: Method, scene: &Scene, plane: &VirtualPlane) -> Method {
     }
 }
 
-/// Returns the line that describes the step of a prediction in which the measurement by a method
-/// takes the place of theory.
+/// Returns the text of the prediction step of a plane without theory: rays traced by this
+/// method are the prediction.
 pub fn step(method: Method) -> String {
     let shared = match method {
         Method::Photons | Method::Backward => "",

@@ -112,7 +112,7 @@ mod tests {
         assert!((flat - 0.95 * 81.0 * 0.25 / 2.0).abs() < 1e-12); // rounding
         let of =
             |powers: [f64; 3], fraction| bandwidth(arr1(&powers).view(), &axis(1, 2.0), fraction);
-        // Half of the cell at zero, which ends at 1, holds half of the power.
+        // The cell at zero covers −1 to 1 and has all of the power; half of it is within ±0.5.
         assert_eq!(of([0.0, 3.0, 0.0], 0.5), Some(0.5));
         assert_eq!(of([1.0, 0.0, 1.0], 0.5), Some(2.0));
         assert_eq!(of([1.0, 0.0, 1.0], 1.0), Some(3.0));

@@ -58,8 +58,8 @@ pub(crate) fn outline(scene: &Scene, object: Object) -> Vec<DVec3> {
     }
 }
 
-/// The part of the first surface on the path, if flat, from which light can reach the window of a
-/// plane on or beyond the surface. It is given by its lowest and highest coordinates in the
+/// For a flat first surface: the part of it from which light can reach the window of a plane. The
+/// plane is on this surface or beyond it. It is given by its lowest and highest coordinates in the
 /// surface's frame; `None` if there is no such part.
 pub(crate) fn footprint(
     scene: &Scene,

@@ -17,7 +17,8 @@ fn scene(overrides: &[(&str, &str)]) -> Scene {
     resolve("test", file, ".".as_ref(), u64::MAX).unwrap()
 }
 
-/// Mean of weight · window over emitted photons, its standard error for each plane, and the ledger.
+/// Returns, for each plane, the mean of weight times window per emitted photon with its standard
+/// error; then the account of all photons.
 fn windowed_integrals(scene: &Scene) -> (Vec<[f64; 2]>, Ledger) {
     let tracer = Tracer::new(scene);
     let mut sums = vec![[0.0; 2]; scene.planes.len()];

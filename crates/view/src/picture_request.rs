@@ -39,8 +39,9 @@ impl PictureRequest {
     pub const SEED: u64 = 1;
 
     /// The methods by name.
-    pub const METHODS: [(&str, Option<SampleMethod>); 6] = [
+    pub const METHODS: [(&str, Option<SampleMethod>); 7] = [
         ("reference", None),
+        ("auto", Some(SampleMethod::Auto)),
         ("uniform", Some(SampleMethod::Uniform)),
         ("predicted", Some(SampleMethod::Predicted)),
         ("printed", Some(SampleMethod::Printed)),
@@ -68,6 +69,6 @@ impl PictureRequest {
     /// The default method: a reference, unless a number of shading samples is given.
     #[must_use]
     pub fn usual_method(shading_samples: Option<u32>) -> Option<SampleMethod> {
-        shading_samples.map(|_| SampleMethod::Predicted)
+        shading_samples.map(|_| SampleMethod::Auto)
     }
 }

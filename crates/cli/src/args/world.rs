@@ -32,7 +32,7 @@ pub(crate) struct WorldArgs {
     #[arg(long, value_name = "DIR")]
     pub(crate) root: Option<PathBuf>,
 
-    /// Number to which each colour is converted
+    /// Which value of each colour to use: its luminance, or one channel
     #[arg(long, value_name = "CHANNEL", default_value = "luminance", value_parser = one_named(Color::ALL))]
     pub(crate) color: Color,
 
@@ -203,7 +203,7 @@ pub(crate) struct RenderArgs {
     pub(crate) camera: CameraArgs,
 
     /// Distribution of samples: the same number in all pixels (reference), or a few shading samples
-    /// at points chosen by the method [default: reference, or predicted with --shading-samples]
+    /// at points chosen by the method [default: reference, or auto with --shading-samples]
     #[arg(long, value_name = "METHOD", value_parser = one_named(PictureRequest::METHODS.map(|(name, method)| (name, RenderMethod(method)))))]
     pub(crate) method: Option<RenderMethod>,
 

@@ -1,7 +1,7 @@
 //! How far smooth meshes send rays from where their osculating patches send them.
 
-/// How far rays that meet the triangles of smooth meshes are from rays that meet the osculating
-/// patches.
+/// The difference between rays traced by the triangles of smooth meshes and the same rays traced by
+/// the osculating patches.
 #[derive(Clone, Copy, Debug)]
 pub struct OffPatches {
     /// The distance between the arrival points, in half-widths of the window: the root mean square,

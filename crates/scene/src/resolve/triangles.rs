@@ -38,7 +38,7 @@ impl MeshPlacement<'_> {
         self.center + vertex * self.scale
     }
 
-    /// Returns the number of a vertex, counted as in its format: OBJ from 1, PLY and generated
+    /// Returns the index of a vertex as its mesh file counts it: OBJ from 1, PLY and generated
     /// meshes from 0.
     pub(super) fn number(&self, vertex: u32) -> u64 {
         let extension = match self.source {

@@ -15,7 +15,8 @@ use std::f64::consts::TAU;
 const BLOCK: usize = 256;
 /// The most partial sums over rays, computed in parallel and added in order.
 const PARTS: usize = 16;
-/// Number of powers of a factor before it is recomputed, because each step adds a rounding error.
+/// Number of powers that are computed by repeated multiplication from one exact power. Each
+/// multiplication adds a rounding error.
 const POWERS: usize = 32;
 /// Number of powers computed side by side. Each is the power `LANES` steps before, multiplied by
 /// e^(i angle) to the power `LANES`.

@@ -1,0 +1,132 @@
+//! The default distribution of samples: the criteria, calibrated by the errors of even samples.
+//!
+//! A criterion bounds how fast light may change, and does not know how much of the light changes
+//! at all. So the first samples are even, and planes through one half of them are compared with the
+//! other half. The squared error e² at a density n is k n_c²/n², where n_c is the density by the
+//! criterion, if the criterion is right up to a factor k. This factor is measured for each object.
+//! The best density is then (k n_c²)^(1/3). Half of the remaining samples follow it, and half
+//! follow the errors themselves, which also show what the criterion does not know, such as
+//! shadows that it has missed.
+
+use crate::density::{scaled, to_power};
+use crate::method::{AdaptiveRun, POWER, by_error, pixel_of, sums};
+use crate::metric::Metric;
+use crate::reconstruct::ShadedSample;
+use crate::visible::FOUR;
+use std::collections::BTreeMap;
+
+/// The share of samples that are even, and first.
+const EVEN_SHARE: f64 = 1.0 / 3.0;
+
+/// The weight of all objects in the factor of each, in samples: an object with few samples has the
+/// factor of all.
+const SHARED: f64 = 4.0;
+
+impl AdaptiveRun<'_> {
+    /// Takes all samples of the default method.
+    pub(crate) fn auto(&mut self) -> Vec<ShadedSample> {
+        let count = self.plan.samples as f64;
+        let rest = (1.0 - EVEN_SHARE) * count;
+        let first = scaled(&self.even(), EVEN_SHARE * count);
+        let points = self.points(&first, EVEN_SHARE * count, 0);
+        let pilot = self.shaded(&points, 0);
+        let missed = self.missed(&pilot);
+        let criterion = self.predicted();
+        let factors = self.factors(&first, &criterion, &missed);
+        let calibrated: Vec<Option<Metric>> = criterion
+            .iter()
+            .enumerate()
+            .map(|(pixel, metric)| {
+                let factor = factors.of(self.shape_at(pixel)?);
+                Some(to_power((*metric)?, POWER).times(libm::cbrt(factor)))
+            })
+            .collect();
+        let found = by_error(&first, &self.around(&missed));
+        let halves = [scaled(&calibrated, 0.5 * rest), scaled(&found, 0.5 * rest)];
+        let then = sums(&halves[0], &halves[1]);
+        self.both(&first, pilot, &then, rest)
+    }
+
+    /// The object that is shaded first in a pixel.
+    fn shape_at(&self, pixel: usize) -> Option<usize> {
+        let places = &self.visible.places[FOUR * pixel..FOUR * (pixel + 1)];
+        let mut shaded = places.iter().filter_map(crate::criterion::shaded);
+        shaded.next().map(|surface| surface.shape)
+    }
+
+    /// The factors k of all objects.
+    fn factors(
+        &self,
+        first: &[Option<Metric>],
+        criterion: &[Option<Metric>],
+        missed: &[ShadedSample],
+    ) -> Factors {
+        let mut factors = Factors::default();
+        for sample in missed {
+            let pixel = pixel_of(sample.at, self.visible.size);
+            let density = |of: &[Option<Metric>]| Some(of[pixel]?.determinant());
+            if let Some((n, by_criterion)) = density(first).zip(density(criterion)) {
+                factors.add(sample.surface.shape, [sample.value[0] * n, by_criterion]);
+            }
+        }
+        factors
+    }
+}
+
+/// Sums over samples: their number, e² n² and n_c².
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums([f64; 3]);
+
+impl Sums {
+    fn add(&mut self, [error, criterion]: [f64; 2]) {
+        self.0[0] += 1.0;
+        self.0[1] += error;
+        self.0[2] += criterion;
+    }
+}
+
+/// Measured squared errors over those by the criterion, up to a common factor.
+#[derive(Debug, Default)]
+struct Factors {
+    all: Sums,
+    objects: BTreeMap<usize, Sums>,
+}
+
+impl Factors {
+    fn add(&mut self, object: usize, squares: [f64; 2]) {
+        self.all.add(squares);
+        self.objects.entry(object).or_default().add(squares);
+    }
+
+    /// The factor of an object; never zero, because the first samples may have missed its light.
+    fn of(&self, object: usize) -> f64 {
+        const LEAST: f64 = 1e-3;
+        let Sums([count, error, criterion]) = self.all;
+        if error <= 0.0 || criterion <= 0.0 {
+            return 1.0;
+        }
+        let own = self.objects.get(&object).copied().unwrap_or_default().0;
+        let shared = SHARED / count;
+        let factor = (own[1] + shared * error) / (own[2] + shared * criterion);
+        factor.max(LEAST * error / criterion)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// An object whose errors are a hundredth of those by the criterion has a hundredth of the
+    /// factor, and an unknown one that of all.
+    #[test]
+    fn factors_are_those_of_the_objects() {
+        let mut factors = Factors::default();
+        for _ in 0..1000 {
+            factors.add(0, [2.0, 1.0]);
+            factors.add(1, [0.02, 1.0]);
+        }
+        let [one, other, unknown] = [0, 1, 2].map(|object| factors.of(object));
+        assert!((one / other - 100.0).abs() < 25.0, "{one} {other}"); // shared samples
+        assert!((unknown - 1.01).abs() < 1e-12, "{unknown}"); // rounding
+    }
+}
