@@ -307,7 +307,6 @@ fn a_corner_has_no_heavy_paths() {
     let window = window(Profile::Hann(0.1), Profile::Hann(0.15));
     let found = predicted(&system, &plane, &window);
     let stated = found.error.unwrap();
-    eprintln!("ST {stated}");
     assert!(stated < 0.02, "{stated}"); // 2·10⁶ paths; 0.038 if all are aimed at positions
 }
 
