@@ -124,7 +124,7 @@ fn a_probe_propagates_the_covariance_to_the_camera() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("room.xml"), ROOM).unwrap();
     let line =
-        "probe room.xml --pixel 12,8 --window 4 --rays 2^16 --photons 2^16 --covariance --out out";
+        "probe room.xml --pixel 12,8 --window 4 --rays 2^20 --photons 2^16 --covariance --out out";
     let output = call(folder.path(), line);
     assert!(
         matches!(output.status.code(), Some(0 | 1 | 4)),

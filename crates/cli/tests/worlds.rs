@@ -170,7 +170,7 @@ fn a_probe_names_surfaces_and_judges_planes() {
     assert_eq!(names, ["camera", "leaving_1", "arriving_1"]);
     let said = String::from_utf8(output.stdout).unwrap();
     assert!(
-        said.contains("of the window alone") && said.contains("by Eq. 20"),
+        said.contains("of the window alone") && said.contains("Eq. 20, for light"),
         "{said}"
     );
 }

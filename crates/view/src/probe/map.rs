@@ -100,7 +100,7 @@ fn point(case: &ProbedScene<'_>, at: [usize; 2], lattice: [usize; 2]) -> Result<
     let Some(picture) = PictureBandwidth::new(case, pixel, seed)? else {
         return Ok(MapPoint::UNKNOWN);
     };
-    let question = case.question(pixel, picture.across, 1);
+    let question = case.question(pixel, picture.pixels, 1);
     let probe = Probe::new(&case.paths, &case.camera, &question);
     let criterion = probe.and_then(|probe| criterion(&probe.stops[0]));
     let known = |of: Option<f64>| of.unwrap_or(f64::NAN);
@@ -112,7 +112,7 @@ fn point(case: &ProbedScene<'_>, at: [usize; 2], lattice: [usize; 2]) -> Result<
         across: known(picture.across().map(|it| it.value)),
         criterion: known(criterion),
         window: picture.of_window(),
-        pixels: picture.across,
+        pixels: picture.pixels,
         samples: known(widest.map(|it| picture.samples(it.value.value))),
     })
 }

@@ -34,7 +34,7 @@ const RAYS_OF_TRIAL: u64 = 1 << 17;
 #[derive(Clone, Debug)]
 pub(super) struct PictureBandwidth {
     /// Width of the window, pixels.
-    pub(super) across: f64,
+    pub(super) pixels: f64,
     /// Of the picture less its mean; `None` if noise hides it.
     pub(super) variation: Option<DirectionalBandwidth>,
     /// Whether the picture varies by more than noise.
@@ -57,15 +57,15 @@ impl PictureBandwidth {
         seed: u64,
     ) -> Result<Option<Self>, Failure> {
         let rays = scene.request.rays;
-        let across = match scene.request.window {
-            Some(across) => across,
+        let pixels = match scene.request.window {
+            Some(pixels) => pixels,
             None => match widened(scene, pixel, seed)? {
                 Some(found) if rays <= RAYS_OF_TRIAL => return Ok(Some(found)),
-                Some(found) => found.across,
+                Some(found) => found.pixels,
                 None => return Ok(None),
             },
         };
-        measured(scene, pixel, across, rays, seed)
+        measured(scene, pixel, pixels, rays, seed)
     }
 
     /// Returns the largest bandwidth over directions, if it is above what the window limits.
@@ -119,7 +119,7 @@ impl PictureBandwidth {
         let each = |of: &Option<DirectionalBandwidth>| of.as_ref().map(|of| of.along.clone());
         let widest = self.widest();
         tree_of!({
-            "window_pixels": self.across,
+            "window_pixels": self.pixels,
             "variation": each(&self.variation),
             "all_power": each(&self.whole),
             "window": self.window.along,
@@ -143,14 +143,14 @@ fn widened(
     let rays = scene.request.rays.min(RAYS_OF_TRIAL);
     let [w, h] = scene.camera.size.map(|n| n as f64);
     let widest = w.min(h).max(NARROWEST);
-    let mut across = NARROWEST;
+    let mut pixels = NARROWEST;
     loop {
-        let found = measured(scene, pixel, across, rays, seed)?;
+        let found = measured(scene, pixel, pixels, rays, seed)?;
         let is_last = found.as_ref().is_none_or(PictureBandwidth::is_clear);
-        if is_last || 2.0 * across > widest {
+        if is_last || 2.0 * pixels > widest {
             return Ok(found);
         }
-        across *= 2.0;
+        pixels *= 2.0;
     }
 }
 
@@ -158,11 +158,11 @@ fn widened(
 fn measured(
     scene: &ProbedScene<'_>,
     pixel: [usize; 2],
-    across: f64,
+    pixels: f64,
     rays: u64,
     seed: u64,
 ) -> Result<Option<PictureBandwidth>, Failure> {
-    let question = scene.question(pixel, across, 1);
+    let question = scene.question(pixel, pixels, 1);
     let probe = Probe::new(&scene.paths, &scene.camera, &question);
     let Some(probe) = probe.and_then(|probe| probe.picture(&scene.camera)) else {
         return Ok(None);
@@ -191,7 +191,7 @@ fn measured(
         found.noise <= MAX_NOISE * found.power.value && relative(found.widest.value) <= MAX_ERROR
     });
     Ok(Some(PictureBandwidth {
-        across,
+        pixels,
         variation,
         varies: varies.unwrap_or(false),
         whole: of(&pictures)?,

@@ -54,7 +54,7 @@ pub fn probe_pixel(
         )
     };
     let picture = PictureBandwidth::new(&scene, pixel, request.seed)?.ok_or_else(nothing)?;
-    let question = scene.question(pixel, picture.across, 4);
+    let question = scene.question(pixel, picture.pixels, 4);
     let probe = Probe::new(&scene.paths, &scene.camera, &question).ok_or_else(nothing)?;
     let name = scene.name();
     let files = probe.planes.iter().flat_map(|plane| files_of(&plane.name));

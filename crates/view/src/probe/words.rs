@@ -202,7 +202,7 @@ fn bandwidths(
     let (own, limit) = (picture.of_window(), picture.limit());
     let mut lines = vec![format!(
         "bandwidth of the picture less its mean, in a window {} pixels wide",
-        picture.across
+        picture.pixels
     )];
     if let Some(Widest { azimuth, value }) = widest {
         let degrees = azimuth.to_degrees();
