@@ -90,7 +90,7 @@ fn spectra_are_read_from_files() {
     for (value, what) in [
         ("500:1, 400:1", "not in rising order"),
         ("500:1", "at least two"),
-        ("0.1, 0.2", "no pair"),
+        ("0.1, 0.2", "not a pair"),
     ] {
         let spectrum = format!(
             "<emitter type=\"constant\"><spectrum name=\"radiance\" value=\"{value}\"/></emitter>"

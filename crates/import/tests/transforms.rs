@@ -67,7 +67,7 @@ fn matrices_are_written_row_by_row() {
 #[test]
 fn unsound_steps_are_causes() {
     for (step, what) in [
-        ("<rotate angle=\"3\"/>", "an axis of length 0"),
+        ("<rotate angle=\"3\"/>", "a rotation axis of length 0"),
         (
             "<scale value=\"1\" x=\"2\"/>",
             "value together with x, y or z",

@@ -108,6 +108,20 @@ impl PictureBandwidth {
         2.0 * bandwidth * self.pixel_slope
     }
 
+    /// Returns the distance of shading samples along a direction that a bandwidth requires, in words.
+    pub(super) fn spacing(&self, bandwidth: f64) -> String {
+        match self.samples(bandwidth) {
+            dense if dense > 1.0 => format!("{dense:.2} in each pixel"),
+            sparse => format!("every {:.1} pixels", sparse.recip()),
+        }
+    }
+
+    /// Returns the power of noise as a share of all power; `None` without light.
+    pub(super) fn noise_share(&self) -> Option<f64> {
+        let whole = self.whole.as_ref()?;
+        Some(whole.noise / whole.power.value)
+    }
+
     fn is_clear(&self) -> bool {
         let widest = self.widest();
         widest.is_some_and(|it| it.value.value > CLEAR * self.window.at(it.azimuth))

@@ -15,6 +15,9 @@ use etendue_theory::shading::Criterion;
 use etendue_world::World;
 use serde_json::{Value, json as tree_of};
 
+/// The noise, as a share of a spectrum, above which it is underestimated.
+const NOISY: f64 = 0.3;
+
 /// The angle of the central ray to the normal of a surface, radians.
 fn angle(stop: &Stop) -> f64 {
     libm::acos(stop.cosine().clamp(-1.0, 1.0))
@@ -102,8 +105,14 @@ pub(super) fn lines(
         let [rays, photons] = ["rays", "photons"].map(|name| arguments.name(name));
         let times = report.photons_needed.map(|n| n / request.rays as f64);
         let more = match times {
+            // A noise that is most of its spectrum is measured too small.
             Some(times) => format!(
-                "about {} times as many {rays} and {photons} are needed",
+                "{} {} times as many {rays} and {photons} are needed",
+                if report.noise_limit > Some(NOISY) {
+                    "more than"
+                } else {
+                    "about"
+                },
                 times.ceil()
             ),
             None => format!("more {rays} or {photons} may decide it"),
@@ -185,70 +194,69 @@ fn planes(found: &[&Found]) -> Vec<String> {
     table(head, rows)
 }
 
-/// Bandwidths of the picture, and the shading samples that they require.
+/// Bandwidths of the picture, and the distances of shading samples that they require.
 fn bandwidths(
     probe: &Probe<'_>,
     picture: &PictureBandwidth,
     arguments: ArgumentStyle,
 ) -> Vec<String> {
-    let line = |what: &str, cycles: String, samples: f64| {
-        let samples = picture.samples(samples);
-        format!(
-            "  {what:36}{cycles:>16} cycles/slope  {samples:8.4} shading samples per pixel along a direction"
-        )
+    let line = |what: &str, cycles: String, bandwidth: f64| {
+        let samples = picture.spacing(bandwidth);
+        format!("  {what:36}{cycles:>16} cycles/slope   {samples}")
     };
     let number = |cycles: f64| format!("{cycles:.3}");
-    let widest = picture.widest();
+    let measured = |of: Uncertain| uncertain(of.value, of.error);
     let (own, limit) = (picture.of_window(), picture.limit());
-    let mut lines = vec![format!(
-        "bandwidth of the picture less its mean, in a window {} pixels wide",
-        picture.pixels
-    )];
-    if let Some(Widest { azimuth, value }) = widest {
+    let mut lines = vec![
+        "bandwidth of the picture less its mean, by rays traced back alone".to_owned(),
+        format!("  in a window {} pixels wide", picture.pixels),
+    ];
+    let mut advice = None;
+    if let Some(Widest { azimuth, value }) = picture.widest() {
         let degrees = azimuth.to_degrees();
-        let shown = uncertain(value.value, value.error);
         lines.push(line(
             &format!("largest, at {degrees:.1}°"),
-            shown,
+            measured(value),
             value.value,
         ));
-        lines.push(match picture.across() {
-            Some(value) => line(
-                "across that direction",
-                uncertain(value.value, value.error),
-                value.value,
-            ),
+        let across = picture.across();
+        lines.push(match across {
+            Some(value) => line("across that direction", measured(value), value.value),
             None => line("across that direction, below", number(limit), limit),
         });
         if let Some(value) = picture.unblurred() {
-            lines.push(line(
-                "largest without the window's blur",
-                number(value),
-                value,
-            ));
+            let what = "largest without the window's blur";
+            lines.push(line(what, number(value), value));
         }
-    } else if picture.variation.is_some() || !picture.varies {
+        advice = Some(format!(
+            "advice: shading samples {} at {degrees:.0}°, {} across it",
+            picture.spacing(value.value),
+            picture.spacing(across.map_or(limit, |across| across.value)),
+        ));
+    } else if picture.variation.is_some() {
         lines.push(line("below", number(limit), limit));
     }
     lines.push(line("of the window alone", number(own), own));
     lines.push(match criterion(&probe.stops[0]) {
-        Some(cycles) => line(
-            "Eq. 20, for light of all frequencies",
-            number(cycles),
-            cycles,
-        ),
+        Some(cycles) => {
+            let what = "Eq. 20, for light of all frequencies";
+            line(what, number(cycles), cycles)
+        }
         None => "  Eq. 20 describes lobes: it does not apply to this surface".to_owned(),
     });
-    if widest.is_none() {
-        let [window, rays] = ["window", "rays"].map(|name| arguments.name(name));
-        lines.push(if picture.variation.is_some() {
-            format!("  The picture is smooth in this window; a wider one ({window}) shows its bandwidth.")
+    let [window, rays] = ["window", "rays"].map(|name| arguments.name(name));
+    lines.push(advice.unwrap_or_else(|| {
+        if picture.variation.is_some() {
+            format!("the picture is smooth in this window; a wider one ({window}) shows its bandwidth")
         } else if picture.varies {
-            format!("  The picture varies, but noise hides its bandwidth: more {rays} show it.")
+            format!("the picture varies, but noise hides its bandwidth: more {rays} show it")
         } else {
-            "  The picture is even in this window, within noise.".to_owned()
-        });
-    }
+            let share = picture.noise_share().map_or("all".to_owned(), |x| percent(x, 2));
+            format!(
+                "no variation is above the noise, which has {share} of the power: the picture is even, or more {rays} are needed"
+            )
+        }
+    }));
     lines
 }
 
