@@ -243,12 +243,12 @@ const BAD: &[(&str, &str, &str)] = &[
     (
         LOBES,
         "File(\"../sky.exr\")",
-        "light.map is \"../sky.exr\" (outside of the folder",
+        "light.map is \"../sky.exr\" (outside of the required folder",
     ),
     (
         LOBES,
         "File(\"/sky.exr\")",
-        "light.map is \"/sky.exr\" (outside of the folder",
+        "light.map is \"/sky.exr\" (outside of the required folder",
     ),
     (
         LOBES,
