@@ -123,7 +123,8 @@ def test_probes(alone, tmp_path):
     assert found.surfaces[0]["shape"] == "metal"
     assert abs(found.surfaces[0]["curvature"][0] - 1 / 0.7) < 0.01  # by finite differences
     assert found.slices("camera")["measured"].shape == (4, 25, 25)
-    assert "bandwidth at the camera" in str(found) and "--" not in str(found)
+    assert "bandwidth of the picture" in str(found) and "--" not in str(found)
+    assert found.picture["window_pixels"] >= 16
     for pixel, message in [
         ((256, 0), r"pixel is \(256, 0\); allowed: \(0, 0\) to \(255, "),
         ((-1, 0), r"pixel is \(-1, 0\); allowed: two whole numbers"),
@@ -163,7 +164,7 @@ def test_imports(alone, tmp_path):
         ({"size": (0, 4)}, r"size is \(0, 4\); allowed: two whole numbers from 1 to 16384"),
         ({"size": "4by4"}, "size is '4by4'; allowed"),
         ({"camera": "none"}, "camera=none; allowed: "),
-        ({"method": "best"}, "method is 'best'; allowed: 'reference', 'uniform'"),
+        ({"method": "best"}, "method is 'best'; allowed: 'reference', 'auto', 'uniform'"),
         ({"color": "pink"}, "color is 'pink'; allowed: 'luminance', 'red'"),
         ({"sky": -1}, "sky is -1; allowed: a number from 0 to 1e9"),
         ({"look_from": (0, 0, 1)}, "look_from and look_at must be given together"),

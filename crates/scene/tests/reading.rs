@@ -48,7 +48,10 @@ fn links_do_not_lead_out_of_the_scene_s_folder() {
     symlink("/proc/self/environ", scene.join("environ.obj")).unwrap();
     for mesh in ["link.obj", "dirlink/s.obj", "words.obj", "environ.obj"] {
         let told = resolved(mesh, &scene).unwrap_err().to_string();
-        assert!(told.contains("outside of the required folder"), "{mesh}: {told}");
+        assert!(
+            told.contains("outside of the required folder"),
+            "{mesh}: {told}"
+        );
         assert!(!told.contains("secret") && !told.contains('='), "{told}");
     }
     // Links that stay below the folder, and a folder that is itself a link, are accepted.

@@ -97,7 +97,7 @@ fn point(case: &ProbedScene<'_>, at: [usize; 2], lattice: [usize; 2]) -> Result<
     let pixel = [0, 1].map(|i| (2 * at[i] + 1) * case.camera.size[i] / (2 * lattice[i]));
     let number = (at[1] * lattice[0] + at[0]) as u64;
     let seed = case.request.seed.wrapping_add(number << 32);
-    let Some(picture) = PictureBandwidth::new(case, pixel, seed)? else {
+    let Some(picture) = PictureBandwidth::new(case, pixel, seed, &|_| {})? else {
         return Ok(MapPoint::UNKNOWN);
     };
     let question = case.question(pixel, picture.pixels, 1);

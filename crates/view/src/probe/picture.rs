@@ -51,21 +51,24 @@ impl PictureBandwidth {
     /// Measures the picture around a pixel, in the requested window, or in the narrowest in which
     /// the bandwidth is well above that of the window. `None` if the ray through the pixel meets
     /// nothing.
+    ///
+    /// `progress` is called with the number of rays as they are traced.
     pub(super) fn new(
         scene: &ProbedScene<'_>,
         pixel: [usize; 2],
         seed: u64,
+        progress: &(dyn Fn(u64) + Sync),
     ) -> Result<Option<Self>, Failure> {
         let rays = scene.request.rays;
         let pixels = match scene.request.window {
             Some(pixels) => pixels,
-            None => match widened(scene, pixel, seed)? {
+            None => match widened(scene, pixel, seed, progress)? {
                 Some(found) if rays <= RAYS_OF_TRIAL => return Ok(Some(found)),
                 Some(found) => found.pixels,
                 None => return Ok(None),
             },
         };
-        measured(scene, pixel, pixels, rays, seed)
+        measured(scene, (pixel, pixels), (rays, seed), progress)
     }
 
     /// Returns the largest bandwidth over directions, if it is above what the window limits.
@@ -153,13 +156,14 @@ fn widened(
     scene: &ProbedScene<'_>,
     pixel: [usize; 2],
     seed: u64,
+    progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Option<PictureBandwidth>, Failure> {
     let rays = scene.request.rays.min(RAYS_OF_TRIAL);
     let [w, h] = scene.camera.size.map(|n| n as f64);
     let widest = w.min(h).max(NARROWEST);
     let mut pixels = NARROWEST;
     loop {
-        let found = measured(scene, pixel, pixels, rays, seed)?;
+        let found = measured(scene, (pixel, pixels), (rays, seed), progress)?;
         let is_last = found.as_ref().is_none_or(PictureBandwidth::is_clear);
         if is_last || 2.0 * pixels > widest {
             return Ok(found);
@@ -171,10 +175,9 @@ fn widened(
 /// Measures the picture in a window.
 fn measured(
     scene: &ProbedScene<'_>,
-    pixel: [usize; 2],
-    pixels: f64,
-    rays: u64,
-    seed: u64,
+    (pixel, pixels): ([usize; 2], f64),
+    (rays, seed): (u64, u64),
+    progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Option<PictureBandwidth>, Failure> {
     let question = scene.question(pixel, pixels, 1);
     let probe = Probe::new(&scene.paths, &scene.camera, &question);
@@ -187,7 +190,7 @@ fn measured(
         seed,
     };
     let rays = BackwardProbe::new(&probe, budget);
-    let found = measure(&rays, &probe.planes, 0..BATCHES, &|_| {});
+    let found = measure(&rays, &probe.planes, 0..BATCHES, progress);
     let pictures: Vec<Slices> = found
         .at_plane(0)
         .map(|batch| batch.slices.clone())

@@ -53,7 +53,10 @@ pub fn probe_pixel(
             "the ray through this pixel meets nothing, or the camera is orthographic",
         )
     };
-    let picture = PictureBandwidth::new(&scene, pixel, request.seed)?.ok_or_else(nothing)?;
+    let bar = reporter.begin(Work::Photons(request.rays));
+    let picture = PictureBandwidth::new(&scene, pixel, request.seed, &|done| bar.advance(done))?;
+    drop(bar);
+    let picture = picture.ok_or_else(nothing)?;
     let question = scene.question(pixel, picture.pixels, 4);
     let probe = Probe::new(&scene.paths, &scene.camera, &question).ok_or_else(nothing)?;
     let name = scene.name();
