@@ -8,11 +8,11 @@
 //! follow the errors themselves, which also show what the criterion does not know, such as
 //! shadows that it has missed.
 
+use crate::criterion::shaded;
 use crate::density::{scaled, to_power};
 use crate::method::{AdaptiveRun, POWER, by_error, pixel_of, sums};
 use crate::metric::Metric;
 use crate::reconstruct::ShadedSample;
-use crate::visible::FOUR;
 use std::collections::BTreeMap;
 
 /// The share of samples that are even, and first.
@@ -21,6 +21,9 @@ const EVEN_SHARE: f64 = 1.0 / 3.0;
 /// The weight of all objects in the factor of each, in samples: an object with few samples has the
 /// factor of all.
 const SHARED: f64 = 4.0;
+
+/// The smallest factor of an object, relative to that of all.
+const MIN_FACTOR: f64 = 1e-3;
 
 impl AdaptiveRun<'_> {
     /// Takes all samples of the default method.
@@ -33,25 +36,20 @@ impl AdaptiveRun<'_> {
         let missed = self.missed(&pilot);
         let criterion = self.predicted();
         let factors = self.factors(&first, &criterion, &missed);
-        let calibrated: Vec<Option<Metric>> = criterion
-            .iter()
-            .enumerate()
-            .map(|(pixel, metric)| {
-                let factor = factors.of(self.shape_at(pixel)?);
-                Some(to_power((*metric)?, POWER).times(libm::cbrt(factor)))
-            })
-            .collect();
+        let shapes = self.visible.pixels(|pixel| {
+            let surface = self.visible.of_pixel(pixel).iter().find_map(shaded)?;
+            Some(surface.shape)
+        });
+        let pairs = criterion.iter().zip(&shapes);
+        let calibrated = pairs.map(|(metric, shape)| {
+            let factor = factors.of((*shape)?);
+            Some(to_power((*metric)?, POWER).times(libm::cbrt(factor)))
+        });
+        let calibrated: Vec<Option<Metric>> = calibrated.collect();
         let found = by_error(&first, &self.around(&missed));
         let halves = [scaled(&calibrated, 0.5 * rest), scaled(&found, 0.5 * rest)];
         let then = sums(&halves[0], &halves[1]);
         self.both(&first, pilot, &then, rest)
-    }
-
-    /// The object that is shaded first in a pixel.
-    fn shape_at(&self, pixel: usize) -> Option<usize> {
-        let places = &self.visible.places[FOUR * pixel..FOUR * (pixel + 1)];
-        let mut shaded = places.iter().filter_map(crate::criterion::shaded);
-        shaded.next().map(|surface| surface.shape)
     }
 
     /// The factors k of all objects.
@@ -73,15 +71,21 @@ impl AdaptiveRun<'_> {
     }
 }
 
-/// Sums over samples: their number, e² n² and n_c².
+/// Sums over samples.
 #[derive(Clone, Copy, Debug, Default)]
-struct Sums([f64; 3]);
+struct Sums {
+    count: f64,
+    /// e² n².
+    error: f64,
+    /// n_c².
+    criterion: f64,
+}
 
 impl Sums {
     fn add(&mut self, [error, criterion]: [f64; 2]) {
-        self.0[0] += 1.0;
-        self.0[1] += error;
-        self.0[2] += criterion;
+        self.count += 1.0;
+        self.error += error;
+        self.criterion += criterion;
     }
 }
 
@@ -100,15 +104,14 @@ impl Factors {
 
     /// The factor of an object; never zero, because the first samples may have missed its light.
     fn of(&self, object: usize) -> f64 {
-        const LEAST: f64 = 1e-3;
-        let Sums([count, error, criterion]) = self.all;
-        if error <= 0.0 || criterion <= 0.0 {
+        let all = self.all;
+        if all.error <= 0.0 || all.criterion <= 0.0 {
             return 1.0;
         }
-        let own = self.objects.get(&object).copied().unwrap_or_default().0;
-        let shared = SHARED / count;
-        let factor = (own[1] + shared * error) / (own[2] + shared * criterion);
-        factor.max(LEAST * error / criterion)
+        let own = self.objects.get(&object).copied().unwrap_or_default();
+        let shared = SHARED / all.count;
+        let factor = (own.error + shared * all.error) / (own.criterion + shared * all.criterion);
+        factor.max(MIN_FACTOR * all.error / all.criterion)
     }
 }
 

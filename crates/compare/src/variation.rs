@@ -50,13 +50,10 @@ pub(crate) fn variation(
     let plane = &measurement.planes()[index];
     let azimuths = 0..plane.grid.azimuths;
     let mean = WindowedMean::new(&plane.window, &plane.grid);
-    let batches = measurement.at_plane(index);
-    let batches: Vec<Slices> = batches
-        .map(|batch| mean.removed_from(&batch.slices))
-        .collect();
+    let batches = measurement.at_plane(index).map(|batch| &batch.slices);
+    let batches = mean.removed_from_all(batches);
     let measured = CrossPower::of_replicates(&batches, azimuths.clone())?;
-    let replicates = prediction.replicates.iter();
-    let replicates: Vec<Slices> = replicates.map(|one| mean.removed_from(one)).collect();
+    let replicates = mean.removed_from_all(prediction.replicates.iter());
     let replicates = match replicates.is_empty() {
         true => None,
         false => Some(CrossPower::of_replicates(&replicates, azimuths)?),

@@ -41,7 +41,7 @@ pub use frame::{Frame, TwoPlane, box_corners, enclosing};
 pub use frequency::{FrequencyAxis, SliceGrid};
 pub use image::Image;
 pub use light::Light;
-pub use number::{brief, decimals, fixed, percent, tidy, uncertain, whole};
+pub use number::{brief, decimals, fixed, percent, sinc, tidy, uncertain, whole};
 pub use patch::{Patch, Specular};
 pub use pattern::{Pattern, Picture};
 pub use plane::{Orientation, Quantity, Side, VirtualPlane};

@@ -78,6 +78,17 @@ pub fn whole(x: f64) -> usize {
     x as usize
 }
 
+/// Returns sin(πf)/(πf), 1 at zero: the transform of a box of width 1.
+#[must_use]
+pub fn sinc(f: f64) -> f64 {
+    let t = std::f64::consts::PI * f;
+    if t.abs() < 1e-9 {
+        1.0
+    } else {
+        libm::sin(t) / t
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::{brief, percent, tidy, uncertain};

@@ -1,6 +1,7 @@
 //! Windows and their profiles.
 
 use crate::TwoPlane;
+use crate::number::sinc;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -108,10 +109,6 @@ impl Profile {
     #[must_use]
     pub fn transform(&self, frequency: f64) -> f64 {
         let width = 2.0 * self.half_width();
-        let sinc = |cycles: f64| match std::f64::consts::PI * cycles {
-            x if x.abs() < 1e-9 => 1.0,
-            x => libm::sin(x) / x,
-        };
         let of_term = |term: &CosineTerm| {
             let sides = [frequency - term.frequency, frequency + term.frequency];
             0.5 * term.weight * sides.map(|f| sinc(width * f)).iter().sum::<f64>()

@@ -11,7 +11,7 @@ use crate::estimate::TooFewBatches;
 use crate::jackknife::{Jackknife, Uncertain};
 use crate::radial::CrossPower;
 use crate::variation::transform;
-use etendue_field::{SliceGrid, Slices, Window};
+use etendue_field::{SliceGrid, Slices, Window, whole};
 use ndarray::{ArrayView3, Ix1, arr1};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -106,7 +106,7 @@ impl DirectionalBandwidth {
     pub fn at(&self, azimuth: f64) -> f64 {
         let count = self.along.len();
         let turns = (azimuth / PI).rem_euclid(1.0);
-        self.along[index(turns * count as f64 + 0.5) % count]
+        self.along[whole(turns * count as f64 + 0.5) % count]
     }
 }
 
@@ -186,7 +186,7 @@ impl Cumulative {
         let most = 2.0 * (grid.nu.max() + grid.nu.spacing);
         Self {
             step,
-            bins: vec![0.0; index(most / step) + 2],
+            bins: vec![0.0; whole(most / step) + 2],
         }
     }
 
@@ -201,7 +201,7 @@ impl Cumulative {
             if high <= low {
                 continue;
             }
-            for bin in index(low)..=index(high) {
+            for bin in whole(low)..=whole(high) {
                 let from = low.max(bin as f64);
                 let to = high.min(bin as f64 + 1.0);
                 self.bins[bin] += per_bin * (to - from).max(0.0);
@@ -221,17 +221,6 @@ impl Cumulative {
         // Only rounding errors lead here.
         self.bins.len() as f64 * self.step
     }
-}
-
-/// Returns the whole part of a number that is not negative.
-fn index(value: f64) -> usize {
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "small and not negative"
-    )]
-    let index = value as usize;
-    index
 }
 
 #[cfg(test)]

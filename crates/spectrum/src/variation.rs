@@ -4,7 +4,7 @@
 //! of all power then says little about how fast the light changes.
 
 use etendue_field::{Complex, SliceGrid, Slices, Window};
-use ndarray::Array3;
+use ndarray::{Array2, Array3};
 
 /// The mean of light fields behind a window.
 #[derive(Clone, Debug)]
@@ -42,15 +42,29 @@ impl WindowedMean {
         });
         varying
     }
+
+    /// Returns several slices, such as those of batches, each less its own mean.
+    ///
+    /// # Panics
+    ///
+    /// If slices are on another grid.
+    #[must_use]
+    pub fn removed_from_all<'s>(&self, all: impl Iterator<Item = &'s Slices>) -> Vec<Slices> {
+        all.map(|slices| self.removed_from(slices)).collect()
+    }
 }
 
 /// Returns the transform of a window on the frequencies of a grid, [azimuth, ρ ≥ 0, ν].
 pub(crate) fn transform(window: &Window, grid: &SliceGrid) -> Array3<f64> {
-    let profiles = [window.x, window.y, window.u, window.v];
-    Array3::from_shape_fn(grid.half_shape(), |(k, m, n)| {
-        let rho = m as f64 * grid.rho.spacing;
-        let frequency = grid.frequency(k, rho, grid.nu.value(n));
-        let pairs = profiles.iter().zip(frequency);
-        pairs.map(|(profile, f)| profile.transform(f)).product()
-    })
+    let shape = grid.half_shape();
+    let [azimuths, rho, nu] = shape;
+    let positions = Array2::from_shape_fn((azimuths, rho), |(k, m)| {
+        let [x, y, ..] = grid.frequency(k, m as f64 * grid.rho.spacing, 0.0);
+        window.x.transform(x) * window.y.transform(y)
+    });
+    let slopes = Array2::from_shape_fn((azimuths, nu), |(k, n)| {
+        let [.., u, v] = grid.frequency(k, 0.0, grid.nu.value(n));
+        window.u.transform(u) * window.v.transform(v)
+    });
+    Array3::from_shape_fn(shape, |(k, m, n)| positions[[k, m]] * slopes[[k, n]])
 }

@@ -8,18 +8,8 @@
 //!
 //! The first factor is the ray's exact phase, ε the aliases (Hockney and Eastwood 1981, chapter 5; Jing 2005, ApJ 620).
 
-use etendue_field::Assignment;
+use etendue_field::{Assignment, sinc};
 use std::f64::consts::PI;
-
-/// Returns sin(πf)/(πf).
-fn sinc(f: f64) -> f64 {
-    let t = PI * f;
-    if t.abs() < 1e-9 {
-        1.0
-    } else {
-        libm::sin(t) / t
-    }
-}
 
 /// Returns sinc^p(f): the transform of the spline.
 pub(crate) fn transform(assignment: Assignment, f: f64) -> f64 {

@@ -58,19 +58,20 @@ impl OutgoingDirections<'_> {
         let lobe = HeavyTailedGaussian::new(&lobe.0).filter(|_| is_aimed);
         let by_lobe = if lobe.is_some() { BY_LOBE } else { 0.0 };
         let local = Some((self.scatterer, self.normal));
-        let (direction, end, target) = match &lobe {
+        let (direction, end, steradians, target) = match &lobe {
             Some(lobe) if a < by_lobe => {
                 let at = lobe.draw([a / by_lobe, b]);
                 let (direction, _) = angles.direction(self.point, at, local)?;
-                (direction, self.end(direction)?, None)
+                let end = self.end(direction)?;
+                let (_, steradians) = self.aim.direction(self.point, end, local)?;
+                (direction, end, steradians, None)
             }
             _ => {
                 let at = targets.draw([(a - by_lobe) / (1.0 - by_lobe), b]);
-                let (direction, _) = self.aim.direction(self.point, at, local)?;
-                (direction, at, self.aim.target(at))
+                let (direction, steradians) = self.aim.direction(self.point, at, local)?;
+                (direction, at, steradians, self.aim.target(at))
             }
         };
-        let (_, steradians) = self.aim.direction(self.point, end, local)?;
         let mut density = (1.0 - by_lobe) * targets.density(end) / steradians;
         if let Some(lobe) = lobe {
             let at = self.angles(direction);

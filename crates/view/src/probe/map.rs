@@ -5,7 +5,6 @@ use super::picture::PictureBandwidth;
 use super::scene::{ProbeRequest, ProbedScene};
 use super::words::criterion;
 use etendue_figures::{Axis, AxisQuantity, Comparison, Scale, comparison};
-use etendue_paths::Probe;
 use etendue_pipeline::{Reporter, Work};
 use etendue_report::pictures;
 use etendue_store::Failure;
@@ -19,6 +18,7 @@ use serde_json::json as tree_of;
 use std::path::PathBuf;
 
 const FILES: [&str; 5] = ["map.exr", "map.npz", "map.png", "map.svg", "map.csv"];
+
 /// The results for a pixel; NaN where there is no light, or too much noise.
 #[derive(Clone, Copy, Debug)]
 struct MapPoint {
@@ -100,9 +100,6 @@ fn point(case: &ProbedScene<'_>, at: [usize; 2], lattice: [usize; 2]) -> Result<
     let Some(picture) = PictureBandwidth::new(case, pixel, seed, &|_| {})? else {
         return Ok(MapPoint::UNKNOWN);
     };
-    let question = case.question(pixel, picture.pixels, 1);
-    let probe = Probe::new(&case.paths, &case.camera, &question);
-    let criterion = probe.and_then(|probe| criterion(&probe.stops[0]));
     let known = |of: Option<f64>| of.unwrap_or(f64::NAN);
     let widest = picture.widest();
     Ok(MapPoint {
@@ -110,7 +107,7 @@ fn point(case: &ProbedScene<'_>, at: [usize; 2], lattice: [usize; 2]) -> Result<
         error: known(widest.map(|it| it.value.error)),
         azimuth: known(widest.map(|it| it.azimuth)),
         across: known(picture.across().map(|it| it.value)),
-        criterion: known(criterion),
+        criterion: known(criterion(&picture.surface)),
         window: picture.of_window(),
         pixels: picture.pixels,
         samples: known(widest.map(|it| picture.samples(it.value.value))),

@@ -2,7 +2,7 @@
 
 use super::scene::{BATCHES, ProbedScene};
 use etendue_field::Slices;
-use etendue_paths::{BackwardProbe, Budget, Probe};
+use etendue_paths::{BackwardProbe, Budget, Probe, Stop};
 use etendue_spectrum::bandwidth::Widest;
 use etendue_spectrum::directional::DirectionalBandwidth;
 use etendue_spectrum::{Uncertain, WindowedMean, measure};
@@ -39,12 +39,14 @@ pub(super) struct PictureBandwidth {
     pub(super) variation: Option<DirectionalBandwidth>,
     /// Whether the picture varies by more than noise.
     pub(super) varies: bool,
-    /// Of all power; `None` without light.
-    pub(super) whole: Option<DirectionalBandwidth>,
+    /// The spectra of the picture, one for each batch of rays.
+    pictures: Vec<Slices>,
     /// Of the window alone.
     pub(super) window: DirectionalBandwidth,
     /// The slope difference between adjacent pixels.
-    pub(super) pixel_slope: f64,
+    pixel_slope: f64,
+    /// The surface behind the pixel.
+    pub(super) surface: Stop,
 }
 
 impl PictureBandwidth {
@@ -119,9 +121,14 @@ impl PictureBandwidth {
         }
     }
 
+    /// Returns the bandwidth of all power; `None` without light.
+    fn whole(&self) -> Option<DirectionalBandwidth> {
+        DirectionalBandwidth::new(&self.pictures).ok()?
+    }
+
     /// Returns the power of noise as a share of all power; `None` without light.
     pub(super) fn noise_share(&self) -> Option<f64> {
-        let whole = self.whole.as_ref()?;
+        let whole = self.whole()?;
         Some(whole.noise / whole.power.value)
     }
 
@@ -138,7 +145,7 @@ impl PictureBandwidth {
         tree_of!({
             "window_pixels": self.pixels,
             "variation": each(&self.variation),
-            "all_power": each(&self.whole),
+            "all_power": each(&self.whole()),
             "window": self.window.along,
             "largest": widest.map(|it| pair(it.value)),
             "azimuth": widest.map(|it| it.azimuth),
@@ -196,10 +203,8 @@ fn measured(
         .map(|batch| batch.slices.clone())
         .collect();
     let mean = WindowedMean::new(&plane.window, &plane.grid);
-    let varying = pictures.iter().map(|picture| mean.removed_from(picture));
-    let varying: Vec<Slices> = varying.collect();
-    let of = |slices: &[Slices]| DirectionalBandwidth::new(slices).map_err(Failure::cannot_run);
-    let variation = of(&varying)?;
+    let varying = mean.removed_from_all(pictures.iter());
+    let variation = DirectionalBandwidth::new(&varying).map_err(Failure::cannot_run)?;
     let relative = |of: Uncertain| of.error / of.value;
     let varies = variation
         .as_ref()
@@ -211,8 +216,9 @@ fn measured(
         pixels,
         variation,
         varies: varies.unwrap_or(false),
-        whole: of(&pictures)?,
+        pictures,
         window: DirectionalBandwidth::of_window(&plane.window, &plane.grid),
         pixel_slope: probe.pixel_slope,
+        surface: probe.stops[0].clone(),
     }))
 }

@@ -6,7 +6,7 @@ use super::picture::PictureBandwidth;
 use super::scene::{ALPHA, BATCHES, ProbeRequest, ProbedScene, RESOLUTION};
 use super::words::{lines, of_plane, of_stop};
 use etendue_compare::{Prediction, Test, Verdict, compare, sidak};
-use etendue_field::{PhotonSource, Slices, VirtualPlane};
+use etendue_field::{PhotonSource, VirtualPlane};
 use etendue_paths::{BackwardProbe, Budget, PhotonProbe, Probe};
 use etendue_pipeline::{Reporter, Work};
 use etendue_report::pictures;
@@ -153,9 +153,8 @@ fn measured(
         let comparison = compare(&backward, i, &prediction, &test).map_err(Failure::cannot_run)?;
         let VirtualPlane { window, grid, .. } = &probe.planes[i];
         let mean = WindowedMean::new(window, grid);
-        let batches = backward.at_plane(i);
-        let varying = batches.map(|batch| mean.removed_from(&batch.slices));
-        let varying: Vec<Slices> = varying.collect();
+        let batches = backward.at_plane(i).map(|batch| &batch.slices);
+        let varying = mean.removed_from_all(batches);
         let azimuths = 0..grid.azimuths;
         let power = CrossPower::of_replicates(&varying, azimuths).map_err(Failure::cannot_run)?;
         let found = Found {

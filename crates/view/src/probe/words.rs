@@ -123,7 +123,7 @@ pub(super) fn lines(
         let count = probe.stops.len();
         lines.push(format!("The ray leaves the scene after surface {count}."));
     }
-    lines.extend(bandwidths(probe, picture, arguments));
+    lines.extend(bandwidths(picture, arguments));
     lines.extend(covariances(found));
     lines
 }
@@ -195,11 +195,7 @@ fn planes(found: &[&Found]) -> Vec<String> {
 }
 
 /// Bandwidths of the picture, and the distances of shading samples that they require.
-fn bandwidths(
-    probe: &Probe<'_>,
-    picture: &PictureBandwidth,
-    arguments: ArgumentStyle,
-) -> Vec<String> {
+fn bandwidths(picture: &PictureBandwidth, arguments: ArgumentStyle) -> Vec<String> {
     let line = |what: &str, cycles: String, bandwidth: f64| {
         let samples = picture.spacing(bandwidth);
         format!("  {what:36}{cycles:>16} cycles/slope   {samples}")
@@ -237,7 +233,7 @@ fn bandwidths(
         lines.push(line("below", number(limit), limit));
     }
     lines.push(line("of the window alone", number(own), own));
-    lines.push(match criterion(&probe.stops[0]) {
+    lines.push(match criterion(&picture.surface) {
         Some(cycles) => {
             let what = "Eq. 20, for light of all frequencies";
             line(what, number(cycles), cycles)
@@ -251,7 +247,8 @@ fn bandwidths(
         } else if picture.varies {
             format!("the picture varies, but noise hides its bandwidth: more {rays} show it")
         } else {
-            let share = picture.noise_share().map_or("all".to_owned(), |x| percent(x, 2));
+            let share = picture.noise_share().filter(|share| *share < 1.0);
+            let share = share.map_or("all".to_owned(), |share| percent(share, 2));
             format!(
                 "no variation is above the noise, which has {share} of the power: the picture is even, or more {rays} are needed"
             )
