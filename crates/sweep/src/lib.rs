@@ -9,6 +9,7 @@
     reason = "a Failure carries the whole message for the user, written where it occurs"
 )]
 
+mod bandwidth;
 mod pictures;
 mod points;
 mod quiet_reporter;
@@ -17,6 +18,7 @@ mod run;
 mod table;
 pub mod values;
 
+pub use bandwidth::{BandwidthRow, bandwidths};
 pub use points::{SweepPoints, scene_at};
 pub use request::SweepRequest;
 pub use run::{FinishedSweep, run};

@@ -69,7 +69,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     (
         "sweep",
         &[
-            "compare", "field", "figures", "pipeline", "report", "scene", "store",
+            "compare", "field", "figures", "pipeline", "report", "scene", "store", "theory",
         ],
     ),
     (

@@ -1,0 +1,117 @@
+//! Bandwidths of glossy reflections by the paper's criteria, beside exact and measured bandwidths.
+
+use crate::values::{SweepPoint, message_at};
+use etendue_compare::{Applicability, Theory, criterion, exact_bandwidth, measured_bandwidth};
+use etendue_field::{Term, VirtualPlane};
+use etendue_pipeline::{Reporter, Work, measured};
+use etendue_scene::Scene;
+use etendue_store::{Failure, Method};
+use etendue_theory::shading::Criterion;
+
+/// The numbers of one plane at one point of the sweep.
+#[derive(Clone, Debug)]
+pub struct BandwidthRow {
+    /// The values of the fields that are swept.
+    pub point: Vec<f64>,
+    /// The plane's name.
+    pub plane: String,
+    /// κ [1/m], θ₀ and θ₁ [°], d and d′ [m], the bandwidth of the lobe [cycles per radian], B of
+    /// Eq. 20 and the same as printed, B′ of Eq. 21 and the same as printed [cycles per unit slope].
+    /// With a measurement also the exact bandwidth, the measured one and its standard error. `None`
+    /// stands for a number that the plane does not have.
+    pub numbers: Vec<Option<f64>>,
+    /// What the reader should know before using the numbers.
+    pub warnings: Vec<String>,
+}
+
+/// Returns a row for each plane to which the criteria of Durand et al. 2005, Eqs. 20 and 21, apply.
+/// With `measuring`, the scene is measured by this method.
+pub fn bandwidths(
+    scene: &Scene,
+    point: &SweepPoint,
+    measuring: Option<Method>,
+    reporter: &dyn Reporter,
+) -> Result<Vec<BandwidthRow>, Failure> {
+    let theories = Applicability::of_planes(scene);
+    let all = scene.planes.iter().zip(&theories).enumerate();
+    let planes: Vec<(usize, Criterion)> = all
+        .filter_map(|(i, (plane, theory))| Some((i, criterion(scene, plane, theory)?)))
+        .collect();
+    let measuring = measuring.filter(|_| !planes.is_empty());
+    let measure = |method| measured(scene, method, 0..scene.run.batches, reporter);
+    let measurement = measuring.map(measure).transpose()?;
+    let row = |(i, c): (usize, Criterion)| {
+        let (plane, theory) = (&scene.planes[i], &theories[i]);
+        let edge = |value: f64| c.blocker_distance.map(|_| value);
+        let mut row = BandwidthRow {
+            point: point.iter().map(|(_, value)| *value).collect(),
+            plane: plane.name.clone(),
+            numbers: vec![
+                Some(c.curvature),
+                Some(c.incidence.to_degrees()),
+                Some(c.outgoing.to_degrees()),
+                Some(c.distance),
+                c.blocker_distance,
+                Some(c.lobe_cutoff),
+                Some(c.environment()),
+                Some(c.printed_environment()),
+                edge(c.blocker()),
+                edge(c.printed_blocker()),
+            ],
+            warnings: beyond_criteria(plane, theory),
+        };
+        if let Some(measurement) = &measurement {
+            let stage = reporter.begin(Work::Stage("predicting"));
+            let exact = exact_bandwidth(scene, plane, theory);
+            drop(stage);
+            let found = measured_bandwidth(measurement, i).map_err(Failure::cannot_run)?;
+            let (value, error) = (found.map(|f| f.value), found.map(|f| f.error));
+            row.numbers.extend([exact, value, error]);
+            let most = exact.into_iter().chain(value).fold(0.0, f64::max);
+            row.warnings
+                .extend(warning(plane, most).map(|text| message_at(point, text)));
+        }
+        Ok(row)
+    };
+    planes.into_iter().map(row).collect()
+}
+
+/// Effects that the criteria do not cover.
+fn beyond_criteria(plane: &VirtualPlane, applicability: &Applicability) -> Vec<String> {
+    let Theory::Scattering(view) = &applicability.theory else {
+        return Vec::new();
+    };
+    let (name, reflectance) = (&view.system.name, &view.system.reflectance);
+    let mut warnings = Vec::new();
+    if !reflectance.is_uniform() {
+        warnings.push(format!(
+            "{}: the BRDF of {name} varies over the surface; the criteria use its sharpest lobe only",
+            plane.name
+        ));
+    }
+    let is_about_normal = |term: &Term| !term.brdf.lobe.is_about_mirror();
+    if reflectance.terms.iter().any(is_about_normal) {
+        warnings.push(format!(
+            "{}: a lobe of {name} is centred on the normal; the criteria assume lobes about the mirror direction",
+            plane.name
+        ));
+    }
+    warnings
+}
+
+/// Warns of a bandwidth at the end of the grid, where the grid limits it. The bandwidth of a
+/// spectrum that is flat over the grid is 95 % of the frequency at which the last cell ends, half a
+/// step beyond the largest frequency.
+fn warning(plane: &VirtualPlane, bandwidth: f64) -> Option<String> {
+    const NEAR: f64 = 0.9;
+    let nu = plane.grid.nu;
+    let end = (NEAR * nu.max()).min(nu.max() - nu.spacing);
+    (bandwidth >= end).then(|| {
+        format!(
+            "{}: a bandwidth of {:.3} is at the end of the frequency range, and the spectrum may extend beyond it; frequencies.nu.max is {}",
+            plane.name,
+            bandwidth,
+            nu.max()
+        )
+    })
+}
