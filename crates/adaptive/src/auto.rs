@@ -9,8 +9,10 @@
 //! shadows that it has missed.
 
 use crate::criterion::shaded;
+use crate::cross::{cross_errors, squared};
 use crate::density::{scaled, to_power};
-use crate::method::{AdaptiveRun, POWER, by_error, pixel_of, sums};
+use crate::guide::{Guide, SampleGuide};
+use crate::method::{AdaptiveRun, POWER, by_error, pixel_of, sums, values};
 use crate::metric::Metric;
 use crate::reconstruct::ShadedSample;
 use std::collections::BTreeMap;
@@ -33,7 +35,7 @@ impl AdaptiveRun<'_> {
         let first = scaled(&self.even(), EVEN_SHARE * count);
         let points = self.points(&first, EVEN_SHARE * count, 0);
         let pilot = self.shaded(&points, 0);
-        let missed = self.missed(&pilot);
+        let missed = self.guided(&pilot);
         let criterion = self.predicted();
         let factors = self.factors(&first, &criterion, &missed);
         let shapes = self.visible.pixels(|pixel| {
@@ -50,6 +52,23 @@ impl AdaptiveRun<'_> {
         let halves = [scaled(&calibrated, 0.5 * rest), scaled(&found, 0.5 * rest)];
         let then = sums(&halves[0], &halves[1]);
         self.both(&first, pilot, &then, rest)
+    }
+
+    /// Makes the guide, and returns the squared errors at the first samples that remain with it.
+    fn guided(&mut self, pilot: &[(ShadedSample, f64)]) -> Vec<ShadedSample> {
+        let visible = self.visible;
+        let samples = values(pilot);
+        let mut guide = Guide::new(visible, &self.shader);
+        let guides: Vec<SampleGuide> = samples.iter().map(|at| guide.at(visible, at)).collect();
+        let of_guide = samples.iter().zip(&guides).map(|(sample, guide)| {
+            let value = guide.value;
+            ShadedSample { value, ..*sample }
+        });
+        let of_guide: Vec<ShadedSample> = of_guide.collect();
+        let errors = [&samples, &of_guide].map(|of| cross_errors(visible, of));
+        let left = guide.trust(pilot, &guides, errors.each_ref().map(Vec::as_slice));
+        self.guide = Some(guide);
+        squared(pilot, &left)
     }
 
     /// The factors k of all objects.

@@ -12,12 +12,16 @@ mod auto;
 mod blockers;
 mod blue_noise;
 mod criterion;
+mod cross;
 mod cutoffs;
 mod density;
+mod edges;
+mod guide;
 mod method;
 mod metric;
 mod reconstruct;
 mod shading;
+mod smooth;
 mod visible;
 
 pub use blockers::BLOCKER_RAYS;

@@ -3,12 +3,15 @@
 use crate::blockers::nearness;
 use crate::blue_noise::{PicturePoint, blue_noise};
 use crate::criterion::{criterion, curvature, printed, shaded};
+use crate::cross::{WIDER, cross_errors, squared};
 use crate::cutoffs::Cutoffs;
 use crate::density::{scaled, to_power, wanted};
+use crate::edges;
+use crate::guide::Guide;
 use crate::metric::Metric;
 use crate::reconstruct::{SampleFit, ShadedSample, reconstruct};
 use crate::shading::Shader;
-use crate::visible::{FOUR, SeenSurface, Visible, at};
+use crate::visible::{FOUR, Visible, at};
 use etendue_paths::Paths;
 use etendue_world::Camera;
 
@@ -139,6 +142,7 @@ pub fn render(
         stage,
         progress,
         layers: Layers::default(),
+        guide: None,
     };
     let samples = work.samples();
     work.picture(samples)
@@ -146,11 +150,13 @@ pub fn render(
 
 pub(crate) struct AdaptiveRun<'a> {
     pub(crate) visible: &'a Visible,
-    shader: Shader<'a>,
+    pub(crate) shader: Shader<'a>,
     pub(crate) plan: &'a SamplePlan,
     stage: &'a dyn Fn(Stage, usize),
     progress: &'a (dyn Fn(u64) + Sync),
     layers: Layers,
+    /// The guide of the reconstruction, if the method uses one.
+    pub(crate) guide: Option<Guide>,
 }
 
 impl AdaptiveRun<'_> {
@@ -174,7 +180,7 @@ impl AdaptiveRun<'_> {
             self.told(&metrics);
             let points = self.points(&metrics, count, 0);
             let found = self.shaded(&points, 0);
-            return found.into_iter().map(|(sample, _)| sample).collect();
+            return values(&found);
         }
         let first = scaled(&wanted, FIRST_SHARE * count);
         let points = self.points(&first, FIRST_SHARE * count, 0);
@@ -182,7 +188,8 @@ impl AdaptiveRun<'_> {
         let contrast = self.contrast(&pilot);
         let rest = (1.0 - FIRST_SHARE) * count;
         let then = if method == SampleMethod::Weighted {
-            let found = by_error(&first, &self.around(&self.missed(&pilot)));
+            let errors = cross_errors(self.visible, &values(&pilot));
+            let found = by_error(&first, &self.around(&squared(&pilot, &errors)));
             let halves = [scaled(&wanted, 0.5 * rest), scaled(&found, 0.5 * rest)];
             sums(&halves[0], &halves[1])
         } else {
@@ -224,46 +231,7 @@ impl AdaptiveRun<'_> {
         .collect()
     }
 
-    /// Fits planes to one half of the samples, compares them with the other half, and returns the
-    /// squared relative error at each sample after noise removal, as its value.
-    pub(crate) fn missed(&self, samples: &[(ShadedSample, f64)]) -> Vec<ShadedSample> {
-        let lights = samples.iter().map(|(sample, _)| sample.light(sample.value));
-        let dark = 0.01 * lights.sum::<f64>() / samples.len().max(1) as f64;
-        let mut found = Vec::new();
-        for half in 0..2 {
-            // The halves alternate in the order of pixels, so that both cover the picture.
-            let of = |odd: usize| samples.iter().skip(odd).step_by(2);
-            let sparse: Vec<ShadedSample> = of(half)
-                .map(|(sample, _)| ShadedSample {
-                    metric: sample.metric.times(0.5),
-                    ..*sample
-                })
-                .collect();
-            let values = reconstruct(self.visible, &sparse, SampleFit::Plane);
-            for (sample, noise) in of(1 - half) {
-                let pixel = pixel_at(sample.at, self.visible.size);
-                let mut near = self.visible.range(pixel);
-                let is_same = |i: &usize| {
-                    let surface = shaded(&self.visible.places[*i]);
-                    surface.is_some_and(|surface| surface.shape == sample.surface.shape)
-                };
-                let Some(value) = near.find(is_same).and_then(|i| values[i]) else {
-                    continue;
-                };
-                let [here, fitted] = [sample.value, value].map(|value| sample.light(value));
-                let square = (here - fitted).powi(2) - noise;
-                let scale = 0.5 * (here * here + fitted * fitted) + dark * dark;
-                found.push(ShadedSample {
-                    metric: sample.metric.times(WIDER.powi(-2)),
-                    value: [square / scale, 0.0],
-                    ..*sample
-                });
-            }
-        }
-        found
-    }
-
-    /// The mean of such errors around each pixel.
+    /// The mean of squared errors around each pixel.
     pub(crate) fn around(&self, missed: &[ShadedSample]) -> Vec<f64> {
         let places = reconstruct(self.visible, missed, SampleFit::Mean);
         self.visible.pixels(|pixel| {
@@ -382,20 +350,12 @@ impl AdaptiveRun<'_> {
     /// Reconstructs the picture from samples.
     fn picture(mut self, mut samples: Vec<ShadedSample>) -> Rendered {
         (self.stage)(Stage::Reconstruction, 1);
-        let mut values = reconstruct(self.visible, &samples, SampleFit::Plane);
+        let mut values = self.reconstructed(&samples);
         let added = self.fill(&mut values, &mut samples);
         let [w, h] = self.visible.size;
-        let radiance = self.visible.pixels(|pixel| {
-            let places = self.visible.of_pixel(pixel).iter();
-            let light = places.zip(&values[self.visible.range(pixel)]);
-            let light = light.map(|(place, value)| match (place.surface, value) {
-                (Some(SeenSurface { factors, .. }), Some(value)) => {
-                    place.emitted + factors[0] * value[0] + factors[1] * value[1]
-                }
-                _ => place.emitted,
-            });
-            light.sum::<f64>() / FOUR as f64
-        });
+        let radiance = self
+            .visible
+            .pixels(|pixel| edges::radiance(self.visible, &self.shader, &values, pixel));
         let mut counts = vec![0.0; w * h];
         for sample in &samples {
             counts[pixel_of(sample.at, self.visible.size)] += 1.0;
@@ -408,6 +368,23 @@ impl AdaptiveRun<'_> {
             added,
             layers: self.layers,
         }
+    }
+
+    /// The light at all points: planes through samples, or the guide and planes through what it
+    /// does not explain.
+    fn reconstructed(&self, samples: &[ShadedSample]) -> Vec<Option<[f64; 2]>> {
+        let Some(guide) = &self.guide else {
+            return reconstruct(self.visible, samples, SampleFit::Plane);
+        };
+        let left = guide.without(self.visible, samples);
+        let mut values = reconstruct(self.visible, &left, SampleFit::Plane);
+        for (index, (value, place)) in values.iter_mut().zip(&self.visible.places).enumerate() {
+            if let (Some(value), Some(surface)) = (value, shaded(place)) {
+                let guide = guide.used(index, surface);
+                *value = [0, 1].map(|part: usize| (value[part] + guide[part]).max(0.0));
+            }
+        }
+        values
     }
 
     /// Shades one point of each small patch far from all samples, and uses its value for the patch.
@@ -450,9 +427,6 @@ const PATCH: f64 = 2.0;
 /// Number of recent samples whose distance is checked: those of the last few rows.
 const RECENT: usize = 256;
 
-/// Contrasts use neighbours up to this many times farther away than those of the reconstruction.
-const WIDER: f64 = 2.0;
-
 /// Minimum contrast, because the first samples, one in four, may have missed the contrast.
 const MIN_CONTRAST: f64 = 0.02;
 
@@ -461,7 +435,7 @@ const MIN_CONTRAST: f64 = 0.02;
     clippy::cast_sign_loss,
     reason = "the number of a pixel, clamped to the picture"
 )]
-fn pixel_at(at: [f64; 2], size: [usize; 2]) -> [usize; 2] {
+pub(crate) fn pixel_at(at: [f64; 2], size: [usize; 2]) -> [usize; 2] {
     [0, 1].map(|k: usize| (at[k].max(0.0) as usize).min(size[k] - 1))
 }
 
@@ -469,6 +443,11 @@ fn pixel_at(at: [f64; 2], size: [usize; 2]) -> [usize; 2] {
 pub(crate) fn pixel_of(at: [f64; 2], size: [usize; 2]) -> usize {
     let [column, row] = pixel_at(at, size);
     row * size[0] + column
+}
+
+/// Samples without the variance of their light.
+pub(crate) fn values(samples: &[(ShadedSample, f64)]) -> Vec<ShadedSample> {
+    samples.iter().map(|(sample, _)| *sample).collect()
 }
 
 /// The metrics that minimise errors found at samples with the metrics of `first`: the density

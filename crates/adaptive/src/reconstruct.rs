@@ -209,8 +209,15 @@ impl<'a> Band<'a> {
     }
 }
 
+/// A bell-shaped weight at a squared distance in standard deviations: close to exp(−square/2) up to
+/// 2 standard deviations, and faster.
+pub(crate) fn bell(square: f64) -> f64 {
+    let root = 1.0 + square / 16.0;
+    (root * root * root * root).powi(-2)
+}
+
 /// The dissimilarity of two points of a shape, in squared standard deviations.
-fn unlike(place: &SeenSurface, sample: &SeenSurface) -> f64 {
+pub(crate) fn unlike(place: &SeenSurface, sample: &SeenSurface) -> f64 {
     let turned = (place.normal - sample.normal).length_squared() / (NORMALS * NORMALS);
     let between = sample.position - place.position;
     let length = between.length_squared();

@@ -1,10 +1,10 @@
 //! Shading samples: paths from a point of a picture.
 
-use crate::blue_noise::PicturePoint;
+use crate::blue_noise::{PicturePoint, PixelPosition};
 use crate::cutoffs::Cutoffs;
 use crate::reconstruct::ShadedSample;
-use crate::visible::SeenSurface;
-use etendue_paths::Paths;
+use crate::visible::{SeenPlace, SeenSurface};
+use etendue_paths::{Paths, SurfaceHit};
 use etendue_world::Camera;
 use rayon::prelude::*;
 
@@ -38,23 +38,48 @@ impl Shader<'_> {
     }
 
     pub(crate) fn one(&self, point: &PicturePoint, number: u64) -> Option<(ShadedSample, f64)> {
-        let seen = self
-            .paths
-            .view(&self.camera.look(point.at, [0.0; 2]))
-            .surface?;
+        let seen = self.seen(point.at)?;
         let surface = SeenSurface::new(self.paths, &seen, self.cutoffs);
         if surface.cutoff <= 0.0 {
             return None;
         }
         let (parts, variance) = self.paths.shade(&seen, self.each, self.seed, number);
-        let [base, lobe] = surface.factors;
-        let without = |part: f64, factor: f64| if factor > 0.0 { part / factor } else { 0.0 };
         let sample = ShadedSample {
             at: point.at,
             metric: point.metric,
             surface,
-            value: [without(parts[0], base), without(parts[1], lobe)],
+            value: without(parts, surface.factors),
         };
         Some((sample, variance))
     }
+
+    /// The surface at a position of the picture.
+    pub(crate) fn seen(&self, at: PixelPosition) -> Option<SurfaceHit> {
+        self.paths.view(&self.camera.look(at, [0.0; 2])).surface
+    }
+
+    /// What is visible at a position of the picture.
+    pub(crate) fn place(&self, at: PixelPosition) -> SeenPlace {
+        SeenPlace::new(self.paths, self.camera, self.cutoffs, at)
+    }
+
+    /// The direct light of base and lobe by one path, without texture factors.
+    pub(crate) fn direct(&self, seen: &SurfaceHit, number: u64, index: u32) -> [f64; 2] {
+        let parts = self.paths.direct(seen, self.seed, OF_GUIDE + number, index);
+        without(parts, self.paths.factors(seen))
+    }
+}
+
+/// The first number of nets for direct light; nets below it belong to blockers.
+const OF_GUIDE: u64 = 1 << 40;
+
+/// Divides base and lobe by their texture factors.
+fn without(parts: [f64; 2], factors: [f64; 2]) -> [f64; 2] {
+    [0, 1].map(|i: usize| {
+        if factors[i] > 0.0 {
+            parts[i] / factors[i]
+        } else {
+            0.0
+        }
+    })
 }

@@ -41,6 +41,19 @@ pub(crate) struct SeenPlace {
     pub(crate) surface: Option<SeenSurface>,
 }
 
+impl SeenPlace {
+    /// What is visible at a position of the picture.
+    pub(crate) fn new(paths: &Paths, camera: &Camera, cutoffs: &Cutoffs, at: [f64; 2]) -> Self {
+        let view = paths.view(&camera.look(at, [0.0; 2]));
+        Self {
+            emitted: view.emitted,
+            surface: view
+                .surface
+                .map(|seen| SeenSurface::new(paths, &seen, cutoffs)),
+        }
+    }
+}
+
 /// A visible surface point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SeenSurface {
@@ -90,15 +103,8 @@ impl Visible {
     ) -> Self {
         let [w, h] = camera.size;
         let row = |row: usize| {
-            let place = |i: usize| {
-                let view = paths.view(&camera.look(at([i / FOUR, row], i % FOUR), [0.0; 2]));
-                SeenPlace {
-                    emitted: view.emitted,
-                    surface: view
-                        .surface
-                        .map(|seen| SeenSurface::new(paths, &seen, cutoffs)),
-                }
-            };
+            let place =
+                |i: usize| SeenPlace::new(paths, camera, cutoffs, at([i / FOUR, row], i % FOUR));
             let places: Vec<SeenPlace> = (0..FOUR * w).map(place).collect();
             progress(w as u64);
             places
@@ -118,6 +124,12 @@ impl Visible {
     pub(crate) fn range(&self, [column, row]: [usize; 2]) -> Range<usize> {
         let first = FOUR * (row * self.size[0] + column);
         first..first + FOUR
+    }
+
+    /// The pixel of a point, given its index.
+    pub(crate) fn pixel(&self, index: usize) -> [usize; 2] {
+        let pixel = index / FOUR;
+        [pixel % self.size[0], pixel / self.size[0]]
     }
 
     /// Computes a value for each pixel.

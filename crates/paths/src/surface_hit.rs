@@ -118,18 +118,13 @@ impl Paths {
     #[must_use]
     pub fn shade(&self, seen: &SurfaceHit, paths: u32, seed: u64, number: u64) -> ([f64; 2], f64) {
         let net = Net::new(seed, Stream::Net, number, JOINT);
-        let scatter = self.scatter(&seen.hit);
         let [mut base, mut mean, mut squares] = [0.0; 3];
         for path in 0..paths {
             let key = number * u64::from(paths) + u64::from(path);
             let mut numbers = PathNumbers::new(seed, key).of_net(&net, path);
-            let mut radiance = 0.0;
-            self.scattered(seen.ray, seen.hit, 0, &mut numbers, &mut |wi, light| {
-                if light > 0.0 {
-                    radiance += light;
-                    base += light * scatter.base_share(seen.hit.uv, wi, seen.wo());
-                }
-            });
+            let parts = self.by_one_path(seen, 0, &mut numbers);
+            let radiance = parts[0] + parts[1];
+            base += parts[0];
             let off = radiance - mean;
             mean += off / f64::from(path + 1);
             squares += off * (radiance - mean);
@@ -138,6 +133,35 @@ impl Paths {
         base /= count;
         let variance = squares / (count * (count - 1.0).max(1.0));
         ([base, mean - base], variance)
+    }
+
+    /// An estimate by one path of the direct light that base and lobe scatter to the eye,
+    /// W m⁻² sr⁻¹. Points with the same `number` share a net, of which this is point `index`.
+    #[must_use]
+    pub fn direct(&self, seen: &SurfaceHit, seed: u64, number: u64, index: u32) -> [f64; 2] {
+        let net = Net::new(seed, Stream::EvenNet, number, JOINT);
+        let mut numbers = PathNumbers::new(seed, number).of_net(&net, index);
+        self.by_one_path(seen, self.depth.saturating_sub(1), &mut numbers)
+    }
+
+    /// The radiance of base and lobe by one path, which ends as if `before` surfaces were between
+    /// the point and the eye.
+    fn by_one_path(
+        &self,
+        seen: &SurfaceHit,
+        before: u32,
+        numbers: &mut PathNumbers<'_>,
+    ) -> [f64; 2] {
+        let scatter = self.scatter(&seen.hit);
+        let mut parts = [0.0; 2];
+        self.scattered(seen.ray, seen.hit, before, numbers, &mut |wi, light| {
+            if light > 0.0 {
+                let base = scatter.base_share(seen.hit.uv, wi, seen.wo());
+                parts[0] += light * base;
+                parts[1] += light * (1.0 - base);
+            }
+        });
+        parts
     }
 
     /// The nearness of a point to what it reflects and to its blockers, from `rays` rays of each

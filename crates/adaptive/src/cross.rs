@@ -1,0 +1,72 @@
+//! Errors of planes through samples, found by cross-validation: planes through one half of the
+//! samples are compared with the other half.
+
+use crate::criterion::shaded;
+use crate::method::pixel_at;
+use crate::reconstruct::{SampleFit, ShadedSample, reconstruct};
+use crate::visible::Visible;
+
+/// Errors use neighbours up to this many times farther away than those of the reconstruction.
+pub(crate) const WIDER: f64 = 2.0;
+
+/// The plane through other samples at a sample, less the sample.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CrossError {
+    /// The index of the sample.
+    pub(crate) index: usize,
+    /// The differences of base and lobe.
+    pub(crate) off: [f64; 2],
+}
+
+/// Fits planes to each half of the samples, and returns their errors at the samples of the other
+/// half. Samples that no other sample reaches are left out.
+pub(crate) fn cross_errors(visible: &Visible, samples: &[ShadedSample]) -> Vec<CrossError> {
+    let mut found = Vec::new();
+    for half in 0..2 {
+        // The halves alternate in the order of pixels, so that both cover the picture.
+        let of = |odd: usize| samples.iter().enumerate().skip(odd).step_by(2);
+        let sparse: Vec<ShadedSample> = of(half)
+            .map(|(_, sample)| ShadedSample {
+                metric: sample.metric.times(0.5),
+                ..*sample
+            })
+            .collect();
+        let values = reconstruct(visible, &sparse, SampleFit::Plane);
+        for (index, sample) in of(1 - half) {
+            let mut near = visible.range(pixel_at(sample.at, visible.size));
+            let is_same = |i: &usize| {
+                let surface = shaded(&visible.places[*i]);
+                surface.is_some_and(|surface| surface.shape == sample.surface.shape)
+            };
+            if let Some(fitted) = near.find(is_same).and_then(|i| values[i]) {
+                let off = [0, 1].map(|part: usize| fitted[part] - sample.value[part]);
+                found.push(CrossError { index, off });
+            }
+        }
+    }
+    found
+}
+
+/// The squared relative errors of the light after noise removal, as values of samples. `samples`
+/// have the variance of their light.
+pub(crate) fn squared(samples: &[(ShadedSample, f64)], errors: &[CrossError]) -> Vec<ShadedSample> {
+    let dark = dark(samples);
+    let of = |error: &CrossError| {
+        let (sample, noise) = &samples[error.index];
+        let off = sample.light(error.off);
+        let here = sample.light(sample.value);
+        let scale = 0.5 * (here * here + (here + off).powi(2)) + dark * dark;
+        ShadedSample {
+            metric: sample.metric.times(WIDER.powi(-2)),
+            value: [(off * off - noise) / scale, 0.0],
+            ..*sample
+        }
+    };
+    errors.iter().map(of).collect()
+}
+
+/// The radiance below which errors are not relative: a hundredth of the mean.
+pub(crate) fn dark(samples: &[(ShadedSample, f64)]) -> f64 {
+    let lights = samples.iter().map(|(sample, _)| sample.light(sample.value));
+    0.01 * lights.sum::<f64>() / samples.len().max(1) as f64
+}

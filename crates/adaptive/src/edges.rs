@@ -1,0 +1,120 @@
+//! Pixels with edges of objects or textures: more points of such a pixel are looked at than are
+//! stored, and each takes the light of the stored points that are like it.
+
+use crate::criterion::shaded;
+use crate::reconstruct::{bell, unlike};
+use crate::shading::Shader;
+use crate::visible::{FOUR, SeenPlace, SeenSurface, Visible, at};
+
+/// Rows and columns of further points in a pixel.
+const FINE: usize = 4;
+
+/// Relative difference of texture factors and of emission that makes an edge.
+const DIFFERENCE: f64 = 0.02;
+
+/// Squared difference of normals that makes an edge.
+const TURN: f64 = 0.1;
+
+/// The light at all stored points of the picture; `None` where nothing is shaded.
+pub(crate) type Values = [Option<[f64; 2]>];
+
+/// The mean radiance of a pixel.
+pub(crate) fn radiance(
+    visible: &Visible,
+    shader: &Shader<'_>,
+    values: &Values,
+    pixel: [usize; 2],
+) -> f64 {
+    let places = visible.of_pixel(pixel);
+    let stored = places.iter().zip(&values[visible.range(pixel)]);
+    let stored: f64 = stored.map(|(place, value)| light(place, *value)).sum();
+    if !has_edge(visible, pixel) {
+        return stored / FOUR as f64;
+    }
+    let step = (FINE as f64).recip();
+    let further = (0..FINE * FINE).filter_map(|i| {
+        let inside = [i % FINE, i / FINE].map(|k| (k as f64 + 0.5) * step);
+        let at = [0, 1].map(|k: usize| pixel[k] as f64 + inside[k]);
+        let place = shader.place(at);
+        let value = match shaded(&place) {
+            Some(surface) => Some(like(visible, values, pixel, at, surface)?),
+            None => None,
+        };
+        Some(light(&place, value))
+    });
+    let (count, sum) = further.fold((FOUR, stored), |(n, sum), light| (n + 1, sum + light));
+    sum / count as f64
+}
+
+/// The radiance of a point.
+fn light(place: &SeenPlace, value: Option<[f64; 2]>) -> f64 {
+    match (place.surface, value) {
+        (Some(SeenSurface { factors, .. }), Some(value)) => {
+            place.emitted + factors[0] * value[0] + factors[1] * value[1]
+        }
+        _ => place.emitted,
+    }
+}
+
+/// Whether the points of a pixel and of those beside it differ in object, normal, texture or
+/// emission.
+fn has_edge(visible: &Visible, [column, row]: [usize; 2]) -> bool {
+    let [w, h] = visible.size;
+    let first = &visible.of_pixel([column, row])[0];
+    let beside = [
+        [column, row],
+        [column.saturating_sub(1), row],
+        [(column + 1).min(w - 1), row],
+        [column, row.saturating_sub(1)],
+        [column, (row + 1).min(h - 1)],
+    ];
+    let mut places = beside.iter().flat_map(|pixel| visible.of_pixel(*pixel));
+    places.any(|place| differs(first, place))
+}
+
+/// Whether two visible points are on different sides of an edge.
+fn differs(first: &SeenPlace, place: &SeenPlace) -> bool {
+    let differ = |a: f64, b: f64| (a - b).abs() > DIFFERENCE * a.abs().max(b.abs());
+    differ(first.emitted, place.emitted)
+        || match (&first.surface, &place.surface) {
+            (Some(a), Some(b)) => {
+                a.shape != b.shape
+                    || (a.normal - b.normal).length_squared() > TURN
+                    || (0..2).any(|k| differ(a.factors[k], b.factors[k]))
+            }
+            (None, None) => false,
+            _ => true,
+        }
+}
+
+/// The mean light of the stored points in and around a pixel that are on the object of a point, by
+/// their likeness to it.
+fn like(
+    visible: &Visible,
+    values: &Values,
+    pixel: [usize; 2],
+    point: [f64; 2],
+    surface: &SeenSurface,
+) -> Option<[f64; 2]> {
+    let mut sums = [0.0; 3];
+    let near = |k: usize| pixel[k].saturating_sub(1)..(pixel[k] + 2).min(visible.size[k]);
+    for row in near(1) {
+        for column in near(0) {
+            for (i, index) in visible.range([column, row]).enumerate() {
+                let Some((seen, value)) = shaded(&visible.places[index]).zip(values[index]) else {
+                    continue;
+                };
+                if seen.shape == surface.shape {
+                    let place = at([column, row], i);
+                    let square: f64 = (0..2).map(|k| (point[k] - place[k]).powi(2)).sum();
+                    // Half a pixel is the standard deviation.
+                    let weight = bell(4.0 * square + unlike(surface, seen));
+                    sums[0] += weight;
+                    sums[1] += weight * value[0];
+                    sums[2] += weight * value[1];
+                }
+            }
+        }
+    }
+    (sums[0] > 0.0).then(|| [sums[1] / sums[0], sums[2] / sums[0]])
+}

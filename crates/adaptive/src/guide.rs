@@ -1,0 +1,246 @@
+//! A guide for the reconstruction: the direct light at all visible points, from one path each, with
+//! the noise smoothed.
+//!
+//! The guide shows where shadows and highlights end, which sparse samples cannot. The light of
+//! samples less their guide is smoother than the light itself, so planes are fitted to this
+//! difference, and the guide is added afterwards. A guide is noisy, and does not know indirect
+//! light. So the errors of the first samples decide for each object which share of the guide is
+//! used.
+
+use crate::criterion::shaded;
+use crate::cross::{CrossError, dark};
+use crate::method::pixel_at;
+use crate::reconstruct::{ShadedSample, bell, unlike};
+use crate::shading::Shader;
+use crate::smooth::{Filter, PlaceValues, detailed};
+use crate::visible::{FOUR, SeenSurface, Visible, at};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// Width in pixels of a tile. The paths of its points share a net.
+const TILE: usize = 4;
+
+/// The filter of sharp shadows.
+const SHARP: Filter = Filter {
+    radius: 1,
+    step: 1,
+    width: 0.6,
+};
+
+/// The filter of soft shadows.
+const SOFT: Filter = Filter {
+    radius: 3,
+    step: 1,
+    width: 1.5,
+};
+
+/// The filter that is applied to the result of [`SOFT`], where light changes slowly.
+const SLOW: Filter = Filter {
+    radius: 3,
+    step: 3,
+    width: 1.5,
+};
+
+/// Direct light at all points of a picture, without texture factors.
+#[derive(Debug)]
+pub(crate) struct Guide {
+    values: PlaceValues,
+    shares: Shares,
+}
+
+/// The guide of a sample, for base and lobe.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct SampleGuide {
+    pub(crate) value: [f64; 2],
+    variance: [f64; 2],
+}
+
+impl Guide {
+    /// Traces a path from each point.
+    pub(crate) fn new(visible: &Visible, shader: &Shader<'_>) -> Self {
+        let rough = direct(visible, shader);
+        let soft = SOFT.smoothed(visible, &rough);
+        let slow = SLOW.smoothed(visible, &soft);
+        let smooth = detailed(visible, &soft, &slow);
+        let sharp = SHARP.smoothed(visible, &rough);
+        Self {
+            values: detailed(visible, &sharp, &smooth),
+            shares: Shares::default(),
+        }
+    }
+
+    /// The whole guide at a sample.
+    pub(crate) fn at(&self, visible: &Visible, sample: &ShadedSample) -> SampleGuide {
+        let pixel = pixel_at(sample.at, visible.size);
+        let near = |(i, index): (usize, usize)| {
+            let seen = shaded(&visible.places[index])?;
+            let place = at(pixel, i);
+            let square: f64 = (0..2).map(|k| (sample.at[k] - place[k]).powi(2)).sum();
+            let weight = bell(square + unlike(&sample.surface, seen));
+            (seen.shape == sample.surface.shape).then_some((weight, self.values[index]))
+        };
+        let near: Vec<(f64, [f64; 2])> =
+            visible.range(pixel).enumerate().filter_map(near).collect();
+        if near.is_empty() {
+            return SampleGuide::default();
+        }
+        let count = near.len() as f64;
+        let total: f64 = near.iter().map(|(weight, _)| weight).sum();
+        let mean = |part: usize| near.iter().map(|(w, value)| w * value[part]).sum::<f64>() / total;
+        let value = [0, 1].map(mean);
+        let variance = |part: usize| {
+            let squares = near.iter().map(|(_, of)| (of[part] - value[part]).powi(2));
+            squares.sum::<f64>() / (count * (count - 1.0).max(1.0))
+        };
+        SampleGuide {
+            value,
+            variance: [0, 1].map(variance),
+        }
+    }
+
+    /// Chooses the share of the guide for each object, and returns the errors of planes through
+    /// samples without it. `plain` are the errors of planes through whole samples, `of_guide` those
+    /// of planes through `guides`.
+    pub(crate) fn trust(
+        &mut self,
+        samples: &[(ShadedSample, f64)],
+        guides: &[SampleGuide],
+        [plain, of_guide]: [&[CrossError]; 2],
+    ) -> Vec<CrossError> {
+        let dark = dark(samples);
+        for (plain, of_guide) in plain.iter().zip(of_guide) {
+            let (sample, _) = &samples[plain.index];
+            let light = sample.light(sample.value);
+            let scale = light * light + dark * dark;
+            let weights = sample.surface.factors.map(|factor| factor * factor / scale);
+            let noise = guides[plain.index].variance;
+            let products = [0, 1].map(|part: usize| {
+                let [a, b] = [plain.off[part], of_guide.off[part]];
+                [a * b, b * b, noise[part]].map(|product| weights[part] * product)
+            });
+            self.shares.add(sample.surface.shape, products);
+        }
+        let pairs = plain.iter().zip(of_guide);
+        let left = pairs.map(|(plain, of_guide)| {
+            let shares = self.shares.of(samples[plain.index].0.surface.shape);
+            let off = [0, 1].map(|part: usize| plain.off[part] - shares[part] * of_guide.off[part]);
+            CrossError { off, ..*plain }
+        });
+        left.collect()
+    }
+
+    /// The share of the guide that is used at a point of the picture.
+    pub(crate) fn used(&self, index: usize, surface: &SeenSurface) -> [f64; 2] {
+        let shares = self.shares.of(surface.shape);
+        [0, 1].map(|part: usize| shares[part] * self.values[index][part])
+    }
+
+    /// Samples without the share of the guide that is used.
+    pub(crate) fn without(&self, visible: &Visible, samples: &[ShadedSample]) -> Vec<ShadedSample> {
+        let less = |sample: &ShadedSample| {
+            let guide = self.at(visible, sample).value;
+            let shares = self.shares.of(sample.surface.shape);
+            let value = [0, 1].map(|part: usize| sample.value[part] - shares[part] * guide[part]);
+            ShadedSample { value, ..*sample }
+        };
+        samples.par_iter().map(less).collect()
+    }
+}
+
+/// Direct light by one path from each point.
+fn direct(visible: &Visible, shader: &Shader<'_>) -> PlaceValues {
+    let tiles = visible.size[0].div_ceil(TILE);
+    let of = |index: usize| {
+        let [column, row] = visible.pixel(index);
+        shaded(&visible.places[index])?;
+        let seen = shader.seen(at([column, row], index % FOUR))?;
+        let tile = (row / TILE) * tiles + column / TILE;
+        let point = morton([column % TILE, row % TILE]) * FOUR + index % FOUR;
+        Some(shader.direct(&seen, tile as u64, u32::try_from(point).ok()?))
+    };
+    let all = (0..visible.places.len()).into_par_iter();
+    all.map(|index| of(index).unwrap_or_default()).collect()
+}
+
+/// The number of a pixel in a tile, in the order of Morton 1966: each quarter of the tile, and each
+/// quarter of a quarter, has consecutive numbers.
+fn morton([column, row]: [usize; 2]) -> usize {
+    (0..TILE.ilog2()).fold(0, |number, bit| {
+        number | ((column >> bit) & 1) << (2 * bit) | ((row >> bit) & 1) << (2 * bit + 1)
+    })
+}
+
+/// The squared error of planes through all samples, relative to that of planes through one half of
+/// the first samples. The noise of a guide does not fall with the number of samples.
+const SMALLER: f64 = 1.0 / 6.0;
+
+/// The weight of all objects in the share of each, in samples.
+const SHARED: f64 = 4.0;
+
+/// For base and lobe: the product of both errors, the square of the guide's, and its variance.
+type Products = [[f64; 3]; 2];
+
+/// The shares of the guide that objects use.
+#[derive(Debug, Default)]
+struct Shares {
+    count: f64,
+    all: Products,
+    objects: BTreeMap<usize, Products>,
+}
+
+impl Shares {
+    fn add(&mut self, shape: usize, products: Products) {
+        self.count += 1.0;
+        let own = self.objects.entry(shape).or_default();
+        for part in 0..2 {
+            for (k, product) in products[part].into_iter().enumerate() {
+                own[part][k] += product;
+                self.all[part][k] += product;
+            }
+        }
+    }
+
+    /// The shares s that minimise the error plain − s · guide of all samples, noise included.
+    fn of(&self, shape: usize) -> [f64; 2] {
+        let own = self.objects.get(&shape).copied().unwrap_or_default();
+        let shared = SHARED / self.count.max(1.0);
+        [0, 1].map(|part: usize| {
+            let [both, square, noise] =
+                [0, 1, 2].map(|k: usize| own[part][k] + shared * self.all[part][k]);
+            let square = (square - noise).max(0.0) + noise / SMALLER;
+            if square > 0.0 {
+                (both / square).clamp(0.0, 1.0)
+            } else {
+                0.0
+            }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A guide without noise whose errors are those of the planes is used whole; one with other
+    /// errors, or with much noise, is not used.
+    #[test]
+    fn shares_follow_errors() {
+        let mut shares = Shares::default();
+        for i in 0..1000 {
+            let sign = if i % 2 == 0 { 1.0 } else { -1.0 };
+            shares.add(0, [[1.0, 1.0, 0.0]; 2]);
+            shares.add(1, [[sign, 1.0, 0.0]; 2]);
+            shares.add(2, [[1.0, 2.0, 1.0]; 2]);
+        }
+        let [useful, other, noisy] = [0, 1, 2].map(|shape| shares.of(shape)[0]);
+        assert!(useful > 0.98, "{useful}"); // shared samples
+        assert!(other < 0.02, "{other}"); // shared samples
+        assert!((noisy - 1.0 / 7.0).abs() < 0.01, "{noisy}"); // shared samples
+    }
+
+    #[test]
+    fn quarters_of_a_tile_have_consecutive_numbers() {
+        let quarter = [[2, 0], [3, 0], [2, 1], [3, 1]].map(morton);
+        assert_eq!(quarter, [4, 5, 6, 7]);
+    }
+}
