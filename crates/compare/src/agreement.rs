@@ -80,9 +80,9 @@ impl Agreement {
         error > excess.max(UNSEEN * noise)
     }
 
-    /// Returns the number of photons that brings the noise down to the resolution. `None` where the
-    /// error of the prediction alone exceeds the resolution, or where noise is not what prevents a
-    /// verdict.
+    /// Returns the number of photons that brings the noise down to the resolution. Returns `None`
+    /// where the error of the prediction alone exceeds the resolution, or where noise is not what
+    /// prevents a verdict.
     pub(crate) fn photons_needed(
         &self,
         emitted: u64,

@@ -30,7 +30,7 @@ pub struct CovarianceReport {
     pub class: Class,
     /// The largest frequency along each axis, cycles per metre and per unit slope.
     pub band: [f64; 4],
-    /// The result of covariance tracing, the window included as the last step. `None` where it
+    /// The result of covariance tracing, the window included as the last step. Is `None` where it
     /// gives no result, or an infinite spectrum.
     pub traced: Option<Matrix<4>>,
     /// Why covariance tracing gives no result, in words.
@@ -79,7 +79,7 @@ impl TracedPlane {
     /// Returns the covariance traced to a plane, the window included as the last step.
     ///
     /// # Errors
-    /// The reason, where covariance tracing gives no result.
+    /// Returns the reason where covariance tracing gives no result.
     pub fn new(plane: &VirtualPlane, applicability: &Applicability) -> Result<Self, String> {
         let traced: Result<SpectralCovariance, Untraced> = match &applicability.theory {
             Theory::Parallel(chain) => chain.spectral_covariance(),
@@ -121,7 +121,7 @@ impl CovarianceReport {
     /// measured on the grid `grid`.
     ///
     /// # Errors
-    /// When the measurement has too few batches for errors.
+    /// Returns an error if the measurement has too few batches for errors.
     pub fn new(
         (measurement, index): (&Measurement, usize),
         (grid, measured): (&FieldGrid, &FieldCovariance),
@@ -272,8 +272,8 @@ fn slice(
 }
 
 /// Returns |F|² of theory at azimuth 0, [ρ, ν]. It is computed from pairs of replicates, as a
-/// measured power is from pairs of batches. `None` where the measurement of another tracer replaces
-/// theory.
+/// measured power is from pairs of batches. Returns `None` where the measurement of another tracer
+/// replaces theory.
 fn predicted_slice(prediction: &Prediction) -> Option<Array2<f64>> {
     if prediction.class == Class::Reference {
         return None;

@@ -192,8 +192,8 @@ impl FirstOrder {
 }
 
 /// Returns the covariance after the chain and the window, for a Gaussian as wide as the light.
-/// Inverse covariances add in a product of Gaussians, and a map A takes S⁻¹ to A⁻ᵀ S⁻¹ A⁻¹. `None`
-/// for an environment, which has no width.
+/// Inverse covariances add in a product of Gaussians, and a map A takes S⁻¹ to A⁻ᵀ S⁻¹ A⁻¹.
+/// Returns `None` for an environment, which has no width.
 fn propagated(system: &SpecularSystem, chain: &Matrix<4>, window: &Window) -> Option<Matrix<4>> {
     if matches!(system.light, Light::Environment { .. }) {
         return None;

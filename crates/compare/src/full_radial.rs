@@ -22,8 +22,8 @@ pub struct FullRadialReport {
     pub relative_error: Option<f64>,
     /// The relative error that noise alone would cause.
     pub noise_limit: Option<f64>,
-    /// The largest |aliasing|/σ of a bin. The prediction contains the same aliasing. `None` where
-    /// aliasing is not known separately.
+    /// The largest |aliasing|/σ of a bin. The prediction contains the same aliasing. Is `None`
+    /// where aliasing is not known separately.
     pub aliasing: Option<f64>,
 }
 
@@ -131,7 +131,7 @@ impl FullRadialComparison {
     /// the random signs of the p-value.
     ///
     /// # Panics
-    /// When the prediction comes in groups that differ from those of the measurement.
+    /// Panics if the prediction comes in groups that differ from those of the measurement.
     #[must_use]
     pub fn new(measured: &FieldMeasurement, predicted: &PredictedField, seed: u64) -> Self {
         let bins = RadialBins::new(&measured.grid);

@@ -14,10 +14,10 @@ use etendue_spectrum::estimate::{self, TooFewBatches};
 /// degrees of freedom, and n²/((n − 1)(n + 2)) · (tr Ĉ² − (tr Ĉ)²/n) is an unbiased estimate of
 /// tr C² for normal noise (Srivastava 2005, Eq. 2.4).
 ///
-/// `None` without noise.
+/// Returns `None` without noise.
 ///
 /// # Errors
-/// With fewer than three batches.
+/// Returns an error for fewer than three batches.
 pub fn noise_dof(measurement: &Measurement, plane: usize) -> Result<Option<f64>, TooFewBatches> {
     let batches = measurement.batches().len();
     if batches < 3 {

@@ -24,10 +24,10 @@ pub struct Prediction {
     /// The slices of the windowed spectrum.
     pub slices: Slices,
     /// The estimated ‖error‖/‖slices‖: the standard error where theory has replicates, otherwise
-    /// the quadrature error. `None` for a closed form, and for a reference.
+    /// the quadrature error. Is `None` for a closed form, and for a reference.
     pub quadrature_error: Option<f64>,
     /// ‖error‖/‖slices‖ due to smooth meshes: theory follows patches that osculate them, and the
-    /// two tracers of a reference deflect rays differently. `None` without such a mesh.
+    /// two tracers of a reference deflect rays differently. Is `None` without such a mesh.
     pub mesh_error: Option<f64>,
     /// The first-order chain. Where it exists, `slices` and all other fields are those of the exact
     /// ray-space prediction.
@@ -86,8 +86,8 @@ impl Prediction {
         both(self.quadrature_error, self.mesh_error)
     }
 
-    /// Returns the prediction of theory for a plane of a scene. `None` where no theory applies and
-    /// [`Self::reference`] takes its place.
+    /// Returns the prediction of theory for a plane of a scene. Returns `None` where no theory
+    /// applies and [`Self::reference`] takes its place.
     #[must_use]
     pub fn new(scene: &Scene, plane: &VirtualPlane, applicability: &Applicability) -> Self {
         let empty = Self::darkness(scene, plane, applicability);
@@ -186,7 +186,7 @@ impl Prediction {
     /// theory applies.
     ///
     /// # Errors
-    /// When that measurement has too few batches.
+    /// Returns an error if that measurement has too few batches.
     pub fn reference(
         scene: &Scene,
         index: usize,
@@ -207,7 +207,7 @@ impl Prediction {
     /// Returns a plane of a measurement, with which another, independent measurement is compared.
     ///
     /// # Errors
-    /// When the measurement has too few batches.
+    /// Returns an error if the measurement has too few batches.
     pub fn measured(measurement: &Measurement, plane: usize) -> Result<Self, TooFewBatches> {
         let batches = measurement.at_plane(plane);
         Ok(Self {

@@ -142,8 +142,8 @@ pub struct PlaneReport {
     pub bandwidth_95: Bandwidth,
     /// 95 % bandwidths of the light less its mean, which show how fast the light changes.
     pub variation_95: Bandwidth,
-    /// Second central moments of the windowed light field over the coordinates of the plane. `None`
-    /// where no light arrived.
+    /// Second central moments of the windowed light field over the coordinates of the plane. Is
+    /// `None` where no light arrived.
     pub covariance: Option<Covariance>,
     /// H at two cuts, on a plane that light leaves diffusely; empty for any other plane.
     pub high_frequency_share: Vec<HighFrequencyShare>,
@@ -161,8 +161,8 @@ pub struct PlaneReport {
     pub verdict: Verdict,
     /// Why an undecided plane is undecided, in words.
     pub undecided: Option<String>,
-    /// Photons that would decide an undecided plane. `None` where that is not known, or where more
-    /// photons do not help.
+    /// Photons that would decide an undecided plane. Is `None` where that is not known, or where
+    /// more photons do not help.
     pub photons_needed: Option<f64>,
     /// Limits of the measurement, in words.
     pub warnings: Vec<String>,

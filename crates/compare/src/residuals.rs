@@ -32,7 +32,7 @@ impl Residuals {
     /// error.
     ///
     /// # Panics
-    /// When the plane was measured at other frequencies than the prediction's.
+    /// Panics if the plane was measured at other frequencies than the prediction's.
     #[must_use]
     pub fn new(measurement: &Measurement, plane: usize, prediction: &Slices) -> Self {
         let residual = |batch: &PlaneBatch| {
@@ -53,7 +53,7 @@ impl Residuals {
     /// and the same number of replicates.
     ///
     /// # Panics
-    /// When the plane was measured at other frequencies than the prediction's.
+    /// Panics if the plane was measured at other frequencies than the prediction's.
     #[must_use]
     pub fn between(
         measurement: &Measurement,
@@ -176,7 +176,7 @@ impl Residuals {
     /// where σ > 0.
     ///
     /// σ² is itself estimated from R batches. For complex normal residuals this raises the mean by
-    /// (R − 1)/(R − 2), which is divided out. `None` when no photon arrived.
+    /// (R − 1)/(R − 2), which is divided out. Returns `None` when no photon arrived.
     #[must_use]
     pub fn chi2_per_dof(&self, variance: &Array3<f64>) -> Option<f64> {
         let resolved = self.cells(variance).filter(|v| **v > 0.0).count();
@@ -305,7 +305,7 @@ impl Residuals {
     /// its own distribution. This includes correlations between neighbouring frequencies. The
     /// p-value is the share of rounds, the observed one included, that reach the observed value.
     ///
-    /// `None` when all residuals are zero: nothing measured and nothing predicted.
+    /// Returns `None` when all residuals are zero: nothing measured and nothing predicted.
     #[must_use]
     pub fn p_value(&self, seed: u64) -> Option<f64> {
         let products = self.products(true);

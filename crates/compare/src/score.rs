@@ -35,7 +35,7 @@ const DETECTABLE: f64 = 3.858;
 /// `numerical` = ‖error‖, moves δ by no more than `numerical` ‖D/σ²‖ / Σ|D|²/σ² (Cauchy–Schwarz),
 /// which is added in quadrature. Both are of first order in δ.
 ///
-/// `None` when the prediction does not depend on the parameter, or no photon arrived.
+/// Returns `None` when the prediction does not depend on the parameter, or no photon arrived.
 pub(crate) fn score(
     residuals: &Residuals,
     variance: &Array3<f64>,

@@ -49,7 +49,7 @@ impl TwoSamples {
     /// distribution (docs/theory.md, section 6).
     ///
     /// # Panics
-    /// When the arrays have other shapes than the grid.
+    /// Panics if the arrays have other shapes than the grid.
     #[must_use]
     pub fn new(grid: &SliceGrid, a: &Sample, b: &Sample) -> Self {
         let sums = FrequencySums::new(grid, a, b);
@@ -164,7 +164,7 @@ pub struct Estimate {
 /// a pull at least as far from zero if both estimate the same.
 ///
 /// The test is that of Welch (1947): Student's t with n = (e_a² + e_b²)²/Σ e⁴/(R − 1) degrees of
-/// freedom. `None` where neither has an error.
+/// freedom. Returns `None` where neither has an error.
 #[must_use]
 pub fn pull(a: Estimate, b: Estimate) -> Option<(f64, f64)> {
     let squares = [a, b].map(|e| (e.error * e.error, e.batches as f64 - 1.0));

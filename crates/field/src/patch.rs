@@ -120,8 +120,8 @@ impl Patch {
 impl Specular {
     /// Returns the direction of a ray after it meets a surface at `point`, given the unit normal
     /// there on the side the surface faces. All vectors are in one frame, and the direction may
-    /// have any length. `lens` is the frame of a lens. `None` if a ray to be refracted is totally
-    /// reflected.
+    /// have any length. `lens` is the frame of a lens. Returns `None` if a ray to be refracted is
+    /// totally reflected.
     #[must_use]
     pub fn turned(
         &self,

@@ -42,7 +42,8 @@ pub trait Model: Clone {
         parameter.unit(self.light())
     }
 
-    /// Returns the value of a parameter, in its unit. `None` as for [`change`](Self::change).
+    /// Returns the value of a parameter, in its unit. Returns `None` as for
+    /// [`change`](Self::change).
     fn value(&self, parameter: Parameter) -> Option<f64> {
         let mut value = None;
         self.clone().change(parameter, &mut |current| {
@@ -52,7 +53,7 @@ pub trait Model: Clone {
         value
     }
 
-    /// Returns the model with another value of a parameter, in its unit. `None` as for
+    /// Returns the model with another value of a parameter, in its unit. Returns `None` as for
     /// [`change`](Self::change).
     fn with(&self, parameter: Parameter, value: f64) -> Option<Self> {
         let mut other = self.clone();

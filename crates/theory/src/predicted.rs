@@ -13,7 +13,8 @@ pub struct Predicted {
     /// quadrature rules.
     pub replicates: Vec<Slices>,
     /// The relative error ‖error‖/‖F‖: the standard error of the mean of the replicates, or the
-    /// change under finer quadrature rules. `None` for a closed form; infinite if no ray arrives.
+    /// change under finer quadrature rules. Is `None` for a closed form; infinite if no ray
+    /// arrives.
     pub error: Option<f64>,
     /// ∫ L W without occluders: the scale with which the slices of a closed form are compared; zero
     /// for nets.

@@ -82,7 +82,7 @@ impl RealFft4 {
     ///
     /// # Panics
     ///
-    /// If an axis is empty.
+    /// Panics if an axis is empty.
     #[must_use]
     pub fn new(shape: [usize; 4]) -> Self {
         assert!(!shape.contains(&0), "an axis of {shape:?} is empty");
@@ -118,7 +118,7 @@ impl RealFft4 {
     ///
     /// # Panics
     ///
-    /// If `reals` does not hold n₀ n₁ n₂ n₃ numbers.
+    /// Panics if `reals` does not hold n₀ n₁ n₂ n₃ numbers.
     #[must_use]
     pub fn padded(&self, reals: &[f64]) -> Vec<Complex> {
         let [n, row] = [self.shape[3], self.row()];
@@ -142,7 +142,7 @@ impl RealFft4 {
     ///
     /// # Panics
     ///
-    /// If `data` does not hold [`size`](Self::size) numbers.
+    /// Panics if `data` does not hold [`size`](Self::size) numbers.
     pub fn forward(&self, data: &mut [Complex]) {
         assert_eq!(
             data.len(),

@@ -227,8 +227,8 @@ impl Follower<'_> {
     }
 
     /// Returns the point of the plane's surface at which theory counts a ray of the last leg, and
-    /// the unit normal there, if the plane is on a surface. `None` where the ray does not meet the
-    /// surface.
+    /// the unit normal there, if the plane is on a surface. Returns `None` where the ray does not
+    /// meet the surface.
     pub(super) fn counted_at(&self, ray: &CheckRay) -> Option<Option<[DVec3; 2]>> {
         let Some(patch) = self.at.patch.as_ref() else {
             return Some(None);

@@ -48,7 +48,7 @@ pub fn grating(grating: &Grating) -> f64 {
 /// Returns the covariance of a mask in the plane where light is now. An opaque mask is treated as
 /// an opening about the central ray. The opening is the largest disc that is free of shapes,
 /// narrowed along an axis by half-planes. (The course notes of Belcour 2016 take the largest
-/// unoccluded disc.) `None` if the central ray is blocked, or touches an edge.
+/// unoccluded disc.) Returns `None` if the central ray is blocked, or touches an edge.
 #[must_use]
 pub fn mask(mask: &Mask) -> Option<Matrix<4>> {
     let mut factor = [[0.0; 4]; 4];
@@ -102,7 +102,7 @@ pub fn slope_cosine() -> Matrix<4> {
 }
 
 /// Returns the covariance of a lobe over (θ, φ), in radians squared, for light that arrives at the
-/// angle θ₀ to the normal. `None` for Lambert's, which is uniform over all directions.
+/// angle θ₀ to the normal. Returns `None` for Lambert's, which is uniform over all directions.
 ///
 /// Phong's cosⁿ is a Gaussian of variance 1/n, to first order in 1/n. Microfacets that tilt by τ
 /// turn light by 2τ in the plane of incidence, and by 2τ cos θ₀ out of it, so Beckmann's variances

@@ -43,8 +43,8 @@ impl SpectralCovariance {
         }
     }
 
-    /// Returns the covariance after a change z' = A z + t of ray coordinates: A⁻ᵀ C A⁻¹. The offset
-    /// does not affect the power spectrum. `None` if A has no inverse.
+    /// Returns the covariance after a change z' = A z + t of ray coordinates: A⁻ᵀ C A⁻¹. The
+    /// offset does not affect the power spectrum. Returns `None` if A has no inverse.
     #[must_use]
     pub fn mapped(&self, map: &AffineMap<4>) -> Option<Self> {
         let back = transpose(&inverse(&map.matrix)?);
@@ -118,14 +118,14 @@ impl SpectralCovariance {
         }
     }
 
-    /// Returns C. `None` if the spectrum is unbounded, as for light from a point.
+    /// Returns C. Returns `None` if the spectrum is unbounded, as for light from a point.
     #[must_use]
     pub fn matrix(&self) -> Option<Matrix<4>> {
         Some(symmetric(&product(&self.p, &inverse(&self.q)?)))
     }
 
     /// Returns S, the covariance of the Gaussian light field, in squares of metres and slopes.
-    /// `None` if the field is unbounded.
+    /// Returns `None` if the field is unbounded.
     #[must_use]
     pub fn field(&self) -> Option<Matrix<4>> {
         let field = symmetric(&product(&self.q, &inverse(&self.p)?));

@@ -47,7 +47,7 @@ pub trait Traced {
     /// Returns the covariance of the spectrum before the window of the plane.
     ///
     /// # Errors
-    /// The reason why covariance tracing does not apply.
+    /// Returns the reason why covariance tracing does not apply.
     fn spectral_covariance(&self) -> Result<SpectralCovariance, Untraced>;
 }
 

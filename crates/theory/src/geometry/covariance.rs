@@ -13,7 +13,7 @@ use std::f64::consts::{PI, TAU};
 /// effect.
 ///
 /// Computed as S (1 + diag(1/std²) S)⁻¹, which allows a singular S, such as light from a point.
-/// `None` if that inverse does not exist, which does not occur for any covariance.
+/// Returns `None` if that inverse does not exist, which does not occur for any covariance.
 #[must_use]
 pub fn gaussian_window<const N: usize>(before: &Matrix<N>, std: [f64; N]) -> Option<Matrix<N>> {
     let narrowing = product(&diagonal(std.map(|s| 1.0 / (s * s))), before);
@@ -33,7 +33,8 @@ pub fn gaussian_lobe<const N: usize>(before: &Matrix<N>, std: f64) -> Matrix<N> 
 /// Returns the covariance of |L|² for a Gaussian field of covariance S: S⁻¹/8π². The covariance of
 /// |L| is twice as large.
 ///
-/// The result is in cycles per unit, squared. `None` for a singular S, whose spectrum is unbounded.
+/// The result is in cycles per unit, squared. Returns `None` for a singular S, whose spectrum is
+/// unbounded.
 #[must_use]
 pub fn power_spectrum<const N: usize>(field: &Matrix<N>) -> Option<Matrix<N>> {
     let inverse = matrix::inverse(field)?;

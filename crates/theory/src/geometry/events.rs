@@ -21,7 +21,7 @@ impl AffineMap<2> {
     /// incident light), met at the angle θ₀.
     ///
     /// Composed of incidence, curvature, refraction, back, and outgoing on the other side of the
-    /// surface, where the central ray continues at θ₂. `None` as for
+    /// surface, where the central ray continues at θ₂. Returns `None` as for
     /// [`refraction`](Self::refraction).
     #[must_use]
     pub fn refracting_surface(theta0: f64, k: f64, media: &Media) -> Option<Self> {

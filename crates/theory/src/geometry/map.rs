@@ -21,8 +21,8 @@ const STEP: f64 = 1e-5;
 
 impl<const N: usize> AffineMap<N> {
     /// Returns the affine map tangent to another map of rays at zero, by differences of fourth
-    /// order: accurate to some 10⁻¹⁰ per metre and radian. `None` if a ray near zero does not
-    /// arrive.
+    /// order: accurate to some 10⁻¹⁰ per metre and radian. Returns `None` if a ray near zero does
+    /// not arrive.
     pub(crate) fn touching(map: impl Fn([f64; N]) -> Option<[f64; N]>) -> Option<Self> {
         Self::touching_by(STEP, map)
     }
@@ -134,7 +134,8 @@ impl<const N: usize> AffineMap<N> {
     }
 
     /// Returns the frequency that spectral content at Ω moves to: A⁻ᵀ Ω, the inverse of
-    /// [`transpose_apply`](Self::transpose_apply). `None` as for [`inverse`](Self::inverse).
+    /// [`transpose_apply`](Self::transpose_apply). Returns `None` as for
+    /// [`inverse`](Self::inverse).
     #[must_use]
     pub fn content(&self, omega: [f64; N]) -> Option<[f64; N]> {
         Some(times(&transpose(&matrix::inverse(&self.matrix)?), &omega))
@@ -166,8 +167,8 @@ impl<const N: usize> AffineMap<N> {
         congruent(&self.matrix, before)
     }
 
-    /// Returns the covariance of |L| or |L|² after the map, A⁻ᵀ S A⁻¹, for S before it. `None` as
-    /// for [`inverse`](Self::inverse).
+    /// Returns the covariance of |L| or |L|² after the map, A⁻ᵀ S A⁻¹, for S before it. Returns
+    /// `None` as for [`inverse`](Self::inverse).
     #[must_use]
     pub fn spectral_covariance(&self, before: &Matrix<N>) -> Option<Matrix<N>> {
         let inverse = matrix::inverse(&self.matrix)?;
@@ -199,7 +200,7 @@ impl<const N: usize> AffineMap<N> {
 
 impl AffineMap<2> {
     /// Returns the distance after which rays that were parallel before the map meet, −A₀₀/A₁₀
-    /// metres; negative if behind. `None` if they stay parallel.
+    /// metres; negative if behind. Returns `None` if they stay parallel.
     #[must_use]
     pub fn focus(&self) -> Option<f64> {
         let [[x, _], [slope, _]] = self.matrix;

@@ -333,7 +333,7 @@ fn finished(running: Vec<Running>, grid: ProjectionGrid, error: f64) -> Predicte
 /// Returns the mean of several slices on one grid.
 ///
 /// # Panics
-/// If there are no slices.
+/// Panics if there are no slices.
 pub(crate) fn mean<'a>(slices: impl ExactSizeIterator<Item = &'a Slices>) -> Slices {
     let count = slices.len() as f64;
     let mut slices = slices;

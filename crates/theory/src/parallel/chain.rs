@@ -98,8 +98,8 @@ pub(crate) struct ParallelEmitter {
 
 impl ParallelEmitter {
     /// # Panics
-    /// If light passes through a picture or comes from infinity; `rays` and `scattering` predict
-    /// such light.
+    /// Panics if light passes through a picture or comes from infinity; `rays` and `scattering`
+    /// predict such light.
     pub(crate) fn new(light: &Light) -> Self {
         let (brightness, power) = match *light {
             Light::Area {
@@ -133,7 +133,7 @@ impl Chain {
     /// Returns the chain relative to its end.
     ///
     /// # Panics
-    /// If anything but travel follows a diffuse reflection.
+    /// Panics if anything but travel follows a diffuse reflection.
     pub(crate) fn path(&self) -> ChainSegment<'_> {
         let mut path = ChainSegment {
             light: ParallelEmitter::new(&self.source.light),

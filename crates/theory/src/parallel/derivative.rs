@@ -19,7 +19,7 @@ const RELATIVE_STEP: f64 = 1e-4;
 /// `prediction` must be the slices of the chain itself, on the same window and grid.
 ///
 /// # Panics
-/// If the parameter belongs to another chain.
+/// Panics if the parameter belongs to another chain.
 #[must_use]
 pub fn derivative(
     chain: &Chain,

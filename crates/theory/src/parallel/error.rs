@@ -9,7 +9,7 @@ use etendue_field::{SliceGrid, Slices, Window};
 const ORDER: i32 = 4;
 
 /// Estimates the error of `slices`, the prediction of the same chain: ‖error‖/‖F‖ over the grid.
-/// `None` if the prediction is a closed form.
+/// Returns `None` if the prediction is a closed form.
 ///
 /// * Discs: the difference from a prediction that splits them a quarter finer, divided by 1 − 0.8⁴.
 ///   Where masks and windows have corners within a disc the error falls as n⁻⁴, elsewhere faster

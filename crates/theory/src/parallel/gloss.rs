@@ -35,7 +35,7 @@ const MAX_FREQUENCIES: usize = 512;
 /// Returns the slice at azimuth 0 of the chain's field after a lobe, under a window.
 ///
 /// # Panics
-/// If the grid has more than one azimuth.
+/// Panics if the grid has more than one azimuth.
 #[must_use]
 pub fn blurred_slices(
     chain: &Chain,

@@ -121,7 +121,7 @@ impl Harmonics {
     /// Unit: W m⁻² sr⁻¹ · m².
     ///
     /// # Panics
-    /// If a harmonic is beyond the range of the tables.
+    /// Panics if a harmonic is beyond the range of the tables.
     #[must_use]
     pub fn at(&self, [x, y, u, v]: [isize; 4]) -> Complex {
         let of = |[first, second]: &[HarmonicTable; 2]| {

@@ -12,9 +12,10 @@ impl Chain {
     /// its end. A thin lens of focal length −1/power has this effect, and to first order a curved
     /// mirror at normal incidence.
     ///
-    /// A ray that arrives at (x, u') was at x − h u = m (x − h/m u') in a plane at distance h, with
-    /// m = 1 + power · h. So the plane is seen at the distance h/m, and 1/m times as large. `None`
-    /// if light varies with slope or leaves a surface, because no image exists then.
+    /// A ray that arrives at (x, u') was at x − h u = m (x − h/m u') in a plane at distance h,
+    /// with m = 1 + power · h. So the plane is seen at the distance h/m, and 1/m times as large.
+    /// Returns `None` if light varies with slope or leaves a surface, because no image exists
+    /// then.
     #[must_use]
     pub fn imaged(&self, power: f64) -> Option<Self> {
         let Light::Area {

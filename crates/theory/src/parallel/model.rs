@@ -34,7 +34,7 @@ impl Model for Chain {
     }
 
     /// # Panics
-    /// If the parameter belongs to another chain.
+    /// Panics if the parameter belongs to another chain.
     fn name(&self, parameter: Parameter) -> String {
         let Source { name, light } = &self.source;
         let operator = parameter.operator().and_then(|i| self.operators.get(i));

@@ -37,7 +37,7 @@ enum RayStep<'a> {
 /// Returns the slices of rays that pass through a chain, and their picture.
 ///
 /// # Panics
-/// If the chain has a diffuse reflection.
+/// Panics if the chain has a diffuse reflection.
 pub(super) fn predicted(
     chain: &Chain,
     rays: &RayLight,

@@ -20,8 +20,8 @@ impl Back {
         }
     }
 
-    /// Returns the ray (x, y, u, v) of the light's plane that arrives at z, and |∂z/∂ray|. `None`
-    /// if there is no such ray.
+    /// Returns the ray (x, y, u, v) of the light's plane that arrives at z, and |∂z/∂ray|. Returns
+    /// `None` if there is no such ray.
     ///
     /// Surfaces conserve n² dx dy du dv / (1 + u² + v²)² of rays (docs/theory.md (29)).
     pub(super) fn ray(&self, z: [f64; 4]) -> Option<([f64; 4], f64)> {

@@ -72,8 +72,8 @@ pub(super) struct CentralHit {
 }
 
 impl SpecularSystem {
-    /// Returns the hits of the central ray. `None` if the ray misses an element or does not
-    /// continue from it.
+    /// Returns the hits of the central ray. Returns `None` if the ray misses an element or does
+    /// not continue from it.
     pub(super) fn hits(&self) -> Option<Vec<CentralHit>> {
         let mut frame = Frame::IDENTITY;
         let mut hits = Vec::new();

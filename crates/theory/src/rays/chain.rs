@@ -26,8 +26,8 @@ pub struct AffineChain {
 }
 
 /// Derives the chain from the geometry: distances, angles and curvatures along the central ray.
-/// `None` if the ray misses an element or is totally reflected. Also `None` for a plane on a lens
-/// itself, which has no side from which to count angles.
+/// Returns `None` if the ray misses an element or is totally reflected. Also `None` for a plane on
+/// a lens itself, which has no side from which to count angles.
 ///
 /// The printed versions differ in incidence, curvature and outgoing angle; the paper has no
 /// refraction and no lens.

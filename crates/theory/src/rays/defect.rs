@@ -14,7 +14,7 @@ use etendue_field::Window;
 /// any map, the error converges to the number returned instead: the error of rays, in half-widths
 /// of the window, or the relative error of radiance.
 ///
-/// `None` if the central ray does not arrive.
+/// Returns `None` if the central ray does not arrive.
 #[must_use]
 pub fn defect(
     view: &Observed<SpecularSystem>,

@@ -29,9 +29,9 @@ const TARGET_ERROR: f64 = 1e-7;
 const FINER_ERROR: f64 = 1.0;
 
 impl<F: RayField> Finder<'_, F> {
-    /// Returns the slices and ‖error‖/‖F‖. The error includes the change by the last refinement, on
-    /// slices at right angles, and the possible error from edges. Rules are refined to 10⁻⁷, or
-    /// until the next takes more than `max_steps`. `None` if the error stays above 10⁻⁴.
+    /// Returns the slices and ‖error‖/‖F‖. The error includes the change by the last refinement,
+    /// on slices at right angles, and the possible error from edges. Rules are refined to 10⁻⁷, or
+    /// until the next takes more than `max_steps`. Returns `None` if the error stays above 10⁻⁴.
     pub(super) fn slices(&self, grid: &SliceGrid, max_steps: f64) -> Option<(Slices, f64)> {
         let trial = SliceGrid {
             azimuths: grid.azimuths.min(2),

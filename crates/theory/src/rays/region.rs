@@ -10,8 +10,8 @@ use etendue_field::{TwoPlane, Window};
 pub(super) type Region = [[f64; 2]; 2];
 
 /// A light field as a function of rays. It takes a ray (x, y, u, v) at the light to the ray's
-/// coordinates at the plane, and to its contribution to ray space there, per unit of the emission's
-/// coordinates. `None` if the ray does not arrive.
+/// coordinates at the plane, and to its contribution to ray space there, per unit of the
+/// emission's coordinates. Is `None` if the ray does not arrive.
 pub(super) trait RayField: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync {}
 impl<F: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync> RayField for F {}
 
@@ -76,7 +76,7 @@ impl<F: RayField> Finder<'_, F> {
 
     /// Returns the region of rays that land in the window. The search starts from the bounding box
     /// of the parallelogram that a linear map gives; the box is moved, widened and narrowed until
-    /// it contains all arriving light. `None` if nothing arrives.
+    /// it contains all arriving light. Returns `None` if nothing arrives.
     pub(super) fn region(&self) -> Option<Region> {
         let mut region = self.linear_region()?;
         let reach = self.emission.reach;

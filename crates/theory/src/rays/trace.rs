@@ -34,7 +34,7 @@ impl LegRay {
     }
 
     /// Returns the distance to a patch, and the unit normal there on the side of the patch's D.
-    /// `None` if the patch is missed or behind.
+    /// Returns `None` if the patch is missed or behind.
     ///
     /// Uses Newton's method from the tangent plane at the vertex. Along a ray the quadric is a
     /// polynomial of degree two, so it has at most one root on either side of its extremum; the

@@ -15,8 +15,8 @@ impl ReflectionSystem {
         &self.surfaces[..self.visited]
     }
 
-    /// Returns the system with a light and lobes `factor` times as wide. `None` if a surface
-    /// reflects diffusely, since its lobe has no width.
+    /// Returns the system with a light and lobes `factor` times as wide. Returns `None` if a
+    /// surface reflects diffusely, since its lobe has no width.
     ///
     /// With narrower windows and higher frequencies by the same factor, the error of first-order
     /// maps falls with the factor.

@@ -56,7 +56,7 @@ impl SliceTransform {
     ///
     /// # Panics
     ///
-    /// If `grid` has no azimuth.
+    /// Panics if `grid` has no azimuth.
     #[must_use]
     pub fn new(grid: &SliceGrid) -> Self {
         Self::at_level(grid, Level::new())

@@ -65,8 +65,8 @@ impl Receiver<'_> {
     }
 
     /// Returns the relative L2 error of slices: their change with half as many nodes along each
-    /// axis, divided by 2² − 1, because the error is of second order in the spacing. `None` if the
-    /// slices are zero.
+    /// axis, divided by 2² − 1, because the error is of second order in the spacing. Returns
+    /// `None` if the slices are zero.
     pub(crate) fn quadrature_error(
         &self,
         window: &Window,
