@@ -19,7 +19,7 @@ pub(crate) struct Agreement {
     noise: f64,
     /// Σ|F|².
     predicted: f64,
-    /// Σ|S|² less its noise.
+    /// The power Σ|S|² of the measurement without its noise.
     measured: f64,
     /// The standard error of the square of the excess if the prediction is true.
     pub(crate) excess_squared_error: Option<f64>,

@@ -24,8 +24,8 @@ pub struct Applicability {
     pub declined: Vec<String>,
     /// Why no light reaches the plane, in words; `None` where some light may.
     pub dark: Option<String>,
-    /// How far smooth meshes send rays from where their osculating patches send them; `None`
-    /// without such a mesh.
+    /// The difference between rays that smooth meshes deflect and the same rays deflected by
+    /// osculating patches; `None` without such a mesh.
     pub off_patches: Option<OffPatches>,
 }
 
@@ -84,7 +84,7 @@ impl Applicability {
         if plane.leg > 0 || found.reasons.is_empty() || !too_fine(scene).is_empty() {
             return found;
         }
-        // On the first leg, rays are followed past objects that do not lie across it.
+        // On the first leg, rays are tested against objects that do not lie across the leg.
         let Some(mut view) = system(scene, plane) else {
             return found;
         };

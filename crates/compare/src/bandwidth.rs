@@ -67,8 +67,8 @@ pub fn lobe_cutoff(lobe: Lobe) -> Option<f64> {
     Some(lobe.cutoff(BANDWIDTH_FRACTION))
 }
 
-/// Returns the bandwidth along ν of the exact prediction of such a plane, by the same estimator as
-/// for photons.
+/// Returns the bandwidth along ν of the exact prediction of a plane that has a [`criterion`], by
+/// the same estimator as for photons.
 #[must_use]
 pub fn exact_bandwidth(
     scene: &Scene,

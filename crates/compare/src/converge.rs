@@ -75,7 +75,7 @@ pub fn converge(
 }
 
 /// Returns the error of a first-order chain behind specular surfaces at the scale e, and the error
-/// of the sums over rays from which the former is computed.
+/// of the sums over rays from which it is computed.
 fn by_rays(
     scene: &Scene,
     whole: &Observed<rays::SpecularSystem>,

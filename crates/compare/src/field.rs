@@ -131,7 +131,7 @@ fn alias_free(
     Some(spectrum(&harmonics, (grid, assignment)))
 }
 
-/// Returns the spectrum at all frequencies of a grid, those along v from zero on.
+/// Returns the spectrum at the frequencies of a grid; along v, only at those from zero on.
 fn spectrum(harmonics: &Harmonics, (grid, assignment): (FieldGrid, Assignment)) -> FieldSpectrum {
     let [nx, ny, nu, nv] = grid.cells;
     let mut values = Array4::zeros((nx, ny, nu, nv / 2 + 1));

@@ -72,9 +72,9 @@ pub struct FirstOrderReport {
     pub verdict: Verdict,
 }
 
-/// A chain with a larger defect has a wrong map. Finite differences alone cause a defect of 10⁻⁹,
-/// and a first-order operator that is missing or wrong by a thousandth causes a defect above this
-/// limit.
+/// A chain whose defect exceeds this limit has a wrong map. Finite differences alone cause a
+/// defect of 10⁻⁹, and a first-order operator that is missing or wrong by a thousandth causes a
+/// defect above this limit.
 const DEFECT: f64 = 1e-5;
 /// Above this error a first-order chain is useless as a prediction of the light field.
 const MAX_ERROR: f64 = 0.5;

@@ -42,19 +42,19 @@ pub struct FullRadialComparison {
 
 /// The difference of measured and predicted power in a bin, as a sum over the groups of photons.
 ///
-/// Group r of a measurement holds the share a_r of it, G_r, and the same share of the prediction,
-/// P_r, with the same expectation a_r F. Both powers are computed from pairs of groups, so their
-/// difference is U = Σ_(r≠s) (G_r·G_s − P_r·P_s)/(1 − Σa²). With D_r = G_r − P_r, and S_r = G_r − α
-/// D_r the mean of both that is not correlated with D_r, this is
+/// Group r holds the share a_r of the measurement, G_r, and the same share of the prediction, P_r;
+/// both have the expectation a_r F. Both powers are computed from pairs of groups, so their
+/// difference is U = Σ_(r≠s) (G_r·G_s − P_r·P_s)/(1 − Σa²). With D_r = G_r − P_r and S_r = G_r − α
+/// D_r, which is the weighted mean of G_r and P_r that is not correlated with D_r, this is
 ///
 /// U (1 − Σa²) = Σ_r D_r·(2 Σ_(s≠r) S_s) + (2α − 1) Σ_(r≠s) D_r·D_s.
 ///
 /// If the prediction is true, each D_r is as likely as its negative, whatever the other D and the S
 /// are (docs/theory.md (45)).
 struct BinDifference {
-    /// 2 Σ_(s≠r) D_r·S_s/(1 − Σa²) for each group.
+    /// The linear terms 2 Σ_(s≠r) D_r·S_s/(1 − Σa²), for each group r.
     linear: Vec<f64>,
-    /// 2 (2α − 1) D_r·D_s/(1 − Σa²), row by row for s < r.
+    /// The terms 2 (2α − 1) D_r·D_s/(1 − Σa²) of pairs of groups, row by row for s < r.
     pairs: Vec<f64>,
 }
 

@@ -28,9 +28,10 @@ pub fn noise_dof(measurement: &Measurement, plane: usize) -> Result<Option<f64>,
     Ok(of_batches(&Residuals::new(measurement, plane, &mean)))
 }
 
-/// Returns the same number, from the difference of each batch to the mean.
+/// Returns the effective number of independent real numbers, from the difference of each batch to
+/// the mean.
 fn of_batches(centred: &Residuals) -> Option<f64> {
-    // tr Ĉ and tr Ĉ²; the matrix of products has the same eigenvalues as Ĉ.
+    // tr Ĉ and tr Ĉ² are those of the matrix of products, which has the same eigenvalues as Ĉ.
     let products = centred.products(true);
     let trace = products.diag().sum();
     if trace <= 0.0 {

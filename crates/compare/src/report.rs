@@ -145,11 +145,11 @@ pub struct PlaneReport {
     /// Second central moments of the windowed light field over the coordinates of the plane. Is
     /// `None` where no light arrived.
     pub covariance: Option<Covariance>,
-    /// H at two cuts, on a plane that light leaves diffusely; empty for any other plane.
+    /// The share H at two cuts, on a plane that light leaves diffusely; empty for any other plane.
     pub high_frequency_share: Vec<HighFrequencyShare>,
     /// The shares of power in two wedges, for blockers on the way to a plane of the first leg. The
     /// first wedge lies between the nearest and the farthest blocker. The second reaches back to
-    /// the light, because the edges of the light have frequencies too. Empty for any other plane.
+    /// the light, because the light has edges too. The list is empty for any other plane.
     pub wedge_share: Vec<WedgeShare>,
     /// The full radial spectrum, where the light field was put on a 4D grid (`--save field`).
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -161,8 +161,8 @@ pub struct PlaneReport {
     pub verdict: Verdict,
     /// Why an undecided plane is undecided, in words.
     pub undecided: Option<String>,
-    /// Photons that would decide an undecided plane. Is `None` where that is not known, or where
-    /// more photons do not help.
+    /// Number of photons that would decide an undecided plane. Is `None` where that is not known,
+    /// or where more photons do not help.
     pub photons_needed: Option<f64>,
     /// Limits of the measurement, in words.
     pub warnings: Vec<String>,

@@ -1,4 +1,4 @@
-//! Reads smooth surfaces off the scene, for rays and for reflection by a BRDF.
+//! Derives systems of smooth surfaces from the scene, for rays and for reflection by a BRDF.
 
 use crate::chain::stands_before;
 use etendue_field::{Light, Mask, Orientation, Patch, Side, Specular, VirtualPlane};

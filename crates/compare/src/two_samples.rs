@@ -29,9 +29,11 @@ pub struct TwoSamples {
     /// Probability of differences as small, or smaller, if the noise of both is independent. Nearly 0
     /// means that they share photons, or that σ is overstated.
     pub p_shared: Option<f64>,
-    /// ‖A − B‖ over the larger of ‖A‖ and ‖B‖, over the independent frequencies; 0 if both are dark.
+    /// ‖A − B‖ divided by the larger of ‖A‖ and ‖B‖, over the independent frequencies; 0 if both
+    /// are dark.
     pub difference: f64,
-    /// √Σ(σ_A² + σ_B²) over the same norm: the difference that noise alone makes.
+    /// √Σ(σ_A² + σ_B²) divided by the larger of ‖A‖ and ‖B‖: the difference that noise alone
+    /// makes.
     pub noise: f64,
 }
 
@@ -156,7 +158,7 @@ pub struct Estimate {
     pub value: f64,
     /// The standard error of the number.
     pub error: f64,
-    /// The batches that the error was estimated from.
+    /// Number of batches from which the error was estimated.
     pub batches: usize,
 }
 

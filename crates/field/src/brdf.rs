@@ -52,7 +52,7 @@ impl Brdf {
 /// 90°, linear in between.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AngleTable {
-    /// At least two values, the first along the normal and the last along the surface.
+    /// There are at least two values: the first is along the normal, the last along the surface.
     #[serde(serialize_with = "listed")]
     pub values: Arc<[f64]>,
 }
@@ -81,7 +81,7 @@ impl AngleTable {
 /// The lobe of a BRDF.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub enum Lobe {
-    /// Constant in all directions.
+    /// A lobe that is constant in all directions.
     Lambertian,
     /// A power of the cosine of the angle to the mirror direction.
     Phong {

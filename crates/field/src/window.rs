@@ -118,9 +118,9 @@ impl Profile {
 
     /// Returns the profile inside its support as a sum of cosines (docs/theory.md (3)).
     ///
-    /// Exact for Hann and Box. A Gaussian is approximated by the sum of its copies a period 2L
-    /// apart, a Fourier series. L is chosen such that the copies add less than 10⁻¹⁶ inside the
-    /// cut, and terms below 10⁻¹⁷ are left out.
+    /// The sum is exact for Hann and Box. A Gaussian is approximated by the sum of its copies a
+    /// period 2L apart, a Fourier series. L is chosen such that the copies add less than 10⁻¹⁶
+    /// inside the cut, and terms below 10⁻¹⁷ are left out.
     #[must_use]
     pub fn cosine_terms(&self) -> Vec<CosineTerm> {
         match *self {

@@ -74,7 +74,7 @@ pub struct Observed<S> {
 /// A model with a parameter slightly increased and slightly decreased.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ShiftedModels<M> {
-    /// The difference between the two values, in the parameter's unit.
+    /// The increased minus the decreased value of the parameter, in its unit.
     pub(crate) apart: f64,
     /// The models with the larger and with the smaller value.
     pub(crate) sides: [M; 2],
@@ -92,7 +92,7 @@ impl<M: Model> ShiftedModels<M> {
 }
 
 impl<M> ShiftedModels<M> {
-    /// Moves a parameter by a step to both sides and converts both models.
+    /// Increases and decreases a parameter by a step, and converts both models by `into`.
     pub(crate) fn new<A: Model>(
         model: &A,
         parameter: Parameter,

@@ -27,7 +27,8 @@ const BAND: usize = 512;
 /// number of threads, so the result is bitwise independent of that number. The result depends on
 /// the kind of processor, since both libraries use the best instructions available.
 ///
-/// Error, relative to the root mean square of F: 2 to 5·10⁻¹⁶, at most 1.5·10⁻¹⁵ (AVX, shapes up to 64 × 64 and 9⁴).
+/// The error, relative to the root mean square of F, is 2 to 5·10⁻¹⁶, and at most 1.5·10⁻¹⁵ (AVX,
+/// shapes up to 64 × 64 and 9⁴).
 #[derive(Clone)]
 pub struct RealFft4 {
     shape: [usize; 4],

@@ -80,7 +80,7 @@ impl Suspect {
     }
 
     /// Returns the distance by which a piece of a path misses the obstacle, metres: zero where it
-    /// meets the obstacle unexpectedly, infinite where it cannot.
+    /// meets the obstacle unexpectedly, infinite where it cannot meet it.
     pub(super) fn gap(&self, around: &Surroundings<'_>, piece: &PathPiece) -> f64 {
         let (layer, outside): (usize, &dyn Fn(DVec3) -> f64) = match self.what {
             What::Object(i) => return object_gap(around, i, piece),
@@ -107,17 +107,17 @@ impl Suspect {
         let off = if piece.leg > 0 || !around.is_known(layer) {
             beyond(t, [from, to])
         } else {
-            // Theory expects the ray to meet the layer within the piece. The error would be that
-            // the piece ends earlier.
+            // Theory expects the ray to meet the layer within the piece; it would be wrong only if
+            // the piece ended earlier.
             (to - t).max(0.0)
         };
         libm::hypot(off, outside(piece.ray.at(t)))
     }
 }
 
-/// The number of shapes of a layer up to which all are considered on a leg.
+/// On a leg, all shapes of a layer are considered if there are at most this many.
 const MAX_SHAPES: usize = 64;
-/// The number of shapes considered where there are more: each costs thousands of rays traced
+/// The number of shapes considered if a layer has more: each costs thousands of rays traced
 /// through the scene.
 const NEAREST_SHAPES: usize = 16;
 /// The number of rays whose crossings determine the nearest shapes of a layer.
@@ -199,7 +199,7 @@ fn object_gap(around: &Surroundings<'_>, index: usize, piece: &PathPiece) -> f64
     let [from, to] = piece.extent;
     let own = |which: Option<Object>| which == Some(*object);
     let extent = match (own(piece.ends), own(piece.leaves), piece.is_last) {
-        // Theory expects the surface there.
+        // Theory expects the ray to end at this surface.
         (true, _, true) => return f64::INFINITY,
         (true, _, false) => [from, to * (1.0 - AT_END)],
         // Light that returns to the surface it has left is lost, wherever the plane is.

@@ -1,4 +1,4 @@
-//! Converts rays to the coordinates of a plane, written for this check from docs/conventions.md
+//! Converts rays to the coordinates of a plane, independently of theory: from docs/conventions.md
 //! alone.
 
 use super::rays::CheckRay;

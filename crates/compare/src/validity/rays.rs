@@ -96,8 +96,8 @@ impl CheckRay {
 
     /// Returns the distance at which theory finds the intersection of the ray with a surface.
     /// Theory uses Newton's method from the point where the ray crosses the tangent plane at the
-    /// vertex (`etendue_theory::rays`). So the intersection lies on the same side of the quadric's
-    /// extremum along the ray as that point.
+    /// vertex (`etendue_theory::rays`). So the intersection and that point lie on the same side of
+    /// the quadric's extremum along the ray.
     pub(super) fn theory_hit(&self, patch: &Patch) -> Option<f64> {
         let Self { point, direction } = self.seen_from(&patch.frame);
         let from = if direction.z.abs() > 1e-3 {

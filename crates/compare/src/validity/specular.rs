@@ -38,8 +38,8 @@ pub(crate) fn unforeseen_by_rays(
     (found, later)
 }
 
-/// Returns how far smooth meshes send rays from where their osculating patches send them; `None`
-/// without a mesh.
+/// Returns the difference between rays that smooth meshes deflect and the same rays deflected by
+/// osculating patches; `None` without a mesh.
 pub(crate) fn off_patches(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -50,8 +50,8 @@ pub(crate) fn off_patches(
 }
 
 /// The largest accepted distance between the arrivals of rays by a mesh and by its osculating
-/// patch, in half-widths of the window. Such rays change a spectrum by some ten times this
-/// distance, and the change is reported.
+/// patch, in half-widths of the window. A displacement of rays changes a spectrum by some ten
+/// times this distance, and the change is reported.
 const OFF_PATCHES: f64 = 1e-4;
 
 pub(super) struct Follower<'a> {

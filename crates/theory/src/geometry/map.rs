@@ -46,9 +46,9 @@ impl<const N: usize> AffineMap<N> {
         Some(Self { matrix, offset })
     }
 
-    /// Returns the distance of this map from the tangent at zero of another map of rays, measured
-    /// as by [`apart`](Self::apart). Subtracts the error of the finite differences, which matters
-    /// where the other map bends fast.
+    /// Returns the distance of this map from the tangent at zero to another map of rays, measured
+    /// as by [`apart`](Self::apart). The error of the finite differences is subtracted, because it
+    /// matters where the other map is strongly curved.
     pub(crate) fn off_touching(
         &self,
         map: impl Fn([f64; N]) -> Option<[f64; N]>,

@@ -9,12 +9,13 @@ use std::f64::consts::TAU;
 /// between their text and their table. Mirror and travel are printed correctly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edition {
-    /// According to ray geometry: the maps of this module.
+    /// The formulas that follow from ray geometry: the maps of this module.
     Corrected,
-    /// The numbered equations: 9, 11, 10, and for a surface in 3D the shear by M in the text after 19.
+    /// The paper's numbered Eqs. 9, 11 and 10, and for a surface in 3D the shear by M in the text
+    /// after Eq. 19.
     Equations,
-    /// Table 1: its light incidence, curvature and outgoing angle. Table 1 has no row for 3D, where
-    /// the shear by M takes the table's sign.
+    /// The paper's Table 1, with its light incidence, curvature and outgoing angle. The table has
+    /// no row for 3D; there the shear by M has the sign of the table's curvature.
     Table,
 }
 
@@ -111,7 +112,8 @@ impl Edition {
             .then(&self.outgoing_4d(-theta0))
     }
 
-    /// The sign of Eq. 11, relative to ray geometry.
+    /// Returns the sign of the shear by curvature, relative to ray geometry; Eq. 11 has the
+    /// opposite sign.
     fn sign(self) -> f64 {
         match self {
             Self::Corrected | Self::Table => 1.0,
@@ -123,8 +125,8 @@ impl Edition {
         shape.map(|row| row.map(|entry| self.sign() * entry))
     }
 
-    /// The longitude whose cosine multiplies M: the text after Eq. 19 leaves the cosine out, as if
-    /// the longitude were 0.
+    /// Returns the longitude whose cosine multiplies M. The text after Eq. 19 leaves the cosine
+    /// out, as if the longitude were 0.
     fn longitude(self, theta: f64) -> f64 {
         match self {
             Self::Corrected => theta,

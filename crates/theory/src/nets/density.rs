@@ -17,7 +17,7 @@ pub(crate) struct LinearDensity {
     values: Vec<f64>,
     /// The cumulative density at each of those points, from 0 to 1.
     below: Vec<f64>,
-    /// The cell in which each of many equal shares begins, where the search starts.
+    /// For each of many equal shares, the cell in which it begins; the search starts there.
     first: Vec<usize>,
 }
 
@@ -183,7 +183,7 @@ mod tests {
                     libm::exp(-std::f64::consts::PI * apart * apart) / target.value(t)
                 })
                 .sum();
-            // Midpoints in quantiles; a step in the density causes an error of 1/n.
+            // The nodes are midpoints in quantiles; a step in the density causes an error of 1/n.
             assert!((sum / f64::from(n) - 1.0).abs() < 1e-4, "{center}");
         }
     }

@@ -41,8 +41,8 @@ pub enum Operator {
         name: String,
     },
     /// Diffuse reflection: the integral over both slopes, times albedo/π. The result is exitant
-    /// radiance, constant in slope (Durand et al. 2005, section 5.1; the factor G is a
-    /// [`Cosine`](Self::Cosine) before it).
+    /// radiance, constant in slope (Durand et al. 2005, section 5.1). The factor G is a separate
+    /// [`Cosine`](Self::Cosine) before it.
     ///
     /// The frame turns round: the central ray returns along −D, x' = −x, y' = y. Only travel may
     /// follow.
@@ -173,7 +173,8 @@ impl ChainSegment<'_> {
         self.light.shape.as_slice()
     }
 
-    /// Returns the power p of the factor (1 + u² + v²)^p: the light's, and −2 from each cosine.
+    /// Returns the power p of the factor (1 + u² + v²)^p: the power of the light, minus 2 for each
+    /// cosine.
     pub(crate) fn slope_power(&self) -> f64 {
         self.light.power - 2.0 * f64::from(self.cosines)
     }

@@ -1,8 +1,8 @@
 //! The transforms of many polygons along a row of frequencies, without one exponential per polygon
 //! and frequency (docs/theory.md, section 3).
 //!
-//! With the field k exp(−2πi k·p), Eq. 5 there becomes a sum over the corners p, at which edges of
-//! directions d and e meet:
+//! With the field k exp(−2πi k·p), formula (5) of docs/theory.md becomes a sum over the corners p,
+//! at which edges of directions d and e meet:
 //!
 //! F(k) = 1/(4π²) Σ (d × e) / ((k·d)(k·e)) · exp(−2πi k·p)
 //!
@@ -15,7 +15,8 @@
 //!
 //! The end of a segment along d has the quotient ± 1/(2πi k·d).
 //!
-//! If a (k ± s)·d is nearly zero the corners cancel, and [`Polygon::transform`] is used instead.
+//! If (k ± s)·d is nearly zero for a direction d, the contributions of corners cancel, and
+//! [`Polygon::transform`] is used instead.
 
 use crate::parallel::expansion::AxisSection;
 use crate::parallel::polygon::{self, Polygon, cross, dot};
@@ -59,8 +60,8 @@ pub(crate) struct Corners<'a> {
 
 /// The quotients of some waves along a row.
 struct Quotients {
-    /// weight · (c₊ + c₋) and weight · (c₋ − c₊), [pair, wave, n]. `re` and `im` are stored in the
-    /// form in which they are multiplied.
+    /// weight · (c₊ + c₋) and weight · (c₋ − c₊), [pair, wave, n]. The first is stored in `re`,
+    /// the second in `im`.
     values: ComplexRow,
     /// Cells that need the plain transform: n, the shifted frequency, the weight.
     left: Vec<(usize, [f64; 2], Complex)>,

@@ -86,8 +86,8 @@ mod tests {
                 let said = format!("{radius} {distances:?}: {smooth:?} {hard:?}");
                 // Convergence is exponential beyond π R Ω nodes.
                 assert!(smooth.iter().all(|e| *e < 1e-7), "{said}");
-                // With the corners of the box, the error falls as n⁻⁴. The largest disc lets 1/500
-                // of the light pass.
+                // A box window has corners, with which the error falls as n⁻⁴. The largest disc
+                // lets 1/500 of the light pass.
                 assert!(hard.iter().all(|e| *e < 5e-5), "{said}");
             }
         }

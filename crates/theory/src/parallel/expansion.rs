@@ -28,10 +28,11 @@ pub(crate) struct AxisSection {
     /// Directions of edges, as vectors: (1, 0), (0, 1), then (shear, 1) for each distance.
     pub(crate) directions: Vec<[f64; 2]>,
     pub(crate) polygons: Vec<Polygon>,
-    /// Whether discs make so many directions that parallelograms merit a formula of their own.
+    /// Whether there are discs; they make so many directions that parallelograms have their own
+    /// formula.
     pub(crate) has_discs: bool,
-    /// Cache of strips already cut: (polygon, direction, bounds) to the part's index, `None` if
-    /// empty.
+    /// Cache of strips that were cut: the index of the part for a (polygon, direction, bounds), or
+    /// `None` if the part is empty.
     known: HashMap<(usize, usize, [u64; 2]), Option<usize>>,
 }
 
@@ -42,8 +43,9 @@ pub(crate) struct PolygonTerm {
     pub(crate) weight: f64,
     /// Indices of P and Q.
     pub(crate) polygons: [usize; 2],
-    /// The index of the term that it is a part of, and the index of the part of that term's Q that
-    /// patches of one extent along x leave. Terms for which both indices are equal have the same P.
+    /// The index of the term from which this term was cut, and an index of that term's Q and the
+    /// extent along x of the patch that cut it. Terms for which both indices are equal have the
+    /// same P.
     column: [usize; 2],
 }
 
@@ -71,8 +73,8 @@ pub(crate) struct Expansion {
     /// The sections (x, u) and (y, v).
     pub(crate) sections: [AxisSection; 2],
     pub(crate) terms: Vec<PolygonTerm>,
-    /// The summands of the window and gratings: products of the waves of both sections; more than
-    /// one for a factor of slope.
+    /// The summands of the window and gratings: products of the waves of both sections. A factor
+    /// of slope has several such products.
     pub(crate) products: Vec<[Vec<SectionWave>; 2]>,
     /// The radiance, or the intensity of a point light.
     pub(crate) brightness: f64,
@@ -93,7 +95,7 @@ impl AxisSection {
         }
     }
 
-    /// Replaces the square by δ(x − distance · u).
+    /// Replaces the square by the segment that represents δ(x − distance · u).
     fn become_segment(&mut self, distance: f64) {
         let edge = self.direction(self.shear(distance));
         self.polygons = vec![Polygon::segment(self.directions[edge][0], edge)];
@@ -114,8 +116,8 @@ impl AxisSection {
         })
     }
 
-    /// Returns the part of a polygon whose rays were in `extent` (metres) a `distance` ago; `None`
-    /// if it is empty.
+    /// Returns the part of a polygon whose rays were at positions in `extent` (metres), a
+    /// `distance` before; `None` if it is empty.
     fn strip(&mut self, polygon: usize, distance: f64, extent: [f64; 2]) -> Option<usize> {
         if extent.map(f64::to_bits) == EVERYWHERE.map(f64::to_bits) {
             return Some(polygon);
@@ -178,7 +180,7 @@ impl Expansion {
         fits.then_some(expansion)
     }
 
-    /// Returns the window without any light.
+    /// Returns the expansion of the window without any light.
     fn empty(window: &Window) -> Self {
         let sections = [
             AxisSection::new(&window.x, &window.u),

@@ -8,9 +8,9 @@
 //!
 //! where I is the spectrum under a window that contains all slopes whose lobes reach the plane's
 //! window. The integral is a sum over q. The field under this window is bounded, so the sum is
-//! exact up to the lobe's tail once the spacing separates the copies of the field. Along y the same
-//! operation moves a share of all light out of the window. This is exact if the field is a product
-//! of one of (x, u) and one of (y, v), as behind slats along y.
+//! exact up to the lobe's tail once the spacing separates the copies of the field. Along y, the
+//! lobe blurs slopes too, which moves a share of all light out of the window. This is exact if the
+//! field is the product of a function of (x, u) and a function of (y, v), as behind slats along y.
 
 use super::{projection, slices};
 use crate::Chain;
@@ -108,7 +108,7 @@ fn share(chain: &Chain, lobe: &PlanarLobe, window: &Window) -> f64 {
 
 /// A lobe over one slope, as a sum over frequencies.
 struct Blur {
-    /// A profile with all slopes whose lobes reach the window.
+    /// A profile that contains all slopes whose lobes reach the window.
     wide: Profile,
     lattice: FrequencyAxis,
     /// ρ̂' at the frequencies, times their spacing.

@@ -56,7 +56,8 @@ impl Back {
 
     /// Returns the backward ray from the last surface for the last leg. The leg starts beyond all
     /// its possible intersections with that surface, because half of a plane at an oblique surface
-    /// lies behind the surface. If the plane is on a curved surface, the point is known.
+    /// lies behind the surface. If the plane is on that surface, the point where the ray leaves it
+    /// is known.
     fn off_last(&self, element: &SpecularSurface, last: &LegRay) -> Option<LegRay> {
         let SpecularSurface { patch, .. } = element;
         let back = -last.direction;

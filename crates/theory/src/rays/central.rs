@@ -6,8 +6,8 @@ use crate::geometry::{Matrix, Media};
 use etendue_field::{Frame, Patch, Specular};
 use glam::DVec3;
 
-/// Below this sine, light arrives along the normal, and any plane through the normal is a plane of
-/// incidence.
+/// If the sine of the angle of incidence is below this, light counts as arriving along the normal,
+/// and any plane through the normal is a plane of incidence.
 const NORMAL: f64 = 1e-9;
 
 /// The incidence of the central ray on a surface (docs/theory.md, section 7).
@@ -27,7 +27,7 @@ impl Incidence {
     /// `frame` is the frame of the leg; `normal` may be on either side.
     pub(crate) fn new(frame: &Frame, normal: DVec3) -> Self {
         let n = normal * -normal.dot(frame.d).signum();
-        // With the turned axes X and Y = B, N + c₀ D = sin θ₀ X.
+        // In the turned axes, Y is B and N + c₀ D is sin θ₀ X.
         let across = n + frame.d * -n.dot(frame.d);
         let (x, theta0) = if across.length() < NORMAL {
             (frame.x, 0.0)

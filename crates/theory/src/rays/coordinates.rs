@@ -37,9 +37,9 @@ impl Plane {
         t.is_finite().then_some(t)
     }
 
-    /// The inverse of [`Self::coordinates`]: returns the ray, in the direction of light, that has
-    /// the given coordinates on the plane or on the surface it is on; and étendue over dx dy du dv
-    /// there. Returns `None` if there is no such ray.
+    /// Returns the ray, in the direction of light, that has the given coordinates on the plane or
+    /// on its surface, and étendue divided by dx dy du dv there. This is the inverse of
+    /// [`Self::coordinates`]. Returns `None` if there is no such ray.
     pub(crate) fn ray(&self, [x, y, u, v]: [f64; 4]) -> Option<(LegRay, f64)> {
         let foot = self.frame.to_world(DVec3::new(x, y, 0.0));
         if self.orientation == Orientation::Orthogonal {

@@ -25,13 +25,14 @@ const FREQUENCY: f64 = 0.5;
 /// transform of photons, 2·10⁻⁷, and so is invisible for any number of photons.
 const TARGET_ERROR: f64 = 1e-7;
 /// The error of the finer of two rules, divided by their difference. With a Hann window the error
-/// falls as n⁻³ beyond the window's frequencies, and (5/4)³ is 2.
+/// falls as n⁻³ beyond the window's frequencies, and (5/4)³ is about 2.
 const FINER_ERROR: f64 = 1.0;
 
 impl<F: RayField> Finder<'_, F> {
-    /// Returns the slices and ‖error‖/‖F‖. The error includes the change by the last refinement,
-    /// on slices at right angles, and the possible error from edges. Rules are refined to 10⁻⁷, or
-    /// until the next takes more than `max_steps`. Returns `None` if the error stays above 10⁻⁴.
+    /// Returns the slices and ‖error‖/‖F‖. The error includes the change of two slices at right
+    /// angles by the last refinement, and the possible error from edges. Rules are refined to
+    /// 10⁻⁷, or until the next takes more than `max_steps`. Returns `None` if the error stays
+    /// above 10⁻⁴.
     pub(super) fn slices(&self, grid: &SliceGrid, max_steps: f64) -> Option<(Slices, f64)> {
         let trial = SliceGrid {
             azimuths: grid.azimuths.min(2),

@@ -22,8 +22,8 @@ const POWERS: usize = 32;
 /// e^(i angle) to the power `LANES`.
 const LANES: usize = 8;
 
-/// Returns the sums on all slices. Bitwise identical on any number of threads; rounding is below
-/// 10⁻¹² of Σ |w|.
+/// Returns the sums on all slices. They are bitwise identical on any number of threads; the
+/// rounding error is below 10⁻¹² of Σ |w|.
 pub(super) fn sums(nodes: &[RayNode], grid: &SliceGrid) -> Slices {
     let part = nodes.len().div_ceil(PARTS).max(BLOCK);
     let parts: Vec<_> = nodes.chunks(part).collect();

@@ -71,7 +71,7 @@ impl LegRay {
         for _ in 0..MOST_STEPS {
             let step = ((a * s + 2.0 * b) * s + c) / (2.0 * (a * s + b));
             s -= step;
-            // The error is squared with each step, so the next would be below rounding error.
+            // Each step squares the error, so the next step would be below rounding error.
             if step.abs() <= 1e-8 * ((t + s).abs() + point.length()) {
                 t += s;
                 let here = point + direction * t;

@@ -18,8 +18,8 @@ impl ReflectionSystem {
     /// Returns the system with a light and lobes `factor` times as wide. Returns `None` if a
     /// surface reflects diffusely, since its lobe has no width.
     ///
-    /// With narrower windows and higher frequencies by the same factor, the error of first-order
-    /// maps falls with the factor.
+    /// If windows become narrower and frequencies higher by the same factor, the error of
+    /// first-order maps falls with the factor.
     #[must_use]
     pub fn shrunk(&self, factor: f64) -> Option<Self> {
         let mut system = self.clone();

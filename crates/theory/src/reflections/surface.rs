@@ -64,7 +64,7 @@ impl PathSurface {
         }
     }
 
-    /// Returns a sum over the BRDFs at a point of a scattering surface, with their weights.
+    /// Returns the weighted sum of `of` over the BRDFs at a point of a scattering surface.
     fn sum(&self, point: DVec3, of: impl Fn(&Brdf) -> f64) -> f64 {
         match &self.interaction {
             Interaction::Specular(_) => 0.0,

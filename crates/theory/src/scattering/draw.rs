@@ -133,8 +133,8 @@ impl Mirrored {
         let block = |map: &AffineMap<4>, row: usize, column: usize| -> Matrix<2> {
             crate::geometry::from_fn(|i, j| map.matrix[row + i][column + j])
         };
-        // These are the coordinates in which rays of the light's central point, or of the axis of a
-        // beam, vary.
+        // This is the first of two coordinates that vary among rays of the light's central point
+        // or, for a beam, among rays along its axis.
         let free = match system.light {
             Light::Environment { .. } => return None,
             Light::Beam { .. } => 0,
@@ -416,7 +416,7 @@ pub(crate) fn bell_density(width: f64, [p, q]: [f64; 2]) -> f64 {
     1.0 / (PI * squared * (1.0 + (p * p + q * q) / squared).powi(2))
 }
 
-/// Returns the inverse and the determinant.
+/// Returns the inverse and the determinant; `None` for a matrix that is nearly singular.
 fn inverted([[a, b], [c, d]]: &Matrix<2>) -> Option<(Matrix<2>, f64)> {
     let determinant = a * d - b * c;
     let scale = (a * a + b * b + c * c + d * d) * 1e-9;

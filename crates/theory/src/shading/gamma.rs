@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 /// Returns 1/Γ(z) for every real z, as a signed factor and the logarithm of another factor; the
 /// first factor is 0 at z = 0, −1, −2, …
 ///
-/// Uses reflection below zero: 1/Γ(z) = sin(πz)/π · Γ(1 − z).
+/// Uses the reflection formula below zero: 1/Γ(z) = sin(πz)/π · Γ(1 − z).
 pub(super) fn reciprocal_gamma(z: f64) -> (f64, f64) {
     if z > 0.0 {
         return (1.0, -ln_gamma(z));

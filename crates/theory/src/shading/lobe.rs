@@ -197,7 +197,7 @@ mod tests {
                         lobe.value(at) * libm::cos(2.0 * PI * omega * at) * step
                     })
                     .sum();
-                // The corner of cos δ causes an error of step²/6; 3e-8.
+                // The corner of cos δ causes an error of step²/6, which is 3e-8.
                 let close = if lobe == LOBES[0] { 3e-8 } else { 1e-12 };
                 assert!((sum - lobe.spectrum(omega)).abs() < close, "{lobe:?}");
             }

@@ -46,8 +46,8 @@ impl ReflectionStep {
 /// A factor of a local direction, given by its transform.
 #[derive(Clone, Copy)]
 pub enum Factor<'a> {
-    /// The constant 1. Without a [`PlanarLobe`] this is an ideal mirror, whose BRDF δ/cos θ_i'
-    /// cancels the cosine. Light is then not cut off at the horizon.
+    /// The constant 1. Without a [`PlanarLobe`] the surface is then an ideal mirror, whose BRDF
+    /// δ/cos θ_i' cancels the cosine. Light is then not cut off at the horizon.
     One,
     /// The clamped cosine cos⁺.
     Cosine,
@@ -131,8 +131,8 @@ impl PlanarReflection<'_> {
     /// frame.
     ///
     /// It holds to first order in the size of the neighbourhood, like the [maps](crate::geometry);
-    /// cosine, lobe and factors are exact. Between the cosine and the BRDF, a sum of terms is the
-    /// sum of their differential irradiances.
+    /// cosine, lobe and factors are exact. At steps between the cosine and the BRDF, the spectrum
+    /// for several terms is the sum of their differential irradiances.
     ///
     /// L_o(Ω) = ρ̂'(Ωθ) ∫ L_i(Ωx + k Ωθ − k q, q) f̂(−Ωθ − q) dq after step 6 for one term without
     /// h (docs/theory.md (36)). The sign of −Ωθ matters for an asymmetric f. Table 1 of Durand et

@@ -26,9 +26,9 @@ use std::fmt;
 /// times as fine as the frequencies require, transform, divide by the transform of the spreading
 /// kernel.
 ///
-/// Error: below 2·10⁻⁷ Σ|w| at every frequency, a bound that a single ray reaches; with many
-/// scattered rays errors average out. The caller applies window and radiance weight: `w` is used as
-/// given.
+/// The error is below 2·10⁻⁷ Σ|w| at every frequency, a bound that a single ray reaches; with many
+/// scattered rays errors average out. The caller applies window and radiance weight: `w` is used
+/// as given.
 ///
 /// The bits of the result depend on the rays, their order, and the kind of processor: the FFTs
 /// (`rustfft`, `realfft`) use the best instructions available. Spreading gives the same bits on all

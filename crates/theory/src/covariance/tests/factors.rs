@@ -32,7 +32,7 @@ fn smooth_windows_have_the_moment_of_their_power() {
         cut: 1.5,
     };
     is(profile(&gaussian), moment(|t| gaussian.value(t), 1.49));
-    // A box has edges, so the Gaussian of its variance replaces it.
+    // A box has edges, so a Gaussian of the same variance replaces it.
     is(profile(&Profile::Box(0.6)), 1.0 / (8.0 * PI * PI * 0.12));
 }
 

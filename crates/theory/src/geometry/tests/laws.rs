@@ -232,7 +232,8 @@ fn turning_the_axes_turns_what_happens() {
             sin * sin * a + 2.0 * cos * sin * b + cos * cos * d,
         ],
     ];
-    // T = −X before and X after: the axes of the surface turn in the opposite sense.
+    // T is −X before the mirror and X after it, so the axes of the surface turn in the opposite
+    // sense.
     let one = turn.then(&AffineMap::<4>::mirror_reflection(0.0, turned));
     let other = AffineMap::<4>::mirror_reflection(0.0, SHAPE).then(&AffineMap::rotation(-0.4));
     assert!(apart(&one, &other) < ROUNDING);

@@ -121,7 +121,8 @@ fn at_power(chain: &Chain, window: &Window, power: f64, k: [f64; 4]) -> Complex 
 fn assert_seen(name: &str, chain: &Chain, fault: impl Fn([f64; 4]) -> Complex) {
     let right = error(chain, |k| at(chain, &hann(), k));
     let wrong = error(chain, fault);
-    // The function is smooth, so the points are more accurate than where masks cut.
+    // The integrand is smooth, so quasi-random points are more accurate here than at the edges of
+    // masks.
     assert!(right < 5e-4, "{name}: {right:e}");
     assert!(wrong > 5e-3, "{name}: {wrong:e}"); // ten times that
 }
@@ -165,7 +166,7 @@ fn discs_and_points_agree_with_closed_forms() {
     let round = chain_of(spot(disc([0.0; 2], radius), 0.0), [(distance, None)]);
     let point = chain_of(Light::Point { intensity: 1.0 }, [(distance, None)]);
     let closed_disc = |k| disc_light(radius, distance, &gaussian, k);
-    // A closed form that is constant in slope and so lacks the root.
+    // A closed form that is constant in slope: it lacks the factor √(1 + u² + v²).
     let closed_point = |[x, y, u, v]: [f64; 4]| {
         let along = |k| point_light(distance, &gaussian, k);
         along([x, u]) * along([y, v])

@@ -26,7 +26,8 @@ fn two_half_planes_let_nothing_through_together() {
         assert!((sum - value(&open())).norm() < 1e-14 * zero(&open())); // rounding
         assert!(value(&both).norm() < 1e-12 * zero(&open())); // rounding of four products
     }
-    // The moduli alone do not add up; at the frequency of the shear their sum is far off.
+    // Moduli of spectra do not add up as the spectra do; on the line of the shear their sum is far
+    // off.
     let k = [2.0, 0.0, -3.4, 0.0];
     let value = |chain: &Chain| at(chain, &hann(), k).norm();
     let blind = value(&alone[0]) + value(&alone[1]) - value(&open());
@@ -44,7 +45,7 @@ fn two_half_planes_in_one_mask_leave_a_slit() {
         shapes: vec![],
         half_planes: half_planes.to_vec(),
     };
-    // Blockers that are large enough give the same result.
+    // Blockers that are large enough give the same result as half-planes.
     let blocks = rectangles(&[-50.1, 50.15].map(|y| square([0.0, y], 100.0)));
     let behind = |mask| {
         chain_of(

@@ -129,7 +129,7 @@ fn sums(axes: &[KernelAxis; 2], nodes: f64, grid: &SliceGrid) -> PredictionWork 
     } else {
         [0.0; 2]
     };
-    // A rule of many nodes is computed again for each row, by recurrences of that length.
+    // A rule of many nodes is computed again for each row, by recurrences over all of its nodes.
     let kernels = rule.map(|n| nodes * n * (2.0 * count + 40.0) + 10.0 * n * n);
     let row = if travels {
         kernels[0] + kernels[1] + 2.0 * SUM * nodes * nodes * count

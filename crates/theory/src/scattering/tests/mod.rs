@@ -380,9 +380,9 @@ fn wrong_operators_are_seen() {
     assert!(exact_error(&sharper) > 0.005);
 }
 
-/// Returns ∫ L cos⁺ dω of a spherical Gaussian, at an angle γ from its centre: the product of
-/// spherical harmonics that is the convolution with the clamped cosine (Ramamoorthi and Hanrahan
-/// 2001; in 2D the paper's section 6.1).
+/// Returns ∫ L cos⁺ dω of a spherical Gaussian, at an angle γ from its centre: a product of
+/// spherical-harmonic coefficients, which is the convolution with the clamped cosine (Ramamoorthi
+/// and Hanrahan 2001; in 2D the paper's section 6.1).
 fn harmonic_irradiance(width: f64, gamma: f64) -> f64 {
     let squared = width * width;
     let legendre = |l: i32, x: f64| {
