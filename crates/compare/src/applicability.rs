@@ -123,7 +123,8 @@ impl Applicability {
                 off_patches: None,
             };
         }
-        // Light on paths that theory does not assume might pass beside these objects.
+        // Objects prove darkness only on the paths that the theory assumes; light on other paths
+        // might pass beside them.
         let dark = unlit::reason(scene, plane, &theory);
         Self {
             theory,

@@ -26,7 +26,7 @@ use serde::Serialize;
 pub struct CovarianceReport {
     /// Name of the plane.
     pub name: String,
-    /// Kind of its prediction.
+    /// Kind of the plane's prediction.
     pub class: Class,
     /// The largest frequency along each axis, cycles per metre and per unit slope.
     pub band: [f64; 4],

@@ -21,11 +21,11 @@ pub struct FirstOrder {
     /// Independent replicates, of which `slices` is the mean. They are empty where the slices have
     /// no statistical error.
     pub replicates: Vec<Slices>,
-    /// The numbers of the chain.
+    /// The numbers that describe the chain.
     pub chain: FirstOrderChain,
 }
 
-/// The numbers of a chain of affine maps.
+/// The numbers that describe a chain of affine maps.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FirstOrderChain {
     /// ‖first order − exact‖/‖exact‖ as computed, by the corrected formulas.
@@ -54,17 +54,16 @@ pub struct FirstOrderChain {
 /// The comparison of the photons with the first-order chain, as in `summary.json`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FirstOrderReport {
-    /// The numbers of the chain.
+    /// The numbers that describe the chain.
     #[serde(flatten)]
     pub chain: FirstOrderChain,
-    /// Signed root of ‖S − F₁‖² less noise, over ‖exact‖²: the disagreement of the chain beyond
-    /// noise.
+    /// Signed root of (‖S − F₁‖² − noise)/‖exact‖²: the disagreement of the chain beyond noise.
     pub excess: Option<f64>,
     /// The upper 95 % bound of the excess.
     pub excess_bound: Option<f64>,
     /// The smallest excess that can be detected above this noise, at 95 %.
     pub resolvable: Option<f64>,
-    /// Probability of such a disagreement if the first-order chain were the truth.
+    /// Probability of a disagreement at least this large if the first-order chain were true.
     pub p_value: Option<f64>,
     /// The verdict on the exact prediction by rays that accompanies the chain.
     pub exact: Verdict,

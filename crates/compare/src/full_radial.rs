@@ -16,7 +16,7 @@ pub struct FullRadialReport {
     pub bins: usize,
     /// The mean of (measured − predicted)²/σ²: 1 if the prediction is true.
     pub chi2_per_bin: Option<f64>,
-    /// Probability of a disagreement as large as the one seen, if there is none.
+    /// Probability of a disagreement at least this large if the prediction is true.
     pub p_value: Option<f64>,
     /// ‖measured − predicted‖/‖predicted‖ of the power.
     pub relative_error: Option<f64>,
@@ -89,7 +89,7 @@ impl BinDifference {
         }
     }
 
-    /// Returns U with these signs of the D_r.
+    /// Returns U with the given signs of the D_r.
     fn with_signs(&self, signs: &[f64]) -> f64 {
         let mut pairs = self.pairs.as_slice();
         let mut sum = 0.0;
@@ -102,7 +102,7 @@ impl BinDifference {
         sum
     }
 
-    /// Returns the variance of U over all signs; it does not depend on the signs.
+    /// Returns the variance of U over all choices of signs.
     fn variance(&self) -> f64 {
         let terms = self.linear.iter().chain(&self.pairs);
         terms.map(|term| term * term).sum()

@@ -5,7 +5,7 @@ use etendue_scene::{BlockerLayer, Hit, Object, Scene, Surface};
 use glam::DVec3;
 
 /// Describes in words what rules out the theory for a plane: oblique incidence, other objects in
-/// the way, and light that it does not cover. Empty where the theory applies.
+/// the way, and light that it does not cover. The list is empty where the theory applies.
 pub(crate) fn obstacles_to_theory(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
     let mut found = Vec::new();
     for legs in scene.path.legs[..=plane.leg].windows(2) {

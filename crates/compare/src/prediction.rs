@@ -28,10 +28,10 @@ pub struct Prediction {
     pub quadrature_error: Option<f64>,
     /// The relative error ‖error‖/‖slices‖ due to smooth meshes. Theory replaces such meshes by
     /// osculating patches, and the two tracers of a reference deflect rays at them differently. Is
-    /// `None` without such a mesh.
+    /// `None` without a smooth mesh.
     pub mesh_error: Option<f64>,
-    /// The first-order chain. Where it exists, `slices` and all other fields are those of the exact
-    /// ray-space prediction.
+    /// The first-order chain. Where a first-order chain exists, `slices` and all other fields are
+    /// those of the exact ray-space prediction.
     pub first_order: Option<FirstOrder>,
     /// Independent replicates, of which `slices` is the mean: batches of a reference, or
     /// randomised rules of theory. The list is empty where the slices have no statistical error.
@@ -77,7 +77,8 @@ impl Prediction {
         both(quadrature, self.mesh_error)
     }
 
-    /// Returns ‖error‖/‖slices‖ of theory's own replicates. It does not shrink with more photons.
+    /// Returns ‖error‖/‖slices‖ of theory's own replicates. This error does not shrink with more
+    /// photons.
     pub(crate) fn statistical_error(&self) -> Option<f64> {
         self.quadrature_error.filter(|_| self.is_statistical())
     }

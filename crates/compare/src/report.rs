@@ -129,7 +129,7 @@ pub struct PlaneReport {
     pub noise_dof: Option<f64>,
     /// Mean of |S − F|²/σ², corrected for σ² being an estimate.
     pub chi2_per_dof: Option<f64>,
-    /// Probability of a disagreement as large as the one seen, if there is none.
+    /// Probability of a disagreement at least this large if the prediction is true.
     pub p_value: Option<f64>,
     /// The score test of each parameter of the chain.
     pub parameters: Vec<ParameterReport>,

@@ -305,7 +305,7 @@ impl Residuals {
     /// its own distribution. This includes correlations between neighbouring frequencies. The
     /// p-value is the share of rounds, the observed one included, that reach the observed value.
     ///
-    /// Returns `None` when all residuals are zero: nothing measured and nothing predicted.
+    /// Returns `None` when all residuals are zero, as when no light is measured or predicted.
     #[must_use]
     pub fn p_value(&self, seed: u64) -> Option<f64> {
         let products = self.products(true);

@@ -24,7 +24,7 @@ use std::sync::Arc;
 pub struct Brdf {
     /// The lobe.
     pub lobe: Lobe,
-    /// The factor on the lobe, 0 to 1.
+    /// The factor that multiplies the lobe, 0 to 1.
     pub albedo: f64,
     /// The Fresnel factor F.
     pub fresnel: Fresnel,
@@ -131,7 +131,7 @@ pub enum MicrofacetDistribution {
 }
 
 impl MicrofacetDistribution {
-    /// Returns the lobe of such microfacets with this roughness.
+    /// Returns the lobe of microfacets with this distribution and roughness.
     #[must_use]
     pub fn lobe(self, roughness: f64) -> Lobe {
         match self {

@@ -81,8 +81,8 @@ impl Light {
         self.image().is_some()
     }
 
-    /// Checks whether a point can receive light from more than one direction. Backward rays can hit
-    /// only such lights.
+    /// Checks whether a point can receive light from more than one direction. Backward rays can
+    /// hit only lights for which this is true.
     #[must_use]
     pub fn has_extent(&self) -> bool {
         matches!(self, Self::Area { .. } | Self::Environment { .. })

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 pub enum Side {
     /// Before light meets the blockers or the surface at this distance.
     Before,
-    /// After light has met them.
+    /// After light has met the blockers or the surface at this distance.
     After,
 }
 

@@ -181,7 +181,8 @@ impl SphereCells {
         [local.angle_between(DVec3::Z), turn.rem_euclid(1.0)]
     }
 
-    /// Converts a function over the sphere to a function of these coordinates.
+    /// Converts a density over the sphere to a density over the angle to the pole and the azimuth
+    /// divided by 2π.
     fn unrolled(&self, f: impl Fn(DVec3) -> f64) -> impl Fn([f64; 2]) -> f64 {
         move |[angle, turn]| {
             let (sin, cos) = libm::sincos(angle);

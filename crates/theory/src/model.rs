@@ -84,7 +84,7 @@ pub(crate) struct ShiftedModels<M> {
 const STEP: f64 = 1e-3;
 
 impl<M: Model> ShiftedModels<M> {
-    /// Returns a model with a parameter moved by a small step to both sides.
+    /// Returns the models with a parameter increased and decreased by a small step.
     pub(crate) fn nearby(model: &M, parameter: Parameter) -> Option<Self> {
         let step = STEP * parameter.scale(model.value(parameter)?);
         Self::new(model, parameter, step, |moved| moved)

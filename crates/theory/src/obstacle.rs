@@ -24,7 +24,7 @@ pub enum ObstacleForm {
         from: usize,
         /// Distance of the mask's plane from the light, metres.
         distance: f64,
-        /// What the mask lets through, over x and y.
+        /// The mask, as a function of x and y.
         mask: Mask,
     },
     /// An opaque rectangle centred on the origin of a frame, perpendicular to D.

@@ -70,9 +70,9 @@ pub fn real_mut(row: &mut [Complex], index: usize) -> &mut f64 {
 
 /// The working memory of a thread.
 struct Workspace4 {
-    /// The reals of a row.
+    /// The real numbers of a row.
     reals: Vec<f64>,
-    /// Some columns, one after another.
+    /// The numbers of some columns, one column after another.
     columns: Vec<Complex>,
     /// Scratch memory of the one-dimensional transforms.
     scratch: Vec<Complex>,

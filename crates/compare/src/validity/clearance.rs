@@ -44,8 +44,8 @@ pub(super) enum What {
 const AT_END: f64 = 1e-6;
 
 impl Suspect {
-    /// Returns everything that rays may meet on the legs of these paths. A layer with many shapes
-    /// contributes only the shapes nearest to where the rays cross it.
+    /// Returns everything that rays may meet on the legs of the given paths. A layer with many
+    /// shapes contributes only the shapes nearest to where the rays cross it.
     pub(super) fn all(around: &Surroundings<'_>, paths: &[&[PathPiece]]) -> Vec<Self> {
         let legs = paths.first().map_or(0, |pieces| pieces.len());
         let on_leg = |leg: usize| {
@@ -237,7 +237,7 @@ fn patch_gap(patch: &Patch, ray: &CheckRay, extent: [f64; 2]) -> f64 {
     let off = |t: f64| {
         let at = point + t * direction;
         let aside = (libm::hypot(at.x, at.y) - patch.aperture).max(0.0);
-        // Excludes the other half of a sphere or a cylinder.
+        // This excludes the other half of a sphere or a cylinder.
         let below = patch.aperture * (-patch.gradient(at).z).max(0.0);
         libm::hypot(libm::hypot(beyond(t, extent), aside), below)
     };

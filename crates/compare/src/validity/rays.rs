@@ -246,8 +246,8 @@ fn point_of(shape: &Shape, [a, b]: [f64; 2]) -> DVec3 {
     }
 }
 
-/// Returns the area of a shape, divided by the area of the square of offsets that [`point_of`] maps
-/// to the shape. Also returns the offset of a point.
+/// Returns the area of a shape, divided by the area of the square of offsets that [`point_of`]
+/// maps to the shape. Also returns the offset that is mapped to `point`.
 pub(super) fn offset_of(shape: &Shape, point: DVec3) -> (f64, [f64; 2]) {
     match shape {
         Shape::Rectangle(Rectangle { center, size }) => {

@@ -11,7 +11,7 @@ const POWER: f64 = 8.0 * PI * PI;
 /// The covariance C of the power spectrum of a Gaussian light field over [ρx, ρy, νu, νv], in
 /// cycles² per squared unit of the coordinates.
 ///
-/// Stored as C = P Q⁻¹. If light is unbounded along a coordinate, P is rank-deficient; if light
+/// C is stored as P Q⁻¹. If light is unbounded along a coordinate, P is rank-deficient; if light
 /// comes from a point or in one direction, Q is. Operators handle both cases like any other
 /// matrix, without thresholds for small or large numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]

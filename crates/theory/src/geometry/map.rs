@@ -193,7 +193,7 @@ impl<const N: usize> AffineMap<N> {
         let entries = (0..N).flat_map(|i| (0..N).map(move |k| (i, k)));
         entries
             .map(|(i, k)| (kept[i][k] - index_ratio * j(i, k)).abs())
-            // A maximum that propagates NaN.
+            // Returns the larger of two numbers, or NaN if one of them is NaN.
             .fold(0.0, |most, x| if most >= x { most } else { x })
     }
 }

@@ -64,7 +64,7 @@ impl Edition {
         }
     }
 
-    /// Mirror reflection: incidence, curvature, mirror, back, outgoing at −θ₀.
+    /// Mirror reflection, composed of incidence, curvature, mirror, back, and outgoing at −θ₀.
     #[must_use]
     pub fn mirror_reflection(self, theta0: f64, k: f64) -> SpectrumMap<2> {
         self.incidence(theta0)
@@ -74,8 +74,8 @@ impl Edition {
             .then(&self.outgoing(-theta0))
     }
 
-    /// Light incidence in 4D: (x, θ) as in 2D. The paper does not mention that the latitude flips;
-    /// both versions here include it.
+    /// Light incidence in 4D, where (x, θ) change as in 2D. The paper does not mention that the
+    /// latitude flips; both versions here include it.
     #[must_use]
     pub fn incidence_4d(self, theta0: f64) -> SpectrumMap<4> {
         SpectrumMap::sections(&self.incidence(theta0), &AffineMap::mirror().spectrum_map())
@@ -93,7 +93,7 @@ impl Edition {
         AffineMap::<4>::back(self.signed(shape), self.longitude(theta1)).spectrum_map()
     }
 
-    /// Outgoing angle in 4D: (x, θ) as in 2D.
+    /// Outgoing angle in 4D, where (x, θ) change as in 2D.
     #[must_use]
     pub fn outgoing_4d(self, theta1: f64) -> SpectrumMap<4> {
         SpectrumMap::sections(
@@ -102,7 +102,8 @@ impl Edition {
         )
     }
 
-    /// Mirror reflection in 4D: incidence, curvature, mirror, back, outgoing at −θ₀.
+    /// Mirror reflection in 4D, composed of incidence, curvature, mirror, back, and outgoing at
+    /// −θ₀.
     #[must_use]
     pub fn mirror_reflection_4d(self, theta0: f64, shape: Matrix<2>) -> SpectrumMap<4> {
         self.incidence_4d(theta0)

@@ -221,7 +221,7 @@ const RAY: f64 = 400.0;
 const SPREAD: f64 = 15.0;
 /// Approximate number of fields in one pass over derivatives.
 const FIELDS: f64 = 12.0;
-/// Steps of a transform per frequency.
+/// Number of steps of a transform per frequency.
 const TRANSFORM: f64 = 300.0;
 
 /// Estimates the work of a prediction by nets that uses all of its budget: rays, and the transforms

@@ -19,7 +19,7 @@ const MAX_FREQUENCIES: f64 = 4.0;
 const FAR_SHARE: f64 = 0.7;
 /// The most terms of an expansion that discs may cause.
 const MOST_TERMS: f64 = 3e5;
-/// Most strips of a disc.
+/// The largest number of strips of a disc.
 const MOST_STRIPS: f64 = 64.0;
 
 /// How the discs of a chain are split: those of the light, then those of each opaque mask.

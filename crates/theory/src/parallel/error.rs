@@ -11,9 +11,10 @@ const ORDER: i32 = 4;
 /// Estimates the error of `slices`, the prediction of the same chain: ‖error‖/‖F‖ over the grid.
 /// Returns `None` if the prediction is a closed form.
 ///
-/// * Discs: the difference from a prediction that splits them a quarter finer, divided by 1 − 0.8⁴.
-///   Where masks and windows have corners within a disc the error falls as n⁻⁴, elsewhere faster
-///   than exponentially (docs/theory.md, section 3). So the difference is nearly the whole error.
+/// * Discs: the difference from a prediction that splits them a quarter finer, divided by 1 −
+///   0.8⁴. Where masks and windows have corners within a disc the error falls as n⁻⁴, elsewhere
+///   faster than exponentially (docs/theory.md, section 3). So the difference of the two
+///   predictions is nearly the whole error.
 /// * Diffuse reflection: a third of the difference from a prediction with half as many nodes, since
 ///   the rule is of second order.
 /// * Spots, points and cosines: the residual of the series of (1 + u² + v²)^p over the window,

@@ -36,10 +36,10 @@ pub(crate) struct AxisSection {
     known: HashMap<(usize, usize, [u64; 2]), Option<usize>>,
 }
 
-/// weight · 1_P(x, u) · 1_Q(y, v), P and Q being polygons of the two sections.
+/// A term weight · 1_P(x, u) · 1_Q(y, v), where P and Q are polygons of the two sections.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PolygonTerm {
-    /// ±1, times the weights of the rectangles of discs.
+    /// The weight: ±1, times the weights of the rectangles of discs.
     pub(crate) weight: f64,
     /// Indices of P and Q.
     pub(crate) polygons: [usize; 2],

@@ -111,7 +111,7 @@ struct Blur {
     /// A profile that contains all slopes whose lobes reach the window.
     wide: Profile,
     lattice: FrequencyAxis,
-    /// ρ̂' at the frequencies, times their spacing.
+    /// The values of ρ̂' at the frequencies, times the frequencies' spacing.
     hats: Vec<f64>,
     window: Profile,
 }
@@ -262,7 +262,7 @@ mod tests {
         let plain = slices(&chain, &window, &grid).at_zero();
         let left = blurred_slices(&chain, &lobe, &window, &grid).at_zero() / plain;
         let along_y = share(&chain, &lobe, &window);
-        // The rounding error of about a hundred terms.
+        // The limit is the rounding error of about a hundred terms.
         assert!(along_y < 0.9 && (left / along_y.powi(2) - 1.0).abs() < 1e-12);
     }
 

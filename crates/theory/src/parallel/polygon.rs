@@ -157,7 +157,8 @@ impl Polygon {
         self.triangles().map(|[b, c]| 0.5 * cross(b, c)).sum()
     }
 
-    /// Returns F(k) = ∫∫ exp(−2πi k·p) over the polygon; F(0) is the measure. Exact to about 1e-14.
+    /// Returns F(k) = ∫∫ exp(−2πi k·p) over the polygon; F(0) is the measure. The result is exact
+    /// to about 1e-14.
     pub(crate) fn transform(&self, k: [f64; 2]) -> Complex {
         let Some(first) = self.0.first() else {
             return Complex::ZERO;

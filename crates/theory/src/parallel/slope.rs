@@ -32,7 +32,7 @@ pub(crate) struct Slope {
     /// Root mean square error over the window, relative to that of the function itself; 0 for p =
     /// 0.
     pub(crate) residual: f64,
-    /// Whether p = 0.
+    /// Whether the power p is 0.
     pub(crate) is_profile: bool,
 }
 

@@ -159,7 +159,7 @@ pub(crate) fn disc_light(
 /// The field exp(−π(α x² + 2β x v + γ v²)), for example a Gaussian window after travel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Tilted {
-    /// α, per square metre.
+    /// Coefficient α, per square metre.
     pub(crate) alpha: f64,
     /// β, per metre.
     pub(crate) beta: f64,

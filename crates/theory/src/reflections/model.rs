@@ -137,7 +137,7 @@ impl Model for Observed<ReflectionSystem> {
         Some(())
     }
 
-    /// Includes the difference to the first-order chain.
+    /// Includes the difference of the first-order chain from the prediction.
     fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: RayBudget) -> Predicted {
         let last = self.system.last_scatterer();
         let surface = last.map(|last| self.system.surfaces[last].clone());

@@ -22,7 +22,7 @@ impl PathSurface {
         distances.filter(inside)
     }
 
-    /// Returns the first of these distances.
+    /// Returns the first distance beyond `start` at which a ray meets the surface.
     pub(super) fn first(&self, ray: &LegRay, start: f64) -> Option<f64> {
         self.distances(ray, start).min_by(f64::total_cmp)
     }

@@ -30,7 +30,7 @@ pub struct ScatteringChain {
     pub curvature: Matrix<2>,
     /// Distance of the surface from the light, metres.
     pub distance: f64,
-    /// (T, B, N) at the central hit.
+    /// The axes (T, B, N) at the central hit.
     pub frame: Frame,
     /// The steps in words, in the order light meets them.
     pub steps: Vec<String>,

@@ -20,11 +20,11 @@ use glam::DVec3;
 /// starting point are sampled (docs/theory.md (40)). `chain` is that of [`chain`](super::chain());
 /// it guides the sampling. The result is bitwise identical on any number of threads.
 ///
-/// The prediction of the chain, and the derivatives, are differences of the radiance of the same
-/// rays. They are accurate to about a per cent of their values. Parts of the light move with the
-/// light, so the edges of the light cause no edges in a difference. They do not move with the
-/// shadows of masks: points that are lit on only one side of a difference add noise, which is
-/// lower for a larger step.
+/// The chain's difference from the exact prediction, and the derivatives, are sums of differences
+/// in radiance of the same rays. They are accurate to about a per cent of their values. Parts of
+/// the light move with the light, so the edges of the light cause no edges in a difference. They
+/// do not move with the shadows of masks: points that are lit on only one side of a difference add
+/// noise, which is lower for a larger step.
 pub(crate) fn predict(
     view: &Observed<ScatteringSystem>,
     chain: Option<&ScatteringChain>,

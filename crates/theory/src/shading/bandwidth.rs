@@ -87,7 +87,7 @@ impl Criterion {
         self.distance / libm::cos(self.outgoing) * sum * self.lobe_cutoff
     }
 
-    /// Returns 1 + 2kd/cos θ₁: both shears of the surface, then travel.
+    /// Returns 1 + 2kd/cos θ₁, the effect of both shears of the surface and of travel.
     fn doubled_shear(&self) -> f64 {
         1.0 + 2.0 * self.curvature * self.distance / libm::cos(self.outgoing)
     }

@@ -35,7 +35,7 @@ mod tests {
     fn factorials_and_halves() {
         let mut factorial = 1.0;
         for n in 1..=20 {
-            // The rounding error of ln Γ up to 40.
+            // The limit is the rounding error of ln Γ up to 40.
             assert!((ln_gamma(f64::from(n)).exp() / factorial - 1.0).abs() < 1e-13);
             factorial *= f64::from(n);
         }
@@ -52,7 +52,7 @@ mod tests {
             // 1/Γ(z) = z/Γ(z + 1) on both sides of each pole.
             for z in [z + 0.1, z - 0.1] {
                 let step = z * reciprocal(z + 1.0);
-                // The rounding error of ln Γ up to 20.
+                // The limit is the rounding error of ln Γ up to 20.
                 assert!((reciprocal(z) / step - 1.0).abs() < 1e-13, "{z}");
             }
         }

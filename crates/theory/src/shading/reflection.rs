@@ -100,13 +100,13 @@ use angular_product as product;
 /// One separable term of a BRDF, w(s) f(θ_i') ρ'(θ_o' − θ_r') h(θ_o').
 #[derive(Clone, Copy, Debug)]
 pub struct SeparableTerm<'a> {
-    /// f(θ_i') including the cosine.
+    /// The factor f(θ_i'), including the cosine.
     pub before: Factor<'a>,
-    /// ρ'; `None` for a Dirac.
+    /// The lobe ρ'; `None` for a Dirac.
     pub lobe: Option<PlanarLobe>,
     /// h(θ_o').
     pub after: Factor<'a>,
-    /// w, the weight at each position, as a sum of waves; `None` for 1.
+    /// The weight w at each position, as a sum of waves; `None` for 1.
     pub weight: Option<&'a [TextureWave]>,
 }
 
@@ -117,7 +117,7 @@ pub struct PlanarReflection<'a> {
     pub incidence: f64,
     /// θ₁, the direction the central ray leaves in; −θ₀ for a mirror.
     pub outgoing: f64,
-    /// k, in 1/m, convex positive.
+    /// Curvature k, in 1/m, convex positive.
     pub curvature: f64,
     /// The terms of the BRDF.
     pub terms: Vec<SeparableTerm<'a>>,

@@ -200,7 +200,7 @@ fn pictures_of_projectors_and_beams() {
             phase: 0.0,
         }),
     };
-    // Both spectra are unbounded before a lobe, but not after it.
+    // The spectra of a beam and of a projector are unbounded before a lobe, but not after it.
     let blurred = |c: SpectralCovariance| c.convolved(&diagonal([0.01; 4])).matrix().unwrap();
     let near = |light: Light| blurred(chain_of(light, []).spectral_covariance().unwrap());
     let [a, b] = [0.09 / TAU, 0.04 / TAU];

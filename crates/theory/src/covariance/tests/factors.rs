@@ -86,7 +86,7 @@ fn lobes_have_the_moment_of_their_power() {
         ggx[2][2],
         of_rings(&|r| (1.0 + r * r / (4.0 * a * a)).powi(-2)),
     );
-    // Light turns by less out of the plane of incidence.
+    // Out of the plane of incidence, light turns by a smaller angle.
     let oblique = lobe(&Lobe::Beckmann { roughness: a }, 1.0).unwrap();
     is(oblique[3][3] / oblique[2][2], libm::cos(1.0_f64).powi(2));
     assert!(lobe(&Lobe::Lambertian, 0.0).is_none());

@@ -154,7 +154,7 @@ impl<'a> Receiver<'a> {
     /// Returns the irradiance at a point of the receiver, in the frame of the arriving light, W
     /// m⁻².
     ///
-    /// Accurate to 10⁻¹² of the irradiance without blockers.
+    /// The result is accurate to 10⁻¹² of the irradiance without blockers.
     pub(crate) fn irradiance(&self, x: f64, y: f64) -> f64 {
         let brightness = self.light.brightness;
         if let Some(shape) = &self.light.shape {
@@ -187,7 +187,7 @@ impl<'a> Receiver<'a> {
         self.light.brightness * self.received(&bundle, region) / sides.area()
     }
 
-    /// Returns the integral over those slopes of a region at which no blocker stops light.
+    /// Returns the integral over the slopes of a region at which no blocker stops light.
     fn received(&self, bundle: &SlopeProjection, region: ReceiverRegion) -> f64 {
         self.passed(
             bundle,

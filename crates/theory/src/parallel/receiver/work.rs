@@ -38,7 +38,7 @@ impl Receiver<'_> {
             bytes: 3.0 * 8.0 * places,
             bytes_each: 0.0,
             drivers: format!(
-                "{tables} tables of {nodes} x {nodes} places x {place:.0} steps to compute the light at each place, for shapes and for nodes between fringes"
+                "{tables} tables of {nodes} x {nodes} places x {place:.0} steps to compute the light at each place, for shapes and for nodes that resolve fringes"
             ),
         };
         let cells = (picture.bins * picture.bins) as f64;

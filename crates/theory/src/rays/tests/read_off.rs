@@ -213,7 +213,7 @@ fn foci_of_a_hollow_sphere() {
     let (theta0, radius) = (0.7_f64, 2.0);
     let system = mirror(beam([0.1, 0.1]), theta0, [0.0; 2], [-1.0 / radius; 3]);
     let first = chain(&view(&system, &after(&system, 0.5)), Edition::Corrected).unwrap();
-    // Coddington's equations: R/2 · cos θ₀ and R/(2 cos θ₀).
+    // By Coddington's equations, the foci are at R/2 · cos θ₀ and R/(2 cos θ₀).
     let expected = [
         0.5 * radius * libm::cos(theta0),
         0.5 * radius / libm::cos(theta0),

@@ -448,8 +448,8 @@ fn diffuse_sphere_under_an_environment_is_the_known_product() {
     for (map, most) in [
         // This is the error of a net of 2¹⁸ points.
         (EnvironmentMap::Lobes(vec![lobe]), 1e-5),
-        // The net has the same error here, and there are kinks between pixels, which are 0.006 rad
-        // apart over widths of 0.25: (1/40)²/24.
+        // The error of the net is the same here; that of kinks between pixels is added, which are
+        // 0.006 rad apart over widths of 0.25: (1/40)²/24.
         (map([1024, 512]), 1e-4),
         // The map is interpolated bilinearly between pixel centres, 0.03 rad apart: (1/8)²/12 of
         // the lobe's curvature.
