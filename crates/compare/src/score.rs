@@ -32,8 +32,8 @@ const DETECTABLE: f64 = 3.858;
 /// The step δ = Re Σ conj(D)(S − F)/σ² / Σ|D|²/σ² is the least-squares change of the parameter;
 /// the error of δ is its spread over the residuals. This error includes correlations between
 /// frequencies and the noise of a prediction's replicates. A further error of the prediction,
-/// `numerical` = ‖error‖, moves δ by no more than `numerical` ‖D/σ²‖ / Σ|D|²/σ² (Cauchy–Schwarz),
-/// which is added in quadrature. Step and error hold to first order in δ.
+/// `numerical` = ‖error‖, moves δ by no more than `numerical` ‖D/σ²‖ / Σ|D|²/σ² (Cauchy–Schwarz).
+/// This bound is added in quadrature. Step and error hold to first order in δ.
 ///
 /// Returns `None` when the prediction does not depend on the parameter, or no photon arrived.
 pub(crate) fn score(

@@ -175,7 +175,7 @@ fn sampled(width: f64, size: f64, count: u32, seed: u64) -> Prediction {
 }
 
 /// The numbers of replicates and batches differ: fewer replicates, more replicates, and numbers
-/// that do not divide each other. p is uniform if they agree, and a spectrum 5 % too wide is
+/// that do not divide each other. p is uniform if both sides agree, and a spectrum 5 % too wide is
 /// detected.
 #[test]
 fn two_samples_are_compared_with_the_noise_of_both() {

@@ -6,9 +6,9 @@ use std::sync::Arc;
 
 /// A bidirectional reflectance distribution function, sr⁻¹.
 ///
-/// With ωi and ωo the directions of light, both away from the surface, θi and θo their angles to
-/// the normal n, r the mirror direction of ωi, α the angle between r and ωo, and h the half vector
-/// of ωi and ωo:
+/// In the table, ωi and ωo are the directions of light, both away from the surface, and θi and θo
+/// are their angles to the normal n. The mirror direction of ωi is r, and α is the angle between r
+/// and ωo. The half vector of ωi and ωo is h.
 ///
 /// | lobe | BRDF |
 /// |---|---|

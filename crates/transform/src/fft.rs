@@ -23,9 +23,10 @@ const BAND: usize = 512;
 /// unused, as in FFTW's in-place transforms of reals. See [`real`] and [`real_mut`].
 ///
 /// The one-dimensional transforms are those of `realfft` along rows and of `rustfft` along the
-/// other axes. Each is computed by one thread, and columns are grouped in the same way on any
-/// number of threads, so the result is bitwise independent of that number. The result depends on
-/// the kind of processor, since both libraries use the best instructions available.
+/// other axes. Each one-dimensional transform is computed by one thread, and columns are grouped
+/// in the same way on any number of threads, so the result is bitwise independent of that number.
+/// The result depends on the kind of processor, since both libraries use the best instructions
+/// available.
 ///
 /// The error, relative to the root mean square of F, is 2 to 5·10⁻¹⁶, and at most 1.5·10⁻¹⁵ (AVX,
 /// shapes up to 64 × 64 and 9⁴).

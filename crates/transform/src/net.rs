@@ -139,8 +139,9 @@ impl Net {
 }
 
 /// Applies Owen scrambling by a hash of the reversed bits, each of which depends only on the bits
-/// above it (Laine and Karras 2011; the hash of Vegdahl 2021, *Building a better LK hash*, with a
-/// multiplier that is independent of the addend, which makes all numbers equally likely).
+/// above it (Laine and Karras 2011). The hash is that of Vegdahl 2021, *Building a better LK
+/// hash*, with a multiplier that is independent of the addend, which makes all numbers equally
+/// likely.
 #[inline]
 fn scrambled(value: u32, [added, factor]: [u32; 2]) -> u32 {
     let mut x = value.reverse_bits();

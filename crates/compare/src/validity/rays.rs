@@ -228,8 +228,8 @@ pub(super) fn strength(light: &Light, ray: &CheckRay) -> f64 {
     }
 }
 
-/// Returns the point of a shape at an offset from its centre, as a share of its size; a point
-/// outside a disc is pulled in.
+/// Returns the point of a shape at an offset from its centre, given as a share of the shape's
+/// size; a point outside a disc is pulled in.
 fn point_of(shape: &Shape, [a, b]: [f64; 2]) -> DVec3 {
     match shape {
         Shape::Rectangle(rectangle) => {

@@ -37,11 +37,11 @@ const FAINT: f64 = 1e-3;
 /// Rays that theory follows from the light to a plane.
 pub(super) trait Followed {
     /// Returns the amount of light that a ray brings into the window, and the first thing it meets
-    /// that theory ignores, if any; `None` if it brings none.
+    /// that theory ignores, if any; `None` if it brings no light.
     fn check(&self, draw: &RayDraw) -> Option<(f64, Option<Meets>)>;
 
     /// Returns the amount of light that a ray brings along theory's path, and the pieces of that
-    /// path; `None` if it brings none.
+    /// path; `None` if it brings no light.
     fn pieces(&self, draw: &RayDraw) -> Option<(f64, Vec<PathPiece>)>;
 
     /// Returns the surroundings of the path.

@@ -111,7 +111,7 @@ impl<'a> Follower<'a> {
 
 impl Follower<'_> {
     /// Returns the amount of light that a ray brings into the window, and the first thing it meets
-    /// that theory ignores, if any; `None` if it brings none.
+    /// that theory ignores, if any; `None` if it brings no light.
     fn check(&self, (ray, emitted): (CheckRay, f64)) -> Option<(f64, Option<Meets>)> {
         let (arrival, meets) = self.photon(ray);
         let brought = [arrival, self.theory(ray)].into_iter().flatten();

@@ -175,14 +175,14 @@ impl<const N: usize> AffineMap<N> {
         Some(congruent(&transpose(&inverse), before))
     }
 
-    /// Returns how far the map is from conserving étendue: the largest entry of |Aᵀ J A − r J|,
-    /// with J = [[0, 1], [−1, 0]] in blocks, and r the index of refraction before the map divided
-    /// by that after it.
+    /// Returns how far the map is from conserving étendue: the largest entry of |Aᵀ J A − r J|. J
+    /// is [[0, 1], [−1, 0]] in blocks, and r is the index of refraction before the map divided by
+    /// that after it.
     ///
     /// The result is zero between two planes perpendicular to the light, whatever is between them.
-    /// In 2D, n dx du is conserved (J then gives |det A − r|); in 4D, the Lagrange invariant of
-    /// every pair of rays is. Maps onto or off a surface have one cosine too many or too few, so
-    /// their result is not zero.
+    /// In 2D, n dx du is conserved, and the result is |det A − r|; in 4D, the Lagrange invariant
+    /// of every pair of rays is conserved. Maps onto or off a surface have one cosine too many or
+    /// too few, so their result is not zero.
     #[must_use]
     pub fn symplectic_defect(&self, index_ratio: f64) -> f64 {
         let half = N / 2;

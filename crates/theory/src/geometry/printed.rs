@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 
 /// The version of the geometric operators (docs/theory.md, section 7).
 ///
-/// The steps onto and off a surface that Durand et al. 2005 print differ from ray geometry, and
-/// between their text and their table. Mirror and travel are printed correctly.
+/// The steps onto and off a surface, as Durand et al. 2005 print them, differ from ray geometry,
+/// and differ between text and table. Mirror and travel are printed correctly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edition {
     /// The formulas that follow from ray geometry: the maps of this module.

@@ -37,8 +37,8 @@ const DERIVATIVE_ERROR: f64 = 0.03;
 /// Number of nodes of a net at which its error is first estimated.
 const FIRST_NODES: u32 = 1 << 11;
 
-/// The fewest nodes of a net before a prediction may stop because its error is small: nets that
-/// have not sampled their heavy rays yet agree too well.
+/// The fewest nodes of a net before a prediction may stop because its error is small. Nets that
+/// have not yet sampled their heavy rays differ too little.
 const MIN_NODES: u32 = 1 << 14;
 
 /// Criterion for when to stop adding nodes.

@@ -25,9 +25,9 @@ pub enum Operator {
         /// The distance d, in metres.
         distance: f64,
     },
-    /// A mask in the plane where the light is now. It is a product with 1 − Σ shapes and
-    /// half-planes, which must not overlap each other, or with a cosine grating (Durand et al.
-    /// 2005, Eq. 4).
+    /// A mask in the plane where the light is now. Radiance is multiplied by 1 minus the sum of
+    /// shapes and half-planes, which must not overlap each other, or by a cosine grating (Durand
+    /// et al. 2005, Eq. 4).
     Visibility {
         /// Name of the mask.
         name: String,
@@ -91,8 +91,8 @@ pub(crate) struct ParallelEmitter {
     pub(crate) shape: Option<Shape>,
     /// Radiance or intensity along the central ray.
     pub(crate) brightness: f64,
-    /// The power p of the factor (1 + u² + v²)^p on radiance: −n/2 from a spot's cosⁿθ, ½ from a
-    /// point (its distance to (x, y) is D √(1 + u² + v²)).
+    /// The power p of the factor (1 + u² + v²)^p on radiance: −n/2 for a spot's cosⁿθ; ½ for a
+    /// point, whose distance to (x, y) is D √(1 + u² + v²).
     pub(crate) power: f64,
 }
 

@@ -8,8 +8,8 @@
 //!
 //! The quotient depends only on the pair of directions, and a chain has few such pairs. The
 //! exponential is the product of one exponential in the position and one in the slope. Each
-//! exponential of the window shifts k by ± s, so a corner needs, with θ = 2π s·p and c± the
-//! quotients at k ± s,
+//! exponential of the window shifts k by ± s, so with θ = 2π s·p and the quotients c± at k ± s, a
+//! corner needs
 //!
 //! exp(−2πi k·p) Σ_s (c₊ + c₋) cos θ + i (c₋ − c₊) sin θ.
 //!

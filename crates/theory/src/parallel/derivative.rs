@@ -30,7 +30,7 @@ pub fn derivative(
 ) -> Slices {
     let value = chain.value(parameter).expect("a parameter of the chain");
     let moved = value + RELATIVE_STEP * parameter.scale(value);
-    // Uses the fineness of `prediction`, so the quadrature errors cancel.
+    // Discs are split as in `prediction`, so the quadrature errors cancel.
     let fineness = fineness(&chain.path(), window, grid);
     let moved_chain = chain.with(parameter, moved).expect("the same");
     let path = moved_chain.path();

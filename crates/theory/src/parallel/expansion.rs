@@ -225,7 +225,7 @@ impl Expansion {
         true
     }
 
-    /// Expands a chain of rectangles, which does not depend on the fineness.
+    /// Expands a chain of rectangles, which does not depend on how discs are split.
     #[cfg(test)]
     pub(crate) fn of_rectangles(chain: &crate::Chain, window: &Window) -> Self {
         let path = chain.path();
@@ -285,9 +285,9 @@ impl Expansion {
         parts
     }
 
-    /// Returns the terms with sums along y taken first. n × n patches of a disc behind n × n others
-    /// make n⁴ terms. The sum along y over n² of them is the same for all n polygons of (x, u) that
-    /// a patch's extent along x cuts. So n³ terms with n³ summands are enough.
+    /// Returns the terms with sums along y taken first. n × n patches of a disc behind n × n
+    /// others make n⁴ terms. The sum along y over n² of these terms is the same for all n polygons
+    /// of (x, u) that a patch's extent along x cuts. So n³ terms with n³ summands are enough.
     pub(crate) fn columns(&self) -> SectionColumns {
         let mut known = HashMap::new();
         let mut sums: Vec<Sum> = Vec::new();

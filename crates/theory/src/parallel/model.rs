@@ -139,7 +139,7 @@ const MAX_STEPS_WITHOUT_NETS: f64 = 1e11;
 const MAX_BYTES: f64 = 1e9;
 
 impl Chain {
-    /// Checks whether nets of rays replace the chain's closed form or quadrature, because that
+    /// Checks whether nets of rays replace the chain's closed form or quadrature. They do if it
     /// takes longer than the photons or does not resolve a pattern.
     #[must_use]
     pub fn is_sampled(&self, (window, grid, picture): Over<'_>, budget: RayBudget) -> bool {

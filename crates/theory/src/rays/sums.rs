@@ -1,7 +1,7 @@
 //! Σ w e^(−2πi Ω·z) over rays, at all frequencies of a grid of slices.
 //!
 //! On one azimuth a ray is a point (a, b), and its exponential at (m Δρ, n Δν) is the product of
-//! one factor along ρ and one along ν. Summed over rays, this is a matrix product of the real and
+//! one factor along ρ and one along ν. The sum over rays is a matrix product of the real and
 //! imaginary parts of the factors; each product serves both + ν and − ν.
 
 use crate::nets::RayNode;

@@ -43,7 +43,7 @@ impl PathSurface {
     }
 
     /// Returns the continuation of a ray that meets a specular surface at a point; `None` if the
-    /// surface scatters, or refracts and the ray is totally reflected.
+    /// surface scatters, or if it refracts and the ray is totally reflected.
     pub(super) fn turned(&self, ray: &LegRay, point: DVec3) -> Option<LegRay> {
         let Interaction::Specular(event) = self.interaction else {
             return None;

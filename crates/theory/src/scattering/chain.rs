@@ -39,8 +39,9 @@ pub struct ScatteringChain {
 /// Returns the chain of a system up to a plane on its surface or beyond; `None` if the central ray
 /// does not arrive there.
 ///
-/// Its maps are the derivatives of the exact rays. Without twist they are the corrected maps of
-/// Durand et al. 2005, Eqs. 9–11 and 19 (docs/theory.md, section 7), as the tests verify.
+/// Its maps are the derivatives of the exact rays. Apart from turns of the axes, they are the
+/// corrected maps of Durand et al. 2005, Eqs. 9–11 and 19 (docs/theory.md, section 7), as the
+/// tests verify.
 #[must_use]
 pub fn chain(view: &Observed<ScatteringSystem>) -> Option<ScatteringChain> {
     let Observed { system, plane } = view;

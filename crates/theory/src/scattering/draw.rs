@@ -242,7 +242,7 @@ impl<'a> Lights<'a> {
     }
 
     /// Returns the sampled parts of the light for a point of the surface: one part, or one in each
-    /// quarter of the unit square. Each part's density is divided by its share of the mean.
+    /// quarter of the unit square. Each part's density is divided by the part's share of the mean.
     pub(super) fn each<'b>(
         &'b self,
         leaving: &'b Leaving,

@@ -22,9 +22,9 @@ use std::fmt;
 /// S_φ(ρ, ν) = Σ w e^(−2πi (ρ p + ν q)),  p = x cos φ + y sin φ,  q = u cos φ + v sin φ,
 ///
 /// by a 2D non-uniform fast Fourier transform of type 1 for each azimuth (Barnett, Magland and af
-/// Klinteberg 2019, SIAM J. Sci. Comput. 41(5)): spread each ray over 8 × 8 cells of a grid 2.5
-/// times as fine as the frequencies require, transform, divide by the transform of the spreading
-/// kernel.
+/// Klinteberg 2019, SIAM J. Sci. Comput. 41(5)). It spreads each ray over 8 × 8 cells of a grid
+/// 2.5 times as fine as the frequencies require, transforms the grid, and divides by the transform
+/// of the spreading kernel.
 ///
 /// The error is below 2·10⁻⁷ Σ|w| at every frequency, a bound that a single ray reaches; with many
 /// scattered rays errors average out. The caller applies window and radiance weight: `w` is used

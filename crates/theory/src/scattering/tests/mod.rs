@@ -273,8 +273,7 @@ fn errors(
         .to_vec()
 }
 
-/// Returns a Phong lobe as wide as the neighbourhood: its width 1/√n is the size of the
-/// neighbourhood.
+/// Returns a Phong lobe whose width 1/√n is proportional to the size of the neighbourhood.
 fn phong(e: f64) -> Lobe {
     Lobe::Phong {
         exponent: 1.0 / (0.25 * e * e),
@@ -448,8 +447,8 @@ fn diffuse_sphere_under_an_environment_is_the_known_product() {
     for (map, most) in [
         // This is the error of a net of 2¹⁸ points.
         (EnvironmentMap::Lobes(vec![lobe]), 1e-5),
-        // The error of the net is the same here; that of kinks between pixels is added, which are
-        // 0.006 rad apart over widths of 0.25: (1/40)²/24.
+        // The error of the net is the same here. Kinks between pixels, 0.006 rad apart over widths
+        // of 0.25, add an error of (1/40)²/24.
         (map([1024, 512]), 1e-4),
         // The map is interpolated bilinearly between pixel centres, 0.03 rad apart: (1/8)²/12 of
         // the lobe's curvature.
