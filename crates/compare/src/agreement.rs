@@ -23,7 +23,7 @@ pub(crate) struct Agreement {
     measured: f64,
     /// The standard error of the square of the excess if the prediction is true.
     pub(crate) excess_squared_error: Option<f64>,
-    /// 10 log₁₀ of the mean σ² over the largest |F|².
+    /// 10 log₁₀ of the ratio of the mean σ² to the largest |F|².
     pub(crate) noise_floor_db: Option<f64>,
 }
 

@@ -25,7 +25,7 @@ pub struct Applicability {
     /// Why no light reaches the plane, in words; `None` where some light may.
     pub dark: Option<String>,
     /// The difference between rays that smooth meshes deflect and the same rays deflected by
-    /// osculating patches; `None` without such a mesh.
+    /// osculating patches; `None` without a smooth mesh.
     pub off_patches: Option<OffPatches>,
 }
 

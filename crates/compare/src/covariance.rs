@@ -30,8 +30,8 @@ pub struct CovarianceReport {
     pub class: Class,
     /// The largest frequency along each axis, cycles per metre and per unit slope.
     pub band: [f64; 4],
-    /// The result of covariance tracing, the window included as the last step. Is `None` where it
-    /// gives no result, or an infinite spectrum.
+    /// The result of covariance tracing, the window included as the last step. Is `None` where
+    /// covariance tracing gives no result or an infinite spectrum.
     pub traced: Option<Matrix<4>>,
     /// Why covariance tracing gives no result, in words.
     pub untraced: Option<String>,
@@ -121,7 +121,7 @@ impl CovarianceReport {
     /// measured on the grid `grid`.
     ///
     /// # Errors
-    /// Returns an error if the measurement has too few batches for errors.
+    /// Returns an error if the measurement has too few batches for standard errors.
     pub fn new(
         (measurement, index): (&Measurement, usize),
         (grid, measured): (&FieldGrid, &FieldCovariance),

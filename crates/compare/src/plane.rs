@@ -62,7 +62,7 @@ pub const MIN_PHOTONS_PER_BATCH: f64 = 8.0;
 /// Compares plane `index` of a measurement with its prediction.
 ///
 /// # Errors
-/// Returns an error if the measurement has too few batches for errors.
+/// Returns an error if the measurement has too few batches for standard errors.
 pub fn compare(
     measurement: &Measurement,
     index: usize,

@@ -122,7 +122,7 @@ pub struct PlaneReport {
     pub excess: Option<f64>,
     /// Standard error of the square of `excess` if the prediction is true.
     pub excess_squared_error: Option<f64>,
-    /// 10 log₁₀ of the mean σ² over the largest |F|².
+    /// 10 log₁₀ of the ratio of the mean σ² to the largest |F|².
     pub noise_floor_db: Option<f64>,
     /// The effective number of independent real numbers in the noise of the measured slices, for a
     /// test of two results ([`crate::noise_dof`]); `None` without noise.

@@ -462,7 +462,7 @@ fn darkness_is_judged_by_what_a_prediction_can_tell() {
     let unlit = compare(&measurement(&dark, 0.0, 1), 0, &prediction(1.0), &TEST)
         .unwrap()
         .report;
-    // The cause may also be chance, or a window that light misses.
+    // A measurement without light may also be due to chance, or to a window that light misses.
     assert_eq!(unlit.verdict, Verdict::Undecided);
     assert!(unlit.undecided.unwrap().contains("none of 6400 photons"));
 }

@@ -15,7 +15,7 @@ pub enum Profile {
     Box(f64),
     /// Truncated Gaussian: exp(−π t² / width²) on |t| < cut.
     Gaussian {
-        /// The width: the full integral of the Gaussian before truncation.
+        /// The width, which is the integral of the Gaussian before truncation.
         #[schemars(title = "a width in the unit of its coordinate", extend("x-ron" = "0.3"))]
         width: f64,
         /// Half-width of the support.

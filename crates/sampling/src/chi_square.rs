@@ -100,7 +100,7 @@ impl RectangleCells {
         cells.map(integral).collect()
     }
 
-    /// Returns the cell of a point; the nearest one beyond the outermost edges.
+    /// Returns the cell of a point; for a point beyond the outermost edges, the nearest cell.
     fn cell(&self, point: [f64; 2]) -> usize {
         let [i, j] = [0, 1].map(|axis| {
             let edges = &self.edges[axis];

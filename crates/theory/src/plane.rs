@@ -11,8 +11,8 @@ pub struct Plane {
     pub frame: Frame,
     /// The reference of the coordinates: the central ray, the tangent plane or the surface itself.
     pub orientation: Orientation,
-    /// On a surface, θ of the central ray in radians. The coordinates are then (s, t, θ −
-    /// longitude, φ).
+    /// The angle θ of the central ray on a surface, in radians. The coordinates are then (s, t, θ
+    /// − longitude, φ).
     pub longitude: f64,
     /// The surface, for local normals; without it all normals are along D.
     pub patch: Option<Patch>,

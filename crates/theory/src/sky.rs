@@ -4,7 +4,7 @@ use etendue_field::{Environment, EnvironmentMap, Frame, LatLong, SphericalGaussi
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// A density over directions, exactly or nearly proportional to the radiance from there.
+/// A density over directions, exactly or nearly proportional to the radiance from each direction.
 #[derive(Clone, Debug)]
 pub(crate) enum SkyDensity<'a> {
     /// The density of spherical Gaussians.

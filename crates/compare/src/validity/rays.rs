@@ -160,7 +160,8 @@ pub(super) fn centred(index: u32, r: f64) -> f64 {
     }
 }
 
-/// Returns the density of pairs of numbers that [`centred`] draws with one index, over all indices.
+/// Returns the density of pairs of numbers that [`centred`] draws with the same index, averaged
+/// over all indices.
 pub(super) fn density(pair: [f64; 2]) -> f64 {
     let dense = pair.map(|s| {
         let is_drawn = (CENTRE..=1.0).contains(&s.abs());

@@ -103,7 +103,8 @@ pub fn slope_cosine() -> Matrix<4> {
 }
 
 /// Returns the covariance of a lobe over (θ, φ), in radians squared, for light that arrives at the
-/// angle θ₀ to the normal. Returns `None` for Lambert's, which is uniform over all directions.
+/// angle θ₀ to the normal. Returns `None` for Lambert's lobe, which is uniform over all
+/// directions.
 ///
 /// Phong's cosⁿ is a Gaussian of variance 1/n, to first order in 1/n. Microfacets that tilt by τ
 /// turn light by 2τ in the plane of incidence, and by 2τ cos θ₀ out of it, so Beckmann's variances

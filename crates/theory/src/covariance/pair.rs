@@ -137,7 +137,7 @@ fn symmetric(a: &Matrix<4>) -> Matrix<4> {
     from_fn(|i, j| 0.5 * (a[i][j] + a[j][i]))
 }
 
-/// |L(Ω)|²/|L(0)|² of a Gaussian light field of covariance S: exp(−4π² Ωᵀ S Ω).
+/// Returns |L(Ω)|²/|L(0)|² of a Gaussian light field of covariance S: exp(−4π² Ωᵀ S Ω).
 #[must_use]
 pub fn power(field: &Matrix<4>, omega: [f64; 4]) -> f64 {
     let along = times(field, &omega);

@@ -53,7 +53,7 @@ pub struct RayBudget {
 /// A ray at a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct RayNode {
-    /// (x, y, u, v), or the corresponding coordinates on a surface.
+    /// The ray's coordinates: (x, y, u, v), or the corresponding ones on a surface.
     pub(crate) z: [f64; 4],
     /// The ray's contribution to the windowed radiance space, divided by the density with which the
     /// ray was sampled.

@@ -25,9 +25,9 @@ pub enum Operator {
         /// The distance d, in metres.
         distance: f64,
     },
-    /// A mask in the plane where the light is now. Radiance is multiplied by 1 minus the sum of
-    /// shapes and half-planes, which must not overlap each other, or by a cosine grating (Durand
-    /// et al. 2005, Eq. 4).
+    /// A mask in the plane that the light has reached. Radiance is multiplied by 1 minus the sum
+    /// of shapes and half-planes, which must not overlap each other, or by a cosine grating
+    /// (Durand et al. 2005, Eq. 4).
     Visibility {
         /// Name of the mask.
         name: String,

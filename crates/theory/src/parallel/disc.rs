@@ -37,7 +37,8 @@ pub(crate) fn patches_of(shape: &Shape, discs: Discs) -> Vec<WeightedRectangle> 
     }
 }
 
-/// Σ w_jk 1[|x| < R cos t_j] 1[|y| < R sin t_k], t_j = π (2j + 1)/4n (docs/theory.md (5b)).
+/// Returns the rectangles of Σ w_jk 1[|x| < R cos t_j] 1[|y| < R sin t_k], t_j = π (2j + 1)/4n
+/// (docs/theory.md (5b)).
 ///
 /// Under an integral with a smooth function, the sum replaces the disc. The integral of such a
 /// function over the disc is ∫ A(R cos t) dB(R sin t), where A and B are the integrals along the

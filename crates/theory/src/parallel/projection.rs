@@ -389,7 +389,8 @@ mod tests {
             // integral.
             assert!((projection.values[index] - expected).abs() < all / 200.0);
         }
-        // The cells above are partly lit and partly blocked, and their values differ by far more.
+        // The cells above are partly lit and partly blocked, and blocking changes their values by
+        // far more than this tolerance.
         assert!(behind > 0.1 * all);
     }
 }

@@ -98,8 +98,8 @@ impl SpecularSystem {
 }
 
 impl SpecularSurface {
-    /// Returns the frame of the next leg. At a mirror it is mirrored, (−X, Y, D); otherwise it is
-    /// turned to the new direction by the smallest angle.
+    /// Returns the frame of the next leg. At a mirror the frame is mirrored, (−X, Y, D); otherwise
+    /// it is turned to the new direction by the smallest angle.
     fn leaving(&self, arriving: &Frame, normal: DVec3, direction: DVec3) -> Frame {
         if !matches!(self.event, Specular::Mirror) {
             return arriving.turned_to(direction);

@@ -116,8 +116,8 @@ impl Plane {
         Some((z, secant_squared * secant_squared * self.factor(z)))
     }
 
-    /// Returns the point where light leaves the surface that it met last, or meets this one. Also
-    /// returns the unit normal at this point, on the side of the plane's D.
+    /// Returns the point where light leaves the surface that it met last, or where it meets the
+    /// plane's surface. Also returns the unit normal at this point, on the side of the plane's D.
     fn hit(&self, ray: &LegRay) -> Option<(DVec3, DVec3)> {
         let Some(patch) = &self.patch else {
             let (s, t) = crossing(&self.frame, ray)?;

@@ -2,9 +2,9 @@
 //! beam.
 //!
 //! If no light reaches the border of the region that lands in the window, the only error is
-//! aliasing. Aliasing vanishes once there are more nodes than cycles. An edge that cuts light, of a
-//! window or of a surface, is misplaced by up to half a node. Light with such an edge is left to
-//! nets, because two rules may agree on it by chance.
+//! aliasing. Aliasing vanishes once there are more nodes than cycles. An edge of a window or a
+//! surface that cuts light is misplaced by up to half the spacing of nodes. Light with such an
+//! edge is left to nets, because two rules may agree on it by chance.
 
 use super::region::{Finder, RayField};
 use super::sums::sums;
@@ -78,8 +78,8 @@ impl<F: RayField> Finder<'_, F> {
         (0..count).into_par_iter().flat_map_iter(row).collect()
     }
 
-    /// Returns the number of nodes along each coordinate that should suffice: a midpoint rule
-    /// integrates functions with fewer cycles than nodes exactly.
+    /// Returns the number of nodes along each coordinate that should suffice: a midpoint rule is
+    /// exact for functions with fewer cycles than nodes.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,

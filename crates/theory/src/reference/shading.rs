@@ -149,7 +149,7 @@ impl GaussianField {
     }
 }
 
-/// Returns the block's reflection with a given factor before it and a given lobe.
+/// Returns the block's reflection with a given factor of the incident direction and a given lobe.
 fn reflection<'a>(
     parameters: &Value,
     before: Factor<'a>,

@@ -388,8 +388,8 @@ impl LobeDensity {
     }
 }
 
-/// Returns the width of the narrowest lobe of a surface. Light that wider lobes scatter beyond it
-/// is sampled by the window or the light.
+/// Returns the width of the narrowest lobe of a surface. Light that wider lobes scatter beyond
+/// this width is sampled by the window or the light.
 fn narrowest_of(system: &ScatteringSystem) -> Option<f64> {
     narrowest(system.reflectance.terms.iter().map(|term| &term.brdf))
 }

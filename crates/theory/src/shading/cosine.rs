@@ -21,8 +21,8 @@ pub fn cosine_hat(omega: f64) -> f64 {
 /// The coefficient of e^(inθ) in the Fourier series of the clamped cosine on the full circle:
 /// [`cosine_hat`](n/2π)/2π.
 ///
-/// Durand et al. 2005 print only the transform (Eq. 13). The coefficients are its values at n/2π,
-/// divided by 2π.
+/// Durand et al. 2005 print only the transform (Eq. 13). The coefficients are the transform's
+/// values at n/2π, divided by 2π.
 #[must_use]
 pub fn cosine_series(n: i32) -> f64 {
     cosine_hat(f64::from(n) / TAU) / TAU

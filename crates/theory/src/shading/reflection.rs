@@ -121,8 +121,8 @@ pub struct PlanarReflection<'a> {
     pub curvature: f64,
     /// The terms of the BRDF.
     pub terms: Vec<SeparableTerm<'a>>,
-    /// Frequencies along Ωθ over which products are summed. Its reach covers the content of the
-    /// light in the frames of the local normals.
+    /// Frequencies along Ωθ over which products are summed. The reach of these frequencies covers
+    /// the content of the light in the frames of the local normals.
     pub lattice: Lattice,
 }
 
@@ -136,7 +136,7 @@ impl PlanarReflection<'_> {
     ///
     /// L_o(Ω) = ρ̂'(Ωθ) ∫ L_i(Ωx + k Ωθ − k q, q) f̂(−Ωθ − q) dq after step 6 for one term without
     /// h (docs/theory.md (36)). The sign of −Ωθ matters for an asymmetric f. Table 1 of Durand et
-    /// al. 2005 drops it and the hat of ρ̂', and their Eqs. 15 and 17 lack primes.
+    /// al. 2005 drops this sign and the hat of ρ̂', and their Eqs. 15 and 17 lack primes.
     #[must_use]
     pub fn spectrum(
         &self,

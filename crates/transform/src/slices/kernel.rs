@@ -99,7 +99,7 @@ impl Kernel {
         for (x, weight) in gauss_legendre(16) {
             let (f, weight) = (0.5 * (1.0 + x), 0.5 * weight);
             for tap in 0..HALF {
-                // Taps 4 to 7 mirror taps 3 to 0: twice the cosine.
+                // Taps 4 to 7 mirror taps 3 to 0, which gives twice the cosine.
                 let phase = TAU * xi * (tap as f64 - 3.0 - f);
                 sum += 2.0 * weight * self.tap(tap, f) * libm::cos(phase);
             }

@@ -129,7 +129,7 @@ fn is_smooth(mut n: usize) -> bool {
 
 /// A partial sum of weighted rays, to be turned into slices: see [`SliceTransform`].
 ///
-/// Holds a fine grid for each azimuth; [`finish`](Self::finish) empties it for reuse.
+/// It holds a fine grid for each azimuth; [`finish`](Self::finish) empties it for reuse.
 #[derive(Clone, Debug)]
 pub struct Accumulator<'plan> {
     plan: &'plan SliceTransform,

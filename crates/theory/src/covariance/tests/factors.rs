@@ -4,7 +4,7 @@ use crate::covariance::{cosine, grating, lobe, mask, profile, slope_cosine};
 use etendue_field::{Disc, Grating, HalfPlane, Lobe, Mask, Profile, Rectangle, Shape};
 use std::f64::consts::PI;
 
-/// ∫ f'²/(4π² ∫ f²) on (−half, half), by finite differences.
+/// Returns ∫ f'²/(4π² ∫ f²) on (−half, half), by finite differences.
 fn moment(f: impl Fn(f64) -> f64, half: f64) -> f64 {
     let n = 200_000;
     let step = 2.0 * half / f64::from(n);

@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 const LIGHT: [f64; 4] = [0.02, 0.03, 0.05, 0.04];
 const WINDOW: [f64; 4] = [0.2, 0.3, 0.25, 0.15];
 
-/// The covariance of a Gaussian window of these standard deviations.
+/// Returns the covariance of a Gaussian window of these standard deviations.
 fn window() -> Matrix<4> {
     diagonal(WINDOW.map(|s: f64| 1.0 / (8.0 * PI * PI * s * s)))
 }

@@ -60,8 +60,8 @@ fn two_half_planes_in_one_mask_leave_a_slit() {
     }
 }
 
-/// At a distance h after a grating, the spectrum is ½ ℓ̂(Ωx, Ωu) + m/4 (e^(ip) ℓ̂(Ωx − f, Ωu + h
-/// f) + e^(−ip) ℓ̂(Ωx + f, Ωu − h f)).
+/// At the distance h after a grating, the spectrum of the light is ½ ℓ̂(Ωx, Ωu) + m/4 (e^(ip)
+/// ℓ̂(Ωx − f, Ωu + h f) + e^(−ip) ℓ̂(Ωx + f, Ωu − h f)).
 #[test]
 fn a_grating_is_three_copies() {
     let (f, phase, modulation, h) = (3.0, 0.4, 0.9, 0.7);

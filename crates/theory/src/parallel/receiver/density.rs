@@ -25,7 +25,8 @@ const FEW_NODES: usize = 16;
 enum SlopePower {
     /// p = 0.
     Flat,
-    /// p = 2: the cosine of a Lambertian receiver with du dv, G of docs/theory.md (7).
+    /// p = 2: the factor G of docs/theory.md (7), which is the cosine of a Lambertian receiver
+    /// times dω/(du dv).
     Cosine,
     /// p = n/2.
     Half(i32),

@@ -1,7 +1,7 @@
 //! Diffuse reflection by quadrature: the irradiance of a Lambertian receiver, and the light that
 //! leaves it.
 //!
-//! A light, masks in planes across the central ray, and the receiver are parallel. A ray that
+//! The light, the masks and the receiver are in parallel planes across the central ray. A ray that
 //! arrives at (x, y) with slopes (u, v) was at (x − h u, y − h v) a distance h before. So from the
 //! point, every shape upstream is seen as the same shape, but smaller. The irradiance E(x, y) = ∫
 //! L(u, v) (1 + u² + v²)⁻² du dv is a signed sum of integrals over rectangles and discs: the light
