@@ -87,7 +87,7 @@ fn arrays_are_padded_by_rows() {
     }
 }
 
-/// The shapes have several bands of the first axis and several blocks of columns, some of them
+/// The shape has several bands of the first axis and several blocks of columns, some of them
 /// incomplete.
 #[test]
 fn large_shapes_are_put_together_right() {
