@@ -123,8 +123,8 @@ impl Applicability {
                 off_patches: None,
             };
         }
-        // Objects prove darkness only on the paths that the theory assumes; light on other paths
-        // might pass beside them.
+        // Objects are known to stop all light only on the paths that the theory assumes; light on
+        // other paths might pass beside them.
         let dark = unlit::reason(scene, plane, &theory);
         Self {
             theory,
@@ -177,8 +177,8 @@ impl Applicability {
             Theory::Parallel(_) => None,
         };
         if let Some(maps) = maps {
-            // The first step describes the light source and remains. The maps, if there are any,
-            // replace the steps that describe transport.
+            // The first step, which describes the light source, is kept. The maps, if there are
+            // any, replace the steps that describe transport.
             steps.truncate(1);
             steps.extend(maps);
         }

@@ -60,8 +60,8 @@ pub(crate) struct Corners<'a> {
 
 /// The quotients of some waves along a row.
 struct Quotients {
-    /// weight · (c₊ + c₋) and weight · (c₋ − c₊), [pair, wave, n]. The first is stored in `re`,
-    /// the second in `im`.
+    /// The products weight · (c₊ + c₋) and weight · (c₋ − c₊), [pair, wave, n]. The first is
+    /// stored in `re`, the second in `im`.
     values: ComplexRow,
     /// Cells that need the plain transform: n, the shifted frequency, the weight.
     left: Vec<(usize, [f64; 2], Complex)>,

@@ -191,7 +191,7 @@ impl Mirrored {
 pub(super) struct Lights<'a> {
     system: &'a ScatteringSystem,
     sky: Option<Arc<SkyDensity<'a>>>,
-    /// Whether half of the parts are sampled by the lobe.
+    /// Whether half of the sampled parts of the light follow the lobe.
     by_lobe: bool,
     /// The number of cells along each side of the square; one sample is drawn in each cell.
     side: usize,

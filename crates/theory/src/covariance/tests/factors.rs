@@ -62,8 +62,8 @@ fn lobes_have_the_moment_of_their_power() {
     let phong = lobe(&Lobe::Phong { exponent: 400.0 }, 0.3).unwrap();
     let traced = variance(moment(|t| libm::pow(libm::cos(t), 400.0), 1.0));
     assert!((phong[2][2] / traced - 1.0).abs() < 2.0 / 400.0);
-    // Distributions of normals are given over slopes and integrated by rings; light turns by twice
-    // the tilt.
+    // Distributions of normals are given over slopes and integrated over rings; light turns by
+    // twice the tilt of a normal.
     let of_rings = |f: &dyn Fn(f64) -> f64| {
         let [mut slopes, mut squares] = [0.0; 2];
         let step = 1e-5;

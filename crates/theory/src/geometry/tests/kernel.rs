@@ -97,7 +97,7 @@ fn the_integral_it_stands_for() {
 
 #[test]
 fn spectrum_of_a_gaussian_in_slope_seen_in_angle() {
-    // The transform of exp(−π tan² θ / w²), against its spectrum in slope times the kernel.
+    // Compares the transform of exp(−π tan² θ / w²) with its spectrum in slope times the kernel.
     let w: f64 = 0.8;
     for theta in [0.0, 0.4, 1.3] {
         let direct = integrate(200, [-0.5 * PI, 0.5 * PI], |t| {
