@@ -154,7 +154,7 @@ fn weights_of_pictures_are_bounded() {
         let mean = weights.iter().sum::<f64>() / weights.len() as f64;
         let squares = weights.iter().map(|w| (w / mean - 1.0).powi(2));
         let deviation = (squares.sum::<f64>() / weights.len() as f64).sqrt();
-        // In each row, the deviation is the step of the polar angle divided by the angle's sine.
+        // In each row, the deviation is the step of the polar angle divided by its sine.
         assert!(deviation < 0.1, "{deviation}");
     }
 }
@@ -181,12 +181,12 @@ fn things_are_drawn_by_their_weights() {
 fn planted_faults_are_seen() {
     let linear = |[a, b]: [f64; 2]| 0.9 * a * DVec2::from_angle(2.0 * PI * b);
     let found = in_square(linear, evenly(0.81 * PI, in_disc));
-    assert!(!found.agrees(), "a disc without the square root: {found:?}");
+    assert!(!found.agrees(), "a disc without the root: {found:?}");
     let found = in_square(
         |[a, b]| DVec2::new(a * (1.0 - b), a * b),
         evenly(0.5, in_triangle),
     );
-    assert!(!found.agrees(), "a triangle without the square root: {found:?}");
+    assert!(!found.agrees(), "a triangle without the root: {found:?}");
     let found = in_square(triangle, evenly(0.505, in_triangle));
     assert!(!found.agrees(), "1 % less: {found:?}");
     let found = on_sphere(
