@@ -131,7 +131,11 @@ fn assert_seen(name: &str, chain: &Chain, fault: impl Fn([f64; 4]) -> Complex) {
 fn planted_faults_are_seen() {
     let shape = Shape::Rectangle(square([0.0, 0.1], 0.4));
     for (name, chain, power) in [
-        ("a point without its factor of slope", bench(POINT, None), 0.0),
+        (
+            "a point without its factor of slope",
+            bench(POINT, None),
+            0.0,
+        ),
         ("no G", with_cosine(bench(light(), None)), 0.0),
         ("g for G", with_cosine(bench(light(), None)), -1.5),
         ("exponent off by 5 %", bench(spot(shape, 20.0), None), -10.5),
