@@ -19,11 +19,11 @@ pub(crate) struct Agreement {
     noise: f64,
     /// Σ|F|².
     predicted: f64,
-    /// Σ|S|² less its noise.
+    /// The power Σ|S|² of the measurement without its noise.
     measured: f64,
     /// The standard error of the square of the excess if the prediction is true.
     pub(crate) excess_squared_error: Option<f64>,
-    /// 10 log₁₀ of the mean σ² over the largest |F|².
+    /// 10 log₁₀ of the ratio of the mean σ² to the largest |F|².
     pub(crate) noise_floor_db: Option<f64>,
 }
 
@@ -80,9 +80,9 @@ impl Agreement {
         error > excess.max(UNSEEN * noise)
     }
 
-    /// Returns the number of photons that brings the noise down to the resolution. `None` where the
-    /// error of the prediction alone exceeds the resolution, or where noise is not what prevents a
-    /// verdict.
+    /// Returns the number of photons that brings the noise down to the resolution. Returns `None`
+    /// where the error of the prediction alone exceeds the resolution, or where noise is not what
+    /// prevents a verdict.
     pub(crate) fn photons_needed(
         &self,
         emitted: u64,

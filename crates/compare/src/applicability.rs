@@ -24,8 +24,8 @@ pub struct Applicability {
     pub declined: Vec<String>,
     /// Why no light reaches the plane, in words; `None` where some light may.
     pub dark: Option<String>,
-    /// How far smooth meshes send rays from where their osculating patches send them; `None`
-    /// without such a mesh.
+    /// The difference between rays that smooth meshes deflect and the same rays deflected by
+    /// osculating patches; `None` without a smooth mesh.
     pub off_patches: Option<OffPatches>,
 }
 
@@ -84,7 +84,7 @@ impl Applicability {
         if plane.leg > 0 || found.reasons.is_empty() || !too_fine(scene).is_empty() {
             return found;
         }
-        // On the first leg, rays are followed past objects that do not lie across it.
+        // On the first leg, rays are tested against objects that do not lie across the leg.
         let Some(mut view) = system(scene, plane) else {
             return found;
         };
@@ -123,7 +123,8 @@ impl Applicability {
                 off_patches: None,
             };
         }
-        // Light on paths that theory does not assume might pass beside these objects.
+        // Objects are known to stop all light only on the paths that the theory assumes; light on
+        // other paths might pass beside them.
         let dark = unlit::reason(scene, plane, &theory);
         Self {
             theory,
@@ -176,8 +177,8 @@ impl Applicability {
             Theory::Parallel(_) => None,
         };
         if let Some(maps) = maps {
-            // The first step describes the light source and remains. The maps, if there are any,
-            // replace the steps that describe transport.
+            // The first step, which describes the light source, is kept. The maps, if there are
+            // any, replace the steps that describe transport.
             steps.truncate(1);
             steps.extend(maps);
         }

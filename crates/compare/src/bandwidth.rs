@@ -55,7 +55,7 @@ fn sharpest_cutoff(reflectance: &Reflectance) -> f64 {
 }
 
 /// Returns Ω_ρ, the frequency below which a lobe has [`BANDWIDTH_FRACTION`] of its energy, cycles
-/// per radian. `None` for a lobe centred on the normal.
+/// per radian. Returns `None` for a lobe centred on the normal.
 #[must_use]
 pub fn lobe_cutoff(lobe: Lobe) -> Option<f64> {
     let lobe = match lobe {
@@ -67,8 +67,8 @@ pub fn lobe_cutoff(lobe: Lobe) -> Option<f64> {
     Some(lobe.cutoff(BANDWIDTH_FRACTION))
 }
 
-/// Returns the bandwidth along ν of the exact prediction of such a plane, by the same estimator as
-/// for photons.
+/// Returns the bandwidth along ν of the exact prediction of a plane that has a [`criterion`], by
+/// the same estimator as for photons.
 #[must_use]
 pub fn exact_bandwidth(
     scene: &Scene,
@@ -86,11 +86,11 @@ pub fn exact_bandwidth(
     Some(power.bandwidth(bandwidth_nu)?.value.value)
 }
 
-/// Returns the bandwidth along ν as measured at plane `index`, with its error. `None` where no
-/// light arrived.
+/// Returns the bandwidth along ν as measured at plane `index`, with its error. Returns `None`
+/// where no light arrived.
 ///
 /// # Errors
-/// When the measurement has too few batches.
+/// Returns an error if the measurement has too few batches.
 pub fn measured_bandwidth(
     measurement: &Measurement,
     index: usize,

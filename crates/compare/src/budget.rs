@@ -5,7 +5,8 @@ use etendue_theory::RayBudget;
 
 /// The largest accepted relative error of a prediction, however few the photons.
 const MAX_ERROR: f64 = 3e-3;
-/// The accepted error times √photons. The noise of the photons is about 25/√photons.
+/// The accepted relative error of a prediction, times √photons. The noise of the photons is about
+/// 25/√photons.
 const OF_NOISE: f64 = 12.0;
 /// The number of rays of a prediction, as a share of the number of photons. The prediction then
 /// takes less time than tracing the photons.

@@ -1,4 +1,4 @@
-//! Reads the chain off the scene: the steps that light takes between parallel planes.
+//! Derives the chain from the scene: the steps that light takes between parallel planes.
 
 use etendue_field::{Mask, Quantity, Shape, Side, VirtualPlane};
 use etendue_scene::{Object, Scene};

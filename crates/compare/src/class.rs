@@ -9,8 +9,8 @@ use std::fmt;
 pub enum Class {
     /// The prediction equals the expectation of the measurement, in closed form or by quadrature.
     Exact,
-    /// There is an exact prediction by rays, with the paper's first-order chain and its computed
-    /// error beside it.
+    /// An exact prediction by rays exists, and beside it the paper's first-order chain with its
+    /// computed error.
     FirstOrder,
     /// No theory applies. The other tracer's measurement serves as the prediction.
     Reference,

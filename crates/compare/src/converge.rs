@@ -17,7 +17,7 @@ pub struct Convergence {
     pub plane: String,
     /// Shares e of the scene's widths, descending, and ‖first order − exact‖/‖exact‖ for each.
     pub steps: Vec<[f64; 2]>,
-    /// The order n in error ∝ eⁿ, by least squares over the last three steps. `None` where the
+    /// The order n in error ∝ eⁿ, by least squares over the last three steps. Is `None` where the
     /// error is not clearly above that of the quadrature; this is not checked where several
     /// surfaces scatter.
     pub order: Option<f64>,
@@ -33,9 +33,9 @@ const SHARES: [f64; 5] = [1.0, 0.5, 0.25, 0.125, 0.0625];
 /// Errors below this many times the quadrature error are too small to judge the chain by.
 const CLEAR: f64 = 5.0;
 
-/// Shrinks the light and the window of a plane behind specular surfaces, or the lobes where several
-/// surfaces scatter. Widens the frequencies by the same factor. `None` for any other plane. No
-/// photons are traced.
+/// Shrinks the light and the window of a plane behind specular surfaces, or the lobes where
+/// several surfaces scatter. Widens the frequencies by the same factor. Returns `None` for any
+/// other plane. No photons are traced.
 #[must_use]
 pub fn converge(
     scene: &Scene,
@@ -75,7 +75,7 @@ pub fn converge(
 }
 
 /// Returns the error of a first-order chain behind specular surfaces at the scale e, and the error
-/// of the sums over rays from which the former is computed.
+/// of the sums over rays from which it is computed.
 fn by_rays(
     scene: &Scene,
     whole: &Observed<rays::SpecularSystem>,

@@ -1,5 +1,5 @@
-//! Compares covariance tracing with the spectra it summarises: traced along the chain, exact and
-//! measured.
+//! Compares the covariance that is traced along a chain with those of the exact and of the
+//! measured spectrum.
 
 use crate::applicability::Applicability;
 use crate::class::Class;
@@ -26,12 +26,12 @@ use serde::Serialize;
 pub struct CovarianceReport {
     /// Name of the plane.
     pub name: String,
-    /// Kind of its prediction.
+    /// Kind of the plane's prediction.
     pub class: Class,
     /// The largest frequency along each axis, cycles per metre and per unit slope.
     pub band: [f64; 4],
-    /// The result of covariance tracing, the window included as the last step. `None` where it
-    /// gives no result, or an infinite spectrum.
+    /// The result of covariance tracing, the window included as the last step. Is `None` where
+    /// covariance tracing gives no result or an infinite spectrum.
     pub traced: Option<Matrix<4>>,
     /// Why covariance tracing gives no result, in words.
     pub untraced: Option<String>,
@@ -44,13 +44,13 @@ pub struct CovarianceReport {
     pub measured: Option<Matrix<4>>,
     /// Standard errors of `measured`, by the jackknife over groups of batches.
     pub error: Option<Matrix<4>>,
-    /// How much each measured variance grows from half of the band to all of it.
+    /// The growth of each measured variance from half of the band to the whole band.
     pub growth: Option<[f64; 4]>,
     /// The largest difference between `traced_in_band` and `measured`, divided by the geometric
     /// mean of the two variances. The second number is the error of `measured`, divided in the same
     /// way.
     pub off: Option<[f64; 2]>,
-    /// Moments ρρ, ρν and νν of the slice at azimuth 0, where positions and slopes along y have no frequency.
+    /// Moments ρρ, ρν and νν of the slice at azimuth 0, where the frequencies along y are zero.
     pub slice: [SliceMoment; 3],
     /// Remarks on the numbers, in words.
     pub remarks: Vec<String>,
@@ -69,7 +69,7 @@ pub struct SliceMoment {
 /// The Gaussian that covariance tracing assigns to a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TracedPlane {
-    /// C; `None` where it is infinite.
+    /// The covariance C of the power spectrum; `None` where it is infinite.
     pub matrix: Option<Matrix<4>>,
     /// S, the covariance of the Gaussian light field; `None` where it is infinite.
     field: Option<Matrix<4>>,
@@ -79,7 +79,7 @@ impl TracedPlane {
     /// Returns the covariance traced to a plane, the window included as the last step.
     ///
     /// # Errors
-    /// The reason, where covariance tracing gives no result.
+    /// Returns the reason where covariance tracing gives no result.
     pub fn new(plane: &VirtualPlane, applicability: &Applicability) -> Result<Self, String> {
         let traced: Result<SpectralCovariance, Untraced> = match &applicability.theory {
             Theory::Parallel(chain) => chain.spectral_covariance(),
@@ -121,7 +121,7 @@ impl CovarianceReport {
     /// measured on the grid `grid`.
     ///
     /// # Errors
-    /// When the measurement has too few batches for errors.
+    /// Returns an error if the measurement has too few batches for standard errors.
     pub fn new(
         (measurement, index): (&Measurement, usize),
         (grid, measured): (&FieldGrid, &FieldCovariance),
@@ -164,7 +164,7 @@ impl CovarianceReport {
         Ok(report)
     }
 
-    /// Returns remarks on what the numbers do not decide.
+    /// Returns remarks on the limits of the numbers.
     fn remarks_of(&self) -> Vec<String> {
         let mut remarks: Vec<String> = self.untraced.iter().cloned().collect();
         if self.untraced.is_none() && self.traced.is_none() {
@@ -203,7 +203,8 @@ impl CovarianceReport {
     }
 }
 
-/// Growth beyond this many standard errors is not noise: noise exceeds it once in a thousand.
+/// Growth beyond this many standard errors is not noise, which exceeds it once in a thousand
+/// cases.
 const NOISE: f64 = 3.0;
 
 /// Names of the axes.
@@ -272,8 +273,8 @@ fn slice(
 }
 
 /// Returns |F|² of theory at azimuth 0, [ρ, ν]. It is computed from pairs of replicates, as a
-/// measured power is from pairs of batches. `None` where the measurement of another tracer replaces
-/// theory.
+/// measured power is from pairs of batches. Returns `None` where the measurement of another tracer
+/// replaces theory.
 fn predicted_slice(prediction: &Prediction) -> Option<Array2<f64>> {
     if prediction.class == Class::Reference {
         return None;

@@ -8,7 +8,7 @@ use etendue_scene::{Object, Scene};
 use glam::DVec3;
 
 /// Returns the shortest and the longest distance from a plane of the first leg back to the
-/// occluders of its light, metres. `None` without occluders, and for other planes.
+/// occluders of its light, metres. Returns `None` without occluders, and for other planes.
 ///
 /// A blocker at distance d puts its frequencies on the line ν = −d ρ, so blockers between two distances fill a wedge
 /// (Durand et al. 2005, section 3.2; Egan et al. 2009).

@@ -27,8 +27,8 @@ pub enum PredictedField {
 }
 
 impl PredictedField {
-    /// Returns the prediction of theory for a plane: in closed form, or by nets of rays in `groups`
-    /// groups. `None` where no theory applies, or no ray arrives.
+    /// Returns the prediction of theory for a plane: in closed form, or by nets of rays in
+    /// `groups` groups. Returns `None` where no theory applies, or no ray arrives.
     #[must_use]
     pub fn new(
         scene: &Scene,
@@ -96,8 +96,8 @@ impl PredictedField {
 /// rectangles.
 const MAX_PRODUCTS: usize = 4_000_000_000;
 
-/// Returns the closed form between parallel planes. `None` behind a receiver, for the rays of a
-/// file, and where it would take too long.
+/// Returns the closed form between parallel planes. Returns `None` behind a receiver, for the rays
+/// of a file, and where it would take too long.
 fn closed_form(
     chain: &Chain,
     plane: &VirtualPlane,
@@ -131,7 +131,7 @@ fn alias_free(
     Some(spectrum(&harmonics, (grid, assignment)))
 }
 
-/// Returns the spectrum at all frequencies of a grid, those along v from zero on.
+/// Returns the spectrum at the frequencies of a grid; along v, only at those from zero on.
 fn spectrum(harmonics: &Harmonics, (grid, assignment): (FieldGrid, Assignment)) -> FieldSpectrum {
     let [nx, ny, nu, nv] = grid.cells;
     let mut values = Array4::zeros((nx, ny, nu, nv / 2 + 1));

@@ -21,11 +21,11 @@ pub struct FirstOrder {
     /// Independent replicates, of which `slices` is the mean. They are empty where the slices have
     /// no statistical error.
     pub replicates: Vec<Slices>,
-    /// The numbers of the chain.
+    /// The numbers that describe the chain.
     pub chain: FirstOrderChain,
 }
 
-/// The numbers of a chain of affine maps.
+/// The numbers that describe a chain of affine maps.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FirstOrderChain {
     /// ‖first order − exact‖/‖exact‖ as computed, by the corrected formulas.
@@ -54,17 +54,16 @@ pub struct FirstOrderChain {
 /// The comparison of the photons with the first-order chain, as in `summary.json`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FirstOrderReport {
-    /// The numbers of the chain.
+    /// The numbers that describe the chain.
     #[serde(flatten)]
     pub chain: FirstOrderChain,
-    /// Signed root of ‖S − F₁‖² less noise, over ‖exact‖²: the disagreement of the chain beyond
-    /// noise.
+    /// Signed root of (‖S − F₁‖² − noise)/‖exact‖²: the disagreement of the chain beyond noise.
     pub excess: Option<f64>,
     /// The upper 95 % bound of the excess.
     pub excess_bound: Option<f64>,
     /// The smallest excess that can be detected above this noise, at 95 %.
     pub resolvable: Option<f64>,
-    /// Probability of such a disagreement if the first-order chain were the truth.
+    /// Probability of a disagreement at least this large if the first-order chain were true.
     pub p_value: Option<f64>,
     /// The verdict on the exact prediction by rays that accompanies the chain.
     pub exact: Verdict,
@@ -72,9 +71,9 @@ pub struct FirstOrderReport {
     pub verdict: Verdict,
 }
 
-/// A chain with a larger defect has a wrong map. Finite differences alone cause a defect of 10⁻⁹,
-/// and a first-order operator that is missing or wrong by a thousandth causes a defect above this
-/// limit.
+/// A chain whose defect exceeds this limit has a wrong map. Finite differences alone cause a
+/// defect of 10⁻⁹, and a first-order operator that is missing or wrong by a thousandth causes a
+/// defect above this limit.
 const DEFECT: f64 = 1e-5;
 /// Above this error a first-order chain is useless as a prediction of the light field.
 const MAX_ERROR: f64 = 0.5;
@@ -192,8 +191,8 @@ impl FirstOrder {
 }
 
 /// Returns the covariance after the chain and the window, for a Gaussian as wide as the light.
-/// Inverse covariances add in a product of Gaussians, and a map A takes S⁻¹ to A⁻ᵀ S⁻¹ A⁻¹. `None`
-/// for an environment, which has no width.
+/// Inverse covariances add in a product of Gaussians, and a map A takes S⁻¹ to A⁻ᵀ S⁻¹ A⁻¹.
+/// Returns `None` for an environment, which has no width.
 fn propagated(system: &SpecularSystem, chain: &Matrix<4>, window: &Window) -> Option<Matrix<4>> {
     if matches!(system.light, Light::Environment { .. }) {
         return None;

@@ -16,14 +16,14 @@ pub struct FullRadialReport {
     pub bins: usize,
     /// The mean of (measured − predicted)²/σ²: 1 if the prediction is true.
     pub chi2_per_bin: Option<f64>,
-    /// Probability of a disagreement as large as the one seen, if there is none.
+    /// Probability of a disagreement at least this large if the prediction is true.
     pub p_value: Option<f64>,
     /// ‖measured − predicted‖/‖predicted‖ of the power.
     pub relative_error: Option<f64>,
     /// The relative error that noise alone would cause.
     pub noise_limit: Option<f64>,
-    /// The largest |aliasing|/σ of a bin. The prediction contains the same aliasing. `None` where
-    /// aliasing is not known separately.
+    /// The largest |aliasing|/σ of a bin. The prediction contains the same aliasing. Is `None`
+    /// where aliasing is not known separately.
     pub aliasing: Option<f64>,
 }
 
@@ -42,19 +42,19 @@ pub struct FullRadialComparison {
 
 /// The difference of measured and predicted power in a bin, as a sum over the groups of photons.
 ///
-/// Group r of a measurement holds the share a_r of it, G_r, and the same share of the prediction,
-/// P_r, with the same expectation a_r F. Both powers are computed from pairs of groups, so their
-/// difference is U = Σ_(r≠s) (G_r·G_s − P_r·P_s)/(1 − Σa²). With D_r = G_r − P_r, and S_r = G_r − α
-/// D_r the mean of both that is not correlated with D_r, this is
+/// Group r holds the share a_r of the measurement, G_r, and the same share of the prediction, P_r;
+/// both have the expectation a_r F. Both powers are computed from pairs of groups, so their
+/// difference is U = Σ_(r≠s) (G_r·G_s − P_r·P_s)/(1 − Σa²). With D_r = G_r − P_r and S_r = G_r − α
+/// D_r, which is the weighted mean of G_r and P_r that is not correlated with D_r, this is
 ///
 /// U (1 − Σa²) = Σ_r D_r·(2 Σ_(s≠r) S_s) + (2α − 1) Σ_(r≠s) D_r·D_s.
 ///
 /// If the prediction is true, each D_r is as likely as its negative, whatever the other D and the S
 /// are (docs/theory.md (45)).
 struct BinDifference {
-    /// 2 Σ_(s≠r) D_r·S_s/(1 − Σa²) for each group.
+    /// The linear terms 2 Σ_(s≠r) D_r·S_s/(1 − Σa²), for each group r.
     linear: Vec<f64>,
-    /// 2 (2α − 1) D_r·D_s/(1 − Σa²), row by row for s < r.
+    /// The terms 2 (2α − 1) D_r·D_s/(1 − Σa²) of pairs of groups, row by row for s < r.
     pairs: Vec<f64>,
 }
 
@@ -89,7 +89,7 @@ impl BinDifference {
         }
     }
 
-    /// Returns U with these signs of the D_r.
+    /// Returns U with the given signs of the D_r.
     fn with_signs(&self, signs: &[f64]) -> f64 {
         let mut pairs = self.pairs.as_slice();
         let mut sum = 0.0;
@@ -102,7 +102,7 @@ impl BinDifference {
         sum
     }
 
-    /// Returns the variance of U over all signs; it does not depend on the signs.
+    /// Returns the variance of U over all choices of signs.
     fn variance(&self) -> f64 {
         let terms = self.linear.iter().chain(&self.pairs);
         terms.map(|term| term * term).sum()
@@ -131,7 +131,7 @@ impl FullRadialComparison {
     /// the random signs of the p-value.
     ///
     /// # Panics
-    /// When the prediction comes in groups that differ from those of the measurement.
+    /// Panics if the prediction comes in groups that differ from those of the measurement.
     #[must_use]
     pub fn new(measured: &FieldMeasurement, predicted: &PredictedField, seed: u64) -> Self {
         let bins = RadialBins::new(&measured.grid);

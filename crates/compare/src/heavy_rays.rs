@@ -2,8 +2,8 @@
 
 use etendue_field::Slices;
 
-/// Returns the number of rays of equal weight per batch that would vary as much as this light does.
-/// Returns `None` if the number is large enough that no batch would be empty.
+/// Returns the number of rays of equal weight per batch with which the light of batches would vary
+/// as much as it does. Returns `None` if the number is large enough that no batch would be empty.
 ///
 /// With n equal rays the relative variance is 1/n, and of R batches R e⁻ⁿ are empty. With fewer
 /// than ln R rays the spread of batches does not estimate the error of their mean: the rays that

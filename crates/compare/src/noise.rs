@@ -4,20 +4,21 @@ use crate::residuals::Residuals;
 use etendue_spectrum::Measurement;
 use etendue_spectrum::estimate::{self, TooFewBatches};
 
-/// Returns the effective number of independent real numbers in the noise of plane `plane`. The mean
-/// square of that many normal numbers fluctuates as much as the mean square of the noise, with each
-/// frequency in units of its own σ.
+/// Returns the effective number of independent real numbers in the noise of plane `plane`. The
+/// mean square of that many normal numbers fluctuates as much as the mean square of the noise, if
+/// the noise at each frequency is divided by its σ.
 ///
-/// The window correlates neighbouring frequencies. With C the covariance of the noise over its σ,
-/// the mean of |S − E S|²/σ² over m frequencies has the variance 2 tr C²/m², like the mean square of
-/// (tr C)²/tr C² numbers (Satterthwaite 1946). The batches give the sample covariance Ĉ of n = R − 1
-/// degrees of freedom, and n²/((n − 1)(n + 2)) · (tr Ĉ² − (tr Ĉ)²/n) is an unbiased estimate of
-/// tr C² for normal noise (Srivastava 2005, Eq. 2.4).
+/// The window correlates neighbouring frequencies. If C is the covariance of the noise divided by
+/// σ, the mean of |S − E S|²/σ² over m frequencies has the variance 2 tr C²/m². Its relative
+/// variance is that of the mean square of (tr C)²/tr C² independent numbers (Satterthwaite 1946).
+/// The batches give the sample covariance Ĉ of n = R − 1 degrees of freedom. For this, n²/((n −
+/// 1)(n + 2)) · (tr Ĉ² − (tr Ĉ)²/n) is an unbiased estimate of tr C² for normal noise (Srivastava
+/// 2005, Eq. 2.4).
 ///
-/// `None` without noise.
+/// Returns `None` without noise.
 ///
 /// # Errors
-/// With fewer than three batches.
+/// Returns an error for fewer than three batches.
 pub fn noise_dof(measurement: &Measurement, plane: usize) -> Result<Option<f64>, TooFewBatches> {
     let batches = measurement.batches().len();
     if batches < 3 {
@@ -28,9 +29,10 @@ pub fn noise_dof(measurement: &Measurement, plane: usize) -> Result<Option<f64>,
     Ok(of_batches(&Residuals::new(measurement, plane, &mean)))
 }
 
-/// Returns the same number, from the difference of each batch to the mean.
+/// Returns the effective number of independent real numbers, from the difference of each batch to
+/// the mean.
 fn of_batches(centred: &Residuals) -> Option<f64> {
-    // tr Ĉ and tr Ĉ²; the matrix of products has the same eigenvalues as Ĉ.
+    // tr Ĉ and tr Ĉ² are those of the matrix of products, which has the same eigenvalues as Ĉ.
     let products = centred.products(true);
     let trace = products.diag().sum();
     if trace <= 0.0 {

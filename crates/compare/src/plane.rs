@@ -62,7 +62,7 @@ pub const MIN_PHOTONS_PER_BATCH: f64 = 8.0;
 /// Compares plane `index` of a measurement with its prediction.
 ///
 /// # Errors
-/// When the measurement has too few batches for errors.
+/// Returns an error if the measurement has too few batches for standard errors.
 pub fn compare(
     measurement: &Measurement,
     index: usize,
@@ -261,8 +261,8 @@ impl ComparedSides<'_> {
         p.is_none_or(|p| p >= test.level)
     }
 
-    /// Returns the number of photons that would decide; `None` where that is not known, or where
-    /// more photons do not help.
+    /// Returns the number of photons that would decide the comparison; `None` where that is not
+    /// known, or where more photons do not help.
     fn photons_needed(&self, agreement: &Agreement, agrees: bool, test: &Test) -> Option<f64> {
         let (inside, emitted) = (self.inside(), self.measurement.emitted());
         if self.predicted.is_dark() || inside == 0 {
@@ -286,9 +286,9 @@ impl ComparedSides<'_> {
         }
     }
 
-    /// Returns the number of rays of equal weight that would vary like the rays of a batch, or of a
-    /// replicate of the prediction. Returns `None` unless this number is too small for a test, and
-    /// measurement and prediction disagree.
+    /// Returns the number of rays of equal weight that would vary like the rays of a batch, or of
+    /// a replicate of the prediction. Returns `None` if this number is large enough for a test, or
+    /// if measurement and prediction agree.
     fn uneven(&self, agrees: bool) -> Option<f64> {
         let batches = self.measurement.at_plane(self.index);
         let measured = too_few(batches.map(|batch| &batch.slices));
@@ -377,8 +377,9 @@ impl ComparedSides<'_> {
         self.prediction.systematic_error().unwrap_or(0.0) * size
     }
 
-    /// Returns the shear slope s = Σ P ρν / Σ P ρ². An error ‖dF‖ = ε ‖F‖ of the spectrum moves it
-    /// by no more than 2ε √(Σ P · Σ g² P), where g = ∂s/∂P = (ρν − s ρ²) / Σ P ρ² (Cauchy–Schwarz).
+    /// Returns the shear slope s = Σ P ρν / Σ P ρ². An error ‖dF‖ = ε ‖F‖ of the spectrum moves s
+    /// by no more than 2ε √(Σ P · Σ g² P), where g = ∂s/∂P = (ρν − s ρ²) / Σ P ρ²
+    /// (Cauchy–Schwarz).
     fn slope(&self, grid: &SliceGrid) -> Pair {
         let pair = self.pair(|p| shear_slope(p, grid));
         let epsilon = self.prediction.systematic_error();
@@ -420,7 +421,8 @@ impl ComparedSides<'_> {
         vec![share(farthest), share(plane.distance)]
     }
 
-    /// Returns a number computed from both radial powers by the same estimator.
+    /// Returns a number computed from the measured and from the predicted radial power by the same
+    /// estimator.
     fn pair(&self, of: impl Fn(ArrayView2<'_, f64>) -> Option<f64>) -> Pair {
         let measured = self.power.statistic(&of);
         let predicted = self.replicates.and_then(|power| power.statistic(&of));

@@ -24,19 +24,20 @@ pub struct Prediction {
     /// The slices of the windowed spectrum.
     pub slices: Slices,
     /// The estimated ‖error‖/‖slices‖: the standard error where theory has replicates, otherwise
-    /// the quadrature error. `None` for a closed form, and for a reference.
+    /// the quadrature error. Is `None` for a closed form, and for a reference.
     pub quadrature_error: Option<f64>,
-    /// ‖error‖/‖slices‖ due to smooth meshes: theory follows patches that osculate them, and the
-    /// two tracers of a reference deflect rays differently. `None` without such a mesh.
+    /// The relative error ‖error‖/‖slices‖ due to smooth meshes. Theory replaces such meshes by
+    /// osculating patches, and the two tracers of a reference deflect rays at them differently. Is
+    /// `None` without a smooth mesh.
     pub mesh_error: Option<f64>,
-    /// The first-order chain. Where it exists, `slices` and all other fields are those of the exact
-    /// ray-space prediction.
+    /// The first-order chain. Where a first-order chain exists, `slices` and all other fields are
+    /// those of the exact ray-space prediction.
     pub first_order: Option<FirstOrder>,
-    /// Independent replicates, of which `slices` is the mean: batches of a reference, or randomised
-    /// rules of theory. Empty where the slices have no statistical error. With n replicates a
-    /// p-value is no smaller than 2¹⁻ⁿ, so there should be 16 or more.
+    /// Independent replicates, of which `slices` is the mean: batches of a reference, or
+    /// randomised rules of theory. The list is empty where the slices have no statistical error.
+    /// With n replicates a p-value is no smaller than 2¹⁻ⁿ, so there should be 16 or more.
     pub replicates: Vec<Slices>,
-    /// ∫ L W without occluders, the scale against which the slices of theory are small or large;
+    /// ∫ L W without occluders, the scale relative to which slices of theory are small or large;
     /// zero for a reference.
     pub unblocked: f64,
     /// The windowed light field in (x, u).
@@ -76,7 +77,8 @@ impl Prediction {
         both(quadrature, self.mesh_error)
     }
 
-    /// Returns ‖error‖/‖slices‖ of theory's own replicates. It does not shrink with more photons.
+    /// Returns ‖error‖/‖slices‖ of theory's own replicates. This error does not shrink with more
+    /// photons.
     pub(crate) fn statistical_error(&self) -> Option<f64> {
         self.quadrature_error.filter(|_| self.is_statistical())
     }
@@ -86,8 +88,8 @@ impl Prediction {
         both(self.quadrature_error, self.mesh_error)
     }
 
-    /// Returns the prediction of theory for a plane of a scene. `None` where no theory applies and
-    /// [`Self::reference`] takes its place.
+    /// Returns the prediction of theory for a plane of a scene. Returns `None` where no theory
+    /// applies and [`Self::reference`] takes its place.
     #[must_use]
     pub fn new(scene: &Scene, plane: &VirtualPlane, applicability: &Applicability) -> Self {
         let empty = Self::darkness(scene, plane, applicability);
@@ -186,7 +188,7 @@ impl Prediction {
     /// theory applies.
     ///
     /// # Errors
-    /// When that measurement has too few batches.
+    /// Returns an error if that measurement has too few batches.
     pub fn reference(
         scene: &Scene,
         index: usize,
@@ -207,7 +209,7 @@ impl Prediction {
     /// Returns a plane of a measurement, with which another, independent measurement is compared.
     ///
     /// # Errors
-    /// When the measurement has too few batches.
+    /// Returns an error if the measurement has too few batches.
     pub fn measured(measurement: &Measurement, plane: usize) -> Result<Self, TooFewBatches> {
         let batches = measurement.at_plane(plane);
         Ok(Self {
@@ -235,9 +237,9 @@ fn both(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     }
 }
 
-/// Returns two cuts. The first is twice the end of the main lobe of a Hann window's transform,
-/// which lies at 1/half-width. The second is 1.5 times the first, to show whether H depends on the
-/// cut. Empty where light does not leave a surface.
+/// Returns two cuts. The first is twice the frequency 1/half-width at which the main lobe of a
+/// Hann window's transform ends. The second is 1.5 times the first, to show whether H depends on
+/// the cut. The list is empty where light does not leave a surface.
 fn cuts(scene: &Scene, plane: &VirtualPlane) -> Vec<f64> {
     if plane.leg == 0 || scene.path.along(plane) > 0.0 {
         return Vec::new();

@@ -122,14 +122,14 @@ pub struct PlaneReport {
     pub excess: Option<f64>,
     /// Standard error of the square of `excess` if the prediction is true.
     pub excess_squared_error: Option<f64>,
-    /// 10 log₁₀ of the mean σ² over the largest |F|².
+    /// 10 log₁₀ of the ratio of the mean σ² to the largest |F|².
     pub noise_floor_db: Option<f64>,
     /// The effective number of independent real numbers in the noise of the measured slices, for a
     /// test of two results ([`crate::noise_dof`]); `None` without noise.
     pub noise_dof: Option<f64>,
     /// Mean of |S − F|²/σ², corrected for σ² being an estimate.
     pub chi2_per_dof: Option<f64>,
-    /// Probability of a disagreement as large as the one seen, if there is none.
+    /// Probability of a disagreement at least this large if the prediction is true.
     pub p_value: Option<f64>,
     /// The score test of each parameter of the chain.
     pub parameters: Vec<ParameterReport>,
@@ -142,14 +142,14 @@ pub struct PlaneReport {
     pub bandwidth_95: Bandwidth,
     /// 95 % bandwidths of the light less its mean, which show how fast the light changes.
     pub variation_95: Bandwidth,
-    /// Second central moments of the windowed light field over the coordinates of the plane. `None`
-    /// where no light arrived.
+    /// Second central moments of the windowed light field over the coordinates of the plane. Is
+    /// `None` where no light arrived.
     pub covariance: Option<Covariance>,
-    /// H at two cuts, on a plane that light leaves diffusely; empty for any other plane.
+    /// The share H at two cuts, on a plane that light leaves diffusely; empty for any other plane.
     pub high_frequency_share: Vec<HighFrequencyShare>,
     /// The shares of power in two wedges, for blockers on the way to a plane of the first leg. The
     /// first wedge lies between the nearest and the farthest blocker. The second reaches back to
-    /// the light, because the edges of the light have frequencies too. Empty for any other plane.
+    /// the light, because the light has edges too. The list is empty for any other plane.
     pub wedge_share: Vec<WedgeShare>,
     /// The full radial spectrum, where the light field was put on a 4D grid (`--save field`).
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -161,8 +161,8 @@ pub struct PlaneReport {
     pub verdict: Verdict,
     /// Why an undecided plane is undecided, in words.
     pub undecided: Option<String>,
-    /// Photons that would decide an undecided plane. `None` where that is not known, or where more
-    /// photons do not help.
+    /// Number of photons that would decide an undecided plane. Is `None` where that is not known,
+    /// or where more photons do not help.
     pub photons_needed: Option<f64>,
     /// Limits of the measurement, in words.
     pub warnings: Vec<String>,

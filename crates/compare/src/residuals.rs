@@ -10,8 +10,8 @@ use ndarray::{Array2, Array3, Axis};
 /// Against a prediction without statistical error there is a residual for each batch, r_b = S_b −
 /// F. Against a prediction that has replicates itself, batches and replicates are combined into
 /// groups of neighbours. There are as many groups as batches or as replicates, whichever are fewer
-/// (docs/theory.md, section 6). Under the hypothesis each residual is an independent draw with mean
-/// zero, and their mean is S − F.
+/// (docs/theory.md, section 6). If the prediction is true, each residual is an independent draw
+/// with mean zero. The mean of the residuals is S − F.
 #[derive(Clone, Debug)]
 pub struct Residuals {
     grid: SliceGrid,
@@ -19,7 +19,7 @@ pub struct Residuals {
     parts: Vec<Array3<Complex>>,
 }
 
-/// Rounds of random signs; they resolve the p-value to a part in 20,000.
+/// Number of rounds of random signs, which resolve the p-value to a part in 20,000.
 pub(crate) const ROUNDS: u64 = 19_999;
 /// Error of the fast transform of photons, as a share of the largest value
 /// (`etendue_transform`).
@@ -32,7 +32,7 @@ impl Residuals {
     /// error.
     ///
     /// # Panics
-    /// When the plane was measured at other frequencies than the prediction's.
+    /// Panics if the plane was measured at other frequencies than the prediction's.
     #[must_use]
     pub fn new(measurement: &Measurement, plane: usize, prediction: &Slices) -> Self {
         let residual = |batch: &PlaneBatch| {
@@ -53,7 +53,7 @@ impl Residuals {
     /// and the same number of replicates.
     ///
     /// # Panics
-    /// When the plane was measured at other frequencies than the prediction's.
+    /// Panics if the plane was measured at other frequencies than the prediction's.
     #[must_use]
     pub fn between(
         measurement: &Measurement,
@@ -67,7 +67,7 @@ impl Residuals {
         let batches: Vec<&Slices> = measurement.at_plane(plane).map(|b| &b.slices).collect();
         let groups = batches.len().min(replicates.len());
         let mut parts = vec![Array3::zeros(prediction.grid.half_shape()); groups];
-        // How often F itself counts in each group.
+        // The coefficient of F itself in each group.
         let mut left = vec![0.0; groups];
         let samples: [(f64, Vec<&Slices>); 2] =
             [(1.0, batches), (-1.0, replicates.iter().collect())];
@@ -176,7 +176,7 @@ impl Residuals {
     /// where σ > 0.
     ///
     /// σ² is itself estimated from R batches. For complex normal residuals this raises the mean by
-    /// (R − 1)/(R − 2), which is divided out. `None` when no photon arrived.
+    /// (R − 1)/(R − 2), which is divided out. Returns `None` when no photon arrived.
     #[must_use]
     pub fn chi2_per_dof(&self, variance: &Array3<f64>) -> Option<f64> {
         let resolved = self.cells(variance).filter(|v| **v > 0.0).count();
@@ -193,10 +193,10 @@ impl Residuals {
     /// Returns the standard deviation, [ρ, ν], of the measured radial power around the predicted
     /// one, if F is true.
     ///
-    /// |S|² − σ² − |F|² = 2 Re F*(S − F) + (|S − F|² − σ²), averaged over the azimuths. The first
-    /// term is a mean over residuals, whose spread gives its variance. The second has the variance
-    /// σ⁴ at each azimuth. Unlike the jackknife error of the power, this error does not follow the
-    /// power's own fluctuation.
+    /// The deviation is |S|² − σ² − |F|² = 2 Re F*(S − F) + (|S − F|² − σ²), averaged over the
+    /// azimuths. The first term is a mean over residuals, whose spread gives its variance. The
+    /// second term has the variance σ⁴ at each azimuth. Unlike the jackknife error of the power,
+    /// this error does not follow the power's own fluctuation.
     pub(crate) fn radial_sigma(&self, prediction: &Slices, variance: &Array3<f64>) -> Array2<f64> {
         let azimuths = self.grid.azimuths as f64;
         let half = self.grid.half_shape();
@@ -305,7 +305,7 @@ impl Residuals {
     /// its own distribution. This includes correlations between neighbouring frequencies. The
     /// p-value is the share of rounds, the observed one included, that reach the observed value.
     ///
-    /// `None` when all residuals are zero: nothing measured and nothing predicted.
+    /// Returns `None` when all residuals are zero, as when no light is measured or predicted.
     #[must_use]
     pub fn p_value(&self, seed: u64) -> Option<f64> {
         let products = self.products(true);
@@ -360,8 +360,8 @@ pub(crate) fn largest(slices: &Array3<Complex>) -> f64 {
     slices.iter().map(|s| modulus(*s)).fold(0.0, f64::max)
 }
 
-/// Computes Σ a b in eight parallel sums. The matrix products of libraries round differently on
-/// each processor; these sums round the same on every one.
+/// Computes Σ a b in eight parallel sums. Matrix products of libraries round differently on
+/// different processors; these sums round in the same way on all.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     const LANES: usize = 8;
     let (a, a_rest) = a.as_chunks::<LANES>();

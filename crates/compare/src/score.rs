@@ -29,13 +29,13 @@ const DETECTABLE: f64 = 3.858;
 /// Returns the score test of one parameter (docs/theory.md, section 6): projects S − F on
 /// ∂F/∂parameter, weighted by 1/σ².
 ///
-/// The step δ = Re Σ conj(D)(S − F)/σ² / Σ|D|²/σ² is the least-squares change of the parameter; the
-/// error of δ is its spread over the residuals. This error includes correlations between
+/// The step δ = Re Σ conj(D)(S − F)/σ² / Σ|D|²/σ² is the least-squares change of the parameter;
+/// the error of δ is its spread over the residuals. This error includes correlations between
 /// frequencies and the noise of a prediction's replicates. A further error of the prediction,
-/// `numerical` = ‖error‖, moves δ by no more than `numerical` ‖D/σ²‖ / Σ|D|²/σ² (Cauchy–Schwarz),
-/// which is added in quadrature. Both are of first order in δ.
+/// `numerical` = ‖error‖, moves δ by no more than `numerical` ‖D/σ²‖ / Σ|D|²/σ² (Cauchy–Schwarz).
+/// This bound is added in quadrature. Step and error hold to first order in δ.
 ///
-/// `None` when the prediction does not depend on the parameter, or no photon arrived.
+/// Returns `None` when the prediction does not depend on the parameter, or no photon arrived.
 pub(crate) fn score(
     residuals: &Residuals,
     variance: &Array3<f64>,

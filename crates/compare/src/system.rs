@@ -1,4 +1,4 @@
-//! Reads smooth surfaces off the scene, for rays and for reflection by a BRDF.
+//! Derives systems of smooth surfaces from the scene, for rays and for reflection by a BRDF.
 
 use crate::chain::stands_before;
 use etendue_field::{Light, Mask, Orientation, Patch, Side, Specular, VirtualPlane};
@@ -8,7 +8,7 @@ use etendue_theory::rays::{Plane, SpecularSurface, SpecularSystem};
 use etendue_theory::{Observed, Obstacle, ObstacleForm, reflections, scattering};
 
 /// Returns the light, masks and specular surfaces through which rays reach a plane, and the plane.
-/// `None` where light comes from a ray file, and where a surface is not specular.
+/// Returns `None` where light comes from a ray file, and where a surface is not specular.
 #[must_use]
 pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<SpecularSystem>> {
     if matches!(scene.light, Light::Rays { .. }) {
@@ -67,9 +67,9 @@ fn seen_from(event: Specular, back: bool) -> Specular {
     }
 }
 
-/// Returns the light, the masks and the surface with a BRDF before a plane, and the plane. `None`
-/// where the plane is not on the second leg, where the first surface has no BRDF, and where light
-/// comes from a ray file.
+/// Returns the light, the masks and the surface with a BRDF before a plane, and the plane. Returns
+/// `None` where the plane is not on the second leg, where the first surface has no BRDF, and where
+/// light comes from a ray file.
 #[must_use]
 pub fn scattered(
     scene: &Scene,
@@ -102,8 +102,8 @@ pub fn scattered(
 }
 
 /// Returns the light, all masks and all surfaces of the path, and a plane behind some of them.
-/// `None` where light comes from a ray file, where it has met a mesh, and where it was scattered by
-/// no surface or by too many.
+/// Returns `None` where light comes from a ray file, where it has met a mesh, and where it was
+/// scattered by no surface or by too many.
 pub(crate) fn reflected(
     scene: &Scene,
     plane: &VirtualPlane,

@@ -2,7 +2,8 @@
 
 use std::f64::consts::SQRT_2;
 
-/// Terms of a series or a continued fraction; a thousand degrees of freedom take about 200.
+/// The most terms of a series or a continued fraction; a thousand degrees of freedom take about
+/// 200.
 const MAX_TERMS: u32 = 1_000_000;
 /// The precision at which a series or a continued fraction ends: the rounding of f64.
 const ROUNDING: f64 = 1e-16;

@@ -90,8 +90,8 @@ impl Theory {
     }
 }
 
-/// Returns the system of specular surfaces that leads to a plane behind or on one of them, or of
-/// light that passes through pictures.
+/// Returns the system of specular surfaces that leads to a plane behind or on one of them, also
+/// for light that passes through a picture and meets no surface.
 fn followed(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<rays::SpecularSystem>> {
     let across = plane.orientation == Orientation::Orthogonal;
     if !scene.light.is_picture() && plane.leg == 0 && across {

@@ -29,9 +29,11 @@ pub struct TwoSamples {
     /// Probability of differences as small, or smaller, if the noise of both is independent. Nearly 0
     /// means that they share photons, or that σ is overstated.
     pub p_shared: Option<f64>,
-    /// ‖A − B‖ over the larger of ‖A‖ and ‖B‖, over the independent frequencies; 0 if both are dark.
+    /// ‖A − B‖ divided by the larger of ‖A‖ and ‖B‖, over the independent frequencies; 0 if both
+    /// are dark.
     pub difference: f64,
-    /// √Σ(σ_A² + σ_B²) over the same norm: the difference that noise alone makes.
+    /// √Σ(σ_A² + σ_B²) divided by the larger of ‖A‖ and ‖B‖: the difference that noise alone
+    /// makes.
     pub noise: f64,
 }
 
@@ -49,7 +51,7 @@ impl TwoSamples {
     /// distribution (docs/theory.md, section 6).
     ///
     /// # Panics
-    /// When the arrays have other shapes than the grid.
+    /// Panics if the arrays have other shapes than the grid.
     #[must_use]
     pub fn new(grid: &SliceGrid, a: &Sample, b: &Sample) -> Self {
         let sums = FrequencySums::new(grid, a, b);
@@ -156,7 +158,7 @@ pub struct Estimate {
     pub value: f64,
     /// The standard error of the number.
     pub error: f64,
-    /// The batches that the error was estimated from.
+    /// Number of batches from which the error was estimated.
     pub batches: usize,
 }
 
@@ -164,7 +166,7 @@ pub struct Estimate {
 /// a pull at least as far from zero if both estimate the same.
 ///
 /// The test is that of Welch (1947): Student's t with n = (e_a² + e_b²)²/Σ e⁴/(R − 1) degrees of
-/// freedom. `None` where neither has an error.
+/// freedom. Returns `None` where neither has an error.
 #[must_use]
 pub fn pull(a: Estimate, b: Estimate) -> Option<(f64, f64)> {
     let squares = [a, b].map(|e| (e.error * e.error, e.batches as f64 - 1.0));

@@ -5,7 +5,7 @@ use crate::theories::Theory;
 use etendue_field::{Mask, Orientation, Profile, Shape, VirtualPlane};
 use etendue_scene::{BlockerLayer, Object, Scene};
 
-/// Lowest and highest coordinate along two axes.
+/// The lowest and highest coordinate of a rectangle along each of two axes.
 type Extent = [[f64; 2]; 2];
 
 /// No limits.
@@ -17,11 +17,11 @@ const ROUNDING: f64 = 1e-12;
 /// A layer whose shapes leave more open parts than this is assumed to have holes.
 const MOST_PARTS: usize = 4096;
 
-/// Returns why no light reaches a plane, in words; `None` where some may.
+/// Returns the reason why no light reaches a plane, in words; `None` where some light may.
 ///
 /// Half-planes cut the rays of a section, (position at the light, slope), to a convex polygon,
-/// which is empty if no ray passes. No ray passes either if a layer covers every place where these
-/// rays cross it.
+/// which is empty if no ray passes. All rays are also stopped if a layer covers every place where
+/// they cross it.
 pub(crate) fn reason(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> Option<String> {
     let layers = scene.blockers.iter();
     let layers = layers.filter(|layer| {

@@ -40,7 +40,7 @@ pub(crate) fn bandwidth(
 /// Returns the bandwidths of the light at plane `index`, and of its prediction, less their means.
 ///
 /// # Errors
-/// When the measurement has too few batches.
+/// Returns an error if the measurement has too few batches.
 pub(crate) fn variation(
     measurement: &Measurement,
     index: usize,

@@ -15,13 +15,14 @@ pub struct Test {
 }
 
 impl Test {
-    /// Returns the test of a scene: α over all its planes.
+    /// Returns the test of a scene, with the level α for all its planes together.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         Self::each(scene, 1)
     }
 
-    /// Returns the test of a scene in which each plane is tested `times` times: α over all tests.
+    /// Returns the test of a scene in which each plane is tested `times` times, with the level α
+    /// for all tests together.
     #[must_use]
     pub fn each(scene: &Scene, times: usize) -> Self {
         let run = &scene.run;

@@ -98,7 +98,7 @@ fn prediction(width: f64) -> Prediction {
     }
 }
 
-/// Rays that find nothing do not prove darkness, so light that photons see is no failure then.
+/// Rays that find no light do not prove darkness, so light measured by photons is then no failure.
 #[test]
 fn rays_that_found_nothing_decide_nothing() {
     let [truth, _] = spectrum(0.3);
@@ -115,7 +115,7 @@ fn rays_that_found_nothing_decide_nothing() {
     assert_eq!(verdict(&nothing), Verdict::Undecided);
 }
 
-/// A reference in place of theory: its noise counts, and a difference from it is found.
+/// Tests a reference in place of theory: its noise counts, and a difference from it is found.
 #[test]
 fn a_reference_is_judged_with_its_own_noise() {
     let verdict = |reference_width: f64, seed: u64| {
@@ -174,8 +174,9 @@ fn sampled(width: f64, size: f64, count: u32, seed: u64) -> Prediction {
     }
 }
 
-/// Both sides come in different numbers of parts: fewer replicates than batches, more, and a number
-/// that does not divide. p is uniform if they agree, and a spectrum 5 % too wide is detected.
+/// The numbers of replicates and batches differ: fewer replicates, more replicates, and numbers
+/// that do not divide each other. p is uniform if both sides agree, and a spectrum 5 % too wide is
+/// detected.
 #[test]
 fn two_samples_are_compared_with_the_noise_of_both() {
     let [truth, _] = spectrum(1.0);
@@ -387,8 +388,8 @@ fn errors_of_slopes_hold_the_noise_of_replicates() {
     assert!((mean - 1.0).abs() < 0.57, "{mean}");
 }
 
-/// The total of photons of equal weight has no noise. A quadrature is never as exact, and its error
-/// is then no disagreement.
+/// The total of photons of equal weight has no noise. A quadrature is never that exact, and its
+/// error does not count as disagreement.
 #[test]
 fn a_quadrature_is_excused_where_photons_have_no_noise() {
     let [truth, _] = spectrum(1.0);
@@ -461,7 +462,7 @@ fn darkness_is_judged_by_what_a_prediction_can_tell() {
     let unlit = compare(&measurement(&dark, 0.0, 1), 0, &prediction(1.0), &TEST)
         .unwrap()
         .report;
-    // The cause may also be chance, or a window that light misses.
+    // A measurement without light may also be due to chance, or to a window that light misses.
     assert_eq!(unlit.verdict, Verdict::Undecided);
     assert!(unlit.undecided.unwrap().contains("none of 6400 photons"));
 }

@@ -159,8 +159,8 @@ fn a_difference_of_twice_the_noise_is_found() {
         let [a, mut b] = [2 * seed, 2 * seed + 1].map(|seed| sample(seed, BATCHES, SIZE));
         let sound = TwoSamples::new(&grid, &a, &b);
         assert!(sound.p_value.unwrap() > 1e-4, "{sound:?}"); // of twenty, one in 500 runs
-        // The samples differ in norm: the second truth is 1 + ε times the first, with ε ‖truth‖
-        // twice the noise of the difference.
+        // The samples differ in norm: the second truth is 1 + ε times the first, where ε ‖truth‖
+        // is twice the noise of the difference.
         let noise: f64 = a.sigma.iter().chain(&b.sigma).map(|s| s * s).sum();
         let norm: f64 = truth().iter().map(|s| s.norm_sqr()).sum();
         let epsilon = 2.0 * (noise / norm).sqrt();

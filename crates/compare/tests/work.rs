@@ -54,7 +54,7 @@ fn refusal(scene: &Scene) -> String {
     too_much(scene).expect("too much work").to_string()
 }
 
-/// `count` opaque layers in place of the scene's own.
+/// Returns text with `count` opaque layers in place of the scene's own blockers.
 fn layers(count: usize, layer: impl Fn(usize) -> String) -> String {
     let layers: Vec<String> = (0..count).map(layer).collect();
     format!("blockers: [{}],\n    surfaces:", layers.join(", "))

@@ -6,9 +6,9 @@ use std::sync::Arc;
 
 /// A bidirectional reflectance distribution function, sr⁻¹.
 ///
-/// With ωi and ωo the directions of light, both away from the surface, θi and θo their angles to
-/// the normal n, r the mirror direction of ωi, α the angle between r and ωo, and h the half vector
-/// of ωi and ωo:
+/// In the table, ωi and ωo are the directions of light, both away from the surface, and θi and θo
+/// are their angles to the normal n. The mirror direction of ωi is r, and α is the angle between r
+/// and ωo. The half vector of ωi and ωo is h.
 ///
 /// | lobe | BRDF |
 /// |---|---|
@@ -24,7 +24,7 @@ use std::sync::Arc;
 pub struct Brdf {
     /// The lobe.
     pub lobe: Lobe,
-    /// The factor on the lobe, 0 to 1.
+    /// The factor that multiplies the lobe, 0 to 1.
     pub albedo: f64,
     /// The Fresnel factor F.
     pub fresnel: Fresnel,
@@ -52,7 +52,7 @@ impl Brdf {
 /// 90°, linear in between.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AngleTable {
-    /// At least two values, the first along the normal and the last along the surface.
+    /// There are at least two values: the first is along the normal, the last along the surface.
     #[serde(serialize_with = "listed")]
     pub values: Arc<[f64]>,
 }
@@ -81,7 +81,7 @@ impl AngleTable {
 /// The lobe of a BRDF.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub enum Lobe {
-    /// Constant in all directions.
+    /// A lobe that is constant in all directions.
     Lambertian,
     /// A power of the cosine of the angle to the mirror direction.
     Phong {
@@ -131,7 +131,7 @@ pub enum MicrofacetDistribution {
 }
 
 impl MicrofacetDistribution {
-    /// Returns the lobe of such microfacets with this roughness.
+    /// Returns the lobe of microfacets with this distribution and roughness.
     #[must_use]
     pub fn lobe(self, roughness: f64) -> Lobe {
         match self {

@@ -67,7 +67,7 @@ pub struct PlaneTally {
     pub crossed: u64,
     /// Crossings inside the window.
     pub inside: u64,
-    /// Crossings outside the window: counted, never wrapped.
+    /// Crossings outside the window, which are counted but never wrapped into it.
     pub outside: u64,
 }
 

@@ -45,12 +45,12 @@ pub struct SphericalGaussian {
 /// pixels, periodic in longitude. Between the centres of the first or the last row and the poles it
 /// is constant along the meridian.
 ///
-/// The axes are those of `OpenEXR`'s latitude–longitude maps: the top is up (Y), longitude is 0 in
-/// the middle, to the front (Z), and grows to the left, π/2 being along X; latitude is π/2 at the
-/// top. So the map is seen from inside. A pixel is an area, as in other renderers: the centre of
-/// column i of w is at longitude π (1 − (2 i + 1)/w), and the centre of row j of h is at latitude π
-/// (½ − (j + ½)/h). Mitsuba 3 has the centres of the first and the last row at the poles instead,
-/// and the centre of row j at latitude π (½ − j/(h − 1)).
+/// The axes are those of `OpenEXR`'s latitude–longitude maps. The top is up (Y), at latitude π/2.
+/// Longitude is 0 in the middle, to the front (Z), and grows to the left; π/2 is along X. So the
+/// map is seen from inside. A pixel is an area, as in other renderers: the centre of column i of w
+/// is at longitude π (1 − (2 i + 1)/w), and the centre of row j of h is at latitude π (½ − (j +
+/// ½)/h). Mitsuba 3 has the centres of the first and the last row at the poles instead, and the
+/// centre of row j at latitude π (½ − j/(h − 1)).
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LatLong {
     radiance: Raster,

@@ -169,7 +169,8 @@ mod tests {
 
     #[test]
     fn cells_reach_the_slices_frequencies() {
-        // 12/1.4 on 2 · 0.7 is 12 spacings; 2 · 0.5 at the same frequency 8.57, so 9; 9.9 on 0.8 is 7.92, so 8.
+        // The frequency 12/1.4 on a box of 2 · 0.7 is 12 spacings; on 2 · 0.5 it is 8.57, so 9;
+        // 9.9 on 0.8 is 7.92, so 8.
         let grid = grid(0.5, [12.0 / 1.4, 9.9]);
         assert_eq!(grid.cells, [24, 18, 16, 16]);
         assert!(grid.nyquist(1) >= 12.0 / 1.4);

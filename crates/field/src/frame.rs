@@ -69,7 +69,8 @@ impl Frame {
 
     /// Returns the frame at `origin` with D along `d` and X as near to `x` as orthogonality allows.
     ///
-    /// `None` if `d` or `x` has zero length, or if they are parallel to within a millionth.
+    /// Returns `None` if `d` or `x` has zero length, or if they are parallel to within a
+    /// millionth.
     #[must_use]
     pub fn new(origin: DVec3, d: DVec3, x: DVec3) -> Option<Self> {
         let d = d.try_normalize()?;

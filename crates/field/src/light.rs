@@ -17,7 +17,7 @@ pub enum Light {
         shape: Shape,
         /// Radiance L₀ along the central ray, W m⁻² sr⁻¹.
         radiance: f64,
-        /// n in the radiance L₀ cosⁿθ; 0 is Lambertian, larger values are a spot.
+        /// Exponent n of the radiance L₀ cosⁿθ; 0 is Lambertian, larger values are a spot.
         exponent: f64,
     },
     /// A point on the central ray, with the same intensity in all directions.
@@ -81,8 +81,8 @@ impl Light {
         self.image().is_some()
     }
 
-    /// Checks whether a point can receive light from more than one direction. Backward rays can hit
-    /// only such lights.
+    /// Checks whether a point can receive light from more than one direction. Backward rays can
+    /// hit only lights for which this is true.
     #[must_use]
     pub fn has_extent(&self) -> bool {
         matches!(self, Self::Area { .. } | Self::Environment { .. })
@@ -94,8 +94,8 @@ impl Light {
         matches!(self, Self::Beam { .. } | Self::Environment { .. })
     }
 
-    /// Returns the lowest and highest coordinate along x or y (0 or 1) of the light's points in its
-    /// plane, metres. Infinite for an environment.
+    /// Returns the lowest and highest coordinate along x or y (0 or 1) of the light's points in
+    /// its plane, metres. The coordinates are infinite for an environment.
     #[must_use]
     pub fn extent(&self, axis: usize) -> [f64; 2] {
         let half = match self {

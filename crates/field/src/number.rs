@@ -49,7 +49,7 @@ pub fn decimals(x: f64) -> usize {
     whole((1.0 - libm::log10(x).floor()).clamp(0.0, 17.0))
 }
 
-/// Errors below this would be hidden behind zeros.
+/// Errors below this are written with a power of ten, because zeros would hide them in a decimal.
 const MIN_PLAIN_ERROR: f64 = 1e-8;
 
 /// Formats value ± error, to two digits of the error.

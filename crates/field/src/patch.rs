@@ -13,7 +13,8 @@ use serde::Serialize;
 /// plane zeros.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Patch {
-    /// The frame: O at the vertex, D the normal there, X and Y the principal directions.
+    /// The frame: The frame: O at the vertex, D the normal there, X and Y the principal
+    /// directions.
     pub frame: Frame,
     /// Curvatures k₁, k₂ and k₃, per metre.
     pub curvature: [f64; 3],
@@ -57,8 +58,8 @@ impl Patch {
         box_corners(-half, half).map(|p| self.frame.to_world(p))
     }
 
-    /// Returns the unit normal at a point near the patch, on the side of D at the vertex. Both are
-    /// in the coordinates in which the patch's frame is given.
+    /// Returns the unit normal at a point near the patch, on the side of D at the vertex. Point
+    /// and normal are in the coordinates in which the patch's frame is given.
     #[inline]
     #[must_use]
     pub fn normal(&self, point: DVec3) -> DVec3 {
@@ -120,8 +121,8 @@ impl Patch {
 impl Specular {
     /// Returns the direction of a ray after it meets a surface at `point`, given the unit normal
     /// there on the side the surface faces. All vectors are in one frame, and the direction may
-    /// have any length. `lens` is the frame of a lens. `None` if a ray to be refracted is totally
-    /// reflected.
+    /// have any length. `lens` is the frame of a lens. Returns `None` if a ray to be refracted is
+    /// totally reflected.
     #[must_use]
     pub fn turned(
         &self,
@@ -165,7 +166,7 @@ pub enum Specular {
     Refraction {
         /// Index of refraction on the side of the normal.
         front: f64,
-        /// Index of refraction on the other side.
+        /// Index of refraction on the side opposite to the normal.
         back: f64,
     },
     /// A flat lens without thickness: slopes across it decrease by position over focal length.

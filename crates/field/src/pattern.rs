@@ -12,7 +12,7 @@ pub enum Pattern {
     /// Alternating 1 and 0 on squares with edges along both axes; 1 on the first square beyond the
     /// vertex along both.
     Checkerboard {
-        /// The length of two sides of a square, in metres.
+        /// The period: the length of two sides of a square, in metres.
         period: f64,
     },
     /// A picture around the vertex.

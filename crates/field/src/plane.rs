@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 pub enum Side {
     /// Before light meets the blockers or the surface at this distance.
     Before,
-    /// After light has met them.
+    /// After light has met the blockers or the surface at this distance.
     After,
 }
 
@@ -65,15 +65,17 @@ pub struct VirtualPlane {
     /// The leg of the path that the plane is on: the number of surfaces the light has left before
     /// it.
     pub leg: usize,
-    /// The side of the mask or surface at that distance.
+    /// The side of the mask or surface at the plane's distance.
     pub side: Side,
     /// The quantity recorded.
     pub quantity: Quantity,
     /// The reference for the plane's coordinates.
     pub orientation: Orientation,
-    /// θ of the central ray on a surface, radians; 0 on an orthogonal plane. The coordinates of rays are (x, y, θ − longitude, φ).
+    /// The angle θ of the central ray on a surface, radians; 0 on an orthogonal plane. The
+    /// coordinates of rays are (x, y, θ − longitude, φ).
     pub longitude: f64,
-    /// The frame: O on the central ray, D along it; on a surface X = T, Y = B and D = N.
+    /// The frame: The plane's frame: O on the central ray and D along it; on a surface X = T, Y =
+    /// B and D = N.
     pub frame: Frame,
     /// The window that multiplies the light field.
     pub window: Window,

@@ -20,13 +20,13 @@ pub struct FluxRay {
 #[derive(Clone, Debug, PartialEq)]
 pub struct RayLight {
     rays: Vec<FluxRay>,
-    /// The cumulative flux, including each ray.
+    /// For each ray, the flux of all rays up to and including it, W.
     upto: Vec<f64>,
     /// Flux of rays that do not go forward, W; these rays are left out.
     behind: f64,
     /// The lowest and highest coordinate along x and along y, m.
     extent: [[f64; 2]; 2],
-    /// The largest slope along each axis.
+    /// The largest slope of a ray along each axis.
     steepest: [f64; 2],
 }
 

@@ -68,10 +68,10 @@ impl Shape {
 /// Returns the distance along the central ray at which a ray meets a triangle, both given in the
 /// frame of the ray's coordinates.
 ///
-/// Along the ray the triangle projects to a flat triangle that does or does not contain the origin.
-/// Two triangles compute the same two products for a common edge, so no ray passes between them
-/// (Woop, Benthin and Wald 2013, *Watertight ray/triangle intersection*, which introduces this
-/// shear).
+/// Projected along the ray, the triangle becomes a flat triangle, which contains the origin if the
+/// ray meets the triangle. Two triangles compute the same two products for a common edge, so no
+/// ray passes between them (Woop, Benthin and Wald 2013, *Watertight ray/triangle intersection*,
+/// which introduces this shear).
 #[inline]
 #[must_use]
 pub fn triangle_distance(corners: &[DVec3; 3], ray: &TwoPlane) -> Option<f64> {
@@ -107,7 +107,8 @@ pub struct HalfPlane {
     pub axis: usize,
     /// The coordinate of the edge, in metres.
     pub edge: f64,
-    /// Whether the half-plane has the coordinates above the edge; otherwise it has those below.
+    /// Whether the half-plane contains the coordinates above the edge; otherwise it contains those
+    /// below.
     pub above: bool,
 }
 

@@ -15,7 +15,7 @@ pub enum Profile {
     Box(f64),
     /// Truncated Gaussian: exp(−π t² / width²) on |t| < cut.
     Gaussian {
-        /// The width: the full integral of the Gaussian before truncation.
+        /// The width, which is the integral of the Gaussian before truncation.
         #[schemars(title = "a width in the unit of its coordinate", extend("x-ron" = "0.3"))]
         width: f64,
         /// Half-width of the support.
@@ -51,8 +51,8 @@ const COSINE: [f64; TERMS] = {
 };
 
 /// Computes cos²(π s/2) on |s| ≤ 1 for several values at a time, to 8·10⁻¹⁶. The window is
-/// evaluated for each photon; this takes a small part of the time of a library's cosine, and is
-/// bitwise identical on every machine.
+/// evaluated for each photon; this function takes a small part of the time of a library's cosine,
+/// and its results are bitwise identical on every machine.
 #[inline]
 fn hann<const N: usize>(s: [f64; N]) -> [f64; N] {
     let mut cosines = [0.0; N];
@@ -118,9 +118,9 @@ impl Profile {
 
     /// Returns the profile inside its support as a sum of cosines (docs/theory.md (3)).
     ///
-    /// Exact for Hann and Box. A Gaussian is approximated by the sum of its copies a period 2L
-    /// apart, a Fourier series. L is chosen such that the copies add less than 10⁻¹⁶ inside the
-    /// cut, and terms below 10⁻¹⁷ are left out.
+    /// The sum is exact for Hann and Box. A Gaussian is approximated by the sum of its copies a
+    /// period 2L apart, a Fourier series. L is chosen such that the copies add less than 10⁻¹⁶
+    /// inside the cut, and terms below 10⁻¹⁷ are left out.
     #[must_use]
     pub fn cosine_terms(&self) -> Vec<CosineTerm> {
         match *self {

@@ -100,7 +100,7 @@ impl RectangleCells {
         cells.map(integral).collect()
     }
 
-    /// Returns the cell of a point; the nearest one beyond the outermost edges.
+    /// Returns the cell of a point; for a point beyond the outermost edges, the nearest cell.
     fn cell(&self, point: [f64; 2]) -> usize {
         let [i, j] = [0, 1].map(|axis| {
             let edges = &self.edges[axis];
@@ -181,7 +181,8 @@ impl SphereCells {
         [local.angle_between(DVec3::Z), turn.rem_euclid(1.0)]
     }
 
-    /// Converts a function over the sphere to a function of these coordinates.
+    /// Converts a density over the sphere to a density over the angle to the pole and the azimuth
+    /// divided by 2π.
     fn unrolled(&self, f: impl Fn(DVec3) -> f64) -> impl Fn([f64; 2]) -> f64 {
         move |[angle, turn]| {
             let (sin, cos) = libm::sincos(angle);

@@ -42,8 +42,8 @@ impl LatLongSampler {
             .map(|(values, sine)| DiscreteDistribution::new(values.iter().map(|v| sine * v)))
             .collect();
         let rows = columns.iter().enumerate().map(|(row, columns)| {
-            // Half a row on either side of the centre, or the distance to the pole if it is
-            // shorter.
+            // A row extends half a row on either side of its centre, or to the pole if that is
+            // nearer.
             let center = row as f64 + 0.5;
             let share = (center - top).min(0.5) + (bottom - center).min(0.5);
             share * columns.total()

@@ -154,7 +154,7 @@ fn weights_of_pictures_are_bounded() {
         let mean = weights.iter().sum::<f64>() / weights.len() as f64;
         let squares = weights.iter().map(|w| (w / mean - 1.0).powi(2));
         let deviation = (squares.sum::<f64>() / weights.len() as f64).sqrt();
-        // In each row, the deviation is the step of the polar angle over its sine.
+        // In each row, the deviation is the step of the polar angle divided by its sine.
         assert!(deviation < 0.1, "{deviation}");
     }
 }

@@ -43,8 +43,8 @@ pub fn cosine_hemisphere_density(direction: DVec3) -> f64 {
     direction.z.max(0.0) * FRAC_1_PI
 }
 
-/// Returns the direction at an angle θ to Z and an azimuth φ, given 1 − cos θ, which keeps its
-/// digits for small θ, and φ/2π.
+/// Returns the direction at an angle θ to Z and an azimuth φ, given 1 − cos θ (which keeps its
+/// digits for small θ) and φ/2π.
 #[inline]
 #[must_use]
 pub fn polar(fall: f64, turn: f64) -> DVec3 {

@@ -80,7 +80,7 @@ impl RoughDielectric {
 }
 
 impl Bsdf for RoughDielectric {
-    /// Walter et al., Eqs. 20 and 21.
+    /// Implements Eqs. 20 and 21 of Walter et al.
     #[inline]
     fn value(&self, wi: DVec3, wo: DVec3) -> f64 {
         let Some(facet) = self.facet(wi, wo) else {
@@ -98,7 +98,7 @@ impl Bsdf for RoughDielectric {
         (1.0 - facet.reflected) * common * (o * i).abs() / (sum * sum)
     }
 
-    /// Walter et al., Eqs. 14 and 17.
+    /// Implements Eqs. 14 and 17 of Walter et al.
     #[inline]
     fn density(&self, wi: DVec3, wo: DVec3) -> f64 {
         let Some(facet) = self.facet(wi, wo) else {

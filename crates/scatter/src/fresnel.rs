@@ -49,7 +49,7 @@ fn conductor(n: f64, k: f64, cosine: f64) -> f64 {
 pub(crate) struct Interface {
     /// The share of light that is reflected.
     pub(crate) reflected: f64,
-    /// Index of the far side over that of the near side.
+    /// Index of the far side divided by that of the near side.
     index: f64,
     /// Cosines on the near and the far side.
     cosines: [f64; 2],

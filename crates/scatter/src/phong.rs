@@ -58,8 +58,8 @@ pub struct ModifiedPhong {
 }
 
 impl ModifiedPhong {
-    /// Returns the share of directions that are sampled by the lobe, given by ks. The others are
-    /// sampled in proportion to the cosine.
+    /// Returns the share of directions that are sampled by the lobe: that of ks in kd + ks. The
+    /// others are sampled in proportion to the cosine.
     #[inline]
     fn specular_share(&self) -> f64 {
         let sum = self.diffuse + self.specular;

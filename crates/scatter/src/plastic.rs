@@ -21,7 +21,7 @@ pub struct Coat {
 }
 
 impl Coat {
-    /// Returns a coat with this index over that outside; a smooth coat has no facets.
+    /// Returns a coat with this index relative to the outside; a smooth coat has no facets.
     #[must_use]
     pub fn new(index: f64, facets: Option<Microfacets>) -> Self {
         let through = facets.map(|facets| {

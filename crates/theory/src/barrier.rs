@@ -3,14 +3,14 @@
 
 use etendue_field::{HalfPlane, Mask, Shape};
 
-/// The lowest and highest coordinate along two axes.
+/// The lowest and highest coordinate of a rectangle along each of two axes.
 pub(crate) type Bounds = [[f64; 2]; 2];
 
 /// A mask prepared for many queries.
 #[derive(Debug)]
 pub(crate) struct Barrier<'a> {
-    /// The distance of the mask, metres. The owner of the barrier counts it from the light, or back
-    /// from a receiver.
+    /// The distance of the mask, metres. The owner of the barrier measures it from the light or
+    /// back from a receiver.
     pub(crate) distance: f64,
     /// The region that half-planes leave open.
     pub(crate) open: Bounds,
@@ -65,7 +65,7 @@ pub(crate) struct Bins<'a> {
     low: [f64; 2],
     /// Cells per metre.
     per_length: [f64; 2],
-    /// Cells along each axis.
+    /// Number of cells along each axis.
     side: usize,
     /// Indices of the shapes that touch each cell.
     cells: Vec<Vec<usize>>,

@@ -5,9 +5,9 @@
 //!
 //! The input is a [`Chain`]: a light, travel, opaque shapes, half-planes and cosine gratings in
 //! planes, and the cosine and diffuse reflection of a receiver. The output is the values a
-//! measurement would have without noise: the [`slices`] of the windowed spectrum, a bound on their
-//! error ([`quadrature_error`]), their [`derivative`] by any number of the chain, and the
-//! [`projection`] on (x, u).
+//! measurement would have without noise: the [`slices`] of the windowed spectrum, an estimate of
+//! their error ([`quadrature_error`]), their [`derivative`] with respect to any number of the
+//! chain, and the [`projection`] on (x, u).
 //!
 //! Travel is a shear of (position, slope), so every edge stays a straight line. Every field is then
 //! a signed sum of products of two convex polygons, one in (x, u) and one in (y, v); windows and

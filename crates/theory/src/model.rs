@@ -42,7 +42,8 @@ pub trait Model: Clone {
         parameter.unit(self.light())
     }
 
-    /// Returns the value of a parameter, in its unit. `None` as for [`change`](Self::change).
+    /// Returns the value of a parameter, in its unit. Returns `None` as for
+    /// [`change`](Self::change).
     fn value(&self, parameter: Parameter) -> Option<f64> {
         let mut value = None;
         self.clone().change(parameter, &mut |current| {
@@ -52,7 +53,7 @@ pub trait Model: Clone {
         value
     }
 
-    /// Returns the model with another value of a parameter, in its unit. `None` as for
+    /// Returns the model with another value of a parameter, in its unit. Returns `None` as for
     /// [`change`](Self::change).
     fn with(&self, parameter: Parameter, value: f64) -> Option<Self> {
         let mut other = self.clone();
@@ -73,7 +74,7 @@ pub struct Observed<S> {
 /// A model with a parameter slightly increased and slightly decreased.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ShiftedModels<M> {
-    /// The difference between the two values, in the parameter's unit.
+    /// The increased minus the decreased value of the parameter, in its unit.
     pub(crate) apart: f64,
     /// The models with the larger and with the smaller value.
     pub(crate) sides: [M; 2],
@@ -83,7 +84,7 @@ pub(crate) struct ShiftedModels<M> {
 const STEP: f64 = 1e-3;
 
 impl<M: Model> ShiftedModels<M> {
-    /// Returns a model with a parameter moved by a small step to both sides.
+    /// Returns the models with a parameter increased and decreased by a small step.
     pub(crate) fn nearby(model: &M, parameter: Parameter) -> Option<Self> {
         let step = STEP * parameter.scale(model.value(parameter)?);
         Self::new(model, parameter, step, |moved| moved)
@@ -91,7 +92,7 @@ impl<M: Model> ShiftedModels<M> {
 }
 
 impl<M> ShiftedModels<M> {
-    /// Moves a parameter by a step to both sides and converts both models.
+    /// Increases and decreases a parameter by a step, and converts both models by `into`.
     pub(crate) fn new<A: Model>(
         model: &A,
         parameter: Parameter,

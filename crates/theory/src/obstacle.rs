@@ -17,14 +17,14 @@ pub struct Obstacle {
 /// The form of an obstacle.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ObstacleForm {
-    /// A mask across the first leg that light meets again from a given leg on. If that leg is not
-    /// the first, the mask is among the layers too.
+    /// A mask across the first leg that stops light on all legs from a given one on. If that leg
+    /// is not the first, the mask is among the masks of the first leg too.
     Mask {
         /// The index of the first leg on which the mask counts.
         from: usize,
         /// Distance of the mask's plane from the light, metres.
         distance: f64,
-        /// What the mask lets through, over x and y.
+        /// The mask, as a function of x and y.
         mask: Mask,
     },
     /// An opaque rectangle centred on the origin of a frame, perpendicular to D.

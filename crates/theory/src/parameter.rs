@@ -14,7 +14,7 @@ pub enum Parameter {
     /// The first width of a picture; the second keeps the proportion.
     ImageWidth,
     /// The distance of a step of travel. In a system, the length of the central ray from an
-    /// element, or from the light (0), to the next element or the plane. Everything later moves
+    /// element, or from the light (0), to the next element or the plane. Everything after it moves
     /// along D.
     Travel(usize),
     /// The side along X, or the radius, of the first shape of an opaque mask. All shapes of the

@@ -11,13 +11,14 @@ pub struct Plane {
     pub frame: Frame,
     /// The reference of the coordinates: the central ray, the tangent plane or the surface itself.
     pub orientation: Orientation,
-    /// On a surface, θ of the central ray in radians. The coordinates are then (s, t, θ −
-    /// longitude, φ).
+    /// The angle θ of the central ray on a surface, in radians. The coordinates are then (s, t, θ
+    /// − longitude, φ).
     pub longitude: f64,
     /// The surface, for local normals; without it all normals are along D.
     pub patch: Option<Patch>,
-    /// On a surface, whether the light is arriving; directions are then reversed. If so, the
-    /// surface is not among the elements; otherwise it is the last one.
+    /// Whether the plane observes light arriving at a surface; directions are then reversed. The
+    /// surface of arriving light is not among the elements; a surface that light leaves is the
+    /// last of them.
     pub arriving: bool,
     /// The quantity recorded. Differential irradiance on a surface is radiance times cos θ cos² φ.
     pub quantity: Quantity,

@@ -6,14 +6,15 @@ use etendue_field::{Projection, Slices};
 /// The prediction of a light field.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Predicted {
-    /// The slices of the windowed spectrum. Unit: W m⁻² sr⁻¹ · m², on a surface
-    /// W m⁻² sr⁻¹ · m² rad².
+    /// The slices of the windowed spectrum. Unit: The unit is W m⁻² sr⁻¹ · m²; on a surface, W m⁻²
+    /// sr⁻¹ · m² rad².
     pub slices: Slices,
     /// Independent unbiased predictions whose mean is `slices`; empty for closed forms and
     /// quadrature rules.
     pub replicates: Vec<Slices>,
     /// The relative error ‖error‖/‖F‖: the standard error of the mean of the replicates, or the
-    /// change under finer quadrature rules. `None` for a closed form; infinite if no ray arrives.
+    /// change under finer quadrature rules. Is `None` for a closed form; infinite if no ray
+    /// arrives.
     pub error: Option<f64>,
     /// ∫ L W without occluders: the scale with which the slices of a closed form are compared; zero
     /// for nets.

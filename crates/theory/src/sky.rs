@@ -4,7 +4,7 @@ use etendue_field::{Environment, EnvironmentMap, Frame, LatLong, SphericalGaussi
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// A density over directions, exactly or nearly proportional to the radiance from there.
+/// A density over directions, exactly or nearly proportional to the radiance from each direction.
 #[derive(Clone, Debug)]
 pub(crate) enum SkyDensity<'a> {
     /// The density of spherical Gaussians.
@@ -107,7 +107,7 @@ impl<'a> Pixels<'a> {
             };
             let [a, b, c] = rows.map(row);
             let from = map.direction([i as f64 + 0.5, j as f64 + 0.5]);
-            // Environments shine forward; a cell on the border shines through a part of itself.
+            // Environments shine forward, so only a part of a cell on the border shines.
             let shines = from.dot(forward) > -(0.5 * PI / h as f64 + PI / w as f64);
             let cosine = from.dot(normal).max(GRAZING);
             if shines {

@@ -34,7 +34,7 @@ impl PredictionWork {
         }
     }
 
-    /// Returns the work of doing both, one after the other.
+    /// Returns the work of two predictions, one after the other.
     pub(crate) fn then(self, next: Self) -> Self {
         Self {
             steps: self.steps + next.steps,

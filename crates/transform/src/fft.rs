@@ -23,11 +23,13 @@ const BAND: usize = 512;
 /// unused, as in FFTW's in-place transforms of reals. See [`real`] and [`real_mut`].
 ///
 /// The one-dimensional transforms are those of `realfft` along rows and of `rustfft` along the
-/// other axes. Each is computed by one thread, and columns are grouped in the same way on any
-/// number of threads, so the result is bitwise independent of that number. The result depends on
-/// the kind of processor, since both libraries use the best instructions available.
+/// other axes. Each one-dimensional transform is computed by one thread, and columns are grouped
+/// in the same way on any number of threads, so the result is bitwise independent of that number.
+/// The result depends on the kind of processor, since both libraries use the best instructions
+/// available.
 ///
-/// Error, relative to the root mean square of F: 2 to 5·10⁻¹⁶, at most 1.5·10⁻¹⁵ (AVX, shapes up to 64 × 64 and 9⁴).
+/// The error, relative to the root mean square of F, is 2 to 5·10⁻¹⁶, and at most 1.5·10⁻¹⁵ (AVX,
+/// shapes up to 64 × 64 and 9⁴).
 #[derive(Clone)]
 pub struct RealFft4 {
     shape: [usize; 4],
@@ -69,9 +71,9 @@ pub fn real_mut(row: &mut [Complex], index: usize) -> &mut f64 {
 
 /// The working memory of a thread.
 struct Workspace4 {
-    /// The reals of a row.
+    /// The real numbers of a row.
     reals: Vec<f64>,
-    /// Some columns, one after another.
+    /// The numbers of some columns, one column after another.
     columns: Vec<Complex>,
     /// Scratch memory of the one-dimensional transforms.
     scratch: Vec<Complex>,
@@ -82,7 +84,7 @@ impl RealFft4 {
     ///
     /// # Panics
     ///
-    /// If an axis is empty.
+    /// Panics if an axis is empty.
     #[must_use]
     pub fn new(shape: [usize; 4]) -> Self {
         assert!(!shape.contains(&0), "an axis of {shape:?} is empty");
@@ -118,7 +120,7 @@ impl RealFft4 {
     ///
     /// # Panics
     ///
-    /// If `reals` does not hold n₀ n₁ n₂ n₃ numbers.
+    /// Panics if `reals` does not hold n₀ n₁ n₂ n₃ numbers.
     #[must_use]
     pub fn padded(&self, reals: &[f64]) -> Vec<Complex> {
         let [n, row] = [self.shape[3], self.row()];
@@ -142,7 +144,7 @@ impl RealFft4 {
     ///
     /// # Panics
     ///
-    /// If `data` does not hold [`size`](Self::size) numbers.
+    /// Panics if `data` does not hold [`size`](Self::size) numbers.
     pub fn forward(&self, data: &mut [Complex]) {
         assert_eq!(
             data.len(),

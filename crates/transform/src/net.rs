@@ -27,12 +27,12 @@ const POLYNOMIALS: [(usize, u32, [u32; 5]); 9] = [
     (5, 7, [1, 1, 7, 11, 19]),
 ];
 
-/// The contribution of each byte of a point's index to its coordinates, combined without carry,
-/// [block, byte, value].
+/// The contribution of each byte of a point's index to its coordinates, [block, byte, value];
+/// contributions are combined by exclusive or.
 static ADDED: [[[[u32; WIDTH]; 256]; 4]; JOINT] = added();
 
-/// Returns the contribution of each bit of a point's index to a coordinate of Sobol' points,
-/// combined without carry; there are ten coordinates, starting at 0.
+/// Returns the contribution of each bit of a point's index to a coordinate of Sobol' points;
+/// contributions are combined by exclusive or. There are ten coordinates, starting at 0.
 #[must_use]
 pub const fn sobol_directions(dimension: usize) -> [u32; 32] {
     let mut all = [0; 32];
@@ -139,8 +139,9 @@ impl Net {
 }
 
 /// Applies Owen scrambling by a hash of the reversed bits, each of which depends only on the bits
-/// above it (Laine and Karras 2011; the hash of Vegdahl 2021, *Building a better LK hash*, with a
-/// multiplier that is independent of the addend, which makes all numbers equally likely).
+/// above it (Laine and Karras 2011). The hash is that of Vegdahl 2021, *Building a better LK
+/// hash*, with a multiplier that is independent of the addend, which makes all numbers equally
+/// likely.
 #[inline]
 fn scrambled(value: u32, [added, factor]: [u32; 2]) -> u32 {
     let mut x = value.reverse_bits();
@@ -157,7 +158,7 @@ mod tests {
     use super::*;
     use crate::random::unit;
 
-    /// Number of coordinates of two joint blocks and one more.
+    /// Number of coordinates of two joint blocks and one further block.
     const ALL: usize = 3 * WIDTH;
 
     fn points(key: u64, count: u32) -> Vec<[f64; ALL]> {

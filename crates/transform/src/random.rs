@@ -6,7 +6,7 @@
 /// The purpose of a random number; separates the streams of one seed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stream {
-    /// The life of photon `index`.
+    /// The random numbers of photon `index`, from emission to its end.
     Photon,
     /// Jitter of blocker `index`.
     Jitter,
@@ -14,7 +14,8 @@ pub enum Stream {
     Flip,
     /// Backward ray `index`.
     Backward,
-    /// The life of photon `index` without aimed emission, a reference for aimed emission.
+    /// The random numbers of photon `index` without aimed emission, a reference for aimed
+    /// emission.
     Even,
     /// The scrambling of net `index` of photons.
     Net,

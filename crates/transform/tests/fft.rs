@@ -87,7 +87,8 @@ fn arrays_are_padded_by_rows() {
     }
 }
 
-/// Several bands of the first axis and blocks of columns, with incomplete ones.
+/// The shape has several bands of the first axis and several blocks of columns, some of them
+/// incomplete.
 #[test]
 fn large_shapes_are_put_together_right() {
     let shape = [6, 10, 9, 14];

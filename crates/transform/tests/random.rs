@@ -56,7 +56,7 @@ pub(crate) fn boxed() -> Window {
 }
 
 /// Returns `azimuths` slices with `half` values of ρ and of ν on either side of zero, `fineness`
-/// samples to 1/(2 half-width).
+/// samples for each 1/(2 half-width).
 pub(crate) fn grid(window: &Window, azimuths: usize, half: [usize; 2], fineness: f64) -> SliceGrid {
     let axis = |half, profile: Profile| FrequencyAxis {
         half,

@@ -44,8 +44,8 @@ pub(super) enum What {
 const AT_END: f64 = 1e-6;
 
 impl Suspect {
-    /// Returns everything that rays may meet on the legs of these paths. A layer with many shapes
-    /// contributes only the shapes nearest to where the rays cross it.
+    /// Returns everything that rays may meet on the legs of the given paths. A layer with many
+    /// shapes contributes only the shapes nearest to where the rays cross it.
     pub(super) fn all(around: &Surroundings<'_>, paths: &[&[PathPiece]]) -> Vec<Self> {
         let legs = paths.first().map_or(0, |pieces| pieces.len());
         let on_leg = |leg: usize| {
@@ -80,7 +80,7 @@ impl Suspect {
     }
 
     /// Returns the distance by which a piece of a path misses the obstacle, metres: zero where it
-    /// meets the obstacle unexpectedly, infinite where it cannot.
+    /// meets the obstacle unexpectedly, infinite where it cannot meet it.
     pub(super) fn gap(&self, around: &Surroundings<'_>, piece: &PathPiece) -> f64 {
         let (layer, outside): (usize, &dyn Fn(DVec3) -> f64) = match self.what {
             What::Object(i) => return object_gap(around, i, piece),
@@ -107,17 +107,17 @@ impl Suspect {
         let off = if piece.leg > 0 || !around.is_known(layer) {
             beyond(t, [from, to])
         } else {
-            // Theory expects the ray to meet the layer within the piece. The error would be that
-            // the piece ends earlier.
+            // Theory expects the ray to meet the layer within the piece; it would be wrong only if
+            // the piece ended earlier.
             (to - t).max(0.0)
         };
         libm::hypot(off, outside(piece.ray.at(t)))
     }
 }
 
-/// The number of shapes of a layer up to which all are considered on a leg.
+/// On a leg, all shapes of a layer are considered if there are at most this many.
 const MAX_SHAPES: usize = 64;
-/// The number of shapes considered where there are more: each costs thousands of rays traced
+/// The number of shapes considered if a layer has more: each costs thousands of rays traced
 /// through the scene.
 const NEAREST_SHAPES: usize = 16;
 /// The number of rays whose crossings determine the nearest shapes of a layer.
@@ -199,7 +199,7 @@ fn object_gap(around: &Surroundings<'_>, index: usize, piece: &PathPiece) -> f64
     let [from, to] = piece.extent;
     let own = |which: Option<Object>| which == Some(*object);
     let extent = match (own(piece.ends), own(piece.leaves), piece.is_last) {
-        // Theory expects the surface there.
+        // Theory expects the ray to end at this surface.
         (true, _, true) => return f64::INFINITY,
         (true, _, false) => [from, to * (1.0 - AT_END)],
         // Light that returns to the surface it has left is lost, wherever the plane is.
@@ -237,7 +237,7 @@ fn patch_gap(patch: &Patch, ray: &CheckRay, extent: [f64; 2]) -> f64 {
     let off = |t: f64| {
         let at = point + t * direction;
         let aside = (libm::hypot(at.x, at.y) - patch.aperture).max(0.0);
-        // Excludes the other half of a sphere or a cylinder.
+        // This excludes the other half of a sphere or a cylinder.
         let below = patch.aperture * (-patch.gradient(at).z).max(0.0);
         libm::hypot(libm::hypot(beyond(t, extent), aside), below)
     };

@@ -1,4 +1,4 @@
-//! Converts rays to the coordinates of a plane, written for this check from docs/conventions.md
+//! Converts rays to the coordinates of a plane, independently of theory: from docs/conventions.md
 //! alone.
 
 use super::rays::CheckRay;
@@ -28,7 +28,8 @@ fn turned(plane: &Plane) -> f64 {
 }
 
 /// Returns the coordinates of a ray. `on_surface` is the point and the unit normal of the surface
-/// that the plane is on, where the plane needs them. `None` if the ray travels the wrong way.
+/// that the plane is on, where the plane needs them. Returns `None` if the ray travels the wrong
+/// way.
 pub(super) fn coordinates(
     plane: &Plane,
     ray: &CheckRay,

@@ -1,4 +1,5 @@
-//! How far smooth meshes send rays from where their osculating patches send them.
+//! The difference between rays that smooth meshes deflect and the same rays deflected by
+//! osculating patches.
 
 /// The difference between rays traced by the triangles of smooth meshes and the same rays traced by
 /// the osculating patches.

@@ -1,4 +1,5 @@
-//! Measures how far smooth meshes send light from where their osculating patches send it.
+//! Measures the difference between light that smooth meshes deflect and light deflected by
+//! osculating patches.
 
 use super::coordinates::coordinates;
 use super::mesh_error::OffPatches;
@@ -21,7 +22,7 @@ const LOOKED_AT: usize = 30_000_000;
 /// The distance, in edges of a triangle, within which the triangle counts as a neighbour of the
 /// point that a ray leaves.
 const NEIGHBOURS: f64 = 5.0;
-/// The displacement of light that meets a surface again: the largest possible.
+/// The displacement assigned to light that meets a surface again: the largest possible one.
 const LOST: f64 = 1.0;
 
 /// A ray that brings light into the window: its predicted arrival, and its arrival by triangles, if
@@ -34,8 +35,8 @@ struct Displaced {
 }
 
 impl Follower<'_> {
-    /// Returns how far smooth meshes send light from where their patches send it; `None` without a
-    /// mesh.
+    /// Returns the difference between light that smooth meshes deflect and light deflected by
+    /// their patches; `None` without a mesh.
     pub(super) fn off_patches(&self) -> Option<OffPatches> {
         let legs = &self.scene.path.legs[1..=self.plane.leg];
         let objects = legs.iter().filter_map(|leg| Some(leg.leaves?.object));
@@ -82,8 +83,8 @@ impl Follower<'_> {
         })
     }
 
-    /// Measures how far smooth meshes send at most a given number of rays from where their patches
-    /// send them; `None` if no ray brings light into the window.
+    /// Measures this difference for at most a given number of rays. Returns `None` if no ray
+    /// brings light into the window.
     fn displacement(
         &self,
         rays: impl Iterator<Item = (CheckRay, f64)>,

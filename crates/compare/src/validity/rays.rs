@@ -96,8 +96,8 @@ impl CheckRay {
 
     /// Returns the distance at which theory finds the intersection of the ray with a surface.
     /// Theory uses Newton's method from the point where the ray crosses the tangent plane at the
-    /// vertex (`etendue_theory::rays`). So the intersection lies on the same side of the quadric's
-    /// extremum along the ray as that point.
+    /// vertex (`etendue_theory::rays`). So the intersection and that point lie on the same side of
+    /// the quadric's extremum along the ray.
     pub(super) fn theory_hit(&self, patch: &Patch) -> Option<f64> {
         let Self { point, direction } = self.seen_from(&patch.frame);
         let from = if direction.z.abs() > 1e-3 {
@@ -160,7 +160,8 @@ pub(super) fn centred(index: u32, r: f64) -> f64 {
     }
 }
 
-/// Returns the density of pairs of numbers that [`centred`] draws with one index, over all indices.
+/// Returns the density of pairs of numbers that [`centred`] draws with the same index, averaged
+/// over all indices.
 pub(super) fn density(pair: [f64; 2]) -> f64 {
     let dense = pair.map(|s| {
         let is_drawn = (CENTRE..=1.0).contains(&s.abs());
@@ -228,8 +229,8 @@ pub(super) fn strength(light: &Light, ray: &CheckRay) -> f64 {
     }
 }
 
-/// Returns the point of a shape at an offset from its centre, as a share of its size; a point
-/// outside a disc is pulled in.
+/// Returns the point of a shape at an offset from its centre, given as a share of the shape's
+/// size; a point outside a disc is pulled in.
 fn point_of(shape: &Shape, [a, b]: [f64; 2]) -> DVec3 {
     match shape {
         Shape::Rectangle(rectangle) => {
@@ -246,8 +247,8 @@ fn point_of(shape: &Shape, [a, b]: [f64; 2]) -> DVec3 {
     }
 }
 
-/// Returns the area of a shape, divided by the area of the square of offsets that [`point_of`] maps
-/// to the shape. Also returns the offset of a point.
+/// Returns the area of a shape, divided by the area of the square of offsets that [`point_of`]
+/// maps to the shape. Also returns the offset that is mapped to `point`.
 pub(super) fn offset_of(shape: &Shape, point: DVec3) -> (f64, [f64; 2]) {
     match shape {
         Shape::Rectangle(Rectangle { center, size }) => {

@@ -172,8 +172,8 @@ impl CheckedScatterer<'_> {
         }
     }
 
-    /// Checks whether theory assumes that the ray leaves from this point. Theory looks back along
-    /// the ray from far away.
+    /// Checks whether theory assumes that the ray leaves from this point. Theory traces the ray
+    /// backwards from far away.
     fn looks_at(&self, leaving: &CheckRay) -> bool {
         let back = leaving.back(&self.system.patch);
         let far = (back.point - leaving.point).length();

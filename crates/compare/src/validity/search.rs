@@ -10,19 +10,19 @@ use super::clearance::{PathPiece, Suspect};
 use super::rays::{RayDraw, bright, lattice};
 use super::surroundings::{Meets, Surroundings};
 
-/// Rays with light in the window that are followed for a plane.
+/// Number of rays with light in the window that are followed for a plane.
 const LIT_RAYS: usize = 3000;
-/// Rays tried to find the lit rays.
+/// Number of rays tried to find those with light in the window.
 const TRIED_RAYS: u32 = 60_000;
 /// Number of rays nearest to an object that are moved towards it.
 const STARTS: usize = 4;
-/// Moves of each ray.
+/// Number of moves of each ray.
 const MOVES: u32 = 300;
-/// Length of the first moves, the spacing of the rays: 3000 fill a window of four axes with seven
-/// on each.
+/// Length of the first moves: the spacing of 3000 rays, which fill a window of four axes with
+/// seven on each.
 const FIRST_MOVE: f64 = 0.15;
 /// Factor by which a move that comes nearer lengthens the next. A move that comes no nearer
-/// shortens the next. The two factors keep the length constant at one success in twelve moves,
+/// shortens the next. The two factors keep the length constant if one move in twelve comes nearer,
 /// because most moves fail in a corner, where most axes are at their ends.
 const LONGER: f64 = 1.5;
 const SHORTER: f64 = 0.964;
@@ -30,18 +30,18 @@ const SHORTER: f64 = 0.964;
 /// of distances. The nearest corner of a window of four axes lies only a seventh of the range
 /// beyond the nearest ray.
 const REACH: f64 = 0.5;
-/// A shadow in light of this share of the strongest has 10⁻⁶ of the power of a shadow in the
-/// strongest, which 10⁹ photons cannot resolve.
+/// A shadow in light with this share of the largest strength has 10⁻⁶ of the power of a shadow in
+/// the strongest light, which 10⁹ photons cannot resolve.
 const FAINT: f64 = 1e-3;
 
 /// Rays that theory follows from the light to a plane.
 pub(super) trait Followed {
     /// Returns the amount of light that a ray brings into the window, and the first thing it meets
-    /// that theory ignores, if any; `None` if it brings none.
+    /// that theory ignores, if any; `None` if it brings no light.
     fn check(&self, draw: &RayDraw) -> Option<(f64, Option<Meets>)>;
 
     /// Returns the amount of light that a ray brings along theory's path, and the pieces of that
-    /// path; `None` if it brings none.
+    /// path; `None` if it brings no light.
     fn pieces(&self, draw: &RayDraw) -> Option<(f64, Vec<PathPiece>)>;
 
     /// Returns the surroundings of the path.

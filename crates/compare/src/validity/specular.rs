@@ -38,8 +38,8 @@ pub(crate) fn unforeseen_by_rays(
     (found, later)
 }
 
-/// Returns how far smooth meshes send rays from where their osculating patches send them; `None`
-/// without a mesh.
+/// Returns the difference between rays that smooth meshes deflect and the same rays deflected by
+/// osculating patches; `None` without a mesh.
 pub(crate) fn off_patches(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -50,8 +50,8 @@ pub(crate) fn off_patches(
 }
 
 /// The largest accepted distance between the arrivals of rays by a mesh and by its osculating
-/// patch, in half-widths of the window. Such rays change a spectrum by some ten times this
-/// distance, and the change is reported.
+/// patch, in half-widths of the window. A displacement of rays changes a spectrum by some ten
+/// times this distance, and the change is reported.
 const OFF_PATCHES: f64 = 1e-4;
 
 pub(super) struct Follower<'a> {
@@ -111,7 +111,7 @@ impl<'a> Follower<'a> {
 
 impl Follower<'_> {
     /// Returns the amount of light that a ray brings into the window, and the first thing it meets
-    /// that theory ignores, if any; `None` if it brings none.
+    /// that theory ignores, if any; `None` if it brings no light.
     fn check(&self, (ray, emitted): (CheckRay, f64)) -> Option<(f64, Option<Meets>)> {
         let (arrival, meets) = self.photon(ray);
         let brought = [arrival, self.theory(ray)].into_iter().flatten();
@@ -227,8 +227,8 @@ impl Follower<'_> {
     }
 
     /// Returns the point of the plane's surface at which theory counts a ray of the last leg, and
-    /// the unit normal there, if the plane is on a surface. `None` where the ray does not meet the
-    /// surface.
+    /// the unit normal there, if the plane is on a surface. Returns `None` where the ray does not
+    /// meet the surface.
     pub(super) fn counted_at(&self, ray: &CheckRay) -> Option<Option<[DVec3; 2]>> {
         let Some(patch) = self.at.patch.as_ref() else {
             return Some(None);

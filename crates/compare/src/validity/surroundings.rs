@@ -9,7 +9,7 @@ use glam::DVec3;
 /// An object that a ray meets and theory ignores.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Meets {
-    /// Blockers, on this leg.
+    /// Blockers that the ray meets on this leg.
     Layer { index: usize, leg: usize },
     /// A surface of the path, met out of turn.
     OutOfTurn(Object),

@@ -90,7 +90,7 @@ fn white_furnace() {
     });
 }
 
-/// Surfaces that conserve energy, and facets so smooth that little is lost to shadowing.
+/// Tests surfaces that conserve energy, and facets so smooth that shadowing loses little of it.
 #[test]
 fn nothing_is_lost() {
     for angle in ANGLES {

@@ -12,14 +12,15 @@ fn gaussian(variance: f64) -> f64 {
     1.0 / (8.0 * PI * PI * variance)
 }
 
-/// Returns the covariance of an opening of half-width r: the Gaussian of its variance, r²/3.
+/// Returns the covariance of the Gaussian that replaces an opening of half-width r and has its
+/// variance, r²/3.
 fn opening(half_width: f64) -> f64 {
     gaussian(half_width * half_width / 3.0)
 }
 
-/// Returns the covariance of one profile of a window, in cycles per unit, squared. It is 1/12h² for
-/// Hann, and 1/4πw² for exp(−πt²/w²), ignoring its truncation. A box has edges, so the Gaussian of
-/// its variance replaces it.
+/// Returns the covariance of one profile of a window, in cycles per unit, squared. It is 1/12h²
+/// for Hann, and 1/4πw² for exp(−πt²/w²), ignoring its truncation. A box has edges, so a Gaussian
+/// of the same variance replaces it.
 #[must_use]
 pub fn profile(profile: &Profile) -> f64 {
     match *profile {
@@ -37,18 +38,18 @@ pub fn window(window: &Window) -> Matrix<4> {
 }
 
 /// Returns the covariance of a cosine grating ½(1 + m cos(2πft + p)), in cycles per unit, squared:
-/// the variance f² m²/(2 + m²) of its three lines, weighted by their power. It is additive where
-/// replicas do not overlap.
+/// the variance f² m²/(2 + m²) of its three lines, weighted by their power. It adds to the
+/// variance of the light where replicas of the spectrum do not overlap.
 #[must_use]
 pub fn grating(grating: &Grating) -> f64 {
     let square = grating.modulation * grating.modulation;
     grating.frequency * grating.frequency * square / (2.0 + square)
 }
 
-/// Returns the covariance of a mask in the plane where light is now. An opaque mask is treated as
-/// an opening about the central ray. The opening is the largest disc that is free of shapes,
-/// narrowed along an axis by half-planes. (The course notes of Belcour 2016 take the largest
-/// unoccluded disc.) `None` if the central ray is blocked, or touches an edge.
+/// Returns the covariance of a mask, in the coordinates of its own plane. An opaque mask is
+/// treated as an opening about the central ray. The opening is the largest disc that is free of
+/// shapes, narrowed along an axis by half-planes. (The course notes of Belcour 2016 take the
+/// largest unoccluded disc.) Returns `None` if the central ray is blocked, or touches an edge.
 #[must_use]
 pub fn mask(mask: &Mask) -> Option<Matrix<4>> {
     let mut factor = [[0.0; 4]; 4];
@@ -102,12 +103,13 @@ pub fn slope_cosine() -> Matrix<4> {
 }
 
 /// Returns the covariance of a lobe over (θ, φ), in radians squared, for light that arrives at the
-/// angle θ₀ to the normal. `None` for Lambert's, which is uniform over all directions.
+/// angle θ₀ to the normal. Returns `None` for Lambert's lobe, which is uniform over all
+/// directions.
 ///
 /// Phong's cosⁿ is a Gaussian of variance 1/n, to first order in 1/n. Microfacets that tilt by τ
 /// turn light by 2τ in the plane of incidence, and by 2τ cos θ₀ out of it, so Beckmann's variances
 /// are 2α² and 2α² cos² θ₀. GGX has no variance; the variance of its power spectrum gives 5α²/3.
-/// Shadowing, the Fresnel factor and 1/(4 cos cos) are left out.
+/// Shadowing, the Fresnel factor and the factor 1/(4 cos θi cos θo) are left out.
 #[must_use]
 pub fn lobe(lobe: &Lobe, theta0: f64) -> Option<Matrix<4>> {
     let microfacets = |variance: f64| {

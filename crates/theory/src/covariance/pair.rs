@@ -5,16 +5,15 @@ use crate::geometry::{
 };
 use std::f64::consts::PI;
 
-/// S⁻¹ = 8π² C for the power spectrum; for |L| it would be 4π² C.
+/// The factor in S⁻¹ = 8π² C, where C is the covariance of |L|²; for that of |L| it would be 4π².
 const POWER: f64 = 8.0 * PI * PI;
 
 /// The covariance C of the power spectrum of a Gaussian light field over [ρx, ρy, νu, νv], in
 /// cycles² per squared unit of the coordinates.
 ///
-/// Stored as C = P Q⁻¹. Light that is unbounded along a coordinate has a rank-deficient P there;
-/// light from a point or in one direction has a rank-deficient Q. Both cases are handled like any
-/// other matrix, so no operator needs a bound on small or large numbers. A Gaussian beam is
-/// represented by rays in the same way.
+/// C is stored as P Q⁻¹. If light is unbounded along a coordinate, P is rank-deficient; if light
+/// comes from a point or in one direction, Q is. Operators handle both cases like any other
+/// matrix, without thresholds for small or large numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpectralCovariance {
     p: Matrix<4>,
@@ -43,8 +42,8 @@ impl SpectralCovariance {
         }
     }
 
-    /// Returns the covariance after a change z' = A z + t of ray coordinates: A⁻ᵀ C A⁻¹. The offset
-    /// does not affect the power spectrum. `None` if A has no inverse.
+    /// Returns the covariance after a change z' = A z + t of ray coordinates: A⁻ᵀ C A⁻¹. The
+    /// offset does not affect the power spectrum. Returns `None` if A has no inverse.
     #[must_use]
     pub fn mapped(&self, map: &AffineMap<4>) -> Option<Self> {
         let back = transpose(&inverse(&map.matrix)?);
@@ -77,12 +76,12 @@ impl SpectralCovariance {
     }
 
     /// Returns the covariance after light is integrated over all directions and spread uniformly
-    /// over them again, so that only the spectrum at ν = 0 remains. C⁻¹ keeps its block of
-    /// positions, and becomes infinite along both angles.
+    /// over them again, so that only the spectrum at ν = 0 remains. C⁻¹ keeps its block for
+    /// positions and becomes infinite along both angles.
     #[must_use]
     pub fn diffused(&self) -> Self {
-        // The columns of P and Q span the pairs (C w, w). Columns without angular frequency stay as
-        // they are.
+        // Corresponding columns of P and Q are pairs (C w, w). Pairs without angular frequency
+        // stay as they are.
         let mut columns = [0, 1, 2, 3].map(|j| [&self.q, &self.p].map(|m| m.map(|row| row[j])));
         let mut goes = [false; 4];
         for row in [2, 3] {
@@ -118,14 +117,14 @@ impl SpectralCovariance {
         }
     }
 
-    /// Returns C. `None` if the spectrum is unbounded, as for light from a point.
+    /// Returns C. Returns `None` if the spectrum is unbounded, as for light from a point.
     #[must_use]
     pub fn matrix(&self) -> Option<Matrix<4>> {
         Some(symmetric(&product(&self.p, &inverse(&self.q)?)))
     }
 
     /// Returns S, the covariance of the Gaussian light field, in squares of metres and slopes.
-    /// `None` if the field is unbounded.
+    /// Returns `None` if the field is unbounded.
     #[must_use]
     pub fn field(&self) -> Option<Matrix<4>> {
         let field = symmetric(&product(&self.q, &inverse(&self.p)?));
@@ -138,7 +137,7 @@ fn symmetric(a: &Matrix<4>) -> Matrix<4> {
     from_fn(|i, j| 0.5 * (a[i][j] + a[j][i]))
 }
 
-/// |L(Ω)|²/|L(0)|² of a Gaussian light field of covariance S: exp(−4π² Ωᵀ S Ω).
+/// Returns |L(Ω)|²/|L(0)|² of a Gaussian light field of covariance S: exp(−4π² Ωᵀ S Ω).
 #[must_use]
 pub fn power(field: &Matrix<4>, omega: [f64; 4]) -> f64 {
     let along = times(field, &omega);

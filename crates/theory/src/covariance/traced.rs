@@ -47,7 +47,7 @@ pub trait Traced {
     /// Returns the covariance of the spectrum before the window of the plane.
     ///
     /// # Errors
-    /// The reason why covariance tracing does not apply.
+    /// Returns the reason why covariance tracing does not apply.
     fn spectral_covariance(&self) -> Result<SpectralCovariance, Untraced>;
 }
 
@@ -138,7 +138,7 @@ fn of_light(light: &Light) -> Result<SpectralCovariance, Untraced> {
         Light::Environment { environment } => {
             light_of([endless; 2], [sky_variance(environment)?; 2])
         }
-        // The light is not a Gaussian: each ray is infinitely narrow.
+        // The rays of a file are no Gaussian light field: each ray is infinitely narrow.
         Light::Rays { .. } => return Err(Untraced::Light),
     })
 }
@@ -151,8 +151,8 @@ fn variances(shape: &Shape) -> [f64; 2] {
     }
 }
 
-/// Multiplies light by the grating of a picture, over positions or, if `first` is the first slope
-/// coordinate, over slopes.
+/// Multiplies light by the grating of a picture over positions or slopes; `first` is the index of
+/// the first position or slope coordinate.
 fn lined(light: &SpectralCovariance, image: &Image, first: usize) -> SpectralCovariance {
     image.grating.map_or(*light, |lines| {
         let mut factor = [[0.0; 4]; 4];
@@ -208,7 +208,7 @@ fn counted(
     }
 }
 
-/// Returns the covariance of a variance along one direction of positions.
+/// Returns the covariance whose only variance is along the direction (a, b) of positions.
 fn along_line([a, b]: [f64; 2], variance: f64) -> Matrix<4> {
     let entry = |p: f64, q: f64| p * q * variance;
     let none = [0.0; 4];

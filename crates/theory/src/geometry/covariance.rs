@@ -1,8 +1,8 @@
-//! Covariances of Gaussian light fields, for chains of which only second moments are followed.
+//! Covariances of Gaussian light fields, for chains along which only second moments are followed.
 //!
-//! A field exp(−½ zᵀ S⁻¹ z) has the covariance S, and every step keeps it Gaussian: an
-//! [`AffineMap`](super::AffineMap) by [`covariance`](super::AffineMap::covariance), a product by
-//! [`gaussian_window`], a convolution over angle by [`gaussian_lobe`].
+//! A field exp(−½ zᵀ S⁻¹ z) has the covariance S, and every step keeps it Gaussian. S changes by
+//! [`covariance`](super::AffineMap::covariance) under an [`AffineMap`](super::AffineMap), by
+//! [`gaussian_window`] under a product, and by [`gaussian_lobe`] under a convolution over angle.
 
 use super::matrix::{self, Matrix, congruent, diagonal, dot, product, sum, times};
 use std::array;
@@ -12,8 +12,9 @@ use std::f64::consts::{PI, TAU};
 /// for each coordinate: S⁻¹ becomes S⁻¹ + diag(1/std²). Infinite standard deviations have no
 /// effect.
 ///
-/// Computed as S (1 + diag(1/std²) S)⁻¹, which allows a singular S, such as light from a point.
-/// `None` if that inverse does not exist, which does not occur for any covariance.
+/// The result is computed as S (1 + diag(1/std²) S)⁻¹, which allows a singular S, such as light
+/// from a point. Returns `None` if that inverse does not exist, which does not occur for any
+/// covariance.
 #[must_use]
 pub fn gaussian_window<const N: usize>(before: &Matrix<N>, std: [f64; N]) -> Option<Matrix<N>> {
     let narrowing = product(&diagonal(std.map(|s| 1.0 / (s * s))), before);
@@ -33,7 +34,8 @@ pub fn gaussian_lobe<const N: usize>(before: &Matrix<N>, std: f64) -> Matrix<N> 
 /// Returns the covariance of |L|² for a Gaussian field of covariance S: S⁻¹/8π². The covariance of
 /// |L| is twice as large.
 ///
-/// The result is in cycles per unit, squared. `None` for a singular S, whose spectrum is unbounded.
+/// The result is in cycles per unit, squared. Returns `None` for a singular S, whose spectrum is
+/// unbounded.
 #[must_use]
 pub fn power_spectrum<const N: usize>(field: &Matrix<N>) -> Option<Matrix<N>> {
     let inverse = matrix::inverse(field)?;

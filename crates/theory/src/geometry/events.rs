@@ -5,9 +5,9 @@ use super::{AffineMap, Matrix, Media};
 impl AffineMap<2> {
     /// Reflection by a mirror of curvature k, in 1/m (convex positive), met at the angle θ₀.
     ///
-    /// Composed of incidence, curvature, mirror, back, and outgoing at −θ₀. The product is x' = −x,
-    /// θ' = −θ − (2k/cos θ₀) x (docs/theory.md (26)): both shears of a curved surface add up
-    /// (Durand et al. 2005, step 6).
+    /// The event consists of the steps incidence, curvature, mirror, back, and outgoing at −θ₀.
+    /// The product is x' = −x, θ' = −θ − (2k/cos θ₀) x (docs/theory.md (26)): both shears of a
+    /// curved surface add up (Durand et al. 2005, step 6).
     #[must_use]
     pub fn mirror_reflection(theta0: f64, k: f64) -> Self {
         Self::incidence(theta0)
@@ -20,8 +20,8 @@ impl AffineMap<2> {
     /// Refraction at a surface of curvature k, in 1/m (convex positive, seen from the side of the
     /// incident light), met at the angle θ₀.
     ///
-    /// Composed of incidence, curvature, refraction, back, and outgoing on the other side of the
-    /// surface, where the central ray continues at θ₂. `None` as for
+    /// The event consists of the steps incidence, curvature, refraction, back, and outgoing on the
+    /// other side of the surface, where the central ray continues at θ₂. Returns `None` as for
     /// [`refraction`](Self::refraction).
     #[must_use]
     pub fn refracting_surface(theta0: f64, k: f64, media: &Media) -> Option<Self> {

@@ -36,8 +36,8 @@ pub fn plane_sphere_kernel(omega_v: f64, omega_theta: f64) -> f64 {
     }
 }
 
-/// Returns e^a K for b < 1: the path from −π/2 to π/2 is moved up to −π/2 + i∞ and down again,
-/// where tan(±π/2 + it) = i coth t.
+/// Returns e^a K for b < 1. The path of integration goes from −π/2 up to −π/2 + i∞, and from π/2 +
+/// i∞ down to π/2, where tan(±π/2 + it) = i coth t.
 fn scaled(a: f64, b: f64) -> f64 {
     let twice_sine = 2.0 * libm::sin(0.5 * PI * b);
     let damping = |t: f64| -2.0 * a / libm::expm1(2.0 * t); // −a (coth t − 1)
@@ -57,10 +57,9 @@ fn integral(f: impl Fn(f64) -> f64) -> f64 {
     nodes.map(|t| t * f(t)).sum::<f64>() * STEP
 }
 
-/// Returns K for b ≥ 1 from two values below. With m = b/2,
-/// (m + 1) K(m + 1) = 2(a − m) K(m) − (m − 1) K(m − 1), which is the recurrence of Tricomi's U (DLMF
-/// 13.3.7). Both solutions of this recurrence oscillate where b > a, and K is the one that grows
-/// where b < a.
+/// Returns K for b ≥ 1 from its values at two smaller b. With m = b/2, (m + 1) K(m + 1) = 2(a − m)
+/// K(m) − (m − 1) K(m − 1), which is the recurrence of Tricomi's U (DLMF 13.3.7). Both solutions
+/// of this recurrence oscillate where b > a, and K is the one that grows where b < a.
 fn climbed(a: f64, b: f64) -> f64 {
     const HUGE: f64 = 1e100;
     let steps = (0.5 * (b + 1.0)).floor();

@@ -21,8 +21,8 @@ const STEP: f64 = 1e-5;
 
 impl<const N: usize> AffineMap<N> {
     /// Returns the affine map tangent to another map of rays at zero, by differences of fourth
-    /// order: accurate to some 10⁻¹⁰ per metre and radian. `None` if a ray near zero does not
-    /// arrive.
+    /// order: accurate to some 10⁻¹⁰ per metre and radian. Returns `None` if a ray near zero does
+    /// not arrive.
     pub(crate) fn touching(map: impl Fn([f64; N]) -> Option<[f64; N]>) -> Option<Self> {
         Self::touching_by(STEP, map)
     }
@@ -46,9 +46,9 @@ impl<const N: usize> AffineMap<N> {
         Some(Self { matrix, offset })
     }
 
-    /// Returns the distance of this map from the tangent at zero of another map of rays, measured
-    /// as by [`apart`](Self::apart). Subtracts the error of the finite differences, which matters
-    /// where the other map bends fast.
+    /// Returns the distance of this map from the tangent at zero to another map of rays, measured
+    /// as by [`apart`](Self::apart). The error of the finite differences is subtracted, because it
+    /// matters where the other map is strongly curved.
     pub(crate) fn off_touching(
         &self,
         map: impl Fn([f64; N]) -> Option<[f64; N]>,
@@ -134,7 +134,8 @@ impl<const N: usize> AffineMap<N> {
     }
 
     /// Returns the frequency that spectral content at Ω moves to: A⁻ᵀ Ω, the inverse of
-    /// [`transpose_apply`](Self::transpose_apply). `None` as for [`inverse`](Self::inverse).
+    /// [`transpose_apply`](Self::transpose_apply). Returns `None` as for
+    /// [`inverse`](Self::inverse).
     #[must_use]
     pub fn content(&self, omega: [f64; N]) -> Option<[f64; N]> {
         Some(times(&transpose(&matrix::inverse(&self.matrix)?), &omega))
@@ -166,22 +167,22 @@ impl<const N: usize> AffineMap<N> {
         congruent(&self.matrix, before)
     }
 
-    /// Returns the covariance of |L| or |L|² after the map, A⁻ᵀ S A⁻¹, for S before it. `None` as
-    /// for [`inverse`](Self::inverse).
+    /// Returns the covariance of |L| or |L|² after the map, A⁻ᵀ S A⁻¹, for S before it. Returns
+    /// `None` as for [`inverse`](Self::inverse).
     #[must_use]
     pub fn spectral_covariance(&self, before: &Matrix<N>) -> Option<Matrix<N>> {
         let inverse = matrix::inverse(&self.matrix)?;
         Some(congruent(&transpose(&inverse), before))
     }
 
-    /// Returns how far the map is from conserving étendue: the largest entry of |Aᵀ J A − r J|,
-    /// with J = [[0, 1], [−1, 0]] in blocks, and r the index of refraction before the map divided
-    /// by that after it.
+    /// Returns how far the map is from conserving étendue: the largest entry of |Aᵀ J A − r J|. J
+    /// is [[0, 1], [−1, 0]] in blocks, and r is the index of refraction before the map divided by
+    /// that after it.
     ///
     /// The result is zero between two planes perpendicular to the light, whatever is between them.
-    /// In 2D, n dx du is conserved (J then gives |det A − r|); in 4D, the Lagrange invariant of
-    /// every pair of rays is. Maps onto or off a surface have one cosine too many or too few, so
-    /// their result is not zero.
+    /// In 2D, n dx du is conserved, and the result is |det A − r|; in 4D, the Lagrange invariant
+    /// of every pair of rays is conserved. Maps onto or off a surface have one cosine too many or
+    /// too few, so their result is not zero.
     #[must_use]
     pub fn symplectic_defect(&self, index_ratio: f64) -> f64 {
         let half = N / 2;
@@ -192,14 +193,14 @@ impl<const N: usize> AffineMap<N> {
         let entries = (0..N).flat_map(|i| (0..N).map(move |k| (i, k)));
         entries
             .map(|(i, k)| (kept[i][k] - index_ratio * j(i, k)).abs())
-            // A maximum that propagates NaN.
+            // Returns the larger of two numbers, or NaN if one of them is NaN.
             .fold(0.0, |most, x| if most >= x { most } else { x })
     }
 }
 
 impl AffineMap<2> {
     /// Returns the distance after which rays that were parallel before the map meet, −A₀₀/A₁₀
-    /// metres; negative if behind. `None` if they stay parallel.
+    /// metres; negative if behind. Returns `None` if they stay parallel.
     #[must_use]
     pub fn focus(&self) -> Option<f64> {
         let [[x, _], [slope, _]] = self.matrix;

@@ -22,12 +22,13 @@
 //! and angles are equal to the order at which these maps hold ([`plane_sphere`] has the exact
 //! conversion). Lengths are in metres, angles in radians.
 //!
-//! **Surface frame.** N is the normal where the central ray hits, on the side the light comes from.
-//! (T, N) are right-handed axes of the plane of incidence, with T to the right when N is up. B = N
-//! × T. Directions point away from the surface; their angle θ is counted from N towards T. s is arc
-//! length along T. With c₀ = cos θ₀: D = −(sin θ₀ T + c₀ N) and X = −c₀ T + sin θ₀ N before, D =
-//! sin θ₁ T + c₁ N and X = c₁ T − sin θ₁ N after, Y = B always. In 4D a direction is cos φ (sin θ T
-//! + cos θ N) + sin φ B: longitude θ, latitude φ.
+//! **Surface frame.** N is the normal where the central ray hits, on the side the light comes
+//! from. (T, N) are right-handed axes of the plane of incidence, with T to the right when N is up.
+//! B = N × T. Directions point away from the surface; their angle θ is counted from N towards T. s
+//! is arc length along T. With c₀ = cos θ₀ and c₁ = cos θ₁, the axes before the event are D =
+//! −(sin θ₀ T + c₀ N) and X = −c₀ T + sin θ₀ N; after it they are D = sin θ₁ T + c₁ N and X = c₁ T
+//! − sin θ₁ N; Y is B in both cases. In 4D a direction is cos φ (sin θ T + cos θ N) + sin φ B:
+//! longitude θ, latitude φ.
 //!
 //! **Order.** Travel, mirror and a thin lens are exact. A step between a light frame and a surface
 //! holds to first order in the size e of the neighbourhood: its relative error falls as e, and as

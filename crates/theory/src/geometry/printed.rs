@@ -5,16 +5,17 @@ use std::f64::consts::TAU;
 
 /// The version of the geometric operators (docs/theory.md, section 7).
 ///
-/// The steps onto and off a surface that Durand et al. 2005 print differ from ray geometry, and
-/// between their text and their table. Mirror and travel are printed correctly.
+/// The steps onto and off a surface, as Durand et al. 2005 print them, differ from ray geometry,
+/// and differ between text and table. Mirror and travel are printed correctly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edition {
-    /// According to ray geometry: the maps of this module.
+    /// The formulas that follow from ray geometry: the maps of this module.
     Corrected,
-    /// The numbered equations: 9, 11, 10, and for a surface in 3D the shear by M in the text after 19.
+    /// The paper's numbered Eqs. 9, 11 and 10, and for a surface in 3D the shear by M in the text
+    /// after Eq. 19.
     Equations,
-    /// Table 1: its light incidence, curvature and outgoing angle. Table 1 has no row for 3D, where
-    /// the shear by M takes the table's sign.
+    /// The paper's Table 1, with its light incidence, curvature and outgoing angle. The table has
+    /// no row for 3D; there the shear by M has the sign of the table's curvature.
     Table,
 }
 
@@ -63,7 +64,7 @@ impl Edition {
         }
     }
 
-    /// Mirror reflection: incidence, curvature, mirror, back, outgoing at −θ₀.
+    /// Mirror reflection, composed of incidence, curvature, mirror, back, and outgoing at −θ₀.
     #[must_use]
     pub fn mirror_reflection(self, theta0: f64, k: f64) -> SpectrumMap<2> {
         self.incidence(theta0)
@@ -73,8 +74,8 @@ impl Edition {
             .then(&self.outgoing(-theta0))
     }
 
-    /// Light incidence in 4D: (x, θ) as in 2D. The paper does not mention that the latitude flips;
-    /// both versions here include it.
+    /// Light incidence in 4D, where (x, θ) change as in 2D. The paper does not mention that the
+    /// latitude flips; both versions here include it.
     #[must_use]
     pub fn incidence_4d(self, theta0: f64) -> SpectrumMap<4> {
         SpectrumMap::sections(&self.incidence(theta0), &AffineMap::mirror().spectrum_map())
@@ -92,7 +93,7 @@ impl Edition {
         AffineMap::<4>::back(self.signed(shape), self.longitude(theta1)).spectrum_map()
     }
 
-    /// Outgoing angle in 4D: (x, θ) as in 2D.
+    /// Outgoing angle in 4D, where (x, θ) change as in 2D.
     #[must_use]
     pub fn outgoing_4d(self, theta1: f64) -> SpectrumMap<4> {
         SpectrumMap::sections(
@@ -101,7 +102,8 @@ impl Edition {
         )
     }
 
-    /// Mirror reflection in 4D: incidence, curvature, mirror, back, outgoing at −θ₀.
+    /// Mirror reflection in 4D, composed of incidence, curvature, mirror, back, and outgoing at
+    /// −θ₀.
     #[must_use]
     pub fn mirror_reflection_4d(self, theta0: f64, shape: Matrix<2>) -> SpectrumMap<4> {
         self.incidence_4d(theta0)
@@ -111,7 +113,8 @@ impl Edition {
             .then(&self.outgoing_4d(-theta0))
     }
 
-    /// The sign of Eq. 11, relative to ray geometry.
+    /// Returns the sign of the shear by curvature, relative to ray geometry; Eq. 11 has the
+    /// opposite sign.
     fn sign(self) -> f64 {
         match self {
             Self::Corrected | Self::Table => 1.0,
@@ -123,8 +126,8 @@ impl Edition {
         shape.map(|row| row.map(|entry| self.sign() * entry))
     }
 
-    /// The longitude whose cosine multiplies M: the text after Eq. 19 leaves the cosine out, as if
-    /// the longitude were 0.
+    /// Returns the longitude whose cosine multiplies M. The text after Eq. 19 leaves the cosine
+    /// out, as if the longitude were 0.
     fn longitude(self, theta: f64) -> f64 {
         match self {
             Self::Corrected => theta,

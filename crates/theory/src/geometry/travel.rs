@@ -7,9 +7,9 @@ use std::array;
 impl<const N: usize> AffineMap<N> {
     /// Travel by a distance d, in metres: x' = x + d u, y' = y + d v.
     ///
-    /// Exact if (u, v) are slopes; if they are angles it holds to first order. L'(Ωx, Ωu) = L(Ωx,
-    /// Ωu + d Ωx) (Durand et al. 2005, Eq. 3, with the errors of Eq. 2 corrected: docs/theory.md,
-    /// section 1).
+    /// The step is exact if (u, v) are slopes; if they are angles it holds to first order. L'(Ωx,
+    /// Ωu) = L(Ωx, Ωu + d Ωx) (Durand et al. 2005, Eq. 3, with the errors of Eq. 2 corrected:
+    /// docs/theory.md, section 1).
     #[must_use]
     pub fn travel(distance: f64) -> Self {
         let (one, half) = (diagonal::<N>([1.0; N]), N / 2);
@@ -52,9 +52,9 @@ impl AffineMap<4> {
     /// A rotation of the axes by an angle, in radians, from the first to the second: x' = x cos + y
     /// sin, y' = −x sin + y cos, and likewise for directions. A is orthogonal.
     ///
-    /// Exact for two-plane coordinates turned about the central ray, e.g. to bring the plane of
-    /// incidence onto X. About a normal it turns (s_x, s_y) exactly and (θ, φ) to first order in
-    /// the angle to the normal (Durand et al. 2005, section 5.2).
+    /// The rotation is exact for two-plane coordinates turned about the central ray, e.g. to bring
+    /// the plane of incidence onto X. About a normal it turns (s_x, s_y) exactly and (θ, φ) to
+    /// first order in the angle to the normal (Durand et al. 2005, section 5.2).
     #[must_use]
     pub fn rotation(angle: f64) -> Self {
         let (sin, cos) = libm::sincos(angle);

@@ -4,8 +4,8 @@ use etendue_field::Profile;
 
 /// Number of cells in which the density is linear.
 const CELLS: usize = 512;
-/// Lookup shares per cell. With more shares, the first cell that is tried is more often the right
-/// one.
+/// Number of lookup shares for each cell. With more shares, the first cell that is tried is more
+/// often the right one.
 const SHARES: usize = 4;
 
 /// A density on an interval, linear between values at equal steps.
@@ -15,9 +15,9 @@ pub(crate) struct LinearDensity {
     step: f64,
     /// Values at the ends of the cells.
     values: Vec<f64>,
-    /// The cumulative density at each of those points, from 0 to 1.
+    /// The cumulative density at the ends of the cells, from 0 to 1.
     below: Vec<f64>,
-    /// The cell in which each of many equal shares begins, where the search starts.
+    /// For each of many equal shares, the cell in which it begins; the search starts there.
     first: Vec<usize>,
 }
 
@@ -183,7 +183,7 @@ mod tests {
                     libm::exp(-std::f64::consts::PI * apart * apart) / target.value(t)
                 })
                 .sum();
-            // Midpoints in quantiles; a step in the density causes an error of 1/n.
+            // The nodes are midpoints in quantiles; a step in the density causes an error of 1/n.
             assert!((sum / f64::from(n) - 1.0).abs() < 1e-4, "{center}");
         }
     }

@@ -32,13 +32,13 @@ const OF_TRIALS: usize = 16;
 /// The fewest and the most nodes in each net of a derivative.
 const DERIVATIVE_NODES: [u32; 2] = [1 << 12, 1 << 15];
 /// The relative error ‖error‖/‖D‖ at which a derivative is accurate enough. It changes a measured
-/// parameter by about its square, relative to the parameter's distance from the scene's value.
+/// parameter by about its square times the parameter's distance from the scene's value.
 const DERIVATIVE_ERROR: f64 = 0.03;
 /// Number of nodes of a net at which its error is first estimated.
 const FIRST_NODES: u32 = 1 << 11;
 
-/// The fewest nodes of a net before a prediction may stop because its error is small: nets that
-/// have not sampled their heavy rays yet agree too well.
+/// The fewest nodes of a net before a prediction may stop because its error is small. Nets that
+/// have not yet sampled their heavy rays differ too little.
 const MIN_NODES: u32 = 1 << 14;
 
 /// Criterion for when to stop adding nodes.
@@ -53,7 +53,7 @@ pub struct RayBudget {
 /// A ray at a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct RayNode {
-    /// (x, y, u, v), or the corresponding coordinates on a surface.
+    /// The ray's coordinates: (x, y, u, v), or the corresponding ones on a surface.
     pub(crate) z: [f64; 4],
     /// The ray's contribution to the windowed radiance space, divided by the density with which the
     /// ray was sampled.
@@ -129,10 +129,10 @@ pub(crate) fn sums(
     finished(nets, ProjectionGrid::new(window, bins), error)
 }
 
-/// Returns ‖error‖/‖F‖ of a small number of rays, for choosing a sampling strategy. With too few
-/// rays, this would prefer strategies that are best only with few rays. The nets differ from those
-/// of predictions; otherwise this would prefer the strategy whose heavy rays these nets happen to
-/// miss.
+/// Returns ‖error‖/‖F‖ of a small number of rays, for choosing a sampling strategy. With even
+/// fewer rays, the choice would fall on strategies that are best only for few rays. The nets
+/// differ from those of predictions; otherwise the chosen strategy would often be one whose heavy
+/// rays the nets of the prediction happen to miss.
 pub(crate) fn trial(
     integrand: &(impl Integrand + ?Sized),
     (window, grid): (&Window, &SliceGrid),
@@ -221,7 +221,7 @@ const RAY: f64 = 400.0;
 const SPREAD: f64 = 15.0;
 /// Approximate number of fields in one pass over derivatives.
 const FIELDS: f64 = 12.0;
-/// Steps of a transform per frequency.
+/// Number of steps of a transform per frequency.
 const TRANSFORM: f64 = 300.0;
 
 /// Estimates the work of a prediction by nets that uses all of its budget: rays, and the transforms
@@ -240,7 +240,8 @@ pub(crate) fn work_of_nets(grid: &SliceGrid, budget: RayBudget) -> PredictionWor
     let slice = 16.0 * cells;
     PredictionWork {
         steps: rays + transforms,
-        // The sums of all nets, the means of finished nets, and the fine grids of a thread.
+        // Memory holds the sums of all nets, the means of finished nets, and the fine grids of
+        // each thread.
         bytes: slice * (2.0 * replicates).max(derivatives),
         bytes_each: SliceTransform::new(grid).bytes() * FIELDS,
         drivers: format!(
@@ -333,7 +334,7 @@ fn finished(running: Vec<Running>, grid: ProjectionGrid, error: f64) -> Predicte
 /// Returns the mean of several slices on one grid.
 ///
 /// # Panics
-/// If there are no slices.
+/// Panics if there are no slices.
 pub(crate) fn mean<'a>(slices: impl ExactSizeIterator<Item = &'a Slices>) -> Slices {
     let count = slices.len() as f64;
     let mut slices = slices;
@@ -458,7 +459,7 @@ mod tests {
         }
     }
 
-    /// Noise shared by derivatives and prediction biases what is measured with them.
+    /// Noise that derivatives share with the prediction biases the parameters measured with them.
     #[test]
     fn derivatives_have_nets_of_their_own() {
         let (window, grid) = (window(Profile::Box(0.5), Profile::Box(0.5)), grid());

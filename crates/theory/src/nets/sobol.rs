@@ -133,7 +133,8 @@ mod tests {
         let variance = (1.0_f64 + 0.25 / 12.0).powi(10) - 1.0;
         let random = variance / f64::from(n);
         assert!(power < 1e-3 * random, "{:e}", power / random); // Sobol' at 2¹² of 10: 10⁻⁴
-        // Unbiased: the mean of 32 independent nets is within four of its standard errors.
+        // The nets are unbiased: the mean of 32 independent nets is within four of its standard
+        // errors.
         let mean = errors.iter().sum::<f64>() / 32.0;
         assert!(mean.abs() < 4.0 * (power / 32.0).sqrt());
     }

@@ -25,9 +25,9 @@ pub enum Operator {
         /// The distance d, in metres.
         distance: f64,
     },
-    /// A mask in the plane where the light is now. It is a product with 1 − Σ shapes and
-    /// half-planes, which must not overlap each other, or with a cosine grating (Durand et al.
-    /// 2005, Eq. 4).
+    /// A mask in the plane that the light has reached. Radiance is multiplied by 1 minus the sum
+    /// of shapes and half-planes, which must not overlap each other, or by a cosine grating
+    /// (Durand et al. 2005, Eq. 4).
     Visibility {
         /// Name of the mask.
         name: String,
@@ -41,8 +41,8 @@ pub enum Operator {
         name: String,
     },
     /// Diffuse reflection: the integral over both slopes, times albedo/π. The result is exitant
-    /// radiance, constant in slope (Durand et al. 2005, section 5.1; the factor G is a
-    /// [`Cosine`](Self::Cosine) before it).
+    /// radiance, constant in slope (Durand et al. 2005, section 5.1). The factor G is a separate
+    /// [`Cosine`](Self::Cosine) before it.
     ///
     /// The frame turns round: the central ray returns along −D, x' = −x, y' = y. Only travel may
     /// follow.
@@ -91,15 +91,15 @@ pub(crate) struct ParallelEmitter {
     pub(crate) shape: Option<Shape>,
     /// Radiance or intensity along the central ray.
     pub(crate) brightness: f64,
-    /// The power p of the factor (1 + u² + v²)^p on radiance: −n/2 from a spot's cosⁿθ, ½ from a
-    /// point (its distance to (x, y) is D √(1 + u² + v²)).
+    /// The power p of the factor (1 + u² + v²)^p on radiance: −n/2 for a spot's cosⁿθ; ½ for a
+    /// point, whose distance to (x, y) is D √(1 + u² + v²).
     pub(crate) power: f64,
 }
 
 impl ParallelEmitter {
     /// # Panics
-    /// If light passes through a picture or comes from infinity; `rays` and `scattering` predict
-    /// such light.
+    /// Panics if light passes through a picture or comes from infinity; `rays` and `scattering`
+    /// predict such light.
     pub(crate) fn new(light: &Light) -> Self {
         let (brightness, power) = match *light {
             Light::Area {
@@ -133,7 +133,7 @@ impl Chain {
     /// Returns the chain relative to its end.
     ///
     /// # Panics
-    /// If anything but travel follows a diffuse reflection.
+    /// Panics if anything but travel follows a diffuse reflection.
     pub(crate) fn path(&self) -> ChainSegment<'_> {
         let mut path = ChainSegment {
             light: ParallelEmitter::new(&self.source.light),
@@ -173,7 +173,8 @@ impl ChainSegment<'_> {
         self.light.shape.as_slice()
     }
 
-    /// Returns the power p of the factor (1 + u² + v²)^p: the light's, and −2 from each cosine.
+    /// Returns the power p of the factor (1 + u² + v²)^p: the power of the light, minus 2 for each
+    /// cosine.
     pub(crate) fn slope_power(&self) -> f64 {
         self.light.power - 2.0 * f64::from(self.cosines)
     }

@@ -1,21 +1,22 @@
 //! The transforms of many polygons along a row of frequencies, without one exponential per polygon
 //! and frequency (docs/theory.md, section 3).
 //!
-//! With the field k exp(−2πi k·p), Eq. 5 there becomes a sum over the corners p, at which edges of
-//! directions d and e meet:
+//! With the field k exp(−2πi k·p), formula (5) of docs/theory.md becomes a sum over the corners p,
+//! at which edges of directions d and e meet:
 //!
 //! F(k) = 1/(4π²) Σ (d × e) / ((k·d)(k·e)) · exp(−2πi k·p)
 //!
 //! The quotient depends only on the pair of directions, and a chain has few such pairs. The
 //! exponential is the product of one exponential in the position and one in the slope. Each
-//! exponential of the window shifts k by ± s, so a corner needs, with θ = 2π s·p and c± the
-//! quotients at k ± s,
+//! exponential of the window shifts k by ± s, so with θ = 2π s·p and the quotients c± at k ± s, a
+//! corner needs
 //!
 //! exp(−2πi k·p) Σ_s (c₊ + c₋) cos θ + i (c₋ − c₊) sin θ.
 //!
 //! The end of a segment along d has the quotient ± 1/(2πi k·d).
 //!
-//! If a (k ± s)·d is nearly zero the corners cancel, and [`Polygon::transform`] is used instead.
+//! If (k ± s)·d is nearly zero for a direction d, the contributions of corners cancel, and
+//! [`Polygon::transform`] is used instead.
 
 use crate::parallel::expansion::AxisSection;
 use crate::parallel::polygon::{self, Polygon, cross, dot};
@@ -59,8 +60,8 @@ pub(crate) struct Corners<'a> {
 
 /// The quotients of some waves along a row.
 struct Quotients {
-    /// weight · (c₊ + c₋) and weight · (c₋ − c₊), [pair, wave, n]. `re` and `im` are stored in the
-    /// form in which they are multiplied.
+    /// The products weight · (c₊ + c₋) and weight · (c₋ − c₊), [pair, wave, n]. The first is
+    /// stored in `re`, the second in `im`.
     values: ComplexRow,
     /// Cells that need the plain transform: n, the shifted frequency, the weight.
     left: Vec<(usize, [f64; 2], Complex)>,

@@ -19,7 +19,7 @@ const RELATIVE_STEP: f64 = 1e-4;
 /// `prediction` must be the slices of the chain itself, on the same window and grid.
 ///
 /// # Panics
-/// If the parameter belongs to another chain.
+/// Panics if the parameter belongs to another chain.
 #[must_use]
 pub fn derivative(
     chain: &Chain,
@@ -30,7 +30,7 @@ pub fn derivative(
 ) -> Slices {
     let value = chain.value(parameter).expect("a parameter of the chain");
     let moved = value + RELATIVE_STEP * parameter.scale(value);
-    // Uses the fineness of `prediction`, so the quadrature errors cancel.
+    // Discs are split as in `prediction`, so the quadrature errors cancel.
     let fineness = fineness(&chain.path(), window, grid);
     let moved_chain = chain.with(parameter, moved).expect("the same");
     let path = moved_chain.path();

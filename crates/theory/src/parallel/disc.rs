@@ -37,13 +37,14 @@ pub(crate) fn patches_of(shape: &Shape, discs: Discs) -> Vec<WeightedRectangle> 
     }
 }
 
-/// Σ w_jk 1[|x| < R cos t_j] 1[|y| < R sin t_k], t_j = π (2j + 1)/4n (docs/theory.md (5b)).
+/// Returns the rectangles of Σ w_jk 1[|x| < R cos t_j] 1[|y| < R sin t_k], t_j = π (2j + 1)/4n
+/// (docs/theory.md (5b)).
 ///
-/// Under an integral with a smooth function, the sum replaces the disc. That integral is ∫ A(R cos
-/// t) dB(R sin t), where A and B are the integrals along the two sides of a rectangle. A and B are
-/// odd, so they are expanded in the cosines and sines of odd multiples of t. The sum over multiples
-/// m < 2n has a closed form, π/n² Σ m cos(m t_j) sin(m t_k) = π/2n (c(k + j + 1) + c(k − j)), with
-/// c(i) = −(−1)^i / sin(π i/2n) and c(0) = 0.
+/// Under an integral with a smooth function, the sum replaces the disc. The integral of such a
+/// function over the disc is ∫ A(R cos t) dB(R sin t), where A and B are the integrals along the
+/// two sides of a rectangle. A and B are odd, so they are expanded in the cosines and sines of odd
+/// multiples of t. The sum over multiples m < 2n has a closed form, π/n² Σ m cos(m t_j) sin(m t_k)
+/// = π/2n (c(k + j + 1) + c(k − j)), with c(i) = −(−1)^i / sin(π i/2n) and c(0) = 0.
 fn rule(disc: &Disc, n: usize) -> Vec<WeightedRectangle> {
     let angle = FRAC_PI_2 / n as f64;
     let node = |j: usize| angle * (j as f64 + 0.5);
@@ -65,7 +66,8 @@ fn rule(disc: &Disc, n: usize) -> Vec<WeightedRectangle> {
         .collect()
 }
 
-/// Returns strips between x = R sin t at n + 1 evenly spaced t. Second order in 1/n.
+/// Returns strips between x = R sin t at n + 1 evenly spaced t. The error is of second order in
+/// 1/n.
 fn strips(disc: &Disc, n: usize) -> Vec<WeightedRectangle> {
     let angle = |i: usize| FRAC_PI_2 * (2.0 * i as f64 / n as f64 - 1.0);
     // The area of the unit disc below sin t.
@@ -135,8 +137,7 @@ mod tests {
 
     #[test]
     fn the_rule_has_the_transform_of_a_disc() {
-        // At the last frequency π R Ω is 15.1; from this number of nodes on, the error falls with
-        // every node.
+        // At the last frequency π R Ω is 15.1; from 15 nodes on, the error falls with every node.
         let errors = [16, 20, 24].map(|n| worst(Discs::Rule(n)));
         assert!(errors[0] < 1e-8, "{errors:?}");
         assert!(errors[1] < 1e-12, "{errors:?}");
@@ -160,9 +161,10 @@ mod tests {
     #[test]
     fn strips_are_of_second_order() {
         let [coarse, fine] = [64, 128].map(|n| worst(Discs::Strips(n)));
-        // The errors have a ratio of 4; the next order is small.
+        // Twice as many strips reduce the error by a factor of 4, as the next order is small.
         assert!((coarse / fine - 4.0).abs() < 0.2, "{}", coarse / fine);
-        // The error relative to the remainder at such frequencies is (π Ω R)² / 128² = 0.014.
+        // Relative to what remains of the transform at such frequencies, the error is (π Ω R)² /
+        // 128² = 0.014.
         assert!(fine < 1e-4, "{fine}");
     }
 }

@@ -7,19 +7,19 @@ use crate::parallel::slope::Slope;
 use etendue_field::{Mask, Profile, Shape, Window, whole};
 use std::f64::consts::PI;
 
-/// Nodes of the rule for discs in excess of π R Ω.
+/// Number of nodes of the rule for discs beyond π R Ω.
 const SPARE_NODES: f64 = 6.0;
 /// The most nodes: a disc becomes 72² rectangles.
 const MOST_NODES: f64 = 72.0;
 /// The largest frequency up to which edges in other planes are considered, in multiples of the
 /// largest frequency of the spectra.
 const MAX_FREQUENCIES: f64 = 4.0;
-/// The share of that bandwidth that is resolved; the rest lies in the corners of the grid of
-/// frequencies, where there is little content.
+/// The share of the bandwidth due to edges in other planes that is resolved; the rest lies in the
+/// corners of the grid of frequencies, where there is little content.
 const FAR_SHARE: f64 = 0.7;
 /// The most terms of an expansion that discs may cause.
 const MOST_TERMS: f64 = 3e5;
-/// Most strips of a disc.
+/// The largest number of strips of a disc.
 const MOST_STRIPS: f64 = 64.0;
 
 /// How the discs of a chain are split: those of the light, then those of each opaque mask.
@@ -70,7 +70,7 @@ impl DiscResolution {
         })
     }
 
-    /// Represents discs by one patch each.
+    /// Represents each disc by a single rectangle.
     pub(crate) fn single(path: &ChainSegment<'_>) -> Self {
         Self(vec![Discs::Rule(1); path.planes().len()])
     }
@@ -109,8 +109,8 @@ impl DiscResolution {
         })
     }
 
-    /// `discs` chooses how the discs of a plane are split, from the largest radius in the plane and
-    /// the index of the plane.
+    /// Splits the discs of each plane as `discs` chooses, given the largest radius in the plane
+    /// and the plane's index.
     fn of(path: &ChainSegment<'_>, discs: impl Fn(f64, usize) -> Discs) -> Self {
         let planes = path.planes().into_iter().enumerate();
         Self(
@@ -135,8 +135,8 @@ impl DiscResolution {
     }
 }
 
-/// A bound on how fast integrals over the lines x − h u = c change with c. Their spectrum is that
-/// of the rest of the field along the line of frequencies (Ωx − γ, Ωu + h γ).
+/// A bound on the bandwidth, in c, of integrals over the lines x − h u = c. Their spectrum at γ is
+/// that of the other factors of the field at the frequencies (Ωx − γ, Ωu + h γ).
 struct EdgeBandwidth {
     /// The largest |Ωx| and |Ωu|, shifted by gratings.
     frequency: [f64; 2],
@@ -149,7 +149,7 @@ struct EdgeBandwidth {
 impl EdgeBandwidth {
     fn new(path: &ChainSegment<'_>, window: &Window, frequency: [f64; 2]) -> Self {
         let [x, y, u, v] = [&window.x, &window.y, &window.u, &window.v].map(Profile::half_width);
-        // The width of a spot is 1/√n.
+        // The width of the lobe cosⁿθ of a spot is 1/√n.
         let lobe = 1.0 / (-2.0 * path.slope_power()).max(1e-9).sqrt();
         let mut rates = Self {
             frequency,
@@ -169,15 +169,16 @@ impl EdgeBandwidth {
     }
 
     /// With the window alone the spectrum is concentrated near zero, so γ is both near Ωx and near
-    /// −Ωu/h. Edges in a plane at distance g spread the spectrum along Ωu = −g Ωx. The line of
-    /// frequencies meets it at γ = (Ωu + g Ωx)/(g − h); the spectrum has little content far out.
+    /// −Ωu/h. Edges in a plane at distance g spread the spectrum along Ωu = −g Ωx. The frequencies
+    /// (Ωx − γ, Ωu + h γ) meet this line at γ = (Ωu + g Ωx)/(g − h); the spectrum has little
+    /// content at large frequencies.
     fn at(&self, plane: usize) -> f64 {
         let h = self.planes[plane];
         let [x, u] = self.frequency;
         let widest = x + self.blur[0];
         let own = widest.min((u + self.blur[1]) / h.abs());
         let others = self.planes.iter().enumerate().filter(|(j, _)| *j != plane);
-        // Infinite for a plane at the same distance.
+        // The quotient is infinite for a plane at the same distance.
         let meets = others.map(|(_, g)| (u + g.abs() * x) / (g - h).abs());
         let farthest = meets.fold(0.0, f64::max).min(MAX_FREQUENCIES * widest);
         own.max(FAR_SHARE * farthest)

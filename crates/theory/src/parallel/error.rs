@@ -9,11 +9,12 @@ use etendue_field::{SliceGrid, Slices, Window};
 const ORDER: i32 = 4;
 
 /// Estimates the error of `slices`, the prediction of the same chain: ‖error‖/‖F‖ over the grid.
-/// `None` if the prediction is a closed form.
+/// Returns `None` if the prediction is a closed form.
 ///
-/// * Discs: the difference from a prediction that splits them a quarter finer, divided by 1 − 0.8⁴.
-///   Where masks and windows have corners within a disc the error falls as n⁻⁴, elsewhere faster
-///   than exponentially (docs/theory.md, section 3). So the difference is nearly the whole error.
+/// * Discs: the difference from a prediction that splits them a quarter finer, divided by 1 −
+///   0.8⁴. Where masks and windows have corners within a disc the error falls as n⁻⁴, elsewhere
+///   faster than exponentially (docs/theory.md, section 3). So the difference of the two
+///   predictions is nearly the whole error.
 /// * Diffuse reflection: a third of the difference from a prediction with half as many nodes, since
 ///   the rule is of second order.
 /// * Spots, points and cosines: the residual of the series of (1 + u² + v²)^p over the window,
@@ -86,8 +87,8 @@ mod tests {
                 let said = format!("{radius} {distances:?}: {smooth:?} {hard:?}");
                 // Convergence is exponential beyond π R Ω nodes.
                 assert!(smooth.iter().all(|e| *e < 1e-7), "{said}");
-                // With the corners of the box, the error falls as n⁻⁴. The largest disc lets 1/500
-                // of the light pass.
+                // A box window has corners, with which the error falls as n⁻⁴. The largest disc
+                // lets 1/500 of the light pass.
                 assert!(hard.iter().all(|e| *e < 5e-5), "{said}");
             }
         }

@@ -28,22 +28,24 @@ pub(crate) struct AxisSection {
     /// Directions of edges, as vectors: (1, 0), (0, 1), then (shear, 1) for each distance.
     pub(crate) directions: Vec<[f64; 2]>,
     pub(crate) polygons: Vec<Polygon>,
-    /// Whether discs make so many directions that parallelograms merit a formula of their own.
+    /// Whether there are discs; they make so many directions that parallelograms have their own
+    /// formula.
     pub(crate) has_discs: bool,
-    /// Cache of strips already cut: (polygon, direction, bounds) to the part's index, `None` if
-    /// empty.
+    /// Cache of strips that were cut: the index of the part for a (polygon, direction, bounds), or
+    /// `None` if the part is empty.
     known: HashMap<(usize, usize, [u64; 2]), Option<usize>>,
 }
 
-/// weight · 1_P(x, u) · 1_Q(y, v), P and Q being polygons of the two sections.
+/// A term weight · 1_P(x, u) · 1_Q(y, v), where P and Q are polygons of the two sections.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PolygonTerm {
-    /// ±1, times the weights of the rectangles of discs.
+    /// The weight: ±1, times the weights of the rectangles of discs.
     pub(crate) weight: f64,
     /// Indices of P and Q.
     pub(crate) polygons: [usize; 2],
-    /// The index of the term that it is a part of, and the index of the part of that term's Q that
-    /// patches of one extent along x leave. Terms for which both indices are equal have the same P.
+    /// The index of the term from which this term was cut, and an index of that term's Q and the
+    /// extent along x of the patch that cut it. Terms for which both indices are equal have the
+    /// same P.
     column: [usize; 2],
 }
 
@@ -71,8 +73,8 @@ pub(crate) struct Expansion {
     /// The sections (x, u) and (y, v).
     pub(crate) sections: [AxisSection; 2],
     pub(crate) terms: Vec<PolygonTerm>,
-    /// The summands of the window and gratings: products of the waves of both sections; more than
-    /// one for a factor of slope.
+    /// The summands of the window and gratings: products of the waves of both sections. A factor
+    /// of slope has several such products.
     pub(crate) products: Vec<[Vec<SectionWave>; 2]>,
     /// The radiance, or the intensity of a point light.
     pub(crate) brightness: f64,
@@ -93,7 +95,7 @@ impl AxisSection {
         }
     }
 
-    /// Replaces the square by δ(x − distance · u).
+    /// Replaces the square by the segment that represents δ(x − distance · u).
     fn become_segment(&mut self, distance: f64) {
         let edge = self.direction(self.shear(distance));
         self.polygons = vec![Polygon::segment(self.directions[edge][0], edge)];
@@ -114,8 +116,8 @@ impl AxisSection {
         })
     }
 
-    /// Returns the part of a polygon whose rays were in `extent` (metres) a `distance` ago; `None`
-    /// if it is empty.
+    /// Returns the part of a polygon whose rays were at positions in `extent` (metres), a
+    /// `distance` before; `None` if it is empty.
     fn strip(&mut self, polygon: usize, distance: f64, extent: [f64; 2]) -> Option<usize> {
         if extent.map(f64::to_bits) == EVERYWHERE.map(f64::to_bits) {
             return Some(polygon);
@@ -178,7 +180,7 @@ impl Expansion {
         fits.then_some(expansion)
     }
 
-    /// Returns the window without any light.
+    /// Returns the expansion of the window without any light.
     fn empty(window: &Window) -> Self {
         let sections = [
             AxisSection::new(&window.x, &window.u),
@@ -223,7 +225,7 @@ impl Expansion {
         true
     }
 
-    /// Expands a chain of rectangles, which does not depend on the fineness.
+    /// Expands a chain of rectangles, which does not depend on how discs are split.
     #[cfg(test)]
     pub(crate) fn of_rectangles(chain: &crate::Chain, window: &Window) -> Self {
         let path = chain.path();
@@ -283,9 +285,9 @@ impl Expansion {
         parts
     }
 
-    /// Returns the terms with sums along y taken first. n × n patches of a disc behind n × n others
-    /// make n⁴ terms. The sum along y over n² of them is the same for all n polygons of (x, u) that
-    /// a patch's extent along x cuts. So n³ terms with n³ summands are enough.
+    /// Returns the terms with sums along y taken first. n × n patches of a disc behind n × n
+    /// others make n⁴ terms. The sum along y over n² of these terms is the same for all n polygons
+    /// of (x, u) that a patch's extent along x cuts. So n³ terms with n³ summands are enough.
     pub(crate) fn columns(&self) -> SectionColumns {
         let mut known = HashMap::new();
         let mut sums: Vec<Sum> = Vec::new();

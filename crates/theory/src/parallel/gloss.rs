@@ -8,9 +8,9 @@
 //!
 //! where I is the spectrum under a window that contains all slopes whose lobes reach the plane's
 //! window. The integral is a sum over q. The field under this window is bounded, so the sum is
-//! exact up to the lobe's tail once the spacing separates the copies of the field. Along y the same
-//! operation moves a share of all light out of the window. This is exact if the field is a product
-//! of one of (x, u) and one of (y, v), as behind slats along y.
+//! exact up to the lobe's tail once the spacing separates the copies of the field. Along y, the
+//! lobe blurs slopes too, which moves a share of all light out of the window. This is exact if the
+//! field is the product of a function of (x, u) and a function of (y, v), as behind slats along y.
 
 use super::{projection, slices};
 use crate::Chain;
@@ -35,7 +35,7 @@ const MAX_FREQUENCIES: usize = 512;
 /// Returns the slice at azimuth 0 of the chain's field after a lobe, under a window.
 ///
 /// # Panics
-/// If the grid has more than one azimuth.
+/// Panics if the grid has more than one azimuth.
 #[must_use]
 pub fn blurred_slices(
     chain: &Chain,
@@ -108,10 +108,10 @@ fn share(chain: &Chain, lobe: &PlanarLobe, window: &Window) -> f64 {
 
 /// A lobe over one slope, as a sum over frequencies.
 struct Blur {
-    /// A profile with all slopes whose lobes reach the window.
+    /// A profile that contains all slopes whose lobes reach the window.
     wide: Profile,
     lattice: FrequencyAxis,
-    /// ρ̂' at the frequencies, times their spacing.
+    /// The values of ρ̂' at the frequencies, times the frequencies' spacing.
     hats: Vec<f64>,
     window: Profile,
 }
@@ -262,7 +262,7 @@ mod tests {
         let plain = slices(&chain, &window, &grid).at_zero();
         let left = blurred_slices(&chain, &lobe, &window, &grid).at_zero() / plain;
         let along_y = share(&chain, &lobe, &window);
-        // The rounding error of about a hundred terms.
+        // The limit is the rounding error of about a hundred terms.
         assert!(along_y < 0.9 && (left / along_y.powi(2) - 1.0).abs() < 1e-12);
     }
 

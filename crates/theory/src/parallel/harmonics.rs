@@ -55,8 +55,8 @@ impl Harmonics {
     /// from beyond Nyquist.
     ///
     /// Σₙ ℓ̂(Ω + n/Δ) Πᵢ ((−1)^nᵢ fᵢ/(fᵢ + nᵢ))^p, where f = ΔΩ is in cycles per cell and p is the
-    /// order of the spline (docs/theory.md (44); Hockney and Eastwood 1981, chapter 5). Summed to
-    /// |nᵢ| ≤ `FOLDS`; `None` as for [`new`](Self::new).
+    /// order of the spline (docs/theory.md (44); Hockney and Eastwood 1981, chapter 5). The sum
+    /// covers |nᵢ| ≤ `FOLDS`. Returns `None` as for [`new`](Self::new).
     #[must_use]
     pub fn on_grid(
         chain: &Chain,
@@ -121,7 +121,7 @@ impl Harmonics {
     /// Unit: W m⁻² sr⁻¹ · m².
     ///
     /// # Panics
-    /// If a harmonic is beyond the range of the tables.
+    /// Panics if a harmonic is beyond the range of the tables.
     #[must_use]
     pub fn at(&self, [x, y, u, v]: [isize; 4]) -> Complex {
         let of = |[first, second]: &[HarmonicTable; 2]| {

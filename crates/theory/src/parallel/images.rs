@@ -4,17 +4,19 @@ use crate::{Chain, Operator, Source};
 use etendue_field::{Disc, Grating, HalfPlane, Light, Mask, Rectangle, Shape};
 
 /// The smallest distance of a plane from the focal plane, relative to the plane's distance. The
-/// image of the focal plane is at infinity, so positions on an image near it lose digits.
+/// image of the focal plane is at infinity, so positions on the image of a plane near the focal
+/// plane lose digits.
 const NEAREST: f64 = 1e-6;
 
 impl Chain {
-    /// Returns the chain that ends in the same light field as this one after u' = u + `power` x at
-    /// its end. A thin lens of focal length −1/power has this effect, and to first order a curved
-    /// mirror at normal incidence.
+    /// Returns the chain whose final light field is that of this chain after the map u' = u +
+    /// `power` x. A thin lens of focal length −1/power has this effect, and to first order a
+    /// curved mirror at normal incidence.
     ///
-    /// A ray that arrives at (x, u') was at x − h u = m (x − h/m u') in a plane at distance h, with
-    /// m = 1 + power · h. So the plane is seen at the distance h/m, and 1/m times as large. `None`
-    /// if light varies with slope or leaves a surface, because no image exists then.
+    /// A ray that arrives at (x, u') was at x − h u = m (x − h/m u') in a plane at distance h,
+    /// with m = 1 + power · h. So the plane is seen at the distance h/m, and 1/m times as large.
+    /// Returns `None` if light varies with slope or leaves a surface, because no image exists
+    /// then.
     #[must_use]
     pub fn imaged(&self, power: f64) -> Option<Self> {
         let Light::Area {

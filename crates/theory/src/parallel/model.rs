@@ -21,7 +21,7 @@ impl Model for Chain {
             return Vec::new();
         }
         let mut all = Parameter::of_light(&self.source.light);
-        // Closed forms do not include pictures.
+        // Closed forms do not cover lights with pictures.
         all.retain(|parameter| *parameter != Parameter::ImageWidth);
         for (i, operator) in self.operators.iter().enumerate() {
             match operator {
@@ -34,7 +34,7 @@ impl Model for Chain {
     }
 
     /// # Panics
-    /// If the parameter belongs to another chain.
+    /// Panics if the parameter belongs to another chain.
     fn name(&self, parameter: Parameter) -> String {
         let Source { name, light } = &self.source;
         let operator = parameter.operator().and_then(|i| self.operators.get(i));
@@ -83,8 +83,8 @@ impl Model for Chain {
         Some(())
     }
 
-    /// Predicts by closed forms, or by nets of rays if closed forms take too long or do not resolve
-    /// the scene. Rays of a file are summed.
+    /// Predicts by closed forms, or by nets of rays if closed forms take too long or do not
+    /// resolve the scene. The rays of a file are summed one by one.
     fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: RayBudget) -> Predicted {
         if let Some(rays) = self.given() {
             return ray_list::predicted(self, rays, over);
@@ -130,7 +130,8 @@ impl Model for Chain {
 /// The most steps of a closed form or a quadrature: about ten seconds of one core. Nets of rays of
 /// the same cost have more noise than the photons, so a closed form is worth some time.
 const MAX_STEPS: f64 = 1e10;
-/// The most steps for each ray of the budget, about as long as its four photons take.
+/// The most steps for each ray of the budget: about the time to trace four photons, the number of
+/// photons per ray.
 const MAX_STEPS_PER_RAY: f64 = 2e3;
 /// The most steps of a closed form or a quadrature if nets do not fit into memory.
 const MAX_STEPS_WITHOUT_NETS: f64 = 1e11;
@@ -138,7 +139,7 @@ const MAX_STEPS_WITHOUT_NETS: f64 = 1e11;
 const MAX_BYTES: f64 = 1e9;
 
 impl Chain {
-    /// Checks whether nets of rays replace the chain's closed form or quadrature, because that
+    /// Checks whether nets of rays replace the chain's closed form or quadrature. They do if it
     /// takes longer than the photons or does not resolve a pattern.
     #[must_use]
     pub fn is_sampled(&self, (window, grid, picture): Over<'_>, budget: RayBudget) -> bool {

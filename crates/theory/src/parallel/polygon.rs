@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 /// The largest phase, in radians, for which the series is used; above it the edge form keeps 14
 /// digits.
 const SERIES_PHASE: f64 = 0.2;
-/// Number of terms of the series: the next is SERIES_PHASE¹¹ · 12/13! = 4e-17 of the area.
+/// Number of terms of the series: the next term is SERIES_PHASE¹¹ · 12/13! = 4e-17 of the area.
 const SERIES_TERMS: u32 = 11;
 
 /// A corner of a polygon.
@@ -157,7 +157,8 @@ impl Polygon {
         self.triangles().map(|[b, c]| 0.5 * cross(b, c)).sum()
     }
 
-    /// Returns F(k) = ∫∫ exp(−2πi k·p) over the polygon; F(0) is the measure. Exact to about 1e-14.
+    /// Returns F(k) = ∫∫ exp(−2πi k·p) over the polygon; F(0) is the measure. The result is exact
+    /// to about 1e-14.
     pub(crate) fn transform(&self, k: [f64; 2]) -> Complex {
         let Some(first) = self.0.first() else {
             return Complex::ZERO;
@@ -197,8 +198,9 @@ impl Polygon {
         cis(-TAU * dot(k, middle)) * (e[1] * sinc(dot(k, e)))
     }
 
-    /// i/(2π|k|²) Σ (n·k) exp(−2πi k·c) sinc(k·e) over the edges e with midpoints c and outward
-    /// normals n = (e_y, −e_x): the divergence theorem with the field k exp(−2πi k·p).
+    /// Returns the transform by the divergence theorem with the field k exp(−2πi k·p): i/(2π|k|²)
+    /// Σ (n·k) exp(−2πi k·c) sinc(k·e) over the edges e with midpoints c and outward normals n =
+    /// (e_y, −e_x).
     fn edge_form(&self, k: [f64; 2]) -> Complex {
         let mut sum = Complex::ZERO;
         for (a, b) in self.sides() {
@@ -209,8 +211,9 @@ impl Polygon {
         sum * Complex::new(0.0, 1.0 / (TAU * dot(k, k)))
     }
 
-    /// The transform about the first corner as a power series in the phases β, γ of the other two
-    /// corners of each triangle: 2 area Σ (−i)ⁿ hₙ(β, γ)/(n + 2)!, hₙ = βⁿ + βⁿ⁻¹γ + … + γⁿ.
+    /// Returns the transform about the first corner as a power series in the phases β, γ of the
+    /// other two corners of each triangle: 2 area Σ (−i)ⁿ hₙ(β, γ)/(n + 2)!, hₙ = βⁿ + βⁿ⁻¹γ + … +
+    /// γⁿ.
     fn series(&self, k: [f64; 2]) -> Complex {
         let mut sum = Complex::ZERO;
         for [b, c] in self.triangles() {
@@ -277,8 +280,8 @@ mod tests {
             let k = [direction.re, direction.im].map(|c| c * SERIES_PHASE / (TAU * 3.0));
             let corner = triangle.0[0].at;
             let series = triangle.series(k) * cis(-TAU * dot(k, corner));
-            // At a phase of 0.1 the edge form cancels to about ten rounding errors of its terms,
-            // which are about 1.
+            // At a phase of 0.1 the terms of the edge form, which are about 1, cancel to an error
+            // of about ten rounding errors.
             assert!((series - triangle.edge_form(k)).norm() < 1e-14);
         }
     }

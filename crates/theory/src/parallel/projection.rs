@@ -25,9 +25,9 @@ const MOST_NODES: f64 = 200.0;
 
 /// Returns the windowed light field, integrated over y and v, as means over cells of (x, u).
 ///
-/// Exact in y and v (the factor at frequency zero). Each polygon is clipped to each cell, where the
-/// window is integrated by a Gauss rule, so edges cause no aliasing. Discs are split into strips of
-/// a twentieth of a cell or wider. Unit: W m⁻² sr⁻¹ · m.
+/// The integral over y and v is exact: it is the factor of (y, v) at frequency zero. Each polygon
+/// is clipped to each cell, where the window is integrated by a Gauss rule, so edges cause no
+/// aliasing. Discs are split into strips of a twentieth of a cell or wider. Unit: W m⁻² sr⁻¹ · m.
 #[must_use]
 pub fn projection(chain: &Chain, window: &Window, grid: &ProjectionGrid) -> Projection {
     let path = chain.path();
@@ -57,7 +57,7 @@ pub fn projection(chain: &Chain, window: &Window, grid: &ProjectionGrid) -> Proj
 enum CellDensity {
     /// A constant, times the slope profile of the window.
     Uniform(f64),
-    /// Amplitudes of a cosine series in u, the profile included.
+    /// Amplitudes of a cosine series in u, which includes the slope profile of the window.
     Series(Vec<f64>),
 }
 
@@ -203,7 +203,7 @@ impl<'a> Cells<'a> {
         first..whole(high.ceil()).max((first + 1).min(self.bins))
     }
 
-    /// Returns ∫∫ W over a polygon smaller than a cell, with `slope` as its factor in u.
+    /// Returns ∫∫ W over a polygon smaller than a cell; `slope` is the factor of W in u.
     fn integral(&self, polygon: &Polygon, slope: impl Fn(f64) -> f64) -> f64 {
         let Some(first) = polygon.corners().first() else {
             return 0.0;
@@ -389,7 +389,8 @@ mod tests {
             // integral.
             assert!((projection.values[index] - expected).abs() < all / 200.0);
         }
-        // The cells above are partly lit and partly blocked, and their values differ by far more.
+        // The cells above are partly lit and partly blocked, and blocking changes their values by
+        // far more than this tolerance.
         assert!(behind > 0.1 * all);
     }
 }

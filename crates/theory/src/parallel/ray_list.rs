@@ -37,7 +37,7 @@ enum RayStep<'a> {
 /// Returns the slices of rays that pass through a chain, and their picture.
 ///
 /// # Panics
-/// If the chain has a diffuse reflection.
+/// Panics if the chain has a diffuse reflection.
 pub(super) fn predicted(
     chain: &Chain,
     rays: &RayLight,
@@ -221,7 +221,7 @@ mod tests {
         // A midpoint rule of 24 cells at an edge of light has an error of order 1/24², the square
         // of a cell.
         assert!(off(&found.slices) < 4e-3, "{}", off(&found.slices));
-        // A planted fault is detected: travel left out.
+        // The test detects a planted fault, in which travel is left out.
         let mut wrong = given;
         wrong.operators.remove(0);
         assert!(off(&predicted(&wrong, &rays, over).slices) > 0.1);

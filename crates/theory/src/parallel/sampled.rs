@@ -9,7 +9,7 @@ use crate::{Chain, Parameter, rays, scattering};
 use etendue_field::{Brdf, Frame, Fresnel, Lobe, Patch, Quantity, Reflectance, Window};
 use glam::DVec3;
 
-/// The domain that nets sum over.
+/// The system of rays over which nets sum.
 enum NetDomain {
     Rays(Box<Observed<rays::SpecularSystem>>),
     Scattering(Box<Observed<scattering::ScatteringSystem>>),
@@ -64,8 +64,9 @@ impl Chain {
         over: Over<'_>,
         into: impl Fn(Self) -> V,
     ) -> Vec<ShiftedModels<V>> {
-        // Step for parameters of masks, whose shadows move. It is so large that some rays cross the
-        // shadow's edge, and so small that phases turn by a third of a radian at most.
+        // Step for parameters of masks, whose shadows move. It is large enough for some rays to
+        // cross the shadow's edge, and small enough for phases to turn by at most a third of a
+        // radian.
         const STEP: f64 = 1e-2;
         const PHASE: f64 = 0.05;
         let moved = |parameter: &Parameter| {

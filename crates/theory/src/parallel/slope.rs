@@ -20,7 +20,8 @@ const NODES: usize = 192;
 const MOST_TERMS: usize = 120;
 /// Half periods to try, in half-widths: longer ones need fewer terms if the factor is wide.
 const EXTENSIONS: [f64; 3] = [2.0, 1.5, 1.15];
-/// The largest coefficient allowed in a series, because cancellation loses that many digits.
+/// The largest coefficient allowed in a series; larger ones would lose more digits by
+/// cancellation.
 const LARGEST_COEFFICIENT: f64 = 30.0;
 
 /// The function W(u) W(v) (1 + u² + v²)^p inside a window.
@@ -31,7 +32,7 @@ pub(crate) struct Slope {
     /// Root mean square error over the window, relative to that of the function itself; 0 for p =
     /// 0.
     pub(crate) residual: f64,
-    /// Whether p = 0.
+    /// Whether the power p is 0.
     pub(crate) is_profile: bool,
 }
 
@@ -154,7 +155,8 @@ impl CosineFit {
         let largest = functions.iter().map(|f| peak(f)).fold(0.0, f64::max);
         let mut rests = functions.to_vec();
         let mut basis: Vec<Vec<f64>> = Vec::new();
-        // The upper triangle of the basis, column by column, and the projections of the functions.
+        // The upper triangular matrix of the basis, column by column, and the projections of the
+        // functions.
         let mut triangle: Vec<Vec<f64>> = Vec::new();
         let mut projections = vec![Vec::new(); functions.len()];
         for n in 0..most {

@@ -90,7 +90,7 @@ impl SectionWave {
         is_zero(self.frequency)
     }
 
-    /// cos = half the sum of two exponentials; a constant is a single one.
+    /// A cosine is half the sum of two exponentials; a constant is a single exponential.
     pub(crate) fn shifts(&self) -> impl Iterator<Item = Shift> {
         let (signs, amplitude) = if self.is_constant() {
             (&[1.0][..], self.amplitude)

@@ -2,7 +2,8 @@
 
 use etendue_field::{HalfPlane, Rectangle};
 
-/// weight · 1[x in extent 0] · 1[y in extent 1]: a light or a blocker, or a part of one. Metres.
+/// The function weight · 1[x in extent 0] · 1[y in extent 1]: a light or a blocker, or a part of
+/// one. Metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct WeightedRectangle {
     /// Lowest and highest coordinate along X and along Y; may be infinite.

@@ -1,7 +1,7 @@
 //! Estimates of the work of a prediction before it is made.
 //!
-//! The estimate counts what the prediction itself uses: corners, nodes, shapes, frequencies. It
-//! serves to refuse at once a scene that would run for days. Each kind of prediction has its own
+//! The estimate counts what the prediction itself uses: corners, nodes, shapes, frequencies. A
+//! scene that would run for days can then be refused at once. Each kind of prediction has its own
 //! estimate; this file has that of the closed form.
 
 use crate::Chain;
@@ -70,19 +70,19 @@ fn waves(path: &ChainSegment<'_>, window: &Window, slope: &Slope, axis: usize) -
         .layers
         .iter()
         .filter(|layer| matches!(layer.mask, Mask::Grating(grating) if grating.axis == axis));
-    // Two cosines make two waves; a grating is a constant and a cosine.
+    // The product of two cosines has two waves; a grating is a constant and a cosine.
     2.0 * position * slopes * 3.0_f64.powi(i32::try_from(gratings.count()).unwrap_or(i32::MAX))
 }
 
-/// Steps at a frequency: for a wave and two directions of edges; for a wave and a polygon, whose
-/// corners cancel at some frequencies; for a wave at a corner; for a corner; for a product of
-/// shapes.
+/// Numbers of steps at a frequency: for a wave and two directions of edges; for a wave and a
+/// polygon, whose corners cancel at some frequencies; for a wave at a corner; for a corner; for a
+/// product of shapes.
 const WAVE: f64 = 13.0;
 const CANCELLED: f64 = 2.3;
 const AT_CORNER: f64 = 0.4;
 const CORNER: f64 = 1.9;
 const TERM: f64 = 0.6;
-/// Cost of the beginning of a row, in frequencies.
+/// Cost of starting a row, in units of the cost of a frequency.
 const ROW: f64 = 40.0;
 
 fn of_slices(

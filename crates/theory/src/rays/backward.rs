@@ -20,8 +20,8 @@ impl Back {
         }
     }
 
-    /// Returns the ray (x, y, u, v) of the light's plane that arrives at z, and |∂z/∂ray|. `None`
-    /// if there is no such ray.
+    /// Returns the ray (x, y, u, v) of the light's plane that arrives at z, and |∂z/∂ray|. Returns
+    /// `None` if there is no such ray.
     ///
     /// Surfaces conserve n² dx dy du dv / (1 + u² + v²)² of rays (docs/theory.md (29)).
     pub(super) fn ray(&self, z: [f64; 4]) -> Option<([f64; 4], f64)> {
@@ -56,7 +56,8 @@ impl Back {
 
     /// Returns the backward ray from the last surface for the last leg. The leg starts beyond all
     /// its possible intersections with that surface, because half of a plane at an oblique surface
-    /// lies behind the surface. If the plane is on a curved surface, the point is known.
+    /// lies behind the surface. If the plane is on that surface, the point where the ray leaves it
+    /// is known.
     fn off_last(&self, element: &SpecularSurface, last: &LegRay) -> Option<LegRay> {
         let SpecularSurface { patch, .. } = element;
         let back = -last.direction;

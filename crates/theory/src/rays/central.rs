@@ -6,8 +6,8 @@ use crate::geometry::{Matrix, Media};
 use etendue_field::{Frame, Patch, Specular};
 use glam::DVec3;
 
-/// Below this sine, light arrives along the normal, and any plane through the normal is a plane of
-/// incidence.
+/// If the sine of the angle of incidence is below this, light counts as arriving along the normal,
+/// and any plane through the normal is a plane of incidence.
 const NORMAL: f64 = 1e-9;
 
 /// The incidence of the central ray on a surface (docs/theory.md, section 7).
@@ -27,7 +27,7 @@ impl Incidence {
     /// `frame` is the frame of the leg; `normal` may be on either side.
     pub(crate) fn new(frame: &Frame, normal: DVec3) -> Self {
         let n = normal * -normal.dot(frame.d).signum();
-        // With the turned axes X and Y = B, N + c₀ D = sin θ₀ X.
+        // In the turned axes, Y is B and N + c₀ D is sin θ₀ X.
         let across = n + frame.d * -n.dot(frame.d);
         let (x, theta0) = if across.length() < NORMAL {
             (frame.x, 0.0)
@@ -72,8 +72,8 @@ pub(super) struct CentralHit {
 }
 
 impl SpecularSystem {
-    /// Returns the hits of the central ray. `None` if the ray misses an element or does not
-    /// continue from it.
+    /// Returns the hits of the central ray. Returns `None` if the ray misses an element or does
+    /// not continue from it.
     pub(super) fn hits(&self) -> Option<Vec<CentralHit>> {
         let mut frame = Frame::IDENTITY;
         let mut hits = Vec::new();
@@ -98,8 +98,8 @@ impl SpecularSystem {
 }
 
 impl SpecularSurface {
-    /// Returns the frame of the next leg. At a mirror it is mirrored, (−X, Y, D); otherwise it is
-    /// turned to the new direction by the smallest angle.
+    /// Returns the frame of the next leg. At a mirror the frame is mirrored, (−X, Y, D); otherwise
+    /// it is turned to the new direction by the smallest angle.
     fn leaving(&self, arriving: &Frame, normal: DVec3, direction: DVec3) -> Frame {
         if !matches!(self.event, Specular::Mirror) {
             return arriving.turned_to(direction);

@@ -20,14 +20,14 @@ pub struct AffineChain {
     /// inside the surface of the plane.
     pub steps: Vec<String>,
     /// Distances on the last leg at which rays that left the light parallel meet, in metres from
-    /// the last surface; ascending, and negative if behind it. There are at most two: in the plane
-    /// of incidence and across it, if these are its principal planes.
+    /// the last surface; ascending, and negative if behind it. There are at most two: one in the
+    /// plane of incidence and one across it, if these are the principal planes.
     pub foci: Vec<f64>,
 }
 
 /// Derives the chain from the geometry: distances, angles and curvatures along the central ray.
-/// `None` if the ray misses an element or is totally reflected. Also `None` for a plane on a lens
-/// itself, which has no side from which to count angles.
+/// Returns `None` if the ray misses an element or is totally reflected. Returns `None` also for a
+/// plane on a lens itself, which has no side from which to count angles.
 ///
 /// The printed versions differ in incidence, curvature and outgoing angle; the paper has no
 /// refraction and no lens.
@@ -127,7 +127,7 @@ impl Walk {
     }
 
     fn turn(&mut self, angle: f64, into: &str) {
-        // A rotation by rounding errors alone is skipped.
+        // A rotation that is only a rounding error is skipped.
         if angle.abs() > 1e-12 {
             self.step(
                 &AffineMap::rotation(angle).spectrum_map(),
@@ -221,7 +221,7 @@ impl Walk {
         self.step(&self.print.back_4d(shape, theta1), words);
     }
 
-    /// Appends the steps to light leaving the last element, on its surface.
+    /// Appends the steps to a plane on the surface of the last element, for light that leaves it.
     fn leaving_surface(
         &mut self,
         element: &SpecularSurface,
@@ -322,7 +322,8 @@ impl Walk {
         }
     }
 
-    /// Returns d with det(P + d Q) = 0, where x = P x₀ and u = Q x₀ is a parallel bundle.
+    /// Returns the distances d with det(P + d Q) = 0, where x = P x₀ and u = Q x₀ are the rays of
+    /// a bundle that is parallel at the light.
     fn foci(&self) -> Vec<f64> {
         let map = self.map();
         let at = |i: usize, j: usize| map.matrix[j][i];

@@ -8,7 +8,7 @@ use std::f64::consts::FRAC_PI_2;
 
 impl Plane {
     /// Returns the coordinates of a ray on its last leg, and the factor from its flux to the
-    /// quantity in ray space. `None` if the ray misses.
+    /// quantity in ray space. Returns `None` if the ray misses.
     pub(crate) fn coordinates(&self, ray: &LegRay) -> Option<([f64; 4], f64)> {
         match self.orientation {
             Orientation::Orthogonal => self.across(ray),
@@ -25,7 +25,7 @@ impl Plane {
     }
 
     /// Returns the distance along a ray of the last leg to the plane, or to the surface it is on;
-    /// zero for a plane on a surface that light leaves. `None` if the ray misses it.
+    /// zero for a plane on a surface that light leaves. Returns `None` if the ray misses it.
     pub(crate) fn along(&self, ray: &LegRay) -> Option<f64> {
         if self.orientation != Orientation::Orthogonal && !self.arriving {
             return Some(0.0);
@@ -37,9 +37,9 @@ impl Plane {
         t.is_finite().then_some(t)
     }
 
-    /// The inverse of [`Self::coordinates`]: returns the ray, in the direction of light, that has
-    /// the given coordinates on the plane or on the surface it is on; and étendue over dx dy du dv
-    /// there. `None` if there is no such ray.
+    /// Returns the ray, in the direction of light, that has the given coordinates on the plane or
+    /// on its surface, and étendue divided by dx dy du dv there. This is the inverse of
+    /// [`Self::coordinates`]. Returns `None` if there is no such ray.
     pub(crate) fn ray(&self, [x, y, u, v]: [f64; 4]) -> Option<(LegRay, f64)> {
         let foot = self.frame.to_world(DVec3::new(x, y, 0.0));
         if self.orientation == Orientation::Orthogonal {
@@ -60,7 +60,8 @@ impl Plane {
     }
 
     /// Returns the point with two given coordinates on the plane, or on the surface the plane is
-    /// on; and the normal at this point, on the side of D. `None` if the surface has no such point.
+    /// on; and the normal at this point, on the side of D. Returns `None` if the surface has no
+    /// such point.
     pub(crate) fn point(&self, [x, y]: [f64; 2]) -> Option<(DVec3, DVec3)> {
         let foot = self.frame.to_world(DVec3::new(x, y, 0.0));
         match &self.patch {
@@ -70,7 +71,8 @@ impl Plane {
     }
 
     /// Returns the direction with two angles of a plane on a surface, relative to the normal.
-    /// `None` beyond a right angle, where the same direction would have two sets of coordinates.
+    /// Returns `None` beyond a right angle, where the same direction would have two sets of
+    /// coordinates.
     pub(crate) fn away(&self, [u, v]: [f64; 2]) -> Option<DVec3> {
         let turned = if self.orientation == Orientation::Mirrored {
             -1.0
@@ -114,8 +116,8 @@ impl Plane {
         Some((z, secant_squared * secant_squared * self.factor(z)))
     }
 
-    /// Returns the point where light leaves the surface that it met last, or meets this one. Also
-    /// returns the unit normal at this point, on the side of the plane's D.
+    /// Returns the point where light leaves the surface that it met last, or where it meets the
+    /// plane's surface. Also returns the unit normal at this point, on the side of the plane's D.
     fn hit(&self, ray: &LegRay) -> Option<(DVec3, DVec3)> {
         let Some(patch) = &self.patch else {
             let (s, t) = crossing(&self.frame, ray)?;

@@ -14,7 +14,7 @@ use etendue_field::Window;
 /// any map, the error converges to the number returned instead: the error of rays, in half-widths
 /// of the window, or the relative error of radiance.
 ///
-/// `None` if the central ray does not arrive.
+/// Returns `None` if the central ray does not arrive.
 #[must_use]
 pub fn defect(
     view: &Observed<SpecularSystem>,
@@ -33,8 +33,8 @@ pub fn defect(
 #[must_use]
 pub fn radiance_defect(view: &Observed<SpecularSystem>, map: &SpectrumMap<4>) -> Option<f64> {
     let Observed { system, plane } = view;
-    // The flux that arrives along the central ray is its radiance at the light, so `per_flux` is
-    // the change of radiance.
+    // Per unit of ray space, the central ray carries a flux equal to its radiance at the light, so
+    // `per_flux` is the change of radiance.
     let (center, per_flux) = plane.coordinates(&system.follow([0.0; 4])?)?;
     Some(map.factor * plane.factor(center) / per_flux - 1.0)
 }

@@ -25,7 +25,8 @@ pub(super) enum RayStrategy {
     /// Rays are sampled by positions at the plane. For an area light they are also sampled by
     /// points of the light, and for an environment by directions.
     Positions,
-    /// Rays are sampled by slopes at the plane, with the same additions.
+    /// Rays are sampled by slopes at the plane and, as for [`Self::Positions`], by points of an
+    /// area light or by directions of an environment.
     Slopes,
     /// Rays of a light with extent are sampled by positions and slopes at the plane.
     Plane,
@@ -47,7 +48,7 @@ pub(super) struct RaySampler<'a> {
 /// emission.
 #[derive(Clone, Debug)]
 enum Outer<'a> {
-    /// Not sampled: all rays have the same values.
+    /// The two coordinates are not sampled: all rays have the same values.
     Center,
     /// Positions on an area light.
     Shape(Shape),
@@ -119,9 +120,9 @@ impl<'a> Outer<'a> {
 }
 
 impl<'a> RaySampler<'a> {
-    /// `center` is where the central ray lands, and `jacobian` is how that changes with the ray;
-    /// `None` if they do not determine the ray. Without a plane, all rays are taken to land as
-    /// targeted.
+    /// `center` is where the central ray lands, and `jacobian` is the derivative of the landing
+    /// point with respect to the ray. Returns `None` if they do not determine the ray. Without a
+    /// plane, all rays are taken to land as targeted.
     #[expect(
         clippy::too_many_lines,
         reason = "the coordinates by which each kind of light is aimed, side by side"

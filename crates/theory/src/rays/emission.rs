@@ -10,11 +10,11 @@ use std::f64::consts::{PI, TAU};
 /// the other two as well.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct EmissionMeasure {
-    /// Indices of those two coordinates.
+    /// Indices, among x, y, u and v, of the two coordinates.
     pub(super) inner: [usize; 2],
-    /// The range within which rays are sought, in those coordinates.
+    /// The range within which rays are sought, in the two coordinates.
     pub(super) reach: [f64; 2],
-    /// Cycles per unit of those coordinates in the light's picture.
+    /// Cycles of the light's picture per unit of the two coordinates.
     pub(super) cycles: [f64; 2],
 }
 
@@ -24,7 +24,7 @@ const GAUSSIAN: f64 = 3.6;
 const STEEPEST: f64 = 30.0;
 
 impl EmissionMeasure {
-    /// Returns the other two coordinates.
+    /// Returns the indices of the other two coordinates.
     pub(super) fn outer(&self) -> [usize; 2] {
         self.inner.map(|inner| (inner + 2) % 4)
     }
@@ -40,7 +40,7 @@ impl SpecularSystem {
         };
         let mut cycles = [0.0; 2];
         if let Some(image) = image {
-            // The transform of a Gaussian of width w is below 10⁻⁵ from 2/w on.
+            // The transform of a Gaussian of width w is below 10⁻⁵ from the frequency 2/w on.
             cycles = image.width.map(|w| 2.0 / w);
             if let Some(grating) = image.grating {
                 cycles[grating.axis] += grating.frequency.abs();

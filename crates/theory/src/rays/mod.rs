@@ -2,12 +2,12 @@
 //!
 //! The inputs are a [`SpecularSystem`] and a [`Plane`]. The system has a light, masks across its
 //! first leg, obstacles on any leg, and the mirrors, refracting surfaces and lenses that the
-//! central ray visits. The [`Observed`](crate::Observed) of both is a [`Model`](crate::Model). It
-//! follows rays through the real geometry and sums them, by a quadrature rule if the rule converges
-//! and over scrambled nets otherwise. In addition there are the [`chain`](chain()) of first-order
-//! maps ([`geometry`](crate::geometry)) derived from the same system, and the [`linear()`]
-//! prediction of that chain. So a measured difference from the first-order chain splits into noise,
-//! linearisation and faults.
+//! central ray visits. Together they are an [`Observed`](crate::Observed), which is a
+//! [`Model`](crate::Model). It follows rays through the real geometry and sums them, by a
+//! quadrature rule if the rule converges and over scrambled nets otherwise. In addition there are
+//! the [`chain`](chain()) of first-order maps ([`geometry`](crate::geometry)) derived from the
+//! same system, and the [`linear()`] prediction of that chain. So a measured difference from the
+//! first-order chain splits into noise, linearisation and faults.
 //!
 //! All coordinates are in the frame at the light: the central ray starts at the origin along Z, and
 //! (x, y) are along X and Y. A ray carries flux; `emission.rs` has the flux of each light. Flux is
@@ -86,9 +86,9 @@ pub(crate) use trace::{LegRay, bent};
 use crate::obstacle::Obstacle;
 use etendue_field::{Light, Mask, Patch, Specular};
 
-/// The distance, in metres, that a point of a plane may seem to be behind the plane of the light
-/// and still be lit. It covers the rounding errors of a tilted plane at the light itself. No object
-/// is this close to the light.
+/// A point of a plane that seems to be behind the plane of the light by at most this distance, in
+/// metres, can still be lit. It covers the rounding errors of a tilted plane at the light itself.
+/// No object is this close to the light.
 pub(crate) const AT_LIGHT: f64 = 1e-9;
 
 /// A light and the specular surfaces that its central ray visits, in the frame at the light.
@@ -112,8 +112,8 @@ pub struct SpecularSurface {
     pub name: String,
     /// The geometry of the surface.
     pub patch: Patch,
-    /// The event at the surface. Refraction goes from the side the ray comes from. A thin lens is
-    /// flat; its slopes are relative to the patch's frame (X, Y and the normal on the side to which
-    /// light goes).
+    /// The event at the surface. Refraction goes from the side of the incident ray to the other
+    /// side. A thin lens is flat; its slopes are relative to the patch's frame (X, Y and the
+    /// normal on the side to which light goes).
     pub event: Specular,
 }

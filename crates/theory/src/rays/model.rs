@@ -19,9 +19,9 @@ impl Model for Observed<SpecularSystem> {
         &self.system.light
     }
 
-    /// Distances that are zero are not parameters: a plane on its surface has no travel to it.
-    /// Neither is the distance of a plane under an unobstructed environment, where light is the
-    /// same everywhere.
+    /// Distances that are zero are not parameters: a plane on its surface has no travel to it. The
+    /// distance of a plane under an unobstructed environment is not a parameter either, because
+    /// light is the same everywhere.
     fn parameters(&self) -> Vec<Parameter> {
         let Self { system, plane } = self;
         let mut all = Parameter::of_light(&system.light);
@@ -119,7 +119,7 @@ impl Model for Observed<SpecularSystem> {
 }
 
 impl Observed<SpecularSystem> {
-    /// Changes the length of a leg; everything later moves.
+    /// Changes the length of a leg and moves everything after it.
     fn travel(&mut self, leg: usize, new: New<'_>) -> Option<()> {
         let (from, along) = self.system.leg(leg)?;
         let to = match self.system.hits()?.get(leg) {
@@ -155,8 +155,8 @@ impl SpecularSystem {
     /// Returns the system with a light `factor` times as large: the picture's widths over slopes or
     /// positions, or the shape about the central ray.
     ///
-    /// With narrower windows and higher frequencies by the same factor, the error of first-order
-    /// maps falls with the factor (docs/theory.md, section 7).
+    /// If windows become narrower and frequencies higher by the same factor, the error of
+    /// first-order maps falls with the factor (docs/theory.md, section 7).
     #[must_use]
     pub fn shrunk(&self, factor: f64) -> Self {
         Self {
@@ -202,7 +202,7 @@ pub(crate) fn shrunk_light(light: &Light, factor: f64) -> Light {
     light
 }
 
-/// Returns a patch's frame turned about B at the central hit by the angle by which θ₀ grows.
+/// Returns a patch's frame, turned about B at the central hit by an increase `by` of θ₀.
 fn tilted(frame: &Frame, hit: &CentralHit, by: f64) -> Frame {
     let turn = DQuat::from_axis_angle(hit.incidence.b, -by);
     let center = hit.arriving.origin;

@@ -13,12 +13,12 @@ use crate::predicted::Predicted;
 use etendue_field::{Frame, FrequencyAxis, Light, Mask, SliceGrid, Slices, TwoPlane, Window};
 use glam::DVec3;
 
-/// The budget for pictures if neither picture nor moments are needed.
+/// The budget of the nets if neither a picture nor moments are needed.
 const NO_PICTURES: RayBudget = RayBudget {
     nodes: 0.0,
     error: f64::INFINITY,
 };
-/// The budget for a picture and moments if slices are computed by a rule.
+/// The budget of the nets for a picture and moments, if slices are computed by a rule.
 const FOR_PICTURES: RayBudget = RayBudget {
     nodes: 1e6,
     error: 0.0,
@@ -138,8 +138,8 @@ fn derivatives(
 
 fn exact_field<'a>(view: &'a Observed<SpecularSystem>, masks: &'a Masks<'a>) -> impl RayField + 'a {
     let Observed { system, plane } = view;
-    // Light begins in the plane z = 0: parts of a surface behind this plane are dark. Points of a
-    // curved surface that a ray meets are ahead of it.
+    // Light begins in the plane z = 0: parts of a surface behind this plane are dark. The point
+    // where a ray meets a curved surface is always ahead of the ray.
     let on_first_leg = plane.arriving && system.elements.is_empty() && plane.patch.is_none();
     move |ray| {
         let flux = flux(system, masks, ray);

@@ -2,9 +2,9 @@
 //! beam.
 //!
 //! If no light reaches the border of the region that lands in the window, the only error is
-//! aliasing. Aliasing vanishes once there are more nodes than cycles. An edge that cuts light, of a
-//! window or of a surface, is misplaced by up to half a node. Light with such an edge is left to
-//! nets, because two rules may agree on it by chance.
+//! aliasing. Aliasing vanishes once there are more nodes than cycles. An edge of a window or a
+//! surface that cuts light is misplaced by up to half the spacing of nodes. Light with such an
+//! edge is left to nets, because two rules may agree on it by chance.
 
 use super::region::{Finder, RayField};
 use super::sums::sums;
@@ -25,13 +25,14 @@ const FREQUENCY: f64 = 0.5;
 /// transform of photons, 2·10⁻⁷, and so is invisible for any number of photons.
 const TARGET_ERROR: f64 = 1e-7;
 /// The error of the finer of two rules, divided by their difference. With a Hann window the error
-/// falls as n⁻³ beyond the window's frequencies, and (5/4)³ is 2.
+/// falls as n⁻³ beyond the window's frequencies, and (5/4)³ is about 2.
 const FINER_ERROR: f64 = 1.0;
 
 impl<F: RayField> Finder<'_, F> {
-    /// Returns the slices and ‖error‖/‖F‖. The error includes the change by the last refinement, on
-    /// slices at right angles, and the possible error from edges. Rules are refined to 10⁻⁷, or
-    /// until the next takes more than `max_steps`. `None` if the error stays above 10⁻⁴.
+    /// Returns the slices and ‖error‖/‖F‖. The error includes the change of two slices at right
+    /// angles by the last refinement, and the possible error from edges. Rules are refined to
+    /// 10⁻⁷, or until the next takes more than `max_steps`. Returns `None` if the error stays
+    /// above 10⁻⁴.
     pub(super) fn slices(&self, grid: &SliceGrid, max_steps: f64) -> Option<(Slices, f64)> {
         let trial = SliceGrid {
             azimuths: grid.azimuths.min(2),
@@ -77,8 +78,8 @@ impl<F: RayField> Finder<'_, F> {
         (0..count).into_par_iter().flat_map_iter(row).collect()
     }
 
-    /// Returns the number of nodes along each coordinate that should suffice: a midpoint rule
-    /// integrates functions with fewer cycles than nodes exactly.
+    /// Returns the number of nodes along each coordinate that should suffice: a midpoint rule is
+    /// exact for functions with fewer cycles than nodes.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,

@@ -10,8 +10,8 @@ use etendue_field::{TwoPlane, Window};
 pub(super) type Region = [[f64; 2]; 2];
 
 /// A light field as a function of rays. It takes a ray (x, y, u, v) at the light to the ray's
-/// coordinates at the plane, and to its contribution to ray space there, per unit of the emission's
-/// coordinates. `None` if the ray does not arrive.
+/// coordinates at the plane, and to its contribution to ray space there, per unit of the
+/// emission's coordinates. It returns `None` if the ray does not arrive.
 pub(super) trait RayField: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync {}
 impl<F: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync> RayField for F {}
 
@@ -34,7 +34,8 @@ pub(super) struct Finder<'a, F> {
     pub(super) neighbourhood: Neighbourhood,
 }
 
-/// Where the central ray lands, and the derivative with respect to the ray, [at plane, at light].
+/// The point where the central ray lands, and the derivative of a landing point with respect to
+/// the ray, [at plane, at light].
 pub(super) type Neighbourhood = ([f64; 4], Matrix<4>);
 
 /// Returns the neighbourhood for exact rays, ignoring masks; `None` if the central ray, or a
@@ -76,7 +77,7 @@ impl<F: RayField> Finder<'_, F> {
 
     /// Returns the region of rays that land in the window. The search starts from the bounding box
     /// of the parallelogram that a linear map gives; the box is moved, widened and narrowed until
-    /// it contains all arriving light. `None` if nothing arrives.
+    /// it contains all arriving light. Returns `None` if nothing arrives.
     pub(super) fn region(&self) -> Option<Region> {
         let mut region = self.linear_region()?;
         let reach = self.emission.reach;
@@ -122,7 +123,8 @@ impl<F: RayField> Finder<'_, F> {
     }
 
     /// Returns the strength of light next to edges that cut it, relative to all light in a row of
-    /// cells. Divided by the number of nodes along a coordinate, this bounds the error of a rule.
+    /// cells. This strength, divided by the number of nodes along a coordinate, bounds the error
+    /// of a rule.
     pub(super) fn edges(&self) -> f64 {
         let Some(region) = self.region() else {
             return 0.0;
@@ -144,7 +146,7 @@ impl<F: RayField> Finder<'_, F> {
         next_to_edges / strengths.iter().sum::<f64>() * CELLS as f64
     }
 
-    /// Returns the strength of light at its edge between a lit and a dark point.
+    /// Returns the strength of light at the edge between a lit and a dark point.
     fn last_lit(&self, mut lit: [f64; 2], mut unlit: [f64; 2], dark: f64) -> f64 {
         for _ in 0..HALVINGS {
             let between = [0, 1].map(|axis| 0.5 * (lit[axis] + unlit[axis]));

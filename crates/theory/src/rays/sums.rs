@@ -1,7 +1,7 @@
 //! Σ w e^(−2πi Ω·z) over rays, at all frequencies of a grid of slices.
 //!
 //! On one azimuth a ray is a point (a, b), and its exponential at (m Δρ, n Δν) is the product of
-//! one factor along ρ and one along ν. Summed over rays, this is a matrix product of the real and
+//! one factor along ρ and one along ν. The sum over rays is a matrix product of the real and
 //! imaginary parts of the factors; each product serves both + ν and − ν.
 
 use crate::nets::RayNode;
@@ -22,8 +22,8 @@ const POWERS: usize = 32;
 /// e^(i angle) to the power `LANES`.
 const LANES: usize = 8;
 
-/// Returns the sums on all slices. Bitwise identical on any number of threads; rounding is below
-/// 10⁻¹² of Σ |w|.
+/// Returns the sums on all slices. They are bitwise identical on any number of threads; the
+/// rounding error is below 10⁻¹² of Σ |w|.
 pub(super) fn sums(nodes: &[RayNode], grid: &SliceGrid) -> Slices {
     let part = nodes.len().div_ceil(PARTS).max(BLOCK);
     let parts: Vec<_> = nodes.chunks(part).collect();

@@ -34,7 +34,7 @@ impl LegRay {
     }
 
     /// Returns the distance to a patch, and the unit normal there on the side of the patch's D.
-    /// `None` if the patch is missed or behind.
+    /// Returns `None` if the patch is missed or behind.
     ///
     /// Uses Newton's method from the tangent plane at the vertex. Along a ray the quadric is a
     /// polynomial of degree two, so it has at most one root on either side of its extremum; the
@@ -71,7 +71,7 @@ impl LegRay {
         for _ in 0..MOST_STEPS {
             let step = ((a * s + 2.0 * b) * s + c) / (2.0 * (a * s + b));
             s -= step;
-            // The error is squared with each step, so the next would be below rounding error.
+            // Each step squares the error, so the next step would be below rounding error.
             if step.abs() <= 1e-8 * ((t + s).abs() + point.length()) {
                 t += s;
                 let here = point + direction * t;

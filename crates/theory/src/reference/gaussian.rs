@@ -1,8 +1,8 @@
 //! Closed forms under an untruncated Gaussian window, for checks only.
 //!
 //! A [`Window`](etendue_field::Window) has a finite support, so this window exists nowhere else.
-//! All but the disc are in 2D. Frequencies are (Ωx, Ωv), in cycles per metre and per unit slope.
-//! The slope is called v, as in the paper.
+//! All closed forms but that of the disc are in 2D. Frequencies are (Ωx, Ωv), in cycles per metre
+//! and per unit slope. The slope is called v, as in the paper.
 
 use crate::numerics::quadrature::integrate;
 use crate::numerics::sinc::sinc;
@@ -73,7 +73,7 @@ pub(crate) struct CosineGrating {
 }
 
 impl CosineGrating {
-    /// Returns the Fourier series: (frequency, coefficient).
+    /// Returns the terms of the Fourier series, each as (frequency, coefficient).
     #[must_use]
     pub(crate) fn lines(&self) -> [(f64, Complex); 3] {
         let side = Complex::from_polar(0.25 * self.modulation, self.phase);
@@ -101,7 +101,8 @@ pub(crate) fn area_light(
     let [omega, big_q] = travelled.frequencies(k);
     let Travelled { p, q, .. } = travelled;
     let half = 0.5 * width;
-    // Enough nodes for the oscillation, and for the Gaussian if it is narrower than the light.
+    // There are enough nodes for the oscillation, and for the Gaussian if it is narrower than the
+    // light.
     let nodes = 16 + whole((2.0 * width * (big_q.abs() + p.sqrt())).ceil());
     let integral = integrate(nodes, [-half, half], |y| {
         Complex::from_polar(libm::exp(-PI * p * y * y), -TAU * big_q * y)
@@ -158,7 +159,7 @@ pub(crate) fn disc_light(
 /// The field exp(−π(α x² + 2β x v + γ v²)), for example a Gaussian window after travel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Tilted {
-    /// α, per square metre.
+    /// Coefficient α, per square metre.
     pub(crate) alpha: f64,
     /// β, per metre.
     pub(crate) beta: f64,
@@ -166,9 +167,10 @@ pub(crate) struct Tilted {
     pub(crate) gamma: f64,
 }
 
-/// Returns the spectra of a field alone, with x < 0 blocked and with x > 0 blocked: F₀ = γ^(−1/2)
-/// exp(−πΩv²/γ) a exp(−πa²Ω'²), and F₀/2 ∓ i/√π times F₀ without its last exponential times
-/// Dawson(√π a Ω'), with 1/a² = α − β²/γ and Ω' = Ωx − βΩv/γ (docs/theory.md (22)).
+/// Returns the spectra of a field without a blocker, with x < 0 blocked, and with x > 0 blocked:
+/// F₀ = γ^(−1/2) exp(−πΩv²/γ) a exp(−πa²Ω'²), and F₀/2 ∓ i/√π times F₀ without its last
+/// exponential times Dawson(√π a Ω'), with 1/a² = α − β²/γ and Ω' = Ωx − βΩv/γ (docs/theory.md
+/// (22)).
 #[must_use]
 pub(crate) fn half_planes(field: &Tilted, [x, v]: [f64; 2]) -> [Complex; 3] {
     let Tilted { alpha, beta, gamma } = *field;
@@ -188,7 +190,8 @@ fn dawson(x: f64) -> f64 {
     })
 }
 
-/// Returns the same light at a distance d below a grating: Σ cₙ I(D; Ωx − n f, Ωv + n f d).
+/// Returns the field of the area light at a distance d below a grating: Σ cₙ I(D; Ωx − n f, Ωv + n
+/// f d).
 #[must_use]
 pub(crate) fn through_grating(
     bench: &GaussianBlock,

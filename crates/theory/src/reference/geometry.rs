@@ -50,7 +50,7 @@ fn matrix<const N: usize>(value: &Value) -> Matrix<N> {
     std::array::from_fn(|i| std::array::from_fn(|j| number(&rows[i][j])))
 }
 
-/// The operation of a row of a chain.
+/// The operation that a row of a chain stands for.
 enum BlockStep<const N: usize> {
     Map(AffineMap<N>),
     Window([f64; N]),
@@ -96,7 +96,7 @@ fn assert_chain<const N: usize>(block: &Value, steps: &[BlockStep<N>]) {
     }
     assert_close("matrices", deviation(N * N * 7, matrices));
     assert_close("covariances", deviation(N * N * 8, fields));
-    // The rounding errors of terms a hundred times larger.
+    // The limit is the rounding error of terms a hundred times larger.
     let off = deviation(8, volumes);
     assert!(off < 1e-12, "determinants: {off:e}");
     if N == 2 {

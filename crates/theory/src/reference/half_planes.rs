@@ -36,7 +36,7 @@ fn phases_make_both_halves_dark() {
         // The light that passes both is all light minus the parts that each blocks: F₀ − (F₀ − F_A)
         // − (F₀ − F_B).
         let both = a + b - open;
-        // This is the sum of a number and its conjugate.
+        // The error is so small because a and b are conjugates of each other.
         assert!((both - complex(&sample["both"])).norm() < 1e-16);
         // The moduli alone would leave some light.
         let blind = a.norm() + b.norm() - open.norm();

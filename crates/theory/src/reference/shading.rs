@@ -149,7 +149,7 @@ impl GaussianField {
     }
 }
 
-/// Returns the block's reflection with a given factor before it and a given lobe.
+/// Returns the block's reflection with a given factor of the incident direction and a given lobe.
 fn reflection<'a>(
     parameters: &Value,
     before: Factor<'a>,
@@ -166,7 +166,7 @@ fn reflection<'a>(
             after: Factor::One,
             weight: None,
         }],
-        // Content of angles 0.04 wide reaches to ± 30, and is shifted by the correlation of
+        // A field that is 0.04 rad wide has frequencies up to ± 30, shifted by the correlation of
         // positions and angles.
         lattice: Lattice::circle(60.0),
     }
@@ -193,7 +193,7 @@ fn every_step_of_a_reflection() {
         let name = format!("step{}", i + 1);
         assert_near(&format!("{step:?}"), off(&gloss, step, &name));
     }
-    // The block's mirror keeps the cosine: a Dirac that is not divided by the cosine.
+    // The mirror of the block is a Dirac that is not divided by the cosine, so the cosine remains.
     let dirac = reflection(parameters, Factor::Cosine, None);
     let mirror =
         |chain: &PlanarReflection<'_>| off(chain, ReflectionStep::Outgoing, "step7_mirror_brdf");
@@ -222,8 +222,8 @@ fn every_step_of_a_reflection() {
 /// direction θ, and ∂x/∂s at a fixed direction. The coordinates are in the frame of central rays at
 /// an angle.
 ///
-/// The frame is the one after the reflection: X = c T − sin N. Before it, rays are reversed and X
-/// points the other way.
+/// The frame is the one after the reflection: X = c T − sin N. Before the reflection, rays are
+/// reversed and X points the other way.
 fn seen(k: f64, central: f64, s: f64, local: f64) -> ([f64; 2], f64) {
     let turn = k * s;
     let point = [libm::sin(turn) / k, (libm::cos(turn) - 1.0) / k];
@@ -298,7 +298,7 @@ fn rays_off_the_circle() {
             deviation(5, pairs)
         };
         let off = off(&bells);
-        // Both are quadratures; the file's accuracy is 1e-6.
+        // Both values are from quadratures; that of the file is accurate to 1e-6.
         assert!(off < 1e-6, "{name}: {off:e}");
         println!("{name}, traced: {off:.1e} of the largest value");
         // The chain is of first order: its error is a few per cent at this size, and is detected.

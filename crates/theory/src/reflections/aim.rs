@@ -24,9 +24,9 @@ pub(super) enum DirectionCoordinates {
     /// A position on the next scattering surface, along X and Y of its patch.
     Patch {
         patch: Patch,
-        /// The position of the central hit there.
+        /// The position of the central hit on that surface.
         hit: [f64; 2],
-        /// The rotation from the local coordinates there.
+        /// The rotation from the local coordinates at the central hit.
         turn: Matrix<2>,
     },
     /// A position on the plane.

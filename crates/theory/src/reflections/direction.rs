@@ -35,7 +35,8 @@ pub(super) struct SampledDirection {
     pub(super) direction: DVec3,
     /// Probability per steradian.
     pub(super) density: f64,
-    /// The point of the next surface at which the direction is aimed, if it is.
+    /// The point of the next surface at which the direction is aimed; `None` if it is aimed
+    /// otherwise.
     pub(super) target: Option<DVec3>,
 }
 

@@ -40,9 +40,9 @@ impl Gaussian<4> {
         })
     }
 
-    /// Returns the Gaussian of the incident light that a lobe scatters into this one, whose angles
-    /// are relative to the central ray. The lobe blurs it about the mirror direction; for diffuse
-    /// light its angles are arbitrary.
+    /// Returns the Gaussian of the incident light that a lobe scatters into light of this
+    /// Gaussian, whose angles are relative to the central ray. The lobe blurs it about the mirror
+    /// direction; for diffuse light its angles are arbitrary.
     pub(super) fn before_lobe(&self, width: Option<f64>, outgoing: [f64; 2]) -> Self {
         let [s, t, theta, phi] = self.mean;
         let Some(width) = width else {
@@ -196,7 +196,7 @@ impl HeavyTailedGaussian {
     }
 }
 
-/// A mixture of such densities, each with its share.
+/// A mixture of heavy-tailed Gaussians, each with its share.
 #[derive(Clone, Debug)]
 pub(super) struct GuideMixture(Vec<(f64, HeavyTailedGaussian)>);
 
@@ -223,7 +223,7 @@ impl GuideMixture {
             }
             left -= share;
         }
-        // Rounding may leave a remainder beyond the last.
+        // Because of rounding, `a` may lie beyond the last share.
         let (_, last) = self.0[self.0.len() - 1];
         last.draw([0.5, b])
     }

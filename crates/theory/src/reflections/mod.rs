@@ -3,8 +3,8 @@
 //! The inputs are a [`ReflectionSystem`] and a [`Plane`](crate::rays::Plane) beyond some of its
 //! surfaces. The system has a light, masks and obstacles anywhere, and the surfaces that the
 //! central ray visits. Each surface is a mirror, a refracting surface, a lens, a diffuse rectangle
-//! or a surface with a BRDF. The [`Observed`](crate::Observed) of both is a
-//! [`Model`](crate::Model): it sums paths from the light over scrambled nets. A path leaves the
+//! or a surface with a BRDF. Together they are an [`Observed`](crate::Observed), a
+//! [`Model`](crate::Model) that sums paths from the light over scrambled nets. A path leaves the
 //! light, is redirected by each specular surface, and leaves each scattering surface in a sampled
 //! direction (docs/theory.md, section 10b):
 //!

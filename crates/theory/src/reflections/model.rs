@@ -15,11 +15,11 @@ impl ReflectionSystem {
         &self.surfaces[..self.visited]
     }
 
-    /// Returns the system with a light and lobes `factor` times as wide. `None` if a surface
-    /// reflects diffusely, since its lobe has no width.
+    /// Returns the system with a light and lobes `factor` times as wide. Returns `None` if a
+    /// surface reflects diffusely, since its lobe has no width.
     ///
-    /// With narrower windows and higher frequencies by the same factor, the error of first-order
-    /// maps falls with the factor.
+    /// If windows become narrower and frequencies higher by the same factor, the error of
+    /// first-order maps falls with the factor.
     #[must_use]
     pub fn shrunk(&self, factor: f64) -> Option<Self> {
         let mut system = self.clone();
@@ -137,7 +137,7 @@ impl Model for Observed<ReflectionSystem> {
         Some(())
     }
 
-    /// Includes the difference to the first-order chain.
+    /// Includes the difference of the first-order chain from the prediction.
     fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: RayBudget) -> Predicted {
         let last = self.system.last_scatterer();
         let surface = last.map(|last| self.system.surfaces[last].clone());

@@ -25,7 +25,7 @@ pub(super) struct FieldPaths<'a> {
     start: Start<'a>,
     /// Gaussians of directions away from each scatterer that reach the window.
     guides: Vec<Conditional>,
-    /// The aims of the leg from the light, and from each scatterer.
+    /// The coordinates that aim the legs: the leg from the light, and that from each scatterer.
     aims: Vec<DirectionCoordinates>,
 }
 
@@ -79,7 +79,7 @@ struct Going {
     flux: f64,
     /// The weight in the chain: radiance times the volume that the path represents.
     radiance: f64,
-    /// Coordinates in the chain.
+    /// Coordinates of the ray in the chain.
     at: [f64; 4],
     /// The point of the next surface at which the leg is aimed.
     target: Option<DVec3>,
@@ -312,7 +312,7 @@ fn on_surface(
     scatterer: &ScatteringSurface,
 ) -> Option<Gaussian<4>> {
     let width = surface.width(surface.hit);
-    // The variance is that along an axis, for a disc or a rectangle.
+    // This is the variance of positions along an axis, for a rectangle or a disc.
     let variance = match surface.outline {
         Some([x, y]) => (x * x + y * y) / 24.0,
         None => 0.25 * surface.patch.aperture * surface.patch.aperture,

@@ -10,8 +10,8 @@ use etendue_field::Slices;
 /// Returns the windowed spectrum, with the derivatives with respect to given parameters. The result
 /// is bitwise identical on any number of threads.
 ///
-/// The prediction of the chain, and the derivatives, are differences over the same paths. They are
-/// accurate to about a per cent of their values.
+/// The chain's difference from the exact prediction, and the derivatives, are sums of differences
+/// over the same paths. They are accurate to about a per cent of their values.
 pub(crate) fn predict(
     view: &Observed<ReflectionSystem>,
     moved: &[ShiftedModels<Observed<ReflectionSystem>>],

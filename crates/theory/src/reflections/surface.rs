@@ -22,7 +22,7 @@ impl PathSurface {
         distances.filter(inside)
     }
 
-    /// Returns the first of these distances.
+    /// Returns the first distance beyond `start` at which a ray meets the surface.
     pub(super) fn first(&self, ray: &LegRay, start: f64) -> Option<f64> {
         self.distances(ray, start).min_by(f64::total_cmp)
     }
@@ -43,7 +43,7 @@ impl PathSurface {
     }
 
     /// Returns the continuation of a ray that meets a specular surface at a point; `None` if the
-    /// surface scatters, or refracts and the ray is totally reflected.
+    /// surface scatters, or if it refracts and the ray is totally reflected.
     pub(super) fn turned(&self, ray: &LegRay, point: DVec3) -> Option<LegRay> {
         let Interaction::Specular(event) = self.interaction else {
             return None;
@@ -64,7 +64,7 @@ impl PathSurface {
         }
     }
 
-    /// Returns a sum over the BRDFs at a point of a scattering surface, with their weights.
+    /// Returns the weighted sum of `of` over the BRDFs at a point of a scattering surface.
     fn sum(&self, point: DVec3, of: impl Fn(&Brdf) -> f64) -> f64 {
         match &self.interaction {
             Interaction::Specular(_) => 0.0,

@@ -59,8 +59,8 @@ fn lamp(side: f64) -> Light {
     }
 }
 
-/// An environment of two lobes off the central ray, or nearly the same as a map; `y` is 1, or −1
-/// for its mirror image.
+/// Returns an environment of two lobes off the central ray, or a map of nearly the same light; `y`
+/// is 1, or −1 for the mirror image.
 fn sky(as_map: bool, y: f64) -> Light {
     let lobe = |from: DVec3, width, radiance| SphericalGaussian {
         from: from.normalize(),
@@ -175,7 +175,7 @@ fn one_surface_is_that_of_scattering() {
             predicted(&scattering, &plane, &window),
             predicted(&reflections, &plane, &window),
         ];
-        // Errors of 2·10⁶ paths; a sky has a narrow lobe.
+        // These are errors of 2·10⁶ paths; that of a sky is larger because it has a narrow lobe.
         let most = if is_sky { 0.04 } else { 0.02 };
         assert!(other.error.unwrap() < most, "{lobe:?} {:?}", other.error);
         let off = apart(&one, &other);
@@ -234,8 +234,8 @@ fn flat_mirrors_unfold() {
     assert!(off < CLOSE, "behind: {off}");
 }
 
-/// The radiance of a floor lit by a diffuse wall that a projector lights, against a sum over the
-/// wall.
+/// Compares the radiance of a floor, lit by a diffuse wall in the light of a projector, with a sum
+/// over the wall.
 #[test]
 fn two_diffuse_surfaces_are_a_sum_over_the_first() {
     let (x, z) = (DVec3::X, DVec3::Z);
@@ -288,8 +288,8 @@ fn two_diffuse_surfaces_are_a_sum_over_the_first() {
 }
 
 /// In a corner the next surface may be arbitrarily near. The paths toward the next surface have
-/// bounded weights. So the error of the sum falls as fast as that of other sums, and is as large as
-/// it states.
+/// bounded weights. So the error of the sum falls as fast as that of other sums, and the stated
+/// error is correct.
 #[test]
 fn a_corner_has_no_heavy_paths() {
     let (x, z) = (DVec3::X, DVec3::Z);

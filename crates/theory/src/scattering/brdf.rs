@@ -112,7 +112,7 @@ fn half_way(normal: DVec3, from: DVec3, to: DVec3) -> [f64; 2] {
     [(1.0 - cos * cos).max(0.0) / (cos * cos), half.dot(from)]
 }
 
-/// With the density of slopes, P(tan² tilt) = D cos⁴: D G F / (4 cos cos).
+/// Returns D G F / (4 cos θi cos θo), with D from the density of slopes, P(tan² tilt) = D cos⁴.
 fn microfacets(
     brdf: &Brdf,
     slopes: f64,
@@ -170,8 +170,8 @@ mod tests {
         assert!((inside - 1.0).abs() < 1e-14); // rounding
     }
 
-    /// This is ∫ D cos dω = 1, through the lobe at normal incidence, where f = D G₁/(4 cos): the
-    /// weak white furnace without shadowing.
+    /// Tests ∫ D cos dω = 1 by the lobe at normal incidence, where f = D G₁/(4 cos): the weak
+    /// white furnace test without shadowing.
     #[test]
     fn lobes_hold_what_they_say() {
         let normal = DVec3::Z;

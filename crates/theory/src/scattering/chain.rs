@@ -30,7 +30,7 @@ pub struct ScatteringChain {
     pub curvature: Matrix<2>,
     /// Distance of the surface from the light, metres.
     pub distance: f64,
-    /// (T, B, N) at the central hit.
+    /// The axes (T, B, N) at the central hit.
     pub frame: Frame,
     /// The steps in words, in the order light meets them.
     pub steps: Vec<String>,
@@ -39,8 +39,9 @@ pub struct ScatteringChain {
 /// Returns the chain of a system up to a plane on its surface or beyond; `None` if the central ray
 /// does not arrive there.
 ///
-/// Its maps are the derivatives of the exact rays. Without twist they are the corrected maps of
-/// Durand et al. 2005, Eqs. 9–11 and 19 (docs/theory.md, section 7), as the tests verify.
+/// Its maps are the derivatives of the exact rays. Apart from turns of the axes, they are the
+/// corrected maps of Durand et al. 2005, Eqs. 9–11 and 19 (docs/theory.md, section 7), as the
+/// tests verify.
 #[must_use]
 pub fn chain(view: &Observed<ScatteringSystem>) -> Option<ScatteringChain> {
     let Observed { system, plane } = view;

@@ -133,8 +133,8 @@ impl Mirrored {
         let block = |map: &AffineMap<4>, row: usize, column: usize| -> Matrix<2> {
             crate::geometry::from_fn(|i, j| map.matrix[row + i][column + j])
         };
-        // These are the coordinates in which rays of the light's central point, or of the axis of a
-        // beam, vary.
+        // This is the first of two coordinates that vary among rays of the light's central point
+        // or, for a beam, among rays along its axis.
         let free = match system.light {
             Light::Environment { .. } => return None,
             Light::Beam { .. } => 0,
@@ -191,7 +191,7 @@ impl Mirrored {
 pub(super) struct Lights<'a> {
     system: &'a ScatteringSystem,
     sky: Option<Arc<SkyDensity<'a>>>,
-    /// Whether half of the parts are sampled by the lobe.
+    /// Whether half of the sampled parts of the light follow the lobe.
     by_lobe: bool,
     /// The number of cells along each side of the square; one sample is drawn in each cell.
     side: usize,
@@ -242,7 +242,7 @@ impl<'a> Lights<'a> {
     }
 
     /// Returns the sampled parts of the light for a point of the surface: one part, or one in each
-    /// quarter of the unit square. Each part's density is divided by its share of the mean.
+    /// quarter of the unit square. Each part's density is divided by the part's share of the mean.
     pub(super) fn each<'b>(
         &'b self,
         leaving: &'b Leaving,
@@ -388,8 +388,8 @@ impl LobeDensity {
     }
 }
 
-/// Returns the width of the narrowest lobe of a surface. Light that wider lobes scatter beyond it
-/// is sampled by the window or the light.
+/// Returns the width of the narrowest lobe of a surface. Light that wider lobes scatter beyond
+/// this width is sampled by the window or the light.
 fn narrowest_of(system: &ScatteringSystem) -> Option<f64> {
     narrowest(system.reflectance.terms.iter().map(|term| &term.brdf))
 }
@@ -416,7 +416,7 @@ pub(crate) fn bell_density(width: f64, [p, q]: [f64; 2]) -> f64 {
     1.0 / (PI * squared * (1.0 + (p * p + q * q) / squared).powi(2))
 }
 
-/// Returns the inverse and the determinant.
+/// Returns the inverse and the determinant; `None` for a matrix that is nearly singular.
 fn inverted([[a, b], [c, d]]: &Matrix<2>) -> Option<(Matrix<2>, f64)> {
     let determinant = a * d - b * c;
     let scale = (a * a + b * b + c * c + d * d) * 1e-9;

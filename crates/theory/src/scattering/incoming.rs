@@ -10,10 +10,10 @@ use glam::DVec3;
 pub(super) enum LightPart {
     /// All of the light, if a point of the surface sees it from one direction alone.
     Whole,
-    /// A point of an area light. Its densities are per square metre.
+    /// A point of an area light. Densities of such points are per square metre.
     Point([f64; 2]),
-    /// A direction of an environment, as the slopes of its rays, and the radiance from there. Its
-    /// densities are per steradian.
+    /// A direction of an environment, as the slopes of its rays, and the radiance from there.
+    /// Densities of such directions are per steradian.
     Sky {
         /// Forward slopes.
         slopes: [f64; 2],

@@ -91,9 +91,10 @@ impl<'a> Linear<'a> {
     }
 }
 
-/// Returns a BRDF as at the central ray, which arrives at the angle `incidence`, for light from and
-/// to a longitude and a latitude. It is a function of the angles from the mirror direction. Factors
-/// of the angles of incidence and departure are still functions of those angles.
+/// Returns the BRDF that the chain uses, for light from and to a longitude and a latitude. It is
+/// that at the central ray, which arrives at the angle `incidence`, as a function of the angles
+/// from the mirror direction. Factors of the angles of incidence and departure are still functions
+/// of those angles.
 pub(crate) fn kernel(
     brdf: &Brdf,
     incidence: f64,

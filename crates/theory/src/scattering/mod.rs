@@ -1,11 +1,11 @@
 //! Windowed spectra behind a surface that reflects by a BRDF (docs/theory.md, section 10).
 //!
 //! The inputs are a [`ScatteringSystem`] and a [`Plane`](crate::rays::Plane). The system has a
-//! light, masks across its path, obstacles, and a curved surface with a BRDF that may vary over it.
-//! The plane is on the surface and records light that leaves it, or is across the path of that
-//! light. The [`Observed`](crate::Observed) of both is a [`Model`](crate::Model): it sums rays of
-//! the plane over scrambled nets, and for each ray a part of the light that shines on its starting
-//! point,
+//! light, masks across its path, obstacles, and a curved surface with a BRDF that may vary over
+//! it. The plane is on the surface and records light that leaves it, or is across the path of that
+//! light. Together they are an [`Observed`](crate::Observed), a [`Model`](crate::Model) that sums
+//! rays of the plane over scrambled nets, and for each ray a part of the light that shines on its
+//! starting point,
 //!
 //! L(p, ωo) = ∫ L(p, ωi) f(p, ωi, ωo) cos θi dωi.
 //!

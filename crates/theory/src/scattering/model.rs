@@ -72,8 +72,8 @@ impl Model for Observed<ScatteringSystem> {
         Some(())
     }
 
-    /// Includes the difference to the first-order chain. All light is proportional to the albedo of
-    /// a BRDF if no other BRDF is added.
+    /// Includes the difference of the first-order chain from the prediction. All light is
+    /// proportional to the albedo of a BRDF if no other BRDF is added.
     fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: RayBudget) -> Predicted {
         let only = self.system.reflectance.only().map(|brdf| brdf.albedo);
         let factor = only.filter(|albedo| *albedo > 0.0);

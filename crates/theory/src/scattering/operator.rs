@@ -10,10 +10,10 @@ use std::f64::consts::TAU;
 /// is convolved over (Ωx, Ωy) alone with the transform of the BRDF's weight (Durand et al. 2005,
 /// section 4.5, the "semi-convolution" in 4D).
 ///
-/// Holds to first order, like the chain; it includes all angles, and any window over positions is
-/// in `before`. `axes` are X and Y of the surface's patch in the coordinates (x, y). `None` if a
-/// lobe is not Phong's or has a factor of an angle of its own, or if a weight or a texture is not a
-/// cosine.
+/// The result holds to first order, like the chain; it includes all angles, and any window over
+/// positions is in `before`. `axes` are X and Y of the surface's patch in the coordinates (x, y).
+/// Returns `None` if a lobe is not Phong's or has a factor of an angle of its own, or if a weight
+/// or a texture is not a cosine.
 #[must_use]
 pub fn semi_convolution(
     reflectance: &Reflectance,

@@ -20,11 +20,11 @@ use glam::DVec3;
 /// starting point are sampled (docs/theory.md (40)). `chain` is that of [`chain`](super::chain());
 /// it guides the sampling. The result is bitwise identical on any number of threads.
 ///
-/// The prediction of the chain, and the derivatives, are differences of the radiance of the same
-/// rays. They are accurate to about a per cent of their values. Parts of the light move with the
-/// light, so the edges of the light cause no edges in a difference. Shadows do not move with masks.
-/// Points that are lit on only one side of a difference add noise, which decreases with the
-/// distance between the sides.
+/// The chain's difference from the exact prediction, and the derivatives, are sums of differences
+/// in radiance of the same rays. They are accurate to about a per cent of their values. Parts of
+/// the light move with the light, so the edges of the light cause no edges in a difference. They
+/// do not move with the shadows of masks: points that are lit on only one side of a difference add
+/// noise, which is lower for a larger step.
 pub(crate) fn predict(
     view: &Observed<ScatteringSystem>,
     chain: Option<&ScatteringChain>,
@@ -72,7 +72,8 @@ fn fastest(
     })
 }
 
-/// Returns the number of nodes that take as long as a full budget takes with few lobes of light.
+/// Returns the number of nodes that take as long as the whole budget would take in an environment
+/// of few lobes.
 fn affordable(system: &ScatteringSystem, budget: RayBudget) -> RayBudget {
     RayBudget {
         nodes: budget.nodes / cost(system),
@@ -92,7 +93,7 @@ pub fn beside(
     predict(view, Some(chain), &[], over, budget)
 }
 
-/// Returns the time of a ray relative to one with few lobes of light.
+/// Returns the time that a ray takes, relative to a ray in an environment of few lobes.
 fn cost(system: &ScatteringSystem) -> f64 {
     const FEW_LOBES: f64 = 16.0;
     match &system.light {

@@ -12,8 +12,8 @@ pub const COSINE_CUTOFF: f64 = 0.376;
 /// neglected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Criterion {
-    /// Curvature k, in 1/m, convex positive. The sign matters: a concave surface first reverses the
-    /// effect of travel.
+    /// Curvature k, in 1/m, convex positive. The sign matters: behind a concave surface, the
+    /// bandwidth first falls with distance.
     pub curvature: f64,
     /// Angle of incidence θ₀ of the light, radians from the normal.
     pub incidence: f64,
@@ -45,7 +45,7 @@ impl Criterion {
     }
 
     /// The bandwidth of an edge before a uniform environment: Ω_ρ |1 + d (cos θ₀/d' + 2k)/cos θ₁|.
-    /// Eq. 21 at any distance and angle.
+    /// This is Eq. 21 at any distance and angle.
     #[must_use]
     pub fn blocker(&self) -> f64 {
         self.lobe_cutoff * (self.doubled_shear() + self.edge()).abs()
@@ -87,7 +87,7 @@ impl Criterion {
         self.distance / libm::cos(self.outgoing) * sum * self.lobe_cutoff
     }
 
-    /// Returns 1 + 2kd/cos θ₁: both shears of the surface, then travel.
+    /// Returns 1 + 2kd/cos θ₁, the effect of both shears of the surface and of travel.
     fn doubled_shear(&self) -> f64 {
         1.0 + 2.0 * self.curvature * self.distance / libm::cos(self.outgoing)
     }
@@ -109,8 +109,9 @@ mod tests {
     use super::*;
 
     /// Compares the samples per metre of the surface by Eq. 21, divided by Ω_ρ, with the error per
-    /// metre of irradiance caching, Δ/R + √(1 − n·n₀) (Ward et al. 1988), on a sphere. Both contain
-    /// the inverse of the harmonic mean distance, and then the curvature: 2k here and k/√2 there.
+    /// metre of irradiance caching, Δ/R + √(1 − n·n₀) (Ward et al. 1988), on a sphere. Both add a
+    /// multiple of the curvature to the inverse harmonic mean distance: 2k in Eq. 21 and k/√2 in
+    /// irradiance caching.
     #[test]
     fn eq_21_spaces_samples_as_irradiance_caching_does() {
         let step: f64 = 1e-3;

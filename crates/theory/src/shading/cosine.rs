@@ -8,10 +8,10 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// The transform of the clamped cosine, cos θ where |θ| < π/2 and 0 elsewhere: 2 cos(π²Ω)/(1 −
 /// (2πΩ)²), with Ω in cycles per radian (Durand et al. 2005, Eq. 13).
 ///
-/// Computed as π/2 [sinc((1 − w)/2) + sinc((1 + w)/2)], w = 2πΩ, which does not cancel where the
-/// quotient is 0/0: cos⁺(1/2π) = π/2. The transform is 2 at zero and falls as 1/Ω², because the
-/// cosine has a corner at π/2. 99 % of its energy lies below 0.376. The coefficients of a Fourier
-/// series have another scale; see [`cosine_series`].
+/// It is computed as π/2 [sinc((1 − w)/2) + sinc((1 + w)/2)], w = 2πΩ, which does not cancel where
+/// the quotient is 0/0: cos⁺(1/2π) = π/2. The transform is 2 at zero and falls as 1/Ω², because
+/// the cosine has a corner at π/2. 99 % of its energy lies below 0.376. The coefficients of a
+/// Fourier series have another scale; see [`cosine_series`].
 #[must_use]
 pub fn cosine_hat(omega: f64) -> f64 {
     let w = TAU * omega;
@@ -21,8 +21,8 @@ pub fn cosine_hat(omega: f64) -> f64 {
 /// The coefficient of e^(inθ) in the Fourier series of the clamped cosine on the full circle:
 /// [`cosine_hat`](n/2π)/2π.
 ///
-/// Durand et al. 2005 print only the transform (Eq. 13). The coefficients are its values at n/2π,
-/// divided by 2π.
+/// Durand et al. 2005 print only the transform (Eq. 13). The coefficients are the transform's
+/// values at n/2π, divided by 2π.
 #[must_use]
 pub fn cosine_series(n: i32) -> f64 {
     cosine_hat(f64::from(n) / TAU) / TAU
@@ -68,13 +68,13 @@ mod tests {
                 let ends = [0.0, 0.2, 0.5, 1.0, 1.4, 1.5, FRAC_PI_2];
                 let plain = even_transform(&ends, omega, |t| libm::pow(libm::cos(t), n));
                 let got = cosine_power_hat(n, omega);
-                // The rounding error of ln Γ; 1e-8 because Gauss rules converge slowly at the end
-                // of cos^2.5.
+                // The limit is the rounding error of ln Γ, or 1e-8 for cos^2.5, at whose end Gauss
+                // rules converge slowly.
                 let close = if n % 1.0 > 0.0 { 1e-8 } else { 1e-13 };
                 assert!((got - plain).abs() < close, "{n} {omega}: {got} {plain}");
             }
             let [one, two] = [1.0, 2.0].map(|n| cosine_power_hat(n, omega));
-            // Three times the rounding error of ln Γ up to 25.
+            // The limit is three times the rounding error of ln Γ up to 25.
             assert!((cosine_hat(omega) - one).abs() < 1e-13);
             assert!((cosine_squared_hat(omega) - two).abs() < 1e-13); // likewise
         }
@@ -87,7 +87,8 @@ mod tests {
             let sum = wave(0) + 2.0 * (1..4000).map(wave).sum::<f64>();
             // The tail of 1/n² beyond 4000 is below 2/π/4000.
             assert!((sum - theta.cos().max(0.0)).abs() < 2e-4, "{theta}");
-            // The transform itself, used as a coefficient, is 2π too large, which the test detects.
+            // The transform itself, used as a coefficient, is 2π times too large, which the test
+            // detects.
             assert!((TAU * sum - theta.cos().max(0.0)).abs() > 2e-4 || sum < 1e-4);
         }
     }

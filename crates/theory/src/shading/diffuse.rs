@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 /// Transform of g(v) = (1 + v²)^(−3/2), the cosine times dθ/dv in 2D: ĝ(Ω) = 4π|Ω| K₁(2π|Ω|), 2 at
-/// zero (Durand et al. 2005, section 3.3). Ω in cycles per unit slope.
+/// zero (Durand et al. 2005, section 3.3). Ω is in cycles per unit slope.
 #[must_use]
 pub fn g_hat(omega: f64) -> f64 {
     2.0 * z_k1(TAU * omega.abs())
@@ -49,7 +49,8 @@ mod tests {
             2e-9, 1e-4, 0.03, 0.4, 1.0, 2.7, 7.8, 9.0, 31.0, 300.0, 600.0,
         ] {
             let k1 = complex_bessel::besselk(1.0, z.into()).expect("in range").re;
-            // The rounding error of z cosh t, which is an absolute error in the exponent.
+            // The limit is the rounding error of z cosh t, which is an absolute error in the
+            // exponent.
             let rounding = 4e-16 * (2.0 + z);
             assert!(
                 (z_k1(z) / (z * k1) - 1.0).abs() < rounding,

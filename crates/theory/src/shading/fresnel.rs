@@ -24,9 +24,9 @@ pub enum FresnelFactor {
     },
     /// A metal, with the complex index n + ik.
     Conductor {
-        /// n, relative to the index of the medium before.
+        /// Real part n of the index, relative to the index of the medium before the interface.
         index: f64,
-        /// k, relative to the same index.
+        /// Imaginary part k of the index, relative to the same index.
         extinction: f64,
     },
     /// Schlick 1994, Eq. 24: F₀ + (1 − F₀)(1 − cos θ)⁵.

@@ -93,10 +93,10 @@ impl PlanarLobe {
     /// Returns the frequency below which a share of the energy ∫ |ρ̂'|² dΩ lies, in cycles per
     /// radian; `fraction` in (0, 1).
     ///
-    /// Gaussian: 0.2899/σ for 99 %, 0.2206/σ for 95 %. Durand et al. 2005, section 6.2, call this
-    /// Ω_ρ and choose it by hand. The value is computed by summation to 10⁻⁹. If a lobe has a jump,
-    /// as GGX has at the end, the last part in 10⁶ may lie beyond the range searched, and the
-    /// result is NaN.
+    /// For a Gaussian it is 0.2899/σ for 99 % and 0.2206/σ for 95 %. Durand et al. 2005, section
+    /// 6.2, call this Ω_ρ and choose it by hand. The value is computed by summation to 10⁻⁹. If a
+    /// lobe has a jump, as GGX has at the end, the last part in 10⁶ may lie beyond the range
+    /// searched, and the result is NaN.
     #[must_use]
     pub fn cutoff(&self, fraction: f64) -> f64 {
         const NODES: usize = 16;
@@ -197,7 +197,7 @@ mod tests {
                         lobe.value(at) * libm::cos(2.0 * PI * omega * at) * step
                     })
                     .sum();
-                // The corner of cos δ causes an error of step²/6; 3e-8.
+                // The corner of cos δ causes an error of step²/6, which is 3e-8.
                 let close = if lobe == LOBES[0] { 3e-8 } else { 1e-12 };
                 assert!((sum - lobe.spectrum(omega)).abs() < close, "{lobe:?}");
             }

@@ -30,8 +30,8 @@ pub(super) fn even_transform(ends: &[f64], omega: f64, f: impl Fn(f64) -> f64) -
     2.0 * ends.windows(2).map(panel).sum::<f64>()
 }
 
-/// Returns the ends of panels from 0 to `end`. The first is `first` long, and each next one is as
-/// long as all panels before it.
+/// Returns the ends of panels from 0 to `end`. The first panel is `first` long, and each next one
+/// is as long as all panels before it.
 pub(super) fn doubling(first: f64, end: f64) -> Vec<f64> {
     let mut ends = vec![0.0];
     let mut at = first;

@@ -6,9 +6,9 @@ use std::f64::consts::TAU;
 
 /// Frequencies n·`spacing` up to `reach` on both sides, over which spectra are summed.
 ///
-/// The sum is exact if light and factor are bounded. Its error has two parts: the product of the
-/// factor with copies of the light displaced by 1/`spacing` along the axis (Poisson's formula), and
-/// the light's content beyond `reach`.
+/// The error of the sum has two parts. One is the product of the factor with copies of the light
+/// displaced by 1/`spacing` along the axis (Poisson's formula); it vanishes for a fine spacing if
+/// light and factor are bounded. The other is the light's content beyond `reach`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lattice {
     /// Distance between two frequencies, in cycles per unit of the axis.

@@ -46,8 +46,8 @@ impl ReflectionStep {
 /// A factor of a local direction, given by its transform.
 #[derive(Clone, Copy)]
 pub enum Factor<'a> {
-    /// The constant 1. Without a [`PlanarLobe`] this is an ideal mirror, whose BRDF δ/cos θ_i'
-    /// cancels the cosine. Light is then not cut off at the horizon.
+    /// The constant 1. Without a [`PlanarLobe`] the surface is then an ideal mirror, whose BRDF
+    /// δ/cos θ_i' cancels the cosine. Light is then not cut off at the horizon.
     One,
     /// The clamped cosine cos⁺.
     Cosine,
@@ -100,13 +100,13 @@ use angular_product as product;
 /// One separable term of a BRDF, w(s) f(θ_i') ρ'(θ_o' − θ_r') h(θ_o').
 #[derive(Clone, Copy, Debug)]
 pub struct SeparableTerm<'a> {
-    /// f(θ_i') including the cosine.
+    /// The factor f(θ_i'), including the cosine.
     pub before: Factor<'a>,
-    /// ρ'; `None` for a Dirac.
+    /// The lobe ρ'; `None` for a Dirac.
     pub lobe: Option<PlanarLobe>,
     /// h(θ_o').
     pub after: Factor<'a>,
-    /// w, the weight at each position, as a sum of waves; `None` for 1.
+    /// The weight w at each position, as a sum of waves; `None` for 1.
     pub weight: Option<&'a [TextureWave]>,
 }
 
@@ -117,12 +117,12 @@ pub struct PlanarReflection<'a> {
     pub incidence: f64,
     /// θ₁, the direction the central ray leaves in; −θ₀ for a mirror.
     pub outgoing: f64,
-    /// k, in 1/m, convex positive.
+    /// Curvature k, in 1/m, convex positive.
     pub curvature: f64,
     /// The terms of the BRDF.
     pub terms: Vec<SeparableTerm<'a>>,
-    /// Frequencies along Ωθ over which products are summed. Its reach covers the content of the
-    /// light in the frames of the local normals.
+    /// Frequencies along Ωθ over which products are summed. The reach of these frequencies covers
+    /// the content of the light in the frames of the local normals.
     pub lattice: Lattice,
 }
 
@@ -131,12 +131,12 @@ impl PlanarReflection<'_> {
     /// frame.
     ///
     /// It holds to first order in the size of the neighbourhood, like the [maps](crate::geometry);
-    /// cosine, lobe and factors are exact. Between the cosine and the BRDF, a sum of terms is the
-    /// sum of their differential irradiances.
+    /// cosine, lobe and factors are exact. At steps between the cosine and the BRDF, the spectrum
+    /// for several terms is the sum of their differential irradiances.
     ///
     /// L_o(Ω) = ρ̂'(Ωθ) ∫ L_i(Ωx + k Ωθ − k q, q) f̂(−Ωθ − q) dq after step 6 for one term without
     /// h (docs/theory.md (36)). The sign of −Ωθ matters for an asymmetric f. Table 1 of Durand et
-    /// al. 2005 drops it and the hat of ρ̂', and their Eqs. 15 and 17 lack primes.
+    /// al. 2005 drops this sign and the hat of ρ̂', and their Eqs. 15 and 17 lack primes.
     #[must_use]
     pub fn spectrum(
         &self,

@@ -8,7 +8,7 @@ use std::f64::consts::FRAC_PI_2;
 /// in cycles per radian. This is the transform of the factor f(θi) or h(θo) of a separable BRDF
 /// (Durand et al. 2005, section 4.3), with the cosine as g if it applies. Real and even.
 ///
-/// Computed by Gauss rules between the values of the table, to 10⁻¹² for a smooth g.
+/// It is computed by Gauss rules between the values of the table, to 10⁻¹² for a smooth g.
 #[must_use]
 pub fn table_hat(table: &AngleTable, g: impl Fn(f64) -> f64, omega: f64) -> f64 {
     let steps = (table.values.len() - 1) as f64;

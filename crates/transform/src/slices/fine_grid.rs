@@ -19,7 +19,7 @@ pub(crate) struct FineTransform {
     grid: SliceGrid,
     along_row: Arc<dyn RealToComplex<f64>>,
     along_column: Arc<dyn Fft<f64>>,
-    /// 1/kernel at ρ ≥ 0 and at ν ≥ 0.
+    /// The inverse of the kernel's transform, at ρ ≥ 0 and at ν ≥ 0.
     correction: [Vec<f64>; 2],
 }
 

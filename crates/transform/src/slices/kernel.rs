@@ -13,9 +13,9 @@ const HALF: usize = WIDTH / 2;
 /// Cells of a period for each frequency step from zero to the largest: an upsampling of 2.5.
 pub(crate) const UPSAMPLING: usize = 5;
 
-/// β of the kernel: the best of 2.30, 2.35, … per cell of width at this upsampling. The error along
-/// each axis is at most 0.8·10⁻⁷ of the amplitude of a point; at an upsampling of 2 it would be
-/// 4·10⁻⁷.
+/// The parameter β of the kernel: the best of 2.30, 2.35, … per cell of width at this upsampling.
+/// The error along each axis is at most 0.8·10⁻⁷ of the amplitude of a point; at an upsampling of
+/// 2 it would be 4·10⁻⁷.
 const BETA: f64 = 2.35 * WIDTH as f64;
 
 /// Number of coefficients of each parity: the taps are polynomials of degree 2 · 4 − 1 = 7.
@@ -99,7 +99,7 @@ impl Kernel {
         for (x, weight) in gauss_legendre(16) {
             let (f, weight) = (0.5 * (1.0 + x), 0.5 * weight);
             for tap in 0..HALF {
-                // Taps 4 to 7 mirror taps 3 to 0: twice the cosine.
+                // Taps 4 to 7 mirror taps 3 to 0, which gives twice the cosine.
                 let phase = TAU * xi * (tap as f64 - 3.0 - f);
                 sum += 2.0 * weight * self.tap(tap, f) * libm::cos(phase);
             }
@@ -108,7 +108,7 @@ impl Kernel {
     }
 }
 
-/// Transposes eight rows of eight: three perfect shuffles, each of which moves the last of six
+/// Transposes eight rows of eight by three perfect shuffles, each of which moves the last of six
 /// index bits to the front.
 #[inline(always)]
 pub(crate) fn transposed<S: Simd>(mut rows: [f64x8<S>; WIDTH]) -> [f64x8<S>; WIDTH] {

@@ -22,13 +22,13 @@ use std::fmt;
 /// S_φ(ρ, ν) = Σ w e^(−2πi (ρ p + ν q)),  p = x cos φ + y sin φ,  q = u cos φ + v sin φ,
 ///
 /// by a 2D non-uniform fast Fourier transform of type 1 for each azimuth (Barnett, Magland and af
-/// Klinteberg 2019, SIAM J. Sci. Comput. 41(5)): spread each ray over 8 × 8 cells of a grid 2.5
-/// times as fine as the frequencies require, transform, divide by the transform of the spreading
-/// kernel.
+/// Klinteberg 2019, SIAM J. Sci. Comput. 41(5)). It spreads each ray over 8 × 8 cells of a grid
+/// 2.5 times as fine as the frequencies require, transforms the grid, and divides by the transform
+/// of the spreading kernel.
 ///
-/// Error: below 2·10⁻⁷ Σ|w| at every frequency, a bound that a single ray reaches; with many
-/// scattered rays errors average out. The caller applies window and radiance weight: `w` is used as
-/// given.
+/// The error is below 2·10⁻⁷ Σ|w| at every frequency, a bound that a single ray reaches; with many
+/// scattered rays errors average out. The caller applies window and radiance weight: `w` is used
+/// as given.
 ///
 /// The bits of the result depend on the rays, their order, and the kind of processor: the FFTs
 /// (`rustfft`, `realfft`) use the best instructions available. Spreading gives the same bits on all
@@ -56,7 +56,7 @@ impl SliceTransform {
     ///
     /// # Panics
     ///
-    /// If `grid` has no azimuth.
+    /// Panics if `grid` has no azimuth.
     #[must_use]
     pub fn new(grid: &SliceGrid) -> Self {
         Self::at_level(grid, Level::new())
@@ -129,7 +129,7 @@ fn is_smooth(mut n: usize) -> bool {
 
 /// A partial sum of weighted rays, to be turned into slices: see [`SliceTransform`].
 ///
-/// Holds a fine grid for each azimuth; [`finish`](Self::finish) empties it for reuse.
+/// It holds a fine grid for each azimuth; [`finish`](Self::finish) empties it for reuse.
 #[derive(Clone, Debug)]
 pub struct Accumulator<'plan> {
     plan: &'plan SliceTransform,

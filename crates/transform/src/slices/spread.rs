@@ -94,8 +94,8 @@ fn place(group: &mut Group, placement: &Placement, block: &Block, from: usize) {
 /// spacing, e^(−2πi m · spacing · p) has the period 1/spacing in p, so the sum is the same.
 #[inline(always)]
 fn cell(a: f64, b: f64, along: [f64; 2], count: usize) -> (usize, f64) {
-    /// 2⁵²: adding it to a smaller whole number leaves the number in the low bits; faster than a
-    /// checked cast.
+    /// The number 2⁵². Adding it to a smaller whole number leaves that number in the low bits,
+    /// which is faster than a checked cast.
     const WHOLE: f64 = 4_503_599_627_370_496.0;
     let periods = a * along[0] + b * along[1];
     let cells = (periods - periods.floor()) * count as f64;

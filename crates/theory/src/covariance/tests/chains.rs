@@ -28,10 +28,11 @@ fn lamp() -> Light {
     }
 }
 
-/// S of the light used in these tests.
+/// The variances S of the light in these tests, along x, y, u and v.
 const LAMP: [f64; 4] = [0.01, 0.01, 1.0 / 30.0, 1.0 / 30.0];
 
-/// The opening that an opaque disc leaves, as standard deviations.
+/// Returns the standard deviations of the Gaussian window that replaces an opening of this
+/// half-width.
 fn open(half: f64) -> [f64; 4] {
     let endless = f64::INFINITY;
     let along = half / 3.0_f64.sqrt();
@@ -48,7 +49,7 @@ fn seen() -> Window {
     }
 }
 
-/// C of a field of covariance S behind that window.
+/// Returns C of a field of covariance S after the window [`seen`].
 fn windowed(field: &Matrix<4>) -> Matrix<4> {
     let stds = [0.5, 0.4, 0.3, 0.2].map(|width: f64| width / TAU.sqrt());
     power_spectrum(&gaussian_window(field, stds).unwrap()).unwrap()
@@ -96,7 +97,7 @@ fn patch() -> Patch {
     }
 }
 
-/// The cosine acts as a window of variances ½ and ⅜ over the angles.
+/// Returns a plane across the mirrored central ray, 0.7 m after the surface.
 fn beyond() -> Plane {
     let leg = Frame::IDENTITY.travelled(1.0);
     let normal = patch().frame.d;
@@ -163,7 +164,7 @@ fn behind_a_textured_lobe() {
     let chain = scattering::chain(&view(None)).unwrap();
     let light = [0.15, 0.2].map(|width: f64| width * width / TAU);
     let light = diagonal([0.0, 0.0, light[0], light[1]]);
-    // The cosine is a window of variances ½ and ⅜ over angles.
+    // The cosine acts as a Gaussian window of variances ½ and ⅜ over the two angles.
     let endless = f64::INFINITY;
     let cosine = [endless, endless, 0.5_f64.sqrt(), 0.375_f64.sqrt()];
     let lit = gaussian_window(&chain.onto.covariance(&light), cosine).unwrap();
@@ -199,7 +200,7 @@ fn pictures_of_projectors_and_beams() {
             phase: 0.0,
         }),
     };
-    // Both spectra are unbounded before a lobe, but not after it.
+    // The spectra of a beam and of a projector are unbounded before a lobe, but not after it.
     let blurred = |c: SpectralCovariance| c.convolved(&diagonal([0.01; 4])).matrix().unwrap();
     let near = |light: Light| blurred(chain_of(light, []).spectral_covariance().unwrap());
     let [a, b] = [0.09 / TAU, 0.04 / TAU];

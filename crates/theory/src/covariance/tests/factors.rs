@@ -4,7 +4,7 @@ use crate::covariance::{cosine, grating, lobe, mask, profile, slope_cosine};
 use etendue_field::{Disc, Grating, HalfPlane, Lobe, Mask, Profile, Rectangle, Shape};
 use std::f64::consts::PI;
 
-/// ∫ f'²/(4π² ∫ f²) on (−half, half), by finite differences.
+/// Returns ∫ f'²/(4π² ∫ f²) on (−half, half), by finite differences.
 fn moment(f: impl Fn(f64) -> f64, half: f64) -> f64 {
     let n = 200_000;
     let step = 2.0 * half / f64::from(n);
@@ -32,7 +32,7 @@ fn smooth_windows_have_the_moment_of_their_power() {
         cut: 1.5,
     };
     is(profile(&gaussian), moment(|t| gaussian.value(t), 1.49));
-    // A box has edges, so the Gaussian of its variance replaces it.
+    // A box has edges, so a Gaussian of the same variance replaces it.
     is(profile(&Profile::Box(0.6)), 1.0 / (8.0 * PI * PI * 0.12));
 }
 
@@ -62,8 +62,8 @@ fn lobes_have_the_moment_of_their_power() {
     let phong = lobe(&Lobe::Phong { exponent: 400.0 }, 0.3).unwrap();
     let traced = variance(moment(|t| libm::pow(libm::cos(t), 400.0), 1.0));
     assert!((phong[2][2] / traced - 1.0).abs() < 2.0 / 400.0);
-    // Distributions of normals are given over slopes and integrated by rings; light turns by twice
-    // the tilt.
+    // Distributions of normals are given over slopes and integrated over rings; light turns by
+    // twice the tilt of a normal.
     let of_rings = |f: &dyn Fn(f64) -> f64| {
         let [mut slopes, mut squares] = [0.0; 2];
         let step = 1e-5;
@@ -86,7 +86,7 @@ fn lobes_have_the_moment_of_their_power() {
         ggx[2][2],
         of_rings(&|r| (1.0 + r * r / (4.0 * a * a)).powi(-2)),
     );
-    // Light turns by less out of the plane of incidence.
+    // Out of the plane of incidence, light turns by a smaller angle.
     let oblique = lobe(&Lobe::Beckmann { roughness: a }, 1.0).unwrap();
     is(oblique[3][3] / oblique[2][2], libm::cos(1.0_f64).powi(2));
     assert!(lobe(&Lobe::Lambertian, 0.0).is_none());

@@ -14,8 +14,8 @@ fn apart(a: &Matrix<4>, b: &Matrix<4>) -> f64 {
     off.fold(0.0, f64::max)
 }
 
-/// The map onto a curved surface, off it by mirror reflection, and onward. It is twisted, so no
-/// entry is zero.
+/// Returns the map of a turn of the axes, a mirror reflection by a curved surface, and travel.
+/// Because of the turn, no entry of the matrix is zero.
 fn bent() -> AffineMap<4> {
     let shape = [[0.7, 0.2], [0.2, -0.4]];
     AffineMap::<4>::rotation(0.4)

@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 const LIGHT: [f64; 4] = [0.02, 0.03, 0.05, 0.04];
 const WINDOW: [f64; 4] = [0.2, 0.3, 0.25, 0.15];
 
-/// The covariance of a Gaussian window of these standard deviations.
+/// Returns the covariance of a Gaussian window of these standard deviations.
 fn window() -> Matrix<4> {
     diagonal(WINDOW.map(|s: f64| 1.0 / (8.0 * PI * PI * s * s)))
 }
@@ -18,7 +18,7 @@ fn lobe() -> Matrix<4> {
     diagonal([0.0, 0.0, 0.01, 0.006])
 }
 
-/// C of a Gaussian light field that is computed as a field: S alone is mapped, windowed and
+/// Returns C of a Gaussian light field, computed from its S, which is mapped, windowed and
 /// blurred.
 fn followed() -> Matrix<4> {
     let travelled = AffineMap::<4>::travel(1.3).covariance(&diagonal(LIGHT));
@@ -50,7 +50,7 @@ fn a_gaussian_field_has_what_is_traced() {
 }
 
 /// Tests the definition, ∫ ∇l ∇lᵀ/(4π² ∫ l²), by finite differences of the field itself in (x, u).
-/// Its rays are followed back through travel and windows, without matrices.
+/// The field is evaluated by following a ray back through travel and windows, without matrices.
 #[test]
 fn the_definition_gives_what_is_traced() {
     let [d, e] = [0.7, 0.4];
@@ -96,7 +96,7 @@ fn the_definition_gives_what_is_traced() {
     for (got, expected) in [(c[0][0], xx), (c[0][2], xu), (c[2][2], uu)] {
         assert!((got / expected - 1.0).abs() < 3e-6, "{got} {expected}");
     }
-    // A shear slope of −d: content at ρ is at ν = −d ρ.
+    // Travel by d moves content at ρ to ν = −d ρ, so their covariance is negative.
     assert!(c[0][2] < 0.0);
 }
 
@@ -140,12 +140,12 @@ fn diffuse_reflection_is_the_limit_of_lobes() {
         .zip(limit.iter().flatten())
         .enumerate()
     {
-        // A lobe of variance 10⁷ leaves 1/(8π² 10⁷) along angles, and the square root of that
-        // elsewhere.
+        // A lobe of variance 10⁷ leaves an error of 1/(8π² 10⁷) along angles, and of its square
+        // root elsewhere.
         assert!((got - near).abs() < 1e-4, "{i}: {got} {near}");
     }
     assert_eq!(diffuse[2..], [[0.0; 4]; 2]);
-    // ∫ l du dv keeps the block of positions of S.
+    // The integral ∫ l du dv keeps the block of S for positions.
     let field = traced().field().unwrap();
     let determinant = field[0][0] * field[1][1] - field[0][1] * field[1][0];
     let expected = field[1][1] / determinant / (8.0 * PI * PI);

@@ -31,7 +31,8 @@ fn spectrum_of_a_mapped_gaussian() {
     let largest = gaussian_spectrum(&after, [0.0; 4]);
     for i in 0..20 {
         let omega = std::array::from_fn(|k| 1.5 * scatter(i, k));
-        // The Gaussian displaced by the offset, with the covariance of the mapped rays.
+        // The expected field is the Gaussian displaced by the offset, with the covariance of the
+        // mapped rays.
         let phase = -TAU * dot(&omega, &map.offset);
         let expected = Complex::from_polar(gaussian_spectrum(&after, omega), phase);
         let got = map.spectrum(omega, &before);

@@ -46,7 +46,7 @@ fn symmetry_and_zero() {
         } else {
             2.0 * libm::sin(0.5 * PI * b) / b
         };
-        // Values at zero and next to it, where the kink behaves as a ln a.
+        // The kernel is tested at zero and next to it, where its kink behaves as a ln a.
         assert!((plane_sphere_kernel(0.0, theta) - expected).abs() < STATED);
         assert!((plane_sphere_kernel(1e-15, theta) - expected).abs() < 1e-11);
     }
@@ -56,7 +56,7 @@ fn symmetry_and_zero() {
 
 #[test]
 fn laguerre_polynomials_at_even_orders() {
-    // U is a polynomial where b/2 = 0, 1, 2, 3, and K vanishes where it is a negative integer.
+    // U is a polynomial where b/2 = 0, 1, 2, 3, and K vanishes where b/2 is a negative integer.
     for v in [0.05, 0.4, 1.7] {
         let a = TAU * v;
         let decay = PI * libm::exp(-a);
@@ -69,8 +69,8 @@ fn laguerre_polynomials_at_even_orders() {
     }
 }
 
-/// Evaluates the definition with its path moved up to a height at which nothing oscillates fast;
-/// the vertical parts at both ends are where tan t = ± i coth.
+/// Evaluates the definition on a path moved up to a height where the integrand oscillates slowly.
+/// On the vertical parts at both ends, tan(±π/2 + it) = i coth t.
 fn by_definition(v: f64, theta: f64) -> f64 {
     let (a, b) = (TAU * v, TAU * theta);
     let height = 0.4;
@@ -97,7 +97,7 @@ fn the_integral_it_stands_for() {
 
 #[test]
 fn spectrum_of_a_gaussian_in_slope_seen_in_angle() {
-    // The transform of exp(−π tan² θ / w²), against its spectrum in slope times the kernel.
+    // Compares the transform of exp(−π tan² θ / w²) with its spectrum in slope times the kernel.
     let w: f64 = 0.8;
     for theta in [0.0, 0.4, 1.3] {
         let direct = integrate(200, [-0.5 * PI, 0.5 * PI], |t| {
@@ -114,7 +114,8 @@ fn spectrum_of_a_gaussian_in_slope_seen_in_angle() {
             })
         };
         let through = side(1.0) + side(-1.0);
-        // 200 nodes on s⁵ ln s, the remainder of the kink: its coefficients fall as n^−12.
+        // The error is that of 200 nodes on s⁵ ln s, the remainder of the kink, whose coefficients
+        // fall as n^−12.
         assert!(
             (through - direct).abs() < 1e-12,
             "{theta}: {}",

@@ -58,7 +58,8 @@ fn thin_lens_between_travels() {
         .then(&AffineMap::travel(b));
     let abcd = [[1.0 - b / f, a + b - a * b / f], [-1.0 / f, 1.0 - a / f]];
     assert!(apart(&system, &AffineMap::linear(abcd)) < ROUNDING);
-    // 1/a + 1/b = 1/f gives an image: independent of direction, magnified by b/a and inverted.
+    // Where 1/a + 1/b = 1/f there is an image: positions do not depend on directions, and are
+    // magnified by b/a and inverted.
     let b = 1.0 / (1.0 / f - 1.0 / a);
     let image = AffineMap::<4>::travel(a)
         .then(&AffineMap::thin_lens(f))
@@ -102,7 +103,7 @@ fn lensmaker() {
     };
     let power = (n - 1.0) * (1.0 / r1 + 1.0 / r2);
     assert!(apart(&lens(0.0), &AffineMap::thin_lens(1.0 / power)) < ROUNDING);
-    // Hecht, Optics, Eq. 6.2, with the second radius negative.
+    // This is Eq. 6.2 of Hecht, Optics, with a negative second radius.
     let thick = power - (n - 1.0).powi(2) * thickness / (n * r1 * r2);
     assert!((lens(thickness).matrix[1][0] + thick).abs() < ROUNDING);
     assert!((power - thick).abs() > 0.005); // thickness is seen
@@ -232,7 +233,8 @@ fn turning_the_axes_turns_what_happens() {
             sin * sin * a + 2.0 * cos * sin * b + cos * cos * d,
         ],
     ];
-    // T = −X before and X after: the axes of the surface turn in the opposite sense.
+    // T is −X before the mirror and X after it, so the axes of the surface turn in the opposite
+    // sense.
     let one = turn.then(&AffineMap::<4>::mirror_reflection(0.0, turned));
     let other = AffineMap::<4>::mirror_reflection(0.0, SHAPE).then(&AffineMap::rotation(-0.4));
     assert!(apart(&one, &other) < ROUNDING);

@@ -25,7 +25,8 @@ pub(super) fn error_and_order<const N: usize>(
     (narrow, libm::log2(wide / narrow))
 }
 
-/// The next term of the error is smaller by a factor e, and changes the order by about as much.
+/// The tolerance of an order: the next term of the error is smaller by a factor e and changes the
+/// order by about e.
 const ORDER: f64 = 0.02;
 
 fn assert_order<const N: usize>(
@@ -98,8 +99,9 @@ fn other_rules_of_refraction_do_not_converge() {
     let in_plane = AffineMap::<2>::refraction(theta0, &GLASS).unwrap();
     let across = AffineMap::<2>::refraction(0.0, &GLASS).unwrap();
     let off = AffineMap::<4>::incidence(theta2).inverse().unwrap();
-    // There are three mistakes: latitudes refracted by the rule for longitudes; no refraction
-    // across the plane of incidence; and the cosine of the incident side on the way back.
+    // Four mistakes are tested: latitudes refracted by the rule for longitudes; no refraction
+    // across the plane of incidence; the cosine of the incident side on the way back; and no
+    // cosines.
     let wrong = [
         (AffineMap::<2>::linear(in_plane.matrix), theta0, theta2),
         (AffineMap::identity(), theta0, theta2),
@@ -123,8 +125,8 @@ fn other_rules_of_refraction_do_not_converge() {
 #[test]
 fn foci_of_a_hollow_sphere() {
     let (radius, theta0) = (2.0, 0.7_f64);
-    // Neighbours of the central ray, parallel to it; the error of the central difference is of
-    // order e².
+    // The rays are neighbours of the central ray, parallel to it; the error of the central
+    // difference is of order e².
     let e = 1e-4;
     let crossing = |axis: usize| {
         let ends = [-e, e].map(|offset| {

@@ -47,7 +47,7 @@ fn jacobians_are_derivatives() {
         // derivatives at 1.1 rad.
         assert!((got - expected).abs() < 1e-8 * expected);
         assert!((ut - jacobian_2d(theta)).abs() < 1e-8 * ut); // the same
-        // cos dω = du dv / (1 + u² + v²)² = cos θ cos² φ dθ dφ.
+        // The cosine times dω is du dv / (1 + u² + v²)² = cos θ cos² φ dθ dφ.
         let [u, v] = slopes(theta, phi);
         let solid = expected / (1.0 + u * u + v * v).powi(2);
         assert!((solid - theta.cos() * phi.cos().powi(2)).abs() < 1e-14); // rounding

@@ -42,7 +42,8 @@ impl<'a> WalkedRay<'a> {
 
 /// Computes the transform by quasi-random rays from the light to the final plane.
 ///
-/// Uses points of the R₄ sequence (Roberts 2018): multiples of the powers of 1/φ, φ⁵ = φ + 1.
+/// Uses points of the R₄ sequence (Roberts 2018): multiples of the powers of 1/φ, where φ⁵ = φ +
+/// 1.
 pub(super) fn brute_force(
     chain: &Chain,
     window: &Window,

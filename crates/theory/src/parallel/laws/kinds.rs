@@ -121,7 +121,8 @@ fn at_power(chain: &Chain, window: &Window, power: f64, k: [f64; 4]) -> Complex 
 fn assert_seen(name: &str, chain: &Chain, fault: impl Fn([f64; 4]) -> Complex) {
     let right = error(chain, |k| at(chain, &hann(), k));
     let wrong = error(chain, fault);
-    // The function is smooth, so the points are more accurate than where masks cut.
+    // The integrand is smooth, so quasi-random points are more accurate here than at the edges of
+    // masks.
     assert!(right < 5e-4, "{name}: {right:e}");
     assert!(wrong > 5e-3, "{name}: {wrong:e}"); // ten times that
 }
@@ -130,7 +131,11 @@ fn assert_seen(name: &str, chain: &Chain, fault: impl Fn([f64; 4]) -> Complex) {
 fn planted_faults_are_seen() {
     let shape = Shape::Rectangle(square([0.0, 0.1], 0.4));
     for (name, chain, power) in [
-        ("a point without its root", bench(POINT, None), 0.0),
+        (
+            "a point without its factor of slope",
+            bench(POINT, None),
+            0.0,
+        ),
         ("no G", with_cosine(bench(light(), None)), 0.0),
         ("g for G", with_cosine(bench(light(), None)), -1.5),
         ("exponent off by 5 %", bench(spot(shape, 20.0), None), -10.5),
@@ -165,7 +170,7 @@ fn discs_and_points_agree_with_closed_forms() {
     let round = chain_of(spot(disc([0.0; 2], radius), 0.0), [(distance, None)]);
     let point = chain_of(Light::Point { intensity: 1.0 }, [(distance, None)]);
     let closed_disc = |k| disc_light(radius, distance, &gaussian, k);
-    // A closed form that is constant in slope and so lacks the root.
+    // A closed form that is constant in slope: it lacks the factor √(1 + u² + v²).
     let closed_point = |[x, y, u, v]: [f64; 4]| {
         let along = |k| point_light(distance, &gaussian, k);
         along([x, u]) * along([y, v])
@@ -187,6 +192,6 @@ fn the_root_of_a_point_is_two_per_cent() {
     let chain = chain_of(POINT, [(2.0, None)]);
     let [with, without] = [0.5, 0.0].map(|power| at_power(&chain, &window, power, [0.0; 4]).re);
     assert!((with / without - 1.02).abs() < 2e-3, "{}", with / without); // to the digits stated
-    // Without the root the result is a Gaussian integral: I/(D²/a² + 1/b²).
+    // Without the factor √(1 + u² + v²) the result is a Gaussian integral: I/(D²/a² + 1/b²).
     assert!((without * 8.0 / 1.3 - 1.0).abs() < 1e-14, "{without}"); // the cut is at 2e-16
 }

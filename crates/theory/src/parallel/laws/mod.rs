@@ -1,4 +1,4 @@
-//! Tests of laws that every prediction obeys, and brute force where there is no law.
+//! Tests of laws that every prediction obeys, and tests against brute force where there is no law.
 
 mod brute_force;
 mod kinds;

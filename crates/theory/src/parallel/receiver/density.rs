@@ -12,12 +12,12 @@ const MAX_NODES: usize = 48;
 /// Nodes on an arc, in addition to those that its length requires, because the direction of the arc
 /// turns.
 const ARC: usize = 10;
-/// Number of halvings of the longest panel with a precomputed number of nodes.
+/// Number of levels of panels with precomputed numbers of nodes; each level halves the panel.
 const LEVELS: usize = 24;
 /// Steps to evaluate a closed form.
 const CLOSED: f64 = 100.0;
-/// The most nodes for which a rectangle is integrated numerically: in the closed form the corners
-/// of so small a rectangle cancel.
+/// The most nodes for which a rectangle is integrated numerically: in the closed form the terms of
+/// so small a rectangle cancel.
 const FEW_NODES: usize = 16;
 
 /// The lobe (1 + u² + v²)^(−p), where u and v are slopes.
@@ -25,7 +25,8 @@ const FEW_NODES: usize = 16;
 enum SlopePower {
     /// p = 0.
     Flat,
-    /// p = 2: the cosine of a Lambertian receiver with du dv, G of docs/theory.md (7).
+    /// p = 2: the factor G of docs/theory.md (7), which is the cosine of a Lambertian receiver
+    /// times dω/(du dv).
     Cosine,
     /// p = n/2.
     Half(i32),
@@ -58,10 +59,10 @@ impl SlopePower {
     }
 }
 
-/// The number of nodes that a length of slopes needs.
+/// The numbers of nodes that intervals of slope need, by their length.
 #[derive(Debug)]
 struct NodeCounts {
-    /// The longest panel; a panel of level k is 2^k times shorter.
+    /// Length of the longest panel; a panel of level k is 2^k times shorter.
     longest: f64,
     levels: [usize; LEVELS],
 }
@@ -215,7 +216,7 @@ impl ReceiverDensity<'_> {
         }
     }
 
-    /// Returns the number of steps for the lobe at a node.
+    /// Returns the number of steps to evaluate the lobe at a node.
     fn step(&self) -> f64 {
         match self.integrator.lobe {
             SlopePower::Flat | SlopePower::Cosine => 3.0,

@@ -37,10 +37,10 @@ pub(super) struct ExitantTable {
 impl Receiver<'_> {
     /// Returns the slices of the spectrum of the reflected light, after its travel, under a window.
     ///
-    /// Uses a midpoint rule of second order over the receiver, whose error
-    /// [`quadrature_error`](Self::quadrature_error) returns; exact in slopes. Rows are computed in
-    /// parallel, each by one thread: the result is the same for any number of threads. Unit: W m⁻²
-    /// sr⁻¹ · m².
+    /// The sum over the receiver is a midpoint rule of second order, whose error
+    /// [`quadrature_error`](Self::quadrature_error) returns; the integral over slopes is exact.
+    /// Rows are computed in parallel, each by one thread: the result is the same for any number of
+    /// threads. Unit: W m⁻² sr⁻¹ · m².
     pub(crate) fn slices(&self, window: &Window, grid: &SliceGrid) -> Slices {
         self.slices_with(self.nodes(window, grid.rho.max()), window, grid)
     }
@@ -51,7 +51,7 @@ impl Receiver<'_> {
     }
 
     /// Returns the spectrum at one frequency (Ωx, Ωy, Ωu, Ωv): a plain sum over at least as many
-    /// nodes.
+    /// nodes as for slices.
     pub(crate) fn at(&self, window: &Window, frequency: [f64; 4]) -> Complex {
         let highest = libm::hypot(frequency[0], frequency[1]);
         let nodes = self.nodes(window, highest).max(OF_PLAIN_SUMS);
@@ -65,8 +65,8 @@ impl Receiver<'_> {
     }
 
     /// Returns the relative L2 error of slices: their change with half as many nodes along each
-    /// axis, divided by 2² − 1, because the error is of second order in the spacing. `None` if the
-    /// slices are zero.
+    /// axis, divided by 2² − 1, because the error is of second order in the spacing. Returns
+    /// `None` if the slices are zero.
     pub(crate) fn quadrature_error(
         &self,
         window: &Window,

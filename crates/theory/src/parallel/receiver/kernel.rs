@@ -72,8 +72,8 @@ impl KernelAxis {
             .sum()
     }
 
-    /// Returns the slopes inside the window from the coordinate t of the receiver; an empty
-    /// interval if there are none.
+    /// Returns the range of slopes with which light from the coordinate t of the receiver is
+    /// inside the window; empty if there are none.
     fn slopes(&self, t: f64) -> [f64; 2] {
         let (h, k) = (self.position.half_width(), self.slope.half_width());
         if self.after <= 0.0 {

@@ -1,7 +1,7 @@
 //! Diffuse reflection by quadrature: the irradiance of a Lambertian receiver, and the light that
 //! leaves it.
 //!
-//! A light, masks in planes across the central ray, and the receiver are parallel. A ray that
+//! The light, the masks and the receiver are in parallel planes across the central ray. A ray that
 //! arrives at (x, y) with slopes (u, v) was at (x − h u, y − h v) a distance h before. So from the
 //! point, every shape upstream is seen as the same shape, but smaller. The irradiance E(x, y) = ∫
 //! L(u, v) (1 + u² + v²)⁻² du dv is a signed sum of integrals over rectangles and discs: the light
@@ -154,7 +154,7 @@ impl<'a> Receiver<'a> {
     /// Returns the irradiance at a point of the receiver, in the frame of the arriving light, W
     /// m⁻².
     ///
-    /// Accurate to 10⁻¹² of the irradiance without blockers.
+    /// The result is accurate to 10⁻¹² of the irradiance without blockers.
     pub(crate) fn irradiance(&self, x: f64, y: f64) -> f64 {
         let brightness = self.light.brightness;
         if let Some(shape) = &self.light.shape {
@@ -187,7 +187,7 @@ impl<'a> Receiver<'a> {
         self.light.brightness * self.received(&bundle, region) / sides.area()
     }
 
-    /// Returns the integral over those slopes of a region at which no blocker stops light.
+    /// Returns the integral over the slopes of a region at which no blocker stops light.
     fn received(&self, bundle: &SlopeProjection, region: ReceiverRegion) -> f64 {
         self.passed(
             bundle,

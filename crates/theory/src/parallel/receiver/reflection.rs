@@ -8,7 +8,7 @@ impl<'a> ChainSegment<'a> {
     /// masks before it.
     ///
     /// # Panics
-    /// If there is more than one factor G.
+    /// Panics if there is more than one factor G.
     pub(crate) fn receiver(&self) -> Option<Receiver<'a>> {
         let reflection = self.reflection?;
         assert!(self.cosines < 2, "a receiver has one cosine");

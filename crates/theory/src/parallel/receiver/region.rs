@@ -128,7 +128,7 @@ impl ReceiverRegion {
         let chords = self.discs.iter().map(|disc| {
             let across = u - disc.center[0];
             let half = (disc.radius * disc.radius - across * across).sqrt();
-            // NaN if the line misses the disc: the comparison below is then false.
+            // The chord is NaN if the line misses the disc; the comparison below is then false.
             [disc.center[1] - half, disc.center[1] + half]
         });
         let mut part = self.sides[1];

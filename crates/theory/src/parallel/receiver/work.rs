@@ -38,7 +38,7 @@ impl Receiver<'_> {
             bytes: 3.0 * 8.0 * places,
             bytes_each: 0.0,
             drivers: format!(
-                "{tables} tables of {nodes} x {nodes} places x {place:.0} steps to compute the light at each place, for shapes and for nodes between fringes"
+                "{tables} tables of {nodes} x {nodes} places x {place:.0} steps to compute the light at each place, for shapes and for nodes that resolve fringes"
             ),
         };
         let cells = (picture.bins * picture.bins) as f64;
@@ -129,7 +129,7 @@ fn sums(axes: &[KernelAxis; 2], nodes: f64, grid: &SliceGrid) -> PredictionWork 
     } else {
         [0.0; 2]
     };
-    // A rule of many nodes is computed again for each row, by recurrences of that length.
+    // A rule of many nodes is computed again for each row, by recurrences over all of its nodes.
     let kernels = rule.map(|n| nodes * n * (2.0 * count + 40.0) + 10.0 * n * n);
     let row = if travels {
         kernels[0] + kernels[1] + 2.0 * SUM * nodes * nodes * count

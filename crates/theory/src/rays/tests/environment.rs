@@ -12,8 +12,8 @@ use std::sync::Arc;
 /// The error allowed for nets of two million rays, at four cycles along all coordinates of a
 /// window.
 const OF_NETS: f64 = 5e-3;
-/// Points of a midpoint rule along each coordinate of a plane: the spectrum falls to 10⁻⁴ within
-/// five cycles.
+/// Number of points of a midpoint rule along each coordinate of a plane; these suffice because the
+/// spectrum falls to 10⁻⁴ within five cycles.
 const NODES: u32 = 30;
 
 const WINDOW: [Profile; 2] = [Profile::Hann(0.3), Profile::Hann(0.7)];
@@ -295,7 +295,7 @@ fn all_ways_to_draw_the_sky_agree() {
     }
     let cases = [
         (&plain, after(&plain, 1.0)),
-        // The plane of the light itself, as rounding errors leave it in a tilted scene.
+        // A plane at the light itself, displaced as by rounding errors in a tilted scene.
         (&plain, after(&plain, -1e-16)),
         (&plain, local),
         (&plain, aside),
@@ -343,7 +343,7 @@ fn curvature_shears_the_sky_onto_a_line() {
     let (window, grid) = (window(WINDOW[0], WINDOW[1]), grid(1, [0.3, 0.7]));
     let plane = on_sphere(0.0, Orientation::LocalNormals, Quantity::Radiance);
     let found = exact(&under(&environment, vec![]), &plane, &window, &grid);
-    // Σ P ρ ν / Σ P ν² is k if all power is on the line; the window widens it along ρ alone.
+    // Σ P ρ ν / Σ P ν² is k if all power is on the line; the window widens the line along ρ alone.
     let full = found.slices.full();
     let (mut cross, mut own) = (0.0, 0.0);
     for (m, rho) in grid.rho.values().into_iter().enumerate() {

@@ -18,8 +18,8 @@ fn nodes(count: usize) -> Vec<RayNode> {
 
 #[test]
 fn plain_summation() {
-    // The number of rays is odd and larger than one block, and there are more powers than between
-    // two recomputations.
+    // The number of rays is odd and larger than one block, and there are more powers than are
+    // computed from one exact power.
     let nodes = nodes(777);
     let axis = |half, spacing| FrequencyAxis { half, spacing };
     let grid = SliceGrid {

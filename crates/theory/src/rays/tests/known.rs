@@ -20,9 +20,10 @@ fn slices_of(grid: &SliceGrid, value: impl Fn([f64; 4]) -> Complex) -> Slices {
     slices
 }
 
-/// Returns the spectrum at distance d of a projector's field, computed by a Gauss rule over slopes.
-/// On x = d u, y = d v the field is the image times √(1 + u² + v²), because off-axis positions are
-/// farther from the point (docs/theory.md, section 2). Omits that factor if not `exact`.
+/// Returns the spectrum at distance d of a projector's field, computed by a Gauss rule over
+/// slopes. On x = d u, y = d v the field is the image times √(1 + u² + v²), because off-axis
+/// positions are farther from the point (docs/theory.md, section 2). If `exact` is false, that
+/// factor is omitted.
 fn at_distance(d: f64, width: f64, window: &Window, grid: &SliceGrid, exact: bool) -> Slices {
     let most = (window.x.half_width() / d).min(window.u.half_width());
     // Seventy nodes are enough for up to 22 cycles.
@@ -132,7 +133,7 @@ fn area_lights_agree_with_polygons() {
     }
 }
 
-/// Shadows of a rectangle and of a disc: edges reduce the advantage of nets.
+/// Tests the shadows of a rectangle and of a disc, whose edges reduce the advantage of nets.
 #[test]
 fn shadows_are_as_good_as_stated() {
     let square_light = Shape::Rectangle(square([0.0, 0.05], 0.2));

@@ -42,7 +42,7 @@ fn off(system: &SpecularSystem, plane: &Plane, print: Edition) -> f64 {
 /// by the step.
 const CLOSE: f64 = 1e-8;
 
-/// A point with a narrow picture; only its geometry matters here.
+/// Returns a point light with a narrow picture; only its geometry matters here.
 fn light() -> Light {
     projector([0.1, 0.1])
 }
@@ -132,8 +132,8 @@ fn chain_is_the_derivative_of_the_rays() {
 
 #[test]
 fn printed_chains_are_not() {
-    // None of the printed versions is correct onto a surface; behind a mirror, curvature reveals
-    // the difference.
+    // None of the printed versions gives the correct map onto a surface; behind a mirror,
+    // curvature reveals the difference.
     let system = mirror(light(), 0.7, [0.0, 0.0], [-0.5, -0.2, 0.0]);
     let plane = after(&system, 0.65);
     for print in [Edition::Equations, Edition::Table] {
@@ -213,7 +213,7 @@ fn foci_of_a_hollow_sphere() {
     let (theta0, radius) = (0.7_f64, 2.0);
     let system = mirror(beam([0.1, 0.1]), theta0, [0.0; 2], [-1.0 / radius; 3]);
     let first = chain(&view(&system, &after(&system, 0.5)), Edition::Corrected).unwrap();
-    // Coddington's equations: R/2 · cos θ₀ and R/(2 cos θ₀).
+    // By Coddington's equations, the foci are at R/2 · cos θ₀ and R/(2 cos θ₀).
     let expected = [
         0.5 * radius * libm::cos(theta0),
         0.5 * radius / libm::cos(theta0),
@@ -222,7 +222,8 @@ fn foci_of_a_hollow_sphere() {
     for (got, expected) in first.foci.iter().zip(expected) {
         assert!((got - expected).abs() < 1e-12); // rounding
     }
-    // Rays one micrometre away cross the central ray there; X is in the plane of incidence.
+    // Rays one micrometre from the central ray cross it at the foci; X is in the plane of
+    // incidence.
     for axis in 0..2 {
         let plane = after(&system, expected[axis]);
         let mut ray = [0.0; 4];
@@ -286,8 +287,8 @@ fn steps_read_like_a_figure() {
     );
 }
 
-/// The check of chains that a run makes detects an error of a hundred-thousandth in any entry of a
-/// map.
+/// The check that a run makes of its chains detects an error of a hundred-thousandth in any entry
+/// of a map.
 #[test]
 fn a_wrong_map_leaves_a_defect() {
     let window = window(Profile::Hann(0.02), Profile::Hann(0.02));

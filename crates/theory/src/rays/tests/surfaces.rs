@@ -22,7 +22,8 @@ fn covariance_of_a_gaussian_beam() {
     let expected = map.covariance(&before);
     for i in 0..16 {
         let off = (got[i / 4][i % 4] - expected[i / 4][i % 4]).abs();
-        // A mirror of 100 m bends the light slightly: by an order of (x/R)² of slopes 2x/R.
+        // A mirror of radius 100 m bends the light slightly: slopes of 2x/R have errors of
+        // relative order (x/R)².
         assert!(off < 1e-5 * variance, "{i}: {off:e}");
     }
     assert!(got[0][2].abs() > 1e-4 * variance); // slopes follow positions
@@ -132,7 +133,7 @@ fn rays_are_lost() {
         assert_eq!(system.follow([0.0; 4]).is_some(), passes);
         assert_eq!(system.hits().is_some(), passes);
     }
-    // A surface behind the light.
+    // This surface is behind the light.
     let patch = placed(&Frame::IDENTITY, -1.0, 0.0, [0.0; 2], [0.0; 3]);
     let behind = self::system(
         beam([0.1, 0.1]),

@@ -273,8 +273,7 @@ fn errors(
         .to_vec()
 }
 
-/// Returns a Phong lobe as wide as the neighbourhood: its width 1/√n is the size of the
-/// neighbourhood.
+/// Returns a Phong lobe whose width 1/√n is proportional to the size of the neighbourhood.
 fn phong(e: f64) -> Lobe {
     Lobe::Phong {
         exponent: 1.0 / (0.25 * e * e),
@@ -380,9 +379,9 @@ fn wrong_operators_are_seen() {
     assert!(exact_error(&sharper) > 0.005);
 }
 
-/// Returns ∫ L cos⁺ dω of a spherical Gaussian, at an angle γ from its centre: the product of
-/// spherical harmonics that is the convolution with the clamped cosine (Ramamoorthi and Hanrahan
-/// 2001; in 2D the paper's section 6.1).
+/// Returns ∫ L cos⁺ dω of a spherical Gaussian, at an angle γ from its centre: a product of
+/// spherical-harmonic coefficients, which is the convolution with the clamped cosine (Ramamoorthi
+/// and Hanrahan 2001; in 2D the paper's section 6.1).
 fn harmonic_irradiance(width: f64, gamma: f64) -> f64 {
     let squared = width * width;
     let legendre = |l: i32, x: f64| {
@@ -448,8 +447,8 @@ fn diffuse_sphere_under_an_environment_is_the_known_product() {
     for (map, most) in [
         // This is the error of a net of 2¹⁸ points.
         (EnvironmentMap::Lobes(vec![lobe]), 1e-5),
-        // The net has the same error here, and there are kinks between pixels, which are 0.006 rad
-        // apart over widths of 0.25: (1/40)²/24.
+        // The error of the net is the same here. Kinks between pixels, 0.006 rad apart over widths
+        // of 0.25, add an error of (1/40)²/24.
         (map([1024, 512]), 1e-4),
         // The map is interpolated bilinearly between pixel centres, 0.03 rad apart: (1/8)²/12 of
         // the lobe's curvature.

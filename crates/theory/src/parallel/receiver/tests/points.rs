@@ -39,7 +39,7 @@ fn disc_seen_from_anywhere() {
             // 1 − (z − 2R²)/√ without cancellation, (√² − (z − 2R²)²) = 4R²(z − 1 − R²) = 4R²H².
             let expected = 2.0 * r2 * h2 / (root * (root + z - 2.0 * r2));
             let got = receiver.irradiance(0.2, -0.1 + offset) / (1.7 * PI);
-            // The root loses digits next to the edge of a large disc.
+            // The square root in F loses digits next to the edge of a large disc.
             assert!(
                 (got / expected - 1.0).abs() < 1e-11,
                 "{radius} {offset}: {got} {expected}"
@@ -83,7 +83,7 @@ fn what_a_receiver_of_albedo_one_gives_off_is_what_it_receives() {
 #[test]
 fn benches_against_sums_over_the_light() {
     const POINTS: u32 = 1_000_000;
-    // The set is quasi-random; on a grid, all vertical edges would cause an error at once.
+    // The points are quasi-random; in a grid, all points along a vertical edge would err at once.
     let spread: Vec<_> = cube(POINTS).map(|[s, t, ..]| [s, t]).collect();
     for (number, bench) in benches().iter().enumerate() {
         let receiver = bench.receiver();

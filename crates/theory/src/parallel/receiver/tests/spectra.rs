@@ -223,7 +223,8 @@ fn projection_is_the_other_side_of_the_slice() {
                 .sum();
             let expected = table.at([rho, 0.0, nu, 0.0]);
             let error = (sum * cells.cell_area() - expected).norm() / zero;
-            // A cell causes a blur of (π f width)²/6 < 4e-4 at 2 cycles and 128 cells.
+            // The mean over a cell reduces the spectrum by (π f width)²/6 < 4e-4 at 2 cycles and
+            // 128 cells.
             assert!(error < 4e-4, "{number} {rho} {nu}: {error:e}");
         }
     }
