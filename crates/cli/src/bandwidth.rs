@@ -108,7 +108,7 @@ struct BandwidthRow {
     /// The values swept.
     point: Vec<f64>,
     plane: String,
-    /// The numbers in the order of the header; `None` for a missing number.
+    /// Returns the numbers in the order of the header; `None` stands for a missing number.
     numbers: Vec<Option<f64>>,
     warnings: Vec<String>,
 }
@@ -122,7 +122,7 @@ impl BandwidthRow {
         cells
     }
 
-    /// The row with all digits; fields without a number are empty.
+    /// Returns the row with all digits; fields without a number are empty.
     fn record(&self) -> Vec<String> {
         let digits = |x: &f64| format!("{x:?}");
         let mut cells: Vec<String> = self.point.iter().map(digits).collect();
@@ -202,7 +202,7 @@ fn of(
     planes.into_iter().map(row).collect()
 }
 
-/// Effects that the criteria do not cover.
+/// Returns warnings about effects that the criteria do not cover.
 fn beyond_criteria(plane: &VirtualPlane, applicability: &Applicability) -> Vec<String> {
     let Theory::Scattering(view) = &applicability.theory else {
         return Vec::new();
@@ -225,9 +225,9 @@ fn beyond_criteria(plane: &VirtualPlane, applicability: &Applicability) -> Vec<S
     warnings
 }
 
-/// Warns of a bandwidth at the end of the grid, where the grid limits it. The bandwidth of a
-/// spectrum that is flat over the grid is 95 % of the frequency at which the last cell ends, half a
-/// step beyond the largest frequency.
+/// Returns a warning if a bandwidth is at the end of the frequency grid, because the grid then
+/// limits it. The bandwidth of a spectrum that is flat over the grid is 95 % of the frequency at
+/// which the last cell ends, half a step beyond the largest frequency.
 fn warning(plane: &VirtualPlane, bandwidth: f64) -> Option<String> {
     const NEAR: f64 = 0.9;
     let nu = plane.grid.nu;

@@ -173,7 +173,7 @@ fn a_changed_index_is_refused() {
             refused(folder, COMPARE, &[name]);
         }
     }
-    // The unmodified files pass, so no refusal had another reason.
+    // The unmodified files pass, so the changes were the only reason for the refusals.
     assert_eq!(call(folder, COMPARE).status.code(), Some(0));
 }
 

@@ -182,7 +182,7 @@ fn pages_are_made_from_data() {
     };
     const MARKUP: &str = "</SCRIPT><img src=x onerror=alert(1)>";
     let data = "class=\"run-data\">";
-    // Markup beside the data makes the data invalid.
+    // Markup next to the data makes the data invalid.
     for to in [format!("{data}{MARKUP}"), format!("{data}0{MARKUP}")] {
         let output = forge(data, &to);
         assert_eq!(output.status.code(), Some(2), "{output:?}");

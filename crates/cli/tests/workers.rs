@@ -64,8 +64,8 @@ fn in_crew_of(lines: &[String]) -> (u8, Vec<usize>) {
             scope.spawn(move || command_of_workers(words, member))
         };
         let others: Vec<_> = (1..lines.len()).map(begin).collect();
-        // The leader begins when the others have reported; otherwise it would finish so little work
-        // before they begin.
+        // The leader begins after the others have reported; otherwise it would finish the small
+        // amount of work alone.
         for (member, process) in members[1..].iter().zip(&others) {
             while member.sent.load(Ordering::Relaxed) == 0 && !process.is_finished() {
                 thread::yield_now();

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// The mapping of values to colors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Scale {
-    /// From 0 to the largest value shown; negative values are drawn as 0.
+    /// A linear scale from 0 to the largest value shown; negative values are drawn as 0.
     Linear,
     /// 10 log₁₀ of a power relative to the largest reference value, from `floor` to 0 dB; powers ≤
     /// 0 are below the floor.
@@ -17,19 +17,19 @@ pub enum Scale {
         /// Lower end of the colors, in decibels, below 0.
         floor: f64,
     },
-    /// From −`most` to `most`, blue to red.
+    /// A linear scale from −`most` to `most`, blue to red.
     Signed {
         /// Upper end of the colors, above 0.
         most: f64,
     },
-    /// Degrees, once around the circle.
+    /// A scale of angles in degrees, once around the circle.
     Phase,
 }
 
 /// Red, green, blue.
 pub(crate) type Rgb = [u8; 3];
 
-/// Grey for cells without a value (NaN). Neither color map contains this grey.
+/// Grey for cells without a value (NaN). No color map contains this grey.
 pub(crate) const NO_VALUE: Rgb = [158, 158, 158];
 
 /// Colors of magnitudes, dark to pale. Their lightness increases evenly, so the colors remain
@@ -100,7 +100,7 @@ pub fn palettes() -> [Vec<u8>; 2] {
     })
 }
 
-/// A color of the circle.
+/// Returns the color at fraction `t` of the color circle.
 fn on_circle(t: f64) -> Rgb {
     let place = t * CIRCLE.len() as f64;
     let before = whole(place);
@@ -137,12 +137,12 @@ impl Shading {
         }
     }
 
-    /// Values of both signs, up to `most` in modulus.
+    /// Returns colors for values of both signs, up to `most` in modulus.
     pub(crate) fn signed(name: &str, unit: &str, most: f64) -> Self {
         Self::linear(Colors::Diverging, Axis::edges(name, unit, [-most, most]))
     }
 
-    /// Degrees, once around the circle.
+    /// Returns colors for angles in degrees, once around the circle.
     pub(crate) fn phase(name: &str) -> Self {
         Self::linear(
             Colors::Cyclic,
@@ -189,7 +189,7 @@ impl Shading {
     }
 }
 
-/// The largest finite value; 0 if none is above it.
+/// Returns the largest finite value, or 0 if no value is positive.
 pub(crate) fn largest(values: ArrayView2<'_, f64>) -> f64 {
     let finite = values.iter().copied().filter(|v| v.is_finite());
     finite.fold(0.0, f64::max)

@@ -13,7 +13,7 @@ use ndarray::ArrayView2;
 /// ascending. NaN: no value.
 #[derive(Clone, Debug)]
 pub struct Comparison<'a> {
-    /// The quantity and plane shown; markup.
+    /// The quantity and the plane that are shown, as markup.
     pub title: &'a str,
     /// A line below the title, such as the verdict, markup; may be empty.
     pub note: &'a str,
@@ -33,8 +33,8 @@ pub struct Comparison<'a> {
     pub predicted: ArrayView2<'a, f64>,
     /// (measured − predicted) / σ.
     pub z: ArrayView2<'a, f64>,
-    /// Both sides on finer cells over the same axes. They are drawn in place of the values; the
-    /// table keeps the values.
+    /// Measured and predicted values on finer cells over the same axes. They replace the values in
+    /// the picture, but not in the table.
     pub finer: Option<[ArrayView2<'a, f64>; 2]>,
 }
 

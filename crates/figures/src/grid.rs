@@ -42,7 +42,7 @@ pub struct Guide {
     pub through: [f64; 2],
     /// dν/dρ, in metres; −d for light that has travelled d.
     pub slope: f64,
-    /// Whether the line is that of the plane across the plane of incidence.
+    /// Whether the line belongs to directions across the plane of incidence.
     pub is_across: bool,
 }
 
@@ -88,12 +88,13 @@ impl PictureRow<'_, '_> {
 pub(crate) const LEFT: f64 = 75.0;
 /// Width to the right of the last picture, for the color bars.
 pub(crate) const RIGHT: f64 = 81.0;
-/// Gaps between adjacent pictures: if the right picture has no numbers beside its axis, and if it
-/// has them.
+/// Gaps between adjacent pictures. The first is used if the right picture has no numbers beside
+/// its axis, and the second if it has numbers.
 pub(crate) const GAPS: [f64; 2] = [26.0, 56.0];
 /// The first of [`GAPS`], where there are many pictures side by side.
 const CLOSE: f64 = 16.0;
-/// Gaps between a picture and the one below: if they share the x axis, and if they do not.
+/// Gaps between a picture and the picture below. The first is used if they share the x axis, and
+/// the second if they do not.
 const ROW_GAPS: [f64; 2] = [14.0, LABEL_BASELINE + 18.0];
 /// Distance from the left edge of the first picture to the row name.
 const ROW_NAME: f64 = 63.0;
@@ -149,8 +150,8 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         [least, largest]: [f64; 2],
         style: &Style,
     ) -> Self {
-        // Maximum picture widths: for one block, and for several blocks, which would make a long
-        // page.
+        // Maximum picture widths. The first is for one block, and the second for several blocks,
+        // which would make a long page.
         const MAX_SIDES: [f64; 2] = [190.0, 112.0];
         for row in &rows {
             assert_eq!(row.cells.len(), columns, "pictures of {}", row.name);
@@ -255,8 +256,8 @@ impl<'b, 'a> PageGrid<'b, 'a> {
     }
 
     /// The width below which the x label of a picture is centred. It is that of the whole block if
-    /// the pictures are narrow and have the same axis. `None` if a label further to the left
-    /// applies.
+    /// the pictures are narrow and have the same axis. Returns `None` if a label further to the
+    /// left applies.
     fn labelled_across(&self, row: usize, places: &[PlacedColumn], i: usize) -> Option<f64> {
         let x = |place: &PlacedColumn| &self.rows[row].cells[place.column].0.x;
         let is_same = places.iter().all(|place| x(place) == x(&places[0]));
@@ -268,7 +269,7 @@ impl<'b, 'a> PageGrid<'b, 'a> {
     }
 
     /// The height beside which the y label of a picture is centred. It includes the pictures below
-    /// that have the same axes. `None` if a label further up applies.
+    /// that have the same axes. Returns `None` if a label further up applies.
     fn labelled_down(&self, row: usize, column: usize) -> Option<f64> {
         let y = |row: usize| &self.rows[row].cells[column].0.y;
         let is_same = |above: usize| self.shares_x(above) && y(above) == y(above + 1);
@@ -420,7 +421,7 @@ fn inside(panel: &Panel<'_>, guide: &Guide) -> Option<[[f64; 2]; 2]> {
     is_seen.then(|| rhos.map(|rho| panel.point(rho, at(rho))))
 }
 
-/// Short lines at both ends of a line.
+/// Draws short strokes at both ends of a line.
 pub(crate) fn ends(start: [f64; 2], end: [f64; 2], length: f64) -> [[[f64; 2]; 2]; 2] {
     let along = [0, 1].map(|i| end[i] - start[i]);
     let share = length / libm::hypot(along[0], along[1]).max(2.0 * length);

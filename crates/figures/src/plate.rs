@@ -35,7 +35,8 @@ pub struct Plate<'a> {
     pub title: &'a str,
     /// A line below the title, markup; may be empty.
     pub note: &'a str,
-    /// Headings of the columns. The text after a line break becomes a second line, markup.
+    /// Headings of the columns. Text after a line break becomes a second line, which may contain
+    /// markup.
     pub heads: Vec<String>,
     /// The rows, from top to bottom.
     pub rows: Vec<PlateRow<'a>>,

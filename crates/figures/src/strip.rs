@@ -47,7 +47,7 @@ pub struct AcrossPictures<'a> {
     pub light_field: Picture<'a>,
     /// The power spectrum at azimuth 90°.
     pub spectrum: Picture<'a>,
-    /// The same spectrum on finer cells, drawn in place of it.
+    /// The same spectrum on finer cells, which is drawn in its place.
     pub finer: Option<Picture<'a>>,
     /// Lines at the edges of that spectrum.
     pub guides: Vec<Guide>,
@@ -147,7 +147,8 @@ impl StripRow {
         })
     }
 
-    /// The finer picture that is drawn in place of that one.
+    /// Returns the picture to draw: the finer picture if there is one, otherwise the picture
+    /// itself.
     fn drawn<'a, 'b>(self, column: &'b StripColumn<'a>) -> &'b Picture<'a> {
         let finer = match self {
             Self::Spectrum => column.finer.as_ref(),
@@ -198,8 +199,8 @@ pub fn strip(strip: &Strip<'_>, style: &Style) -> Result<Figure, Error> {
     let verdicts = verdicts.map(|column| column.verdict.clone());
     let verdicts: Vec<Vec<String>> = verdicts.collect();
     for block in 0..grid.blocks() {
-        // Leaders to lower columns would cross the columns above, so lower columns have only
-        // numbers.
+        // Lines from the cut to lower columns would cross the columns above, so lower columns have
+        // only numbers.
         let heads = bottom
             + if grid.blocks() == 1 && style.scene {
                 LEADERS

@@ -4,8 +4,8 @@
 //! vertices that two groups share (a closed surface comes back open), refuses continued lines,
 //! Latin-1 comments and colors on some vertices only, and its faults name no line. ply-rs-bw 4.0.1
 //! refuses `.5`, `1.` and blank lines, shifts binary data when a property is declared twice, and
-//! fills memory for an element without properties. The tests keep both as independent readers of
-//! sound files.
+//! fills memory for an element without properties. The tests use both libraries as independent
+//! readers of valid files.
 
 mod detailed;
 mod extension;

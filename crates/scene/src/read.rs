@@ -11,7 +11,7 @@ pub enum ReadError {
     /// The system cannot read the file.
     #[error("{0}")]
     Io(#[from] io::Error),
-    /// A folder, a pipe or a device; the last two might never end.
+    /// The path names a folder, a pipe or a device; a pipe or a device might never end.
     #[error("not a regular file")]
     NotRegular,
     /// The path, with links followed, leads out of the folder.
@@ -72,7 +72,7 @@ pub fn read_below(folder: &Path, name: &str, most: u64) -> Result<Vec<u8>, ReadE
     read_file(&path, most)
 }
 
-/// Checks whether a path, as written, never leads upwards.
+/// Checks whether a path, as written, is relative and has no part `..`.
 pub(crate) fn leads_down(path: &str) -> bool {
     let mut components = Path::new(path).components();
     components.all(|c| matches!(c, Component::Normal(_)))

@@ -34,7 +34,8 @@ pub struct Scene {
     pub run: Run,
 }
 
-/// The ray that everything is measured from: straight legs from surface to surface.
+/// The central ray, from which positions and slopes are measured: straight legs from surface to
+/// surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CentralRay {
     /// Frame at the light, in the world of the scene file.
@@ -163,7 +164,8 @@ pub struct MeshObject {
     pub extent: [f64; 2],
     /// The ratio of reflected to incident flux; `None` if the mesh is not Lambertian.
     pub albedo: Option<f64>,
-    /// The smooth surface, if the mesh is one.
+    /// The normals and the interaction with light of a mesh that is a smooth surface; otherwise
+    /// `None`.
     pub smooth: Option<SmoothMesh>,
 }
 
@@ -205,8 +207,8 @@ pub enum Event {
 }
 
 impl Event {
-    /// Checks whether light leaves the surface in or near the mirror direction, unlike Lambertian
-    /// light. For a sum of BRDFs the first one decides.
+    /// Checks whether light leaves the surface in or near the mirror direction, unlike light from
+    /// a Lambertian surface. For a sum of BRDFs the first one decides.
     #[must_use]
     pub fn mirrors(&self) -> bool {
         match self {
@@ -295,13 +297,13 @@ pub struct Run {
     pub seed: u64,
     /// Independent batches.
     pub batches: u32,
-    /// The share of correct scenes that the verdict may reject, over all planes.
+    /// The probability that the verdict rejects a correct scene, over all planes together.
     pub alpha: f64,
     /// Noise, as a share of the spectrum, above which a plane does not pass.
     pub resolution: f64,
     /// How photons leave the light.
     pub emission: Emission,
-    /// The numbers that photons are drawn from.
+    /// The random numbers or nets from which photons are drawn.
     pub sampling: Sampling,
 }
 

@@ -332,7 +332,7 @@ fn a_value_that_is_set_is_nested_no_deeper_than_a_scene() {
         open("(") + &close,
         open("a(") + &close,
         open("(a:") + &close,
-        // The brackets are closed one by one, or all at the end.
+        // The brackets of this text are closed one by one, or all at the end.
         open("(a)") + &close,
     ] {
         let told = quickly("a nested value", || {

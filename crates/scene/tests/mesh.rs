@@ -280,7 +280,7 @@ fn faults_of_ply_files_are_told() {
     }
 }
 
-/// Binary files: cut anywhere, and with impossible values.
+/// Binary files that are cut anywhere, or have impossible values, are refused.
 #[test]
 fn faults_of_binary_ply_files_are_told() {
     let sound = Mesh::star(1.0, 0.0, 0, 2).unwrap().ply(); // 6 vertices, 8 triangles
@@ -336,8 +336,8 @@ fn binary_ply_behind_all_line_ends() {
     }
 }
 
-/// A list with a stated length of four thousand million is read as far as the file goes, without
-/// allocating memory in advance.
+/// A list with a stated length of four thousand million is read up to the end of the file, and no
+/// memory is allocated in advance.
 #[test]
 fn a_list_longer_than_the_file_is_told() {
     let ascii = edited("uchar int", "uint int").replace("ascii", "binary_little_endian");
@@ -446,7 +446,7 @@ fn a_star_is_closed_outward_and_of_its_volume() {
             "relief {relief}, lobes {lobes}, rings {rings}"
         );
         assert_eq!(euler(&mesh), 2);
-        // Star-shaped: every triangle faces away from the origin.
+        // The mesh is star-shaped, so every triangle faces away from the origin.
         let outward = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a).dot(a) > 0.0;
         assert!(mesh.corners().all(outward));
     }
@@ -500,7 +500,7 @@ fn a_moved_or_mirrored_mesh_keeps_its_outside() {
     assert!(far.unwrap_err().field.starts_with("vertex 0, x"));
 }
 
-/// The guarantees to every caller, however the mesh is made.
+/// Checks what holds for every mesh, however it is made.
 #[test]
 fn meshes_of_parts_are_checked() {
     let square = vec![DVec3::ZERO, DVec3::X, DVec3::X + DVec3::Y, DVec3::Y];

@@ -22,7 +22,7 @@ pub struct DirectionalBandwidth {
     pub along: Vec<f64>,
     /// The largest of them, with its azimuth in radians; the first of equal ones.
     pub widest: Widest<Uncertain>,
-    /// The bandwidth across the direction of the largest one.
+    /// The bandwidth across the direction of the largest bandwidth.
     pub across: Uncertain,
     /// The total power, ∫ |F|² dν.
     pub power: Uncertain,
@@ -182,7 +182,7 @@ const BINS: f64 = 8.0;
 impl Cumulative {
     fn new(grid: &SliceGrid) -> Self {
         let step = grid.nu.spacing / BINS;
-        // A cell ends at most half a step, and its side, beyond the last frequency.
+        // A cell ends beyond the last frequency by at most half a step and the length of its side.
         let most = 2.0 * (grid.nu.max() + grid.nu.spacing);
         Self {
             step,
@@ -196,7 +196,7 @@ impl Cumulative {
         let half = cell.half[0] * cos.abs() + cell.half[1] * sin.abs();
         let [low, high] = [middle - half, middle + half].map(|end| end / self.step);
         let per_bin = cell.power / (high - low);
-        // The part below zero is reflected.
+        // The part of the range below zero is reflected to positive frequencies.
         for [low, high] in [[low.max(0.0), high], [0.0, -low]] {
             if high <= low {
                 continue;
@@ -315,7 +315,8 @@ mod tests {
     fn the_mean_of_a_picture_hides_its_bandwidth() {
         let field = wave(1.0, 0.2, [3.3, 0.0]);
         assert!(alone(&field).widest.value.value < 1.0);
-        // A mean that is left in hides the bandwidth; removing it twice changes nothing more.
+        // If the mean is not removed, it hides the bandwidth. Removing it a second time has no
+        // effect.
         let found = alone(&less_mean(&field)).widest.value.value;
         let twice = less_mean(&less_mean(&field));
         assert!((alone(&twice).widest.value.value - found).abs() < 1e-9); // rounding

@@ -6,8 +6,8 @@ use ndarray::{Array2, Array3};
 
 /// The measured slices of a plane.
 ///
-/// The mean over batches is unweighted: each batch is unbiased, and so is their mean, whatever the
-/// sizes of the batches. Batches differ by one emitted photon at most, so weights would gain
+/// The mean over batches is unweighted. It is unbiased because each batch is unbiased, even if the
+/// batches differ in size. Batches differ by one emitted photon at most, so weights would gain
 /// nothing.
 #[derive(Clone, Debug)]
 pub struct SliceEstimate {
@@ -83,7 +83,8 @@ pub fn slices(measurement: &Measurement, plane: usize) -> Result<SliceEstimate, 
 }
 
 /// Returns the relative noise of the slices at plane `plane`: √(Σσ²/(Σ|S̄|² − Σσ²)), over
-/// independent frequencies. `None` if no photon arrived, or if there is more noise than light.
+/// independent frequencies. Returns `None` if no photon arrived, or if there is more noise than
+/// light.
 ///
 /// # Errors
 ///

@@ -209,9 +209,9 @@ impl<'m> CrossPower<'m> {
         }
     }
 
-    /// Returns the largest bandwidth over the azimuths, with its standard error at that azimuth. If
-    /// several are nearly equal, noise selects among them, and the largest exceeds each of them by
-    /// about its error.
+    /// Returns the largest bandwidth over the azimuths, with its standard error at that azimuth.
+    /// If several bandwidths are nearly equal, noise selects the largest, which then exceeds the
+    /// true value by about its error.
     pub fn bandwidth(&self, of: SliceBandwidth) -> Option<Widest<Uncertain>> {
         let (slice, _) = widest_slice(self.pairs.view(), &self.grid, of)?;
         let one = self.slice(slice);
@@ -222,7 +222,8 @@ impl<'m> CrossPower<'m> {
 
     /// Returns a statistic of the power, such as a slope, with its standard error by the jackknife.
     ///
-    /// `None` if the statistic does not exist, with all batches or with one left out.
+    /// Returns `None` if the statistic does not exist for all batches together, or with one batch
+    /// left out.
     pub fn statistic(&self, of: impl Fn(ArrayView2<'_, f64>) -> Option<f64>) -> Option<Uncertain> {
         let value = of(self.power().view())?;
         let mut jackknife = Jackknife::new(ndarray::Ix0());

@@ -1,7 +1,7 @@
 //! Light fields less their mean.
 //!
-//! Most power of a typical spectrum is that of the mean of the light behind the window. A bandwidth
-//! of all power then says little about how fast the light changes.
+//! Most of the power of a typical spectrum comes from the mean of the light behind the window. A
+//! bandwidth of all power then says little about how fast the light changes.
 
 use etendue_field::{Complex, SliceGrid, Slices, Window};
 use ndarray::{Array2, Array3};
@@ -24,11 +24,11 @@ impl WindowedMean {
         }
     }
 
-    /// Returns the slices of a windowed light field less its mean: F − F(0) Ŵ / Ŵ(0), where F is
+    /// Returns the slices of a windowed light field minus its mean: F − F(0) Ŵ / Ŵ(0), where F is
     /// the spectrum of the light field times the window W.
     ///
     /// The result is the spectrum of a product: the window times the deviations of the light field
-    /// from its mean. The window is also the weight of that mean.
+    /// from its mean. The mean is itself weighted by the window.
     ///
     /// # Panics
     ///

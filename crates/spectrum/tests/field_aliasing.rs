@@ -100,8 +100,8 @@ fn no_frequency_is_beyond_its_bound() {
     }
 }
 
-/// Planted faults in the spectrum: the power of the sinc, half a cell along x, the sign of the
-/// transform.
+/// The spectrum is given faults: a wrong power of the sinc, a shift by half a cell along x, and a
+/// wrong sign of the transform.
 #[test]
 fn wrong_compensations_are_beyond_it() {
     let window = hann();
@@ -134,9 +134,9 @@ fn wrong_compensations_are_beyond_it() {
         };
         assert!(power(0) <= 1.0);
         assert!(power(-1) > 1.2, "{assignment:?}: {}", power(-1));
-        // The spectrum is compensated too little: by one power for TSC, and by two for CIC, whose
-        // bound is as wide as the effect of one power. For the nearest cell the bound is so wide
-        // that it holds without any compensation.
+        // The spectrum is compensated by too low a power of the sinc: by one less for TSC, and by
+        // two less for CIC, whose bound is as wide as the effect of one power. For the nearest
+        // cell the bound is so wide that it holds without any compensation.
         match assignment {
             Assignment::Nearest => assert!(power(1) <= 1.0),
             Assignment::Cic => assert!(power(2) > 1.2, "{}", power(2)),

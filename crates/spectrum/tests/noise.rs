@@ -93,7 +93,7 @@ fn removing_shot_noise_leaves_nothing_of_white_noise() {
     // deviations of the mean over all frequencies.
     let sd = noise / count.sqrt() * (64.0_f64 / 63.0).sqrt();
     assert!(mean.abs() < 4.0 * sd, "{mean} {sd}");
-    // Noise that is left in would be 20 standard deviations.
+    // Noise that is not removed would be 20 standard deviations.
     let shot_noise = radial
         .shot_noise
         .slice_axis(Axis(0), Slice::from(zero + 1..));
@@ -116,14 +116,14 @@ fn the_variance_of_the_slices_is_the_photons_noise() {
     let mean = variance.sum() / variance.len() as f64;
     let expected = SQUARE / photons as f64;
     // The mean over 396 frequencies with 63 degrees of freedom each has an error of 0.6 %; the
-    // limit is four times that.
+    // limit is four times this error.
     assert!((mean / expected - 1.0).abs() < 0.025, "{}", mean / expected);
     assert_eq!(estimate.batches, 64);
     let projection = estimate::projection(&measurement, 0).unwrap();
     let cells = projection.mean.values.len() as f64;
     let mean = projection.mean.values.sum() / cells;
-    // The mean weight is 1 over the area 1.6 · 0.8. The sum of 32000 weights has an error of 0.3 %;
-    // the limit is four times that.
+    // The mean weight is 1 over the area 1.6 · 0.8. The sum of 32000 weights has an error of 0.3
+    // %; the limit is four times this error.
     assert!((mean * 1.28 - 1.0).abs() < 0.013, "{mean}");
     let variance = projection.standard_error.mapv(|e| e * e).sum() / cells;
     let one = SQUARE * cells / (photons as f64 * 1.28 * 1.28);

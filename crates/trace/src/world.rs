@@ -43,8 +43,8 @@ impl PlaneInWorld {
     }
 
     /// The flux of a photon times the number of photons emitted, W. It is the photon's weight
-    /// without the factor that converts to radiance space, 1 over cos θ dω / du dv
-    /// (docs/conventions.md).
+    /// times cos θ dω / du dv, because the reciprocal of this factor converts flux to radiance
+    /// space (docs/conventions.md).
     #[must_use]
     pub fn flux(&self, crossing: &Crossing) -> f64 {
         crossing.weight * self.plane_on_leg.flux_per_radiance(&crossing.ray)

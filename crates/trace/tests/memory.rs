@@ -47,7 +47,7 @@ fn all_legs_and_tracers_share_what_a_mesh_takes() {
     let tracers = [Tracer::new(&scene), Tracer::evenly(&scene)];
     let backward = Backward::new(&scene).unwrap();
     let more = each(bytes("VmRSS") - held);
-    // The number of a triangle takes 4 bytes.
+    // The index of a triangle takes 4 bytes.
     assert!(more < 4.0, "{more} more bytes a triangle for three tracers");
     drop((tracers, backward));
 }

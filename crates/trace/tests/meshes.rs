@@ -114,7 +114,7 @@ fn parts(draw: &Draw, kind: u64) -> Parts {
         3 => parts.triangles[any] = [a, c, b],
         4 => parts.triangles.extend([parts.triangles[any]; 2]),
         5 => parts.triangles.push([a, c, b]),
-        // Reverses the whole mesh.
+        // Adds the reverse of every triangle.
         6 => {
             let other = |[a, b, c]: &[usize; 3]| [*a, *c, *b];
             let other: Vec<_> = parts.triangles.iter().map(other).collect();

@@ -74,7 +74,7 @@ fn arriving() {
     agree(&wall, &[tangent]);
 }
 
-/// A surface that reaches back beside the light is dark where it does.
+/// A surface that reaches back beside the light is dark in that part.
 #[test]
 fn arriving_behind_the_light() {
     let near = smooth("Mirror").replace("(0, 0, 1)", "(0, 0, 0.04)");

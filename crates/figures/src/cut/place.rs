@@ -16,8 +16,8 @@ pub(super) struct SegmentName {
     pub(super) row: usize,
 }
 
-/// Positions of the plane numbers, without overlaps. A number is below the line of its plane, or is
-/// shifted to the side of the plane if others are near.
+/// Positions of the plane numbers, without overlaps. A number is below the line of its plane, or
+/// is shifted to the side if other numbers are near.
 pub(super) fn number_places(section: &Section, across: impl Fn(f64) -> f64) -> Vec<f64> {
     let true_places = || section.planes.iter().map(|plane| across(plane.distance));
     let aside = |(i, plane): (usize, &PlaneMark)| {

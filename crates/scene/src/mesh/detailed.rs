@@ -7,7 +7,7 @@ use etendue_scenefile::Fault;
 use glam::{DVec2, DVec3};
 use std::path::Path;
 
-/// A mesh file with what belongs to shading: normals and texture coordinates of its vertices.
+/// The triangles of a mesh file, with the normals and texture coordinates of their vertices.
 ///
 /// Corners are valid indices of vertices, and there are as many normals and texture coordinates as
 /// vertices; all are finite. Triangles of zero area are kept. Corners at one place with different
@@ -37,7 +37,7 @@ impl DetailedMesh {
     }
 }
 
-/// Requires numbers within the range of coordinates.
+/// Checks that numbers are within the range of coordinates.
 pub(super) fn check<const N: usize>(
     values: [f64; N],
     place: impl Fn(usize) -> String,

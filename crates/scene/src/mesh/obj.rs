@@ -144,7 +144,7 @@ fn triangles(
     }
 }
 
-/// A fault of a corner: its value, and what is allowed.
+/// The value of a faulty corner, and the values that are allowed.
 type CornerFault = (String, String);
 
 /// Returns the index of a corner such as `7`, `7/3`, `7//5` or `-1/-1/-1`: counted from 1, or

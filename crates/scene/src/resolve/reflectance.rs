@@ -8,7 +8,8 @@ use etendue_scenefile::{
     BrdfFile, EventFile, FresnelFile, GratingFile, LobeFile, PatternFile, TermFile,
 };
 
-/// The largest number of values of a factor of an angle: one for each tenth of a degree.
+/// The largest number of values of a factor that depends on an angle: one value for each tenth of
+/// a degree.
 const FINEST: usize = 901;
 
 impl Resolver<'_> {

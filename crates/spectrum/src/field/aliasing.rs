@@ -12,7 +12,8 @@ use etendue_field::{Complex, FrequencyAxis, Slices};
 pub struct Aliasing {
     /// Number of frequencies compared, one of each conjugate pair.
     pub compared: usize,
-    /// The difference. It includes the slices' own error: below 2·10⁻⁷ Σw at each frequency.
+    /// The difference. It includes the error of the slices themselves, which is below 2·10⁻⁷ Σw at
+    /// each frequency.
     pub difference: f64,
     /// The expected difference from aliasing if the spectrum beyond Nyquist is as strong as in the
     /// outermost quarter below Nyquist. It is not a bound: it is correct for white noise, too large
@@ -37,9 +38,10 @@ impl FieldSpectrum {
     ///
     /// Ωy = Ωv = 0 is azimuth 0, and Ωx = Ωu = 0 is azimuth π/2 if the number of azimuths is even;
     /// if the slices are finer than the natural spacing, only every n-th frequency is shared.
-    /// `None` if nothing is shared or there is no light.
+    /// Returns `None` if no frequency is shared or there is no light.
     ///
-    /// On these lines only the two axes along the line have aliasing; elsewhere all four do.
+    /// On these lines, only the two axes along the line have aliasing; at other frequencies, all
+    /// four axes have aliasing.
     #[must_use]
     pub fn aliasing(&self, slices: &Slices, share: f64) -> Option<Aliasing> {
         let all = self.shared(slices);

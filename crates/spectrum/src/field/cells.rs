@@ -94,9 +94,9 @@ impl FieldTransform {
 pub struct FieldCells {
     grid: FieldGrid,
     assignment: Assignment,
-    /// Number of complex numbers of a row.
+    /// Number of complex numbers in a row.
     row: usize,
-    /// Laid out for [`RealFft4`].
+    /// The cells, in the layout of [`RealFft4`].
     data: Vec<Complex>,
 }
 

@@ -15,8 +15,8 @@ const COUNT: usize = 11;
 /// ∫ P and ∫ P Ωᵢ Ωⱼ over a band of frequencies, for a power P = |ℓ̂|².
 ///
 /// The covariance of the spectrum, ∫ P Ω Ωᵀ/∫ P, equals ∫ ∇ℓ ∇ℓᵀ/(4π² ∫ ℓ²) of the windowed light
-/// field if the band contains the whole spectrum. If the field has an edge neither exists: P falls
-/// as Ω⁻² there, and the sum grows with the band. So each result belongs to a band, and only
+/// field if the band contains the whole spectrum. If the field has an edge, neither exists: P
+/// falls as Ω⁻² there, and the sum grows with the band. So each result belongs to a band, and only
 /// results over the same band can be compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PowerMoments {
@@ -44,14 +44,14 @@ impl PowerMoments {
     }
 }
 
-/// Returns (i, j) with i ≤ j, in order.
+/// Returns the index pairs (i, j) with i ≤ j, in order.
 fn pairs() -> impl Iterator<Item = (usize, usize)> {
     (0..4).flat_map(|i| (i..4).map(move |j| (i, j)))
 }
 
-/// The frequencies over which moments are taken: those of a 4D grid within the largest ones of a
-/// plane's slices, |Ωx| and |Ωy| ≤ ρ_max, |Ωu| and |Ωv| ≤ ν_max. Frequencies at Nyquist are
-/// excluded.
+/// The frequencies over which moments are taken. They are the frequencies of a 4D grid with |Ωx|
+/// and |Ωy| ≤ ρ_max, |Ωu| and |Ωv| ≤ ν_max, where ρ_max and ν_max are the largest frequencies of a
+/// plane's slices. Frequencies at Nyquist are excluded.
 #[derive(Clone, Debug)]
 pub struct Moments {
     grid: FieldGrid,
@@ -176,7 +176,7 @@ pub struct FieldCovariance {
     pub moments: PowerMoments,
     /// The moments over half of the band.
     half: PowerMoments,
-    /// The moments without each of the groups, up to a factor.
+    /// The moments with each of the groups left out, up to a factor.
     without: Vec<PowerMoments>,
 }
 
@@ -238,7 +238,8 @@ impl FieldCovariance {
     }
 
     /// Returns the estimate of a matrix that is a function of the covariance, such as its image
-    /// under a map. `None` if that does not exist for all groups, or for all but one.
+    /// under a map. Returns `None` if this matrix does not exist for all groups together, or with
+    /// one group left out.
     pub fn estimate_of(
         &self,
         of: impl Fn(&FrequencyMatrix) -> Option<FrequencyMatrix>,

@@ -236,8 +236,8 @@ impl GroupContext<'_> {
         powers
     }
 
-    /// Returns the groups processed at the same time, as many as threads, which limits the number
-    /// of grids in memory.
+    /// Returns ranges of groups that are processed at the same time. Each has as many groups as
+    /// there are threads, which limits the number of grids in memory.
     fn waves(&self) -> impl Iterator<Item = Range<usize>> {
         let threads = rayon::current_num_threads();
         let starts = (0..self.groups).step_by(threads);

@@ -44,14 +44,14 @@ pub(crate) fn taps<const P: usize>(t: f64, n: usize) -> ([usize; P], [f64; P]) {
 
 /// Returns the largest |ε| of a ray at `f`, over all positions of the ray.
 ///
-/// Exact for orders 1 and 2. For order 3 it is the sum of the moduli, up to a fifth above the
-/// actual maximum.
+/// The value is exact for orders 1 and 2. For order 3 it is the sum of the moduli, which exceeds
+/// the actual maximum by up to a fifth.
 pub(crate) fn worst_alias(assignment: Assignment, f: f64) -> f64 {
     let f = f.abs();
     let one = sinc(f);
     match assignment {
-        // The ray lies up to half a cell from the position it is assigned to: |e^(iθ)/sinc f − 1|
-        // with |θ| ≤ πf.
+        // The ray is at most half a cell from the position to which it is assigned, so ε is at
+        // most |e^(iθ)/sinc f − 1| with |θ| ≤ πf.
         Assignment::Nearest => {
             let square = 1.0 / (one * one) - 2.0 * libm::cos(PI * f) / one + 1.0;
             square.max(0.0).sqrt()

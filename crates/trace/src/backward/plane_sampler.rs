@@ -50,8 +50,8 @@ impl PlaneSampler {
         }
     }
 
-    /// The ray of the leg that has the coordinates `seen` at the plane, with its end point, and dA
-    /// over dx dy there; `None` if there is no such ray.
+    /// The ray of the leg that has the coordinates `seen` at the plane, its end point, and dA / dx
+    /// dy there; `None` if there is no such ray.
     pub(super) fn leg_ray(&self, seen: &TwoPlane) -> Option<(IncomingRay, End, f64)> {
         let headings = [Heading::Along, Heading::Against];
         headings.into_iter().find_map(|heading| {
