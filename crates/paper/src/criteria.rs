@@ -16,10 +16,10 @@ struct CriterionSweep {
     title: &'static str,
     quantity: AxisQuantity,
     field: &'static str,
-    /// The ends of the lines, where photons are also measured.
+    /// The values of the field at the two ends of the lines, at which photons are also measured.
     ends: [f64; 2],
     values: &'static [f64],
-    /// Converts a value of the field to the axis.
+    /// Converts a value of the field to the quantity on the axis.
     shown: fn(f64) -> f64,
 }
 
@@ -121,7 +121,7 @@ fn at((name, text): &Text, sweep: &CriterionSweep, value: f64) -> Result<Criteri
     found.ok_or_else(|| Failure::cannot_run(format!("{name} has no criterion")))
 }
 
-/// The measurement by photons: the value on the axis, the bandwidth and its standard error.
+/// A measurement with photons: the value on the axis, the bandwidth and its standard error.
 fn counted(
     taken: &FigureData<'_>,
     (name, text): &Text,

@@ -9,8 +9,8 @@ use etendue_report::pictures::spectrum_quantity;
 use etendue_store::Failure;
 use ndarray::{Array2, Axis};
 
-/// Fig. 8: slopes and angles at the receiver. The chain identifies slopes with angles. The paper
-/// calls this error not significant.
+/// Fig. 8: slopes and angles at the receiver. The first-order chain treats slopes as angles. The
+/// paper states that this error is not significant.
 pub(crate) fn parameterisations(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let slopes = Seen::at(&taken.shots[0], "slopes")?;
     let angles = Seen::at(&taken.shots[0], "angles")?;

@@ -38,8 +38,8 @@ impl Wanted {
 pub struct FigureRequest {
     /// Figures of the paper, or scenes, which make one figure.
     pub wanted: Vec<Wanted>,
-    /// Fields of the scenes set to values, for the command in `figure.json`; the scenes already
-    /// include them.
+    /// Fields of the scenes that were set to values. They are written to the command in
+    /// `figure.json`; the scenes already have these values.
     pub set: Vec<(String, String)>,
     /// The plane at which scenes are shown. The default is the last plane of each of several
     /// scenes, or all planes of a single scene.

@@ -8,7 +8,7 @@ use crate::{aim_check, field};
 use etendue_compare::{PlaneComparison, Test, compare};
 use etendue_store::{Failure, Results};
 
-/// The results of a case.
+/// The results of a scene: the comparison of each plane, and the verdict.
 #[derive(Debug)]
 pub struct Judged {
     /// The comparison of each plane, in the order of the scene.

@@ -48,7 +48,7 @@ pub struct Summary {
     pub inquiries: Vec<Inquiry>,
 }
 
-/// Which of three agree on a plane that fails: photons, another tracer and the prediction.
+/// The agreement between photons, another tracer and the prediction at a plane that fails.
 #[derive(Debug, Serialize)]
 pub struct Inquiry {
     /// Name of the plane.
@@ -62,7 +62,7 @@ pub struct Inquiry {
 }
 
 impl Summary {
-    /// Returns the settings that the arrays of the result are made from.
+    /// Returns the settings from which the arrays of the result were computed.
     pub fn made_from(&self) -> serde_json::Value {
         serde_json::json!({
             "scene": self.scene,

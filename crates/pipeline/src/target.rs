@@ -54,8 +54,8 @@ pub fn reached(
         }
         let noise_now = percent(Some(noise));
         let now = format!("noise is {noise_now} at {plane} with {emitted} photons");
-        // Nets may need fewer photons than the square-root law predicts, so the largest power of
-        // two below the predicted number is used.
+        // With nets, fewer photons than the square-root law predicts may suffice, so the next
+        // stage has the largest power of two below the predicted number.
         let needed = photons as f64 * (noise / target).powi(2);
         let mut next = photons.saturating_mul(2);
         while next < most && 2.0 * next as f64 <= needed {
@@ -97,7 +97,7 @@ pub fn outlook(planes: &[PlaneReport], seconds: f64) -> Option<String> {
     ))
 }
 
-/// Returns what `target` leaves out, in words.
+/// Returns a note, in words, on the noise of predictions, which `target` does not include.
 #[must_use]
 pub fn left_out(planes: &[PlaneReport], target: f64) -> String {
     let sampled = planes

@@ -126,8 +126,8 @@ mod tests {
         }
     }
 
-    /// Each field that is written in a scene accepts the example instead, and the error names the
-    /// field when it holds an impossible value.
+    /// Checks that each field written in a scene accepts its example instead, and that the error
+    /// for an impossible value names the field.
     #[test]
     fn examples_can_be_read_where_they_are_told() {
         let mut tried = BTreeSet::new();

@@ -41,7 +41,7 @@ pub(crate) fn find<'a>(text: &'a str, path: &str) -> Option<ScenePlace<'a>> {
                 }
             }
             ValueKind::Close => {
-                // A surplus closing bracket closes nothing.
+                // A closing bracket without an opening bracket has no effect.
                 levels.truncate((depth - 1).max(1));
             }
             ValueKind::Colon => {}
@@ -81,8 +81,8 @@ pub(crate) fn find<'a>(text: &'a str, path: &str) -> Option<ScenePlace<'a>> {
             found.end = token.end;
         }
     }
-    // A field that is not written at all is enclosed only by the whole file, which is no useful
-    // place.
+    // If only the whole file encloses a field that is not written, no place is returned, because
+    // it would not help the user.
     let found = found.filter(|found| found.steps > 0 || steps.is_empty())?;
     let before = &text[..found.start];
     Some(ScenePlace {

@@ -3,8 +3,8 @@
 use crate::limits;
 use strsim::osa_distance;
 
-/// Returns ` (did you mean …?)` with the known name most similar to this one, or nothing where none
-/// is similar.
+/// Returns ` (did you mean …?)` with the known name most similar to this one, or an empty text if
+/// no known name is similar.
 #[must_use]
 pub fn did_you_mean<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     match nearest(name, known) {
@@ -13,11 +13,11 @@ pub fn did_you_mean<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) ->
     }
 }
 
-/// Returns the known name most similar to this one; `None` where none is similar.
+/// Returns the known name most similar to this one, or `None` if no known name is similar.
 #[must_use]
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let lower = |name: &str| -> String {
-        // Longer names are refused in any case.
+        // Names are compared only up to the largest length of a name.
         let start = name.chars().take(limits::NAME);
         start.flat_map(char::to_lowercase).collect()
     };

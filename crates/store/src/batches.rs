@@ -65,7 +65,7 @@ pub fn files(
     each.chain([Ok((LEDGER.to_owned(), ledger))]).collect()
 }
 
-/// Returns a file that records which batches its rows are.
+/// Returns a new file that lists the numbers of the batches in its rows.
 fn numbered(batches: &[&Batch]) -> Result<Npz, Failure> {
     let numbers: Array1<u32> = batches.iter().map(|b| b.index).collect();
     let emitted: Array1<u64> = batches.iter().map(|b| b.emitted).collect();
@@ -168,7 +168,7 @@ struct StoredRows {
 }
 
 impl StoredRows {
-    /// Checks that the rows are the batches in the index.
+    /// Checks that the rows are the batches that the index lists.
     fn read(file: &mut NpzFile, held: &Held) -> Result<Self, Failure> {
         let Range { start, end } = held.batches;
         let count = end.saturating_sub(start) as usize;
