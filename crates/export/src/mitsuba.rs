@@ -121,12 +121,12 @@ struct Writer {
     xml: Xml,
     /// Files of meshes and pictures.
     files: Vec<(String, Vec<u8>)>,
-    /// The object that the next files belong to.
+    /// The object to which the next files belong.
     owner: String,
 }
 
 impl Writer {
-    /// Adds a file, named after the object it belongs to; returns its name.
+    /// Adds a file that is named after the object to which it belongs; returns its name.
     fn file(&mut self, name: &str, bytes: Vec<u8>) -> String {
         let taken = |name: &String| self.files.iter().any(|(other, _)| other == name);
         let mut names = (0..).map(|number: u32| match number {
@@ -246,8 +246,8 @@ fn halves(rectangle: &Rectangle, distance: f64) -> [[DVec3; 3]; 2] {
     [[a, corner(right, low), c], [a, c, corner(left, high)]]
 }
 
-/// The part of a half-plane that light can reach, with a margin: `beyond` is farther than light
-/// gets.
+/// The part of a half-plane that light can reach, with a margin. No light reaches a coordinate of
+/// `beyond`.
 fn cut_off(half_plane: &HalfPlane, beyond: f64) -> Rectangle {
     let edge = half_plane.edge;
     let end = if half_plane.above {
@@ -269,8 +269,8 @@ fn reach(scene: &Scene) -> f64 {
         .as_flattened()
         .iter()
         .fold(0.0, |most: f64, end| most.max(end.abs()));
-    // The sky is infinite, so the extent is cut off: light from beyond it arrives within a
-    // thousandth of a radian of grazing.
+    // The sky is infinite, so the extent is cut off. Light from beyond this extent arrives within
+    // a thousandth of a radian of grazing incidence.
     let light = if light.is_finite() {
         light
     } else {
@@ -290,7 +290,7 @@ fn behind(scene: &Scene) -> Option<String> {
     found.map(|(name, _)| name.to_owned())
 }
 
-/// Surfaces, each with the corners of a bounding shape.
+/// Returns the name of each surface, with the corners of a shape that encloses it.
 fn bodies(scene: &Scene) -> impl Iterator<Item = (&str, Vec<DVec3>)> {
     let surfaces = scene.surfaces.iter();
     let surfaces = surfaces.map(|s| (s.name.as_str(), s.corners().to_vec()));

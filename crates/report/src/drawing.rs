@@ -1,5 +1,5 @@
-//! Draws the scene in two cross-sections along the central ray: in the plane of X, where y = 0, and
-//! in that of Y, where x = 0.
+//! Draws the scene in two cross-sections along the central ray: in the plane of X, where y = 0,
+//! and in the plane of Y, where x = 0.
 
 mod cut;
 mod world;

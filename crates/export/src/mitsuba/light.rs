@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 
 /// Width and height of a picture in pixels.
 const PIXELS: usize = 1024;
-/// Extent of a picture, in widths of the light's Gaussian; our photons use the same extent.
+/// Extent of a picture, in widths of the light's Gaussian; Étendue's photons have the same extent.
 const WIDTHS: f64 = 3.0;
 
 impl Writer {
@@ -60,7 +60,7 @@ impl Writer {
         self.xml.projector(&file, angle);
     }
 
-    /// A sheet that emits along its normal. Its picture has x to the right and y down.
+    /// Writes a sheet that emits along its normal. Its picture has x to the right and y down.
     fn beam(&mut self, irradiance: f64, image: &Image) {
         let half = WIDTHS * image.width[0].max(image.width[1]);
         let picture = sampled([PIXELS; 2], |column, row| {

@@ -66,8 +66,8 @@ impl Writer {
         })
     }
 
-    /// Blends `inside` with `outside` beyond the edge of a picture: Mitsuba itself can only
-    /// continue the picture there.
+    /// Writes `inside` within the edge of a picture and `outside` beyond it: Mitsuba itself can
+    /// only continue the picture there.
     fn inside(
         &mut self,
         pattern: &Pattern,
@@ -132,8 +132,8 @@ impl Writer {
 /// A perfect reflector.
 const NO_METAL: &str = "<string name=\"material\" value=\"none\"/>";
 
-/// Writes n and k. A dielectric is written as a metal without absorption, which reflects in the
-/// same way.
+/// Returns n and k. A dielectric becomes a metal without absorption, which reflects in the same
+/// way.
 fn index(fresnel: &Fresnel) -> Option<[f64; 2]> {
     match *fresnel {
         Fresnel::White => None,

@@ -7,14 +7,14 @@ use std::f64::consts::TAU;
 
 /// Minimum and maximum number of rings of triangles.
 const RINGS: [usize; 2] = [16, 256];
-/// Maximum distance of the triangles from the surface, relative to the aperture. It is exceeded if
-/// it would require more than the maximum number of rings.
+/// Maximum distance of the triangles from the surface, relative to the aperture. Patches for which
+/// this would require more than the maximum number of rings have a larger distance.
 const NEAR: f64 = 1e-5;
-/// Corners of ring i, divided by i. With 6, triangles at the edge are about as long as wide: 2π/6 ≈
-/// 1.
+/// The number of corners of ring i, divided by i. With 6 corners, triangles at the edge are about
+/// as long as wide, because 2π/6 ≈ 1.
 const SECTORS: usize = 6;
-/// Corners of the edge of a flat patch. The edge deviates from a circle by (π/512)²/2 = 2·10⁻⁵ of
-/// its radius.
+/// The number of corners of the edge of a flat patch. The edge deviates from a circle by
+/// (π/512)²/2 = 2·10⁻⁵ of its radius.
 const EDGE: usize = 512;
 
 /// A patch as triangles.
@@ -174,7 +174,7 @@ mod tests {
         }
     }
 
-    /// A hemisphere. Its edge is vertical, and its triangles are as accurate there as elsewhere.
+    /// The edge of a hemisphere is vertical; its triangles are as accurate there as elsewhere.
     #[test]
     fn half_a_ball_is_met_as_well() {
         let mesh = mesh(&patch([10.0 / 3.0; 3], 0.3));

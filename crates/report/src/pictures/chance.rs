@@ -1,4 +1,4 @@
-//! The number of cells of a difference that exceed the range of its colors by chance.
+//! The number of cells in the picture of a difference that exceed the range of colors by chance.
 
 use etendue_compare::PlaneComparison;
 use etendue_store::arrays::radial_z;
@@ -44,7 +44,7 @@ impl Outliers {
         all
     }
 
-    /// The numbers in a sentence.
+    /// Returns a sentence with these numbers.
     pub(super) fn words(&self) -> String {
         let Self {
             cells,
