@@ -30,10 +30,7 @@ use serde_json::json as tree_of;
 const NAMES: [&str; 3] = ["covariance.png", "covariance.svg", "covariance.csv"];
 
 /// `etendue covariance`: returns the exit code.
-#[expect(
-    clippy::too_many_lines,
-    reason = "one command from arguments to files, in the order of its steps"
-)]
+#[expect(clippy::too_many_lines, reason = "the steps of one command, in order")]
 pub(crate) fn covariance(args: &CovarianceArgs) -> Result<u8, Failure> {
     let mut scene = load::scene(&args.scene.source(), |run| args.photons.set(run))?;
     choose(&mut scene, &args.plane)?;

@@ -22,7 +22,7 @@ fn end() {
             let _ = told.send(());
         });
         let _ = wait.recv_timeout(Duration::from_secs(1));
-        #[expect(clippy::exit, reason = "the user asked to stop")]
+        #[expect(clippy::exit, reason = "the user asked the process to stop")]
         std::process::exit(CANNOT_RUN.into());
     });
 }

@@ -109,7 +109,7 @@ fn on_circle(t: f64) -> Rgb {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "between two numbers of a byte"
+        reason = "a mean of two numbers of type u8"
     )]
     [0, 1, 2].map(|i| ((1.0 - share) * a[i] + share * b[i]).round() as u8)
 }

@@ -130,10 +130,7 @@ pub fn make_all(
 
 /// Makes a figure; returns the verdict on all planes of its scenes. Reports replaced files and
 /// undecided planes.
-#[expect(
-    clippy::too_many_lines,
-    reason = "the steps of one figure from subject to result, in order"
-)]
+#[expect(clippy::too_many_lines, reason = "the steps of one figure, in order")]
 pub(crate) fn make(
     request: &FigureRequest,
     subject: &Subject,

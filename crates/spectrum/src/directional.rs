@@ -77,7 +77,7 @@ impl DirectionalBandwidth {
     #[must_use]
     pub fn of_window(window: &Window, grid: &SliceGrid) -> Self {
         let power = transform(window, grid).mapv(|value| value * value);
-        Self::of(power.view(), grid).expect("a window has power")
+        Self::of(power.view(), grid).expect("the spectrum of a window has power")
     }
 
     /// Computes the bandwidths of a power [azimuth, ρ ≥ 0, ν], without errors.
@@ -120,7 +120,10 @@ struct PolarPower<'a> {
 impl<'a> PolarPower<'a> {
     /// Returns `None` if there is no power.
     fn new(power: ArrayView3<'_, f64>, grid: &'a SliceGrid) -> Option<Self> {
-        assert_eq!(grid.rho.half, 0, "a picture has no frequency of position");
+        assert_eq!(
+            grid.rho.half, 0,
+            "the grid of a picture has only frequencies with ρ = 0"
+        );
         let cells = power.indexed_iter();
         let cells = cells.map(|((k, _, n), power)| PolarCell::new(grid, [k, n], *power));
         let cells: Vec<PolarCell> = cells.collect();

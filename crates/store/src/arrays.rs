@@ -125,7 +125,10 @@ fn radial_exr(mut made_from: Value, plane: &PlaneComparison) -> Result<Vec<u8>, 
         let pixels = (0..height)
             .rev()
             .flat_map(|j| (0..width).map(move |i| (i, j)));
-        #[expect(clippy::cast_possible_truncation, reason = "EXR viewers want 32 bits")]
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "EXR viewers expect 32-bit numbers"
+        )]
         let samples = pixels.map(|at| values[at] as f32).collect();
         Part { name, samples }
     });

@@ -179,7 +179,7 @@ impl StoredRows {
         let emitted: Array1<u64> = file.array("emitted", [count])?;
         let sum = emitted.iter().try_fold(0_u64, |sum, n| sum.checked_add(*n));
         if emitted.iter().any(|n| *n == 0) || sum != Some(held.photons) {
-            let must = format!("must be photons of each batch, {} in all", held.photons);
+            let must = format!("must be the photons of each batch, {} in all", held.photons);
             return Err(file.fault("emitted", must));
         }
         Ok(Self { numbers, emitted })

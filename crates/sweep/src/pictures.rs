@@ -14,10 +14,7 @@ const MAX_PANELS: usize = 24;
 
 /// Draws the pictures of [`NAMES`], unless they would have too many panels. If several fields are
 /// swept, each combination of values of the fields after the first has its own panel.
-#[expect(
-    clippy::too_many_lines,
-    reason = "the steps of one drawing, from panels to axes"
-)]
+#[expect(clippy::too_many_lines, reason = "the steps of one drawing, in order")]
 pub(crate) fn drawn(
     scene: &str,
     found: &[PointResult],

@@ -86,7 +86,10 @@ impl<T> Layer<T> {
 
 impl Obstacles {
     /// The obstacles around a leg of the path.
-    #[expect(clippy::too_many_lines, reason = "a case for each kind of obstacle")]
+    #[expect(
+        clippy::too_many_lines,
+        reason = "the function has a case for each kind of obstacle"
+    )]
     pub(crate) fn new(scene: &Scene, leg: &Leg) -> Self {
         let mut primitives = Vec::new();
         let (mut half_planes, mut semi_transparent) = (Vec::new(), Vec::new());
@@ -323,7 +326,7 @@ impl Around {
     /// are exact.
     #[expect(
         clippy::float_cmp,
-        reason = "rounding errors would only prevent the use of the exact case"
+        reason = "with rounding errors, the general case is used, which is correct too"
     )]
     fn flat(frame: &Frame, shape: &Shape) -> Primitive {
         let across = frame.d.z.abs() == 1.0 && frame.x.x.abs() == 1.0;

@@ -93,6 +93,6 @@ fn error_of(image: &Image, half: f64) -> String {
         .map_or(0.0, |g| 2.0 * PI * PI * g.frequency * g.frequency);
     let error = pixel * pixel / 8.0 * (2.0 * PI / (narrow * narrow) + wave);
     format!(
-        "the light: a picture of {PIXELS} by {PIXELS} pixels, off by {error:.1e} of its peak at most"
+        "the light: a picture of {PIXELS} by {PIXELS} pixels, with errors of at most {error:.1e} of its peak"
     )
 }

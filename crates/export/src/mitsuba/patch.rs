@@ -80,7 +80,10 @@ fn rings(patch: &Patch, rings: usize, sectors: usize) -> PatchMesh {
         };
         vertices.extend((0..sectors).map(|sector| vertex(r, sector as f64 / sectors as f64)));
     }
-    #[expect(clippy::cast_possible_truncation, reason = "some 400,000 at most")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "a patch has at most some 200,000 corners"
+    )]
     let corner = |ring: usize, sector: usize| match ring {
         0 => 0,
         _ => (1 + (ring - 1) * sectors + sector % sectors) as u32,

@@ -112,7 +112,7 @@ impl Grids {
 
 #[expect(
     clippy::cast_possible_truncation,
-    reason = "to be looked at, not to be computed with"
+    reason = "the numbers are shown, and nothing is computed from them"
 )]
 fn encoded(values: ArrayView2<'_, f64>) -> String {
     let bytes = values

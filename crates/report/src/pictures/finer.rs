@@ -102,7 +102,7 @@ fn linear(from: &FrequencyAxis, to: &FrequencyAxis) -> Vec<[(usize, f64); 2]> {
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
-            reason = "between 0 and the number of frequencies"
+            reason = "the index is between 0 and the number of frequencies"
         )]
         let low = (at.floor() as usize).min(last.saturating_sub(1));
         let share = at - low as f64;
@@ -164,7 +164,7 @@ fn weights(
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "a small odd number"
+        reason = "the number of parts is small and odd"
     )]
     let parts = parts as usize;
     let factor = Cholesky::new(count, |i, j| apart[parts * i.abs_diff(j)]);

@@ -46,7 +46,7 @@ impl Resolver<'_> {
                 "without a normal: the normals of its triangles cancel to {left:.1e} of their summed lengths"
             );
             let allowed = format!(
-                "vertices of a smooth surface, at which at least {MIN_NORMAL} of these lengths is left{}",
+                "vertices of a smooth surface, whose normals sum to at least {MIN_NORMAL} of these lengths{}",
                 others(cancel.len())
             );
             self.faults.add(field, value, allowed);

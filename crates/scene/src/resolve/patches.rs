@@ -19,7 +19,7 @@ impl Resolver<'_> {
 
     #[expect(
         clippy::too_many_lines,
-        reason = "a case for each form and event of a surface"
+        reason = "the function has a case for each form and event"
     )]
     fn patch(&mut self, of: &str, surface: &SurfaceFile, light: &Frame) -> Option<PatchObject> {
         let SurfaceFile::Smooth {

@@ -354,7 +354,7 @@ impl Resolver<'_> {
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
-            reason = "checked to be in 1..2^32"
+            reason = "the number was checked to be in 1..2^32"
         )]
         let half = half as usize;
         Some(FrequencyAxis { half, spacing })

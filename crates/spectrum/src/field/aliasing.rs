@@ -111,7 +111,10 @@ impl FieldSpectrum {
 
     /// Returns which multiple of the spacing along `axis` the frequency at `index` of `frequencies`
     /// is, if it is a multiple up to Nyquist.
-    #[expect(clippy::cast_possible_truncation, reason = "below the number of cells")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "the multiple is below the number of cells"
+    )]
     fn harmonic_at(&self, axis: usize, frequencies: &FrequencyAxis, index: usize) -> Option<isize> {
         let exact = frequencies.value(index) / self.grid.spacing(axis);
         let whole = exact.round();

@@ -22,7 +22,7 @@ pub(crate) fn transform(assignment: Assignment, f: f64) -> f64 {
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "whole, not negative and at most n: a ray in the window is in the box"
+    reason = "the index is whole and from 0 to n, because a ray in the window is in the box"
 )]
 pub(crate) fn taps<const P: usize>(t: f64, n: usize) -> ([usize; P], [f64; P]) {
     // The cell below t or, for odd P, the cell nearest to t.

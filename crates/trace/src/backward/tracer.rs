@@ -145,7 +145,7 @@ impl Backward {
     /// next surface on the way back.
     #[expect(
         clippy::too_many_lines,
-        reason = "a case for each kind of surface that a ray may meet"
+        reason = "the function has a case for each kind of surface"
     )]
     fn incident(
         &self,

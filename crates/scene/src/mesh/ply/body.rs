@@ -194,7 +194,7 @@ pub(super) fn whole(value: f64) -> Option<u32> {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "checked to be whole and in range"
+        reason = "the value was checked to be whole and in range"
     )]
     let cast = |value| value as u32;
     let fits = (0.0..=f64::from(u32::MAX)).contains(&value) && value.fract() == 0.0;

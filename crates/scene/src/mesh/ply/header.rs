@@ -142,7 +142,10 @@ impl PlyHeader {
             if let Some(more @ 1..) = self.elements.len().checked_sub(MOST_LISTED) {
                 rows.push(format!("{more} more elements"));
             }
-            let allowed = format!("at least {least}, for {} as announced", rows.join(", "));
+            let allowed = format!(
+                "at least {least}, because the header announces {}",
+                rows.join(", ")
+            );
             return Err(fault("number of bytes after the header", length, allowed));
         }
         Ok(())
