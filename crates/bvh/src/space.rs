@@ -74,8 +74,8 @@ impl Space {
     }
 
     /// Returns the distance along a ray at which to begin. This distance is `from`, unless the
-    /// point there is far from all boxes. It is then the distance at which the ray comes near the
-    /// boxes, because f32 would lose precision over a longer distance.
+    /// point there is far from all boxes. In that case it is the distance at which the ray comes
+    /// near the boxes, because f32 would lose precision over a longer distance.
     #[inline]
     pub(crate) fn begin(&self, start: DVec3, direction: DVec3, from: f64) -> f64 {
         let start = start - self.center;

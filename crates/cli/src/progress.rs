@@ -69,8 +69,8 @@ impl Progress for Bar {
     }
 }
 
-/// Returns a progress bar with the photons done, their rate and the time left. It is shown only on
-/// a terminal.
+/// Returns a progress bar with the photons done, their rate and the time left. The bar is shown
+/// only on a terminal.
 pub(crate) fn photons(total: u64, quiet: bool) -> ProgressBar {
     if quiet {
         return ProgressBar::hidden();

@@ -103,7 +103,7 @@ struct ResultPlace<'a> {
     plan: Plan,
     /// Is `None` if several processes measure.
     results: Option<Results>,
-    /// The other processes, led by this one.
+    /// The leader of the other processes, if several processes share the measurement.
     workers: Option<&'a Leader<'a>>,
 }
 

@@ -156,8 +156,8 @@ fn a_changed_index_is_refused() {
         let _index = changed(&folder.join(name), change);
         refused(folder, COMPARE, &[&[&name[..2]], parts].concat());
     }
-    // In the cases above the index had a matching hash; without a matching hash, any changed bit is
-    // detected.
+    // The index had a matching hash in the cases above; without a matching hash, any changed bit
+    // is detected.
     for name in [a, p] {
         let whole = fs::read(folder.join(name)).unwrap();
         for i in 0..75 {
@@ -403,6 +403,6 @@ fn meshes_are_part_of_the_scene() {
         &["a/measurement.inputs/tri.obj is damaged"],
     );
     fs::write(&copy, whole).unwrap();
-    // So few photons may leave the verdict undecided.
+    // The unmodified copy is accepted again; the verdict does not matter here.
     ends("compare --measured b a --predicted p --out out", &[0, 1]);
 }

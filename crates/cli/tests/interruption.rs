@@ -1,4 +1,4 @@
-//! Signals end a run, whatever the state of its standard error; lack of memory ends it with a
+//! Signals end a run even if its standard error is closed or full; lack of memory ends it with a
 //! message.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]

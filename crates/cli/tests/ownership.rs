@@ -282,8 +282,7 @@ fn call_without_quiet(folder: &Path, arguments: &str) -> String {
     String::from_utf8(output.stderr).unwrap()
 }
 
-/// If a process dies while its files are moved, the next process completes the move, whichever step
-/// it had reached.
+/// If a process dies while its files are moved, the next process completes the move from any step.
 #[test]
 fn a_move_that_was_cut_short_is_ended() {
     let folder = folder();

@@ -173,7 +173,8 @@ fn planted_faults_are_seen() {
     }
 }
 
-/// Power is taken from the file, in W, whatever the file's unit; rays that go back are left out.
+/// The power of the rays is used in W even if the file states another unit; rays that go back are
+/// left out.
 #[test]
 fn power_is_in_watts() {
     let folder = folder();

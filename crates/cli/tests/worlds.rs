@@ -50,7 +50,7 @@ fn done(path: &Path, line: &str) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// The message of a command that refuses its input.
+/// Returns the message of a command that refuses its input.
 fn refused(path: &Path, line: &str) -> String {
     let output = call(path, line);
     assert_eq!(output.status.code(), Some(2), "{line}: {output:?}");

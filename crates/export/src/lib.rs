@@ -2,8 +2,8 @@
 //!
 //! [`mitsuba`] writes a [`Scene`](etendue_scene::Scene) for [Mitsuba
 //! 3](https://www.mitsuba-renderer.org): the light, the blockers, and the surfaces with their
-//! BRDFs. It also writes the virtual planes, so that a script can record the same local light
-//! fields with an independent tracer (`docs/mitsuba.md`). The export fails if Mitsuba cannot
+//! BRDFs. The export also holds the virtual planes, so that a script can record the same local
+//! light fields with an independent tracer (`docs/mitsuba.md`). The export fails if Mitsuba cannot
 //! represent a part of the scene; the error names this part.
 
 mod mitsuba;

@@ -1,7 +1,8 @@
 //! Export to Mitsuba's scene format.
 //!
 //! Coordinates are those of [`Scene`]: metres, the light's centre at the origin, and x, y, z along
-//! X, Y and D of the central ray. They are written such that every f64 is read back exactly.
+//! X, Y and D of the central ray. Coordinates are written with so many digits that every f64 is
+//! read back exactly.
 
 mod id;
 mod light;
@@ -40,7 +41,7 @@ pub enum NotInMitsuba {
         "Mitsuba has no semi-transparent mask, only pictures of one: {name:?} cannot be exported"
     )]
     Mask {
-        /// Name of its layer.
+        /// Name of the layer of blockers with this mask.
         name: String,
     },
     /// An object behind the plane in which an environment begins.

@@ -59,7 +59,7 @@ pub struct Axis {
     pub min: f64,
     /// Outer edge of the cell with the highest values.
     pub max: f64,
-    /// Whether the axis is logarithmic; both edges are above 0 then.
+    /// Whether the axis is logarithmic; if it is, both edges are above 0.
     pub is_log: bool,
     /// Whether the numbers descend to the right, or upwards, as for rows of a photograph, which
     /// count from the top. The first cell of an array is then at the high edge.
@@ -218,7 +218,7 @@ const OVERHANG: f64 = 7.0;
 
 /// The usual first digits of the steps between ticks.
 const USUAL: [f64; 3] = [1.0, 2.0, 5.0];
-/// First digits used if the usual ones leave fewer than three ticks.
+/// First digits that are used if the usual digits leave fewer than three ticks.
 const MORE: [f64; 7] = [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 8.0];
 
 /// The most ticks whose texts do not overlap along `length`, and their font size. If fewer than

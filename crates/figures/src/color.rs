@@ -32,8 +32,8 @@ pub(crate) type Rgb = [u8; 3];
 /// Grey for cells without a value (NaN). No color map contains this grey.
 pub(crate) const NO_VALUE: Rgb = [158, 158, 158];
 
-/// Colors of magnitudes, dark to pale. Their lightness increases evenly, so the colors remain
-/// distinct when printed in grey.
+/// Colors of magnitudes, dark to pale. The lightness of the colors increases evenly, so they
+/// remain distinct when printed in grey.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Palette {
     /// Black, purple, orange, pale yellow.
@@ -59,7 +59,7 @@ pub(crate) enum Colors {
     Cyclic,
 }
 
-/// Eight colors of the color circle; the others are interpolated between them.
+/// Eight colors of the color circle, between which all others are interpolated.
 const CIRCLE: [[f64; 3]; 8] = [
     [226.0, 217.0, 226.0],
     [150.0, 182.0, 203.0],

@@ -29,12 +29,12 @@ pub struct Comparison<'a> {
     pub sides: [&'a str; 2],
     /// Measured values; may be negative after subtraction of the shot noise.
     pub measured: ArrayView2<'a, f64>,
-    /// Predicted values, or those of whatever the measurement is compared with.
+    /// Predicted values, or other values with which the measurement is compared.
     pub predicted: ArrayView2<'a, f64>,
     /// (measured − predicted) / σ.
     pub z: ArrayView2<'a, f64>,
-    /// Measured and predicted values on finer cells over the same axes. They replace the values in
-    /// the picture, but not in the table.
+    /// Measured and predicted values on finer cells over the same axes. These finer values are
+    /// drawn in the picture; the table keeps the original values.
     pub finer: Option<[ArrayView2<'a, f64>; 2]>,
 }
 

@@ -249,7 +249,8 @@ fn draw(svg: &mut Svg, panel: &CurvePanel, y: &AxisQuantity, area: Area) {
                 CurveKind::Rival => svg.polyline(&at, RIVAL),
                 CurveKind::Measured => {
                     for (p, at) in points.iter().zip(at) {
-                        // The error bar ends below the frame if an error is as large as its value.
+                        // An error bar extends below the frame if the error is as large as the
+                        // value.
                         let ends = [(p[1] - p[2]).max(y.min), p[1] + p[2]];
                         let ends = ends.map(|y| frame.point(p[0], y)[1]);
                         bar(svg, at, ends);

@@ -23,7 +23,7 @@ const NAME_ROW: f64 = 17.0;
 /// Line spacing of a plane's heading.
 const HEADING_LINE: f64 = 16.0;
 
-/// The name of a plane in one line, or in two if it is too long for one.
+/// Returns the name of a plane in one line, or in two lines if it is too long.
 fn name_lines(name: &str, room: f64) -> Vec<String> {
     // Bold letters are wider than the estimate, so less room is assumed.
     let mut words = lines(name, 1.2 * SMALL_NAME, room).into_iter();
@@ -266,7 +266,8 @@ impl<'a> SectionLayout<'a> {
         part.map(|t| [0, 1].map(|i| start[i] + t * (end[i] - start[i])))
     }
 
-    /// Draws the line of a plane at its position, and its number where there is room.
+    /// Draws the line of a plane at the position of the plane, and the number of the plane where
+    /// there is room.
     fn plane(&self, svg: &mut Svg, plane: usize) {
         let [at, _] = self.point([self.section.planes[plane].distance, 0.0]);
         let stroke = Stroke {

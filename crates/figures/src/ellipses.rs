@@ -15,7 +15,7 @@ use std::f64::consts::TAU;
 pub struct Ellipse {
     /// The name in the key.
     pub name: String,
-    /// Its entries xx, xy and yy.
+    /// The entries xx, xy and yy of the covariance.
     pub covariance: [f64; 3],
 }
 
@@ -141,7 +141,8 @@ pub fn ellipses(of: &Ellipses<'_>) -> Result<Figure, Error> {
     })
 }
 
-/// Points around the ellipse. They are a matrix root of the covariance times points of a circle.
+/// Points around the ellipse. The points are a matrix root of the covariance times points of a
+/// circle.
 fn points([xx, xy, yy]: [f64; 3]) -> impl Iterator<Item = [f64; 2]> {
     const CORNERS: u32 = 180;
     let a = xx.max(0.0).sqrt();

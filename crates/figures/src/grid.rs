@@ -22,8 +22,8 @@ pub struct Picture<'a> {
 }
 
 impl Picture<'_> {
-    /// The ratio of height to width. It is 1, unless both axes count pixels, which are drawn
-    /// square.
+    /// The ratio of height to width. This ratio is 1, unless both axes count pixels, which are
+    /// drawn square.
     fn shape(&self) -> f64 {
         let counts_pixels = |axis: &Axis| axis.quantity.unit == "pixels";
         if counts_pixels(&self.x) && counts_pixels(&self.y) {
@@ -54,7 +54,7 @@ pub(crate) struct PictureRow<'b, 'a> {
     /// Name and unit for the color bar, markup.
     pub(crate) bar: [String; 2],
     pub(crate) scale: Scale,
-    /// Whether all pictures of the row share a color range. Otherwise each picture is relative to
+    /// Whether all pictures of the row share a color range. If not, each picture is relative to
     /// its own largest value.
     pub(crate) shared: bool,
     /// A picture for each column, with the lines over it.
@@ -91,7 +91,7 @@ pub(crate) const RIGHT: f64 = 81.0;
 /// Gaps between adjacent pictures. The first is used if the right picture has no numbers beside
 /// its axis, and the second if it has numbers.
 pub(crate) const GAPS: [f64; 2] = [26.0, 56.0];
-/// The first of [`GAPS`], where there are many pictures side by side.
+/// The gap that replaces the first of [`GAPS`] if there are many pictures side by side.
 const CLOSE: f64 = 16.0;
 /// Gaps between a picture and the picture below. The first is used if they share the x axis, and
 /// the second if they do not.
@@ -100,7 +100,7 @@ const ROW_GAPS: [f64; 2] = [14.0, LABEL_BASELINE + 18.0];
 const ROW_NAME: f64 = 63.0;
 
 /// Strokes of the lines over spectra. The upper stroke is visible on dark colors, and the lower
-/// stroke makes the line visible on pale ones.
+/// stroke makes the line visible on pale colors.
 pub(crate) fn guide_strokes(is_across: bool) -> [Stroke; 2] {
     let color = if is_across { "#8dff9c" } else { "#7fe0ff" };
     [Stroke::solid("#10304a", 3.2), Stroke::solid(color, 1.4)]
@@ -131,7 +131,7 @@ pub(crate) struct PageGrid<'b, 'a> {
     style: Style,
     /// Width of a picture.
     pub(crate) side: f64,
-    /// Gap between adjacent pictures, if the right one has no numbers beside its axis.
+    /// Gap between adjacent pictures, if the right picture has no numbers beside its axis.
     near: f64,
     /// Height of a picture divided by its width.
     shape: f64,
@@ -139,8 +139,8 @@ pub(crate) struct PageGrid<'b, 'a> {
 }
 
 impl<'b, 'a> PageGrid<'b, 'a> {
-    /// Lays out rows of `columns` pictures. Their width is from `least` to `largest`, if such a
-    /// width fits. All pictures have the shape of the first.
+    /// Lays out rows of `columns` pictures. The pictures are from `least` to `largest` wide, if
+    /// such a width fits. All pictures have the shape of the first.
     ///
     /// # Panics
     /// If a row does not have a picture for each column.
@@ -255,9 +255,9 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         })
     }
 
-    /// The width below which the x label of a picture is centred. It is that of the whole block if
-    /// the pictures are narrow and have the same axis. Returns `None` if a label further to the
-    /// left applies.
+    /// The width below which the x label of a picture is centred. If the pictures are narrow and
+    /// have the same axis, this is the width of the whole block. Returns `None` if a label further
+    /// to the left applies.
     fn labelled_across(&self, row: usize, places: &[PlacedColumn], i: usize) -> Option<f64> {
         let x = |place: &PlacedColumn| &self.rows[row].cells[place.column].0.x;
         let is_same = places.iter().all(|place| x(place) == x(&places[0]));
@@ -268,8 +268,8 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         Some(last.left + self.side - places[0].left)
     }
 
-    /// The height beside which the y label of a picture is centred. It includes the pictures below
-    /// that have the same axes. Returns `None` if a label further up applies.
+    /// The height beside which the y label of a picture is centred. This height includes the
+    /// pictures below that have the same axes. Returns `None` if a label further up applies.
     fn labelled_down(&self, row: usize, column: usize) -> Option<f64> {
         let y = |row: usize| &self.rows[row].cells[column].0.y;
         let is_same = |above: usize| self.shares_x(above) && y(above) == y(above + 1);
@@ -318,7 +318,7 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         Ok(y - ROW_GAPS[1] + LABEL_BASELINE)
     }
 
-    /// The largest value of the rows that share a color bar with this one.
+    /// The largest value of the rows that share a color bar with this row.
     fn peak(&self, index: usize) -> f64 {
         let rows = self.rows.iter().filter(|r| r.has_bar_of(&self.rows[index]));
         let cells = rows.flat_map(|row| &row.cells);

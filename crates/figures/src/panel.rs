@@ -24,8 +24,8 @@ pub(crate) struct Panel<'a> {
     pub(crate) label_x: bool,
     pub(crate) label_y: bool,
     /// The lengths along which the x and y labels are centred, from the left and from the top of
-    /// the panel. They may include panels to the right and below. Is `None` for a label that is
-    /// not written.
+    /// the panel. These lengths may include panels to the right and below. Is `None` for a label
+    /// that is not written.
     pub(crate) labelled: [Option<f64>; 2],
 }
 

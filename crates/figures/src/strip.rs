@@ -28,8 +28,8 @@ pub struct StripColumn<'a> {
     pub finer: Option<Picture<'a>>,
     /// The predicted spectrum. This row is drawn if each column has one.
     pub predicted: Option<Picture<'a>>,
-    /// The full radial spectrum over (|Ωxy|, |Ωuv|), measured and predicted. These rows are drawn
-    /// if each column has them.
+    /// The full radial spectrum over (|Ωxy|, |Ωuv|), measured and predicted. The rows of full
+    /// radial spectra are drawn if each column has such a spectrum.
     pub full_radial: Option<[Picture<'a>; 2]>,
     /// The difference between the measured spectrum and a first-order chain, in percent of its
     /// largest modulus. This row is drawn if each column has one.
@@ -173,7 +173,8 @@ impl StripRow {
 const CUT: f64 = 150.0;
 /// Height of the lines from the cut to the columns.
 const LEADERS: f64 = 34.0;
-/// Minimum width of a picture. Columns that do not fit at this width go below the others.
+/// Minimum width of a picture. Columns that do not fit at this width are placed below the other
+/// columns.
 const MIN_WIDTH: f64 = 48.0;
 
 /// Draws a strip, as wide as the page.

@@ -189,7 +189,7 @@ impl Svg {
     /// smallest size is still too wide, the text is shortened and loses its styles.
     pub(crate) fn fitted(&mut self, style: TextStyle, markup: &str, room: f64) {
         let plain = plain(markup);
-        // Bold letters are about 12 % wider than the estimate for regular ones.
+        // Bold letters are about 12 % wider than the estimate for regular letters.
         let room = if style.bold { room / 1.12 } else { room };
         let (text, size) = fit(&plain, style.size, room);
         let style = TextStyle { size, ..style };
@@ -280,8 +280,8 @@ fn near(from: [f64; 2], to: [f64; 2]) -> Option<[[f64; 2]; 2]> {
     let [mut first, mut last] = [0.0_f64, 1.0_f64];
     for axis in 0..2 {
         let along = to[axis] - from[axis];
-        // The parameters at which the line crosses both borders. They are NaN for a line along a
-        // border.
+        // The parameters at which the line crosses both borders. These parameters are NaN for a
+        // line along a border.
         let borders = [-MAX_COORDINATE, MAX_COORDINATE].map(|border| (border - from[axis]) / along);
         if along != 0.0 {
             first = first.max(borders[0].min(borders[1]));

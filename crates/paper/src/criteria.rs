@@ -105,7 +105,8 @@ fn panel(
     })
 }
 
-/// The bandwidth by the criterion, corrected and as printed; behind an edge if there is one.
+/// The bandwidth by the criterion, corrected and as printed. It is the bandwidth behind an edge if
+/// the scene has an edge.
 fn said(criterion: &Criterion) -> [f64; 2] {
     if criterion.blocker_distance.is_some() {
         [criterion.blocker(), criterion.printed_blocker()]

@@ -117,8 +117,9 @@ mod tests {
     use crate::scene_run::Shot;
     use etendue_pipeline::Silent;
 
-    /// The difference of the two planes is the error of the chain, which treats u as θ. It would be
-    /// as large as the spectra if different frequencies of the two planes were subtracted.
+    /// The difference of the two planes is the error of the chain, which treats u as θ. This
+    /// difference would be as large as the spectra if different frequencies of the two planes were
+    /// subtracted.
     #[test]
     fn the_difference_of_the_planes_is_the_error_of_the_chain() {
         let subject = named("8").unwrap().subject().unwrap();

@@ -26,7 +26,7 @@ const PARTIAL_INTERVAL: Duration = Duration::from_secs(2);
 #[derive(Clone, Copy, Debug)]
 pub struct Checkpointing<'a> {
     /// Whether to continue from stored batches, and to share the work with other processes that
-    /// continue from them.
+    /// continue from the same batches.
     pub resume: bool,
     /// The time after which no more parts of batches are begun.
     pub until: Option<Instant>,

@@ -12,12 +12,13 @@ use std::path::{Path, PathBuf};
 /// A scene file, and the fields set in it.
 #[derive(Clone, Debug)]
 pub struct SceneSource {
-    /// The file, in RON or JSON. Its meshes and pictures are in the same folder.
+    /// The file, in RON or JSON. The meshes and pictures of the scene are in the same folder as
+    /// the file.
     pub path: PathBuf,
     /// A text that is read instead of the file; `path` then gives only the name and the folder of
     /// the scene.
     pub text: Option<String>,
-    /// Fields with the values they are set to, each set as [`SceneFile::with`] does.
+    /// Fields with the values to which [`SceneFile::with`] sets them.
     pub set: Vec<(String, String)>,
     /// The style in which messages name arguments.
     pub arguments: ArgumentStyle,
@@ -45,8 +46,8 @@ impl SceneSource {
         self.path.file_stem().unwrap_or_default().to_string_lossy()
     }
 
-    /// Returns the name of the scene in messages: the path of its file, or its own name where there
-    /// is no file.
+    /// Returns the name of the scene in messages: the path of its file, or the name of the scene
+    /// if there is no file.
     fn shown(&self) -> String {
         match self.text {
             Some(_) => self.name().into_owned(),

@@ -40,7 +40,7 @@ pub struct Summary {
     pub ledger_imbalance: Option<f64>,
     /// Verdict on all planes together.
     pub verdict: Verdict,
-    /// Probability of a failure where nothing is wrong.
+    /// Probability that the verdict is a failure although nothing is wrong.
     pub alpha: f64,
     /// A report for each plane, in the order of the scene.
     pub planes: Vec<PlaneReport>,

@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 /// Number of photons of the first stage.
 const FIRST_PHOTONS: u64 = 1 << 20;
-/// The largest number of photons of a stage, unless the user sets one.
+/// The largest number of photons of a stage, unless the user sets another number.
 const MAX_PHOTONS: u64 = 1 << 40;
 /// The factor by which the photons needed by the square-root law may exceed the limit, since nets
 /// may need fewer.
@@ -82,7 +82,7 @@ pub fn reached(
 }
 
 /// Returns the noise of the run, and the noise of a run a hundred times as long, in words; `None`
-/// where there is no light.
+/// if there is no light.
 pub fn outlook(planes: &[PlaneReport], seconds: f64) -> Option<String> {
     let noise = |plane: &PlaneReport| plane.noise_limit;
     let lit = planes

@@ -12,8 +12,8 @@ use std::fmt;
 /// gzip file may take twice its length in memory.
 pub const MEMORY: usize = 6;
 
-/// Bytes that reading may take regardless of the length of the file. They are for texts and
-/// tables, of which there are at most 65,536 each.
+/// Bytes that reading may take regardless of the length of the file. They are needed for at most
+/// 65,536 texts and as many tables.
 pub const MEMORY_FREE: usize = 16 << 20;
 
 /// The format of a file.

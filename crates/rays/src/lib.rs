@@ -11,7 +11,7 @@
 //! numbers and zero directions are refused, and each [`Fault`] gives the position of the byte or
 //! the number of the ray.
 //!
-//! This crate does no disk access and does not depend on light fields.
+//! The crate `etendue-rays` does not access the disk and does not depend on light fields.
 //!
 //! ```
 //! use etendue_rays::{Format, PowerUnit, RayFile, RaySet, Wavelengths, convert};

@@ -53,8 +53,8 @@ pub fn stored_data(folder: &Path) -> Result<String, Failure> {
 pub fn page(title: &str, blocks: &[(String, String)]) -> String {
     let block = |(folder, data): &(String, String)| {
         let folder = escaped(folder).replace('"', "&quot;");
-        // In JSON this character occurs only in strings. It is escaped, so that no name in a scene
-        // can end the data.
+        // In JSON this character occurs only in strings. The character is escaped, so that no name
+        // in a scene can end the data.
         let data = data.replace('<', "\\u003c");
         format!("<script type=\"application/json\" data-folder=\"{folder}\" {BEFORE}{data}{AFTER}")
     };

@@ -1,5 +1,5 @@
-//! Reads files as bytes: only regular ones of a bounded length, and only below a folder where a
-//! scene names them.
+//! Reads files as bytes. Only regular files of a bounded length are read; files that a scene names
+//! must also be below the folder of the scene.
 
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -60,7 +60,7 @@ pub fn read_below(folder: &Path, name: &str, most: u64) -> Result<Vec<u8>, ReadE
     if !leads_down(name) {
         return Err(ReadError::Outside);
     }
-    // A path without a folder is relative to the current one.
+    // A path without a folder is relative to the current folder.
     let folder = match folder.as_os_str() {
         empty if empty.is_empty() => Path::new(".").canonicalize()?,
         _ => folder.canonicalize()?,

@@ -311,7 +311,7 @@ pub struct Run {
 #[must_use]
 pub fn scene_hash(file: &SceneFile, inputs: &BTreeMap<String, String>) -> String {
     let mut hasher = blake3::Hasher::new();
-    // This cannot fail: a scene file is plain data with finite numbers.
+    // Serialisation cannot fail, because a scene file is plain data with finite numbers.
     hasher.update(&serde_json::to_vec(file).unwrap_or_default());
     for (name, hash) in inputs {
         // Names hold no NUL, so different lists of files give different bytes.

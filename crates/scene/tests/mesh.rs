@@ -319,7 +319,7 @@ fn faults_of_binary_ply_files_are_told() {
 }
 
 /// A header with the line ends of another system precedes binary data, which begin directly after
-/// the last one.
+/// the last line end.
 #[test]
 fn binary_ply_behind_all_line_ends() {
     let mesh = Mesh::star(1.0, 0.0, 0, 2).unwrap();

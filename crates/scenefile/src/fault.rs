@@ -98,7 +98,7 @@ fn list(faults: &[Fault]) -> String {
     lines(faults, Fault::to_string).join("\n")
 }
 
-/// Returns the first faults in words, and the number of further ones.
+/// Returns the first faults in words, and the number of further faults.
 fn lines(faults: &[Fault], told: impl Fn(&Fault) -> String) -> Vec<String> {
     let first = faults.iter().take(limits::FAULTS);
     let mut lines: Vec<String> = first.map(told).collect();

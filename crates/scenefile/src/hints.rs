@@ -137,7 +137,7 @@ mod tests {
             fields(&file, "", &mut paths);
             for path in paths {
                 let (around, _) = path.rsplit_once(['.', '[']).unwrap_or_default();
-                // A field that is not written is located at the enclosing one, if at all.
+                // A field that is not written is located at the enclosing field, if at all.
                 let written = find(&text, &path);
                 let Some(place) = written.filter(|_| written != find(&text, around)) else {
                     continue;

@@ -140,7 +140,7 @@ fn parsed(text: &str, deepest: usize) -> Option<Value> {
     })
 }
 
-/// Returns the content of parentheses: named fields, several values, or one.
+/// Returns the content of parentheses: named fields, several values, or one value.
 fn fields(text: &str, deepest: usize) -> Option<Value> {
     let parts = separated(text);
     let named: Option<Vec<_>> = parts.iter().map(|part| part.split_once(':')).collect();

@@ -31,8 +31,8 @@ pub fn bandwidth_nu(power: ArrayView2<'_, f64>, grid: &SliceGrid, fraction: f64)
     bandwidth(power.sum_axis(Axis(0)).view(), &grid.nu, fraction)
 }
 
-/// Returns the largest bandwidth over the azimuths of a power [azimuth, ρ ≥ 0, ν]; the first of
-/// equal ones.
+/// Returns the largest bandwidth over the azimuths of a power [azimuth, ρ ≥ 0, ν]; if several are
+/// equal, the first.
 #[must_use]
 pub fn widest(
     power: ArrayView3<'_, f64>,

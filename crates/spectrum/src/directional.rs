@@ -20,7 +20,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 pub struct DirectionalBandwidth {
     /// The bandwidths, cycles per unit slope, at the azimuths π k / K.
     pub along: Vec<f64>,
-    /// The largest of them, with its azimuth in radians; the first of equal ones.
+    /// The largest bandwidth, with its azimuth in radians; if several are equal, the first.
     pub widest: Widest<Uncertain>,
     /// The bandwidth across the direction of the largest bandwidth.
     pub across: Uncertain,
@@ -33,7 +33,8 @@ pub struct DirectionalBandwidth {
 impl DirectionalBandwidth {
     /// Computes the bandwidths of independent measurements of one picture.
     ///
-    /// Returns `None` if the total power is not positive, with all measurements or without one.
+    /// Returns `None` if the total power is not positive for all measurements together, or with
+    /// one measurement left out.
     ///
     /// # Errors
     ///
@@ -101,7 +102,7 @@ impl DirectionalBandwidth {
         })
     }
 
-    /// Returns the bandwidth at the azimuth nearest to a given one, in radians.
+    /// Returns the bandwidth at the azimuth nearest to a given azimuth, in radians.
     #[must_use]
     pub fn at(&self, azimuth: f64) -> f64 {
         let count = self.along.len();
@@ -221,7 +222,7 @@ impl Cumulative {
             }
             within += power;
         }
-        // Only rounding errors lead here.
+        // Only rounding errors lead to this line.
         self.bins.len() as f64 * self.step
     }
 }

@@ -6,9 +6,9 @@ use ndarray::{Array2, Array3};
 
 /// The measured slices of a plane.
 ///
-/// The mean over batches is unweighted. It is unbiased because each batch is unbiased, even if the
-/// batches differ in size. Batches differ by one emitted photon at most, so weights would gain
-/// nothing.
+/// The mean over batches is unweighted. This mean is unbiased because each batch is unbiased, even
+/// if the batches differ in size. Batches differ by one emitted photon at most, so weights would
+/// gain nothing.
 #[derive(Clone, Debug)]
 pub struct SliceEstimate {
     /// Number R of batches.

@@ -39,7 +39,7 @@ pub trait Watch: Sync {
     fn traced(&self, photons: u64);
 
     /// Returns whether to measure a part of a batch; called just before this part is measured.
-    /// Otherwise the rest of the batch is left out.
+    /// If it returns false, the rest of the batch is left out.
     fn goes_on(&self, _batch: u32, _part: u32) -> bool {
         true
     }

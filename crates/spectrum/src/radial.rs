@@ -16,8 +16,8 @@ pub struct RadialPower {
     /// The contribution of the photons' noise to the power of the mean spectrum, which `power`
     /// leaves out.
     pub shot_noise: Array2<f64>,
-    /// The standard error of `power`, by the delete-one jackknife over R batches. It is
-    /// conservative where there is only noise: there it is √(2(R−1)/(R−2)) times too large.
+    /// The standard error of `power`, by the delete-one jackknife over R batches. For frequencies
+    /// with noise alone, this error is conservative: it is √(2(R−1)/(R−2)) times too large.
     pub sigma: Array2<f64>,
 }
 
@@ -25,8 +25,8 @@ pub struct RadialPower {
 ///
 /// U = (|Σ S_r|² − Σ |S_r|²)/(R(R−1)),
 ///
-/// the mean of Re(S_r conj S_s) over all pairs r ≠ s. The noise of two batches is independent, so U
-/// is an unbiased estimate of |F|², whatever the correlations among the photons of one batch.
+/// the mean of Re(S_r conj S_s) over all pairs r ≠ s. The noise of two batches is independent, so
+/// U is an unbiased estimate of |F|² even if the photons of one batch are correlated.
 ///
 /// Without batch r it is (T − 2 row_r)/((R−1)(R−2)), where T is R(R−1) U and row_r = Σ_(s≠r) Re(S_r
 /// conj S_s): the jackknife needs no copies.

@@ -53,8 +53,8 @@ fn over_bound(spectrum: &FieldSpectrum, crossings: &[Crossing]) -> f64 {
     largest
 }
 
-/// Returns sets of rays: random rays, one ray, and one ray at the worst position. That position is
-/// half-way between centres on one axis and on a centre on the others.
+/// Returns sets of rays: random rays, one ray, and one ray at the worst position. The worst
+/// position is half-way between centres of cells on one axis, and at a centre on the other axes.
 fn sets(window: &Window) -> Vec<Vec<Crossing>> {
     let grid = small(window);
     let mut random = Random(11);

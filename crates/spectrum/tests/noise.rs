@@ -73,7 +73,7 @@ fn white_noise_is_flat() {
     }
     let bins = grid.rho.half as f64;
     // The limit is four standard deviations of χ² with 12 degrees of freedom. A 10 % tilt of the
-    // kernel's correction gives hundreds of them.
+    // kernel's correction gives hundreds of standard deviations.
     assert!(chi2 < bins + 4.0 * (2.0 * bins).sqrt(), "{chi2}");
     assert!(chi2 > 2.0, "{chi2}"); // below 2 with probability 1e-4: the noise would be too smooth
 }
@@ -100,7 +100,7 @@ fn removing_shot_noise_leaves_nothing_of_white_noise() {
     let left_in = shot_noise.sum() / count;
     assert!((left_in / noise - 1.0).abs() < 0.02, "{left_in}"); // Σw² of 32000 weights: 0.5 %, four of them
     assert!(left_in > 15.0 * sd);
-    // Where there is only noise, the jackknife's variance is 2(R−1)/(R−2) times the true one.
+    // With pure noise, the jackknife's variance is 2(R−1)/(R−2) times the true variance.
     let sigma = radial.sigma.slice_axis(Axis(0), Slice::from(zero + 1..));
     let variance = sigma.mapv(|s| s * s).sum() / count;
     let ratio = variance / (sd * sd * count) / (2.0 * 63.0 / 62.0);

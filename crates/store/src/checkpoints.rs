@@ -4,8 +4,8 @@
 //! is moved there as a whole, and its name holds the hash of its content. A batch has the same
 //! bytes whichever process measures it, except for rounding errors on another kind of processor.
 //! Processes can therefore share the work without a lock, and a process that dies does not delay
-//! the others. An unfinished batch is a file too, the sum of its first parts, and is replaced by
-//! the next one.
+//! the others. The sum of the first parts of an unfinished batch is also stored as a file, which a
+//! later sum replaces.
 
 use crate::Failure;
 use crate::Method;
@@ -39,8 +39,8 @@ pub struct CheckpointStore {
 }
 
 impl CheckpointStore {
-    /// Returns the batches of a run with results in `out`. They belong to this scene, method and
-    /// version.
+    /// Returns the batches of a run with results in `out`. The batches belong to this scene,
+    /// method and version.
     pub fn of(out: &Path, scene: &Scene, method: Method) -> Self {
         let what = format!("{VERSION} {} {}", scene.hash(), method.words());
         let key = &blake3::hash(what.as_bytes()).to_hex()[..16];

@@ -1,4 +1,4 @@
-//! The resources of this machine. They are known on Linux only; on other systems, nothing is
+//! The resources of this machine. Resources are known on Linux only; on other systems, nothing is
 //! refused for lack of resources.
 
 use crate::Failure;

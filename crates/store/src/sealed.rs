@@ -7,7 +7,7 @@ use serde::Serialize;
 
 /// Returns readable JSON with a final newline. Numbers that are not finite become null.
 pub fn json(value: &impl Serialize) -> Vec<u8> {
-    // This cannot fail: all keys are text.
+    // Serialisation cannot fail, because all keys are text.
     let mut bytes = serde_json::to_vec_pretty(value).unwrap_or_default();
     bytes.push(b'\n');
     bytes

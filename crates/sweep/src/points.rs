@@ -99,9 +99,9 @@ impl SweepPoints {
     }
 }
 
-/// The seed of a point. It is derived from the point's scene and the seed of the sweep, and does
-/// not depend on the other points. The seed is small enough for every reader of JSON to represent
-/// it exactly.
+/// The seed of a point. The seed is derived from the point's scene and the seed of the sweep, and
+/// does not depend on the other points. The seed is small enough for every reader of JSON to
+/// represent it exactly.
 fn seed_of(scene: &Scene) -> u64 {
     let hash = blake3::hash(scene.hash().as_bytes());
     let mut words = hash.as_bytes().chunks_exact(8).map(|word| {

@@ -11,7 +11,7 @@ pub struct SweepRequest {
     pub scene: SceneSource,
     /// Further fields, set to one or several values.
     pub set: Vec<Setting>,
-    /// Whether all points share one seed; otherwise each has its own.
+    /// Whether all points share one seed; if not, each point has its own seed.
     pub common_seed: bool,
     /// Whether fields vary together, value by value, instead of in all combinations.
     pub together: bool,

@@ -176,7 +176,8 @@ fn run_all(
     found.collect()
 }
 
-/// The folders of the points. They are checked to be inside the folder of the sweep.
+/// The folders of the points. The function checks that these folders are inside the folder of the
+/// sweep.
 fn folders(
     request: &SweepRequest,
     folder: &Path,

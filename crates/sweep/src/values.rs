@@ -144,7 +144,7 @@ fn range(from: &str, rest: &str) -> Result<Vec<f64>, String> {
 }
 
 /// Returns value `i` of `count` values between two ends, spaced by equal steps or equal factors.
-/// It is rounded to a short decimal.
+/// The value is rounded to a short decimal.
 fn between([from, to]: [f64; 2], i: usize, count: usize, is_log: bool) -> f64 {
     let share = i as f64 / (count - 1) as f64;
     let value = if is_log {

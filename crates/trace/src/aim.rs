@@ -59,7 +59,7 @@ impl Facing {
         }
     }
 
-    /// A ray of the window, given at the beginning of the leg; `None` where there is none.
+    /// A ray of the window, given at the beginning of the leg; `None` if there is no such ray.
     fn sample(&self, r: [f64; 4]) -> Option<TwoPlane> {
         let seen = TwoPlane {
             x: self.position[0].quantile(r[0]),
@@ -89,8 +89,8 @@ impl FromSky {
     /// plane's profiles and one by the environment. For each other plane it has a strategy for the
     /// part of the first surface that the plane sees, and one by the plane's profiles if the plane
     /// is on that surface. Plain emission draws positions uniformly over the windows of the planes
-    /// on the first leg, over the first surface, and over the windows of planes on that surface. It
-    /// always draws directions by the environment.
+    /// on the first leg, over the first surface, and over the windows of planes on that surface.
+    /// Plain emission always draws directions by the environment.
     pub(crate) fn new(scene: &Scene, environment: &Environment) -> Self {
         let aimed = scene.run.emission == Emission::Aimed;
         let mut strategies = Vec::new();

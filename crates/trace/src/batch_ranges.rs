@@ -51,8 +51,8 @@ impl BatchRanges {
         start(part)..start(part.saturating_add(1))
     }
 
-    /// The number of photons of each part of a batch, except for the last part. It is chosen so
-    /// that part numbers fit in 32 bits.
+    /// The number of photons of each part of a batch, except for the last part. This number is
+    /// chosen so that part numbers fit in 32 bits.
     fn part_length(&self, batch: u32) -> u64 {
         let count = self.count(batch);
         let parts = count / PART.max(count >> 31);

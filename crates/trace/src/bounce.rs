@@ -7,7 +7,7 @@ use etendue_field::{Frame, Mixture, Patch, Reflectance, Specular};
 use etendue_scene::{Event, Object, Scene};
 use glam::DVec3;
 
-/// The scattering of light at the surface between the previous leg and this one.
+/// The scattering of light at the surface between the previous leg and this leg.
 #[derive(Debug)]
 pub(crate) enum Bounce {
     /// Diffuse reflection, with the albedo and a scatterer; the scatterer is `None` if no plane

@@ -34,9 +34,9 @@ impl<T> Both<T> {
     }
 }
 
-/// Whether light may travel back along a leg. This is so if part of the surface at the leg's end
-/// lies behind part of the surface at its beginning, or if the window of a plane on one of these
-/// surfaces contains such light. Light of the first leg always goes forward.
+/// Whether light may travel back along a leg. Light may travel back if part of the surface at the
+/// leg's end lies behind part of the surface at its beginning, or if the window of a plane on one
+/// of these surfaces contains such light. Light of the first leg always goes forward.
 fn goes_back(scene: &Scene, leg: usize) -> bool {
     let this = &scene.path.legs[leg];
     let Some(leaves) = &this.leaves else {

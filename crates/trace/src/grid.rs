@@ -27,8 +27,8 @@ const FINENESS: f64 = 4.0;
 /// overlap.
 const COPIES: usize = 16;
 
-/// The extent of a shape along an axis. It has a small margin, because rounding errors may make a
-/// point just beyond the edge count as inside.
+/// The extent of a shape along an axis. The extent includes a small margin, because rounding
+/// errors may make a point just beyond the edge count as inside.
 fn reach(shape: &Shape, axis: usize) -> [f64; 2] {
     const ROUNDING: f64 = 1e-12;
     let [low, high] = shape.bounds().extent(axis);

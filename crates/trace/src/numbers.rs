@@ -35,7 +35,7 @@ impl PhotonNumbers {
             sampling: run.sampling,
             seed: run.seed,
             streams,
-            // The emission takes two blocks, and each surface takes one.
+            // The emission takes two blocks of random numbers, and each surface takes one block.
             blocks: u32::try_from(legs + 1).unwrap_or(u32::MAX),
         }
     }

@@ -44,8 +44,8 @@ impl Primitive {
         self.closest_hit_elsewhere(ray, from, until)
     }
 
-    /// [`Self::closest_hit`] for primitives that are not flat. It is not inlined, to keep loops
-    /// short that mostly meet flat shapes.
+    /// [`Self::closest_hit`] for primitives that are not flat. The function is not inlined, which
+    /// keeps loops short that mostly meet flat shapes.
     #[inline(never)]
     fn closest_hit_elsewhere(&self, ray: &TwoPlane, from: f64, until: f64) -> Option<(f64, usize)> {
         let whole = |distance| (distance, 0);

@@ -38,8 +38,8 @@ impl ProfileDensity {
         Self { half, kind }
     }
 
-    /// The density for slopes, up to `half`, of light that a surface receives. It is weighted by
-    /// the cosine as in 2D (docs/theory.md (6)).
+    /// The density for slopes, up to `half`, of light that a surface receives. This density is
+    /// weighted by the cosine as in 2D (docs/theory.md (6)).
     pub(crate) fn cosine(half: f64) -> Self {
         let kind = ProposalKind::Cosine;
         Self { half, kind }
@@ -129,7 +129,7 @@ pub(crate) fn lanes<const N: usize>(f: impl Fn(usize) -> f64) -> [f64; N] {
 }
 
 /// Slopes along one axis, at a point of a surface, of rays that cross a window at some distance.
-/// They are distributed by the window's profile over the slopes that cross it.
+/// The slopes are distributed by the window's profile over the slopes that cross the window.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Aim {
     distance: f64,
@@ -183,10 +183,10 @@ impl Aim {
 
 /// Rays in one pair of coordinates, (x, u) or (y, v), that leave the light and cross a window.
 ///
-/// It first draws u by the window's profile, from the slopes of rays that leave the light and
-/// cross the window. It then draws x by the window's profile, from the positions that the light
-/// reaches in the window at that slope. All samples start on the light and cross the window. For a
-/// point light x is fixed, and the density is that of u alone.
+/// The slope u is drawn first, by the window's profile, from the slopes of rays that leave the
+/// light and cross the window. The position x is drawn second, by the window's profile, from the
+/// positions that the light reaches in the window at that slope. All samples start on the light
+/// and cross the window. For a point light x is fixed, and the density is that of u alone.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Proposal {
     /// Distance of the window from the light.

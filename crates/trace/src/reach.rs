@@ -11,7 +11,7 @@ use glam::{DVec2, DVec3};
 
 /// Half-widths, across the end of `leg`, of a box around the central ray. All light from `origins`
 /// (in the frame of the leg) that can reach the window of `plane` passes through this box. The
-/// plane is on a later leg, or on the surface that ends this one. Returns `None` if there is no
+/// plane is on a later leg, or on the surface that ends this leg. Returns `None` if there is no
 /// such light, or if light must go across or back along a later leg.
 pub(crate) fn reach(
     scene: &Scene,

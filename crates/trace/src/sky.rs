@@ -12,9 +12,9 @@ use glam::DVec3;
 pub(crate) struct Sky {
     environment: Environment,
     choice: Choice,
-    /// The share of slopes that are drawn by the cosine instead of the environment. It is needed
-    /// if most light goes backwards, because forward directions would otherwise be drawn too
-    /// rarely.
+    /// The share of slopes that are drawn by the cosine instead of the environment. The cosine is
+    /// needed if most light goes backwards, because forward directions would otherwise be drawn
+    /// too rarely.
     by_cosine: f64,
 }
 
@@ -125,7 +125,7 @@ impl Sky {
         let Some(ray) = ray_through(point, -towards).filter(|_| cosine > 0.0) else {
             return 0.0;
         };
-        // This is the balance heuristic of one sample (Veach and Guibas 1995).
+        // The estimate uses the balance heuristic of one sample (Veach and Guibas 1995).
         let density = 0.5 * (cosine / LAMBERTIAN + self.density(-towards));
         cosine * incident(&ray, point.z) / density
     }

@@ -23,7 +23,7 @@ use std::ops::Range;
 /// planes on the next leg, and so on. A photon that meets anything else ends.
 ///
 /// The ledger counts light that arrives at the front of a surface with a BRDF as stopped, because
-/// the reflected share has no closed form. It does not count light that a surface scatters
+/// the reflected share has no closed form. The ledger does not count light that a surface scatters
 /// onwards, because this light is aimed.
 #[derive(Debug)]
 pub struct Tracer {
@@ -64,7 +64,7 @@ struct Course {
 pub(crate) struct Flight {
     pub(crate) ray: TwoPlane,
     pub(crate) heading: Heading,
-    /// The distance along its heading at which the photon begins.
+    /// The distance, along the heading of the photon, at which the photon begins.
     pub(crate) from: f64,
     /// The contribution to radiance space.
     pub(crate) weight: f64,
@@ -75,7 +75,7 @@ pub(crate) struct Flight {
 struct Photon {
     index: u64,
     flight: Flight,
-    /// Whether its flux is added to the ledger.
+    /// Whether the flux of the photon is added to the ledger.
     counts: bool,
 }
 
@@ -96,11 +96,12 @@ impl Tracer {
         }
     }
 
-    /// A second tracer of photons, for light without extent that no backward ray finds. It shares
-    /// no random number and no aim of the emission with the tracer of [`Self::new`].
+    /// A second tracer of photons, for light without extent that no backward ray finds. The two
+    /// tracers share no random numbers, and do not aim the emission in the same way.
     ///
-    /// It emits light uniformly towards the whole first surface and the windows before it. Photons
-    /// are traced, and scattered light is aimed, in the same way.
+    /// This tracer emits light uniformly towards the whole first surface and the windows before
+    /// this surface. It traces photons and aims scattered light in the same way as the tracer of
+    /// [`Self::new`].
     #[must_use]
     pub fn evenly(scene: &Scene) -> Self {
         let plain = Self::new(scene);
@@ -242,8 +243,8 @@ impl FlightLeg {
         }
     }
 
-    /// The start on this leg of a photon that arrives at the end of the previous leg; `None` when
-    /// it ends there.
+    /// The start on this leg of a photon that arrives at the end of the previous leg; `None` if
+    /// the photon ends there.
     #[inline(never)]
     fn begin(&self, before: &Course, arrival: &Arrival, words: [u32; 4]) -> Option<Flight> {
         let arrival = arrival.moved(&before.frame, &self.courses.along.frame);

@@ -58,7 +58,7 @@ fn named((i, plane): (usize, &&str)) -> String {
     format!("(name: \"p{i}\", {plane})")
 }
 
-/// Arriving light is recorded completely, whatever the surface does to it.
+/// Arriving light is recorded completely, for every kind of surface.
 #[test]
 fn arriving() {
     let tangent = r#"at: Before("s"), orientation: Tangent"#;

@@ -60,7 +60,8 @@ impl Writer {
         self.xml.projector(&file, angle);
     }
 
-    /// Writes a sheet that emits along its normal. Its picture has x to the right and y down.
+    /// Writes a sheet that emits along its normal. The picture of the sheet has x to the right and
+    /// y down.
     fn beam(&mut self, irradiance: f64, image: &Image) {
         let half = WIDTHS * image.width[0].max(image.width[1]);
         let picture = sampled([PIXELS; 2], |column, row| {

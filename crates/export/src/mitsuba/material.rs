@@ -93,8 +93,8 @@ impl Writer {
                     format!("<bsdf type=\"diffuse\">{albedo}</bsdf>"),
                 )
             }
-            // `tests/peers/etendue_bsdfs.py` adds this plugin of Mitsuba 0.6 to Mitsuba 3. Its lobe
-            // is (n + 2)/2π cosⁿ, ours (n + 1)/2π cosⁿ.
+            // `tests/peers/etendue_bsdfs.py` adds this plugin of Mitsuba 0.6 to Mitsuba 3. The
+            // lobe of this plugin is (n + 2)/2π cosⁿ, and Étendue's lobe is (n + 1)/2π cosⁿ.
             Lobe::Phong { exponent } => {
                 let share = (exponent + 1.0) / (exponent + 2.0);
                 let albedo = self.varied("specular_reflectance", &albedo.times(share));

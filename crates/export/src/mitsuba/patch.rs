@@ -23,7 +23,7 @@ pub(super) struct PatchMesh {
     pub(super) vertices: Vec<MeshVertex>,
     /// Triangles, counterclockwise seen from the front of the patch.
     pub(super) faces: Vec<[u32; 3]>,
-    /// Maximum distance of its triangles from the patch, metres.
+    /// Maximum distance of the triangles from the patch, in metres.
     pub(super) error: f64,
 }
 

@@ -47,8 +47,8 @@ pub(super) fn map(environment: &Environment) -> (usize, Vec<f64>) {
     (width, pixels.collect())
 }
 
-/// The subdivision factor of pixels. It is odd, so the centres of old pixels are also centres of
-/// new pixels.
+/// The subdivision factor of pixels. This factor is odd, so the centres of old pixels are also
+/// centres of new pixels.
 fn finer(width: usize) -> usize {
     let least = AROUND.div_ceil(width);
     if width >= AROUND / 2 { 1 } else { least | 1 }

@@ -81,8 +81,8 @@ impl Writer {
         self.bitmap(name, picture, "bilinear", "repeat", &scaled(scale, offset))
     }
 
-    /// A picture that is 1 within another picture and 0 beyond its edge. Only the middle one of its
-    /// nine pixels is 1.
+    /// A picture that is 1 within another picture and 0 beyond its edge. The picture has nine
+    /// pixels, and only the middle pixel is 1.
     pub(super) fn within(&mut self, name: &str, picture: &Picture) -> String {
         let middle = sampled([3, 3], |column, row| {
             let is_middle = |at: f64| (1.0..2.0).contains(&at);

@@ -47,7 +47,7 @@ impl Xml {
 
     /// Writes a flat shape across the central ray that faces along z.
     pub(super) fn flat(&mut self, id: &str, shape: &Shape, distance: f64, looks: &str) {
-        // Mitsuba's rectangle has corners (±1, ±1), its disk the radius 1.
+        // Mitsuba's rectangle has the corners (±1, ±1), and its disk has the radius 1.
         let (name, half, [x, y]) = match *shape {
             Shape::Rectangle(Rectangle { center, size }) => {
                 ("rectangle", size.map(|side| 0.5 * side), center)

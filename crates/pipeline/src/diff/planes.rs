@@ -66,7 +66,7 @@ pub(super) struct PredictionDiff {
 /// sums.
 pub(super) const ROUNDING: f64 = 1e-12;
 /// The largest accepted relative difference between closed forms in two versions, which may order
-/// their sums differently. It allows for the rounding errors of the largest terms.
+/// their sums differently. This difference allows for the rounding errors of the largest terms.
 const CLOSED_FORM: f64 = 1e-9;
 /// The number of combined standard errors beyond which two predictions differ. The difference is a
 /// norm over all frequencies, so its random fluctuation is small.
@@ -88,7 +88,7 @@ impl PlaneDiff {
             .map_or(Verdict::Undecided, |compared| compared.verdict(level))
     }
 
-    /// Returns the reason why the plane is undecided, if it is.
+    /// Returns the reason why the plane is undecided, or `None` if it is decided.
     pub(super) fn undecided(&self, level: f64) -> Option<String> {
         match &self.found {
             PlaneDifference::Missing(0) => Some("only the second result has this plane".to_owned()),

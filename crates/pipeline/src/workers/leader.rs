@@ -122,8 +122,8 @@ impl<'a> Leader<'a> {
         Ok((all, begun.into_values().chain(stopped).collect()))
     }
 
-    /// Predicts planes of a scene: `own` computes one here, and `unpacked` decodes what another
-    /// process has sent.
+    /// Predicts planes of a scene: `own` predicts a plane in this process, and `unpacked` decodes
+    /// a prediction that another process has sent.
     pub fn predict(
         &self,
         scene: &Scene,
@@ -134,8 +134,8 @@ impl<'a> Leader<'a> {
         self.pieces(&key([scene]), Task::Planes, planes, own, unpacked)
     }
 
-    /// Runs the points of a sweep over these scenes: `own` computes one here, and `unpacked` stores
-    /// what another process has sent.
+    /// Runs the points of a sweep over these scenes: `own` runs a point in this process, and
+    /// `unpacked` stores a point that another process has sent.
     pub fn run<T: Send>(
         &self,
         scenes: &[Scene],
@@ -179,8 +179,8 @@ impl<'a> Leader<'a> {
         Ok(all)
     }
 
-    /// Processes the remaining pieces, here by `own` and in other processes on request; `give`
-    /// makes the pieces to send and `take` receives their results.
+    /// Processes the remaining pieces, by `own` in this process and on request in other processes.
+    /// `give` makes the pieces to send, and `take` receives their results.
     fn share<T>(
         &self,
         key: &str,

@@ -8,7 +8,7 @@ pub trait Workers: Sync {
     /// Returns the number of this process.
     fn number(&self) -> usize;
 
-    /// Returns the number of processes, including this one.
+    /// Returns the number of processes, including this process.
     fn count(&self) -> usize;
 
     /// Sends bytes to a process.

@@ -187,8 +187,8 @@ fn signature(bytes: &[u8]) -> Result<(u32, bool), Fault> {
     }
 }
 
-/// The largest number of comments, and of blobs, in a file. It is limited because an empty comment
-/// takes more bytes in memory than in the file.
+/// The largest number of comments, and of blobs, in a file. The number is limited because an empty
+/// comment takes more bytes in memory than in the file.
 const MOST_TEXTS: u32 = 65_536;
 
 /// Returns the number of comments or blobs.

@@ -139,8 +139,8 @@ impl Default for Tm25Header {
 
 /// Number of characters of a text of 4.7.3.
 const TEXT: usize = 1000;
-/// The largest number of spectra in a file. It is limited because an empty spectrum takes more
-/// bytes in memory than in the file.
+/// The largest number of spectra in a file. The number is limited because an empty spectrum takes
+/// more bytes in memory than in the file.
 const MOST_SPECTRA: u32 = 65_536;
 /// Number of characters of a column name, 4.7.5.
 const NAME: usize = 128;

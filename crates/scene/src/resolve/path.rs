@@ -184,11 +184,11 @@ impl Resolver<'_> {
     }
 }
 
-/// Returns the frame in which light leaves a hit along `d`. It is the frame behind a mirror, which
-/// has the reflected axes −X and Y, rotated by the smallest angle until it faces along `d`. For
-/// light that goes straight back at normal incidence, the frame is (−X, Y, −D) (Durand et al.
-/// 2005, section 4.1, steps 1 and 7, at θ = 0). For light in the plane of incidence, it is the
-/// frame of docs/conventions.md.
+/// Returns the frame in which light leaves a hit along `d`. This frame is the frame behind a
+/// mirror, which has the reflected axes −X and Y, rotated by the smallest angle until it faces
+/// along `d`. For light that goes straight back at normal incidence, the frame is (−X, Y, −D)
+/// (Durand et al. 2005, section 4.1, steps 1 and 7, at θ = 0). For light in the plane of
+/// incidence, it is the frame of docs/conventions.md.
 ///
 /// Light that is transmitted keeps the frame in which it arrived, rotated in the same way.
 fn leaving(arriving: &Frame, hit: &Hit, d: DVec3, through: bool) -> Frame {

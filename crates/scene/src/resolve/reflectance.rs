@@ -58,7 +58,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Returns the sum of BRDFs; `None` where there are no terms, or too many.
+    /// Returns the sum of BRDFs; `None` if there are no terms, or too many.
     fn sum(&mut self, of: &str, terms: &[TermFile]) -> Option<Reflectance> {
         let count = terms.len();
         if !(1..=MOST_TERMS).contains(&count) {

@@ -12,12 +12,12 @@ use etendue_field::{Complex, FrequencyAxis, Slices};
 pub struct Aliasing {
     /// Number of frequencies compared, one of each conjugate pair.
     pub compared: usize,
-    /// The difference. It includes the error of the slices themselves, which is below 2·10⁻⁷ Σw at
-    /// each frequency.
+    /// The difference. The difference includes the error of the slices themselves, which is below
+    /// 2·10⁻⁷ Σw at each frequency.
     pub difference: f64,
     /// The expected difference from aliasing if the spectrum beyond Nyquist is as strong as in the
-    /// outermost quarter below Nyquist. It is not a bound: it is correct for white noise, too large
-    /// if the spectrum falls off, and too small if the spectrum rises again.
+    /// outermost quarter below Nyquist. This value is not a bound: it is correct for white noise,
+    /// too large if the spectrum falls off, and too small if the spectrum rises again.
     pub expected: f64,
     /// The bound of [`FieldSpectrum::alias_bound`]: it holds for any photons, and is far above the
     /// difference for most.

@@ -16,8 +16,8 @@ const COUNT: usize = 11;
 ///
 /// The covariance of the spectrum, ∫ P Ω Ωᵀ/∫ P, equals ∫ ∇ℓ ∇ℓᵀ/(4π² ∫ ℓ²) of the windowed light
 /// field if the band contains the whole spectrum. If the field has an edge, neither exists: P
-/// falls as Ω⁻² there, and the sum grows with the band. So each result belongs to a band, and only
-/// results over the same band can be compared.
+/// falls as Ω⁻² there, and the sum grows with the band. Each result therefore belongs to a band,
+/// and only results over the same band can be compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PowerMoments {
     /// ∫ P, up to a factor common to all moments.
@@ -49,9 +49,9 @@ fn pairs() -> impl Iterator<Item = (usize, usize)> {
     (0..4).flat_map(|i| (i..4).map(move |j| (i, j)))
 }
 
-/// The frequencies over which moments are taken. They are the frequencies of a 4D grid with |Ωx|
-/// and |Ωy| ≤ ρ_max, |Ωu| and |Ωv| ≤ ν_max, where ρ_max and ν_max are the largest frequencies of a
-/// plane's slices. Frequencies at Nyquist are excluded.
+/// The frequencies over which moments are taken. The band holds the frequencies of a 4D grid with
+/// |Ωx| and |Ωy| ≤ ρ_max, |Ωu| and |Ωv| ≤ ν_max, where ρ_max and ν_max are the largest frequencies
+/// of a plane's slices. Frequencies at Nyquist are excluded.
 #[derive(Clone, Debug)]
 pub struct Moments {
     grid: FieldGrid,
@@ -164,9 +164,9 @@ impl GroupMoments {
 
 /// The covariance of a spectrum, measured without bias from noise.
 ///
-/// Noise is a floor of power at all frequencies, and it dominates second moments. So products of
-/// different groups of batches are used: with Re(G_r conj G_s) over all pairs r ≠ s in place of
-/// |G|², both ∫ P and ∫ P Ω Ωᵀ are unbiased, however few photons there are (docs/theory.md (13)).
+/// Noise is a floor of power at all frequencies, and it dominates second moments. Products of
+/// different groups of batches are therefore used. With Re(G_r conj G_s) over all pairs r ≠ s in
+/// place of |G|², ∫ P and ∫ P Ω Ωᵀ are unbiased for any number of photons (docs/theory.md (13)).
 /// The error of their ratio is of second order in the noise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldCovariance {

@@ -24,8 +24,8 @@ pub struct FullRadial {
     /// The contribution of the photons' noise to the power of the mean spectrum, which `power`
     /// leaves out.
     pub shot_noise: Array2<f64>,
-    /// The standard error of `power` by the delete-one jackknife over groups of batches: about √2
-    /// times too large where there is only noise.
+    /// The standard error of `power` by the delete-one jackknife over groups of batches. It is
+    /// about √2 times too large for frequencies with noise alone.
     pub sigma: Array2<f64>,
 }
 

@@ -21,8 +21,8 @@ pub struct FieldOptions {
     pub assignment: Assignment,
     /// Independent groups of batches for the errors: at least 3, at most as many as there are batches.
     pub groups: usize,
-    /// Whether to keep the grids of all groups. Otherwise photons are traced twice: once for the
-    /// sum, once for the groups. The result is bitwise the same.
+    /// Whether to keep the grids of all groups. If not, photons are traced twice: once for the
+    /// sum, and once for the groups. The result is bitwise the same.
     pub keep: bool,
     /// Whether to return the spectra of all groups, which are then in memory together.
     pub spectra: bool,

@@ -60,7 +60,7 @@ impl FieldSpectrum {
     /// along axis d.
     ///
     /// The bound is rigorous for any field: it is reached (orders 1 and 2) if all light is in one
-    /// ray at the worst position. It grows as the frequency to the power p, so it is almost
+    /// ray at the worst position. The bound grows as the frequency to the power p, so it is almost
     /// useless near Nyquist.
     #[must_use]
     pub fn alias_bound(&self, harmonics: [isize; 4]) -> f64 {

@@ -1,4 +1,4 @@
-//! Replaces earlier files by new ones.
+//! Replaces earlier files by new files.
 //!
 //! Before the first file moves, all files are complete and synced, and their index is ready beside
 //! them. If this process is ended at any step, the next process that writes to the folder can
