@@ -114,7 +114,7 @@ fn joined(mut parts: Vec<Bvh2>, kind: TreeKind) -> Bvh2 {
         }
         let part = of_parts[bvh.nodes[leaf].first_index as usize] as usize;
         let part = std::mem::take(&mut parts[part]);
-        // The root replaces the leaf; the nodes below it are appended.
+        // The root of the part replaces the leaf; the other nodes of the part are appended.
         let [nodes, boxes] = [bvh.nodes.len() - 1, bvh.primitive_indices.len()].map(number);
         let mut moved = part.nodes.iter().map(|node| {
             let by = if node.is_leaf() { boxes } else { nodes };

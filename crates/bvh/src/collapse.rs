@@ -19,7 +19,7 @@ struct Collapse<'a> {
 ///
 /// # Panics
 ///
-/// If a leaf has more than [`MAX_LEAF`] boxes.
+/// Panics if a leaf has more than [`MAX_LEAF`] boxes.
 pub(crate) fn collapsed(bvh: &Bvh2) -> (Wide, Vec<[u32; 2]>) {
     // The largest possible number of nodes. The system provides memory only when it is written to.
     let most = bvh.nodes.len() / 2 + 1;

@@ -33,7 +33,7 @@ const LEAF: u32 = 1 << 31;
 /// A ray prepared for box tests.
 pub(crate) struct NodeRay {
     origin: [f32; 3],
-    /// The reciprocal of its direction.
+    /// The reciprocal of the ray's direction.
     turned: [f32; 3],
     /// Index of the plane that the ray crosses first, along each axis.
     first: [usize; 3],

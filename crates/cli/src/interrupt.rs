@@ -2,8 +2,8 @@
 //!
 //! The first SIGINT, SIGTERM or SIGHUP removes the unfinished files of a result and ends the
 //! process with exit code 3; a second one ends the process at once. If an allocation fails, Rust
-//! prints a message and aborts; the exit code is 3 then too. Writing a file beyond the system's
-//! size limit is a write error and does not kill the process.
+//! prints a message and aborts; the exit code is 3 in this case too. Writing a file beyond the
+//! system's size limit is a write error and does not kill the process.
 
 use etendue_store::{CANNOT_RUN, Failure, unfinished};
 

@@ -11,7 +11,7 @@ pub(crate) fn say(text: &str) {
     let _ = deliver(text);
 }
 
-/// Prints the main output of a command. Failing to write it is an error, unless the reader has
+/// Prints the main output of a command. A failure to write is an error, unless the reader has
 /// closed the pipe.
 pub(crate) fn deliver(text: &str) -> Result<(), Failure> {
     let text = printable(text, usize::MAX);

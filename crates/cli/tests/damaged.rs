@@ -1,4 +1,4 @@
-//! Changed stage files: `compare` refuses them and names the file and the array.
+//! Tests that `compare` refuses changed stage files, and names the file and the array.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -40,7 +40,7 @@ impl Drop for Swap {
     }
 }
 
-/// The index with a change.
+/// Returns the index with a change.
 fn changed(index: &Path, change: impl FnOnce(&mut Value)) -> Swap {
     let mut tree = json(index);
     change(&mut tree);

@@ -235,7 +235,7 @@ fn time_is_up_within_a_batch() {
     assert_ne!(fs::read(&damaged).unwrap_or_default(), b"no batch");
 }
 
-/// The parts kept a few seconds before a process dies within a batch survive.
+/// Parts that were stored a few seconds before a process died within a batch are used later.
 #[test]
 fn a_killed_process_leaves_the_beginning_of_its_batch() {
     let folder = tempfile::tempdir().unwrap();

@@ -64,7 +64,7 @@ pub enum NotInMitsuba {
          Reflects with `other` and `blend` can"
     )]
     Sum {
-        /// Name of its surface.
+        /// Name of the surface.
         name: String,
     },
     /// A factor that depends on the angle to the normal.
@@ -72,13 +72,13 @@ pub enum NotInMitsuba {
         "Mitsuba has no factors of the incoming or outgoing angle: {name:?} cannot be exported"
     )]
     AngleTable {
-        /// Name of its surface.
+        /// Name of the surface.
         name: String,
     },
 }
 
-/// The scene for Mitsuba 3: `scene.xml`, its meshes and pictures, and `planes.json` with the
-/// virtual planes, for which Mitsuba has no element.
+/// Returns the files of a scene for Mitsuba 3. They are `scene.xml`, its meshes and pictures, and
+/// `planes.json` with the virtual planes, for which Mitsuba has no element.
 ///
 /// A half-plane becomes a rectangle that extends beyond all light that reaches a window or a
 /// surface.

@@ -62,7 +62,7 @@ pub struct Axis {
     /// Whether the axis is logarithmic; if it is, both edges are above 0.
     pub is_log: bool,
     /// Whether the numbers descend to the right, or upwards, as for rows of a photograph, which
-    /// count from the top. The first cell of an array is then at the high edge.
+    /// count from the top. If the numbers descend, the first cell of an array is at the high edge.
     pub is_reversed: bool,
 }
 

@@ -62,7 +62,7 @@ pub(crate) struct PictureRow<'b, 'a> {
 }
 
 impl PictureRow<'_, '_> {
-    /// Whether the row shares the color bar of another.
+    /// Whether the row shares the color bar of another row.
     fn has_bar_of(&self, other: &Self) -> bool {
         self.bar == other.bar && self.scale == other.scale && self.shared == other.shared
     }
@@ -107,7 +107,7 @@ pub(crate) fn guide_strokes(is_across: bool) -> [Stroke; 2] {
 }
 
 /// The length of the strokes at both ends of a line, as a fraction of the picture's side. Between
-/// them the predicted ridge stays visible.
+/// the two strokes the predicted ridge stays visible.
 const GUIDE_END: f64 = 0.1;
 /// Least distance of the texts below two adjacent pictures.
 const TEXT_GAP: f64 = 4.0;

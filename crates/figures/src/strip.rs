@@ -19,20 +19,20 @@ use crate::text::width;
 pub struct StripColumn<'a> {
     /// The light field in (x, u).
     pub light_field: Picture<'a>,
-    /// The light field in (y, v). This row is drawn if each column has one.
+    /// The light field in (y, v). This row is drawn if all columns have such a picture.
     pub across: Option<AcrossPictures<'a>>,
     /// The power spectrum in (ρ, ν).
     pub spectrum: Picture<'a>,
     /// The spectrum on finer cells over the same axes, drawn in its place; the table keeps
     /// `spectrum`.
     pub finer: Option<Picture<'a>>,
-    /// The predicted spectrum. This row is drawn if each column has one.
+    /// The predicted spectrum. This row is drawn if all columns have such a picture.
     pub predicted: Option<Picture<'a>>,
     /// The full radial spectrum over (|Ωxy|, |Ωuv|), measured and predicted. The rows of full
     /// radial spectra are drawn if each column has such a spectrum.
     pub full_radial: Option<[Picture<'a>; 2]>,
     /// The difference between the measured spectrum and a first-order chain, in percent of its
-    /// largest modulus. This row is drawn if each column has one.
+    /// largest modulus. This row is drawn if all columns have such a picture.
     pub off_chain: Option<Picture<'a>>,
     /// Lines below the pictures, such as "*p* = 0.43, pass", markup; may be empty.
     pub verdict: Vec<String>,

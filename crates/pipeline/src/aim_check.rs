@@ -12,7 +12,7 @@ use rayon::prelude::*;
 ///
 /// Photons are aimed at all windows in equal shares. If photons aimed at a window rarely reach it,
 /// for example behind a curved mirror, the measurement may contain only photons that were aimed at
-/// other windows. The estimated error is then far too small.
+/// other windows. In that case the estimated error is far too small.
 pub(crate) fn leave_open(case: &MeasuredScene, planes: &mut [PlaneComparison]) {
     let count = case.scene.planes.len() as u64;
     if count < 2 {

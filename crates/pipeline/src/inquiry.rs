@@ -10,8 +10,8 @@ use etendue_spectrum::estimate::TooFewBatches;
 use etendue_store::Failure;
 use etendue_store::Method;
 
-/// Measures planes that disagree with theory by the other method, and compares photons, the other
-/// method and theory.
+/// Uses the other method to measure planes that disagree with theory, and compares photons, the
+/// other method and theory.
 pub(crate) fn inquire(
     case: &MeasuredScene,
     planes: &[PlaneComparison],
@@ -41,8 +41,8 @@ fn disagrees_with_theory(report: &PlaneReport) -> bool {
 const DETECTABLE: f64 = 3.6;
 
 impl Inquiry {
-    /// Compares the judge's measurement of plane `i` with photons and with theory. The plane has
-    /// the number `at` in that measurement.
+    /// Compares another tracer's measurement of plane `i` with photons and with theory. The plane
+    /// has the number `at` in this measurement.
     fn of(
         case: &MeasuredScene,
         (i, failed): (usize, &PlaneReport),
@@ -182,7 +182,7 @@ mod tests {
         (case, compared)
     }
 
-    /// Returns the findings for such a plane.
+    /// Returns the findings for a plane with these radiances.
     fn found(photons: f64, rays: f64, predicted: f64) -> Vec<String> {
         let (case, compared) = compared(photons, rays, predicted);
         let inquiries = inquire(&case, &[compared], &Silent).unwrap();

@@ -99,8 +99,8 @@ impl Job {
         self.packing().packed(batch)
     }
 
-    /// Returns the batch with that number from the bytes of [`Self::packed`], identical to one
-    /// emitted by `source`.
+    /// Returns the batch with this number from the bytes of [`Self::packed`]. It is identical to
+    /// the batch that `source` emits.
     ///
     /// # Errors
     /// When the bytes belong to another scene, seed or number of photons.

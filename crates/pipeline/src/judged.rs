@@ -19,7 +19,7 @@ pub struct Judged {
 
 impl Judged {
     /// Compares all planes, and investigates those that fail. Light fields of the planes are
-    /// compared too where they are saved to a result.
+    /// compared too, if they are saved to a result.
     pub fn of(
         case: &MeasuredScene,
         fields: Option<&mut Results>,

@@ -159,7 +159,7 @@ impl Stopwatch {
             command: Vec<String>,
             seconds: BTreeMap<&'static str, f64>,
             threads: usize,
-            /// Emitted photons over the seconds of tracing and transforming.
+            /// Number of emitted photons per second of tracing and transforming.
             photons_per_second: Option<f64>,
             peak_memory_bytes: Option<u64>,
         }

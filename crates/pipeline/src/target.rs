@@ -22,12 +22,12 @@ const MAX_FACTOR: f64 = 8.0;
 
 /// Measures all batches of a scene with enough photons that noise is at most a share `target` of
 /// the spectrum at each plane. The number of photons is the first sufficient power of two, from 2²⁰
-/// on. The scene is given that number of photons. The last possible stage has `most` photons, a
-/// power of two or not.
+/// on. The function sets the scene's number of photons to this number. The last possible stage has
+/// `most` photons, which need not be a power of two.
 ///
-/// Each stage starts again, so that its result is that of a run with as many photons. The possible
-/// stages are fixed beforehand, and only noise decides which one is the last, so p-values are
-/// unaffected.
+/// Each stage starts again from the first photon, so its result is that of a run with the same
+/// number of photons. The possible stages are fixed beforehand, and only noise decides which one
+/// is the last, so p-values are unaffected.
 ///
 /// # Errors
 /// When no photon reaches any plane, or more than `most` photons would be needed.

@@ -1,5 +1,5 @@
 //! Tests that files of every kind are read and written again, and have the right rays. The first
-//! two are written byte by byte from the formats' descriptions.
+//! two files are written byte by byte from the formats' descriptions.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 

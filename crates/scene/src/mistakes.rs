@@ -32,7 +32,7 @@ fn long(scene: &Scene) -> Option<String> {
     collect(&file, "", false, &mut lengths);
     let origin = scene.path.frame.origin.to_array();
     for (path, length) in &mut lengths {
-        // Positions are relative to the light.
+        // The positions that are compared are relative to the light.
         let of_world = path
             .strip_suffix(']')
             .filter(|path| !path.contains(".shapes["));
@@ -196,7 +196,7 @@ fn reach(scene: &Scene, plane: &VirtualPlane, at: f64) -> Option<[f64; 2]> {
         let from_plane = x + (end - at) * u;
         match (plane.leg, &scene.light) {
             (_, Light::Beam { .. }) => hit,
-            // An environment gives no bound, so the minimum is the other bound.
+            // An environment gives an infinite bound, so the minimum is the bound by the plane.
             (0, _) => from_plane.min(from_light),
             _ => from_light,
         }

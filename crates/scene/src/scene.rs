@@ -81,9 +81,9 @@ pub enum Object {
 }
 
 impl Hit {
-    /// Returns the frame (T, B, N) at the hit, for light that arrives in a frame, and the longitude
-    /// θ₀ of the direction from which the light comes: T lies in the plane of incidence, and X is
-    /// rotated to −T at normal incidence (docs/conventions.md).
+    /// Returns the frame (T, B, N) at the hit, for light that arrives in a frame, and the
+    /// longitude θ₀ of the direction from which the light comes. T lies in the plane of incidence,
+    /// and X is rotated to −T at normal incidence (docs/conventions.md).
     #[must_use]
     pub fn surface_frame(&self, arriving: &Frame) -> (Frame, f64) {
         let (n, from) = (self.normal, -arriving.d);
@@ -208,7 +208,7 @@ pub enum Event {
 
 impl Event {
     /// Checks whether light leaves the surface in or near the mirror direction, unlike light from
-    /// a Lambertian surface. For a sum of BRDFs the first one decides.
+    /// a Lambertian surface. For a sum of BRDFs, the first BRDF determines the result.
     #[must_use]
     pub fn mirrors(&self) -> bool {
         match self {
@@ -223,8 +223,8 @@ impl Event {
 pub struct Surface {
     /// Name.
     pub name: String,
-    /// Frame of the rectangle, in the frame at the light: O at the centre, X and Y along the edges,
-    /// D the normal on the side at which light arrives.
+    /// Frame of the rectangle, in the frame at the light, with O at the centre and X and Y along
+    /// the edges. D is the normal on the side at which light arrives.
     pub frame: Frame,
     /// Side lengths along X and Y of the frame.
     pub size: [f64; 2],

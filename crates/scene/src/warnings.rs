@@ -101,7 +101,8 @@ struct WindowView<'a> {
     smooth: &'a SmoothMesh,
     /// The frame at the hit, with D along the light that leaves the mesh.
     frame: Frame,
-    /// 1 where light arrives along the normals of the mesh, −1 where it arrives against them.
+    /// The number 1 if light arrives along the normals of the mesh, and −1 if it arrives against
+    /// them.
     side: f64,
     plane: &'a VirtualPlane,
     /// The distance from the hit to the plane.

@@ -54,7 +54,7 @@ fn layer(count: u32, shape: impl Fn(u32) -> String) -> String {
     format!(r#"Shapes(name: "some", center: (0, 0, 1), shapes: [{shapes}])"#)
 }
 
-/// Requires that work takes far less time than comparing every pair would.
+/// Checks that work takes far less time than a comparison of every pair would.
 fn quickly<T>(what: &str, work: impl FnOnce() -> T) -> T {
     let start = Instant::now();
     let done = work();
@@ -369,7 +369,7 @@ fn sets(fields: &[(&str, &str)]) -> Vec<(String, String)> {
 fn fields_set_together_are_as_set_one_after_the_other() {
     let fields = sets(&[
         ("run.photons", "1e6"),
-        // The phase is not written, and the next edit sets it.
+        // The phase of this grating is not written; the next edit sets it.
         (
             "blockers.0",
             "Grating(name: bars, center: (0, 0, 1), axis: X, frequency: 3)",

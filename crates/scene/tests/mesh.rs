@@ -352,8 +352,8 @@ fn a_list_longer_than_the_file_is_told() {
     );
 }
 
-/// Fuzzed files: valid ones with bytes changed, removed, doubled or cut. Whatever they hold, the
-/// result is a valid mesh or a fault in one line.
+/// Fuzzed files are valid files with bytes changed, removed, doubled or cut. The result for each
+/// file is a valid mesh or a fault in one line.
 #[test]
 fn no_bytes_make_a_reader_panic() {
     let star = Mesh::star(1.0, 0.2, 2, 4).unwrap().ply();

@@ -44,22 +44,23 @@ pub const MADE_TRIANGLES: u64 = 20_000_000;
 /// numbers, which occur in a power spectrum, stay far within the range of f64.
 pub const MAX_NUMBER: f64 = 1e9;
 
-/// Characters of the name of a scene, a plane, blockers or a surface, which may name a folder or
-/// appear in a picture.
+/// Largest number of characters of the name of a scene, a plane, blockers or a surface, which may
+/// name a folder or appear in a picture.
 pub const NAME: usize = 64;
 
 /// Largest number of fields set on the command line. Each field is searched for in the whole
 /// scene.
 pub const OVERRIDES: usize = 100;
 
-/// Nesting depth of brackets in a value set on the command line; a scene has ten.
+/// Largest nesting depth of brackets in a value set on the command line; scenes have at most ten
+/// levels.
 pub const NESTING: usize = 32;
 
 /// Largest number of faults that a message lists; further faults are only counted.
 pub const FAULTS: usize = 10;
 
-/// Characters of a value, and of the path of a field, that a message shows.
+/// Largest number of characters of a value, and of the path of a field, that a message shows.
 pub const VALUE: usize = 200;
 
-/// Characters of what is allowed, or of a syntax error, that a message shows.
+/// Largest number of characters of what is allowed, or of a syntax error, that a message shows.
 pub const ALLOWED: usize = 1_000;

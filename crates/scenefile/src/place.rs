@@ -105,8 +105,8 @@ struct InnermostValue {
 struct OpenBracket<'a> {
     /// The number of steps of the path that lead to it; `None` if the path leads elsewhere.
     at: Option<usize>,
-    /// Whether a name precedes the bracket, as in `Hann(0.5)`: a value without a key is then not an
-    /// element.
+    /// Whether a name precedes the bracket, as in `Hann(0.5)`. In such brackets, a value without a
+    /// key is not an element of a list.
     named: bool,
     index: usize,
     key: Option<&'a str>,

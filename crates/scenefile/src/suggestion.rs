@@ -22,11 +22,11 @@ pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
         start.flat_map(char::to_lowercase).collect()
     };
     let name = lower(name);
-    // One letter in three may be wrong, and at least one.
+    // One letter in three may be wrong, and in short names one letter.
     let most = (name.chars().count() / 3).max(1);
     let known = known.into_iter();
     let known = known.map(|other| (osa_distance(&name, &lower(other)), other));
-    // A name of two characters could mean anything.
+    // A known name is not suggested if all its characters would have to change.
     let near = known.filter(|(distance, other)| {
         *distance <= most && *distance < other.chars().take(limits::NAME).count()
     });

@@ -26,7 +26,7 @@ pub struct DirectionalBandwidth {
     pub across: Uncertain,
     /// The total power, ∫ |F|² dν.
     pub power: Uncertain,
-    /// The power that noise adds to that of the mean spectrum, which `power` leaves out.
+    /// The power that noise adds to the power of the mean spectrum; `power` does not include it.
     pub noise: f64,
 }
 
@@ -38,11 +38,11 @@ impl DirectionalBandwidth {
     ///
     /// # Errors
     ///
-    /// With fewer than three measurements.
+    /// Fails with fewer than three measurements.
     ///
     /// # Panics
     ///
-    /// If the slices have frequencies with ρ ≠ 0.
+    /// Panics if the slices have frequencies with ρ ≠ 0.
     pub fn new(pictures: &[Slices]) -> Result<Option<Self>, TooFewBatches> {
         let azimuths = pictures.first().map_or(0, |first| first.grid.azimuths);
         let power = CrossPower::of_replicates(pictures, 0..azimuths)?;
@@ -74,7 +74,7 @@ impl DirectionalBandwidth {
     ///
     /// # Panics
     ///
-    /// If the grid has frequencies with ρ ≠ 0.
+    /// Panics if the grid has frequencies with ρ ≠ 0.
     #[must_use]
     pub fn of_window(window: &Window, grid: &SliceGrid) -> Self {
         let power = transform(window, grid).mapv(|value| value * value);
@@ -294,7 +294,7 @@ mod tests {
     }
 
     /// Without the mean, the bandwidth of a sine is its frequency plus the window's main lobe, at
-    /// any azimuth. Along e it is the bandwidth of the component f · e.
+    /// any azimuth. The bandwidth along e is the bandwidth of the component f · e.
     #[test]
     fn a_sine_of_any_azimuth_and_contrast() {
         for (azimuth, contrast) in [(0.0, 1.0), (0.41, 0.2), (1.2, 0.03)] {
@@ -303,7 +303,7 @@ mod tests {
             let field = wave(1.0, contrast, [frequency * cos, frequency * sin]);
             let found = alone(&less_mean(&field));
             let widest = found.widest;
-            // One-sided, 95 % of a Hann window's power lie below 0.47.
+            // At frequencies from −∞ to 0.47 lies 95 % of a Hann window's power.
             let wanted = frequency + 0.47;
             let value = widest.value.value;
             assert!((value - wanted).abs() < 0.1, "{value} {wanted}"); // diagonals, cells

@@ -54,7 +54,7 @@ impl TooFewBatches {
 ///
 /// # Errors
 ///
-/// With fewer than two batches.
+/// Fails with fewer than two batches.
 pub fn slices(measurement: &Measurement, plane: usize) -> Result<SliceEstimate, TooFewBatches> {
     TooFewBatches::check(measurement, 2)?;
     let batches = measurement.batches().len();
@@ -88,7 +88,7 @@ pub fn slices(measurement: &Measurement, plane: usize) -> Result<SliceEstimate, 
 ///
 /// # Errors
 ///
-/// With fewer than two batches.
+/// Fails with fewer than two batches.
 pub fn noise(measurement: &Measurement, plane: usize) -> Result<Option<f64>, TooFewBatches> {
     let SliceEstimate { mean, variance, .. } = slices(measurement, plane)?;
     let (mut noise, mut both) = (0.0, 0.0);
@@ -106,7 +106,7 @@ pub fn noise(measurement: &Measurement, plane: usize) -> Result<Option<f64>, Too
 ///
 /// # Errors
 ///
-/// With fewer than two batches.
+/// Fails with fewer than two batches.
 pub fn projection(
     measurement: &Measurement,
     plane: usize,

@@ -41,7 +41,7 @@ pub fn shear_slope(power: ArrayView2<'_, f64>, grid: &SliceGrid) -> Option<f64> 
 /// P(ρ, 0).
 ///
 /// On a plane that light leaves diffusely, the field is constant in slope and this is the spectrum
-/// of the windowed irradiance: H distinguishes a sharp shadow from a smooth one (Durand et al.
+/// of the windowed irradiance: H distinguishes a sharp shadow from a smooth shadow (Durand et al.
 /// 2005, Fig. 9). Returns `None` if Σ P(ρ, 0) is not positive.
 #[must_use]
 pub fn high_frequency_share(power: ArrayView2<'_, f64>, grid: &SliceGrid, cut: f64) -> Option<f64> {
@@ -59,10 +59,10 @@ pub fn high_frequency_share(power: ArrayView2<'_, f64>, grid: &SliceGrid, cut: f
 /// `[nearest, farthest]` in metres.
 ///
 /// A blocker at distance d has its frequencies on the line ν = −d ρ (Durand et al. 2005, section
-/// 3.2; Egan et al. 2009). The window blurs them: a frequency counts as inside if its distance from
-/// the wedge is within the main lobe of a Hann window, 1/half-width along each axis. Frequencies
-/// within the main lobe around zero are left out, because they contain the mean of the light.
-/// Returns `None` if the sum over all other frequencies is not positive.
+/// 3.2; Egan et al. 2009). The window blurs these lines, so a frequency counts as inside if its
+/// distance from the wedge is within the main lobe of a Hann window, 1/half-width along each axis.
+/// Frequencies within the main lobe around zero are left out, because they contain the mean of the
+/// light. Returns `None` if the sum over all other frequencies is not positive.
 #[must_use]
 pub fn wedge_share(
     power: ArrayView2<'_, f64>,
@@ -137,8 +137,8 @@ mod tests {
         assert!(shear_slope(Array2::zeros((21, 81)).view(), &grid()).is_none());
     }
 
-    /// Equal power along the lines of blockers 0.5 and 1 m away, and as much as both on a third
-    /// line, 5 m away.
+    /// The lines of blockers 0.5 and 1 m away have equal power, and the line of a blocker 5 m away
+    /// has as much as both together.
     #[test]
     fn lines_of_a_wedge_are_inside() {
         let grid = grid();

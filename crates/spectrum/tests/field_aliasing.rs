@@ -173,8 +173,7 @@ fn nothing_is_lost_on_the_grid() {
     }
 }
 
-/// White noise, for which the expected difference is exact; a smooth field, for which it is too
-/// large.
+/// The expected difference is exact for white noise, and too large for a smooth field.
 #[test]
 fn the_slices_tell_the_aliasing() {
     let window = boxed();

@@ -312,7 +312,7 @@ fn too_few_batches_are_refused() {
         refused.unwrap_err().to_string(),
         "2 batches are too few for an error: at least 3 are needed"
     );
-    // One group is not allowed: the minimum is used.
+    // A single group is not allowed, so the minimum number of groups is used.
     assert_eq!(
         run(&source, &source.planes[0], 1),
         run(&source, &source.planes[0], 3)

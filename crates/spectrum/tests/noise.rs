@@ -155,8 +155,8 @@ fn jackknife_intervals_cover_the_truth() {
         statistics += u32::from(slope.value.abs() < 2.131 * slope.error);
     }
     let share = |count: u32| f64::from(count) / trials as f64;
-    // The share of 300 trials is 95 %, with an error of 1.3 %. The limits are three times that,
-    // plus the jackknife's own 1 %.
+    // The share of 300 trials is 95 %, with an error of 1.3 %. The limits are three times this
+    // error, plus 1 % for the error of the jackknife itself.
     assert!((0.90..0.99).contains(&share(covered)));
     assert!((0.90..0.995).contains(&share(statistics)));
     assert!(share(halved) < 0.80); // an error half as large is seen: it covers 70 %

@@ -1,4 +1,5 @@
-//! The batches of a measurement as files: `ledger.npz`, and `batches.npz` for each plane.
+//! The batches of a measurement as files, which are named `ledger.npz`, and `batches.npz` for each
+//! plane.
 
 use crate::Failure;
 use crate::Method;

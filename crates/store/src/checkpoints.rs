@@ -1,8 +1,8 @@
 //! Stores batches of a run as they are measured, so that a run that ends early can be continued.
 //!
-//! Each batch is a file below `batches/` and the key of the run, in the folder of its results. It
-//! is moved there as a whole, and its name holds the hash of its content. A batch has the same
-//! bytes whichever process measures it, except for rounding errors on another kind of processor.
+//! Each batch is a file below `batches/` and the key of the run, in the folder of its results. The
+//! file is moved there when it is complete, and its name holds the hash of its content. A batch
+//! has the same bytes from every process, except for rounding errors on another kind of processor.
 //! Processes can therefore share the work without a lock, and a process that dies does not delay
 //! the others. The sum of the first parts of an unfinished batch is also stored as a file, which a
 //! later sum replaces.

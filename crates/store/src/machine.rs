@@ -6,9 +6,9 @@ use etendue_scene::{Scene, SceneFile, resolve};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Returns the memory that this process may still allocate without swapping, in bytes. The machine
-/// limits it, and so do the control groups of the process and its own limits (`ulimit -v`,
-/// `ulimit -d`).
+/// Returns the memory that this process may still allocate without swapping, in bytes. This memory
+/// is limited by the machine, by the control groups of the process, and by its own limits (`ulimit
+/// -v`, `ulimit -d`).
 pub fn available_memory() -> u64 {
     let machine = kilobytes("/proc/meminfo", "MemAvailable:");
     let limits = [

@@ -1,4 +1,4 @@
-//! Stores predictions as files: `prediction.npz` for each plane.
+//! Stores predictions as files, which are named `prediction.npz` for each plane.
 
 use crate::Failure;
 use crate::Method;

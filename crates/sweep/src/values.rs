@@ -208,8 +208,8 @@ pub fn shown(point: &SweepPoint) -> String {
     parts.collect::<Vec<_>>().join(", ")
 }
 
-/// The shortest end of a path that identifies its field: `Ggx` of
-/// `surfaces.0.event.Reflects.brdf.lobe.Ggx`, and `center.0` of `light.center.0`.
+/// The shortest end of a path that identifies its field, such as `Ggx` for
+/// `surfaces.0.event.Reflects.brdf.lobe.Ggx`, and `center.0` for `light.center.0`.
 pub fn short(path: &str) -> &str {
     let is_number = |part: &str| part.bytes().all(|c| c.is_ascii_digit());
     let name = path

@@ -8,8 +8,8 @@ use etendue_field::{Environment, Orientation, Profile, TwoPlane, VirtualPlane};
 use etendue_scene::{Emission, Scene};
 use etendue_transform::random;
 
-/// An equal mixture of several strategies to draw rays of light from an environment. Its density
-/// is over (x, y, u, v) at the beginning of the first leg.
+/// An equal mixture of several strategies to draw rays of light from an environment. The density
+/// of this mixture is over (x, y, u, v) at the beginning of the first leg.
 ///
 /// Emission, aimed or plain, covers only rays that some plane may see, because the flux of an
 /// environment through all space is infinite.
@@ -86,11 +86,12 @@ impl Facing {
 
 impl FromSky {
     /// Aimed emission has two strategies for the window of each plane on the first leg: one by the
-    /// plane's profiles and one by the environment. For each other plane it has a strategy for the
-    /// part of the first surface that the plane sees, and one by the plane's profiles if the plane
-    /// is on that surface. Plain emission draws positions uniformly over the windows of the planes
-    /// on the first leg, over the first surface, and over the windows of planes on that surface.
-    /// Plain emission always draws directions by the environment.
+    /// plane's profiles and one by the environment. For each other plane, it has a strategy for
+    /// the part of the first surface that the plane sees. If the plane is on the first surface,
+    /// there is also a strategy by the plane's profiles. Plain emission draws positions uniformly
+    /// over the windows of the planes on the first leg, over the first surface, and over the
+    /// windows of planes on that surface. Plain emission always draws directions by the
+    /// environment.
     pub(crate) fn new(scene: &Scene, environment: &Environment) -> Self {
         let aimed = scene.run.emission == Emission::Aimed;
         let mut strategies = Vec::new();

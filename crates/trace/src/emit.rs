@@ -105,11 +105,10 @@ impl Emitter {
                 shape, exponent, ..
             } => aimed_or(Plain::Area(shape, exponent)),
             Light::Point { .. } => aimed_or(Plain::Point),
-            // Pictures have their own proposal.
+            // Light with a picture is never aimed; it is drawn in proportion to the picture.
             Light::Projector { image, .. } => EmissionStrategy::Plain(Plain::Slopes(image)),
             Light::Beam { image, .. } => EmissionStrategy::Plain(Plain::Positions(image)),
-            // Rays of a file have their own proposal too, because they have no neighbouring rays at
-            // which to aim.
+            // Rays of a file are not aimed either, because no other rays exist near them.
             Light::Rays { ref rays } => EmissionStrategy::Plain(Plain::Rays(rays.clone())),
             Light::Environment { ref environment } => {
                 EmissionStrategy::Sky(FromSky::new(scene, environment))
@@ -126,8 +125,8 @@ impl Emitter {
     /// surface, and towards the windows of planes before that surface. Other planes have no
     /// influence.
     ///
-    /// For any other light, and where the surface reaches back to the light, it is the emitter of
-    /// [`Self::new`].
+    /// For any other light, and if the surface reaches back to the light, the result is the
+    /// emitter of [`Self::new`].
     #[must_use]
     pub fn evenly(scene: &Scene) -> Self {
         let plain = Self::new(scene);
@@ -140,8 +139,8 @@ impl Emitter {
         }
     }
 
-    /// The first block of random words that a photon's bounces use. Of block 1 the emission uses
-    /// only the last word, which selects the plane at which a ray is aimed; light from an
+    /// The first block of random words that a photon's bounces use. The emission uses only the
+    /// last word of block 1, to select the plane at which a ray is aimed; light from an
     /// environment uses all words.
     pub(crate) fn bounces_from(&self) -> u32 {
         if let EmissionStrategy::Sky(_) = self.strategy {

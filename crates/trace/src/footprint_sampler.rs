@@ -1,4 +1,4 @@
-//! Samples points of the first surface, for light from an environment to be aimed at.
+//! Samples points of the first surface, at which light from an environment is aimed.
 
 use crate::area_sampler::AreaSampler;
 use crate::line::{direction, start};

@@ -39,7 +39,7 @@ impl HitKind {
         }
     }
 
-    /// Whether it is the object on which a leg begins or ends.
+    /// Whether the photon meets the object on which a leg begins or ends.
     pub(crate) fn is(&self, end: Option<Object>) -> bool {
         end.is_some() && self.object() == end
     }
@@ -47,7 +47,7 @@ impl HitKind {
 
 /// All obstacles of light on one leg, with the queries of both tracers.
 ///
-/// Rays are given by where they cross the plane at the beginning of the leg; distances are along
+/// Rays are given by their points in the plane at the beginning of the leg; distances are along
 /// the leg.
 #[derive(Debug)]
 pub(crate) struct Obstacles {
@@ -226,7 +226,8 @@ impl Obstacles {
         distance: f64,
     ) -> bool {
         let other = |what: &HitKind| !what.is(own);
-        // The point itself is at the same distance, up to rounding error.
+        // Hits just before the point are ignored, because they may be the point itself with a
+        // rounding error.
         let distance = distance - ROUNDING * distance.abs();
         self.primitives
             .is_occluded(ray, from, distance, false, other)

@@ -78,8 +78,8 @@ impl PlaneOnLeg {
         Some((point, frame.d, 1.0 / frame.d.dot(view.frame.d)))
     }
 
-    /// Whether the point (x, y) of the plane lies beyond the beginning of the first leg. A surface
-    /// may reach back beside the light.
+    /// Whether the point (x, y) of the plane lies beyond the beginning of the first leg. Part of a
+    /// surface may reach back beside the light.
     pub(crate) fn is_ahead(&self, at: [f64; 2]) -> bool {
         let arrives = self.surface.is_some_and(|view| view.arriving);
         !arrives || self.point(at).is_some_and(|(point, ..)| point.z > 0.0)

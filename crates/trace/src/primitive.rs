@@ -103,7 +103,7 @@ impl Primitive {
         match self {
             Self::Mesh(mesh) => mesh.each(ray, tell),
             Self::Smooth(patch) => {
-                // A line with a single hit has the same distance twice.
+                // If a line has a single hit, its distance is passed twice.
                 let [first, last] = smooth_hits(patch, ray);
                 let second = (last > first).then_some(last);
                 let hits = [Some(first).filter(|at| !at.is_nan()), second];

@@ -122,8 +122,8 @@ fn seen(scene: &Scene, plane: &VirtualPlane) -> Vec<DVec3> {
     };
     let surface = &scene.surfaces[i];
     let met: Option<Vec<DVec3>> = if plane.orientation == Orientation::Orthogonal {
-        // The edges of the tube of rays that cross the window meet the surface at the corners of
-        // the visible part.
+        // The outermost rays that cross the window meet the surface at the corners of the visible
+        // part.
         let tube = tube(plane, scene.path.along(plane), leg);
         let side = leg.frame.d.dot(surface.frame.d).signum();
         let met = tube.iter();

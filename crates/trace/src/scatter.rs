@@ -145,8 +145,8 @@ impl Scatterer {
                 ]))
             } else {
                 let half = reach(scene, plane, leg, &origins).filter(|_| is_ahead)?;
-                // A plane on the surface that ends the leg sees some slopes only; a plane beyond it
-                // sees any slope.
+                // A plane on the surface that ends the leg sees only some slopes; a plane beyond
+                // this surface sees light of any slope.
                 let slopes = plane_on_leg.slopes(w).filter(|_| plane.leg == leg);
                 let slopes = slopes.unwrap_or([ANY_SLOPE; 2]).map(ProfileDensity::cosine);
                 Some(SamplingStrategy::Window([0, 1].map(|axis| {

@@ -18,9 +18,9 @@ use std::ops::Range;
 /// The forward tracer of a scene.
 ///
 /// A photon leaves the light and crosses the planes in front of the first thing it meets; gratings
-/// on the way attenuate it. Blockers absorb it, and a Lambertian surface absorbs the share 1 −
-/// albedo. Light that the surface at the end of a leg scatters, reflects or refracts crosses the
-/// planes on the next leg, and so on. A photon that meets anything else ends.
+/// on the way attenuate it. Blockers absorb the photon, and a Lambertian surface absorbs the share
+/// 1 − albedo. Light that the surface at the end of a leg scatters, reflects or refracts crosses
+/// the planes on the next leg, and so on. A photon that meets anything else ends.
 ///
 /// The ledger counts light that arrives at the front of a surface with a BRDF as stopped, because
 /// the reflected share has no closed form. The ledger does not count light that a surface scatters
@@ -38,7 +38,7 @@ pub struct Tracer {
 #[derive(Debug)]
 struct FlightLeg {
     courses: Both<Course>,
-    /// The scattering at the beginning of the leg; `None` for the first.
+    /// The scattering at the beginning of the leg; `None` for the first leg.
     bounce: Option<Bounce>,
     /// The objects on which the leg begins and ends.
     leaves: Option<Object>,
@@ -116,7 +116,7 @@ impl Tracer {
         }
     }
 
-    /// Emits the photons of a block, omitting those drawn outside the light.
+    /// Emits the photons of a block, except for photons drawn outside the light.
     #[inline]
     fn emit_block(
         &self,

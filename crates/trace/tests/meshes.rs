@@ -139,7 +139,7 @@ fn parts(draw: &Draw, kind: u64) -> Parts {
     parts
 }
 
-/// The text of a mesh file; OBJ counts from 1, PLY from 0.
+/// Returns the text of a mesh file. OBJ files count from 1, and PLY files from 0.
 fn written(parts: &Parts, obj: bool) -> String {
     let mut text = String::new();
     let Parts {

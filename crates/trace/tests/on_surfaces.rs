@@ -120,7 +120,7 @@ fn leaving_along_the_wall() {
     agree_in(window, "\"s\"", wall, &["at: Distance(1.6)"]);
 }
 
-/// Light with narrow slopes, too, is found from the whole of a wide light.
+/// Backward rays find light from all of a wide light, even if the slopes are narrow.
 #[test]
 fn narrow_slopes() {
     let window = "(x: Hann(0.1), u: Box(0.001))";

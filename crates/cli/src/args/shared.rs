@@ -89,7 +89,7 @@ pub(crate) struct WorkArgs {
     #[command(flatten)]
     pub(crate) threads: ThreadArgs,
 
-    /// Print no progress, warnings or summary
+    /// Print no progress, no warnings about the scene and no summary
     #[arg(long)]
     pub(crate) quiet: bool,
 }

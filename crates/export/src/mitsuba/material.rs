@@ -66,8 +66,8 @@ impl Writer {
         })
     }
 
-    /// Writes `inside` within the edge of a picture and `outside` beyond it: Mitsuba itself can
-    /// only continue the picture there.
+    /// Writes `inside` within the edge of a picture and `outside` beyond it, because Mitsuba
+    /// itself can only continue the picture there.
     fn inside(
         &mut self,
         pattern: &Pattern,

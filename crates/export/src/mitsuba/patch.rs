@@ -1,5 +1,5 @@
-//! Smooth surfaces as fine meshes: Mitsuba has whole spheres and cylinders, but no patches of them
-//! around a vertex.
+//! Smooth surfaces as fine meshes, because Mitsuba has whole spheres and cylinders, but no pieces
+//! of them around a vertex.
 
 use etendue_field::Patch;
 use glam::{DVec2, DVec3};
@@ -61,8 +61,8 @@ fn rings(patch: &Patch, rings: usize, sectors: usize) -> PatchMesh {
         let normal = patch.normal(point);
         MeshVertex { point, normal, uv }
     };
-    // A hemisphere is steep at its edge. Rings are closer together there: they are evenly spaced on
-    // the sphere.
+    // A hemisphere is steep at its edge. Rings are closer together near the edge, because they are
+    // evenly spaced on the sphere.
     let steep = (patch.aperture * patch.curvature[2].abs()).min(1.0);
     let radius = |share: f64| {
         if steep > 0.0 {

@@ -19,7 +19,7 @@ pub(super) struct PlaneDiff {
 /// The outcome for a plane.
 #[derive(Debug)]
 pub(super) enum PlaneDifference {
-    /// One result lacks the plane: 0 for the first, 1 for the second.
+    /// One result lacks the plane; the number is 0 for the first result and 1 for the second.
     Missing(usize),
     /// The plane is measured in different units, at different frequencies or in a different window,
     /// as described.
@@ -58,7 +58,7 @@ pub(super) struct ParameterDiff {
 pub(super) struct PredictionDiff {
     /// ‖F_A − F_B‖ over the larger norm.
     pub(super) difference: f64,
-    /// Whether both were predicted for one scene, and differ by more than their errors.
+    /// Whether both predictions are for the same scene, and differ by more than their errors.
     pub(super) is_wrong: bool,
 }
 
@@ -104,7 +104,7 @@ impl PlaneDiff {
 }
 
 impl Compared {
-    /// Returns the tested parameters with their pulls.
+    /// Returns the tested parameters, with their differences in standard errors.
     pub(super) fn pulls(&self) -> impl Iterator<Item = &ParameterDiff> {
         self.parameters.iter().filter(|_| self.invalid.is_none())
     }

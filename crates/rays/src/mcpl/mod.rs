@@ -128,9 +128,9 @@ impl McplFile {
         bytes
     }
 
-    /// Returns the rays of the file in metres. Their power is the weight of the particles, in W
-    /// where the comment [`WATTS`] states this. Particles other than photons, and photons of energy
-    /// 0, have no wavelength.
+    /// Returns the rays of the file in metres. Their power is the weight of the particles; it is
+    /// in W if the comment [`WATTS`] states this. Particles other than photons, and photons of
+    /// energy 0, have no wavelength.
     #[must_use]
     pub fn rays(&self) -> RaySet {
         let watts = self.header.comments.iter().any(|c| c == WATTS.as_bytes());

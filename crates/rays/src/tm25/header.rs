@@ -7,7 +7,7 @@ use crate::cursor::ByteCursor;
 /// The way in which the spectral information of rays is stored, 4.7.1.9.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SpectrumType {
-    /// 0: there is none.
+    /// 0: there is no spectral information.
     None,
     /// 1: all rays have the wavelength of the header.
     OneWavelength,

@@ -5,7 +5,7 @@
 //! makers and of LightTools. Numbers are little-endian, those of rays f32. Units: mm, nm, W, lm. Text is UTF-32.
 //!
 //! A file that is read and written again has the same bytes, except for bytes after the end of a
-//! text, and for invalid characters. Both cause a note.
+//! text, and for invalid characters. Such differences cause a note.
 //!
 //! Deviations that are accepted with a note: total flux in the header that differs from the sum
 //! over the rays (LightTools writes 1), directions of a length other than 1 (the set has unit

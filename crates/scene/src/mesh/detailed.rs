@@ -25,8 +25,10 @@ pub struct DetailedMesh {
 }
 
 impl DetailedMesh {
-    /// Reads the bytes of an OBJ or a PLY file as [`Mesh::parse`](super::Mesh::parse) does, with its normals (OBJ: `vn`; PLY: nx, ny and nz) and its texture
-    /// coordinates (OBJ: `vt`; PLY: u and v, s and t, or `texture_u` and `texture_v`).
+    /// Reads the bytes of an OBJ or a PLY file as [`Mesh::parse`](super::Mesh::parse) does, but
+    /// with normals and texture coordinates. Normals are `vn` in OBJ files, and nx, ny and nz in
+    /// PLY files. Texture coordinates are `vt` in OBJ files; in PLY files they are u and v, s and
+    /// t, or `texture_u` and `texture_v`.
     ///
     /// # Errors
     /// The first fault found.

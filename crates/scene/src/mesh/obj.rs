@@ -9,7 +9,7 @@ use etendue_scenefile::{Fault, fault};
 use glam::DVec3;
 use std::borrow::Cow;
 
-/// Statements that do not affect the triangles.
+/// Statements of OBJ files that do not affect the triangles.
 const PASSED_OVER: [&[u8]; 19] = [
     b"vt",
     b"vn",

@@ -47,8 +47,8 @@ impl Mesh {
         })
     }
 
-    /// Returns the mesh under an affine map. A map that mirrors also reverses the order of corners,
-    /// so that outside stays outside.
+    /// Returns the mesh under an affine map. A map that mirrors also reverses the order of
+    /// corners, so that triangles still face outward.
     ///
     /// # Errors
     /// When coordinates exceed ±10⁹, or no triangle has an area after the map.

@@ -1,4 +1,4 @@
-//! Checks the numbers of objects before any object itself.
+//! Checks the numbers of objects before any single object is checked.
 
 use super::Resolver;
 use etendue_scenefile::limits;

@@ -147,7 +147,7 @@ impl Resolver<'_> {
                 };
                 Mesh::parse(Path::new(path), &bytes).map_err(fault).ok()
             }
-            // Its size has been reported as a fault already.
+            // A faulty size of the mesh has been reported already.
             _ if self.faults.has_below(&format!("{of}.mesh")) => None,
             &MeshSource::Paraboloid {
                 curvatures,

@@ -161,7 +161,7 @@ impl Resolver<'_> {
         let (of, value, d) = if let Some(next) = path.visits.get(i + 1) {
             let known = things.objects();
             let Some((object, _)) = known.iter().find(|(_, name)| name == next) else {
-                // The fault is reported for the visit itself.
+                // The fault is reported when the visit itself is checked.
                 return Some(hit.normal);
             };
             let towards = things.center(*object) - hit.point;

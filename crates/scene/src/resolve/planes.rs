@@ -212,7 +212,7 @@ impl Resolver<'_> {
         Some(stop)
     }
 
-    /// Checks that the distance of a place beside the path is not behind the light.
+    /// Checks that a place, by its distance along the first leg, is not behind the light.
     fn beyond_light(&mut self, of: &str, place: &Place, distance: f64) -> f64 {
         if distance < 0.0 {
             let allowed = format!(

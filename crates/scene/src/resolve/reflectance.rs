@@ -13,7 +13,8 @@ use etendue_scenefile::{
 const FINEST: usize = 901;
 
 impl Resolver<'_> {
-    /// Returns the reflectance of a surface; `None` for one that sends each ray in one direction.
+    /// Returns the reflectance of a surface; `None` for a surface that sends each ray in one
+    /// direction.
     pub(super) fn reflectance(&mut self, of: &str, event: &EventFile) -> Option<Reflectance> {
         let (mut resolved, texture) = match event {
             EventFile::Reflects {

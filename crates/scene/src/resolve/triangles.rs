@@ -1,5 +1,5 @@
-//! Checks the triangles of a placed mesh: within the coordinates of a scene, and thick enough to be
-//! distinguished from lines.
+//! Checks that the triangles of a placed mesh are within the range of coordinates of a scene, and
+//! thick enough to be distinguished from lines.
 
 use super::Resolver;
 use crate::Mesh;
@@ -38,8 +38,8 @@ impl MeshPlacement<'_> {
         self.center + vertex * self.scale
     }
 
-    /// Returns the index of a vertex as its mesh file counts it: OBJ from 1, PLY and generated
-    /// meshes from 0.
+    /// Returns the index of a vertex as its mesh file counts it, from 1 in OBJ files and from 0 in
+    /// PLY files and generated meshes.
     pub(super) fn number(&self, vertex: u32) -> u64 {
         let extension = match self.source {
             MeshSource::File(path) => Path::new(path).extension(),
@@ -102,7 +102,7 @@ impl Resolver<'_> {
         None
     }
 
-    /// Requires vertices within the coordinates of a scene.
+    /// Checks that vertices are within the range of coordinates of a scene.
     fn inside(&mut self, at: &MeshPlacement<'_>, mesh: &Mesh) -> Option<()> {
         let mut corners: Vec<u32> = mesh.triangles().as_flattened().to_vec();
         corners.sort_unstable();

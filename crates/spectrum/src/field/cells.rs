@@ -52,7 +52,7 @@ impl FieldTransform {
     ///
     /// # Panics
     ///
-    /// If `cells` belongs to another plan.
+    /// Panics if `cells` belongs to another plan.
     #[must_use]
     pub fn spectrum(&self, cells: FieldCells) -> FieldSpectrum {
         assert_eq!((cells.grid, cells.assignment), (self.grid, self.assignment));

@@ -229,8 +229,8 @@ impl FieldCovariance {
 
     /// Returns the factor by which each variance grows from half of the band to all of it: 1 if the
     /// band contains the spectrum, about 2 if the field has an edge, and more if replicas lie in
-    /// between. The spectrum of an edge has no second moment. `None` if there is no light beyond
-    /// noise.
+    /// between. The spectrum of an edge has no second moment. Returns `None` if there is no light
+    /// beyond noise.
     #[must_use]
     pub fn growth(&self) -> Option<[f64; 4]> {
         let [all, half] = [self.moments.covariance()?, self.half.covariance()?];

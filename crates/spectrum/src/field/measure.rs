@@ -118,7 +118,7 @@ pub struct FieldGroup {
 ///
 /// # Errors
 ///
-/// With fewer than three non-empty batches.
+/// Fails with fewer than three non-empty batches.
 pub fn measure_field(
     source: &dyn PhotonSource,
     index: usize,

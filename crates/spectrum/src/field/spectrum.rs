@@ -30,7 +30,7 @@ impl FieldSpectrum {
     ///
     /// # Panics
     ///
-    /// If a multiple is beyond Nyquist.
+    /// Panics if a multiple is beyond Nyquist.
     #[must_use]
     pub fn at(&self, harmonics: [isize; 4]) -> Complex {
         if harmonics[3] < 0 {

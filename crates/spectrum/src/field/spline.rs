@@ -6,7 +6,8 @@
 //!
 //! e^(−2πift) (1 + ε),   ε = Σ_(n≠0) (sinc^p(f + n)/sinc^p(f)) e^(−2πint),   sinc(f + n)/sinc(f) = (−1)ⁿ f/(f + n).
 //!
-//! The first factor is the ray's exact phase, ε the aliases (Hockney and Eastwood 1981, chapter 5; Jing 2005, ApJ 620).
+//! The first factor is the ray's exact phase, and ε is the sum of the aliases (Hockney and
+//! Eastwood 1981, chapter 5; Jing 2005, ApJ 620).
 
 use etendue_field::{Assignment, sinc};
 use std::f64::consts::PI;
@@ -16,8 +17,8 @@ pub(crate) fn transform(assignment: Assignment, f: f64) -> f64 {
     (0..assignment.order()).map(|_| sinc(f)).product()
 }
 
-/// Returns the cells among 0..`n`, a period, that a ray at `t` ≥ 0 contributes to along one axis,
-/// with its shares, which add up to 1.
+/// Returns the cells, within the period 0..`n`, to which a ray at `t` ≥ 0 contributes along one
+/// axis, with the shares of the ray, which add up to 1.
 #[inline]
 #[expect(
     clippy::cast_possible_truncation,

@@ -21,9 +21,9 @@ use glam::DVec3;
 
 /// The backward tracer of a scene, the independent check of [`Tracer`](crate::Tracer).
 ///
-/// For each plane separately, and for each photon, it draws a ray in the plane's window, traces the
-/// ray back and finds the radiance that arrives along it. Nothing is emitted, aimed or absorbed,
-/// and there is no ledger.
+/// For each plane and each photon separately, the tracer draws a ray in the plane's window, traces
+/// the ray back and finds the radiance that arrives along it. Nothing is emitted, aimed or
+/// absorbed, and there is no ledger.
 #[derive(Debug)]
 pub struct Backward {
     light: TracedLight,
@@ -246,7 +246,7 @@ impl Backward {
     }
 
     /// The radiance that arrives along a ray at a point, at distance `end`, of the surface that
-    /// ends its leg. Another part of a concave or solid surface may occlude it.
+    /// ends its leg. Another part of a concave or solid surface may block this ray.
     fn arriving(
         &self,
         incoming: &IncomingRay,
@@ -276,7 +276,7 @@ impl Backward {
     }
 
     /// The irradiance at a point with a normal at the end of a leg, from one point of the surface
-    /// or light at the beginning of the leg. All are in the frame at the light.
+    /// or light at the beginning of the leg. All vectors are in the frame at the light.
     fn irradiance(
         &self,
         leg: usize,
@@ -463,7 +463,8 @@ impl Backward {
             cosine / (point.z * point.z)
         };
         let nothing = |_| [0.0; 4];
-        // A plane on a surface records all light that arrives there, as it does for photons.
+        // A plane on a surface records all light that arrives at the surface, as it does in the
+        // forward tracer.
         let end = End::Plane(point.z, plane_on_leg.side);
         let found = self.incident(&IncomingRay::from_light(at_light), end, 1, &nothing);
         let weight = found * per_ray * area / density;

@@ -72,8 +72,8 @@ mod tests {
         }
     }
 
-    /// Returns, for several f, the distance of the mean of f over the density from ∫ f, in standard
-    /// errors.
+    /// Returns, for several functions f, how far the mean of f divided by the density is from ∫ f,
+    /// in standard errors.
     fn deviations(drawn: &Mixture<'_>, claimed: &Mixture<'_>, wi: DVec3) -> Vec<f64> {
         const SAMPLES: u32 = 100_000;
         // Integrals over the hemisphere; functions that are non-zero on one side of a plane detect

@@ -55,8 +55,8 @@ impl Plain {
     }
 
     /// The density of [`Self::sample`] with respect to dx dy du dv; to du dv for a point or a
-    /// projector, to dx dy for a beam. For a file it is 1: each ray is drawn with its share of the
-    /// flux as probability, and represents the whole flux.
+    /// projector, to dx dy for a beam. For rays of a file the density is 1, because each ray is
+    /// drawn with its share of the flux as probability, and represents the whole flux.
     #[inline]
     pub(super) fn density(&self, ray: &TwoPlane) -> f64 {
         let secant_squared = ray.secant_squared();
