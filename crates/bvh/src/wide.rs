@@ -40,8 +40,8 @@ pub(crate) struct NodeRay {
     until: f32,
 }
 
-/// The smallest absolute component of a direction. Smaller components are replaced by it. The
-/// change does not move a ray noticeably, and the reciprocal is finite.
+/// The smallest absolute component of a direction. Smaller components are replaced by this number,
+/// which does not move a ray noticeably and has a finite reciprocal.
 const MIN_COMPONENT: f32 = 1e-20;
 
 /// A child still to be visited, and the distance along the ray at which its box begins.

@@ -303,7 +303,7 @@ mod tests {
             let field = wave(1.0, contrast, [frequency * cos, frequency * sin]);
             let found = alone(&less_mean(&field));
             let widest = found.widest;
-            // At frequencies from −∞ to 0.47 lies 95 % of a Hann window's power.
+            // The frequencies from −∞ to 0.47 hold 95 % of a Hann window's power.
             let wanted = frequency + 0.47;
             let value = widest.value.value;
             assert!((value - wanted).abs() < 0.1, "{value} {wanted}"); // diagonals, cells

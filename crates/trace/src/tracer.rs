@@ -277,7 +277,7 @@ impl FlightLeg {
             ..
         } = course;
         // Light that has left an object and would meet it again is lost, even if a blocker stops
-        // the light before. Otherwise a blocker beyond a plane would add light at the plane.
+        // the light first. Otherwise a blocker beyond a plane would add light at the plane.
         let stopped = self.rejoins.is_some() && met.is_some();
         if stopped && obstacles.meets(self.rejoins, &ray, from) {
             return;

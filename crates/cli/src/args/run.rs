@@ -33,9 +33,9 @@ pub(crate) struct RunArgs {
     #[command(flatten)]
     pub(crate) photons: PhotonArgs,
 
-    /// Trace as many photons as are needed for noise of at most this share of the spectrum at each
-    /// plane, from 2^20 up to --photons [default: 2^40]; the exit code is 3 if these do not
-    /// suffice. Errors of predictions are not included
+    /// Trace photons until their noise at each plane is at most this share of the spectrum, from
+    /// 2^20 photons up to --photons [default: 2^40]; the exit code is 3 if these do not suffice.
+    /// Errors of predictions are not included
     #[arg(long, value_name = "SHARE", value_parser = share)]
     pub(crate) target_error: Option<f64>,
 
@@ -129,7 +129,7 @@ pub(crate) struct PredictArgs {
     pub(crate) out: StageFolderArgs,
 
     /// Photons, seed and method of the measurement. At planes without a theory, the other tracer
-    /// takes the place of the prediction and uses as many photons
+    /// takes the place of the prediction, with the same number of photons
     #[command(flatten)]
     pub(crate) photons: PhotonArgs,
 

@@ -47,7 +47,8 @@ pub(crate) struct Order {
 /// A piece with its bytes.
 pub(crate) type Packed = (Piece, Vec<u8>);
 
-/// Returns the bytes of a message: `words` about pieces, followed by the bytes of the pieces.
+/// Returns the bytes of a message, which are those of `words` about pieces, followed by those of
+/// the pieces.
 pub(crate) fn packed<T: Serialize>(
     words: impl FnOnce(Vec<Piece>) -> T,
     pieces: Vec<Packed>,

@@ -17,7 +17,7 @@ const MIN_LEG_SHARE: f64 = 1e-9;
 const GRAZING: f64 = 1.7e-3;
 
 impl Resolver<'_> {
-    /// Returns the legs up to the first faulty one; the length of a faulty leg is NaN.
+    /// Returns the legs up to the first faulty leg, whose length is NaN.
     pub(super) fn path(
         &mut self,
         file: &SceneFile,

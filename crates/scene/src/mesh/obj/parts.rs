@@ -29,8 +29,8 @@ pub struct ObjFile {
     pub parts: Vec<ObjPart>,
     /// Lines of `mtllib`, with the files they name.
     pub libraries: Vec<(usize, String)>,
-    /// Ignored statements, by their word: the line of the first one, the word, and the number of
-    /// such statements. The statement `s` is ignored in files without normals.
+    /// Ignored statements, by their word: the line of the first statement, the word, and the
+    /// number of such statements. The statement `s` is ignored in files without normals.
     pub left_out: Vec<(usize, String, usize)>,
 }
 
