@@ -16,7 +16,7 @@ pub struct BinaryHierarchy {
 
 impl BinaryHierarchy {
     /// Builds a hierarchy over indexed boxes, given by their lowest and highest corners. `origins`
-    /// is the largest coordinate a ray starts from.
+    /// is the largest coordinate of any ray's start.
     #[must_use]
     pub fn new(count: usize, origins: f64, bounds: impl Fn(usize) -> [DVec3; 2] + Sync) -> Self {
         let space = Space::around((0..count).map(&bounds), origins);
@@ -31,8 +31,8 @@ impl BinaryHierarchy {
     }
 
     /// Visits the boxes that a ray may meet beyond `from`, approximately front to back. Distances
-    /// are multiples of the length of `direction`, which is at least 1. `meet` returns the distance
-    /// up to which boxes still matter; before any hit, this is `until`.
+    /// are multiples of the length of `direction`, which is at least 1. `meet` returns the
+    /// distance beyond which boxes can be skipped; before any hit, this distance is `until`.
     #[inline]
     pub fn along(
         &self,

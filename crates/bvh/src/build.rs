@@ -12,25 +12,25 @@ use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use rayon::prelude::*;
 use std::time::Duration;
 
-/// The use of a binary tree.
+/// The purpose for which a binary tree is built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum TreeKind {
-    /// Rays traverse it directly.
+    /// Rays traverse the binary tree directly.
     Binary,
-    /// It is collapsed to a tree with eight boxes in a node.
+    /// The binary tree is collapsed to a tree with eight boxes in a node.
     Collapsed,
 }
 
-/// Larger sets of boxes are built in parts of this size, each by one thread. The builder's memory,
-/// about 150 bytes for each box, is then needed for one part at a time.
+/// Larger sets of boxes are built in parts of this size, each by one thread. The builder needs
+/// about 150 bytes for each box, but only for the parts that are being built.
 const PART: usize = 1 << 15;
 
-/// The most boxes for which the tree is optimised by reinsertion, which then takes a tenth of a
-/// second and makes rays up to twice as fast. With more boxes, reinsertion takes seconds and makes
-/// rays a few per cent faster.
+/// The largest number of boxes for which the tree is optimised by reinsertion. For so few boxes,
+/// this takes a tenth of a second and makes rays up to twice as fast. With more boxes, reinsertion
+/// takes seconds and makes rays a few per cent faster.
 const MAX_REINSERTED: usize = 1 << 13;
 
-/// Cost of opening a node, in triangle tests of a leaf, several of which run at a time.
+/// Cost of opening a node, in units of a triangle test; a leaf tests several triangles at a time.
 const OPENING: f32 = 3.0;
 
 /// Builds the binary tree over indexed boxes, given by their lowest and highest corners.
@@ -62,7 +62,7 @@ fn built(numbers: Vec<u32>, kind: TreeKind, boxed: impl Fn(&u32) -> Aabb) -> Bvh
     } else {
         BvhBuildParams::fast_build()
     };
-    // Pre-splits are not used: they are for triangles.
+    // Pre-splits are not used, because they apply only to triangles.
     let parameters = BvhBuildParams {
         pre_split: false,
         ..preset
@@ -114,7 +114,7 @@ fn joined(mut parts: Vec<Bvh2>, kind: TreeKind) -> Bvh2 {
         }
         let part = of_parts[bvh.nodes[leaf].first_index as usize] as usize;
         let part = std::mem::take(&mut parts[part]);
-        // The root replaces the leaf; the nodes below it are appended.
+        // The root of the part replaces the leaf; the other nodes of the part are appended.
         let [nodes, boxes] = [bvh.nodes.len() - 1, bvh.primitive_indices.len()].map(number);
         let mut moved = part.nodes.iter().map(|node| {
             let by = if node.is_leaf() { boxes } else { nodes };
@@ -130,8 +130,8 @@ fn joined(mut parts: Vec<Bvh2>, kind: TreeKind) -> Bvh2 {
         bvh.primitive_indices.extend(&part.primitive_indices);
     }
     bvh.parents = Vec::new();
-    // The boxes of parts overlap, so some nodes belong elsewhere in the tree; reinsertion moves
-    // them.
+    // The boxes of parts overlap, so some nodes would be better elsewhere in the tree; reinsertion
+    // moves them.
     ReinsertionOptimizer::default().run(&mut bvh, 0.01, None);
     if kind == TreeKind::Binary {
         bvh.max_depth = bvh.max_depth.max(bvh.depth(0) + 1);

@@ -1,4 +1,4 @@
-//! Tests of a few triangles together in f32, to find those that a ray may meet.
+//! Tests a few triangles together in f32, to find the triangles that a ray may meet.
 //!
 //! As seen along the ray, a triangle is hit if the ray is on the same side of all three edges
 //! (Woop, Benthin and Wald 2013, *Watertight ray/triangle intersection*). Here a triangle is
@@ -9,10 +9,10 @@ use crate::wide::Visit;
 use fearless_simd::{Simd, f32x4, prelude::*};
 use glam::{DVec3, Vec3A};
 
-/// The most triangles, or boxes, of a leaf.
+/// The largest number of triangles, or of boxes, in a leaf.
 pub(crate) const MAX_LEAF: usize = 4;
 
-/// One number for each triangle.
+/// A vector with one number for each triangle of a leaf.
 type Lanes<S> = f32x4<S>;
 
 #[derive(Clone)]
@@ -29,8 +29,8 @@ pub(crate) struct LeafRay {
     origin: [f32; 3],
     axes: [usize; 3],
     slopes: [f32; 2],
-    /// Bound on the error of coordinates across the ray. Rounding of corners, origin and slopes
-    /// accounts for 4e-6 of it.
+    /// Bound on the error of coordinates across the ray. The rounding errors of corners, origin
+    /// and slopes contribute 4e-6.
     tolerance: f32,
 }
 
@@ -38,7 +38,7 @@ impl LeafRay {
     #[inline]
     pub(crate) fn new(origin: Vec3A, direction: DVec3, tolerance: f32) -> Self {
         let size = direction.abs();
-        // The largest component is scaled to 1.
+        // The axes are permuted so that the largest component comes last; it is scaled to 1.
         let axes = if size.x > size.y && size.x > size.z {
             [1, 2, 0]
         } else if size.y > size.z {
@@ -113,7 +113,8 @@ fn size<S: Simd>(p: [Lanes<S>; 2]) -> Lanes<S> {
     p[0].abs() + p[1].abs()
 }
 
-/// Leaves of triangles; they pass on the triangles that a ray may meet.
+/// The leaves of a tree of triangles; each visit passes the triangles that a ray may meet to the
+/// caller.
 pub(crate) struct TriangleLeaves<'a, M> {
     pub(crate) leaves: &'a [Leaf],
     pub(crate) sight: LeafRay,

@@ -1,13 +1,13 @@
 //! Finds the boxes or triangles that a ray may meet: the only crate that uses obvhs and f32.
 //!
-//! A hierarchy, in f32, only yields candidates; the caller computes actual intersections in f64.
+//! A hierarchy is in f32 and only finds candidates; the caller computes the intersections in f64.
 //! Boxes are padded by more than rounding errors, so no candidate is missed. obvhs builds a tree
 //! with two boxes in a node. Rays traverse the tree directly ([`BinaryHierarchy`]), or through a
 //! tree with eight boxes in a node (`wide`), whose leaves hold a few boxes, or triangles that are
 //! tested together ([`WideHierarchy`]).
 //!
-//! The builder panics on boxes with NaN. No valid scene has such boxes, and none reaches the
-//! builder: a primitive without a box in f32 is a candidate everywhere.
+//! The builder panics on boxes with NaN. No valid scene has such boxes, and they are never passed
+//! to the builder: a primitive without a box in f32 is a candidate for every ray.
 
 mod binary_hierarchy;
 mod build;

@@ -21,12 +21,12 @@ pub(crate) struct Space {
 /// few of them.
 const PADDING: f64 = 1e-5;
 
-/// Additional padding relative to the largest coordinate that a ray begins at: several rounding
+/// Additional padding relative to the largest coordinate at which a ray begins: several rounding
 /// errors in f64.
 const ROUNDING: f64 = 1e-13;
 
-/// The largest coordinate of a box; f32 can represent numbers four times as large. The farthest
-/// corner of a patch is at 1e28.
+/// The largest coordinate of a box; the largest number in f32 is some 300 times as large. The
+/// coordinates of patches in valid scenes are at most 1e28.
 const MAX_EXTENT: f64 = 1e36;
 
 impl Space {
@@ -73,8 +73,9 @@ impl Space {
         morton_encode_u64_unorm(0.5 + 0.49 * middle / self.size)
     }
 
-    /// Returns the distance along a ray at which to begin. It is `from` or, if that point is far
-    /// from everything, where the ray comes near, because f32 would lose precision on the way.
+    /// Returns the distance along a ray at which to begin. This distance is `from`, unless the
+    /// point there is far from all boxes. In that case it is the distance at which the ray comes
+    /// near the boxes, because f32 would lose precision over a longer distance.
     #[inline]
     pub(crate) fn begin(&self, start: DVec3, direction: DVec3, from: f64) -> f64 {
         let start = start - self.center;
@@ -84,13 +85,13 @@ impl Space {
         }
         let comes_near = |at: f64, d: f64| (-at - (2.0 * self.size).copysign(d)) / d;
         let near = [0, 1, 2].map(|axis| comes_near(start[axis], direction[axis]));
-        // Along such an axis a ray does not come nearer: NaN, or infinite.
+        // NaN and infinite distances are ignored: the ray does not come nearer along their axes.
         let near = near.into_iter().filter(|t| t.is_finite());
         near.fold(from, f64::max)
     }
 
-    /// Returns the distance in f32, counted from `begin`, up to which boxes are opened so that none
-    /// up to `at` is missed. Intersections are decided in f64.
+    /// Returns the distance in f32, counted from `begin`, up to which boxes must be opened so that
+    /// no box up to `at` is missed. The caller computes intersections in f64.
     #[inline]
     pub(crate) fn limit(&self, at: f64, begin: f64) -> f32 {
         single((at - begin) * (1.0 + PADDING) + self.padding)

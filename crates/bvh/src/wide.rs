@@ -23,7 +23,7 @@ pub(crate) struct Node {
     /// Lowest x of all boxes, highest x, lowest y and so on. An empty slot has bounds that no ray
     /// meets.
     planes: [[f32; WIDTH]; 6],
-    /// Indices of nodes, and of leaves with [`LEAF`].
+    /// Indices of child nodes, or of leaves, which are marked by [`LEAF`].
     children: [u32; WIDTH],
 }
 
@@ -33,15 +33,15 @@ const LEAF: u32 = 1 << 31;
 /// A ray prepared for box tests.
 pub(crate) struct NodeRay {
     origin: [f32; 3],
-    /// The reciprocal of its direction.
+    /// The reciprocal of the ray's direction.
     turned: [f32; 3],
     /// Index of the plane that the ray crosses first, along each axis.
     first: [usize; 3],
     until: f32,
 }
 
-/// The smallest absolute component of a direction. So small a component does not move a ray over
-/// any distance, and its reciprocal is finite.
+/// The smallest absolute component of a direction. Smaller components are replaced by this number,
+/// which does not move a ray noticeably and has a finite reciprocal.
 const MIN_COMPONENT: f32 = 1e-20;
 
 /// A child still to be visited, and the distance along the ray at which its box begins.
@@ -53,7 +53,7 @@ struct Waiting {
 
 /// The operation on the leaves that a ray reaches.
 pub(crate) trait Visit {
-    /// Visits a leaf and returns the distance up to which boxes still matter.
+    /// Visits a leaf and returns the distance beyond which boxes can be skipped.
     fn visit<S: Simd>(&mut self, simd: S, leaf: usize) -> f32;
 }
 
@@ -112,7 +112,7 @@ impl Wide {
                 node = &self.nodes[only as usize];
                 continue;
             }
-            // The nearest child ends on top of the stack.
+            // The children are sorted so that the nearest child is on top of the stack.
             let before = count;
             while met != 0 {
                 let i = met.trailing_zeros() as usize % WIDTH;

@@ -32,7 +32,7 @@ enum TreeLeaves {
 
 impl WideHierarchy {
     /// Builds a hierarchy over indexed boxes, given by their lowest and highest corners. `origins`
-    /// is the largest coordinate a ray starts from.
+    /// is the largest coordinate of any ray's start.
     #[must_use]
     pub fn new(count: usize, origins: f64, bounds: impl Fn(usize) -> [DVec3; 2] + Sync) -> Self {
         let space = Space::around((0..count).map(&bounds), origins);
@@ -78,8 +78,8 @@ impl WideHierarchy {
 
     /// Visits the boxes or triangles that a ray may meet beyond `from`, approximately front to
     /// back. Distances are multiples of the length of `direction`, which is at least 1. `meet`
-    /// returns the distance up to which boxes or triangles still matter; before any hit, this is
-    /// `until`.
+    /// returns the distance beyond which boxes or triangles can be skipped; before any hit, this
+    /// distance is `until`.
     #[inline]
     pub fn along(
         &self,
@@ -112,7 +112,8 @@ impl WideHierarchy {
     }
 }
 
-/// Leaves of boxes, passed on one after the other.
+/// The leaves of a tree of boxes; each visit passes the boxes of a leaf to the caller, one after
+/// the other.
 struct Boxes<'a, M> {
     leaves: &'a [[u32; 2]],
     meet: M,

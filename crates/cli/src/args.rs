@@ -59,7 +59,7 @@ pub(crate) enum Command {
     Measure(MeasureArgs),
     /// Predict a scene, for `compare`.
     Predict(PredictArgs),
-    /// Compare measured and predicted files; writes what `run` writes.
+    /// Compare measured and predicted files; write the files of `run`.
     Compare(CompareArgs),
     /// Print commands that measure a scene in parts on several machines.
     Split(SplitArgs),
@@ -89,7 +89,7 @@ pub(crate) enum Command {
     Schema(SchemaArgs),
 }
 
-/// The commands by what they are for, as help lists them.
+/// The commands by their purpose, in the order of the help text.
 const GROUPS: [(&str, &[&str]); 4] = [
     (
         "Measure and compare",
@@ -108,7 +108,7 @@ const GROUPS: [(&str, &[&str]); 4] = [
     ("Files", &["rays", "schema"]),
 ];
 
-/// A list of the commands in their groups.
+/// Returns the list of the commands, in their groups, for the help text.
 fn grouped(command: &clap::Command) -> String {
     let mut list = String::new();
     for (heading, names) in GROUPS {
@@ -146,7 +146,8 @@ impl Cli {
     }
 }
 
-/// The error, with the command that was probably meant; clap itself does not find swapped letters.
+/// Adds the command that was probably meant to an error; clap itself does not detect swapped
+/// letters.
 fn suggesting(mut error: clap::Error, names: &[String]) -> clap::Error {
     let unknown = error.get(ContextKind::InvalidSubcommand).cloned();
     let has_tip = error.get(ContextKind::SuggestedSubcommand).is_some();

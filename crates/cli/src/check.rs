@@ -44,7 +44,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<u8, Failure> {
     Ok(0)
 }
 
-/// The approximate cost of a run.
+/// Returns the approximate time and memory that a run takes.
 fn expected(scene: &Scene, theories: &[Applicability], threads: usize) -> String {
     let [photons, predictions] = seconds(scene, theories).map(|seconds| seconds / threads as f64);
     let gigabytes = Memory::new(scene, theories, threads).total() / 1e9;

@@ -63,8 +63,8 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<u8, Failure> {
     })
 }
 
-/// Reads the measurement and the predictions and checks that they fit together. Returns them with
-/// the files they were read from.
+/// Reads the measurement and the predictions and checks that they fit together. Returns the scene,
+/// its measurement and its predictions, with the files from which they were read.
 fn read(args: &CompareArgs) -> Result<(MeasuredScene, Vec<PathBuf>), Failure> {
     let shards = args.measured.iter();
     let shards: Vec<Stored<Held>> = shards
@@ -132,7 +132,7 @@ fn merged(shards: &[Stored<Held>], scene: &Scene) -> Result<Measurement, Failure
     Ok(all)
 }
 
-/// The missing batches, as ranges.
+/// Returns the numbers of the missing batches, as ranges.
 fn missing(measurement: &Measurement, all: u32) -> String {
     let mut ranges: Vec<Range<u32>> = Vec::new();
     for batch in (0..all).filter(|batch| !measurement.contains(*batch)) {

@@ -1,4 +1,4 @@
-//! The end of a command that compares: writes the result, prints it and determines the exit code.
+//! Ends a command that compares. Writes the result, prints it and determines the exit code.
 
 use crate::args::Expect;
 use crate::print::{say, say_replaced};

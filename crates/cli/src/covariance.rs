@@ -1,4 +1,4 @@
-//! Covariance tracing beside the spectra of a scene.
+//! `etendue covariance` shows covariance tracing beside the spectra of a scene.
 
 mod table;
 
@@ -26,14 +26,11 @@ use etendue_store::stored::VERSION;
 use etendue_store::{ArgumentStyle, COVARIANCE, Plan, Results};
 use serde_json::json as tree_of;
 
-/// The picture of a plane, and its data.
+/// The files written for a plane: its picture, and the data of this picture.
 const NAMES: [&str; 3] = ["covariance.png", "covariance.svg", "covariance.csv"];
 
 /// `etendue covariance`: returns the exit code.
-#[expect(
-    clippy::too_many_lines,
-    reason = "one command from arguments to files, in the order of its steps"
-)]
+#[expect(clippy::too_many_lines, reason = "the steps of one command, in order")]
 pub(crate) fn covariance(args: &CovarianceArgs) -> Result<u8, Failure> {
     let mut scene = load::scene(&args.scene.source(), |run| args.photons.set(run))?;
     choose(&mut scene, &args.plane)?;
@@ -122,7 +119,8 @@ fn choose(scene: &mut Scene, names: &[String]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The numbers of a plane; for them, its photons are traced again, on a 4D grid.
+/// Returns the covariances of a plane. The photons are traced once more for this plane, on a 4D
+/// grid.
 fn of_plane(
     (source, measurement, index): (&dyn PhotonSource, &Measurement, usize),
     applicability: &Applicability,

@@ -16,8 +16,8 @@ pub(crate) fn not_parsed(error: &clap::Error) -> u8 {
     }
 }
 
-/// The exit code for the outcome of a command. Prints a failure unless `quiet` is set; another
-/// process then prints it.
+/// The exit code for the outcome of a command. Prints a failure unless `quiet` is set, because
+/// another process then prints it.
 pub(crate) fn ended(outcome: Result<u8, Failure>, quiet: bool) -> u8 {
     match outcome {
         Ok(code) => code,

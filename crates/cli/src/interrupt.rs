@@ -2,8 +2,8 @@
 //!
 //! The first SIGINT, SIGTERM or SIGHUP removes the unfinished files of a result and ends the
 //! process with exit code 3; a second one ends the process at once. If an allocation fails, Rust
-//! prints a message and aborts; the exit code is 3 then too. Writing a file beyond the system's
-//! size limit is a write error and does not kill the process.
+//! prints a message and aborts; the exit code is 3 in this case too. Writing a file beyond the
+//! system's size limit is a write error and does not kill the process.
 
 use etendue_store::{CANNOT_RUN, Failure, unfinished};
 
@@ -14,14 +14,15 @@ fn end() {
     use std::sync::mpsc;
     use std::time::Duration;
     unfinished::abandon(|message| {
-        // A standard error that is closed, or that nobody reads, must not block the process.
+        // The thread prevents a standard error that is closed, or that nobody reads, from blocking
+        // the process.
         let (told, wait) = mpsc::channel();
         std::thread::spawn(move || {
             let _ = writeln!(std::io::stderr(), "\n{message}");
             let _ = told.send(());
         });
         let _ = wait.recv_timeout(Duration::from_secs(1));
-        #[expect(clippy::exit, reason = "the user asked to stop")]
+        #[expect(clippy::exit, reason = "the user asked the process to stop")]
         std::process::exit(CANNOT_RUN.into());
     });
 }
@@ -45,7 +46,8 @@ pub(crate) fn install() -> Result<(), Failure> {
         }
         let mut each = Signals::new(&signals)?;
         for signal in signals {
-            // With this order, the first signal finds the flag clear and sets it.
+            // In this order, the first signal does not end the process, because it finds the flag
+            // clear and then sets it.
             register_conditional_shutdown(signal, code, Arc::clone(&asked))?;
             register(signal, Arc::clone(&asked))?;
         }
@@ -60,7 +62,8 @@ pub(crate) fn install() -> Result<(), Failure> {
     install().map(drop).map_err(Failure::cannot_run)
 }
 
-/// On other systems the process ends at once, and the next process removes the files that it left.
+/// On systems other than Unix a signal ends the process at once, and the next process removes the
+/// files that it left.
 #[cfg(not(unix))]
 pub(crate) fn install() -> Result<(), Failure> {
     Ok(())

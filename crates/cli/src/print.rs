@@ -5,13 +5,13 @@ use etendue_store::{Failure, Finished};
 use std::io::{ErrorKind, IsTerminal, Write, stderr, stdout};
 use std::path::Path;
 
-/// Prints to standard output. A closed pipe or a full disk changes neither the result nor the exit
+/// Prints to standard output. A closed pipe or a full disk does not change the result or the exit
 /// code.
 pub(crate) fn say(text: &str) {
     let _ = deliver(text);
 }
 
-/// Prints the main output of a command. Failing to write it is an error, unless the reader has
+/// Prints the main output of a command. A failure to write is an error, unless the reader has
 /// closed the pipe.
 pub(crate) fn deliver(text: &str) -> Result<(), Failure> {
     let text = printable(text, usize::MAX);
@@ -70,7 +70,7 @@ fn wrapped(text: &str) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// Prints the names of the files of others that `--force` has replaced.
+/// Prints the names of the files that were replaced only because of `--force`.
 pub(crate) fn say_replaced(finished: &Finished, quiet: bool) {
     if let Some(message) = finished.replaced_message().filter(|_| !quiet) {
         say(&message);

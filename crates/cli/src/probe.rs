@@ -22,7 +22,7 @@ pub(crate) fn probe(args: &ProbeArgs) -> Result<u8, Failure> {
                 let found = map_bandwidths(&request, size, &terminal)?;
                 (0, found.words, found.folder)
             }
-            (None, None) => unreachable!("clap requires one of them"),
+            (None, None) => unreachable!("clap requires one of --pixel and --map"),
         })
     })?;
     if !args.work.quiet {

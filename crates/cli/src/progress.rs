@@ -1,4 +1,4 @@
-//! Progress bars on a terminal; nothing elsewhere.
+//! Progress bars, which are shown only on a terminal.
 
 use crate::print::say;
 use crate::warnings;
@@ -69,7 +69,8 @@ impl Progress for Bar {
     }
 }
 
-/// Photons done, rate and time left, on a terminal; nothing elsewhere.
+/// Returns a progress bar with the photons done, their rate and the time left. The bar is shown
+/// only on a terminal.
 pub(crate) fn photons(total: u64, quiet: bool) -> ProgressBar {
     if quiet {
         return ProgressBar::hidden();

@@ -1,4 +1,4 @@
-//! `etendue rays`: what a ray file holds, and the same rays in another format.
+//! `etendue rays` shows what a ray file holds, and converts it to another format.
 
 use crate::args::RaysArgs;
 use crate::print::{deliver, say};
@@ -15,7 +15,7 @@ use std::path::Path;
 
 /// The largest size of a ray file, in bytes.
 const MOST_BYTES: u64 = 1 << 34;
-/// The largest number of characters shown of a text, and the largest number of texts shown.
+/// The largest number of characters of a text, and the largest number of texts, that are shown.
 const LONGEST: usize = 200;
 const MOST_TEXTS: usize = 20;
 
@@ -64,7 +64,7 @@ fn format_of(path: &Path) -> Result<Format, Failure> {
 /// Checks that there is enough memory to read a file; the unpacked size of gzip is known only
 /// afterwards.
 fn check_memory(path: &Path, length: usize) -> Result<(), Failure> {
-    // The memory of the file itself and of its description.
+    // The memory for the file itself and for its description.
     let needed = (length * (MEMORY + 2) + MEMORY_FREE) as u64;
     let free = machine::available_memory();
     if needed > free {
@@ -246,7 +246,7 @@ fn of_mcpl(file: &McplFile) -> Vec<(&'static str, String)> {
     rows
 }
 
-/// A text of the file, on one line.
+/// Returns a text from the file, on one line.
 fn text(bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(bytes).replace('\n', " ");
     shown(&text, LONGEST)

@@ -69,7 +69,8 @@ pub(crate) fn run_with(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u
             if let Some(code) = finished(&folder, &scene, args) {
                 return Ok(code);
             }
-            // Other processes share the folder, so no process owns the result until it is measured.
+            // Several processes share the folder, so no process owns the result until the
+            // measurement is complete.
             results = None;
         }
         stages(
@@ -86,7 +87,7 @@ pub(crate) fn run_with(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u
     })
 }
 
-/// Fails if something is to be saved twice.
+/// Fails if `--save` names the same data twice.
 fn check_saved(save: &[Save]) -> Result<(), Failure> {
     let mut each = save.iter().enumerate();
     let Some((_, twice)) = each.find(|(i, what)| save[..*i].contains(what)) else {
@@ -96,18 +97,18 @@ fn check_saved(save: &[Save]) -> Result<(), Failure> {
     Err(Failure::bad_input(format!("--save: {name} is given twice")))
 }
 
-/// The place of a future result.
+/// The folder of a future result, and the processes that share the work.
 struct ResultPlace<'a> {
     folder: &'a Path,
     plan: Plan,
-    /// `None` if several processes measure.
+    /// Is `None` if several processes measure.
     results: Option<Results>,
-    /// The other processes, led by this one.
+    /// The leader of the other processes, if several processes share the measurement.
     workers: Option<&'a Leader<'a>>,
 }
 
-/// The exit code of a finished run; prints its verdict again. Batches left by a process are
-/// removed.
+/// Returns the exit code of a run that is already finished, and prints its verdict again. Removes
+/// batches that a process has left.
 fn finished(folder: &Path, scene: &Scene, args: &RunArgs) -> Option<u8> {
     let summary = summary_of(folder, scene, args.photons.method)?;
     CheckpointStore::of(folder, scene, args.photons.method).remove();
@@ -122,7 +123,7 @@ fn finished(folder: &Path, scene: &Scene, args: &RunArgs) -> Option<u8> {
     Some(code_of(verdict))
 }
 
-/// The error if somebody has just removed the result.
+/// Returns the error for a result that somebody has just removed.
 fn gone(folder: &Path) -> Failure {
     Failure::cannot_run(format!(
         "the result in {} no longer exists",

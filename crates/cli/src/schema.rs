@@ -39,7 +39,7 @@ fn page(schema: &Value) -> String {
     format!("{HEAD}{}", sections.collect::<String>())
 }
 
-/// The names of the types that a node refers to, in the order of the page.
+/// Collects the names of the types that a node refers to, in the order of the page.
 fn named<'a>(node: &'a Value, met: &mut Vec<&'a str>) {
     if let Some(name) = node["$ref"].as_str().and_then(|at| at.rsplit('/').next()) {
         met.push(name);
@@ -93,7 +93,7 @@ fn content(node: &Value) -> String {
     }
 }
 
-/// A variant on one line, with its fields if they are named.
+/// Describes a variant on one line, with its fields if they have names.
 fn variant(node: &Value) -> String {
     let about = description(node);
     if let Some(name) = node["const"].as_str() {
@@ -109,7 +109,7 @@ fn variant(node: &Value) -> String {
     format!("\n* `{name}(…)`: {about}{}\n", holds(inside))
 }
 
-/// The content of the parentheses of a variant with unnamed fields.
+/// Describes what stands in the parentheses of a variant with unnamed fields.
 fn holds(node: &Value) -> String {
     let many = node["prefixItems"].as_array();
     let each = many.map_or(node, |many| &many[0]);

@@ -24,7 +24,7 @@ pub(crate) fn split(args: &SplitArgs) -> Result<u8, Failure> {
         scene: scene_words(args),
         parts,
         batches,
-        // The beginning of a name; digits follow it.
+        // The beginning of a folder name, to which digits are appended.
         part: below("parts/"),
         predicted: below("predicted"),
         out: shell_word(&out.to_string_lossy()),
@@ -62,7 +62,7 @@ fn scene_words(args: &SplitArgs) -> String {
     words.collect::<Vec<_>>().join(" ")
 }
 
-/// Work to be split, quoted for a shell.
+/// The words of the commands for the parts, quoted for a shell.
 struct SplitWork {
     name: String,
     scene: String,

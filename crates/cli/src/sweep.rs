@@ -1,4 +1,4 @@
-//! `etendue sweep`: fields of a scene over ranges.
+//! `etendue sweep` runs a scene for several values of its fields.
 
 use crate::args::SweepArgs;
 use crate::print::say;

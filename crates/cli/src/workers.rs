@@ -41,7 +41,7 @@ pub fn command_of_workers(line: impl IntoIterator<Item = OsString>, workers: &dy
         Command::Sweep(args) => sweep::sweep_with(args, Some(&led)),
         _ => Ok(0),
     });
-    // The other processes are idle, because no work is left or because something failed.
+    // The other processes are idle now, because no work is left or because a step failed.
     let dismissed = led.dismiss_all();
     ended(outcome.and_then(|code| dismissed.map(|()| code)), false)
 }

@@ -31,7 +31,7 @@ fn a_sweep_measures_what_the_criterion_says() {
     let at = |name: &str| rows[0].iter().position(|cell| *cell == name).unwrap();
     for row in &rows[1..] {
         let number = |name: &str| row[at(name)].parse::<f64>().unwrap();
-        // The finer bandwidth is Ω_ρ |1 + 2kd/cos θ₁| with d = 0.5 and tan θ₁ = 0.5.
+        // The larger of the two bandwidths is Ω_ρ |1 + 2kd/cos θ₁| with d = 0.5 and tan θ₁ = 0.5.
         let finer = 1.0 + number("k [1/m]") * 1.25_f64.sqrt();
         assert!((number("B (Eq. 20)") / (number("lobe") * finer) - 1.0).abs() < 1e-9); // rounding, and the scene's frames
         assert!((number("exact") / number("B (Eq. 20)") - 1.0).abs() < 0.05); // as validated

@@ -138,13 +138,13 @@ fn expecting_disagreement_turns_the_exit_code() {
     let corrected = ["--set", "as_printed=false"];
     assert_eq!(code("corrected", &corrected), Some(0));
     assert_eq!(code("no_fault", &[corrected, expect].concat()), Some(1));
-    // With too much noise, nothing shows that the exact prediction holds.
+    // With too much noise, the photons cannot confirm the exact prediction.
     let few = ["--set", "run.resolution=0.001"];
     assert_eq!(code("few", &[few, expect].concat()), Some(4));
 }
 
-/// A chain that is wrong only in amplitude is not reported to have a wrong map; the picture and the
-/// page show its failure.
+/// If a first-order chain is wrong only in amplitude, no wrong map is reported; the picture and
+/// the page show that the chain fails.
 #[test]
 fn a_failing_chain_is_told_and_drawn() {
     let folder = tempfile::tempdir().unwrap();
@@ -159,7 +159,7 @@ fn a_failing_chain_is_told_and_drawn() {
         (told, read("path.svg"), read("report.html"))
     };
     let (told, picture, page) = run("printed", &[]);
-    // Of the radiance, cos² 37.24° remains.
+    // The share cos² 37.24° of the radiance remains.
     assert!(told.contains("gives the central ray 63.375 %"), "{told}");
     assert!(!told.contains("its rays are off"), "{told}");
     assert!(picture.contains("chain 36.6") && picture.contains("off the chain"));
@@ -269,7 +269,8 @@ fn saved_photons_are_the_ones_measured() {
         let at = 128 + (i * 5 + column) * 8;
         f64::from_le_bytes(bytes[at..at + 8].try_into().unwrap())
     };
-    // Photons that are aimed at other planes leave the light with other slopes.
+    // The window excludes photons that were aimed at other planes and leave the light with other
+    // slopes.
     let hann = |t: f64| {
         if t.abs() < 0.5 {
             (std::f64::consts::PI * t).cos().powi(2)
@@ -445,8 +446,8 @@ fn a_killed_run_leaves_no_half_result() {
     let whole = start.elapsed();
     let mut complete = 0;
     for i in 0..20u32 {
-        // All runs use one folder, which tests that the summary of an earlier result does not cover
-        // the files of a later, killed run.
+        // All runs use one folder. A result must not consist of the summary of an earlier run and
+        // the files of a later run that was killed.
         let out = folder.path().join("killed");
         let mut child = etendue()
             .arg("run")
@@ -463,8 +464,9 @@ fn a_killed_run_leaves_no_half_result() {
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        // The moments follow the golden ratio over twice the time of a run. Half of them hit the
-        // run, and some come after its end even on a machine that has slowed down.
+        // The golden ratio spreads the moments evenly over twice the time of a run. Half of the
+        // moments are within the run, and some are after its end even if the machine has slowed
+        // down.
         let share = f64::from(i) * 0.618_034 % 1.0 * 2.0;
         std::thread::sleep(Duration::from_secs_f64(whole.as_secs_f64() * share));
         child.kill().unwrap();

@@ -48,7 +48,7 @@ fn light_that_fills_the_window_has_its_covariance_and_edges_are_told() {
         // The lamp's variance is 1/(8π² · 4/3), after travel of half a metre.
         assert!((traced / expected - 1.0).abs() < 2e-3, "{i}: {traced}");
         let exact = entry(full, "exact", i, i);
-        // On its own grid such a window has three frequencies, all of them within the band.
+        // The window has three frequencies on its own grid, and all three are within the band.
         assert!((exact / expected - 1.0).abs() < 2e-3, "{i}: {exact}");
         let off = entry(full, "measured", i, i) - exact;
         assert!(off.abs() < 4.0 * entry(full, "error", i, i), "{i}: {off}");

@@ -1,4 +1,4 @@
-//! Changed stage files: `compare` refuses them and names the file and the array.
+//! Tests that `compare` refuses changed stage files, and names the file and the array.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -40,7 +40,7 @@ impl Drop for Swap {
     }
 }
 
-/// The index with a change.
+/// Returns the index with a change.
 fn changed(index: &Path, change: impl FnOnce(&mut Value)) -> Swap {
     let mut tree = json(index);
     change(&mut tree);
@@ -156,8 +156,8 @@ fn a_changed_index_is_refused() {
         let _index = changed(&folder.join(name), change);
         refused(folder, COMPARE, &[&[&name[..2]], parts].concat());
     }
-    // In the cases above the index had a matching hash; without a matching hash, any changed bit is
-    // detected.
+    // The index had a matching hash in the cases above; without a matching hash, any changed bit
+    // is detected.
     for name in [a, p] {
         let whole = fs::read(folder.join(name)).unwrap();
         for i in 0..75 {
@@ -173,7 +173,7 @@ fn a_changed_index_is_refused() {
             refused(folder, COMPARE, &[name]);
         }
     }
-    // The unmodified files pass, so no refusal had another reason.
+    // The unmodified files pass, so the changes were the only reason for the refusals.
     assert_eq!(call(folder, COMPARE).status.code(), Some(0));
 }
 
@@ -403,6 +403,6 @@ fn meshes_are_part_of_the_scene() {
         &["a/measurement.inputs/tri.obj is damaged"],
     );
     fs::write(&copy, whole).unwrap();
-    // So few photons may leave the verdict undecided.
+    // The unmodified copy is accepted again; the verdict does not matter here.
     ends("compare --measured b a --predicted p --out out", &[0, 1]);
 }

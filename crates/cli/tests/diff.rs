@@ -150,7 +150,7 @@ fn planes_that_one_result_lacks_are_named() {
     assert!(message.contains("no plane in common"), "{message}");
 }
 
-/// Checks that `diff` refuses in one line that names the file.
+/// Checks that `diff` refuses its input with one line that names the file.
 #[track_caller]
 fn refuses(folder: &Path, parts: &[&str]) {
     for arguments in ["a b", "b a"] {

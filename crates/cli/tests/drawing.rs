@@ -47,7 +47,7 @@ fn a_path_that_turns_is_drawn_to_scale() {
 
 #[test]
 fn surfaces_are_hatched_evenly_and_glass_is_not() {
-    // Strokes of hatching are the only lines of this kind.
+    // Only the strokes of hatching have this color and width.
     let strokes = |scene: &str| {
         drawing(scene)
             .matches("stroke=\"#9a9a9a\" stroke-width=\"1\"")
@@ -55,7 +55,7 @@ fn surfaces_are_hatched_evenly_and_glass_is_not() {
     };
     assert_eq!(strokes("table1/lens"), 0);
     assert_eq!(strokes("table1/refraction_in"), 0);
-    // A sphere is drawn in segments shorter than the first stroke.
+    // The segments of a sphere are shorter than the distance to the first stroke.
     assert!(strokes("table1/environment") > 20);
 }
 

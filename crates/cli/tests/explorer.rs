@@ -10,7 +10,7 @@ use ndarray_npy::NpzReader;
 use std::fs::{self, File};
 use std::path::Path;
 
-/// What the command predicts at a plane.
+/// Returns the prediction of the command at a plane.
 fn predicted(folder: &Path, plane: PathPlace) -> (Array3<Complex>, Array2<f64>) {
     let path = folder.join(plane.name()).join("prediction.npz");
     let mut file = NpzReader::new(File::open(path).unwrap()).unwrap();
@@ -57,8 +57,8 @@ fn numbers_are_those_of_the_saved_scene() {
             let closed = (plane.spectrum(&setup), plane.field(&setup, CELLS));
             let followed = plane.followed(&setup);
             let off = apart(followed.as_ref().unwrap_or(&closed), &command);
-            // Both compute the same sums. Where their frames differ by rounding errors, the results
-            // differ by as much.
+            // The explorer and the command compute the same sums. The results differ only by
+            // rounding errors, because the frames of the two differ by rounding errors.
             assert!(off < 1e-12, "{text}, {}: {off:e}", plane.name());
             if plane == PathPlace::Arrived {
                 let mut moved = setup.clone();

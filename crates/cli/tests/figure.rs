@@ -118,8 +118,8 @@ fn photons_tell_the_criteria_from_their_print() {
                 (found.unwrap()[1] - measured).abs()
             };
             let [corrected, printed] = [0, 1].map(|i| nearest(&lines[i]));
-            // The nearest points of the lines are off by 0.12, and the criteria by 1 %. For
-            // bandwidths below 2 the window determines the spectrum.
+            // The error of the nearest points of the lines is 0.12, and that of the criteria is 1
+            // %. For bandwidths below 2 the window determines the spectrum.
             let slack = 4.0 * error + 0.2;
             if measured > 2.0 {
                 assert!(corrected < slack, "{panel} at {x}: off by {corrected}");

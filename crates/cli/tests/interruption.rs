@@ -1,4 +1,4 @@
-//! Signals end a run, whatever the state of its standard error; lack of memory ends it with a
+//! Signals end a run even if its standard error is closed or full; lack of memory ends it with a
 //! message.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
@@ -33,7 +33,7 @@ fn send(signal: &str, to: &Child) {
     assert!(sent.unwrap().success());
 }
 
-/// The exit code, if it ends soon.
+/// Returns the exit code of a process, if it ends soon.
 fn code(child: &mut Child) -> Option<i32> {
     let start = Instant::now();
     while start.elapsed() < Duration::from_secs(30) {

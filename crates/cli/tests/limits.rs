@@ -16,7 +16,8 @@ fn refused(arguments: &[&str]) -> Output {
     output
 }
 
-/// Nets of rays, used here instead of closed forms, hold the spectra of all replicates.
+/// Settings with which predictions use nets of rays instead of closed forms; these keep the
+/// spectra of all replicates in memory.
 const FINE: [&str; 6] = [
     "--set",
     "blockers.0.frequency=1e6",

@@ -282,8 +282,7 @@ fn call_without_quiet(folder: &Path, arguments: &str) -> String {
     String::from_utf8(output.stderr).unwrap()
 }
 
-/// If a process dies while its files are moved, the next process completes the move, whichever step
-/// it had reached.
+/// If a process dies while its files are moved, the next process completes the move from any step.
 #[test]
 fn a_move_that_was_cut_short_is_ended() {
     let folder = folder();
@@ -335,7 +334,7 @@ fn a_failed_move_is_undone() {
     passes(folder.path(), "run s.ron --out out --seed 1");
     let before = files(&at("out"));
     passes(folder.path(), "run s.ron --out new --seed 2");
-    // A dead process had begun to move; a file of somebody else blocks the last move.
+    // A dead process had begun to move its files; a file of somebody else blocks the last move.
     let waiting = at("out/.etendue-unfinished");
     fs::create_dir_all(&waiting).unwrap();
     for (name, bytes) in files(&at("new")) {

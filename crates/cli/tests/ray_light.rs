@@ -13,8 +13,8 @@ use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// Returns rays from a chip of 2 mm. Each has a height and a power of its own, and a third of them
-/// go sideways or back.
+/// Returns rays from a chip of 2 mm. Each ray starts at its own height with its own power, and a
+/// third of the rays go sideways or back.
 fn rays(unit: PowerUnit) -> RaySet {
     let count = 3000;
     let wave = |i: usize, step: f64| 2.0 * (i as f64 * step).fract() - 1.0;
@@ -173,7 +173,8 @@ fn planted_faults_are_seen() {
     }
 }
 
-/// Power is taken from the file, in W, whatever the file's unit; rays that go back are left out.
+/// The power of the rays is used in W even if the file states another unit; rays that go back are
+/// left out.
 #[test]
 fn power_is_in_watts() {
     let folder = folder();

@@ -117,8 +117,8 @@ fn refused_rays(folder: &TempDir, arguments: &str, code: i32, part: &str) {
     );
 }
 
-/// A light of radiance 1 emits π times its area. The received flux is this flux times the form
-/// factor, which is computed independently of the flux of the NPY file.
+/// A light of radiance 1 emits π times its area. The received flux is the emitted flux times the
+/// form factor, which is computed independently of the flux of the NPY file.
 #[test]
 fn saved_rays_have_the_flux_of_their_plane() {
     let folder = tempfile::tempdir().unwrap();

@@ -95,7 +95,7 @@ fn a_scene_that_the_explorer_knows_leads_there() {
     for name in ["known", "other"] {
         let run = format!("run {name}.ron --photons 4096 --out {name}");
         let code = call(path, &run).status.code();
-        // So few photons may leave the expected verdict undecided.
+        // With so few photons, the expected verdict may be undecided.
         assert!([Some(0), Some(4)].contains(&code), "{name}");
         let is_known = name == "known";
         let summary = json(&path.join(name).join("summary.json"));
@@ -182,7 +182,7 @@ fn pages_are_made_from_data() {
     };
     const MARKUP: &str = "</SCRIPT><img src=x onerror=alert(1)>";
     let data = "class=\"run-data\">";
-    // Markup beside the data makes the data invalid.
+    // Markup next to the data makes the data invalid.
     for to in [format!("{data}{MARKUP}"), format!("{data}0{MARKUP}")] {
         let output = forge(data, &to);
         assert_eq!(output.status.code(), Some(2), "{output:?}");

@@ -150,8 +150,7 @@ fn batches_of_another_run_are_not_taken() {
     }
 }
 
-/// Another process has written the result and removed the batches while this process worked on one
-/// batch.
+/// Another process writes the result and removes the batches while this process works on a batch.
 #[test]
 fn what_another_process_ends_is_not_begun_anew() {
     let folder = folder();
@@ -165,7 +164,7 @@ fn what_another_process_ends_is_not_begun_anew() {
         fs::create_dir_all(to.parent().unwrap()).unwrap();
         fs::write(to, bytes).unwrap();
     }
-    // The process may write its batch at this very moment.
+    // Removal is repeated, because the process may be writing its batch at the same time.
     while fs::remove_dir_all(path.join("parts/batches")).is_err() {}
     assert_eq!(child.wait().unwrap().code(), Some(0));
     is_whole(path, "parts");
@@ -236,7 +235,7 @@ fn time_is_up_within_a_batch() {
     assert_ne!(fs::read(&damaged).unwrap_or_default(), b"no batch");
 }
 
-/// The parts kept a few seconds before a process dies within a batch survive.
+/// Parts that were stored a few seconds before a process died within a batch are used later.
 #[test]
 fn a_killed_process_leaves_the_beginning_of_its_batch() {
     let folder = tempfile::tempdir().unwrap();

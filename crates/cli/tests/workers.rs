@@ -64,8 +64,8 @@ fn in_crew_of(lines: &[String]) -> (u8, Vec<usize>) {
             scope.spawn(move || command_of_workers(words, member))
         };
         let others: Vec<_> = (1..lines.len()).map(begin).collect();
-        // The leader begins when the others have reported; otherwise it would finish so little work
-        // before they begin.
+        // The leader begins after the others have reported; otherwise it would finish the small
+        // amount of work alone.
         for (member, process) in members[1..].iter().zip(&others) {
             while member.sent.load(Ordering::Relaxed) == 0 && !process.is_finished() {
                 thread::yield_now();
@@ -121,8 +121,8 @@ fn runs_predictions_and_sweeps_have_the_bytes_of_one_process() {
         "predict SCENE --threads 1 --photons 2^16 --out OUT",
         "sweep SCENE --threads 1 --photons 4096 --set blockers.0.pitch=0.05..0.2:4 --out OUT",
     ] {
-        // Whichever process is first takes the next piece. On a busy machine the others may
-        // therefore get nothing; the run is then repeated.
+        // The first process that is ready takes the next piece. On a busy machine the other
+        // processes may therefore get no work; the run is then repeated.
         let helped = (0..20).any(|_| {
             let sent = same_files(folder().path(), line, 3);
             // A process reports its presence with one message, and answers each order with one.

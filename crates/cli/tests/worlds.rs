@@ -50,7 +50,7 @@ fn done(path: &Path, line: &str) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// The message of a command that refuses its input.
+/// Returns the message of a command that refuses its input.
 fn refused(path: &Path, line: &str) -> String {
     let output = call(path, line);
     assert_eq!(output.status.code(), Some(2), "{line}: {output:?}");
@@ -155,7 +155,7 @@ fn a_probe_names_surfaces_and_judges_planes() {
     let path = folder.path();
     let line = "probe room.xml --pixel 12,8 --window 4 --rays 2^14 --photons 2^20 --out p";
     let output = call(path, line);
-    // One probe in a hundred fails by chance; these bytes never change.
+    // One probe in a hundred fails by chance, but the result for this seed never changes.
     assert!(matches!(output.status.code(), Some(0 | 4)), "{output:?}");
     let found = json(&path.join("p/probe.json"));
     let surface = &found["surfaces"][0];

@@ -2,9 +2,9 @@
 //!
 //! [`mitsuba`] writes a [`Scene`](etendue_scene::Scene) for [Mitsuba
 //! 3](https://www.mitsuba-renderer.org): the light, the blockers, and the surfaces with their
-//! BRDFs. It also writes the virtual planes, so that a script can record the same local light
-//! fields with an independent tracer (`docs/mitsuba.md`). The export refuses anything that Mitsuba
-//! cannot represent, and names it.
+//! BRDFs. The export also holds the virtual planes, so that a script can record the same local
+//! light fields with an independent tracer (`docs/mitsuba.md`). The export fails if Mitsuba cannot
+//! represent a part of the scene; the error names this part.
 
 mod mitsuba;
 

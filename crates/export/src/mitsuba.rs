@@ -1,7 +1,8 @@
 //! Export to Mitsuba's scene format.
 //!
 //! Coordinates are those of [`Scene`]: metres, the light's centre at the origin, and x, y, z along
-//! X, Y and D of the central ray. They are written such that every f64 is read back exactly.
+//! X, Y and D of the central ray. Coordinates are written with so many digits that every f64 is
+//! read back exactly.
 
 mod id;
 mod light;
@@ -40,7 +41,7 @@ pub enum NotInMitsuba {
         "Mitsuba has no semi-transparent mask, only pictures of one: {name:?} cannot be exported"
     )]
     Mask {
-        /// Name of its layer.
+        /// Name of the layer of blockers with this mask.
         name: String,
     },
     /// An object behind the plane in which an environment begins.
@@ -63,7 +64,7 @@ pub enum NotInMitsuba {
          Reflects with `other` and `blend` can"
     )]
     Sum {
-        /// Name of its surface.
+        /// Name of the surface.
         name: String,
     },
     /// A factor that depends on the angle to the normal.
@@ -71,13 +72,13 @@ pub enum NotInMitsuba {
         "Mitsuba has no factors of the incoming or outgoing angle: {name:?} cannot be exported"
     )]
     AngleTable {
-        /// Name of its surface.
+        /// Name of the surface.
         name: String,
     },
 }
 
-/// The scene for Mitsuba 3: `scene.xml`, its meshes and pictures, and `planes.json` with the
-/// virtual planes, for which Mitsuba has no element.
+/// Returns the files of a scene for Mitsuba 3. They are `scene.xml`, its meshes and pictures, and
+/// `planes.json` with the virtual planes, for which Mitsuba has no element.
 ///
 /// A half-plane becomes a rectangle that extends beyond all light that reaches a window or a
 /// surface.
@@ -121,12 +122,12 @@ struct Writer {
     xml: Xml,
     /// Files of meshes and pictures.
     files: Vec<(String, Vec<u8>)>,
-    /// The object that the next files belong to.
+    /// The object to which the next files belong.
     owner: String,
 }
 
 impl Writer {
-    /// Adds a file, named after the object it belongs to; returns its name.
+    /// Adds a file that is named after the object to which it belongs; returns its name.
     fn file(&mut self, name: &str, bytes: Vec<u8>) -> String {
         let taken = |name: &String| self.files.iter().any(|(other, _)| other == name);
         let mut names = (0..).map(|number: u32| match number {
@@ -246,8 +247,8 @@ fn halves(rectangle: &Rectangle, distance: f64) -> [[DVec3; 3]; 2] {
     [[a, corner(right, low), c], [a, c, corner(left, high)]]
 }
 
-/// The part of a half-plane that light can reach, with a margin: `beyond` is farther than light
-/// gets.
+/// The part of a half-plane that light can reach, with a margin. No light reaches a coordinate of
+/// `beyond`.
 fn cut_off(half_plane: &HalfPlane, beyond: f64) -> Rectangle {
     let edge = half_plane.edge;
     let end = if half_plane.above {
@@ -269,8 +270,8 @@ fn reach(scene: &Scene) -> f64 {
         .as_flattened()
         .iter()
         .fold(0.0, |most: f64, end| most.max(end.abs()));
-    // The sky is infinite, so the extent is cut off: light from beyond it arrives within a
-    // thousandth of a radian of grazing.
+    // The sky is infinite, so the extent is cut off. Light from beyond this extent arrives within
+    // a thousandth of a radian of grazing incidence.
     let light = if light.is_finite() {
         light
     } else {
@@ -290,7 +291,7 @@ fn behind(scene: &Scene) -> Option<String> {
     found.map(|(name, _)| name.to_owned())
 }
 
-/// Surfaces, each with the corners of a bounding shape.
+/// Returns the name of each surface, with the corners of a shape that encloses it.
 fn bodies(scene: &Scene) -> impl Iterator<Item = (&str, Vec<DVec3>)> {
     let surfaces = scene.surfaces.iter();
     let surfaces = surfaces.map(|s| (s.name.as_str(), s.corners().to_vec()));

@@ -8,7 +8,7 @@ use crate::text::width;
 pub struct AxisQuantity {
     /// Name, markup: `|*S*|^{2}`.
     pub name: String,
-    /// Unit, markup; empty for a pure number.
+    /// The unit of the quantity, as markup; empty for a pure number.
     pub unit: String,
 }
 
@@ -59,10 +59,10 @@ pub struct Axis {
     pub min: f64,
     /// Outer edge of the cell with the highest values.
     pub max: f64,
-    /// Whether the axis is logarithmic; both edges are above 0 then.
+    /// Whether the axis is logarithmic; if it is, both edges are above 0.
     pub is_log: bool,
     /// Whether the numbers descend to the right, or upwards, as for rows of a photograph, which
-    /// count from the top. The first cell of an array is then at the high edge.
+    /// count from the top. If the numbers descend, the first cell of an array is at the high edge.
     pub is_reversed: bool,
 }
 
@@ -104,7 +104,8 @@ impl Axis {
 
     /// The centre of cell `index` of `count`.
     pub(crate) fn center(&self, index: usize, count: usize) -> f64 {
-        // Symmetric in the two edges, so that the middle of a symmetric axis is exactly 0.
+        // The formula is symmetric in the two edges, so the middle of a symmetric axis is exactly
+        // 0.
         let along = index as f64 + 0.5;
         let above = if self.is_reversed {
             count as f64 - along
@@ -143,7 +144,7 @@ impl Axis {
             return 0;
         }
         let decade = order(min.abs().max(max.abs()));
-        // From 0.01 to 9999, plain numbers are shorter.
+        // Numbers from 0.01 to 9999 are shorter without a factored power of ten.
         if (-2..=3).contains(&decade) {
             0
         } else {
@@ -210,14 +211,14 @@ impl Axis {
     }
 }
 
-/// Minimum length of an axis whose texts may come near those of the next panel.
+/// Minimum length of an axis whose tick texts may be close to those of the next panel.
 pub(crate) const COMFORTABLE: f64 = 64.0;
 /// The length by which tick texts may exceed a shorter axis.
 const OVERHANG: f64 = 7.0;
 
-/// First digits of the steps between ticks.
+/// The usual first digits of the steps between ticks.
 const USUAL: [f64; 3] = [1.0, 2.0, 5.0];
-/// First digits used if the usual ones leave fewer than three ticks.
+/// First digits that are used if the usual digits leave fewer than three ticks.
 const MORE: [f64; 7] = [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 8.0];
 
 /// The most ticks whose texts do not overlap along `length`, and their font size. If fewer than
@@ -248,8 +249,8 @@ pub(crate) fn spaced_ticks(axis: &Axis, length: f64) -> (Vec<Tick>, f64) {
     enough.chain(others).next().unwrap_or(first)
 }
 
-/// Whether tick texts at a font `size` do not overlap. Along a short axis they must not come near
-/// those of the next panel either.
+/// Whether tick texts at a font `size` do not overlap. Along a short axis, they must also keep
+/// clear of the tick texts of the next panel.
 fn fit(axis: &Axis, ticks: &[Tick], length: f64, size: f64) -> bool {
     let beyond = |tick: &Tick| {
         let at = axis.fraction(tick.value) * length;

@@ -13,7 +13,7 @@ pub(crate) const WIDTH: f64 = 12.0;
 const POINT: f64 = 9.0;
 
 /// Draws the bar of `shading` to the right of a panel, with its left edge at `x` and as high as
-/// `panel`. Its label may be longer by `overhang`.
+/// `panel`. The label of the bar may be longer than the bar by `overhang`.
 pub(crate) fn draw(
     svg: &mut Svg,
     shading: &Shading,

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// The mapping of values to colors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Scale {
-    /// From 0 to the largest value shown; negative values are drawn as 0.
+    /// A linear scale from 0 to the largest value shown; negative values are drawn as 0.
     Linear,
     /// 10 log₁₀ of a power relative to the largest reference value, from `floor` to 0 dB; powers ≤
     /// 0 are below the floor.
@@ -17,23 +17,23 @@ pub enum Scale {
         /// Lower end of the colors, in decibels, below 0.
         floor: f64,
     },
-    /// From −`most` to `most`, blue to red.
+    /// A linear scale from −`most` to `most`, blue to red.
     Signed {
         /// Upper end of the colors, above 0.
         most: f64,
     },
-    /// Degrees, once around the circle.
+    /// A scale of angles in degrees, once around the circle.
     Phase,
 }
 
 /// Red, green, blue.
 pub(crate) type Rgb = [u8; 3];
 
-/// Grey for cells without a value (NaN). Neither color map contains this grey.
+/// Grey for cells without a value (NaN). No color map contains this grey.
 pub(crate) const NO_VALUE: Rgb = [158, 158, 158];
 
-/// Colors of magnitudes, dark to pale. Their lightness increases evenly, so the colors remain
-/// distinct when printed in grey.
+/// Colors of magnitudes, dark to pale. The lightness of the colors increases evenly, so they
+/// remain distinct when printed in grey.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Palette {
     /// Black, purple, orange, pale yellow.
@@ -59,7 +59,7 @@ pub(crate) enum Colors {
     Cyclic,
 }
 
-/// Eight colors of the color circle; the others are interpolated between them.
+/// Eight colors of the color circle, between which all others are interpolated.
 const CIRCLE: [[f64; 3]; 8] = [
     [226.0, 217.0, 226.0],
     [150.0, 182.0, 203.0],
@@ -100,7 +100,7 @@ pub fn palettes() -> [Vec<u8>; 2] {
     })
 }
 
-/// A color of the circle.
+/// Returns the color at fraction `t` of the color circle.
 fn on_circle(t: f64) -> Rgb {
     let place = t * CIRCLE.len() as f64;
     let before = whole(place);
@@ -109,7 +109,7 @@ fn on_circle(t: f64) -> Rgb {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "between two numbers of a byte"
+        reason = "a mean of two numbers of type u8"
     )]
     [0, 1, 2].map(|i| ((1.0 - share) * a[i] + share * b[i]).round() as u8)
 }
@@ -137,12 +137,12 @@ impl Shading {
         }
     }
 
-    /// Values of both signs, up to `most` in modulus.
+    /// Returns colors for values of both signs, up to `most` in modulus.
     pub(crate) fn signed(name: &str, unit: &str, most: f64) -> Self {
         Self::linear(Colors::Diverging, Axis::edges(name, unit, [-most, most]))
     }
 
-    /// Degrees, once around the circle.
+    /// Returns colors for angles in degrees, once around the circle.
     pub(crate) fn phase(name: &str) -> Self {
         Self::linear(
             Colors::Cyclic,
@@ -189,7 +189,7 @@ impl Shading {
     }
 }
 
-/// The largest finite value; 0 if none is above it.
+/// Returns the largest finite value, or 0 if no value is positive.
 pub(crate) fn largest(values: ArrayView2<'_, f64>) -> f64 {
     let finite = values.iter().copied().filter(|v| v.is_finite());
     finite.fold(0.0, f64::max)

@@ -13,7 +13,7 @@ use ndarray::ArrayView2;
 /// ascending. NaN: no value.
 #[derive(Clone, Debug)]
 pub struct Comparison<'a> {
-    /// The quantity and plane shown; markup.
+    /// The quantity and the plane that are shown, as markup.
     pub title: &'a str,
     /// A line below the title, such as the verdict, markup; may be empty.
     pub note: &'a str,
@@ -29,12 +29,12 @@ pub struct Comparison<'a> {
     pub sides: [&'a str; 2],
     /// Measured values; may be negative after subtraction of the shot noise.
     pub measured: ArrayView2<'a, f64>,
-    /// Predicted values, or those of whatever the measurement is compared with.
+    /// Predicted values, or other values with which the measurement is compared.
     pub predicted: ArrayView2<'a, f64>,
     /// (measured − predicted) / σ.
     pub z: ArrayView2<'a, f64>,
-    /// Both sides on finer cells over the same axes. They are drawn in place of the values; the
-    /// table keeps the values.
+    /// Measured and predicted values on finer cells over the same axes. These finer values are
+    /// drawn in the picture; the table keeps the original values.
     pub finer: Option<[ArrayView2<'a, f64>; 2]>,
 }
 

@@ -59,8 +59,8 @@ pub struct CurvePanel {
     pub is_log: [bool; 2],
 }
 
-/// Panels of curves that show one quantity; each has its own scales, which include y = 0 unless y
-/// is logarithmic or all values are far from 0.
+/// Panels of curves that show one quantity. Each panel has its own scales; these include y = 0
+/// unless y is logarithmic or all values are far from 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curves {
     /// Title, markup.
@@ -209,7 +209,7 @@ fn axes(panel: &CurvePanel, y: &AxisQuantity) -> [Axis; 2] {
         by_factors(around(|p| p[1], |p| p[1] + p[2]))
     } else {
         let [least, most] = around(|p| p[1] - p[2], |p| p[1] + p[2]);
-        // On an axis that includes zero, values far from zero would look like a flat line.
+        // Values far from zero would look like a flat line on an axis that includes zero.
         let is_far = most - least < 0.3 * least.abs().max(most.abs());
         let [least, most] = if is_far {
             [least, most]
@@ -217,7 +217,7 @@ fn axes(panel: &CurvePanel, y: &AxisQuantity) -> [Axis; 2] {
             [least.min(0.0), most.max(0.0)]
         };
         let margin = 0.06 * (most - least);
-        // Zero is an edge if no values are below it.
+        // If no values are negative, the axis begins at zero.
         [
             if least == 0.0 { 0.0 } else { least - margin },
             most + margin,
@@ -249,7 +249,8 @@ fn draw(svg: &mut Svg, panel: &CurvePanel, y: &AxisQuantity, area: Area) {
                 CurveKind::Rival => svg.polyline(&at, RIVAL),
                 CurveKind::Measured => {
                     for (p, at) in points.iter().zip(at) {
-                        // The error bar ends below the frame if an error is as large as its value.
+                        // An error bar extends below the frame if the error is as large as the
+                        // value.
                         let ends = [(p[1] - p[2]).max(y.min), p[1] + p[2]];
                         let ends = ends.map(|y| frame.point(p[0], y)[1]);
                         bar(svg, at, ends);

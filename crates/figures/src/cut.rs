@@ -1,4 +1,4 @@
-//! Drawing of a [`Section`] into any area, also for strips.
+//! Draws a [`Section`] into any area of a figure, such as the upper part of a strip.
 
 mod place;
 
@@ -23,7 +23,7 @@ const NAME_ROW: f64 = 17.0;
 /// Line spacing of a plane's heading.
 const HEADING_LINE: f64 = 16.0;
 
-/// The name of a plane in one line, or in two if it is too long for one.
+/// Returns the name of a plane in one line, or in two lines if it is too long.
 fn name_lines(name: &str, room: f64) -> Vec<String> {
     // Bold letters are wider than the estimate, so less room is assumed.
     let mut words = lines(name, 1.2 * SMALL_NAME, room).into_iter();
@@ -46,7 +46,7 @@ const SMALL_NAME: f64 = 10.0;
 pub(crate) struct SectionLayout<'a> {
     section: &'a Section,
     area: Area,
-    /// The area of the x range: below the names, above the plane numbers.
+    /// The area for the x range, which is below the names and above the plane numbers.
     plot: Area,
     z: Axis,
     x: Axis,
@@ -58,7 +58,7 @@ pub(crate) struct SectionLayout<'a> {
 impl<'a> SectionLayout<'a> {
     /// Height of ticks and label of the z axis, above the area.
     pub(crate) const AXIS: f64 = 46.0;
-    /// Height of a plane's heading: number, name in one line, distance.
+    /// Height of a plane's heading, which consists of number, name in one line, and distance.
     const HEADING: f64 = 56.0;
 
     pub(crate) fn new(section: &'a Section, area: Area) -> Self {
@@ -144,8 +144,8 @@ impl<'a> SectionLayout<'a> {
         Self::HEADING + HEADING_LINE * more.max().unwrap_or(0) as f64
     }
 
-    /// The distance of a plane, and the side of an element at the same place on which the plane is;
-    /// in one line or two.
+    /// Returns the distance of a plane, in one line or two. If an element is at the same place,
+    /// the text also says on which side of it the plane is.
     fn place(&self, mark: &PlaneMark, room: f64) -> Vec<String> {
         // Four significant digits, in the shortest form.
         let rounded = format!("{:.3e}", mark.distance).parse::<f64>();
@@ -188,7 +188,7 @@ impl<'a> SectionLayout<'a> {
         let near = 1e-9 * self.section.length;
         let stands = |s: &Segment| {
             let ([z, x], [other_z, other_x]) = (s.start, s.end);
-            // Where the oblique element meets the central ray.
+            // The distance at which an oblique element meets the central ray.
             let rise = other_z - z;
             let met = z + if rise.abs() < near {
                 0.0
@@ -224,7 +224,7 @@ impl<'a> SectionLayout<'a> {
         let mut hatching = Hatching::default();
         for segment in self.section.segments.iter().filter(|s| s.kind == kind) {
             let (start, end) = (self.point(segment.start), self.point(segment.end));
-            // A body is filled, so its segments have no dark side.
+            // The edges of a filled body have no dark side.
             let bits = |point: &[f64; 2]| point.map(f64::to_bits);
             let mut edges = self.section.bodies.iter().flatten();
             let is_flat = edges.all(|edge| bits(edge) != bits(&segment.start));
@@ -266,7 +266,8 @@ impl<'a> SectionLayout<'a> {
         part.map(|t| [0, 1].map(|i| start[i] + t * (end[i] - start[i])))
     }
 
-    /// Draws the line of a plane at its position, and its number where there is room.
+    /// Draws the line of a plane at the position of the plane, and the number of the plane where
+    /// there is room.
     fn plane(&self, svg: &mut Svg, plane: usize) {
         let [at, _] = self.point([self.section.planes[plane].distance, 0.0]);
         let stroke = Stroke {

@@ -15,7 +15,7 @@ use std::f64::consts::TAU;
 pub struct Ellipse {
     /// The name in the key.
     pub name: String,
-    /// Its entries xx, xy and yy.
+    /// The entries xx, xy and yy of the covariance.
     pub covariance: [f64; 3],
 }
 
@@ -32,8 +32,8 @@ pub struct Ellipses<'a> {
     pub quantity: AxisQuantity,
     /// Lower end of the decibels, below 0.
     pub floor: f64,
-    /// Ellipses at two standard deviations, in the order of the key. The color and dashes of a
-    /// missing ellipse remain unused.
+    /// Ellipses at two standard deviations, in the order of the key. Each position has its own
+    /// color and dashes, which are not used if its ellipse is missing.
     pub ellipses: [Option<Ellipse>; 3],
 }
 
@@ -141,7 +141,8 @@ pub fn ellipses(of: &Ellipses<'_>) -> Result<Figure, Error> {
     })
 }
 
-/// Points around the ellipse. They are a matrix root of the covariance times points of a circle.
+/// Points around the ellipse. The points are a matrix root of the covariance times points of a
+/// circle.
 fn points([xx, xy, yy]: [f64; 3]) -> impl Iterator<Item = [f64; 2]> {
     const CORNERS: u32 = 180;
     let a = xx.max(0.0).sqrt();
@@ -195,7 +196,7 @@ mod tests {
             assert!((square - 4.0).abs() < 1e-12); // rounding
             highest = highest.max(y);
         }
-        // The height is two standard deviations of y, up to the error of the polygon.
+        // The ellipse extends to two standard deviations of y, up to the error of the polygon.
         assert!((highest - 6.0).abs() < 6.0 * 2e-4, "{highest}");
         // A spectrum without width gives a line.
         assert!(points([1.0, -2.0, 4.0]).all(|[x, y]| (y + 2.0 * x).abs() < 1e-12)); // rounding

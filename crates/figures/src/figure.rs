@@ -90,7 +90,7 @@ impl Figure {
         let drawn = surface.draw_svg(&tree, page, SvgSettings::default());
         surface.finish();
         sheet.finish();
-        drawn.ok_or_else(|| Error::Page("its drawing is not one of PDF".to_owned()))?;
+        drawn.ok_or_else(|| Error::Page("the drawing cannot be converted to PDF".to_owned()))?;
         document
             .finish()
             .map_err(|error| Error::Page(format!("{error:?}")))

@@ -22,8 +22,8 @@ pub struct Picture<'a> {
 }
 
 impl Picture<'_> {
-    /// The ratio of height to width. It is 1, unless both axes count pixels, which are drawn
-    /// square.
+    /// The ratio of height to width. This ratio is 1, unless both axes count pixels, which are
+    /// drawn square.
     fn shape(&self) -> f64 {
         let counts_pixels = |axis: &Axis| axis.quantity.unit == "pixels";
         if counts_pixels(&self.x) && counts_pixels(&self.y) {
@@ -42,7 +42,7 @@ pub struct Guide {
     pub through: [f64; 2],
     /// dν/dρ, in metres; −d for light that has travelled d.
     pub slope: f64,
-    /// Whether the line is that of the plane across the plane of incidence.
+    /// Whether the line belongs to directions across the plane of incidence.
     pub is_across: bool,
 }
 
@@ -54,7 +54,7 @@ pub(crate) struct PictureRow<'b, 'a> {
     /// Name and unit for the color bar, markup.
     pub(crate) bar: [String; 2],
     pub(crate) scale: Scale,
-    /// Whether all pictures of the row share a color range. Otherwise each picture is relative to
+    /// Whether all pictures of the row share a color range. If not, each picture is relative to
     /// its own largest value.
     pub(crate) shared: bool,
     /// A picture for each column, with the lines over it.
@@ -62,7 +62,7 @@ pub(crate) struct PictureRow<'b, 'a> {
 }
 
 impl PictureRow<'_, '_> {
-    /// Whether the row shares the color bar of another.
+    /// Whether the row shares the color bar of another row.
     fn has_bar_of(&self, other: &Self) -> bool {
         self.bar == other.bar && self.scale == other.scale && self.shared == other.shared
     }
@@ -88,25 +88,26 @@ impl PictureRow<'_, '_> {
 pub(crate) const LEFT: f64 = 75.0;
 /// Width to the right of the last picture, for the color bars.
 pub(crate) const RIGHT: f64 = 81.0;
-/// Gaps between adjacent pictures: if the right picture has no numbers beside its axis, and if it
-/// has them.
+/// Gaps between adjacent pictures. The first is used if the right picture has no numbers beside
+/// its axis, and the second if it has numbers.
 pub(crate) const GAPS: [f64; 2] = [26.0, 56.0];
-/// The first of [`GAPS`], where there are many pictures side by side.
+/// The gap that replaces the first of [`GAPS`] if there are many pictures side by side.
 const CLOSE: f64 = 16.0;
-/// Gaps between a picture and the one below: if they share the x axis, and if they do not.
+/// Gaps between a picture and the picture below. The first is used if they share the x axis, and
+/// the second if they do not.
 const ROW_GAPS: [f64; 2] = [14.0, LABEL_BASELINE + 18.0];
 /// Distance from the left edge of the first picture to the row name.
 const ROW_NAME: f64 = 63.0;
 
 /// Strokes of the lines over spectra. The upper stroke is visible on dark colors, and the lower
-/// stroke makes the line visible on pale ones.
+/// stroke makes the line visible on pale colors.
 pub(crate) fn guide_strokes(is_across: bool) -> [Stroke; 2] {
     let color = if is_across { "#8dff9c" } else { "#7fe0ff" };
     [Stroke::solid("#10304a", 3.2), Stroke::solid(color, 1.4)]
 }
 
 /// The length of the strokes at both ends of a line, as a fraction of the picture's side. Between
-/// them the predicted ridge stays visible.
+/// the two strokes the predicted ridge stays visible.
 const GUIDE_END: f64 = 0.1;
 /// Least distance of the texts below two adjacent pictures.
 const TEXT_GAP: f64 = 4.0;
@@ -130,7 +131,7 @@ pub(crate) struct PageGrid<'b, 'a> {
     style: Style,
     /// Width of a picture.
     pub(crate) side: f64,
-    /// Gap between adjacent pictures, if the right one has no numbers beside its axis.
+    /// Gap between adjacent pictures, if the right picture has no numbers beside its axis.
     near: f64,
     /// Height of a picture divided by its width.
     shape: f64,
@@ -138,8 +139,8 @@ pub(crate) struct PageGrid<'b, 'a> {
 }
 
 impl<'b, 'a> PageGrid<'b, 'a> {
-    /// Lays out rows of `columns` pictures. Their width is from `least` to `largest`, if such a
-    /// width fits. All pictures have the shape of the first.
+    /// Lays out rows of `columns` pictures. The pictures are from `least` to `largest` wide, if
+    /// such a width fits. All pictures have the shape of the first.
     ///
     /// # Panics
     /// If a row does not have a picture for each column.
@@ -149,8 +150,8 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         [least, largest]: [f64; 2],
         style: &Style,
     ) -> Self {
-        // Maximum picture widths: for one block, and for several blocks, which would make a long
-        // page.
+        // Maximum picture widths. The first is for one block, and the second for several blocks,
+        // which would make a long page.
         const MAX_SIDES: [f64; 2] = [190.0, 112.0];
         for row in &rows {
             assert_eq!(row.cells.len(), columns, "pictures of {}", row.name);
@@ -254,9 +255,9 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         })
     }
 
-    /// The width below which the x label of a picture is centred. It is that of the whole block if
-    /// the pictures are narrow and have the same axis. `None` if a label further to the left
-    /// applies.
+    /// The width below which the x label of a picture is centred. If the pictures are narrow and
+    /// have the same axis, this is the width of the whole block. Returns `None` if a label further
+    /// to the left applies.
     fn labelled_across(&self, row: usize, places: &[PlacedColumn], i: usize) -> Option<f64> {
         let x = |place: &PlacedColumn| &self.rows[row].cells[place.column].0.x;
         let is_same = places.iter().all(|place| x(place) == x(&places[0]));
@@ -267,8 +268,8 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         Some(last.left + self.side - places[0].left)
     }
 
-    /// The height beside which the y label of a picture is centred. It includes the pictures below
-    /// that have the same axes. `None` if a label further up applies.
+    /// The height beside which the y label of a picture is centred. This height includes the
+    /// pictures below that have the same axes. Returns `None` if a label further up applies.
     fn labelled_down(&self, row: usize, column: usize) -> Option<f64> {
         let y = |row: usize| &self.rows[row].cells[column].0.y;
         let is_same = |above: usize| self.shares_x(above) && y(above) == y(above + 1);
@@ -317,7 +318,7 @@ impl<'b, 'a> PageGrid<'b, 'a> {
         Ok(y - ROW_GAPS[1] + LABEL_BASELINE)
     }
 
-    /// The largest value of the rows that share a color bar with this one.
+    /// The largest value of the rows that share a color bar with this row.
     fn peak(&self, index: usize) -> f64 {
         let rows = self.rows.iter().filter(|r| r.has_bar_of(&self.rows[index]));
         let cells = rows.flat_map(|row| &row.cells);
@@ -420,7 +421,7 @@ fn inside(panel: &Panel<'_>, guide: &Guide) -> Option<[[f64; 2]; 2]> {
     is_seen.then(|| rhos.map(|rho| panel.point(rho, at(rho))))
 }
 
-/// Short lines at both ends of a line.
+/// Draws short strokes at both ends of a line.
 pub(crate) fn ends(start: [f64; 2], end: [f64; 2], length: f64) -> [[[f64; 2]; 2]; 2] {
     let along = [0, 1].map(|i| end[i] - start[i]);
     let share = length / libm::hypot(along[0], along[1]).max(2.0 * length);

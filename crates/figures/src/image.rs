@@ -55,7 +55,7 @@ fn picture(
 /// is white.
 ///
 /// # Errors
-/// If there are no pixels, more pixels than a PNG can hold, or a different number of values.
+/// If there are no pixels, more pixels than a PNG can hold, or fewer or more values than pixels.
 pub fn photograph([width, height]: [usize; 2], radiance: &[f64]) -> Result<Vec<u8>, Error> {
     let (Ok(w), Ok(h)) = (u32::try_from(width), u32::try_from(height)) else {
         return Err(Error::Size(u32::MAX, u32::MAX));

@@ -4,14 +4,15 @@
 //! a PNG of the same drawing and a CSV of its numbers. The crate computes no physics and uses
 //! neither disk nor system fonts: the same values give the same bytes.
 //!
-//! * [`comparison()`]: one quantity from two sources, such as measured | predicted | difference in σ;
+//! * [`comparison()`]: one quantity from two sources, such as measured | predicted | difference in
+//!   σ.
 //! * [`strip()`]: the scene cut along the central ray and, under each virtual plane, its light
-//!   field and spectrum;
-//! * [`plate()`]: pictures in rows and columns;
-//! * [`section()`]: the cut of `strip()` alone;
-//! * [`ellipses()`]: a spectrum with covariances over it;
-//! * [`curves()`]: curves and measured points, panel beside panel;
-//! * [`stacked()`]: several of these on one page;
+//!   field and spectrum.
+//! * [`plate()`]: pictures in rows and columns.
+//! * [`section()`]: the cut of `strip()` alone.
+//! * [`ellipses()`]: a spectrum with covariances over it.
+//! * [`curves()`]: curves and measured points, panel beside panel.
+//! * [`stacked()`]: several of these on one page.
 //! * [`photograph()`]: what a camera sees.
 //!
 //! Arrays are [x, y] with both axes ascending; pictures put x to the right and y upwards.

@@ -35,7 +35,7 @@ pub(crate) fn line_of(kind: SegmentKind) -> (&'static str, f64) {
 /// Short slanted strokes behind a surface, evenly along all its pieces.
 #[derive(Debug, Default)]
 pub(crate) struct Hatching {
-    /// End of the last piece, and its distance from the last stroke.
+    /// End of the last hatched piece, and the distance of this end from the last stroke.
     last: Option<([f64; 2], f64)>,
 }
 

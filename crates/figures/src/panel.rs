@@ -11,7 +11,7 @@ use ndarray::ArrayView2;
 
 /// The length by which an axis label may exceed its panel, along x and y.
 const OVERHANG: [f64; 2] = [24.0, 13.0];
-/// The length along x beside a close panel.
+/// The length by which an axis label may exceed its panel along x if the next panel is close.
 const CLOSE_OVERHANG: f64 = 10.0;
 
 /// The position of a heat map and the texts around it.
@@ -24,7 +24,8 @@ pub(crate) struct Panel<'a> {
     pub(crate) label_x: bool,
     pub(crate) label_y: bool,
     /// The lengths along which the x and y labels are centred, from the left and from the top of
-    /// the panel. They may include panels to the right and below. `None` if a label is not written.
+    /// the panel. These lengths may include panels to the right and below. Is `None` for a label
+    /// that is not written.
     pub(crate) labelled: [Option<f64>; 2],
 }
 
@@ -57,7 +58,7 @@ impl Panel<'_> {
         ]
     }
 
-    /// Draws the frame and y axis, for a panel without x numbers.
+    /// Draws only the frame and the y axis, for a panel without an x axis.
     pub(crate) fn frame(&self, svg: &mut Svg) {
         svg.frame(self.area);
         self.y_axis(svg);

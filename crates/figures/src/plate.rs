@@ -21,7 +21,7 @@ pub struct PlateRow<'a> {
     pub quantity: AxisQuantity,
     /// The mapping of values to colors.
     pub scale: Scale,
-    /// Whether all pictures of the row share a color range. Otherwise each picture is relative to
+    /// Whether all pictures of the row share a color range. If not, each picture is relative to
     /// its own largest value.
     pub shared: bool,
     /// A picture for each column.
@@ -35,7 +35,8 @@ pub struct Plate<'a> {
     pub title: &'a str,
     /// A line below the title, markup; may be empty.
     pub note: &'a str,
-    /// Headings of the columns. The text after a line break becomes a second line, markup.
+    /// Headings of the columns. Text after a line break becomes a second line, which may contain
+    /// markup.
     pub heads: Vec<String>,
     /// The rows, from top to bottom.
     pub rows: Vec<PlateRow<'a>>,
@@ -68,7 +69,8 @@ pub(crate) const OWN_PEAK: &str = "relative to its peak";
 /// Height of the bar panel, and width of each bar.
 const BARS: f64 = 110.0;
 const BAR: f64 = 60.0;
-/// Minimum width of a picture. Columns that do not fit at this width go below the others.
+/// Minimum width of a picture. Columns that do not fit at this width are placed below the other
+/// columns.
 const MIN_WIDTH: f64 = 58.0;
 /// Minimum page width below a title, if the page is wide enough.
 const TITLE: f64 = 440.0;

@@ -38,13 +38,15 @@ pub struct PlaneMark {
     pub name: String,
     /// Distance from the light along the central ray, metres.
     pub distance: f64,
-    /// The side of the object at the same place; the plane is drawn slightly towards it.
+    /// The side on which the plane is if an object is at the same place; the plane is drawn
+    /// slightly towards this side.
     pub side: Side,
 }
 
 /// A cut in z, the distance along the central ray, and x or y, all in metres.
 ///
-/// The cut is not to scale: z fills the width. Parts outside are cut off.
+/// The cut is not to scale, because z fills the width. Parts outside the range of z and x are not
+/// drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Section {
     /// The coordinate across, markup.
@@ -61,7 +63,7 @@ pub struct Section {
     pub planes: Vec<PlaneMark>,
     /// Outlines (z, x) of filled bodies; segments draw their edges.
     pub bodies: Vec<Vec<[f64; 2]>>,
-    /// The cut through y, drawn above, if it differs from this one.
+    /// The cut through y, which is drawn above this cut if the two differ.
     pub other: Option<Box<Self>>,
     /// The scene to scale; drawn at the top.
     pub world: Option<DrawnWorld>,
@@ -70,9 +72,9 @@ pub struct Section {
 /// An object in the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DrawnObject {
-    /// Its segment; points are (z, x).
+    /// The segment of the object; points are (z, x).
     pub segment: Segment,
-    /// The direction of the light that arrives at it, (z, x).
+    /// The direction of the light that arrives at the object, (z, x).
     pub light: [f64; 2],
 }
 

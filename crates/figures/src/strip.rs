@@ -19,20 +19,20 @@ use crate::text::width;
 pub struct StripColumn<'a> {
     /// The light field in (x, u).
     pub light_field: Picture<'a>,
-    /// The light field in (y, v). This row is drawn if each column has one.
+    /// The light field in (y, v). This row is drawn if all columns have such a picture.
     pub across: Option<AcrossPictures<'a>>,
     /// The power spectrum in (ρ, ν).
     pub spectrum: Picture<'a>,
     /// The spectrum on finer cells over the same axes, drawn in its place; the table keeps
     /// `spectrum`.
     pub finer: Option<Picture<'a>>,
-    /// The predicted spectrum. This row is drawn if each column has one.
+    /// The predicted spectrum. This row is drawn if all columns have such a picture.
     pub predicted: Option<Picture<'a>>,
-    /// The full radial spectrum over (|Ωxy|, |Ωuv|), measured and predicted. These rows are drawn
-    /// if each column has them.
+    /// The full radial spectrum over (|Ωxy|, |Ωuv|), measured and predicted. The rows of full
+    /// radial spectra are drawn if each column has such a spectrum.
     pub full_radial: Option<[Picture<'a>; 2]>,
     /// The difference between the measured spectrum and a first-order chain, in percent of its
-    /// largest modulus. This row is drawn if each column has one.
+    /// largest modulus. This row is drawn if all columns have such a picture.
     pub off_chain: Option<Picture<'a>>,
     /// Lines below the pictures, such as "*p* = 0.43, pass", markup; may be empty.
     pub verdict: Vec<String>,
@@ -47,7 +47,7 @@ pub struct AcrossPictures<'a> {
     pub light_field: Picture<'a>,
     /// The power spectrum at azimuth 90°.
     pub spectrum: Picture<'a>,
-    /// The same spectrum on finer cells, drawn in place of it.
+    /// The same spectrum on finer cells, which is drawn in its place.
     pub finer: Option<Picture<'a>>,
     /// Lines at the edges of that spectrum.
     pub guides: Vec<Guide>,
@@ -147,7 +147,8 @@ impl StripRow {
         })
     }
 
-    /// The finer picture that is drawn in place of that one.
+    /// Returns the picture to draw: the finer picture if there is one, otherwise the picture
+    /// itself.
     fn drawn<'a, 'b>(self, column: &'b StripColumn<'a>) -> &'b Picture<'a> {
         let finer = match self {
             Self::Spectrum => column.finer.as_ref(),
@@ -172,7 +173,8 @@ impl StripRow {
 const CUT: f64 = 150.0;
 /// Height of the lines from the cut to the columns.
 const LEADERS: f64 = 34.0;
-/// Minimum width of a picture. Columns that do not fit at this width go below the others.
+/// Minimum width of a picture. Columns that do not fit at this width are placed below the other
+/// columns.
 const MIN_WIDTH: f64 = 48.0;
 
 /// Draws a strip, as wide as the page.
@@ -198,8 +200,8 @@ pub fn strip(strip: &Strip<'_>, style: &Style) -> Result<Figure, Error> {
     let verdicts = verdicts.map(|column| column.verdict.clone());
     let verdicts: Vec<Vec<String>> = verdicts.collect();
     for block in 0..grid.blocks() {
-        // Leaders to lower columns would cross the columns above, so lower columns have only
-        // numbers.
+        // Lines from the cut to lower columns would cross the columns above, so lower columns have
+        // only numbers.
         let heads = bottom
             + if grid.blocks() == 1 && style.scene {
                 LEADERS

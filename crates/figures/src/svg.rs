@@ -66,7 +66,7 @@ impl TextStyle {
         Self { fill, ..self }
     }
 
-    /// The style rotated to run upwards.
+    /// Returns the style for text that runs upwards.
     pub(crate) fn upwards(self) -> Self {
         Self {
             upwards: true,
@@ -185,11 +185,11 @@ impl Svg {
         self.write(style, &spans(markup, style.size));
     }
 
-    /// Writes text with markup within a width of `room`. The text is shrunk if necessary. If this
-    /// is not enough it is shortened and loses its styles.
+    /// Writes text with markup within a width of `room`. The text is shrunk if necessary. If the
+    /// smallest size is still too wide, the text is shortened and loses its styles.
     pub(crate) fn fitted(&mut self, style: TextStyle, markup: &str, room: f64) {
         let plain = plain(markup);
-        // Bold letters are about 12 % wider than the estimate for regular ones.
+        // Bold letters are about 12 % wider than the estimate for regular letters.
         let room = if style.bold { room / 1.12 } else { room };
         let (text, size) = fit(&plain, style.size, room);
         let style = TextStyle { size, ..style };
@@ -280,7 +280,8 @@ fn near(from: [f64; 2], to: [f64; 2]) -> Option<[[f64; 2]; 2]> {
     let [mut first, mut last] = [0.0_f64, 1.0_f64];
     for axis in 0..2 {
         let along = to[axis] - from[axis];
-        // Line parameters at both borders. They are NaN for a line along a border.
+        // The parameters at which the line crosses both borders. These parameters are NaN for a
+        // line along a border.
         let borders = [-MAX_COORDINATE, MAX_COORDINATE].map(|border| (border - from[axis]) / along);
         if along != 0.0 {
             first = first.max(borders[0].min(borders[1]));
@@ -324,8 +325,8 @@ fn number(value: f64) -> String {
 mod tests {
     use super::*;
 
-    /// Beside a light of a metre, a mirror of some micrometres had coordinates of 10⁹, and the SVG
-    /// renderer failed.
+    /// In the drawing of a mirror of some micrometres beside a light of a metre, coordinates
+    /// reached 10⁹, and the SVG renderer failed.
     #[test]
     fn lines_far_away_are_cut_and_keep_their_way() {
         assert_eq!(

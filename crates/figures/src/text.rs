@@ -34,7 +34,8 @@ const SCRIPT_SIZE: f64 = 0.72;
 
 /// SVG content of markup at a font `size`, in SVG units.
 ///
-/// Scripts are shifted by `dy` rather than `baseline-shift`, which some browsers do not support.
+/// Subscripts and superscripts are shifted by `dy`, because some browsers do not support
+/// `baseline-shift`.
 pub(crate) fn spans(markup: &str, size: f64) -> String {
     let mut content = String::new();
     let mut level = TextLevel::Line;

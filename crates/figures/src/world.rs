@@ -84,8 +84,8 @@ impl DrawnWorld {
         )
     }
 
-    /// A position for the number of a plane. It is beyond one end of the plane, and clear of
-    /// objects and other numbers.
+    /// A position for the number of a plane. The number is beyond one end of the plane, and clear
+    /// of objects and other numbers.
     fn free(
         &self,
         [from, to]: [[f64; 2]; 2],

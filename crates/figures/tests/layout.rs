@@ -141,7 +141,7 @@ fn options() -> usvg::Options<'static> {
     options
 }
 
-/// Reduces the font list to the loaded font, so that no substitute is used.
+/// Reduces the font list to the loaded font, so that no other font replaces it.
 fn with_font(svg: &str) -> String {
     svg.replace("DejaVu Sans, Verdana, sans-serif", "DejaVu Sans")
 }

@@ -46,7 +46,7 @@ fn measured_and_predicted_share_colors_and_differences_keep_their_sign() {
     let measured = ndarray::array![[1.0, 2.0], [3.0, 4.0]];
     let predicted = ndarray::array![[4.0, 2.0], [3.0, 1.0]];
     let maps = images(&compare(measured.view(), predicted.view(), Scale::Linear));
-    // Cell (0, 0) is the lower left pixel, (1, 1) the upper right one.
+    // Cell (0, 0) is the lower left pixel, and cell (1, 1) is the upper right pixel.
     assert_eq!(maps[0].at(1, 0), maps[1].at(0, 1), "both hold 4");
     assert_eq!(maps[0].at(0, 0), maps[1].at(0, 0), "both hold 2");
     assert_ne!(maps[0].at(0, 1), maps[1].at(0, 1));

@@ -40,7 +40,7 @@ const SPARSE: usize = 20;
 /// Paths of each shading sample.
 const PATHS_PER_SAMPLE: u32 = 128;
 
-/// The pixel difference, relative to white, at which the colors of differences saturate.
+/// The difference of a pixel, relative to white, beyond which its color no longer changes.
 const MAX_DIFFERENCE: f64 = 0.2;
 
 struct CreatureScene {
@@ -95,7 +95,8 @@ impl CreatureScene {
         render(&self.paths, &self.camera, &plan, &|_, _| {}, &|_| {})
     }
 
-    /// The values of pixels in the layout of figures: columns first, and the lowest row first.
+    /// Returns the values of pixels as an array [column, row] whose first row is the lowest, as
+    /// figures need it.
     fn picture(&self, values: Vec<f64>) -> Result<Array2<f64>, Failure> {
         let [w, h] = self.camera.size;
         let mut rows = Array2::from_shape_vec((h, w), values).map_err(Failure::cannot_run)?;
@@ -140,8 +141,8 @@ struct CreatureRow<'a> {
     panels: &'a [PicturePanel<'a>],
     quantity: AxisQuantity,
     scale: Scale,
-    /// Whether the range of colors is that of the quantity; otherwise it is that of each picture's
-    /// values.
+    /// Whether all pictures share the range of colors of the quantity; otherwise the range of each
+    /// picture is that of its values.
     shared: bool,
 }
 
@@ -208,7 +209,8 @@ pub(crate) fn criteria(taken: &FigureData<'_>) -> Result<Figure, Failure> {
 
 /// The pictures of Fig. 17: radiance in rows from the top.
 struct ComparedPictures {
-    /// From uniform samples, and from those of the criteria, isotropic and anisotropic.
+    /// The pictures from few samples: uniform samples, isotropic samples by the criteria, and
+    /// anisotropic samples by the criteria.
     few: [Vec<f64>; 3],
     reference: etendue_paths::Picture,
     /// The radiance shown as white.

@@ -16,10 +16,10 @@ struct CriterionSweep {
     title: &'static str,
     quantity: AxisQuantity,
     field: &'static str,
-    /// The ends of the lines, where photons are also measured.
+    /// The values of the field at the two ends of the lines, at which photons are also measured.
     ends: [f64; 2],
     values: &'static [f64],
-    /// Converts a value of the field to the axis.
+    /// Converts a value of the field to the quantity on the axis.
     shown: fn(f64) -> f64,
 }
 
@@ -105,7 +105,8 @@ fn panel(
     })
 }
 
-/// The bandwidth by the criterion, corrected and as printed; behind an edge if there is one.
+/// The bandwidth by the criterion, corrected and as printed. It is the bandwidth behind an edge if
+/// the scene has an edge.
 fn said(criterion: &Criterion) -> [f64; 2] {
     if criterion.blocker_distance.is_some() {
         [criterion.blocker(), criterion.printed_blocker()]
@@ -121,7 +122,7 @@ fn at((name, text): &Text, sweep: &CriterionSweep, value: f64) -> Result<Criteri
     found.ok_or_else(|| Failure::cannot_run(format!("{name} has no criterion")))
 }
 
-/// The measurement by photons: the value on the axis, the bandwidth and its standard error.
+/// A measurement with photons: the value on the axis, the bandwidth and its standard error.
 fn counted(
     taken: &FigureData<'_>,
     (name, text): &Text,

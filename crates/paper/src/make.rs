@@ -19,7 +19,7 @@ use etendue_store::{ArgumentStyle, FIGURE, Failure, Plan, Results};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// The requested figures: those of the paper, or one of scene files.
+/// Returns the requested figures: figures of the paper, or a single figure of all scene files.
 pub fn subjects(request: &FigureRequest) -> Result<Vec<Subject>, Failure> {
     let is_scene = |wanted: &Wanted| matches!(wanted, Wanted::Scene(_));
     if request.wanted.iter().any(is_scene) {
@@ -72,7 +72,7 @@ struct FigureIndex<'a> {
     /// The chosen style, if any.
     #[serde(skip_serializing_if = "Option::is_none")]
     style: Option<Style>,
-    /// The factor by which the frequencies along each axis are denser than the scene's.
+    /// The factor by which the frequencies along each axis are denser than those of the scene.
     finer: usize,
     /// The hash of each scene, with the number of photons for this quality and the scene's own
     /// frequencies.
@@ -93,7 +93,7 @@ struct SceneVerdict<'a> {
     p_value: Option<f64>,
     chi2_per_dof: Option<f64>,
     high_frequency_share: &'a [HighFrequencyShare],
-    /// Where the figure shows full radial spectra.
+    /// The comparison of the full radial spectra, if the figure shows them.
     #[serde(skip_serializing_if = "Option::is_none")]
     full_radial: Option<FullRadialReport>,
 }
@@ -130,10 +130,7 @@ pub fn make_all(
 
 /// Makes a figure; returns the verdict on all planes of its scenes. Reports replaced files and
 /// undecided planes.
-#[expect(
-    clippy::too_many_lines,
-    reason = "the steps of one figure from subject to result, in order"
-)]
+#[expect(clippy::too_many_lines, reason = "the steps of one figure, in order")]
 pub(crate) fn make(
     request: &FigureRequest,
     subject: &Subject,
@@ -240,8 +237,8 @@ fn write(results: &mut Results, subject: &Subject, taken: &FigureData<'_>) -> Re
     results.write("figure.pdf", &pdf)?;
     results.write("figure.png", &png)?;
     results.write("figure.svg", figure.svg.as_bytes())?;
-    // No table is written for a strip. It would have a row for each cell, and the arrays store the
-    // cells more compactly.
+    // No table is written for a strip. A table would have a row for each cell, and the arrays
+    // store the cells more compactly.
     if subject.has_table {
         results.write("figure.csv", figure.csv.as_bytes())?;
     }

@@ -9,8 +9,8 @@ use etendue_report::pictures::spectrum_quantity;
 use etendue_store::Failure;
 use ndarray::{Array2, Axis};
 
-/// Fig. 8: slopes and angles at the receiver. The chain identifies slopes with angles. The paper
-/// calls this error not significant.
+/// Fig. 8: slopes and angles at the receiver. The first-order chain treats slopes as angles. The
+/// paper states that this error is not significant.
 pub(crate) fn parameterisations(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let slopes = Seen::at(&taken.shots[0], "slopes")?;
     let angles = Seen::at(&taken.shots[0], "angles")?;
@@ -117,8 +117,9 @@ mod tests {
     use crate::scene_run::Shot;
     use etendue_pipeline::Silent;
 
-    /// The difference of the two planes is the error of the chain, which treats u as θ. It would be
-    /// as large as the spectra if different frequencies of the two planes were subtracted.
+    /// The difference of the two planes is the error of the chain, which treats u as θ. This
+    /// difference would be as large as the spectra if different frequencies of the two planes were
+    /// subtracted.
     #[test]
     fn the_difference_of_the_planes_is_the_error_of_the_chain() {
         let subject = named("8").unwrap().subject().unwrap();

@@ -40,8 +40,8 @@ impl Quality {
     }
 
     /// The number of frequencies along each axis for each frequency of the scene. The window is
-    /// bounded, so values between the scene's frequencies are meaningful: the picture shows them
-    /// instead of larger cells.
+    /// bounded, so the spectrum between the scene's frequencies is well defined, and the picture
+    /// can show it with smaller cells.
     pub(crate) fn finer(self) -> usize {
         match self {
             Self::Draft => 2,

@@ -14,7 +14,7 @@ use etendue_figures::Figure;
 use etendue_store::Failure;
 use std::path::Path;
 
-/// A figure: the scenes it is measured in, and how it is drawn.
+/// A figure of the paper, with the scenes in which it is measured and the function that draws it.
 #[derive(Debug)]
 pub(crate) struct Recipe {
     /// The number of the figure or table in the paper.
@@ -33,7 +33,7 @@ pub(crate) struct Recipe {
 }
 
 impl Recipe {
-    /// The figure to be made.
+    /// Returns the figure to be made by this recipe.
     pub(crate) fn subject(&'static self) -> Result<Subject, Failure> {
         let scenes = self.scenes.iter();
         let scenes = scenes.map(|(name, text)| resolved(name, text, &[], |photons| photons));

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 /// A figure of the paper, or a scene of the user's own figure.
 #[derive(Clone, Debug)]
 pub enum Wanted {
-    /// A figure of the paper (1, 3 to 17, or table1), or all of them.
+    /// A figure of the paper (1, 3 to 17, or table1), or all figures of the paper.
     PaperFigure(String),
     /// A scene of the user; all requested scenes make one figure.
     Scene(SceneSource),
@@ -38,8 +38,8 @@ impl Wanted {
 pub struct FigureRequest {
     /// Figures of the paper, or scenes, which make one figure.
     pub wanted: Vec<Wanted>,
-    /// Fields of the scenes set to values, for the command in `figure.json`; the scenes already
-    /// include them.
+    /// Fields of the scenes that were set to values. The command in `figure.json` repeats these
+    /// settings; the scenes already have the values.
     pub set: Vec<(String, String)>,
     /// The plane at which scenes are shown. The default is the last plane of each of several
     /// scenes, or all planes of a single scene.

@@ -13,7 +13,7 @@ use ndarray::{Array2, ArrayView2, Axis as Along};
 
 /// Lowest level of a spectrum's colors, in decibels below its peak.
 pub(crate) const DECIBEL: Scale = Scale::Decibel { floor: -50.0 };
-/// The share of the largest power below which the phase is not shown.
+/// The phase is not shown where the power is below this share of the largest power.
 pub(crate) const MIN_POWER: f64 = 1e-5;
 
 /// A plane of a scene with its results.

@@ -96,8 +96,8 @@ fn glows(light: &Light) -> Vec<Glow> {
 /// window and transformed back.
 fn windowed(spectrum: &dyn Fn(f64) -> Complex, window: &Profile, rho: &[f64]) -> Vec<f64> {
     const STEPS: i32 = 400;
-    // Frequencies extend to four times the last one; lobes of a tenth of a radian have no power
-    // beyond.
+    // The range extends to four times the last frequency, because lobes of a tenth of a radian
+    // have no power beyond this range.
     let last = 4.0 * rho.last().copied().unwrap_or(1.0);
     let along = |half: f64| (-STEPS..=STEPS).map(move |i| half * f64::from(i) / f64::from(STEPS));
     let values: Vec<(f64, Complex)> = along(last).map(|q| (q, spectrum(q))).collect();

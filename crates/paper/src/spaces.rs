@@ -109,7 +109,7 @@ fn shrunk((name, text): &Text, planes: &[&str]) -> Result<Vec<Convergence>, Fail
     Ok(found.collect())
 }
 
-/// First-order errors, and reference lines of an order.
+/// Curves of first-order errors, and reference lines for an order of convergence.
 fn orders(
     taken: &FigureData<'_>,
     title: &str,

@@ -1,4 +1,4 @@
-//! A figure to be made, and the data it is drawn from.
+//! A figure to be made, and the data from which it is drawn.
 
 use crate::quality::Quality;
 use crate::scene_run::Shot;
@@ -15,7 +15,7 @@ pub(crate) type Text = (&'static str, &'static str);
 /// The definition of a figure.
 #[derive(Debug)]
 pub struct Subject {
-    /// Name of the figure's folder below that of all figures.
+    /// Name of the figure's folder within the folder of all figures.
     pub(crate) name: String,
     pub(crate) about: String,
     /// Arguments of `etendue figure` that make the figure again.
@@ -26,7 +26,7 @@ pub struct Subject {
     pub(crate) is_own: bool,
     /// Name and text of scene files of the repository, which are stored with the figure.
     pub(crate) texts: Vec<Text>,
-    /// Files that must not be replaced.
+    /// Input files, which must not be replaced.
     pub(crate) inputs: Vec<PathBuf>,
     /// Warnings about the scenes.
     pub(crate) warnings: Vec<String>,
@@ -36,13 +36,13 @@ pub struct Subject {
     pub(crate) full_radial: bool,
     /// Other scene files, from which curves are computed or measured.
     pub(crate) also: &'static [Text],
-    /// The shown plane of each scene; empty where all are shown.
+    /// The plane at which each scene is shown; empty if all planes are shown.
     pub(crate) planes: Vec<String>,
     pub(crate) draw: fn(&FigureData<'_>) -> Result<Figure, Failure>,
 }
 
 impl Subject {
-    /// Name of the figure's folder below that of all figures.
+    /// Name of the figure's folder within the folder of all figures.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
@@ -55,13 +55,13 @@ impl Subject {
     }
 }
 
-/// The data that a figure is drawn from.
+/// The data from which a figure is drawn.
 pub(crate) struct FigureData<'a> {
     /// The results of the scenes that were run.
     pub(crate) shots: &'a [Shot],
     /// The other scene files.
     pub(crate) also: &'static [Text],
-    /// The shown plane of each scene; empty where all are shown.
+    /// The plane at which each scene is shown; empty if all planes are shown.
     pub(crate) planes: &'a [String],
     pub(crate) quality: Quality,
     pub(crate) style: Style,

@@ -6,7 +6,8 @@ use etendue_figures::{Figure, Picture, Plate, PlateRow, Scale, stacked};
 use etendue_report::pictures::{light_field_quantity, spectrum_quantity};
 use etendue_store::Failure;
 
-/// An operator: its name, a line break and its formula, and the scene and plane before and after it.
+/// An operator of Table 1. The first text is its name, a line break and its formula; the others
+/// are the scene and the plane before and after it.
 type Step = (&'static str, [[&'static str; 2]; 2]);
 
 /// Largest width of a picture, so that both parts fit a page.

@@ -65,7 +65,7 @@ pub(crate) fn subject(request: &FigureRequest) -> Result<Subject, Failure> {
     })
 }
 
-/// The requested scenes, if nothing else is requested.
+/// Returns the requested scenes, and fails if figures of the paper are requested too.
 fn sources(request: &FigureRequest) -> Result<Vec<&SceneSource>, Failure> {
     let sources = request.wanted.iter().map(|wanted| match wanted {
         Wanted::Scene(source) => Ok(source),
@@ -76,7 +76,8 @@ fn sources(request: &FigureRequest) -> Result<Vec<&SceneSource>, Failure> {
     sources.collect()
 }
 
-/// The shown plane of each scene; empty where all planes of one scene are shown.
+/// Returns the plane at which each scene is shown; empty if all planes of a single scene are
+/// shown.
 fn planes(scenes: &[Scene], asked: Option<&str>) -> Result<Vec<String>, Failure> {
     if scenes.len() == 1 && asked.is_none() {
         return Ok(Vec::new());
@@ -149,7 +150,7 @@ fn side_by_side(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     })
 }
 
-/// Distinct words in their order, joined as in a sentence.
+/// Joins distinct words, in their order, to an enumeration in a sentence.
 fn joined(words: &[String]) -> String {
     let mut words: Vec<String> = words.iter().map(|word| spaced(word)).collect();
     words.dedup();

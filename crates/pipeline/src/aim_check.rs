@@ -8,11 +8,11 @@ use etendue_store::Method;
 use etendue_trace::Tracer;
 use rayon::prelude::*;
 
-/// Makes a failed plane undecided if its photons were aimed at other windows.
+/// Makes a failed plane undecided if too few of the photons aimed at its window reach it.
 ///
-/// Photons are aimed at all windows in equal shares. Where the photons aimed at a window rarely
-/// reach it, for example behind a curved mirror, the measurement may contain only the light that
-/// other photons happen to bring. The estimated error is then far too small.
+/// Photons are aimed at all windows in equal shares. If photons aimed at a window rarely reach it,
+/// for example behind a curved mirror, the measurement may contain only photons that were aimed at
+/// other windows. In that case the estimated error is far too small.
 pub(crate) fn leave_open(case: &MeasuredScene, planes: &mut [PlaneComparison]) {
     let count = case.scene.planes.len() as u64;
     if count < 2 {

@@ -1,5 +1,5 @@
-//! Stores a measurement so that it survives the end of its process: finished batches are stored,
-//! and unfinished ones every few seconds.
+//! Stores a measurement on disk, so that a later process can continue it. Batches are stored when
+//! they are finished, and every few seconds before.
 
 use crate::method::source;
 use crate::reporter::{Progress, Reporter, Work};
@@ -17,7 +17,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Batches finished before this age are not stored, because they are quickly repeated.
+/// Batches that take less time than this are not stored, because measuring them again is quick.
 const MIN_AGE: Duration = Duration::from_secs(5);
 /// The interval at which an unfinished batch is stored.
 const PARTIAL_INTERVAL: Duration = Duration::from_secs(2);
@@ -26,7 +26,7 @@ const PARTIAL_INTERVAL: Duration = Duration::from_secs(2);
 #[derive(Clone, Copy, Debug)]
 pub struct Checkpointing<'a> {
     /// Whether to continue from stored batches, and to share the work with other processes that
-    /// continue from them.
+    /// continue from the same batches.
     pub resume: bool,
     /// The time after which no more parts of batches are begun.
     pub until: Option<Instant>,
@@ -35,8 +35,8 @@ pub struct Checkpointing<'a> {
 }
 
 /// Measures all batches of a scene. Returns `None` if another process that shares the work has
-/// finished it; `is_done` checks this. If the time limit comes first, stores finished batches and
-/// returns a failure with a message.
+/// finished the run, as `is_done` reports. If the time limit is reached before, stores finished
+/// batches and returns a failure with a message.
 pub fn measured(
     scene: &Scene,
     method: Method,
@@ -64,7 +64,7 @@ pub fn measured(
         kept.remove();
     }
     loop {
-        // Where another process has finished the run, the batches have been deleted.
+        // If another process has finished the run, it has deleted the batches.
         if checkpointing.resume && is_done() {
             drop(bar);
             return Ok(None);
@@ -130,8 +130,8 @@ struct Keeper<'a> {
 }
 
 impl Keeper<'_> {
-    /// Reads stored batches, if the run continues from them; returns the remaining ones, each from
-    /// where it stopped.
+    /// Reads stored batches, if the run continues from them. Returns the batches that remain to be
+    /// measured, each with its finished parts.
     fn missing(
         &self,
         all: &mut Measurement,
@@ -172,7 +172,7 @@ impl Keeper<'_> {
         is_eager || self.begun.elapsed() > MIN_AGE
     }
 
-    /// Stores something by `write`. If that fails, the run continues without storing.
+    /// Calls `write` to store a batch. If storing fails, the run continues without it.
     fn keep(&self, write: impl FnOnce() -> Result<(), Failure>) {
         if self.is_full.load(Ordering::Relaxed) {
             return;

@@ -30,8 +30,8 @@ struct FieldIndex {
     width: [f64; 4],
     window: etendue_field::Window,
     assignment: etendue_field::Assignment,
-    /// ‖4D − slices‖/‖slices‖ of the same photons at shared frequencies up to half of Nyquist, and
-    /// the values with which it is compared.
+    /// The relative difference ‖4D − slices‖/‖slices‖ of the same photons at shared frequencies up
+    /// to half of Nyquist, and the values with which it is compared.
     aliasing: Option<AliasingNumbers>,
 }
 
@@ -45,7 +45,7 @@ struct AliasingNumbers {
     bound: f64,
 }
 
-/// Fails, before anything is traced, when a plane's grid is larger than memory.
+/// Fails before anything is traced if a plane's grid does not fit into memory.
 pub fn check_memory(scene: &Scene) -> Result<(), Failure> {
     let memory = machine::available_memory();
     for plane in &scene.planes {
@@ -69,7 +69,7 @@ pub fn check_memory(scene: &Scene) -> Result<(), Failure> {
 #[derive(Debug)]
 struct Field {
     measured: FieldMeasurement,
-    /// `None` where nothing is predicted, or where memory is too small to hold all groups for the
+    /// Is `None` if there is no prediction, or if memory is too small to hold all groups for the
     /// comparison.
     compared: Option<FullRadialComparison>,
 }
@@ -84,7 +84,7 @@ impl Field {
             spectra: true,
             ..FieldOptions::default()
         };
-        // The prediction has the same number of groups.
+        // The prediction is divided into the same number of groups.
         let groups = options.groups.min(case.measurement.batches().len());
         let needed = grid.bytes().saturating_mul(groups as u64);
         let needed = needed.saturating_add(options.bytes(&grid, rayon::current_num_threads()));
@@ -164,8 +164,8 @@ pub fn compare(
     Ok(())
 }
 
-/// The number of tests of each plane whose light field is saved: of its slices, and of its full
-/// radial spectrum.
+/// The number of tests of each plane whose light field is saved: one of its slices, and one of its
+/// full radial spectrum.
 pub const TESTS: usize = 2;
 
 /// The share of Nyquist up to which the grid is compared with the slices.

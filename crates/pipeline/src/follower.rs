@@ -45,10 +45,10 @@ pub fn follow_points(
     obey(workers, &key(scenes), &mut done)
 }
 
-/// Tells the leading process why this one cannot continue; the leading process reports it and ends
-/// the run.
+/// Tells the leading process why this process cannot continue; the leading process reports the
+/// reason and ends the run.
 pub fn report_failure(workers: &dyn Workers, Failure { message, .. }: Failure) {
-    // The leading process may have ended itself.
+    // The leading process may already have ended.
     let _ = workers.send(0, &joined(&WorkerMessage::Failed { message }, &[]));
     let _ = workers.receive();
 }
@@ -84,7 +84,7 @@ fn measured(
     done.chain(begun).collect()
 }
 
-/// Continues until this time.
+/// Lets a measurement continue until this time.
 struct Until(Instant);
 
 impl Watch for Until {
@@ -98,7 +98,7 @@ impl Watch for Until {
 /// The result of an order, with its bytes.
 type Done = Result<Vec<Packed>, Failure>;
 
-/// Carries out orders by `done`, until an empty one arrives.
+/// Carries out each order by calling `done`, until an empty order arrives.
 fn obey(
     workers: &dyn Workers,
     key: &str,

@@ -10,8 +10,8 @@ use etendue_spectrum::estimate::TooFewBatches;
 use etendue_store::Failure;
 use etendue_store::Method;
 
-/// Measures planes that disagree with theory by the other method, and compares photons, the other
-/// method and theory.
+/// Uses the other method to measure planes that disagree with theory, and compares photons, the
+/// other method and theory.
 pub(crate) fn inquire(
     case: &MeasuredScene,
     planes: &[PlaneComparison],
@@ -41,8 +41,8 @@ fn disagrees_with_theory(report: &PlaneReport) -> bool {
 const DETECTABLE: f64 = 3.6;
 
 impl Inquiry {
-    /// Compares the judge's measurement of plane `i` with photons and with theory. The plane has
-    /// the number `at` in that measurement.
+    /// Compares another tracer's measurement of plane `i` with photons and with theory. The plane
+    /// has the number `at` in this measurement.
     fn of(
         case: &MeasuredScene,
         (i, failed): (usize, &PlaneReport),
@@ -97,8 +97,8 @@ impl Inquiry {
     }
 }
 
-/// Returns the conclusion where another tracer with `rays` rays agrees with both a measurement and
-/// its prediction, although these disagree with each other.
+/// Returns the conclusion for a measurement and a prediction that disagree with each other,
+/// although another tracer with `rays` rays agrees with both.
 fn both_pass(
     [this, other]: [&str; 2],
     failed: &PlaneReport,
@@ -128,10 +128,10 @@ fn both_pass(
     }
 }
 
-/// Returns the squared distances of a failed plane from its prediction, beyond noise. In the first
-/// all frequencies are weighted equally; in the second they are weighted as in the test, where
-/// frequencies of less noise count more. The noise of another tracer is distributed differently, so
-/// that tracer must be able to detect the smaller of the two distances.
+/// Returns the squared distances of a failed plane from its prediction, beyond noise. The first
+/// weights all frequencies equally; the second weights them as the test does, which gives
+/// frequencies with less noise more weight. The noise of another tracer is distributed differently
+/// over frequencies, so the other tracer must be able to detect the smaller of the two distances.
 fn disagreement(failed: &PlaneReport) -> [f64; 2] {
     let alike = failed.excess.map(|excess| excess * excess.abs());
     let tested = failed.chi2_per_dof.zip(failed.noise_limit);
@@ -182,7 +182,7 @@ mod tests {
         (case, compared)
     }
 
-    /// Returns the findings for such a plane.
+    /// Returns the findings for a plane with these radiances.
     fn found(photons: f64, rays: f64, predicted: f64) -> Vec<String> {
         let (case, compared) = compared(photons, rays, predicted);
         let inquiries = inquire(&case, &[compared], &Silent).unwrap();
@@ -209,8 +209,8 @@ mod tests {
         assert!(all.starts_with("no two of"), "{all}");
     }
 
-    /// Photons are 0.55 % off their prediction. Rays that agree with both may or may not have had
-    /// the power to detect this.
+    /// Photons are 0.55 % off their prediction. The test checks whether rays that agree with both
+    /// had the power to detect this difference.
     #[test]
     fn rays_too_few_to_tell_are_no_sign_of_chance() {
         let (_, PlaneComparison { report, .. }) = compared(1.0, 1.0, 1.0);
@@ -222,7 +222,7 @@ mod tests {
             excess_squared_error: Some(squared_error),
             ..report.clone()
         };
-        // 0.55 % is half of the noise of 1.1 % of these rays.
+        // The difference of 0.55 % is half of the noise of these rays, which is 1.1 %.
         let found = |chi2, squared_error| {
             let failed = with(Verdict::Fail, chi2, 0.011, 1e-6);
             let passed = with(Verdict::Pass, 1.0, 0.015, squared_error);

@@ -21,9 +21,9 @@ use std::path::PathBuf;
 /// Settings of a measurement that override those of the scene.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
-    /// Number of photons, in place of the scene's.
+    /// Number of photons, which replaces that of the scene.
     pub photons: Option<u64>,
-    /// Seed of the photons, in place of the scene's.
+    /// Seed of the photons, which replaces that of the scene.
     pub seed: Option<u64>,
     /// The method of measurement.
     pub method: Method,
@@ -99,8 +99,8 @@ impl Job {
         self.packing().packed(batch)
     }
 
-    /// Returns the batch with that number from the bytes of [`Self::packed`], identical to one
-    /// emitted by `source`.
+    /// Returns the batch with this number from the bytes of [`Self::packed`]. It is identical to
+    /// the batch that `source` emits.
     ///
     /// # Errors
     /// When the bytes belong to another scene, seed or number of photons.
@@ -122,10 +122,10 @@ impl Job {
         predictions::packed(plane, &prediction)
     }
 
-    /// Fails where a run would take too long, or not fit into this machine.
+    /// Fails if a run would take too long, or would not fit into the memory of this machine.
     ///
     /// # Errors
-    /// When a run would take too long, or would not fit into this machine.
+    /// When a run would take too long, or would not fit into the memory of this machine.
     pub fn check_limits(&self) -> Result<(), Failure> {
         limits::check(&self.scene, &self.theories, rayon::current_num_threads())
     }
@@ -194,7 +194,7 @@ impl Outcome {
         self.judged.summary.verdict
     }
 
-    /// Returns the predictions that the planes were compared with.
+    /// Returns the predictions with which the planes were compared.
     #[must_use]
     pub fn predictions(&self) -> &[Prediction] {
         &self.case.predictions

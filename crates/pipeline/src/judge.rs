@@ -1,4 +1,5 @@
-//! Independent measurements that judge another one, plane by plane.
+//! Independent measurements by other methods, against which a measurement is judged plane by
+//! plane.
 
 use crate::measure::measured;
 use crate::method::judge_of;
@@ -18,8 +19,8 @@ pub(crate) struct Judge {
 }
 
 impl Judge {
-    /// Measures some planes of a scene by the methods that judge `method` at these planes. Returns
-    /// one measurement for each method.
+    /// Measures some planes of a scene by the other methods against which `method` is judged at
+    /// these planes. Returns one measurement for each method.
     pub(crate) fn all(
         scene: &Scene,
         planes: &[usize],
@@ -45,7 +46,8 @@ impl Judge {
         judged.map(judge).collect()
     }
 
-    /// Returns the judge of a plane of the scene, and the plane's number in its measurement.
+    /// Returns the independent measurement of a plane of the scene, and the index of the plane in
+    /// this measurement.
     pub(crate) fn of(all: &[Self], plane: usize) -> Option<(&Self, usize)> {
         all.iter().find_map(|judge| {
             let at = judge.planes.binary_search(&plane).ok()?;

@@ -8,7 +8,7 @@ use crate::{aim_check, field};
 use etendue_compare::{PlaneComparison, Test, compare};
 use etendue_store::{Failure, Results};
 
-/// The results of a case.
+/// The results of a scene: the comparison of each plane, and the verdict.
 #[derive(Debug)]
 pub struct Judged {
     /// The comparison of each plane, in the order of the scene.
@@ -19,7 +19,7 @@ pub struct Judged {
 
 impl Judged {
     /// Compares all planes, and investigates those that fail. Light fields of the planes are
-    /// compared too where they are saved to a result.
+    /// compared too, if they are saved to a result.
     pub fn of(
         case: &MeasuredScene,
         fields: Option<&mut Results>,

@@ -1,13 +1,13 @@
-//! Carries out a run from scene to verdict, as a library. It measures, predicts, judges by another
-//! tracer, investigates failures, adds photons until noise is low enough, stores batches, and uses
-//! several processes.
+//! Carries out a run from scene to verdict, as a library. A run measures, predicts, judges by
+//! another tracer, investigates failures, adds photons until noise is low enough, stores batches,
+//! and uses several processes.
 //!
 //! The library does not depend on arguments or a terminal. Progress is reported to a [`Reporter`].
 //! The entry point is [`Job`].
 
 #![allow(
     clippy::missing_errors_doc,
-    reason = "a Failure carries the whole message for the user, written where it occurs"
+    reason = "a Failure holds the complete message for the user"
 )]
 
 mod aim_check;

@@ -6,14 +6,14 @@ use etendue_scene::Scene;
 use etendue_store::Failure;
 use etendue_store::machine;
 
-/// Fails where a run of the scene on `threads` threads would take too long, or not fit into this
-/// machine. `theories` are the theories of the scene's planes.
+/// Fails if a run of the scene on `threads` threads would take too long, or would not fit into the
+/// memory of this machine. `theories` are the theories of the scene's planes.
 pub fn check(scene: &Scene, theories: &[Applicability], threads: usize) -> Result<(), Failure> {
     check_work(scene, theories)?;
     check_memory(scene, theories, threads)
 }
 
-/// Fails where a prediction of the scene would take too long.
+/// Fails if a prediction of the scene would take too long.
 pub fn check_work(scene: &Scene, theories: &[Applicability]) -> Result<(), Failure> {
     check_rays(scene, theories)?;
     match too_much_work(scene, theories) {
@@ -22,8 +22,8 @@ pub fn check_work(scene: &Scene, theories: &[Applicability]) -> Result<(), Failu
     }
 }
 
-/// Fails where there would be nothing to compare a plane with, because backward rays do not find
-/// the rays of a file.
+/// Fails if a plane could not be compared with anything, because it has no theory and backward
+/// rays do not find the rays of a file.
 fn check_rays(scene: &Scene, theories: &[Applicability]) -> Result<(), Failure> {
     if !matches!(scene.light, Light::Rays { .. }) {
         return Ok(());
@@ -40,7 +40,7 @@ fn check_rays(scene: &Scene, theories: &[Applicability]) -> Result<(), Failure> 
     }
 }
 
-/// Fails where a run of the scene on `threads` threads would not fit into this machine.
+/// Fails if a run of the scene on `threads` threads would not fit into the memory of this machine.
 pub fn check_memory(
     scene: &Scene,
     theories: &[Applicability],

@@ -12,12 +12,13 @@ use std::path::{Path, PathBuf};
 /// A scene file, and the fields set in it.
 #[derive(Clone, Debug)]
 pub struct SceneSource {
-    /// The file, in RON or JSON. Its meshes and pictures are in the same folder.
+    /// The file, in RON or JSON. The meshes and pictures of the scene are in the same folder as
+    /// the file.
     pub path: PathBuf,
-    /// A text that takes the place of the file; `path` then only gives the name of the scene and
-    /// its folder.
+    /// A text that is read instead of the file; `path` then gives only the name and the folder of
+    /// the scene.
     pub text: Option<String>,
-    /// Fields with the values they are set to, each set as [`SceneFile::with`] does.
+    /// Fields with the values to which [`SceneFile::with`] sets them.
     pub set: Vec<(String, String)>,
     /// The style in which messages name arguments.
     pub arguments: ArgumentStyle,
@@ -45,8 +46,8 @@ impl SceneSource {
         self.path.file_stem().unwrap_or_default().to_string_lossy()
     }
 
-    /// Returns the name of the scene in messages: the path of its file, or its own name where there
-    /// is no file.
+    /// Returns the name of the scene in messages: the path of its file, or the name of the scene
+    /// if there is no file.
     fn shown(&self) -> String {
         match self.text {
             Some(_) => self.name().into_owned(),
@@ -54,7 +55,7 @@ impl SceneSource {
         }
     }
 
-    /// Returns the content of the file, read unless it is given.
+    /// Returns the given text or, if there is none, the content of the file.
     fn read(&self) -> Result<Cow<'_, str>, Failure> {
         if let Some(text) = &self.text {
             return Ok(text.into());
@@ -89,7 +90,7 @@ pub fn scene(source: &SceneSource, options: impl FnOnce(&mut RunFile)) -> Result
     }
     let memory = machine::available_memory();
     let scene = resolve(&source.name(), file, source.folder(), memory);
-    // A text that is in no file has no lines to report.
+    // Lines are not reported for a text that is in no file.
     let text = source.text.is_none().then_some(&*text);
     scene.map_err(|error| refused(&error, &shown, text.unwrap_or_default(), &set))
 }
@@ -110,8 +111,8 @@ pub fn inputs(source: &SceneSource, scene: &Scene) -> Vec<PathBuf> {
     named.chain(file).collect()
 }
 
-/// Claims a folder for a stage with these files, and copies the meshes and pictures of the scene
-/// there, because the next stage looks for them beside the index.
+/// Claims the folder of a stage that will write these files. Copies the meshes and pictures of the
+/// scene there, because the next stage looks for them beside the index.
 pub fn stage(
     out: &Path,
     index: &'static str,

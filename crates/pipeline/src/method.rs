@@ -22,8 +22,8 @@ pub fn check(scene: &Scene, method: Method) -> Result<(), Failure> {
     }
 }
 
-/// Returns the method that judges another one at a plane, chosen to be as independent as the scene
-/// allows.
+/// Returns the method against which another method is judged at a plane. It is as independent as
+/// the scene allows.
 pub fn judge_of(method: Method, scene: &Scene, plane: &VirtualPlane) -> Method {
     match method {
         Method::Photons if finds(scene, plane) => Method::Backward,
@@ -37,7 +37,7 @@ pub fn judge_of(method: Method, scene: &Scene, plane: &VirtualPlane) -> Method {
 pub fn step(method: Method) -> String {
     let shared = match method {
         Method::Photons | Method::Backward => "",
-        // Otherwise no ray finds the light.
+        // Backward rays would not find the light here.
         Method::Even => {
             ", which are traced after emission in the same way as photons: errors of this tracing are not detected"
         }

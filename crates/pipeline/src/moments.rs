@@ -1,4 +1,4 @@
-//! The 4D grid that covariances of spectra are measured on.
+//! The 4D grid on which covariances of spectra are measured.
 
 use etendue_field::VirtualPlane;
 use etendue_spectrum::field::FieldOptions;
@@ -12,8 +12,8 @@ fn options() -> FieldOptions {
     }
 }
 
-/// Returns the options for the grid of a plane: all groups are kept where they fit into half of the
-/// memory, which saves a pass.
+/// Returns the options for the grid of a plane. All groups are kept if they fit into half of the
+/// memory; the photons then need not be traced twice.
 pub fn fitting(plane: &VirtualPlane) -> FieldOptions {
     let kept = FieldOptions {
         keep: true,
@@ -27,7 +27,7 @@ pub fn fitting(plane: &VirtualPlane) -> FieldOptions {
     }
 }
 
-/// Fails, before anything is traced, when the grid of a plane is larger than memory.
+/// Fails before anything is traced if the grid of a plane does not fit into memory.
 pub fn check_memory(planes: &[VirtualPlane]) -> Result<(), Failure> {
     let memory = machine::available_memory();
     for plane in planes {

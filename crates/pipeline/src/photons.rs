@@ -13,7 +13,7 @@ use file::{Content, Rays};
 use serde::Serialize;
 use std::io;
 
-/// What is saved of a run beside its result.
+/// Data that a run saves in addition to its result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Save {
     /// Every photon that crossed a plane, in coordinates of the plane.
@@ -150,8 +150,8 @@ struct OfPlane<'a> {
 }
 
 impl OfPlane<'_> {
-    /// Passes on the photons, block by block in batch order. Returns the number before each batch,
-    /// and the total.
+    /// Calls `take` with the photons, block by block in batch order. Returns the number of photons
+    /// before each batch, and the total.
     fn trace(&self, take: &mut dyn FnMut(&[Crossing]) -> io::Result<()>) -> io::Result<Vec<u64>> {
         let mut offsets = vec![0];
         let mut done = 0;

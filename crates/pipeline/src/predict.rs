@@ -9,8 +9,8 @@ use etendue_scene::Scene;
 use etendue_store::{Failure, Method, predictions};
 use std::collections::BTreeMap;
 
-/// Predicts all planes of a scene for a measurement by `method`. Where no theory applies, another
-/// method's measurement takes its place.
+/// Predicts all planes of a scene for a measurement by `method`. At a plane without a theory, a
+/// measurement by another method takes the place of the prediction.
 pub fn predicted(
     scene: &Scene,
     theories: &[Applicability],

@@ -6,7 +6,7 @@ pub trait Reporter: Sync {
     /// Reports what happens next, or what was found.
     fn note(&self, text: &str);
 
-    /// Reports what the user should know before trusting the result.
+    /// Reports a warning that the user should read before trusting the result.
     fn warn(&self, text: &str);
 
     /// Reports that work begins.
@@ -16,7 +16,7 @@ pub trait Reporter: Sync {
 /// Work that takes a while.
 #[derive(Clone, Copy, Debug)]
 pub enum Work {
-    /// This number of photons to trace.
+    /// A number of photons to trace.
     Photons(u64),
     /// A number of items to process in turn.
     Steps {

@@ -40,7 +40,7 @@ pub struct Summary {
     pub ledger_imbalance: Option<f64>,
     /// Verdict on all planes together.
     pub verdict: Verdict,
-    /// Probability of a failure where nothing is wrong.
+    /// Probability that the verdict is a failure although nothing is wrong.
     pub alpha: f64,
     /// A report for each plane, in the order of the scene.
     pub planes: Vec<PlaneReport>,
@@ -48,7 +48,7 @@ pub struct Summary {
     pub inquiries: Vec<Inquiry>,
 }
 
-/// Which of three agree on a plane that fails: photons, another tracer and the prediction.
+/// The agreement between photons, another tracer and the prediction at a plane that fails.
 #[derive(Debug, Serialize)]
 pub struct Inquiry {
     /// Name of the plane.
@@ -62,7 +62,7 @@ pub struct Inquiry {
 }
 
 impl Summary {
-    /// Returns the settings that the arrays of the result are made from.
+    /// Returns the settings from which the arrays of the result were computed.
     pub fn made_from(&self) -> serde_json::Value {
         serde_json::json!({
             "scene": self.scene,
@@ -159,7 +159,7 @@ impl Stopwatch {
             command: Vec<String>,
             seconds: BTreeMap<&'static str, f64>,
             threads: usize,
-            /// Emitted photons over the seconds of tracing and transforming.
+            /// Number of emitted photons per second of tracing and transforming.
             photons_per_second: Option<f64>,
             peak_memory_bytes: Option<u64>,
         }

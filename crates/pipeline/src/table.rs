@@ -190,10 +190,10 @@ pub fn with_unit(name: &str, unit: &str) -> String {
     }
 }
 
-/// Returns the measured value and the smallest detectable change, the latter as a share of the
-/// parameter if it has a size, or with the parameter's unit. Both are – where even a change by the
-/// whole parameter would be undetectable, and the value is – where the error is larger than the
-/// value.
+/// Returns the measured value of a parameter and its smallest detectable change. The change is a
+/// share of the parameter if it is not zero, and otherwise has the parameter's unit. Both are – if
+/// even a change by the whole parameter would be undetectable; the value alone is – if its error
+/// is larger than the value.
 fn measured(parameter: &ParameterReport) -> [String; 2] {
     let value = uncertain(parameter.measured, parameter.error);
     if parameter.scene.abs() < 1e-12 {
@@ -288,7 +288,7 @@ pub fn verdict_text(summary: &Summary) -> String {
     }
 }
 
-/// Returns the predicted slope to as many digits as the measured one has.
+/// Returns the predicted slope with as many digits as the measured slope.
 fn predicted(plane: &PlaneReport) -> String {
     match (plane.slope.predicted, plane.slope.error) {
         (Some(value), Some(error)) if error > 0.0 => fixed(value, decimals(error)),
@@ -305,12 +305,12 @@ pub fn word(verdict: Verdict) -> &'static str {
     }
 }
 
-/// Returns a number with `digits` digits after the point; – where there is none.
+/// Returns a number with `digits` digits after the point, or – if there is no number.
 pub fn number(value: Option<f64>, digits: usize) -> String {
     value.map_or("–".to_owned(), |v| fixed(v, digits))
 }
 
-/// Returns a share in per cent; – where there is none.
+/// Returns a share in per cent, or – if there is no share.
 pub fn percent(value: Option<f64>) -> String {
     value.map_or("–".to_owned(), |share| etendue_field::percent(share, 3))
 }

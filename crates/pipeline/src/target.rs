@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 /// Number of photons of the first stage.
 const FIRST_PHOTONS: u64 = 1 << 20;
-/// The largest number of photons of a stage, unless the user sets one.
+/// The largest number of photons of a stage, unless the user sets another number.
 const MAX_PHOTONS: u64 = 1 << 40;
 /// The factor by which the photons needed by the square-root law may exceed the limit, since nets
 /// may need fewer.
@@ -22,12 +22,12 @@ const MAX_FACTOR: f64 = 8.0;
 
 /// Measures all batches of a scene with enough photons that noise is at most a share `target` of
 /// the spectrum at each plane. The number of photons is the first sufficient power of two, from 2²⁰
-/// on. The scene is given that number of photons. The last possible stage has `most` photons, a
-/// power of two or not.
+/// on. The function sets the scene's number of photons to this number. The last possible stage has
+/// `most` photons, which need not be a power of two.
 ///
-/// Each stage starts again, so that its result is that of a run with as many photons. The possible
-/// stages are fixed beforehand, and only noise decides which one is the last, so p-values are
-/// unaffected.
+/// Each stage starts again from the first photon, so its result is that of a run with the same
+/// number of photons. The possible stages are fixed beforehand, and only noise decides which one
+/// is the last, so p-values are unaffected.
 ///
 /// # Errors
 /// When no photon reaches any plane, or more than `most` photons would be needed.
@@ -54,8 +54,8 @@ pub fn reached(
         }
         let noise_now = percent(Some(noise));
         let now = format!("noise is {noise_now} at {plane} with {emitted} photons");
-        // Nets may need fewer photons than the square-root law predicts, so the largest power of
-        // two below the predicted number is used.
+        // With nets, fewer photons than the square-root law predicts may suffice, so the next
+        // stage has the largest power of two below the predicted number.
         let needed = photons as f64 * (noise / target).powi(2);
         let mut next = photons.saturating_mul(2);
         while next < most && 2.0 * next as f64 <= needed {
@@ -82,7 +82,7 @@ pub fn reached(
 }
 
 /// Returns the noise of the run, and the noise of a run a hundred times as long, in words; `None`
-/// where there is no light.
+/// if there is no light.
 pub fn outlook(planes: &[PlaneReport], seconds: f64) -> Option<String> {
     let noise = |plane: &PlaneReport| plane.noise_limit;
     let lit = planes
@@ -97,7 +97,7 @@ pub fn outlook(planes: &[PlaneReport], seconds: f64) -> Option<String> {
     ))
 }
 
-/// Returns what `target` leaves out, in words.
+/// Returns a note, in words, on the noise of predictions, which `target` does not include.
 #[must_use]
 pub fn left_out(planes: &[PlaneReport], target: f64) -> String {
     let sampled = planes

@@ -2,9 +2,9 @@
 //! pieces when others request them.
 //!
 //! A piece is a batch of a run, a plane to predict, or a point of a sweep. Processes exchange
-//! bytes, and pieces are identified by their numbers. So on processors of one kind, the bits of the
-//! result depend neither on the number of processes nor on their speed. The leading process works
-//! as well.
+//! bytes, and pieces are identified by their numbers. On processors of one kind, the bits of the
+//! result therefore do not depend on the number or the speed of the processes. The leading process
+//! works as well.
 
 mod leader;
 mod link;

@@ -11,7 +11,7 @@ use crate::{
 pub struct Converted {
     /// Bytes of the file.
     pub bytes: Vec<u8>,
-    /// One sentence for each thing that was dropped or changed.
+    /// Notes for the user, one sentence for each kind of data that was dropped or changed.
     pub notes: Vec<String>,
 }
 
@@ -161,7 +161,7 @@ fn to_tm25(set: &RaySet, notes: &mut Vec<String>) -> Result<Tm25File, Fault> {
         numbers.extend(position);
         numbers.extend(set.directions[ray].map(single));
         let power = single(set.powers[ray]);
-        // The order of columns: radiant flux, wavelength, luminous flux.
+        // The columns are in the order radiant flux, wavelength, luminous flux.
         let wavelength = set.wavelength(ray).filter(|_| header.flags.wavelength);
         numbers.extend((set.unit != PowerUnit::Lumen).then_some(power));
         numbers.extend(wavelength.map(|w| single(w * 1e9)));

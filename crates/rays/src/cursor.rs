@@ -1,4 +1,5 @@
-//! Reads the numbers of a file in sequence, in either byte order, and never past its end.
+//! Reads the numbers of a file in sequence, in either byte order, and never past the end of the
+//! file.
 
 use crate::Fault;
 

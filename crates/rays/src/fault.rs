@@ -1,4 +1,4 @@
-//! Why a ray file is refused, and at what position.
+//! The reason why a ray file is refused, and the position of the fault.
 
 use std::fmt;
 
@@ -7,13 +7,13 @@ use std::fmt;
 pub enum FilePosition {
     /// The file as a whole.
     File,
-    /// An offset from the beginning of the unpacked file; the first byte is 0.
+    /// An offset from the beginning of the unpacked file, in bytes from 0.
     Byte(u64),
-    /// A ray, by its number; the first is 0.
+    /// A ray, by its number, counted from 0.
     Ray(u64),
 }
 
-/// Why a file is refused.
+/// The reason why a file is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub struct Fault {
     /// Position of the fault.

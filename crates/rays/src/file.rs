@@ -1,4 +1,4 @@
-//! A file in any of the formats, recognised by its first bytes.
+//! A ray file in any of the formats, which is recognised by the first bytes of the file.
 
 use crate::mcpl::McplFile;
 use crate::tm25::Tm25File;
@@ -8,12 +8,12 @@ use std::fmt;
 /// Reading a file and making its [`RaySet`] takes at most this many times the bytes of the file,
 /// unpacked, plus [`MEMORY_FREE`] bytes.
 ///
-/// The shortest record, 28 bytes, is kept once and becomes 64 bytes of a set. The output of gzip
-/// may take twice its length in memory.
+/// The shortest record takes 28 bytes in memory and 64 bytes in the set. The unpacked content of a
+/// gzip file may take twice its length in memory.
 pub const MEMORY: usize = 6;
 
-/// Bytes that reading may take regardless of the length of the file, for its texts and tables, at
-/// most 65,536 of either.
+/// Bytes that reading may take regardless of the length of the file. They are needed for at most
+/// 65,536 texts and as many tables.
 pub const MEMORY_FREE: usize = 16 << 20;
 
 /// The format of a file.
@@ -69,7 +69,8 @@ pub enum RayFile {
 }
 
 impl RayFile {
-    /// Reads a file, gzipped or not. The first bytes determine its format, regardless of its name.
+    /// Reads a file, gzipped or not. The first bytes of the file determine its format; its name is
+    /// ignored.
     ///
     /// # Errors
     /// A [`Fault`] with its position and reason.

@@ -7,8 +7,8 @@ use flate2::write::GzEncoder;
 use std::borrow::Cow;
 use std::io::{Read, Write};
 
-/// The largest ratio of unpacked to packed length, apart from [`FREE`] bytes. Packed rays have half
-/// of their length or less; in test files, where rays repeat, they have a tenth of it.
+/// The largest ratio of unpacked to packed length, apart from [`FREE`] bytes. Packing reduces the
+/// length of rays to about a half; in test files with repeated rays, it reduces it to a tenth.
 pub const MOST_RATIO: usize = 64;
 
 /// Bytes that a packed file may unpack to regardless of its length.
@@ -20,11 +20,11 @@ pub fn is_packed(bytes: &[u8]) -> bool {
     bytes.starts_with(&[0x1f, 0x8b])
 }
 
-/// Returns the unpacked bytes; those of a file that is not packed are unchanged.
+/// Returns the unpacked bytes of a file, or its bytes unchanged if it is not packed.
 ///
 /// # Errors
-/// When gzip cannot read the bytes, or there are more of them than [`MOST_RATIO`] and [`FREE`]
-/// allow.
+/// When gzip cannot read the bytes, or the unpacked bytes are more than [`MOST_RATIO`] and
+/// [`FREE`] allow.
 pub fn unpack(bytes: &[u8]) -> Result<Cow<'_, [u8]>, Fault> {
     if !is_packed(bytes) {
         return Ok(Cow::Borrowed(bytes));
@@ -44,7 +44,7 @@ pub fn unpack(bytes: &[u8]) -> Result<Cow<'_, [u8]>, Fault> {
     Ok(Cow::Owned(unpacked))
 }
 
-/// Packs bytes without name and time, so the same bytes give the same file.
+/// Packs bytes. The file states no name and no time, so the same bytes give the same file.
 #[must_use]
 pub fn pack(bytes: &[u8]) -> Vec<u8> {
     let mut encoder = GzEncoder::new(Vec::new(), Compression::default());

@@ -5,13 +5,13 @@
 //! a [`RaySet`]: positions in metres, unit directions, power and wavelengths. A conversion between
 //! formats returns a [`Converted`], whose notes name everything that is dropped.
 //!
-//! Files may be hostile. Each count is checked against the length of the file before memory is
+//! Files are not trusted. Each count is checked against the length of the file before memory is
 //! allocated. Reading takes at most [`MEMORY`] times the bytes of the file, unpacked, plus
 //! [`MEMORY_FREE`]; gzip may unpack to at most [`gz::MOST_RATIO`] times its length. NaN, infinite
 //! numbers and zero directions are refused, and each [`Fault`] gives the position of the byte or
 //! the number of the ray.
 //!
-//! This crate does no disk access and does not depend on light fields.
+//! The crate `etendue-rays` does not access the disk and does not depend on light fields.
 //!
 //! ```
 //! use etendue_rays::{Format, PowerUnit, RayFile, RaySet, Wavelengths, convert};

@@ -6,7 +6,7 @@
 pub struct NpyHeader {
     /// The type of an element in NumPy's notation: `<f8` for f64 with the lowest byte first.
     pub descr: String,
-    /// Whether the first index runs fastest, as in Fortran.
+    /// Whether the first index varies fastest, as in Fortran.
     pub fortran_order: bool,
     /// The length of each axis.
     pub shape: Vec<u64>,
@@ -38,7 +38,7 @@ impl NpyHeader {
             shape,
         } = self;
         let order = if *fortran_order { "True" } else { "False" };
-        // A tuple of one element needs a comma.
+        // In Python, a tuple of one element needs a comma.
         let shape = match shape.as_slice() {
             [one] => format!("{one},"),
             all => all
@@ -57,9 +57,9 @@ impl NpyHeader {
         header
     }
 
-    /// Returns the header at the beginning of a file, and the offset of its data. `None` where the
-    /// file has no header of a numeric array: NumPy allows any Python literal there, but only flat
-    /// dictionaries are read here.
+    /// Returns the header at the beginning of a file, and the offset of its data. Returns `None`
+    /// if the file has no header of a numeric array. NumPy allows any Python literal in a header,
+    /// but this function reads only flat dictionaries.
     #[must_use]
     pub fn read(file: &[u8]) -> Option<(Self, usize)> {
         let rest = file.strip_prefix(MAGIC)?;
@@ -152,7 +152,7 @@ mod tests {
             ..NpyHeader::new("<f8", &[2, 3])
         };
         assert_eq!(read(numpy), Some(header));
-        // Other programs write this notation.
+        // Other programs write headers in this notation.
         let other = r#"{"shape": (5,), "fortran_order": False, "descr": "<f8"}"#;
         assert_eq!(read(other), Some(NpyHeader::new("<f8", &[5])));
     }

@@ -1,6 +1,7 @@
 //! The content that all ray files have in common.
 
-/// Planck's constant times the speed of light, MeV m: a photon of energy E has the wavelength h c / E. Exact in the SI of 2019, rounded to f64.
+/// Planck's constant times the speed of light, MeV m: a photon of energy E has the wavelength h c
+/// / E. The value is exact in the SI of 2019, and is rounded to f64.
 pub const PHOTON_ENERGY_LENGTH: f64 = 1.239_841_984_332_002_6e-12;
 
 /// The unit of the power of rays.
@@ -29,11 +30,11 @@ impl PowerUnit {
 /// The wavelengths of rays in vacuum, metres.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Wavelengths {
-    /// Not stated in the file.
+    /// The file does not state wavelengths.
     Unknown,
     /// The same wavelength for all rays.
     One(f64),
-    /// A wavelength for each ray, NaN where it is unknown.
+    /// A wavelength for each ray, or NaN if it is unknown.
     Each(Vec<f64>),
     /// The same spectrum for all rays: wavelengths and their weights.
     Spectrum(Vec<[f64; 2]>),
@@ -76,8 +77,8 @@ impl RaySet {
         self.powers.iter().sum()
     }
 
-    /// Returns the bounding box of the positions, lower and upper corner, metres; `None` without
-    /// rays.
+    /// Returns the lower and the upper corner of the bounding box of the positions, in metres;
+    /// `None` if there are no rays.
     #[must_use]
     pub fn bounds(&self) -> Option<[[f64; 3]; 2]> {
         let first = *self.positions.first()?;
@@ -91,7 +92,7 @@ impl RaySet {
         Some(self.positions.iter().fold([first, first], grow))
     }
 
-    /// Returns the wavelength of a ray, metres; `None` where it is unknown.
+    /// Returns the wavelength of a ray, in metres; `None` if it is unknown.
     #[must_use]
     pub fn wavelength(&self, ray: usize) -> Option<f64> {
         let known = match &self.wavelengths {

@@ -120,7 +120,8 @@ fn mutated_files_do_no_harm() {
         accepted > 100,
         "{accepted} of 20000 were read: mutations are too wild"
     );
-    // A file large enough to exceed the free part, so that the bound by its length is tested too.
+    // The file is so large that the bound depends mostly on its length, and not on the bytes that
+    // any file may take.
     let large = large();
     assert!(read(&large));
     longest = longest.max(large.len());

@@ -1,5 +1,5 @@
 //! Tests that files of every kind are read and written again, and have the right rays. The first
-//! two are written byte by byte from the formats' descriptions.
+//! two files are written byte by byte from the formats' descriptions.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -21,7 +21,8 @@ fn mcpl_2() -> Vec<u8> {
         bytes.extend(u32::try_from(text.len()).unwrap().to_be_bytes());
         bytes.extend(text.as_bytes());
     }
-    // Octahedral (0.75, 0.5): z = −0.25, so x = 0.5 and y = 0.25, divided by the length √(0.375).
+    // The octahedral point (0.75, 0.5) has z = −0.25, so x = 0.5 and y = 0.25, all divided by the
+    // length √(0.375).
     for number in [100.0, 200.0, -50.0, 0.75, 0.5, 1.98e-6, 3.0_f32] {
         bytes.extend(number.to_be_bytes());
     }

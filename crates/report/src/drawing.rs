@@ -1,5 +1,5 @@
-//! Draws the scene in two cross-sections along the central ray: in the plane of X, where y = 0, and
-//! in that of Y, where x = 0.
+//! Draws the scene in two cross-sections along the central ray: in the plane of X, where y = 0,
+//! and in the plane of Y, where x = 0.
 
 mod cut;
 mod world;
@@ -9,8 +9,8 @@ use etendue_field::VirtualPlane;
 use etendue_figures::{Section, Segment, SegmentKind};
 use etendue_scene::Scene;
 
-/// The cut through X with the given planes, the cut through Y where it differs, and the scene to
-/// scale where its path turns. The path is unfolded: each surface is cut as light arrives at it.
+/// The cut through X with the given planes, the cut through Y if it differs, and the scene to
+/// scale if its path turns. The path is unfolded: each surface is cut as light arrives at it.
 pub(crate) fn cross_section<'a>(
     scene: &Scene,
     planes: impl Iterator<Item = &'a VirtualPlane>,

@@ -14,8 +14,8 @@ pub(crate) const PAGE: &[u8] = include_bytes!("../../../docs/explorer.html");
 /// The part after # in the address of the page that shows a scene; `None` if the explorer does not
 /// support it.
 ///
-/// A scene is supported if the explorer would save the same scene for these numbers. Planes, names
-/// and the extent of surfaces may differ.
+/// A scene is supported if the explorer, set to the numbers of this scene, would save the same
+/// scene; planes, names and the extent of surfaces may differ.
 pub(crate) fn fragment(file: &SceneFile) -> Option<String> {
     let setup = setup(file)?;
     let saved = SceneFile::parse(&scene(&setup)).ok()?;
@@ -52,7 +52,7 @@ fn are_near(a: &BlockersFile, b: &BlockersFile) -> bool {
     a.len() == b.len() && a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1.0 / DIGITS)
 }
 
-/// A scene without the fields that may differ.
+/// The scene, with the fields reset that may differ in a scene saved by the explorer.
 fn plain(mut file: SceneFile) -> SceneFile {
     for blockers in &mut file.blockers {
         if let BlockersFile::JitteredSquares { name, .. } | BlockersFile::Shapes { name, .. } =
@@ -106,7 +106,7 @@ fn plain(mut file: SceneFile) -> SceneFile {
     }
 }
 
-/// The numbers of a scene, assuming that the explorer supports it.
+/// The explorer's numbers for a scene, assuming that the explorer supports the scene.
 fn setup(file: &SceneFile) -> Option<Setup> {
     let mut setup = Setup::default();
     let LightFile::Rectangle { center, size, .. } = &file.light else {
@@ -263,7 +263,7 @@ mod tests {
         }
     }
 
-    /// The page was built with the colors of pictures.
+    /// Checks that the page was built with the same colors as pictures.
     #[test]
     fn the_explorer_has_the_colors_of_pictures() {
         use base64::Engine;

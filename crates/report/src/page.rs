@@ -43,7 +43,8 @@ pub fn stored_data(folder: &Path) -> Result<String, Failure> {
         .split_once(BEFORE)
         .and_then(|(_, rest)| rest.split_once(AFTER));
     let (data, _) = inside.ok_or_else(|| fault("it does not contain the data of a run"))?;
-    // Anyone can write a new index for a changed page, so the content is checked to be data.
+    // A hash does not protect the page, because anyone can write a new index for a changed page.
+    // So the function also checks that the content is data.
     serde_json::from_str::<IgnoredAny>(data).map_err(|e| fault(&e.to_string()))?;
     Ok(data.to_owned())
 }
@@ -52,15 +53,15 @@ pub fn stored_data(folder: &Path) -> Result<String, Failure> {
 pub fn page(title: &str, blocks: &[(String, String)]) -> String {
     let block = |(folder, data): &(String, String)| {
         let folder = escaped(folder).replace('"', "&quot;");
-        // In JSON this character occurs only in strings. It is escaped, so that no name in a scene
-        // can end the data.
+        // In JSON this character occurs only in strings. The character is escaped, so that no name
+        // in a scene can end the data.
         let data = data.replace('<', "\\u003c");
         format!("<script type=\"application/json\" data-folder=\"{folder}\" {BEFORE}{data}{AFTER}")
     };
     let data: Vec<String> = blocks.iter().map(block).collect();
     let [sequential, diverging] = etendue_figures::palettes().map(|colors| STANDARD.encode(colors));
     let colors = format!("{{\"sequential\": \"{sequential}\", \"diverging\": \"{diverging}\"}}");
-    // The data are inserted last, so that their content is not replaced again.
+    // The data are inserted last, because they must not be searched for placeholders.
     include_str!("page/page.html")
         .replace("<!--TITLE-->", &escaped(title))
         .replace("<!--STYLE-->", include_str!("page/page.css"))

@@ -43,8 +43,8 @@ pub const NAMES: [&str; 6] = [
 /// The picture files of the path, and the numbers behind them.
 pub const PATH_NAMES: [&str; 3] = ["path.png", "path.svg", "path.csv"];
 
-/// The two sides of the pictures of a run's plane: where no theory applies, the other side is a
-/// measurement by the other tracer.
+/// The names of the two sides in the pictures of a plane. If no theory applies, the second side is
+/// a measurement by the other tracer.
 pub fn sides(plane: &PlaneComparison) -> [&'static str; 2] {
     match plane.report.class {
         Class::Reference => ["measured", "other tracer"],
@@ -152,7 +152,7 @@ fn spectrum(
     .map_err(Failure::cannot_run)
 }
 
-/// The source of a picture, in a line.
+/// Returns a line that states from which run a picture was made.
 pub fn made_from(summary: &Summary) -> String {
     format!(
         "{}, {} photons, seed {}",
@@ -191,12 +191,12 @@ pub fn write(results: &mut Results, name: &str, figure: &Figure) -> Result<(), F
     results.write(&format!("{name}.csv"), figure.csv.as_bytes())
 }
 
-/// The verdict on a plane and its reasons, in a line.
+/// Returns the verdict on a plane and its reasons, in one line.
 pub fn verdict_line(plane: &PlaneComparison) -> String {
     verdict_lines(plane).join(", ")
 }
 
-/// The verdict and its reasons, in lines as narrow as a picture.
+/// Returns the verdict and its reasons, in lines that are not wider than a picture.
 pub fn verdict_lines(plane: &PlaneComparison) -> Vec<String> {
     let report = &plane.report;
     let verdict = word(report.verdict);
@@ -216,7 +216,8 @@ pub fn verdict_lines(plane: &PlaneComparison) -> Vec<String> {
     lines.extend(chi2.map(|t| format!("*χ*^{{2}}/dof = {t:.3}")));
     let full_radial = report.full_radial.and_then(|full| full.p_value);
     lines.extend(full_radial.map(|p| format!("full radial *p* = {p:.3}")));
-    // The disagreement is within that error, so the plane passes.
+    // The quadrature error is stated if the plane passes only because the disagreement is within
+    // this error.
     let is_excused = report.exact_verdict() == Verdict::Pass && report.p_value < Some(0.001);
     let error = report.quadrature_error.filter(|_| is_excused);
     lines.extend(error.map(|error| format!("quadrature ± {}", percent(error, 3))));

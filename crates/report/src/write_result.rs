@@ -14,12 +14,12 @@ use std::path::{Path, PathBuf};
 pub struct OutputOptions<'a> {
     /// The data saved beside the result.
     pub save: &'a [Save],
-    /// Whether to omit files whose content other files also hold.
+    /// Whether to omit files whose content is also in other files.
     pub compact: bool,
 }
 
-/// Suffixes of files that a compact result omits: `report.html` shows the drawings, and arrays hold
-/// the numbers.
+/// Suffixes of files that a compact result omits, because `report.html` shows the drawings and
+/// arrays hold the numbers.
 const NOT_COMPACT: &[&str] = &[".csv", ".svg"];
 
 /// The files that a comparison of a scene writes.

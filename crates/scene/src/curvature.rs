@@ -9,9 +9,10 @@ use glam::DVec3;
 const EDGES: f64 = 6.0;
 
 impl MeshObject {
-    /// Returns the least-squares paraboloid through the vertices around a hit. Its frame has the
-    /// principal directions there, its curvatures are the principal ones, and it faces the side
-    /// from which the light comes. `None` where there are too few vertices.
+    /// Returns the least-squares paraboloid through the vertices around a hit. The axes of its
+    /// frame are the principal directions at the hit, its curvatures are the principal curvatures,
+    /// and its normal is on the side from which the light comes. Returns `None` if there are too
+    /// few vertices.
     #[must_use]
     pub fn osculating(&self, hit: &Hit) -> Option<Patch> {
         let [a, b, c] = self.triangles[self.nearest(hit)?];
@@ -29,8 +30,8 @@ impl MeshObject {
             frame = frame.turned_to((frame.d - s * frame.x - t * frame.y).normalize());
         }
         let [h, _, _, ss, st, tt] = quadric(&frame, &near, edge)?;
-        // h = … + ½ (ss s² + 2 st s t + tt t²): the principal axes of that form, with the sign
-        // reversed because convex is positive.
+        // The principal axes of h = … + ½ (ss s² + 2 st s t + tt t²). The sign of curvatures is
+        // reversed, because convex surfaces have positive curvatures.
         let angle = 0.5 * libm::atan2(2.0 * st, ss - tt);
         let (sin, cos) = libm::sincos(angle);
         let along = cos * frame.x + sin * frame.y;
@@ -74,8 +75,8 @@ fn quadric(frame: &Frame, points: &[DVec3], unit: f64) -> Option<[f64; 6]> {
     Some([h * unit, s, t, ss / unit, st / unit, tt / unit])
 }
 
-/// Returns the least-squares solution x of a · x = b over rows [a, b]. `None` where the rows do not
-/// determine x.
+/// Returns the least-squares solution x of a · x = b over rows [a, b]. Returns `None` if the rows
+/// do not determine x.
 fn least_squares<const N: usize, const M: usize>(
     rows: impl Iterator<Item = [f64; M]>,
 ) -> Option<[f64; N]> {

@@ -1,11 +1,11 @@
 //! Triangle meshes: reading OBJ and PLY files, generating and writing.
 //!
-//! The readers are our own. tobj 4.0.5 reads an `l` line of three points as a triangle, doubles the
-//! vertices that two groups share (a closed surface comes back open), refuses continued lines,
-//! Latin-1 comments and colors on some vertices only, and its faults name no line. ply-rs-bw 4.0.1
-//! refuses `.5`, `1.` and blank lines, shifts binary data when a property is declared twice, and
-//! fills memory for an element without properties. The tests keep both as independent readers of
-//! sound files.
+//! The readers are our own. The library tobj 4.0.5 reads an `l` line of three points as a
+//! triangle. It doubles the vertices that two groups share, so a closed surface becomes open. It
+//! refuses continued lines, Latin-1 comments, and colors on some vertices only, and its errors
+//! name no line. The library ply-rs-bw 4.0.1 refuses `.5`, `1.` and blank lines. It shifts binary
+//! data if a property is declared twice, and fills memory for an element without properties. The
+//! tests use both libraries as independent readers of valid files.
 
 mod detailed;
 mod extension;

@@ -6,11 +6,11 @@ use etendue_scenefile::{FrequenciesFile, PlaneFile, WindowFile};
 use serde_json::Value;
 use std::collections::BTreeSet;
 
-/// A length, in metres, that is suspiciously long among others of about a metre.
+/// The length, in metres, above which a length is suspicious if other lengths are about a metre.
 const MANY_METRES: f64 = 100.0;
 /// The length, in metres, below which a length counts as about a metre.
 const NEAR: f64 = 10.0;
-/// Larger slopes, beyond 79° from the central ray, are rarely meant.
+/// Larger slopes, beyond 79° from the central ray, are rarely intended.
 const STEEP: f64 = 5.0;
 
 /// Returns a description of each likely mistake.
@@ -32,7 +32,7 @@ fn long(scene: &Scene) -> Option<String> {
     collect(&file, "", false, &mut lengths);
     let origin = scene.path.frame.origin.to_array();
     for (path, length) in &mut lengths {
-        // Positions are relative to the light.
+        // The positions that are compared are relative to the light.
         let of_world = path
             .strip_suffix(']')
             .filter(|path| !path.contains(".shapes["));
@@ -174,8 +174,8 @@ fn edges(layer: &BlockerLayer) -> Option<[f64; 2]> {
     }))
 }
 
-/// Returns the distance from the central ray at which light seen by a plane passes a place on the
-/// first leg.
+/// Returns the largest distance from the central ray of the light seen by a plane, at a given
+/// distance along the first leg.
 fn reach(scene: &Scene, plane: &VirtualPlane, at: f64) -> Option<[f64; 2]> {
     let w = &plane.window;
     let windows = [(&w.x, &w.u), (&w.y, &w.v)].map(|(x, u)| [x.half_width(), u.half_width()]);
@@ -196,7 +196,7 @@ fn reach(scene: &Scene, plane: &VirtualPlane, at: f64) -> Option<[f64; 2]> {
         let from_plane = x + (end - at) * u;
         match (plane.leg, &scene.light) {
             (_, Light::Beam { .. }) => hit,
-            // An environment gives no bound, so the minimum is the other bound.
+            // An environment gives an infinite bound, so the minimum is the bound by the plane.
             (0, _) => from_plane.min(from_light),
             _ => from_light,
         }

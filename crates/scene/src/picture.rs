@@ -13,10 +13,10 @@ const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 /// The largest number of values in a file: 8192 × 4096 pixels of red, green, blue and alpha.
 const MAX_NUMBERS: usize = 1 << 27;
 
-/// The largest number of values per byte of a file: DEFLATE expands one byte to at most 1032 bytes
-/// (RFC 1951; zlib's technical notes). These hold 1032 values of a PNG file, or half as many values
-/// of an OpenEXR file. So memory is allocated for what a file can hold, not for what its header
-/// claims.
+/// The largest number of values per byte of a file, because DEFLATE expands one byte to at most
+/// 1032 bytes (RFC 1951; zlib's technical notes). These 1032 bytes hold 1032 values of a PNG file,
+/// or half as many values of an OpenEXR file. So a false size in a header cannot make the program
+/// allocate more memory than the file can fill.
 const MOST_PER_BYTE: usize = 1032;
 
 /// A picture: grey, or red, green and blue.
@@ -30,8 +30,8 @@ pub struct Channels {
     pub values: Vec<f64>,
     /// Values per pixel, 1 or 3.
     pub count: usize,
-    /// Whether the values are levels of a file, from 0 to 1, with a transfer curve; otherwise they
-    /// are proportional to light.
+    /// Whether the values are the levels of a file, from 0 to 1, to which a transfer curve was
+    /// applied; otherwise they are proportional to light.
     pub are_levels: bool,
 }
 
@@ -80,7 +80,7 @@ pub(crate) fn parse(file: &Path, bytes: &[u8], extensions: &[&str]) -> Result<Ra
 /// colour of 8 or 16 bits. Alpha is ignored.
 ///
 /// # Errors
-/// When the file is damaged, or larger than it should be.
+/// When the file is damaged, or larger than allowed.
 pub fn read_channels(file: &Path, bytes: &[u8]) -> Result<Channels, Fault> {
     match extension(file).as_str() {
         "png" => png(bytes),

@@ -1,17 +1,17 @@
-//! Reads files as bytes: only regular ones of a bounded length, and only below a folder where a
-//! scene names them.
+//! Reads files as bytes. Only regular files of a bounded length are read; files that a scene names
+//! must also be below the folder of the scene.
 
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Component, Path};
 
-/// Why a file is not read.
+/// The reason why a file is not read.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
     /// The system cannot read the file.
     #[error("{0}")]
     Io(#[from] io::Error),
-    /// A folder, a pipe or a device; the last two might never end.
+    /// The path names a folder, a pipe or a device; a pipe or a device might never end.
     #[error("not a regular file")]
     NotRegular,
     /// The path, with links followed, leads out of the folder.
@@ -60,7 +60,7 @@ pub fn read_below(folder: &Path, name: &str, most: u64) -> Result<Vec<u8>, ReadE
     if !leads_down(name) {
         return Err(ReadError::Outside);
     }
-    // A path without a folder is relative to the current one.
+    // A path without a folder is relative to the current folder.
     let folder = match folder.as_os_str() {
         empty if empty.is_empty() => Path::new(".").canonicalize()?,
         _ => folder.canonicalize()?,
@@ -72,7 +72,7 @@ pub fn read_below(folder: &Path, name: &str, most: u64) -> Result<Vec<u8>, ReadE
     read_file(&path, most)
 }
 
-/// Checks whether a path, as written, never leads upwards.
+/// Checks whether a path, as written, is relative and has no part `..`.
 pub(crate) fn leads_down(path: &str) -> bool {
     let mut components = Path::new(path).components();
     components.all(|c| matches!(c, Component::Normal(_)))

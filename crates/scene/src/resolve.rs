@@ -83,8 +83,8 @@ impl Resolver<'_> {
         self.run(&file.run);
         self.level(file.run.alpha, file.planes.len());
         self.layers(&file);
-        // Without a frame no distance is known, so the checks continue with a frame that leaves the
-        // values unchanged. In a frame that is not finite all triangles of a mesh would overlap.
+        // If the frame is unknown or not finite, the checks continue in a frame that leaves all
+        // values unchanged.
         let checked = frame.filter(|frame| frame.origin.is_finite());
         let checked = checked.unwrap_or(Frame::IDENTITY);
         let light = self.light(&file.light, &checked);
@@ -184,7 +184,7 @@ impl Resolver<'_> {
     }
 
     fn run(&mut self, run: &RunFile) {
-        // A batch of one photon has a spread, but an empty batch has none.
+        // One photon per batch suffices to estimate noise, but no batch may be empty.
         let least = u64::from(run.batches);
         if !(least..=1_000_000_000_000).contains(&run.photons) {
             let allowed = format!("{least} (one for each batch) to 10^12");
@@ -204,10 +204,11 @@ impl Resolver<'_> {
     }
 }
 
-/// An object that planes can be before or after.
+/// An object before or after which planes can be placed.
 struct PathStop<'a> {
     name: &'a str,
-    /// The nearest and the farthest distance on the first leg, equal for a flat object.
+    /// The nearest and the farthest distance of the object along the first leg; they are equal for
+    /// a flat object.
     extent: [f64; 2],
     /// Whether light leaves the object.
     surface: bool,
@@ -257,7 +258,7 @@ fn stops<'a>(path: &CentralRay, things: Things<'a>) -> Vec<PathStop<'a>> {
     stops
 }
 
-/// Returns the smallest and largest distance of points.
+/// Returns the smallest and the largest z coordinate of points.
 fn extent(points: &[DVec3]) -> [f64; 2] {
     let low = points.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
     let high = points.iter().map(|p| p.z).fold(f64::NEG_INFINITY, f64::max);

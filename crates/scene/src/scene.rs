@@ -34,7 +34,8 @@ pub struct Scene {
     pub run: Run,
 }
 
-/// The ray that everything is measured from: straight legs from surface to surface.
+/// The central ray, from which positions and slopes are measured: straight legs from surface to
+/// surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CentralRay {
     /// Frame at the light, in the world of the scene file.
@@ -80,9 +81,9 @@ pub enum Object {
 }
 
 impl Hit {
-    /// Returns the frame (T, B, N) at the hit, for light that arrives in a frame, and the longitude
-    /// θ₀ of the direction from which the light comes: T lies in the plane of incidence, and X is
-    /// rotated to −T at normal incidence (docs/conventions.md).
+    /// Returns the frame (T, B, N) at the hit, for light that arrives in a frame, and the
+    /// longitude θ₀ of the direction from which the light comes. T lies in the plane of incidence,
+    /// and X is rotated to −T at normal incidence (docs/conventions.md).
     #[must_use]
     pub fn surface_frame(&self, arriving: &Frame) -> (Frame, f64) {
         let (n, from) = (self.normal, -arriving.d);
@@ -163,7 +164,8 @@ pub struct MeshObject {
     pub extent: [f64; 2],
     /// The ratio of reflected to incident flux; `None` if the mesh is not Lambertian.
     pub albedo: Option<f64>,
-    /// The smooth surface, if the mesh is one.
+    /// The normals and the interaction with light of a mesh that is a smooth surface; otherwise
+    /// `None`.
     pub smooth: Option<SmoothMesh>,
 }
 
@@ -205,8 +207,8 @@ pub enum Event {
 }
 
 impl Event {
-    /// Checks whether light leaves the surface in or near the mirror direction, unlike Lambertian
-    /// light. For a sum of BRDFs the first one decides.
+    /// Checks whether light leaves the surface in or near the mirror direction, unlike light from
+    /// a Lambertian surface. For a sum of BRDFs, the first BRDF determines the result.
     #[must_use]
     pub fn mirrors(&self) -> bool {
         match self {
@@ -221,8 +223,8 @@ impl Event {
 pub struct Surface {
     /// Name.
     pub name: String,
-    /// Frame of the rectangle, in the frame at the light: O at the centre, X and Y along the edges,
-    /// D the normal on the side at which light arrives.
+    /// Frame of the rectangle, in the frame at the light, with O at the centre and X and Y along
+    /// the edges. D is the normal on the side at which light arrives.
     pub frame: Frame,
     /// Side lengths along X and Y of the frame.
     pub size: [f64; 2],
@@ -295,13 +297,13 @@ pub struct Run {
     pub seed: u64,
     /// Independent batches.
     pub batches: u32,
-    /// The share of correct scenes that the verdict may reject, over all planes.
+    /// The probability that the verdict rejects a correct scene, over all planes together.
     pub alpha: f64,
     /// Noise, as a share of the spectrum, above which a plane does not pass.
     pub resolution: f64,
     /// How photons leave the light.
     pub emission: Emission,
-    /// The numbers that photons are drawn from.
+    /// The random numbers or nets from which photons are drawn.
     pub sampling: Sampling,
 }
 
@@ -309,7 +311,7 @@ pub struct Run {
 #[must_use]
 pub fn scene_hash(file: &SceneFile, inputs: &BTreeMap<String, String>) -> String {
     let mut hasher = blake3::Hasher::new();
-    // This cannot fail: a scene file is plain data with finite numbers.
+    // Serialisation cannot fail, because a scene file is plain data with finite numbers.
     hasher.update(&serde_json::to_vec(file).unwrap_or_default());
     for (name, hash) in inputs {
         // Names hold no NUL, so different lists of files give different bytes.

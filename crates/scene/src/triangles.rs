@@ -20,7 +20,7 @@ struct SharedTriangles {
 
 impl Triangles {
     /// Builds the hierarchy over triangles with these corners. `origins` is the largest coordinate
-    /// that a ray starts from.
+    /// of any ray's start.
     #[must_use]
     pub fn new(corners: Vec<[DVec3; 3]>, origins: f64) -> Self {
         let bounds = |i: usize| enclosing(&corners[i]);
@@ -37,7 +37,7 @@ impl Triangles {
         self.0.bounds
     }
 
-    /// Passes on the triangles that a ray may meet: [`BinaryHierarchy::along`].
+    /// Calls [`BinaryHierarchy::along`] for the triangles that a ray may meet.
     #[inline]
     pub fn along(
         &self,

@@ -6,16 +6,16 @@ use etendue_field::{Frame, Light, TwoPlane, VirtualPlane, interpolated_normal, t
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// The difference of a spectrum between photons and backward rays above which a mesh causes a
-/// warning.
+/// The smallest difference between the spectra of photons and of backward rays, as a share, for
+/// which a mesh causes a warning.
 const LEVEL: f64 = 0.01;
 /// The largest number of triangles examined; in finer meshes only every second, every third, …
 /// triangle is examined.
 const MAX_TRIANGLES: usize = 20_000;
 /// The number of pieces of a window across which triangles are subdivided.
 const PIECES: f64 = 8.0;
-/// The number of azimuths of waves, and of waves along each: multiples of the spacing of a plane's
-/// frequencies, up to the largest.
+/// The number of azimuths at which waves are tested, and of waves at each azimuth. Their
+/// frequencies are multiples of the spacing of a plane's frequencies, up to the largest.
 const AZIMUTHS: u32 = 4;
 const WAVES: usize = 8;
 /// The slopes at which each point is evaluated, over the half-width of the window.
@@ -29,9 +29,9 @@ impl Scene {
     /// to the normal t of the triangle. Photons that come along d and leave along e then have (d·t
     /// / d·n) / (e·t / e·n) times the radiance that backward rays find: interpolated normals do not
     /// conserve étendue. The effect on a plane is the ratio of two spectra at the measured
-    /// frequencies along x and y. The first is the spectrum of the window times the factor less 1,
-    /// and the second is the spectrum of the window, both where the mesh is hit. Facets finer than
-    /// the waves of these frequencies average out.
+    /// frequencies along x and y, both taken where the mesh is hit. The first is the spectrum of
+    /// the window times the factor minus 1; the second is the spectrum of the window alone. Facets
+    /// finer than the waves of these frequencies average out.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = mistakes(self);
@@ -75,7 +75,7 @@ impl Scene {
 
     /// Returns the possible difference between photons and backward rays at a plane, as a share of
     /// the spectrum. The cause is a smooth mesh before the plane that is too coarse (see
-    /// [`warnings`](Self::warnings)). `None` without such a mesh.
+    /// [`warnings`](Self::warnings)). Returns `None` if there is no such mesh.
     #[must_use]
     pub fn mesh_mismatch(&self, plane: &VirtualPlane) -> Option<f64> {
         let legs = 1..=plane.leg;
@@ -99,9 +99,10 @@ impl Scene {
 struct WindowView<'a> {
     mesh: &'a MeshObject,
     smooth: &'a SmoothMesh,
-    /// The frame at the hit, along the light that leaves it.
+    /// The frame at the hit, with D along the light that leaves the mesh.
     frame: Frame,
-    /// 1 where light arrives along the normals of the mesh, −1 where it arrives against them.
+    /// The number 1 if light arrives along the normals of the mesh, and −1 if it arrives against
+    /// them.
     side: f64,
     plane: &'a VirtualPlane,
     /// The distance from the hit to the plane.
@@ -110,8 +111,8 @@ struct WindowView<'a> {
     half: [f64; 2],
 }
 
-/// The window, and the difference of photons and rays in it: sums over points at one time, or their
-/// spectra.
+/// Sums over points, or their spectra: those of the window, and those of the difference between
+/// photons and backward rays in the window.
 #[derive(Clone, Copy, Debug, Default)]
 struct WindowSums {
     difference: f64,
@@ -179,7 +180,8 @@ impl<'a> WindowView<'a> {
         }
     }
 
-    /// Returns the root of the ratio of the energy of the difference to the energy of the window.
+    /// Returns the square root of the energy of the difference divided by the energy of the
+    /// window.
     fn mismatch(&self) -> f64 {
         let mut waves = waves(self.plane);
         let stride = self.mesh.triangles.len().div_ceil(MAX_TRIANGLES);
@@ -273,7 +275,7 @@ impl<'a> WindowView<'a> {
             return;
         }
         let kept = |d: DVec3| d.dot(flat) / d.dot(normal);
-        // Light on the wrong side of a triangle is completely lost, or gained.
+        // Light on the wrong side of a triangle is lost completely, or counted twice.
         let factor = (kept(back) / kept(leaves)).clamp(0.0, 2.0);
         if factor.is_finite() {
             sums.difference += weight * (factor - 1.0);

@@ -54,7 +54,7 @@ fn layer(count: u32, shape: impl Fn(u32) -> String) -> String {
     format!(r#"Shapes(name: "some", center: (0, 0, 1), shapes: [{shapes}])"#)
 }
 
-/// Requires that work takes far less time than comparing every pair would.
+/// Checks that work takes far less time than a comparison of every pair would.
 fn quickly<T>(what: &str, work: impl FnOnce() -> T) -> T {
     let start = Instant::now();
     let done = work();
@@ -332,7 +332,7 @@ fn a_value_that_is_set_is_nested_no_deeper_than_a_scene() {
         open("(") + &close,
         open("a(") + &close,
         open("(a:") + &close,
-        // The brackets are closed one by one, or all at the end.
+        // The brackets of this text are closed one by one, or all at the end.
         open("(a)") + &close,
     ] {
         let told = quickly("a nested value", || {
@@ -348,7 +348,8 @@ fn a_value_that_is_set_is_nested_no_deeper_than_a_scene() {
     assert!(is_plain(&told), "{told:.500}");
 }
 
-/// If each bracket doubled the work, this would take a billion times as long as thirty brackets.
+/// If each bracket doubled the work, this test would take a billion times as long as with thirty
+/// brackets fewer.
 #[test]
 fn each_part_of_a_value_that_is_set_is_read_once() {
     let value = format!("{}1{}", "(a:".repeat(30), ",b)".repeat(30));
@@ -368,7 +369,7 @@ fn sets(fields: &[(&str, &str)]) -> Vec<(String, String)> {
 fn fields_set_together_are_as_set_one_after_the_other() {
     let fields = sets(&[
         ("run.photons", "1e6"),
-        // The phase is not written, and the next edit sets it.
+        // The phase of this grating is not written; the next edit sets it.
         (
             "blockers.0",
             "Grating(name: bars, center: (0, 0, 1), axis: X, frequency: 3)",

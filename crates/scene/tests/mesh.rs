@@ -241,7 +241,7 @@ fn faults_of_ply_files_are_told() {
         ("format", "\u{1}\u{2}garbage\nformat", "line 2 is `\\u{1}\\u{2}garbage`; allowed: format, comment"),
         ("element vertex 3", "element vertex three", "line 3 is `element vertex three`; allowed: element NAME COUNT"),
         ("element vertex 3", "element vertex -3", "line 3 is `element vertex -3`; allowed: element NAME COUNT"),
-        ("element vertex 3", "element vertex 1000000000000", "number of bytes after the header is 26; allowed: at least 6000000000001, for 1000000000000 vertex, 1 face as announced"),
+        ("element vertex 3", "element vertex 1000000000000", "number of bytes after the header is 26; allowed: at least 6000000000001, because the header announces 1000000000000 vertex, 1 face"),
         ("element vertex 3", "element vertex 18446744073709551615", "bytes after the header is 26; allowed: at least 110680464442257309691,"),
         ("element vertex 3\n", "property int n\nelement vertex 3\n", "line 3 is `property int n`; allowed: an element before"),
         ("property float x", "property half x", "line 4 is `property half x`; allowed: property TYPE NAME"),
@@ -280,7 +280,7 @@ fn faults_of_ply_files_are_told() {
     }
 }
 
-/// Binary files: cut anywhere, and with impossible values.
+/// Binary files that are cut anywhere, or have impossible values, are refused.
 #[test]
 fn faults_of_binary_ply_files_are_told() {
     let sound = Mesh::star(1.0, 0.0, 0, 2).unwrap().ply(); // 6 vertices, 8 triangles
@@ -319,7 +319,7 @@ fn faults_of_binary_ply_files_are_told() {
 }
 
 /// A header with the line ends of another system precedes binary data, which begin directly after
-/// the last one.
+/// the last line end.
 #[test]
 fn binary_ply_behind_all_line_ends() {
     let mesh = Mesh::star(1.0, 0.0, 0, 2).unwrap();
@@ -336,8 +336,8 @@ fn binary_ply_behind_all_line_ends() {
     }
 }
 
-/// A list with a stated length of four thousand million is read as far as the file goes, without
-/// allocating memory in advance.
+/// A list with a stated length of four thousand million is read up to the end of the file, and no
+/// memory is allocated in advance.
 #[test]
 fn a_list_longer_than_the_file_is_told() {
     let ascii = edited("uchar int", "uint int").replace("ascii", "binary_little_endian");
@@ -352,8 +352,8 @@ fn a_list_longer_than_the_file_is_told() {
     );
 }
 
-/// Fuzzed files: valid ones with bytes changed, removed, doubled or cut. Whatever they hold, the
-/// result is a valid mesh or a fault in one line.
+/// Fuzzed files are valid files with bytes changed, removed, doubled or cut. The result for each
+/// file is a valid mesh or a fault in one line.
 #[test]
 fn no_bytes_make_a_reader_panic() {
     let star = Mesh::star(1.0, 0.2, 2, 4).unwrap().ply();
@@ -446,7 +446,7 @@ fn a_star_is_closed_outward_and_of_its_volume() {
             "relief {relief}, lobes {lobes}, rings {rings}"
         );
         assert_eq!(euler(&mesh), 2);
-        // Star-shaped: every triangle faces away from the origin.
+        // The mesh is star-shaped, so every triangle faces away from the origin.
         let outward = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a).dot(a) > 0.0;
         assert!(mesh.corners().all(outward));
     }
@@ -500,7 +500,7 @@ fn a_moved_or_mirrored_mesh_keeps_its_outside() {
     assert!(far.unwrap_err().field.starts_with("vertex 0, x"));
 }
 
-/// The guarantees to every caller, however the mesh is made.
+/// Checks what holds for every mesh, however it is made.
 #[test]
 fn meshes_of_parts_are_checked() {
     let square = vec![DVec3::ZERO, DVec3::X, DVec3::X + DVec3::Y, DVec3::Y];

@@ -76,7 +76,7 @@ fn everything_resolves_to_what_it_says() {
         (Side::Before, 0, Quantity::DifferentialIrradiance)
     );
     assert_eq!(places[3], (Side::After, 1, Quantity::Radiance));
-    // The light that goes back travels as far as the grating.
+    // The light that travels back reaches the grating.
     assert!((scene.path.legs[1].length - 0.8).abs() < 1e-15); // rounding
     let back = &scene.planes[4].frame;
     assert!((back.origin.z - 1.5).abs() < 1e-15 && back.d.z < 0.0 && back.x.x < 0.0); // rounding
@@ -168,7 +168,7 @@ const BAD: &[(&str, &str, &str)] = &[
     ("albedo: 0.5", "albedo: 1.1", "surfaces[0].albedo"),
 ];
 
-/// More such cases, for a path over an oblique wall to a floor.
+/// More cases of refused scenes, for a path over an oblique wall to a floor.
 const BAD_PATHS: &[(&str, &str, &str)] = &[
     (FACING, "facing: (0, 0, 0)", "surfaces[0].facing"),
     (FACING, "facing: (1, NaN, -1)", "surfaces[0].facing[1]"),
@@ -181,7 +181,7 @@ const BAD_PATHS: &[(&str, &str, &str)] = &[
     (VISITS, LEAVES[1], "path.leaves"),
     (VISITS, LEAVES[2], "path.leaves"),
     (VISITS, LEAVES[3], "path.leaves[2]"),
-    // The floor lies behind the wall, or behind a card.
+    // Cases in which the floor lies behind the wall, or behind a card.
     (
         "center: (1.5, 0, 2)",
         "center: (-1.5, 0, 2)",

@@ -6,7 +6,7 @@ use std::fmt::{self, Display, Write};
 ///
 /// Control and format characters (including those that change the direction of text), line
 /// separators, private-use characters and non-characters are escaped as `\u{..}`. A text that is
-/// cut off ends in `…`; the rest is not even formatted.
+/// too long ends in `…`; what follows is never formatted.
 #[must_use]
 pub fn shown(value: impl Display, most: usize) -> String {
     let mut cut = ShortenedText {

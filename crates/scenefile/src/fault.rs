@@ -43,7 +43,7 @@ impl fmt::Display for Fault {
     }
 }
 
-/// Why a scene file cannot become a scene.
+/// The reason why a scene file cannot be resolved to a scene.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
     /// The text is not a scene file; the message gives line, column and what is allowed there.
@@ -59,7 +59,7 @@ pub enum SceneError {
     /// An override names no field, or has a value of the wrong kind.
     #[error("{path}: {message}")]
     Override {
-        /// The path as given.
+        /// The path of the field, as the user wrote it.
         path: String,
         /// What is wrong.
         message: String,
@@ -71,8 +71,8 @@ pub enum SceneError {
 
 impl SceneError {
     /// Returns the error in words, one line for each fault with its place. The place is a line and
-    /// column of the scene file or, for a field that was set elsewhere, what set it, such as
-    /// `--set run.photons=3`.
+    /// column of the scene file. For a field that was set by an argument, it is this argument,
+    /// such as `--set run.photons=3`.
     #[must_use]
     pub fn in_text(&self, text: &str, set: &[(String, String)]) -> String {
         match self {
@@ -98,7 +98,7 @@ fn list(faults: &[Fault]) -> String {
     lines(faults, Fault::to_string).join("\n")
 }
 
-/// Returns the first faults in words, and the number of further ones.
+/// Returns the first faults in words, and the number of further faults.
 fn lines(faults: &[Fault], told: impl Fn(&Fault) -> String) -> Vec<String> {
     let first = faults.iter().take(limits::FAULTS);
     let mut lines: Vec<String> = first.map(told).collect();

@@ -126,8 +126,8 @@ mod tests {
         }
     }
 
-    /// Each field that is written in a scene accepts the example instead, and the error names the
-    /// field when it holds an impossible value.
+    /// Checks that each field written in a scene accepts its example instead, and that the error
+    /// for an impossible value names the field.
     #[test]
     fn examples_can_be_read_where_they_are_told() {
         let mut tried = BTreeSet::new();
@@ -137,7 +137,7 @@ mod tests {
             fields(&file, "", &mut paths);
             for path in paths {
                 let (around, _) = path.rsplit_once(['.', '[']).unwrap_or_default();
-                // A field that is not written is located at the enclosing one, if at all.
+                // A field that is not written is located at the enclosing field, if at all.
                 let written = find(&text, &path);
                 let Some(place) = written.filter(|_| written != find(&text, around)) else {
                     continue;

@@ -18,13 +18,13 @@ pub(crate) fn path_of(path: &Path) -> String {
     written
 }
 
-/// Returns why a value does not fit its field, or a field below.
+/// Returns the reason why a value does not fit its field, or a field within it.
 pub(crate) fn unfit(error: &serde_path_to_error::Error<serde_json::Error>) -> String {
     let field = path_of(error.path());
     let told = error.inner().to_string();
-    // The place is reported separately.
+    // The line and column are reported separately, so they are removed here.
     let told = told.split(" at line ").next().unwrap_or_default();
-    // For an unknown name: the name, and the known ones.
+    // If a name is unknown, the names in the message are that name and the known names.
     let mut names = told.split('`').skip(1).step_by(2);
     let meant = match names.next() {
         Some(found) if told.starts_with("unknown ") => did_you_mean(found, names),

@@ -39,8 +39,8 @@ impl SceneFile {
         if let Some(file) = self.with_all_at_once(fields) {
             return Ok(file);
         }
-        // Setting fields in turn shows which one is at fault, and reaches fields that an earlier
-        // setting has created.
+        // Fields are set in turn, so an error names the faulty setting, and later settings can
+        // change fields that an earlier setting has created.
         let mut fields = fields.iter();
         fields.try_fold(self, |file, (path, value)| file.with(path, value))
     }
@@ -88,7 +88,7 @@ fn is_name_of_variant(name: &str) -> bool {
     name.starts_with(char::is_uppercase)
 }
 
-/// Returns why there is no field `name` below a node.
+/// Returns a message that there is no field `name` below a node, and which fields there are.
 fn refusal(node: &Value, name: &str) -> String {
     let allowed = match node {
         Value::Array(items) => match items.len() {
@@ -117,7 +117,8 @@ fn refusal(node: &Value, name: &str) -> String {
 }
 
 /// Returns a value in the notation of a scene file or of JSON; whole numbers such as 1e6 are
-/// integers, and anything else is text. `None` when its brackets are nested deeper than `deepest`.
+/// integers, and anything else is text. Returns `None` if the brackets of the value are nested
+/// deeper than `deepest`.
 fn parsed(text: &str, deepest: usize) -> Option<Value> {
     let text = text.trim();
     if let Ok(value) = serde_json::from_str(text) {
@@ -139,7 +140,7 @@ fn parsed(text: &str, deepest: usize) -> Option<Value> {
     })
 }
 
-/// Returns the content of parentheses: named fields, several values, or one.
+/// Returns the content of parentheses: named fields, several values, or one value.
 fn fields(text: &str, deepest: usize) -> Option<Value> {
     let parts = separated(text);
     let named: Option<Vec<_>> = parts.iter().map(|part| part.split_once(':')).collect();

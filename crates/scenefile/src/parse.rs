@@ -1,4 +1,4 @@
-//! Reads scene files, and reports which field is at fault in one that cannot be read.
+//! Reads scene files. If a file cannot be read, the error names the faulty field.
 
 use crate::display::shown;
 use crate::hints::{example, has_fields, wanted};
@@ -117,7 +117,7 @@ fn of_names(code: &Error, name: &str, path: &str) -> Option<(bool, String)> {
         } => {
             let meant = did_you_mean(found, expected.iter().copied());
             let known = expected.join(", ");
-            // The path already leads to the field.
+            // The path already ends with the name of the field.
             let of = path.strip_suffix(found.as_str()).unwrap_or(path);
             let field = below(of.trim_end_matches('.'), found);
             (
@@ -184,7 +184,7 @@ fn unexpected(code: &Error, text: &str, [line, column]: [usize; 2]) -> String {
 
 /// Returns the beginning of a value, on one line.
 fn excerpt(value: &str) -> String {
-    // A word may be as long as the whole file.
+    // Only the beginning is used, because a word may be as long as the whole file.
     let start: String = value.chars().take(4 * EXCERPT).collect();
     let words: Vec<&str> = start.split_whitespace().collect();
     shown(words.join(" "), EXCERPT)

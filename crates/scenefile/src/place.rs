@@ -41,7 +41,7 @@ pub(crate) fn find<'a>(text: &'a str, path: &str) -> Option<ScenePlace<'a>> {
                 }
             }
             ValueKind::Close => {
-                // A surplus closing bracket closes nothing.
+                // A closing bracket without an opening bracket has no effect.
                 levels.truncate((depth - 1).max(1));
             }
             ValueKind::Colon => {}
@@ -81,8 +81,8 @@ pub(crate) fn find<'a>(text: &'a str, path: &str) -> Option<ScenePlace<'a>> {
             found.end = token.end;
         }
     }
-    // A field that is not written at all is enclosed only by the whole file, which is no useful
-    // place.
+    // If only the whole file encloses a field that is not written, no place is returned, because
+    // it would not help the user.
     let found = found.filter(|found| found.steps > 0 || steps.is_empty())?;
     let before = &text[..found.start];
     Some(ScenePlace {
@@ -105,8 +105,8 @@ struct InnermostValue {
 struct OpenBracket<'a> {
     /// The number of steps of the path that lead to it; `None` if the path leads elsewhere.
     at: Option<usize>,
-    /// Whether a name precedes the bracket, as in `Hann(0.5)`: a value without a key is then not an
-    /// element.
+    /// Whether a name precedes the bracket, as in `Hann(0.5)`. In such brackets, a value without a
+    /// key is not an element of a list.
     named: bool,
     index: usize,
     key: Option<&'a str>,

@@ -19,7 +19,8 @@ pub fn schema() -> &'static Value {
     &SCHEMA
 }
 
-/// A field without a description has that of its type, and a number without a range is positive.
+/// A field without a description has the description of its type, and a number without a range
+/// must be positive.
 fn complete(node: &mut Value, types: &Value) {
     if is_number(node) && node.get("x-range").is_none() {
         positive(node);

@@ -3,8 +3,8 @@
 use crate::limits;
 use strsim::osa_distance;
 
-/// Returns ` (did you mean …?)` with the known name most similar to this one, or nothing where none
-/// is similar.
+/// Returns ` (did you mean …?)` with the known name most similar to this one, or an empty text if
+/// no known name is similar.
 #[must_use]
 pub fn did_you_mean<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     match nearest(name, known) {
@@ -13,20 +13,20 @@ pub fn did_you_mean<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) ->
     }
 }
 
-/// Returns the known name most similar to this one; `None` where none is similar.
+/// Returns the known name most similar to this one, or `None` if no known name is similar.
 #[must_use]
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let lower = |name: &str| -> String {
-        // Longer names are refused in any case.
+        // Names are compared only up to the largest length of a name.
         let start = name.chars().take(limits::NAME);
         start.flat_map(char::to_lowercase).collect()
     };
     let name = lower(name);
-    // One letter in three may be wrong, and at least one.
+    // One letter in three may be wrong, and in short names one letter.
     let most = (name.chars().count() / 3).max(1);
     let known = known.into_iter();
     let known = known.map(|other| (osa_distance(&name, &lower(other)), other));
-    // A name of two characters could mean anything.
+    // A known name is not suggested if all its characters would have to change.
     let near = known.filter(|(distance, other)| {
         *distance <= most && *distance < other.chars().take(limits::NAME).count()
     });

@@ -31,8 +31,8 @@ pub fn bandwidth_nu(power: ArrayView2<'_, f64>, grid: &SliceGrid, fraction: f64)
     bandwidth(power.sum_axis(Axis(0)).view(), &grid.nu, fraction)
 }
 
-/// Returns the largest bandwidth over the azimuths of a power [azimuth, ρ ≥ 0, ν]; the first of
-/// equal ones.
+/// Returns the largest bandwidth over the azimuths of a power [azimuth, ρ ≥ 0, ν]; if several are
+/// equal, the first.
 #[must_use]
 pub fn widest(
     power: ArrayView3<'_, f64>,
@@ -60,9 +60,9 @@ pub(crate) fn widest_slice(
 /// Returns the smallest B for which the power at |frequency| ≤ B is at least `fraction` of the
 /// total.
 ///
-/// `marginal` is the power along `axis`, summed over the other axis. The power of a frequency of
-/// the axis is spread uniformly over its cell, half a step to either side, so the power inside
-/// grows linearly with B within a cell. Unit: that of the axis. `None` if the total is not
+/// `marginal` is the power along `axis`, summed over the other axis. The power at each frequency
+/// is spread uniformly over its cell, half a step to either side, so within a cell the enclosed
+/// power grows linearly with B. B has the unit of the axis. Returns `None` if the total is not
 /// positive.
 #[must_use]
 pub fn bandwidth(
@@ -91,7 +91,7 @@ pub fn bandwidth(
         }
         inside += power;
     }
-    // Only rounding errors lead here, because the whole power exceeds any fraction of it.
+    // Only rounding errors lead here, because the total power exceeds every fraction of itself.
     Some(axis.max() + 0.5 * axis.spacing)
 }
 

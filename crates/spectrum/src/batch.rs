@@ -52,15 +52,16 @@ pub struct Batch {
     pub planes: Vec<PlaneBatch>,
 }
 
-/// The sum, in order, of the first parts of a batch. A measurement continued from it ends with a
-/// result bitwise identical to that of an uninterrupted one.
+/// The sum, in order, of the first parts of a batch. A measurement that continues from this sum
+/// gives bitwise the same result as an uninterrupted measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PartialBatch {
     /// The number of the batch.
     pub index: u32,
     /// Number of parts in the sum.
     pub parts: u32,
-    /// The sum; `None` for no parts. Like all sums it is per photon of the whole batch.
+    /// The sum, or `None` if there are no parts. Like all sums, it is per photon of the whole
+    /// batch.
     pub sum: Option<Batch>,
 }
 

@@ -11,7 +11,7 @@ use ndarray::Array2;
 pub struct CovarianceEstimate {
     /// Central second moments over (x, y, u, v), [4, 4].
     pub value: Array2<f64>,
-    /// Their standard errors, by the delete-one jackknife.
+    /// The standard errors of the moments, by the delete-one jackknife.
     pub error: Array2<f64>,
 }
 
@@ -19,7 +19,7 @@ pub struct CovarianceEstimate {
 ///
 /// # Errors
 ///
-/// With fewer than two batches.
+/// Fails with fewer than two batches.
 pub fn covariance(
     measurement: &Measurement,
     plane: usize,

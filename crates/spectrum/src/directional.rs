@@ -20,28 +20,29 @@ use std::f64::consts::{FRAC_PI_2, PI};
 pub struct DirectionalBandwidth {
     /// The bandwidths, cycles per unit slope, at the azimuths π k / K.
     pub along: Vec<f64>,
-    /// The largest of them, with its azimuth in radians; the first of equal ones.
+    /// The largest bandwidth, with its azimuth in radians; if several are equal, the first.
     pub widest: Widest<Uncertain>,
-    /// The bandwidth across the direction of the largest one.
+    /// The bandwidth across the direction of the largest bandwidth.
     pub across: Uncertain,
     /// The total power, ∫ |F|² dν.
     pub power: Uncertain,
-    /// The power that noise adds to that of the mean spectrum, which `power` leaves out.
+    /// The power that noise adds to the power of the mean spectrum; `power` does not include it.
     pub noise: f64,
 }
 
 impl DirectionalBandwidth {
     /// Computes the bandwidths of independent measurements of one picture.
     ///
-    /// Returns `None` if the total power is not positive, with all measurements or without one.
+    /// Returns `None` if the total power is not positive for all measurements together, or with
+    /// one measurement left out.
     ///
     /// # Errors
     ///
-    /// With fewer than three measurements.
+    /// Fails with fewer than three measurements.
     ///
     /// # Panics
     ///
-    /// If the slices have frequencies with ρ ≠ 0.
+    /// Panics if the slices have frequencies with ρ ≠ 0.
     pub fn new(pictures: &[Slices]) -> Result<Option<Self>, TooFewBatches> {
         let azimuths = pictures.first().map_or(0, |first| first.grid.azimuths);
         let power = CrossPower::of_replicates(pictures, 0..azimuths)?;
@@ -73,11 +74,11 @@ impl DirectionalBandwidth {
     ///
     /// # Panics
     ///
-    /// If the grid has frequencies with ρ ≠ 0.
+    /// Panics if the grid has frequencies with ρ ≠ 0.
     #[must_use]
     pub fn of_window(window: &Window, grid: &SliceGrid) -> Self {
         let power = transform(window, grid).mapv(|value| value * value);
-        Self::of(power.view(), grid).expect("a window has power")
+        Self::of(power.view(), grid).expect("the spectrum of a window has power")
     }
 
     /// Computes the bandwidths of a power [azimuth, ρ ≥ 0, ν], without errors.
@@ -101,7 +102,7 @@ impl DirectionalBandwidth {
         })
     }
 
-    /// Returns the bandwidth at the azimuth nearest to a given one, in radians.
+    /// Returns the bandwidth at the azimuth nearest to a given azimuth, in radians.
     #[must_use]
     pub fn at(&self, azimuth: f64) -> f64 {
         let count = self.along.len();
@@ -120,7 +121,10 @@ struct PolarPower<'a> {
 impl<'a> PolarPower<'a> {
     /// Returns `None` if there is no power.
     fn new(power: ArrayView3<'_, f64>, grid: &'a SliceGrid) -> Option<Self> {
-        assert_eq!(grid.rho.half, 0, "a picture has no frequency of position");
+        assert_eq!(
+            grid.rho.half, 0,
+            "the grid of a picture has only frequencies with ρ = 0"
+        );
         let cells = power.indexed_iter();
         let cells = cells.map(|((k, _, n), power)| PolarCell::new(grid, [k, n], *power));
         let cells: Vec<PolarCell> = cells.collect();
@@ -182,7 +186,7 @@ const BINS: f64 = 8.0;
 impl Cumulative {
     fn new(grid: &SliceGrid) -> Self {
         let step = grid.nu.spacing / BINS;
-        // A cell ends at most half a step, and its side, beyond the last frequency.
+        // A cell ends beyond the last frequency by at most half a step and the length of its side.
         let most = 2.0 * (grid.nu.max() + grid.nu.spacing);
         Self {
             step,
@@ -196,7 +200,7 @@ impl Cumulative {
         let half = cell.half[0] * cos.abs() + cell.half[1] * sin.abs();
         let [low, high] = [middle - half, middle + half].map(|end| end / self.step);
         let per_bin = cell.power / (high - low);
-        // The part below zero is reflected.
+        // The part of the range below zero is reflected to positive frequencies.
         for [low, high] in [[low.max(0.0), high], [0.0, -low]] {
             if high <= low {
                 continue;
@@ -218,7 +222,7 @@ impl Cumulative {
             }
             within += power;
         }
-        // Only rounding errors lead here.
+        // Only rounding errors lead to this line.
         self.bins.len() as f64 * self.step
     }
 }
@@ -290,7 +294,7 @@ mod tests {
     }
 
     /// Without the mean, the bandwidth of a sine is its frequency plus the window's main lobe, at
-    /// any azimuth. Along e it is the bandwidth of the component f · e.
+    /// any azimuth. The bandwidth along e is the bandwidth of the component f · e.
     #[test]
     fn a_sine_of_any_azimuth_and_contrast() {
         for (azimuth, contrast) in [(0.0, 1.0), (0.41, 0.2), (1.2, 0.03)] {
@@ -299,7 +303,7 @@ mod tests {
             let field = wave(1.0, contrast, [frequency * cos, frequency * sin]);
             let found = alone(&less_mean(&field));
             let widest = found.widest;
-            // One-sided, 95 % of a Hann window's power lie below 0.47.
+            // The frequencies from −∞ to 0.47 hold 95 % of a Hann window's power.
             let wanted = frequency + 0.47;
             let value = widest.value.value;
             assert!((value - wanted).abs() < 0.1, "{value} {wanted}"); // diagonals, cells
@@ -315,7 +319,8 @@ mod tests {
     fn the_mean_of_a_picture_hides_its_bandwidth() {
         let field = wave(1.0, 0.2, [3.3, 0.0]);
         assert!(alone(&field).widest.value.value < 1.0);
-        // A mean that is left in hides the bandwidth; removing it twice changes nothing more.
+        // If the mean is not removed, it hides the bandwidth. Removing it a second time has no
+        // effect.
         let found = alone(&less_mean(&field)).widest.value.value;
         let twice = less_mean(&less_mean(&field));
         assert!((alone(&twice).widest.value.value - found).abs() < 1e-9); // rounding

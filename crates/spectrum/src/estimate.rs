@@ -6,9 +6,9 @@ use ndarray::{Array2, Array3};
 
 /// The measured slices of a plane.
 ///
-/// The mean over batches is unweighted: each batch is unbiased, and so is their mean, whatever the
-/// sizes of the batches. Batches differ by one emitted photon at most, so weights would gain
-/// nothing.
+/// The mean over batches is unweighted. This mean is unbiased because each batch is unbiased, even
+/// if the batches differ in size. Batches differ by one emitted photon at most, so weights would
+/// gain nothing.
 #[derive(Clone, Debug)]
 pub struct SliceEstimate {
     /// Number R of batches.
@@ -54,7 +54,7 @@ impl TooFewBatches {
 ///
 /// # Errors
 ///
-/// With fewer than two batches.
+/// Fails with fewer than two batches.
 pub fn slices(measurement: &Measurement, plane: usize) -> Result<SliceEstimate, TooFewBatches> {
     TooFewBatches::check(measurement, 2)?;
     let batches = measurement.batches().len();
@@ -83,11 +83,12 @@ pub fn slices(measurement: &Measurement, plane: usize) -> Result<SliceEstimate, 
 }
 
 /// Returns the relative noise of the slices at plane `plane`: √(Σσ²/(Σ|S̄|² − Σσ²)), over
-/// independent frequencies. `None` if no photon arrived, or if there is more noise than light.
+/// independent frequencies. Returns `None` if no photon arrived, or if there is more noise than
+/// light.
 ///
 /// # Errors
 ///
-/// With fewer than two batches.
+/// Fails with fewer than two batches.
 pub fn noise(measurement: &Measurement, plane: usize) -> Result<Option<f64>, TooFewBatches> {
     let SliceEstimate { mean, variance, .. } = slices(measurement, plane)?;
     let (mut noise, mut both) = (0.0, 0.0);
@@ -105,7 +106,7 @@ pub fn noise(measurement: &Measurement, plane: usize) -> Result<Option<f64>, Too
 ///
 /// # Errors
 ///
-/// With fewer than two batches.
+/// Fails with fewer than two batches.
 pub fn projection(
     measurement: &Measurement,
     plane: usize,

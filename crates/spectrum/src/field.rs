@@ -1,8 +1,8 @@
 //! The windowed light field on a 4D grid, its transform, and the full radial spectrum.
 //!
-//! The slices need no grid and have no aliasing. A grid serves results that need all four
-//! dimensions at once: the field as a file, and the power over (|Ωxy|, |Ωuv|), averaged over both
-//! azimuths. [`measure_field`] traces the photons of one plane onto a
+//! The slices need no grid and have no aliasing. Results that need all four dimensions at once use
+//! a grid: the field as a file, and the power over (|Ωxy|, |Ωuv|), averaged over both azimuths.
+//! [`measure_field`] traces the photons of one plane onto a
 //! [`FieldGrid`](etendue_field::FieldGrid); [`FieldSpectrum::aliasing`] estimates the error due to
 //! the grid.
 

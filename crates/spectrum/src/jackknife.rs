@@ -14,7 +14,7 @@ pub struct Uncertain {
 /// The delete-one jackknife: the variance of an estimate from its values θ_r with batch r left out,
 /// (R−1)/R Σ (θ_r − θ̄)² (Efron and Stein 1981).
 ///
-/// It receives the values one after another and keeps running sums (Welford 1962).
+/// The jackknife receives the values one after another and keeps running sums (Welford 1962).
 pub(crate) struct Jackknife<D: Dimension> {
     count: usize,
     mean: Array<f64, D>,

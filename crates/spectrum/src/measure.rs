@@ -38,8 +38,8 @@ pub trait Watch: Sync {
     /// Called after a further number of photons is traced.
     fn traced(&self, photons: u64);
 
-    /// Returns whether to measure a part of a batch; called just before the part. Otherwise the
-    /// rest of the batch is left out.
+    /// Returns whether to measure a part of a batch; called just before this part is measured.
+    /// If it returns false, the rest of the batch is left out.
     fn goes_on(&self, _batch: u32, _part: u32) -> bool {
         true
     }
@@ -60,8 +60,8 @@ impl Watch for Told<'_> {
     }
 }
 
-/// Runs [`measure`] on distinct batches in any order, each from the point where it was left.
-/// Returns the batches that are done, and those that `watch` has stopped.
+/// Runs [`measure`] on distinct batches in any order, and continues each batch after its finished
+/// parts. Returns the batches that are done, and the batches that `watch` has stopped.
 ///
 /// Threads take parts in order, which keeps the number of unfinished batches small. A part is
 /// summed only after all parts before it.

@@ -74,7 +74,7 @@ impl Measurement {
     ///
     /// # Panics
     ///
-    /// If there is no such plane and the iterator is used.
+    /// Panics if there is no such plane and the iterator is used.
     pub fn at_plane(&self, plane: usize) -> impl ExactSizeIterator<Item = &PlaneBatch> {
         self.batches.values().map(move |batch| &batch.planes[plane])
     }
@@ -109,7 +109,8 @@ impl Measurement {
     ///
     /// # Errors
     ///
-    /// If the measurement contains the batch already, or if its slices do not match the planes.
+    /// Fails if the measurement contains the batch already, or if its slices do not match the
+    /// planes.
     pub fn insert(&mut self, batch: Batch) -> Result<(), MergeError> {
         if self.contains(batch.index) {
             return Err(MergeError::BatchTwice(batch.index));
@@ -129,7 +130,7 @@ impl Measurement {
     ///
     /// # Errors
     ///
-    /// If the planes differ or a batch is in both.
+    /// Fails if the planes differ or a batch is in both.
     pub fn merge(mut self, other: Self) -> Result<Self, MergeError> {
         if self.planes != other.planes {
             return Err(MergeError::Planes(self.names(), other.names()));

@@ -7,7 +7,7 @@ use ndarray::{ArrayView2, Axis};
 ///
 /// The sum is over the frequencies of the grid: if the field has an edge it grows without bound
 /// with the grid, and a [`bandwidth`](crate::bandwidth::bandwidth) is more meaningful. Unit: cycles
-/// per metre to the m times cycles per unit slope to the n. `None` if Σ P is not positive.
+/// per metre to the m times cycles per unit slope to the n. Returns `None` if Σ P is not positive.
 #[must_use]
 pub fn second_moment(
     power: ArrayView2<'_, f64>,
@@ -24,8 +24,8 @@ pub fn second_moment(
 
 /// Returns the slope dν/dρ along which the power lies, by least squares: Σ P ρ ν / Σ P ρ².
 ///
-/// Travel by d moves power from (ρ, 0) to (ρ, −d ρ), so the slope is near −d. Unit: metres. `None`
-/// if Σ P ρ² is not positive.
+/// Travel by d moves power from (ρ, 0) to (ρ, −d ρ), so the slope is near −d. Unit: metres.
+/// Returns `None` if Σ P ρ² is not positive.
 #[must_use]
 pub fn shear_slope(power: ArrayView2<'_, f64>, grid: &SliceGrid) -> Option<f64> {
     let (mut along, mut square) = (0.0, 0.0);
@@ -41,8 +41,8 @@ pub fn shear_slope(power: ArrayView2<'_, f64>, grid: &SliceGrid) -> Option<f64> 
 /// P(ρ, 0).
 ///
 /// On a plane that light leaves diffusely, the field is constant in slope and this is the spectrum
-/// of the windowed irradiance: H distinguishes a sharp shadow from a smooth one (Durand et al.
-/// 2005, Fig. 9). `None` if the sum is not positive.
+/// of the windowed irradiance: H distinguishes a sharp shadow from a smooth shadow (Durand et al.
+/// 2005, Fig. 9). Returns `None` if Σ P(ρ, 0) is not positive.
 #[must_use]
 pub fn high_frequency_share(power: ArrayView2<'_, f64>, grid: &SliceGrid, cut: f64) -> Option<f64> {
     let (mut high, mut all) = (0.0, 0.0);
@@ -59,10 +59,10 @@ pub fn high_frequency_share(power: ArrayView2<'_, f64>, grid: &SliceGrid, cut: f
 /// `[nearest, farthest]` in metres.
 ///
 /// A blocker at distance d has its frequencies on the line ν = −d ρ (Durand et al. 2005, section
-/// 3.2; Egan et al. 2009). The window blurs them: a frequency counts as inside if its distance from
-/// the wedge is within the main lobe of a Hann window, 1/half-width along each axis. Frequencies
-/// within the main lobe around zero, where the mean of the light is, are left out. `None` if the
-/// sum of all others is not positive.
+/// 3.2; Egan et al. 2009). The window blurs these lines, so a frequency counts as inside if its
+/// distance from the wedge is within the main lobe of a Hann window, 1/half-width along each axis.
+/// Frequencies within the main lobe around zero are left out, because they contain the mean of the
+/// light. Returns `None` if the sum over all other frequencies is not positive.
 #[must_use]
 pub fn wedge_share(
     power: ArrayView2<'_, f64>,
@@ -137,8 +137,8 @@ mod tests {
         assert!(shear_slope(Array2::zeros((21, 81)).view(), &grid()).is_none());
     }
 
-    /// Equal power along the lines of blockers 0.5 and 1 m away, and as much as both on a third
-    /// line, 5 m away.
+    /// The lines of blockers 0.5 and 1 m away have equal power, and the line of a blocker 5 m away
+    /// has as much as both together.
     #[test]
     fn lines_of_a_wedge_are_inside() {
         let grid = grid();
@@ -160,8 +160,8 @@ mod tests {
             outside.map(|(_, p)| p).sum::<f64>()
         };
         let all = beyond(-0.5) + beyond(-1.0) + 2.0 * beyond(-5.0);
-        // At most e^(−1) of each line is beyond the lobe of 0.5 /m; near zero the far line is
-        // within the lobe too.
+        // At most e^(−1) of each line is beyond the lobe of 0.5 /m. Near zero, the line of the far
+        // blocker is also within the lobe.
         let alone = (beyond(-0.5) + beyond(-1.0)) / all;
         assert!(share([0.5, 1.0]) > 0.9 * alone && share([0.5, 1.0]) < 0.8);
         assert!(share([0.5, 5.0]) > 0.97);

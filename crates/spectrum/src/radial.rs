@@ -13,11 +13,11 @@ use std::ops::Range;
 pub struct RadialPower {
     /// The power without the noise of the photons: unbiased, and possibly negative due to noise.
     pub power: Array2<f64>,
-    /// The contribution of the photons' noise to the power of the mean spectrum, which `power`
-    /// leaves out.
+    /// The contribution of the photons' noise to the power of the mean spectrum; `power` does not
+    /// include it.
     pub shot_noise: Array2<f64>,
-    /// The standard error of `power`, by the delete-one jackknife over R batches. It is
-    /// conservative where there is only noise: there it is √(2(R−1)/(R−2)) times too large.
+    /// The standard error of `power`, by the delete-one jackknife over R batches. For frequencies
+    /// with noise alone, this error is conservative: it is √(2(R−1)/(R−2)) times too large.
     pub sigma: Array2<f64>,
 }
 
@@ -25,8 +25,8 @@ pub struct RadialPower {
 ///
 /// U = (|Σ S_r|² − Σ |S_r|²)/(R(R−1)),
 ///
-/// the mean of Re(S_r conj S_s) over all pairs r ≠ s. The noise of two batches is independent, so U
-/// is an unbiased estimate of |F|², whatever the correlations among the photons of one batch.
+/// the mean of Re(S_r conj S_s) over all pairs r ≠ s. The noise of two batches is independent, so
+/// U is an unbiased estimate of |F|² even if the photons of one batch are correlated.
 ///
 /// Without batch r it is (T − 2 row_r)/((R−1)(R−2)), where T is R(R−1) U and row_r = Σ_(s≠r) Re(S_r
 /// conj S_s): the jackknife needs no copies.
@@ -34,7 +34,7 @@ pub struct RadialPower {
 pub struct CrossPower<'m> {
     grid: SliceGrid,
     batches: Vec<&'m Slices>,
-    /// The azimuths to average over.
+    /// The azimuths over which to average.
     azimuths: Range<usize>,
     /// Σ S_r at these azimuths, [azimuth, ρ ≥ 0, ν].
     sum: Array3<Complex>,
@@ -50,7 +50,7 @@ impl<'m> CrossPower<'m> {
     ///
     /// # Errors
     ///
-    /// With fewer than three batches, the minimum for a jackknife.
+    /// Fails with fewer than three batches, the minimum for a jackknife.
     pub fn new(measurement: &'m Measurement, plane: usize) -> Result<Self, TooFewBatches> {
         let azimuths = 0..measurement.planes()[plane].grid.azimuths;
         Self::over(measurement, plane, azimuths)
@@ -60,11 +60,11 @@ impl<'m> CrossPower<'m> {
     ///
     /// # Errors
     ///
-    /// With fewer than three batches.
+    /// Fails with fewer than three batches.
     ///
     /// # Panics
     ///
-    /// If there are not that many slices.
+    /// Panics if there are not that many slices.
     pub fn of_slice(
         measurement: &'m Measurement,
         plane: usize,
@@ -88,11 +88,11 @@ impl<'m> CrossPower<'m> {
     ///
     /// # Errors
     ///
-    /// With fewer than three replicates.
+    /// Fails with fewer than three replicates.
     ///
     /// # Panics
     ///
-    /// If there are not that many slices.
+    /// Panics if there are not that many slices.
     pub fn of_replicates(
         replicates: &'m [Slices],
         azimuths: Range<usize>,
@@ -132,7 +132,7 @@ impl<'m> CrossPower<'m> {
         })
     }
 
-    /// Returns the cross power of slice number `slice` of those in this object.
+    /// Returns the cross power of the slice with index `slice` among the slices of this object.
     fn slice(&self, slice: usize) -> Self {
         let one = slice..slice + 1;
         let first = self.azimuths.start;
@@ -157,7 +157,7 @@ impl<'m> CrossPower<'m> {
     ///
     /// # Panics
     ///
-    /// If there are not that many batches.
+    /// Panics if there are not that many batches.
     #[must_use]
     pub fn without(&self, left_out: usize) -> Array2<f64> {
         let r = self.batches.len() as f64;
@@ -209,9 +209,9 @@ impl<'m> CrossPower<'m> {
         }
     }
 
-    /// Returns the largest bandwidth over the azimuths, with its standard error at that azimuth. If
-    /// several are nearly equal, noise selects among them, and the largest exceeds each of them by
-    /// about its error.
+    /// Returns the largest bandwidth over the azimuths, with its standard error at that azimuth.
+    /// If several bandwidths are nearly equal, noise selects the largest, which then exceeds the
+    /// true value by about its error.
     pub fn bandwidth(&self, of: SliceBandwidth) -> Option<Widest<Uncertain>> {
         let (slice, _) = widest_slice(self.pairs.view(), &self.grid, of)?;
         let one = self.slice(slice);
@@ -222,7 +222,8 @@ impl<'m> CrossPower<'m> {
 
     /// Returns a statistic of the power, such as a slope, with its standard error by the jackknife.
     ///
-    /// `None` if the statistic does not exist, with all batches or with one left out.
+    /// Returns `None` if the statistic does not exist for all batches together, or with one batch
+    /// left out.
     pub fn statistic(&self, of: impl Fn(ArrayView2<'_, f64>) -> Option<f64>) -> Option<Uncertain> {
         let value = of(self.power().view())?;
         let mut jackknife = Jackknife::new(ndarray::Ix0());

@@ -1,7 +1,7 @@
-//! Light fields less their mean.
+//! Light fields minus their mean.
 //!
-//! Most power of a typical spectrum is that of the mean of the light behind the window. A bandwidth
-//! of all power then says little about how fast the light changes.
+//! Most of the power of a typical spectrum comes from the mean of the light behind the window. A
+//! bandwidth of all power would therefore say little about how fast the light changes.
 
 use etendue_field::{Complex, SliceGrid, Slices, Window};
 use ndarray::{Array2, Array3};
@@ -24,15 +24,15 @@ impl WindowedMean {
         }
     }
 
-    /// Returns the slices of a windowed light field less its mean: F − F(0) Ŵ / Ŵ(0), where F is
+    /// Returns the slices of a windowed light field minus its mean: F − F(0) Ŵ / Ŵ(0), where F is
     /// the spectrum of the light field times the window W.
     ///
     /// The result is the spectrum of a product: the window times the deviations of the light field
-    /// from its mean. The window is also the weight of that mean.
+    /// from its mean. The mean is itself weighted by the window.
     ///
     /// # Panics
     ///
-    /// If the slices are on another grid.
+    /// Panics if the slices are on another grid.
     #[must_use]
     pub fn removed_from(&self, slices: &Slices) -> Slices {
         let mean = slices.at_zero();
@@ -43,11 +43,11 @@ impl WindowedMean {
         varying
     }
 
-    /// Returns several slices, such as those of batches, each less its own mean.
+    /// Returns several slices, such as those of batches, each minus its own mean.
     ///
     /// # Panics
     ///
-    /// If slices are on another grid.
+    /// Panics if slices are on another grid.
     #[must_use]
     pub fn removed_from_all<'s>(&self, all: impl Iterator<Item = &'s Slices>) -> Vec<Slices> {
         all.map(|slices| self.removed_from(slices)).collect()

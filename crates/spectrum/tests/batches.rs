@@ -289,7 +289,7 @@ fn batches_that_emit_nothing_are_left_out() {
     assert!(none.is_err());
 }
 
-/// Of two values a and b the mean's variance is |a − b|²/4.
+/// The mean of two values a and b has the variance |a − b|²/4.
 #[test]
 fn two_batches_tell_their_error() {
     let measurement = run(&shower(), 0..2);

@@ -53,8 +53,8 @@ fn over_bound(spectrum: &FieldSpectrum, crossings: &[Crossing]) -> f64 {
     largest
 }
 
-/// Returns sets of rays: random rays, one ray, and one ray at the worst position. That position is
-/// half-way between centres on one axis and on a centre on the others.
+/// Returns sets of rays: random rays, one ray, and one ray at the worst position. The worst
+/// position is half-way between centres of cells on one axis, and at a centre on the other axes.
 fn sets(window: &Window) -> Vec<Vec<Crossing>> {
     let grid = small(window);
     let mut random = Random(11);
@@ -100,8 +100,8 @@ fn no_frequency_is_beyond_its_bound() {
     }
 }
 
-/// Planted faults in the spectrum: the power of the sinc, half a cell along x, the sign of the
-/// transform.
+/// The spectrum is given faults: a wrong power of the sinc, a shift by half a cell along x, and a
+/// wrong sign of the transform.
 #[test]
 fn wrong_compensations_are_beyond_it() {
     let window = hann();
@@ -134,9 +134,9 @@ fn wrong_compensations_are_beyond_it() {
         };
         assert!(power(0) <= 1.0);
         assert!(power(-1) > 1.2, "{assignment:?}: {}", power(-1));
-        // The spectrum is compensated too little: by one power for TSC, and by two for CIC, whose
-        // bound is as wide as the effect of one power. For the nearest cell the bound is so wide
-        // that it holds without any compensation.
+        // The spectrum is compensated by too low a power of the sinc: by one less for TSC, and by
+        // two less for CIC, whose bound is as wide as the effect of one power. For the nearest
+        // cell the bound is so wide that it holds without any compensation.
         match assignment {
             Assignment::Nearest => assert!(power(1) <= 1.0),
             Assignment::Cic => assert!(power(2) > 1.2, "{}", power(2)),
@@ -173,8 +173,7 @@ fn nothing_is_lost_on_the_grid() {
     }
 }
 
-/// White noise, for which the expected difference is exact; a smooth field, for which it is too
-/// large.
+/// The expected difference is exact for white noise, and too large for a smooth field.
 #[test]
 fn the_slices_tell_the_aliasing() {
     let window = boxed();

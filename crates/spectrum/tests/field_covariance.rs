@@ -134,7 +134,8 @@ fn photons_have_the_covariance_of_their_field() {
     // The entries in units of their errors, from 16 groups, follow Student's t with 15 degrees of
     // freedom. The largest of ten exceeds 4.1 once in a hundred times.
     assert!(most < 4.1, "{most}");
-    // A shear of the wrong sign, A for A⁻ᵀ and a factor 2 each differ by far more than the errors.
+    // A shear of the wrong sign, A in place of A⁻ᵀ, and a factor of 2 each cause differences far
+    // above the errors.
     assert!(signal > 20.0, "{signal}");
     let wrong = (found.value[0][2] + expected(0)[1]) / found.error[0][2];
     assert!(wrong.abs() > 20.0, "{wrong}");
@@ -183,7 +184,7 @@ fn few_photons_have_no_bias() {
         );
         if k < 3 {
             let (value, error) = mean(&naive, k);
-            // Noise that is left in is detected at once.
+            // Noise that is not removed exceeds the errors by far.
             assert!(value - exact > 20.0 * error, "{k}: {value} {error} {exact}");
         }
     }
@@ -206,7 +207,7 @@ fn exact_moments() -> etendue_spectrum::field::PowerMoments {
         let [a, b, c] = expected(axis).map(|entry| 8.0 * PI * PI * entry);
         let determinant = a * c - b * b;
         let [sx, su] = [LIGHT[axis], LIGHT[axis + 2]];
-        // This is the integral of the windowed Gaussian, divided by that of the density from which
+        // The integral of the windowed Gaussian, divided by the integral of the density from which
         // photons are sampled.
         let integral = 1.0 / (determinant * sx * su).sqrt();
         (

@@ -236,7 +236,7 @@ fn shot_noise_is_removed() {
     // aliases grow towards Nyquist).
     assert!(mean.abs() < 4.0 * 1.5 * sd, "{mean} {sd}");
     assert!(noise > 50.0 * sd); // left in it would be seen
-    // With pure noise the jackknife's variance is 2(R−1)/(R−2) times the true one.
+    // With pure noise, the jackknife's variance is 2(R−1)/(R−2) times the true variance.
     let ratio = variance / frequencies.powi(2) / (sd * sd) / (2.0 * 19.0 / 18.0);
     assert!((0.8..1.5).contains(&ratio), "{ratio}");
 }
@@ -312,7 +312,7 @@ fn too_few_batches_are_refused() {
         refused.unwrap_err().to_string(),
         "2 batches are too few for an error: at least 3 are needed"
     );
-    // One group is not allowed: the minimum is used.
+    // A single group is not allowed, so the minimum number of groups is used.
     assert_eq!(
         run(&source, &source.planes[0], 1),
         run(&source, &source.planes[0], 3)

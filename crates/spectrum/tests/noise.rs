@@ -73,7 +73,7 @@ fn white_noise_is_flat() {
     }
     let bins = grid.rho.half as f64;
     // The limit is four standard deviations of χ² with 12 degrees of freedom. A 10 % tilt of the
-    // kernel's correction gives hundreds of them.
+    // kernel's correction gives hundreds of standard deviations.
     assert!(chi2 < bins + 4.0 * (2.0 * bins).sqrt(), "{chi2}");
     assert!(chi2 > 2.0, "{chi2}"); // below 2 with probability 1e-4: the noise would be too smooth
 }
@@ -93,14 +93,14 @@ fn removing_shot_noise_leaves_nothing_of_white_noise() {
     // deviations of the mean over all frequencies.
     let sd = noise / count.sqrt() * (64.0_f64 / 63.0).sqrt();
     assert!(mean.abs() < 4.0 * sd, "{mean} {sd}");
-    // Noise that is left in would be 20 standard deviations.
+    // Noise that is not removed would be 20 standard deviations.
     let shot_noise = radial
         .shot_noise
         .slice_axis(Axis(0), Slice::from(zero + 1..));
     let left_in = shot_noise.sum() / count;
     assert!((left_in / noise - 1.0).abs() < 0.02, "{left_in}"); // Σw² of 32000 weights: 0.5 %, four of them
     assert!(left_in > 15.0 * sd);
-    // Where there is only noise, the jackknife's variance is 2(R−1)/(R−2) times the true one.
+    // With pure noise, the jackknife's variance is 2(R−1)/(R−2) times the true variance.
     let sigma = radial.sigma.slice_axis(Axis(0), Slice::from(zero + 1..));
     let variance = sigma.mapv(|s| s * s).sum() / count;
     let ratio = variance / (sd * sd * count) / (2.0 * 63.0 / 62.0);
@@ -116,14 +116,14 @@ fn the_variance_of_the_slices_is_the_photons_noise() {
     let mean = variance.sum() / variance.len() as f64;
     let expected = SQUARE / photons as f64;
     // The mean over 396 frequencies with 63 degrees of freedom each has an error of 0.6 %; the
-    // limit is four times that.
+    // limit is four times this error.
     assert!((mean / expected - 1.0).abs() < 0.025, "{}", mean / expected);
     assert_eq!(estimate.batches, 64);
     let projection = estimate::projection(&measurement, 0).unwrap();
     let cells = projection.mean.values.len() as f64;
     let mean = projection.mean.values.sum() / cells;
-    // The mean weight is 1 over the area 1.6 · 0.8. The sum of 32000 weights has an error of 0.3 %;
-    // the limit is four times that.
+    // The mean weight is 1 over the area 1.6 · 0.8. The sum of 32000 weights has an error of 0.3
+    // %; the limit is four times this error.
     assert!((mean * 1.28 - 1.0).abs() < 0.013, "{mean}");
     let variance = projection.standard_error.mapv(|e| e * e).sum() / cells;
     let one = SQUARE * cells / (photons as f64 * 1.28 * 1.28);
@@ -155,8 +155,8 @@ fn jackknife_intervals_cover_the_truth() {
         statistics += u32::from(slope.value.abs() < 2.131 * slope.error);
     }
     let share = |count: u32| f64::from(count) / trials as f64;
-    // The share of 300 trials is 95 %, with an error of 1.3 %. The limits are three times that,
-    // plus the jackknife's own 1 %.
+    // The share of 300 trials is 95 %, with an error of 1.3 %. The limits are three times this
+    // error, plus 1 % for the error of the jackknife itself.
     assert!((0.90..0.99).contains(&share(covered)));
     assert!((0.90..0.995).contains(&share(statistics)));
     assert!(share(halved) < 0.80); // an error half as large is seen: it covers 70 %

@@ -1,9 +1,10 @@
-//! How messages name the arguments of a library's caller.
+//! The way in which messages name arguments, which differs between the command and the Python
+//! package.
 
 use std::fmt::Display;
 
-/// How messages name arguments. The command and the Python package call the same functions, and
-/// write arguments differently.
+/// The way in which messages name arguments. The command and the Python package call the same
+/// functions, and write arguments differently.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ArgumentStyle {
     /// Options of the command, such as `--look-from`.
@@ -14,7 +15,7 @@ pub enum ArgumentStyle {
 }
 
 impl ArgumentStyle {
-    /// Returns the argument with this name, without a value.
+    /// Returns the text for the argument with this name, without a value.
     #[must_use]
     pub fn name(self, name: &str) -> String {
         match self {
@@ -23,7 +24,7 @@ impl ArgumentStyle {
         }
     }
 
-    /// Returns the argument with this name and a value.
+    /// Returns the text for the argument with this name and a value.
     #[must_use]
     pub fn with(self, name: &str, value: impl Display) -> String {
         match self {
@@ -32,7 +33,7 @@ impl ArgumentStyle {
         }
     }
 
-    /// Returns the argument that sets a field of a scene.
+    /// Returns the text for the argument that sets a field of a scene.
     #[must_use]
     pub fn set(self, path: &str, value: &str) -> String {
         match self {
@@ -41,7 +42,7 @@ impl ArgumentStyle {
         }
     }
 
-    /// Returns a fault in the argument that sets fields of a scene.
+    /// Returns the message for a fault in the argument that sets fields of a scene.
     #[must_use]
     pub fn in_set(self, fault: impl Display) -> String {
         match self {
@@ -50,7 +51,7 @@ impl ArgumentStyle {
         }
     }
 
-    /// Returns the argument that allows replacing files that Étendue did not write.
+    /// Returns the text for the argument that allows replacing files that Étendue did not write.
     #[must_use]
     pub fn force(self) -> &'static str {
         match self {

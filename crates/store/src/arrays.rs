@@ -38,8 +38,8 @@ pub struct SliceArrays {
     pub predicted: Array3<Complex>,
     /// Standard deviation of |measured − predicted| if the prediction is true.
     pub sigma: Array3<f64>,
-    /// Standard deviation of |measured| alone, where the prediction has noise too; otherwise equal
-    /// to `sigma`.
+    /// Standard deviation of |measured| alone, which differs from `sigma` if the prediction also
+    /// has noise; `None` if it equals `sigma`.
     pub measured_sigma: Option<Array3<f64>>,
     /// Frequencies ρ, cycles per metre.
     pub rho: Array1<f64>,
@@ -103,14 +103,14 @@ pub fn radial_z(plane: &PlaneComparison) -> Array2<f64> {
     )
 }
 
-/// Returns (measured − predicted) / sigma; NaN where no photon gave an error.
+/// Returns (measured − predicted) / sigma, or NaN if there is no error because no photon arrived.
 pub fn z(measured: &Array2<f64>, predicted: &Array2<f64>, sigma: &Array2<f64>) -> Array2<f64> {
     let mut z = measured - predicted;
     z.zip_mut_with(sigma, |z, s| *z = if *s > 0.0 { *z / s } else { f64::NAN });
     z
 }
 
-/// Returns a file of four parts, with ρ to the right and ν upwards.
+/// Returns an OpenEXR file of four parts, with ρ to the right and ν upwards.
 fn radial_exr(mut made_from: Value, plane: &PlaneComparison) -> Result<Vec<u8>, Failure> {
     let power = &plane.radial.power;
     let difference = power - &plane.predicted_radial;
@@ -125,7 +125,10 @@ fn radial_exr(mut made_from: Value, plane: &PlaneComparison) -> Result<Vec<u8>, 
         let pixels = (0..height)
             .rev()
             .flat_map(|j| (0..width).map(move |i| (i, j)));
-        #[expect(clippy::cast_possible_truncation, reason = "EXR viewers want 32 bits")]
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "EXR viewers expect 32-bit numbers"
+        )]
         let samples = pixels.map(|at| values[at] as f32).collect();
         Part { name, samples }
     });

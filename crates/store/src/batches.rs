@@ -1,4 +1,5 @@
-//! The batches of a measurement as files: `ledger.npz`, and `batches.npz` for each plane.
+//! The batches of a measurement as files, which are named `ledger.npz`, and `batches.npz` for each
+//! plane.
 
 use crate::Failure;
 use crate::Method;
@@ -65,7 +66,7 @@ pub fn files(
     each.chain([Ok((LEDGER.to_owned(), ledger))]).collect()
 }
 
-/// Returns a file that records which batches its rows are.
+/// Returns a new file that lists the numbers of the batches in its rows.
 fn numbered(batches: &[&Batch]) -> Result<Npz, Failure> {
     let numbers: Array1<u32> = batches.iter().map(|b| b.index).collect();
     let emitted: Array1<u64> = batches.iter().map(|b| b.emitted).collect();
@@ -168,7 +169,7 @@ struct StoredRows {
 }
 
 impl StoredRows {
-    /// Checks that the rows are the batches in the index.
+    /// Checks that the rows are the batches that the index lists.
     fn read(file: &mut NpzFile, held: &Held) -> Result<Self, Failure> {
         let Range { start, end } = held.batches;
         let count = end.saturating_sub(start) as usize;
@@ -179,7 +180,7 @@ impl StoredRows {
         let emitted: Array1<u64> = file.array("emitted", [count])?;
         let sum = emitted.iter().try_fold(0_u64, |sum, n| sum.checked_add(*n));
         if emitted.iter().any(|n| *n == 0) || sum != Some(held.photons) {
-            let must = format!("must be photons of each batch, {} in all", held.photons);
+            let must = format!("must be the photons of each batch, {} in all", held.photons);
             return Err(file.fault("emitted", must));
         }
         Ok(Self { numbers, emitted })

@@ -1,10 +1,11 @@
 //! Stores batches of a run as they are measured, so that a run that ends early can be continued.
 //!
-//! Each batch is a file below `batches/` and the key of the run, in the folder of its results. It
-//! is moved there as a whole, and its name holds the hash of its content. A batch has the same
-//! bytes whichever process measures it, except for rounding errors on another kind of processor. So
-//! processes share the work without a lock, and one that dies does not delay the others. An
-//! unfinished batch is a file too, the sum of its first parts, and is replaced by the next one.
+//! Each batch is a file below `batches/` and the key of the run, in the folder of its results. The
+//! file is moved there when it is complete, and its name holds the hash of its content. A batch
+//! has the same bytes from every process, except for rounding errors on another kind of processor.
+//! Processes can therefore share the work without a lock, and a process that dies does not delay
+//! the others. The sum of the first parts of an unfinished batch is also stored as a file, which a
+//! later sum replaces.
 
 use crate::Failure;
 use crate::Method;
@@ -38,7 +39,8 @@ pub struct CheckpointStore {
 }
 
 impl CheckpointStore {
-    /// Returns the batches of a run into `out`: of this scene, measured by this method and version.
+    /// Returns the batches of a run with results in `out`. The batches belong to this scene,
+    /// method and version.
     pub fn of(out: &Path, scene: &Scene, method: Method) -> Self {
         let what = format!("{VERSION} {} {}", scene.hash(), method.words());
         let key = &blake3::hash(what.as_bytes()).to_hex()[..16];
@@ -56,7 +58,7 @@ impl CheckpointStore {
         &self.folder
     }
 
-    /// Returns the numbers of finished batches and of those begun.
+    /// Returns the number of finished batches, and the number of batches that are begun.
     pub fn count(&self) -> [usize; 2] {
         let found = self.furthest();
         let done = found.values().filter(|name| name.parts.is_none()).count();
@@ -116,7 +118,7 @@ impl CheckpointStore {
         }
     }
 
-    /// Writes a file, and removes the files of the same batch that hold less.
+    /// Writes a file, and removes the files of the same batch that hold fewer parts.
     fn put(&self, batch: &Batch, parts: Option<u32>) -> Result<(), Failure> {
         if !self.is_inside() {
             return Err(Failure::write(&self.folder, LINKED));
@@ -134,15 +136,16 @@ impl CheckpointStore {
         put().map_err(|e| Failure::write(&self.folder, e))?;
         for other in self.names() {
             if other.batch == name.batch && name.is_beyond(&other) {
-                // A remaining file is harmless, and another process may have removed it.
+                // Failure is ignored: a file that remains is harmless, and another process may
+                // have removed it.
                 let _ = fs::remove_file(self.folder.join(other.to_string()));
             }
         }
         Ok(())
     }
 
-    /// Adds the finished batches that a measurement does not have yet. Returns those that are
-    /// begun, and the paths of damaged files. These files are removed, and their batches are
+    /// Adds the finished batches that a measurement does not have yet. Returns the batches that
+    /// are begun, and the paths of damaged files. Damaged files are removed, and their batches are
     /// measured again. `emitted` returns the number of photons of a batch.
     pub fn read(
         &self,
@@ -164,7 +167,7 @@ impl CheckpointStore {
                 }
                 (Err(_), _) => match fs::remove_file(&path) {
                     Ok(()) => damaged.push(path),
-                    // Another process has removed the file.
+                    // Another process has already removed the file.
                     Err(e) if e.kind() == ErrorKind::NotFound => {}
                     Err(e) => return Err(Failure::write(&path, e)),
                 },
@@ -192,7 +195,7 @@ impl CheckpointStore {
         if !self.is_inside() {
             return;
         }
-        // A remaining file is harmless.
+        // Failure is ignored, because a file that remains is harmless.
         let _ = fs::remove_dir_all(&self.folder);
         if let Some(above) = self.folder.parent() {
             let _ = fs::remove_dir(above);
@@ -245,7 +248,7 @@ pub enum BatchProgress {
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct CheckpointName {
     batch: u32,
-    /// The number of parts it holds; `None` for a complete batch.
+    /// The number of parts that the file holds; `None` for a complete batch.
     parts: Option<u32>,
     /// Hash of the parts and the bytes.
     hash: String,

@@ -42,16 +42,18 @@ pub fn exr(
     let mut bytes = Cursor::new(Vec::new());
     image
         .write()
-        // In parallel the order of the chunks would be random.
+        // Chunks are written by one thread, because several threads would write them in random
+        // order.
         .non_parallel()
         .to_buffered(&mut bytes)
         .map_err(Failure::cannot_run)?;
     Ok(bytes.into_inner())
 }
 
-/// Returns a single attribute, since the order of several would be random.
+/// Returns all provenance as one attribute, because several attributes would be written in random
+/// order.
 fn attribute(provenance: &Value) -> (Text, AttributeValue) {
-    // EXR holds Latin-1; characters other than ASCII are written as JSON escapes.
+    // OpenEXR stores text as Latin-1, so characters other than ASCII are written as JSON escapes.
     let mut ascii = String::new();
     for unit in provenance.to_string().encode_utf16() {
         match u8::try_from(unit).ok().filter(u8::is_ascii) {

@@ -4,22 +4,22 @@ use etendue_scene::SceneError;
 use std::fmt::Display;
 use std::path::Path;
 
-/// Why a command stopped: the message for the user and the exit code.
+/// The reason why a command stopped, with the message for the user and the exit code.
 #[derive(Debug)]
 pub struct Failure {
     /// The message for the user, one line for each fault.
     pub message: String,
-    /// The exit code: 2 for bad input, 3 where the command cannot run here.
+    /// The exit code: 2 for bad input, 3 if the command cannot run on this machine.
     pub code: u8,
 }
 
 /// Exit code of bad input.
 const BAD_INPUT: u8 = 2;
-/// Exit code of a run that is impossible here: directory, disk, memory, interruption.
+/// Exit code of a run that is impossible on this machine: directory, disk, memory, interruption.
 pub const CANNOT_RUN: u8 = 3;
 
 impl Failure {
-    /// Returns the failure for a wrong input of the user: exit code 2.
+    /// Returns the failure for wrong input of the user, with exit code 2.
     pub fn bad_input(message: impl Display) -> Self {
         Self {
             message: message.to_string(),
@@ -27,7 +27,8 @@ impl Failure {
         }
     }
 
-    /// Returns the failure for a request that cannot be carried out here: exit code 3.
+    /// Returns the failure for a request that cannot be carried out on this machine, with exit
+    /// code 3.
     pub fn cannot_run(message: impl Display) -> Self {
         Self {
             message: message.to_string(),

@@ -1,5 +1,5 @@
-//! A mark in a file that this program wrote: a hash of all other bytes, at the end. A file whose
-//! hash matches was not changed since it was written, and may be replaced.
+//! A mark in a file that shows that this program wrote it: a hash of all other bytes, at the end.
+//! If the hash matches, the file was not changed since it was written, and may be replaced.
 
 /// The kind of file, which determines how the mark is stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

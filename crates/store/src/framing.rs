@@ -1,4 +1,4 @@
-//! Messages that combine words in JSON with bytes.
+//! Messages that consist of a header in JSON, called words, and bytes.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;

@@ -6,7 +6,7 @@ use std::fs::{self, File, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Why a folder is not available.
+/// The reason why a folder cannot be locked.
 pub(super) const BUSY: &str = "another etendue process is writing there";
 
 /// A locked file, which is removed together with the lock.
@@ -35,8 +35,8 @@ impl Lock {
                 }
                 Err(TryLockError::Error(error)) => return Err(failure(error)),
             }
-            // Another process may have removed the file between opening and locking; the lock is
-            // then useless.
+            // Another process may remove the file after it is opened and before it is locked; the
+            // lock is then useless.
             let held = Handle::from_file(file.try_clone().map_err(failure)?);
             if Handle::from_path(path).is_ok_and(|there| held.is_ok_and(|held| held == there)) {
                 let path = path.to_owned();
@@ -48,7 +48,7 @@ impl Lock {
 
 impl Drop for Lock {
     fn drop(&mut self) {
-        // A remaining file is harmless.
+        // Failure is ignored, because a file that remains is harmless.
         let _ = fs::remove_file(&self.path);
     }
 }

@@ -1,14 +1,14 @@
-//! The resources of this machine, as far as it reports them (Linux); elsewhere nothing is known and
-//! nothing is refused.
+//! The resources of this machine. Resources are known on Linux only; on other systems, nothing is
+//! refused for lack of resources.
 
 use crate::Failure;
 use etendue_scene::{Scene, SceneFile, resolve};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Returns the memory that this process may still allocate without swapping, in bytes. The machine
-/// limits it, and so do the control groups of the process and its own limits (`ulimit -v`,
-/// `ulimit -d`).
+/// Returns the memory that this process may still allocate without swapping, in bytes. This memory
+/// is limited by the machine, by the control groups of the process, and by its own limits (`ulimit
+/// -v`, `ulimit -d`).
 pub fn available_memory() -> u64 {
     let machine = kilobytes("/proc/meminfo", "MemAvailable:");
     let limits = [
@@ -21,8 +21,8 @@ pub fn available_memory() -> u64 {
     all.min().unwrap_or(u64::MAX)
 }
 
-/// Resolves a scene file for this machine; its meshes are in `folder`, and `shown` is its origin,
-/// for messages.
+/// Resolves a scene file for this machine. Its meshes are in `folder`, and messages name the file
+/// as `shown`.
 pub fn resolved(name: &str, file: SceneFile, folder: &Path, shown: &str) -> Result<Scene, Failure> {
     resolve(name, file, folder, available_memory()).map_err(|error| {
         let message = format!("{shown}:\n{error}");
@@ -53,7 +53,7 @@ fn control_groups() -> impl Iterator<Item = u64> {
     groups.into_iter().filter_map(|folder| left_in(&folder))
 }
 
-/// Returns the folders of a control group and those around it, from a line
+/// Returns the folders of a control group and of the groups that contain it, from a line
 /// `number:controllers:path`.
 fn folders(line: &str) -> Vec<PathBuf> {
     let mut parts = line.splitn(3, ':').skip(1);
@@ -69,8 +69,8 @@ fn folders(line: &str) -> Vec<PathBuf> {
     ancestors.map(|path| Path::new(root).join(path)).collect()
 }
 
-/// Returns the limit of a control group less its usage; cached files can be evicted and count as
-/// free.
+/// Returns the limit of a control group minus its usage. Memory of cached files counts as free,
+/// because it can be evicted.
 fn left_in(folder: &Path) -> Option<u64> {
     let read = |name: &str| fs::read_to_string(folder.join(name)).ok();
     let number = |name: &str| read(name)?.trim().parse::<u64>().ok();

@@ -24,7 +24,7 @@ impl Method {
         }
     }
 
-    /// Returns the name in commands.
+    /// Returns the name of the method in commands.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -34,7 +34,7 @@ impl Method {
         }
     }
 
-    /// Returns what the method measures with, in words.
+    /// Returns the rays or photons of the method, in words.
     #[must_use]
     pub fn words(self) -> &'static str {
         match self {

@@ -22,7 +22,7 @@ pub trait Number: Copy {
     fn is_finite(self) -> bool;
 }
 
-/// Types of number that the standard library reads and writes.
+/// Implements [`Number`] for types that the standard library can convert to bytes.
 macro_rules! plain_number {
     ($type:ty, $descr:literal, $is_finite:expr) => {
         impl Number for $type {
@@ -187,7 +187,8 @@ impl NpzFile {
         }
     }
 
-    /// Returns the array `name`, in C order. It must have this shape and hold finite numbers.
+    /// Returns the array `name`, in C order. The array must have this shape and hold finite
+    /// numbers.
     pub fn array<A: Number, I: IntoDimension>(
         &mut self,
         name: &str,
@@ -294,8 +295,8 @@ impl NpzFile {
         Failure::bad_input(format!("{path}: array {name}: {what}"))
     }
 
-    /// Returns the NPY file `name` in the archive. Unpacks at most as many bytes as `numbers`, the
-    /// whole archive and a header have together.
+    /// Returns the NPY file `name` in the archive. The function unpacks at most as many bytes as
+    /// `numbers`, the size of the archive and the size of a header together.
     fn entry(&mut self, name: &str, numbers: usize) -> Result<Vec<u8>, Failure> {
         let limit = numbers.saturating_add(self.length).saturating_add(HEADER);
         let mut bytes = Vec::new();

@@ -9,10 +9,10 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use tempfile::TempPath;
 
-/// The largest file that is read to see whether this program wrote it.
+/// The largest size of a file that is read to check whether this program wrote it.
 const MAX_SEALED_BYTES: u64 = 1 << 30;
 
-/// A file that only appears when it is complete.
+/// An output file that appears at its path only when it is complete.
 #[derive(Debug)]
 pub struct OutputFile {
     path: PathBuf,
@@ -30,8 +30,8 @@ impl OutputFile {
         Self::of_kind(path, force, inputs, None)
     }
 
-    /// Checks the same for a file that bears a mark. A file that this program wrote and that has
-    /// not changed since is replaced without `force`.
+    /// Checks the same as [`Self::claim`], for a file that bears a mark. A file that this program
+    /// wrote and that has not changed since is replaced without `force`.
     pub fn claim_sealed(
         path: &Path,
         mut force: bool,
@@ -103,7 +103,7 @@ impl OutputFile {
                 None => self.lock.file.write_all(bytes)?,
             }
             self.lock.file.sync_all()?;
-            // A file that has been moved must not be removed with the lock.
+            // The lock must not remove a file that has been moved.
             let waiting = TempPath::try_from_path(std::mem::take(&mut self.lock.path))?;
             let moved = if self.force {
                 waiting.persist(&self.path)

@@ -1,4 +1,4 @@
-//! Stores predictions as files: `prediction.npz` for each plane.
+//! Stores predictions as files, which are named `prediction.npz` for each plane.
 
 use crate::Failure;
 use crate::Method;
@@ -19,14 +19,14 @@ use std::path::PathBuf;
 /// The content of `prediction.json`, beside the scene.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct StoredPrediction {
-    /// Method of the measurement that the prediction is for. Where there is no theory, a
-    /// measurement by another method takes its place.
+    /// Method of the measurement with which the prediction is to be compared. At a plane without a
+    /// theory, a measurement by another method takes the place of the prediction.
     method: Method,
     /// A prediction for each plane of the scene.
     pub planes: Vec<PredictedPlane>,
 }
 
-/// The text of a prediction; its numbers are in the arrays.
+/// The part of a prediction that is stored in the index; its numbers are in the arrays.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct PredictedPlane {
     name: String,
@@ -171,7 +171,7 @@ pub fn read(
         method: predicted_for,
         planes,
     } = &stored.index.content;
-    // Otherwise a reference would be compared with light traced in the same way.
+    // Otherwise a reference measurement would be compared with a measurement by the same method.
     if planes.iter().any(|plane| plane.class == Class::Reference) && *predicted_for != method {
         let what = format!("predicted for {predicted_for:?}; the measurement is of {method:?}");
         return Err(stored.fault(what));

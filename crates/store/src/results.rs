@@ -3,7 +3,7 @@
 //! New files wait in a subfolder until all are complete, so an earlier result stays until then. An
 //! index, such as `summary.json`, lists the files with their hashes and is moved last. A file of an
 //! earlier result is removed if the index of that result lists it and it still has the listed hash.
-//! Anything else in the folder belongs to somebody else, and stays (docs/files.md).
+//! All other files in the folder belong to somebody else and are kept (docs/files.md).
 
 mod claim;
 mod commit;
@@ -30,14 +30,14 @@ pub const EXPORT: &str = "export.json";
 pub const FIGURE: &str = "figure.json";
 /// The index of `etendue sweep`.
 pub const SWEEP: &str = "sweep.json";
-/// The index of a folder with a picture.
+/// The index of a folder written by `etendue render`.
 pub const PICTURE: &str = "picture.json";
 /// The index of `etendue probe`.
 pub const PROBE: &str = "probe.json";
 /// The index of `etendue covariance`.
 pub const COVARIANCE: &str = "covariance.json";
-/// The file with the seconds of a comparison. They are outside the index, since they differ in
-/// every run.
+/// The file with the seconds of a comparison. The index does not list this file, because the
+/// seconds differ in every run.
 pub const TIMING: &str = "timing.json";
 
 /// The largest number of bytes of an index.
@@ -47,13 +47,13 @@ pub const MAX_INDEX_BYTES: u64 = 1 << 26;
 const UNFINISHED: &str = ".etendue-unfinished";
 const LOCK: &str = ".etendue.lock";
 
-/// The reason why nothing is written below a folder.
+/// The message if nothing can be written below a folder.
 pub const LINKED: &str = "a link or a file is in the place of a folder";
 
 /// How long another process may hold a folder before a message is given.
 const PATIENCE: Duration = Duration::from_secs(3);
 
-/// The files that a command will write, and those it reads.
+/// The files that a command will write, and the files that it reads.
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// Name of the index.
@@ -62,7 +62,7 @@ pub struct Plan {
     pub files: Vec<String>,
     /// Inputs, which must not be among the files written.
     pub inputs: Vec<PathBuf>,
-    /// Whether files of somebody else may be replaced.
+    /// Whether files that etendue did not write may be replaced.
     pub force: bool,
     /// The style in which messages name the argument of `force`.
     pub arguments: ArgumentStyle,
@@ -80,7 +80,7 @@ pub struct Results {
     left_out: &'static [&'static str],
     /// Whether the folder was newly created.
     is_new: bool,
-    /// Files of somebody else that the files of a dead process replaced.
+    /// Files that etendue did not write and that the files of a dead process replaced.
     replaced: Vec<String>,
     /// The lock, released before the folder is removed; `None` afterwards.
     lock: Option<Lock>,
@@ -93,12 +93,13 @@ pub struct Finished {
     pub folder: PathBuf,
     /// Files of the earlier result that no longer exist.
     pub gone: Vec<String>,
-    /// Files of somebody else that were replaced.
+    /// Files that etendue did not write and that were replaced.
     pub replaced: Vec<String>,
 }
 
 impl Finished {
-    /// Returns a message that lists the replaced files of somebody else, if any.
+    /// Returns a message that lists the replaced files that etendue did not write, if there are
+    /// any.
     #[must_use]
     pub fn replaced_message(&self) -> Option<String> {
         let names = self.replaced.join(", ");
@@ -109,8 +110,8 @@ impl Finished {
 
 impl Results {
     /// Claims a folder, before any work is done. Creates and locks the folder, and removes the
-    /// remains of a dead process. Refuses if a file of somebody else, or an input, is in the place
-    /// of a file to be written.
+    /// remains of a dead process. Refuses if an input, or a file that etendue did not write, is in
+    /// the place of a file to be written.
     pub fn claim(folder: &Path, plan: Plan) -> Result<Self, Failure> {
         let failure = |e| Failure::write(folder, e);
         if folder.symlink_metadata().is_ok() && !folder.is_dir() {
@@ -193,8 +194,8 @@ impl Results {
         Ok(())
     }
 
-    /// Writes a JSON file that is exempt from the promise of identical bytes, with a hash of its
-    /// own.
+    /// Writes a JSON file whose bytes may differ from run to run. The index does not list it; it
+    /// ends with its own hash.
     pub fn write_unlisted(&self, name: &str, json: &[u8]) -> Result<(), Failure> {
         let bytes = sealed::sealed(json);
         self.put(name, &mut |file| file.write_all(&bytes)).map(drop)
@@ -241,7 +242,7 @@ impl Results {
     ) -> Result<Finished, Failure> {
         let bytes = sealed::sealed(&index(&self.hashes));
         self.put(self.plan.index, &mut |file| file.write_all(&bytes))?;
-        // A file may have appeared there since the folder was claimed.
+        // The folder is checked again, because files may have appeared there since it was claimed.
         self.refuse_inputs()?;
         self.refuse_foreign()?;
         let moved = unfinished::undisturbed(|| self.commit())?;
@@ -291,13 +292,14 @@ impl Results {
 
 impl Drop for Results {
     fn drop(&mut self) {
-        // If files have begun to move, the next process completes their moves.
+        // The files are kept if they have begun to move, because the next process completes the
+        // moves.
         if self.ready_index().is_none() {
             let _ = fs::remove_dir_all(self.folder.join(UNFINISHED));
         }
         unfinished::ended(|| drop(self.lock.take()));
         if self.is_new {
-            // Succeeds only if nothing was written.
+            // The folder is removed only if it is empty.
             let _ = fs::remove_dir(&self.folder);
         }
     }

@@ -1,13 +1,13 @@
 //! JSON files that end with their own hash: indices and timings.
 //!
-//! The last field is `index_hash`, the BLAKE3 hash of all bytes before it. It distinguishes a file
-//! that was edited in any way from one that Étendue wrote.
+//! The last field is `index_hash`, the BLAKE3 hash of all bytes before it. If a file was edited in
+//! any way, its hash no longer matches.
 
 use serde::Serialize;
 
 /// Returns readable JSON with a final newline. Numbers that are not finite become null.
 pub fn json(value: &impl Serialize) -> Vec<u8> {
-    // This cannot fail: all keys are text.
+    // Serialisation cannot fail, because all keys are text.
     let mut bytes = serde_json::to_vec_pretty(value).unwrap_or_default();
     bytes.push(b'\n');
     bytes
@@ -16,7 +16,7 @@ pub fn json(value: &impl Serialize) -> Vec<u8> {
 /// The text before and after the 64 digits.
 const BEFORE: &str = ",\n  \"index_hash\": \"";
 const AFTER: &str = "\"\n}\n";
-/// The required end of a JSON object before it is sealed.
+/// The text with which a JSON object must end before it is sealed.
 const END: &str = "\n}\n";
 
 /// Appends the hash of a JSON object with at least one field, in readable form.

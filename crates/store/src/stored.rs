@@ -16,8 +16,8 @@ use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
-/// Returns the path at which a stage keeps a copy of a mesh or picture, beside the index of that
-/// name.
+/// Returns the path at which a stage keeps a copy of a mesh or picture, beside the index called
+/// `index`.
 pub fn copy_of(index: &str, input: &str) -> String {
     let stage = index.trim_end_matches(".json");
     format!("{stage}.inputs/{input}")
@@ -66,7 +66,7 @@ impl<T: Serialize> Index<T> {
     }
 }
 
-/// The folder of an earlier stage.
+/// The results folder that an earlier stage wrote.
 #[derive(Debug)]
 pub struct Stored<T> {
     /// Path of the folder.
@@ -79,7 +79,8 @@ pub struct Stored<T> {
 }
 
 impl<T: DeserializeOwned> Stored<T> {
-    /// Reads the index called `name` in a folder. It must be unchanged and of this version.
+    /// Reads the index called `name` in a folder. The index must be unchanged and written by this
+    /// version.
     pub fn read(folder: &Path, name: &'static str) -> Result<Self, Failure> {
         let path = folder.join(name);
         let shown = path.display();
@@ -87,7 +88,8 @@ impl<T: DeserializeOwned> Stored<T> {
             .map_err(|e| Failure::bad_input(format!("cannot read {shown}: {e}")))?;
         let fault = |what: String| Failure::bad_input(format!("{shown}: {what}"));
         let tree: Value = serde_json::from_slice(&bytes).unwrap_or_default();
-        // The version is checked before the rest, which another version may write differently.
+        // The version is checked first, because another version may write the other fields
+        // differently.
         if let Some(version) = tree["version"].as_str().filter(|v| *v != VERSION) {
             return Err(fault(format!(
                 "written by version {version}, but this is version {VERSION}: all stages must be of the same version"
@@ -157,7 +159,7 @@ impl<T> Stored<T> {
         listed_bytes(&self.folder, self.name, &self.index.files, name)
     }
 
-    /// Fails when `other` belongs to another scene or, with `run`, when its measurement has
+    /// Fails if `other` belongs to another scene or, if `run` is set, if its measurement has
     /// different settings.
     pub fn check_scene<U>(&self, other: &Stored<U>, run: bool) -> Result<(), Failure> {
         let tree = |file: &SceneFile, inputs: &BTreeMap<String, String>| {
@@ -175,7 +177,7 @@ impl<T> Stored<T> {
         self.check_same(other, &own, &others)
     }
 
-    /// Fails when this and `other` hold different values.
+    /// Fails if this index and `other` hold different values.
     pub fn check_same<U>(
         &self,
         other: &Stored<U>,
@@ -230,9 +232,9 @@ pub fn summary_of(folder: &Path, scene: &Scene, method: Method) -> Option<Value>
     (sealed::is_sealed(&bytes) && same).then_some(summary)
 }
 
-/// Fails where a folder holds a result of another scene, so that no result replaces another that
-/// only has the same name. Settings of the measurement are ignored. `arguments` is the style in
-/// which the message names `force`.
+/// Fails if a folder holds a result of another scene, because a result must not replace that of
+/// another scene with the same name. Settings of the measurement are ignored. `arguments` is the
+/// style in which the message names `force`.
 pub fn check_earlier(
     folder: &Path,
     index: &str,

@@ -8,7 +8,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// global.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// The message at the end of an interrupted command whose batches are stored.
+/// The message that an interrupted command prints if its batches are stored.
 static KEPT: Mutex<Option<&str>> = Mutex::new(None);
 
 /// Sets the message of a command that is interrupted from now on.
@@ -20,8 +20,8 @@ fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Makes unfinished files, and registers everything that is removed when the user asks to stop. The
-/// first signal to stop takes effect after both.
+/// Makes unfinished files, and registers the paths that are removed when the user asks to stop. A
+/// first signal to stop takes effect only after these two steps.
 pub fn begin<T, E>(paths: Vec<PathBuf>, make: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
     let mut unfinished = unfinished();
     let made = make()?;
@@ -29,15 +29,15 @@ pub fn begin<T, E>(paths: Vec<PathBuf>, make: impl FnOnce() -> Result<T, E>) -> 
     Ok(made)
 }
 
-/// Releases the unfinished files and clears the register. The first signal to stop takes effect
-/// after both.
+/// Releases the unfinished files and clears the register. A first signal to stop takes effect only
+/// after these two steps.
 pub fn ended(release: impl FnOnce()) {
     let mut unfinished = unfinished();
     release();
     unfinished.clear();
 }
 
-/// Does short work; the first signal to stop takes effect afterwards.
+/// Does short work; a first signal to stop takes effect only afterwards.
 pub fn undisturbed<T>(work: impl FnOnce() -> T) -> T {
     let _held = unfinished();
     work()

@@ -66,14 +66,15 @@ impl SweepPoints {
         &self.scenes
     }
 
-    /// Warnings about the scenes. Each is shown once, with the first point that it concerns.
+    /// Returns the warnings about the scenes. Each warning is shown once, with the first point
+    /// that it concerns.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut told: Vec<String> = Vec::new();
         let mut warnings = Vec::new();
         for (point, scene) in self.points.iter().zip(&self.scenes) {
             for warning in scene.warnings() {
-                // Messages that differ only in their numbers are shown once.
+                // Among warnings that differ only in their numbers, only the first is shown.
                 let words: String = warning
                     .chars()
                     .filter(|c| !c.is_ascii_digit() && *c != '.')
@@ -98,9 +99,9 @@ impl SweepPoints {
     }
 }
 
-/// The seed of a point. It is derived from the point's scene and the seed of the sweep, and does
-/// not depend on the other points. The seed is small enough for every reader of JSON to represent
-/// it exactly.
+/// The seed of a point. The seed is derived from the point's scene and the seed of the sweep, and
+/// does not depend on the other points. The seed is small enough for every reader of JSON to
+/// represent it exactly.
 fn seed_of(scene: &Scene) -> u64 {
     let hash = blake3::hash(scene.hash().as_bytes());
     let mut words = hash.as_bytes().chunks_exact(8).map(|word| {
@@ -151,7 +152,7 @@ fn check(
     }
 }
 
-/// The fields set to one value, and the swept fields.
+/// Separates the fields that are set to one value from the swept fields.
 fn settings(all: &[Setting]) -> (Vec<(String, String)>, Vec<Sweep>) {
     let (mut set, mut sweeps) = (Vec::new(), Vec::new());
     for setting in all {

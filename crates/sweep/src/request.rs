@@ -11,13 +11,13 @@ pub struct SweepRequest {
     pub scene: SceneSource,
     /// Further fields, set to one or several values.
     pub set: Vec<Setting>,
-    /// Whether all points share one seed; otherwise each has its own.
+    /// Whether all points share one seed; if not, each point has its own seed.
     pub common_seed: bool,
-    /// Whether several fields take their values in step, instead of in all combinations.
+    /// Whether fields vary together, value by value, instead of in all combinations.
     pub together: bool,
-    /// Photons of each point, in place of the scene's.
+    /// Number of photons of each point, which replaces that of the scene.
     pub photons: Option<u64>,
-    /// Seed, in place of the scene's.
+    /// Seed, which replaces that of the scene.
     pub seed: Option<u64>,
     /// Method of measurement.
     pub method: Method,
@@ -26,7 +26,7 @@ pub struct SweepRequest {
 }
 
 impl SweepRequest {
-    /// A sweep of fields of a scene, with photons and in all combinations.
+    /// Returns the request for a sweep by photons over all combinations of the fields' values.
     #[must_use]
     pub fn new(scene: SceneSource, set: Vec<Setting>) -> Self {
         Self {

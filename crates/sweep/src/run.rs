@@ -1,4 +1,4 @@
-//! Runs a sweep: the points that are missing, then the table and curves.
+//! Runs a sweep. Missing points are run first; then the table and the curves are written.
 
 use crate::pictures;
 use crate::points::SweepPoints;
@@ -34,7 +34,7 @@ pub struct FinishedSweep {
     pub has_curves: bool,
     /// The numbers of points that pass, fail, and are undecided.
     pub verdicts: [usize; 3],
-    /// Why planes are undecided, each with its point and plane.
+    /// The reasons why planes are undecided, each with its point and plane.
     pub undecided: Vec<String>,
 }
 
@@ -58,8 +58,8 @@ pub fn run(
     check_earlier(folder, SWEEP, base, request.force, arguments)?;
     check_fields(request, folder, sweeps)?;
     let inputs = load::inputs(&all.source, base);
-    // The folder is claimed before the work, and again for the table. Each point claims its own
-    // folder.
+    // The folder is claimed and released before the work, and claimed again for the table. Each
+    // point claims its own folder.
     drop(Results::claim(folder, plan(request, &inputs))?);
     unfinished::keeps(
         "interrupted: finished points are kept; the same command continues from them",
@@ -69,7 +69,7 @@ pub fn run(
     finish(request, all, &found, results, reporter)
 }
 
-/// Fails if the folder holds a sweep of other fields.
+/// Fails if the folder already holds a sweep of other fields.
 fn check_fields(request: &SweepRequest, folder: &Path, sweeps: &[Sweep]) -> Result<(), Failure> {
     let earlier = read_file(&folder.join(SWEEP), MAX_INDEX_BYTES).ok();
     let earlier: Option<Value> = earlier.and_then(|bytes| serde_json::from_slice(&bytes).ok());
@@ -107,7 +107,7 @@ fn plan(request: &SweepRequest, inputs: &[PathBuf]) -> Plan {
     }
 }
 
-/// The result of each point, from this or an earlier run.
+/// Returns the result of each point, from this command or an earlier one.
 fn run_all(
     request: &SweepRequest,
     folder: &Path,
@@ -176,7 +176,8 @@ fn run_all(
     found.collect()
 }
 
-/// The folders of the points. They are checked to be inside the folder of the sweep.
+/// The folders of the points. The function checks that these folders are inside the folder of the
+/// sweep.
 fn folders(
     request: &SweepRequest,
     folder: &Path,
@@ -214,7 +215,7 @@ struct SweepIndex<'a> {
     version: &'a str,
     /// The scene without the swept fields.
     scene_file: &'a SceneFile,
-    /// Whether the fields take their values in step.
+    /// Whether the fields vary together, value by value.
     together: bool,
     sweeps: BTreeMap<&'a str, &'a [f64]>,
     /// Folders of the points, in the order of the table.
@@ -271,7 +272,7 @@ fn finish(
     })
 }
 
-/// Why planes of a point are undecided.
+/// Returns the reasons why planes of a point are undecided.
 fn undecided(at: &PointResult) -> Vec<String> {
     let reasons = at.planes().filter_map(|plane| {
         let [name, reason] = ["name", "undecided"].map(|key| plane[key].as_str());

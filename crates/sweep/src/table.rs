@@ -1,4 +1,5 @@
-//! The numbers of a sweep as one table in CSV, a row for each number of each plane at each point.
+//! The numbers of a sweep as one table in CSV, which has a row for each number of each plane at
+//! each point.
 
 use crate::values::SweepPoint;
 use etendue_store::Failure;
@@ -15,7 +16,7 @@ pub(crate) struct TableNumber {
     pub(crate) error: Option<f64>,
 }
 
-/// A point of a sweep, and the `summary.json` of its run.
+/// The values of a point of a sweep, and the `summary.json` of its run.
 #[derive(Clone, Debug)]
 pub(crate) struct PointResult {
     pub(crate) point: SweepPoint,
@@ -33,7 +34,7 @@ impl PointResult {
 pub(crate) const BANDWIDTHS: [&str; 2] = ["bandwidth_95_rho", "bandwidth_95_nu"];
 pub(crate) const SLOPE: &str = "slope";
 
-/// The numbers of a plane: those of its whole spectrum, and each parameter.
+/// Returns the numbers of a plane: the numbers of its whole spectrum, and each parameter.
 pub(crate) fn numbers(plane: &Value) -> Vec<TableNumber> {
     let of = |quantity: &str, unit: &str, of: &Value, predicted: &str| TableNumber {
         quantity: quantity.to_owned(),
@@ -62,7 +63,7 @@ pub(crate) fn numbers(plane: &Value) -> Vec<TableNumber> {
 /// A column of the table.
 enum Column {
     Words(Vec<String>),
-    /// Numbers, `None` where there is none.
+    /// Numbers; `None` for a cell without a number.
     Numbers(Vec<Option<f64>>),
 }
 
@@ -73,7 +74,8 @@ struct TableRow<'a> {
     number: TableNumber,
 }
 
-/// Names and columns: the swept fields, then the content of each row.
+/// Returns the names and the contents of the columns: the swept fields, then the other data of
+/// each row.
 fn columns(paths: &[String], found: &[PointResult]) -> Vec<(String, Column)> {
     let planes = found
         .iter()
@@ -94,7 +96,7 @@ fn columns(paths: &[String], found: &[PointResult]) -> Vec<(String, Column)> {
     let swept = swept.map(|(i, path)| (path.clone(), values(&|row| Some(row.at.point[i].1))));
     let rest = [
         ("point", words(&|row| row.at.folder.clone())),
-        // Texts. Seeds are among them, since a double does not represent every seed exactly.
+        // Texts. Seeds are also texts, because a double cannot represent every seed exactly.
         ("seed", words(&|row| row.at.summary["seed"].to_string())),
         ("plane", text("name")),
         ("class", text("class")),

@@ -12,16 +12,16 @@ pub struct Sweep {
     pub values: Vec<f64>,
 }
 
-/// A field set to one value, or swept.
+/// A field that is set to one value or swept.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Setting {
     /// Path and value.
     Value(String, String),
-    /// A field and its values.
+    /// A swept field and its values.
     Sweep(Sweep),
 }
 
-/// The value of each swept field.
+/// A point of a sweep: the value of each swept field.
 pub type SweepPoint = Vec<(String, f64)>;
 
 /// The largest number of values of one sweep, and of points in total.
@@ -33,8 +33,8 @@ pub fn setting(text: &str) -> Result<Setting, String> {
     setting_of(path, values, ArgumentStyle::Command)
 }
 
-/// A field set to `values`: one or several, in the notation that `--set` of a sweep accepts after
-/// `PATH=`.
+/// Returns the setting of a field to one or several values. `values` has the notation that `--set`
+/// of a sweep accepts after `PATH=`.
 pub fn setting_of(path: &str, values: &str, arguments: ArgumentStyle) -> Result<Setting, String> {
     let [path, values] = [path, values].map(|part| part.trim().to_owned());
     let is_plain = !values.contains(['(', '[', '"']);
@@ -49,8 +49,7 @@ pub fn setting_of(path: &str, values: &str, arguments: ArgumentStyle) -> Result<
     Ok(Setting::Value(path, values))
 }
 
-/// Whether there is a comma outside of parentheses and quotes. No single value contains such a
-/// comma.
+/// Whether a text has a comma outside of parentheses and quotes, which shows that it is a list.
 fn is_list(text: &str) -> bool {
     let (mut depth, mut quoted) = (0, false);
     text.chars().any(|c| {
@@ -77,8 +76,8 @@ pub fn sweep(text: &str) -> Result<Sweep, String> {
 }
 
 impl Sweep {
-    /// A field and its values, if these are finite and not too many. The message uses Python's
-    /// names.
+    /// Returns the sweep of a field, if its values are finite and not too many. The error message
+    /// uses the notation of the Python package.
     pub fn new(path: String, values: Vec<f64>) -> Result<Self, String> {
         let refused = |why: &str| {
             Err(format!(
@@ -144,22 +143,22 @@ fn range(from: &str, rest: &str) -> Result<Vec<f64>, String> {
         .collect())
 }
 
-/// Value `i` of `count` values from one end to the other, spaced by equal steps or equal factors.
-/// It is rounded to a short decimal.
+/// Returns value `i` of `count` values between two ends, spaced by equal steps or equal factors.
+/// The value is rounded to a short decimal.
 fn between([from, to]: [f64; 2], i: usize, count: usize, is_log: bool) -> f64 {
     let share = i as f64 / (count - 1) as f64;
     let value = if is_log {
         from * libm::pow(to / from, share)
     } else {
         let value = (1.0 - share) * from + share * to;
-        // The step at which the value is zero except for rounding errors.
+        // A value that differs from zero only by rounding errors becomes zero.
         let is_zero = value.abs() < 1e-12 * from.abs().max(to.abs());
         if is_zero { 0.0 } else { value }
     };
     tidy(value).parse().unwrap_or(value)
 }
 
-/// The values at all points. Fields vary in step, or in all combinations with the last field
+/// The values at all points. Fields vary together, or in all combinations with the last field
 /// varying fastest.
 pub fn points(sweeps: &[Sweep], together: bool) -> Result<Vec<SweepPoint>, Failure> {
     let counts: Vec<usize> = sweeps.iter().map(|sweep| sweep.values.len()).collect();
@@ -209,8 +208,8 @@ pub fn shown(point: &SweepPoint) -> String {
     parts.collect::<Vec<_>>().join(", ")
 }
 
-/// The shortest end of a path that identifies its field: `Ggx` of
-/// `surfaces.0.event.Reflects.brdf.lobe.Ggx`, and `center.0` of `light.center.0`.
+/// The shortest end of a path that identifies its field, such as `Ggx` for
+/// `surfaces.0.event.Reflects.brdf.lobe.Ggx`, and `center.0` for `light.center.0`.
 pub fn short(path: &str) -> &str {
     let is_number = |part: &str| part.bytes().all(|c| c.is_ascii_digit());
     let name = path

@@ -8,8 +8,8 @@ use etendue_field::{Environment, Orientation, Profile, TwoPlane, VirtualPlane};
 use etendue_scene::{Emission, Scene};
 use etendue_transform::random;
 
-/// A mixture, with equal shares, of strategies that draw rays of an environment. Its density is
-/// over (x, y, u, v) at the beginning of the first leg.
+/// An equal mixture of several strategies to draw rays of light from an environment. The density
+/// of this mixture is over (x, y, u, v) at the beginning of the first leg.
 ///
 /// Emission, aimed or plain, covers only rays that some plane may see, because the flux of an
 /// environment through all space is infinite.
@@ -21,16 +21,16 @@ pub(crate) struct FromSky {
 
 #[derive(Debug)]
 enum SkyStrategy {
-    /// Positions and slopes by the profiles of a plane's window.
+    /// Draws positions and slopes by the profiles of a plane's window.
     Window([Proposal; 2]),
-    /// Positions in a plane's window, directions by the environment.
+    /// Draws positions in a plane's window, and directions by the environment.
     Across {
         distance: f64,
         position: [ProfileDensity; 2],
     },
-    /// Positions and angles by the profiles of a plane on the first surface.
+    /// Draws positions and angles by the profiles of a plane on the first surface.
     Facing(Box<Facing>),
-    /// Points of the first surface, directions by the environment.
+    /// Draws points of the first surface, and directions by the environment.
     Onto(FootprintSampler),
 }
 
@@ -59,7 +59,7 @@ impl Facing {
         }
     }
 
-    /// A ray of the window, given at the beginning of the leg; `None` where there is none.
+    /// A ray of the window, given at the beginning of the leg; `None` if there is no such ray.
     fn sample(&self, r: [f64; 4]) -> Option<TwoPlane> {
         let seen = TwoPlane {
             x: self.position[0].quantile(r[0]),
@@ -86,11 +86,12 @@ impl Facing {
 
 impl FromSky {
     /// Aimed emission has two strategies for the window of each plane on the first leg: one by the
-    /// plane's profiles and one by the environment. For each other plane it has a strategy for the
-    /// part of the first surface that the plane sees, and one by the plane's profiles if the plane
-    /// is on that surface. Plain emission draws positions uniformly over the windows of the planes
-    /// on the first leg, over the first surface, and over the windows of planes on that surface. It
-    /// always draws directions by the environment.
+    /// plane's profiles and one by the environment. For each other plane, it has a strategy for
+    /// the part of the first surface that the plane sees. If the plane is on the first surface,
+    /// there is also a strategy by the plane's profiles. Plain emission draws positions uniformly
+    /// over the windows of the planes on the first leg, over the first surface, and over the
+    /// windows of planes on that surface. Plain emission always draws directions by the
+    /// environment.
     pub(crate) fn new(scene: &Scene, environment: &Environment) -> Self {
         let aimed = scene.run.emission == Emission::Aimed;
         let mut strategies = Vec::new();
@@ -119,7 +120,7 @@ impl FromSky {
     /// A ray from eight random words; `None` when the direction drawn does not go forward.
     pub(crate) fn sample(&self, words: [[u32; 4]; 2]) -> Option<TwoPlane> {
         let [r, s] = words.map(|words| words.map(random::unit));
-        // A direction always takes four numbers, whatever else is drawn.
+        // A direction takes four of the random words in every strategy.
         match self
             .strategies
             .get(random::index(words[1][3], self.strategies.len().max(1)))?
@@ -158,7 +159,7 @@ impl FromSky {
                 by_sky * position[0].density(x) * position[1].density(y)
             }
             SkyStrategy::Facing(facing) => facing.density(ray),
-            // Rays are not aimed from directions that no light comes from.
+            // No ray is drawn from a direction without light.
             SkyStrategy::Onto(_) if by_sky <= 0.0 => 0.0,
             SkyStrategy::Onto(ground) => by_sky * ground.density(ray),
         });
@@ -166,7 +167,7 @@ impl FromSky {
     }
 }
 
-/// Whether a plane lies across the first leg. The light that it sees need not have met anything.
+/// Whether a plane lies across the first leg. The plane may see light that has met no surface.
 pub(crate) fn looks_across(plane: &VirtualPlane) -> bool {
     plane.leg == 0 && plane.orientation == Orientation::Orthogonal
 }

@@ -27,7 +27,8 @@ impl AreaSampler {
         }
     }
 
-    /// A uniform point of the surface and the normal there, from three numbers in (0, 1).
+    /// A point drawn uniformly on the surface, and the normal there, from three random numbers in
+    /// (0, 1).
     pub(crate) fn point(&self, r: [f64; 3]) -> (DVec3, DVec3) {
         let [s, t, which] = r;
         let (corners, [s, t]) = match self {
@@ -41,7 +42,7 @@ impl AreaSampler {
     }
 }
 
-/// The two edges at the first corner.
+/// The two edges of a parallelogram or a triangle at its first corner.
 fn edges([corner, b, c]: &[DVec3; 3]) -> [DVec3; 2] {
     [b - corner, c - corner]
 }

@@ -57,7 +57,7 @@ impl Arrival {
     }
 }
 
-/// (1 + u² + v²)² = 1/cos⁴θ: radiance space over flux.
+/// The ratio of radiance space to flux, (1 + u² + v²)² = 1/cos⁴θ.
 pub(crate) fn radiance_per_flux(ray: &TwoPlane) -> f64 {
     let secant_squared = ray.secant_squared();
     secant_squared * secant_squared

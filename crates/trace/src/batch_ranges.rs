@@ -3,7 +3,7 @@
 use etendue_scene::Run;
 use std::ops::Range;
 
-/// Photons traced between two progress reports.
+/// The number of photons traced between two progress reports.
 pub(crate) const BLOCK: usize = 4096;
 /// A part of a batch holds fewer than twice this many photons, about a second of work for one
 /// thread; a run can stop only between parts. Summing up a part takes a few milliseconds.
@@ -33,14 +33,14 @@ impl BatchRanges {
         start(batch)..start(batch + 1)
     }
 
-    /// The number of parts of a batch. It is at least one, and no part is empty unless the batch
-    /// is.
+    /// The number of parts of a batch. A batch has at least one part; only an empty batch has an
+    /// empty part.
     pub(crate) fn parts(&self, batch: u32) -> u32 {
         let parts = self.count(batch).div_ceil(self.part_length(batch));
         u32::try_from(parts).unwrap_or(u32::MAX).max(1)
     }
 
-    /// The photons of a part: whole blocks except for the last.
+    /// The photons of a part. All blocks of the part are full, except for the last.
     pub(crate) fn part(&self, batch: u32, part: u32) -> Range<u64> {
         let range = self.of(batch);
         let length = u128::from(self.part_length(batch));
@@ -51,8 +51,8 @@ impl BatchRanges {
         start(part)..start(part.saturating_add(1))
     }
 
-    /// The number of photons of each part of a batch but the last. It is chosen so that part
-    /// numbers fit in 32 bits.
+    /// The number of photons of each part of a batch, except for the last part. This number is
+    /// chosen so that part numbers fit in 32 bits.
     fn part_length(&self, batch: u32) -> u64 {
         let count = self.count(batch);
         let parts = count / PART.max(count >> 31);

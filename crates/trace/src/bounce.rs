@@ -7,11 +7,11 @@ use etendue_field::{Frame, Mixture, Patch, Reflectance, Specular};
 use etendue_scene::{Event, Object, Scene};
 use glam::DVec3;
 
-/// The scattering of light at the surface between the previous leg and this one.
+/// The scattering of light at the surface between the previous leg and this leg.
 #[derive(Debug)]
 pub(crate) enum Bounce {
-    /// Diffuse reflection: the albedo, and a scatterer, `None` when no plane sees light of this
-    /// leg.
+    /// Diffuse reflection, with the albedo and a scatterer; the scatterer is `None` if no plane
+    /// sees light of this leg.
     Diffuse(f64, Option<Scatterer>),
     /// Reflection by a BRDF that may vary over a patch, in the frame of the leg.
     Reflects {
@@ -24,7 +24,7 @@ pub(crate) enum Bounce {
 }
 
 impl Bounce {
-    /// `None` for the first leg.
+    /// Returns `None` for the first leg.
     pub(crate) fn new(scene: &Scene, leg: usize) -> Option<Self> {
         let this = &scene.path.legs[leg];
         let diffuse = |albedo| Self::Diffuse(albedo, Scatterer::new(scene, leg));
@@ -62,7 +62,8 @@ impl Bounce {
                 let scatterer = scatterer.as_ref()?;
                 let (point, normal) = (arrival.point, arrival.normal);
                 let (towards, density) = scatterer.sample(point, normal, &Spread::Cosine, words)?;
-                // Radiance is albedo/π · E, and a photon's flux represents E at its point.
+                // The reflected radiance is albedo/π · E, and the flux of a photon represents the
+                // irradiance E at its point.
                 Some((towards, albedo * arrival.flux / (LAMBERTIAN * density)))
             }
             Self::Reflects {
@@ -86,14 +87,14 @@ impl Bounce {
                 let spread = Spread::Lobe { brdf, frame, wi };
                 let (towards, density) =
                     scatterer.as_ref()?.sample(point, facing, &spread, words)?;
-                // Radiance is f · E, as above.
+                // The reflected radiance is f · E, as for diffuse reflection.
                 let value = spread.value(towards);
                 (value > 0.0).then(|| (towards, value * flux / density))
             }
             Self::Specular(lens, event) => {
                 let Arrival { point, facing, .. } = *arrival;
                 let onwards = event.turned(lens, facing, point, arrival.direction)?;
-                // The ratio of flux to radiance space is cos⁴θ.
+                // The flux is cos⁴θ times the contribution to radiance space.
                 let secant = onwards.length() / onwards.z.abs();
                 Some((onwards, arrival.flux * secant.powi(4)))
             }

@@ -1,4 +1,5 @@
-//! The directions in which light travels along a leg, with a tracer's data for each.
+//! The two directions in which light can travel along a leg, with a tracer's data for each
+//! direction.
 
 use crate::heading::Heading;
 use crate::plane_on_leg::PlaneOnLeg;
@@ -9,12 +10,12 @@ use etendue_scene::{Leg, Scene};
 #[derive(Debug)]
 pub(crate) struct Both<T> {
     pub(crate) along: T,
-    /// `None` where no light travels backwards.
+    /// Is `None` if no light travels backwards along the leg.
     against: Option<Box<T>>,
 }
 
 impl<T> Both<T> {
-    /// `make` receives the leg in the frame of each direction.
+    /// Calls `make` for each direction, with the leg in the frame of that direction.
     pub(crate) fn new(scene: &Scene, leg: usize, make: impl Fn(Heading, &Leg) -> T) -> Self {
         let this = &scene.path.legs[leg];
         let of = |heading: Heading| make(heading, &heading.leg(this));
@@ -33,9 +34,9 @@ impl<T> Both<T> {
     }
 }
 
-/// Whether light may travel back along a leg. It may if part of the surface at the leg's end lies
-/// behind part of the surface at its beginning, or if a plane on one of these surfaces sees such
-/// light. Light of the first leg always goes forward.
+/// Whether light may travel back along a leg. Light may travel back if part of the surface at the
+/// leg's end lies behind part of the surface at its beginning, or if the window of a plane on one
+/// of these surfaces contains such light. Light of the first leg always goes forward.
 fn goes_back(scene: &Scene, leg: usize) -> bool {
     let this = &scene.path.legs[leg];
     let Some(leaves) = &this.leaves else {

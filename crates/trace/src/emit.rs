@@ -23,15 +23,15 @@ pub struct Emitter {
     level: Level,
 }
 
-/// The strategy that rays are drawn by.
+/// The strategy to draw rays.
 #[derive(Debug)]
 enum EmissionStrategy {
     /// One proposal for each plane, given by its factors over (x, u) and (y, v).
     Aimed(Vec<[Proposal; 2]>),
     /// Light from an environment.
     Sky(FromSky),
-    /// Light without extent, drawn uniformly within bounds, each of which has an equal share.
-    /// Bounds are slopes along x and y, or positions for a beam.
+    /// Light without extent, drawn uniformly within several bounds that have equal shares. Bounds
+    /// are slopes along x and y, or positions for a beam.
     Even(Vec<AxisBounds>),
     /// Light drawn in proportion to the emission of the light source.
     Plain(Plain),
@@ -67,8 +67,8 @@ impl Emitter {
             let half = (!is_window)
                 .then(|| reach(scene, plane, 0, &corners))
                 .flatten();
-            // A plane on the surface that ends the leg sees some slopes only; a plane beyond it
-            // sees any slope.
+            // A plane on the surface that ends the leg sees only some slopes; a plane beyond this
+            // surface sees light of any slope.
             let slopes = PlaneOnLeg::new(scene, i, plane).slopes(w);
             let slopes = slopes.filter(|_| plane.leg == 0);
             let along = |axis: usize, space: &Profile, slope: &Profile| {
@@ -77,7 +77,8 @@ impl Emitter {
                     return Proposal::new(plane.distance, extent[axis], space, slope);
                 }
                 let (length, half) = (scene.path.first_hit(), half?[axis]);
-                // These bounds hold for the slopes of all rays from the light to that region.
+                // These bounds contain the slopes of all rays from the light to the region that
+                // the plane sees.
                 let [low, high] = extent[axis].map(f64::abs);
                 let steepest = (half + low.max(high)) / length;
                 let seen = slopes.map_or(f64::INFINITY, |slopes| slopes[axis]);
@@ -104,11 +105,10 @@ impl Emitter {
                 shape, exponent, ..
             } => aimed_or(Plain::Area(shape, exponent)),
             Light::Point { .. } => aimed_or(Plain::Point),
-            // Pictures have their own proposal.
+            // Light with a picture is never aimed; it is drawn in proportion to the picture.
             Light::Projector { image, .. } => EmissionStrategy::Plain(Plain::Slopes(image)),
             Light::Beam { image, .. } => EmissionStrategy::Plain(Plain::Positions(image)),
-            // Rays of a file have their own proposal too, because they have no neighbouring rays at
-            // which to aim.
+            // Rays of a file are not aimed either, because no other rays exist near them.
             Light::Rays { ref rays } => EmissionStrategy::Plain(Plain::Rays(rays.clone())),
             Light::Environment { ref environment } => {
                 EmissionStrategy::Sky(FromSky::new(scene, environment))
@@ -121,11 +121,12 @@ impl Emitter {
         }
     }
 
-    /// The emitter of a scene in which light without extent shines uniformly at the whole first
-    /// surface, and at the windows of planes before that surface, whatever else planes see.
+    /// The emitter of a scene that emits light without extent uniformly towards the whole first
+    /// surface, and towards the windows of planes before that surface. Other planes have no
+    /// influence.
     ///
-    /// For any other light, and where the surface reaches back to the light, it is the emitter of
-    /// [`Self::new`].
+    /// For any other light, and if the surface reaches back to the light, the result is the
+    /// emitter of [`Self::new`].
     #[must_use]
     pub fn evenly(scene: &Scene) -> Self {
         let plain = Self::new(scene);
@@ -138,8 +139,8 @@ impl Emitter {
         }
     }
 
-    /// The first block of random words that a photon's bounces use. Of block 1 the emission uses
-    /// only the last word, which selects the plane at which a ray is aimed; light from an
+    /// The first block of random words that a photon's bounces use. The emission uses only the
+    /// last word of block 1, to select the plane at which a ray is aimed; light from an
     /// environment uses all words.
     pub(crate) fn bounces_from(&self) -> u32 {
         if let EmissionStrategy::Sky(_) = self.strategy {
@@ -149,8 +150,9 @@ impl Emitter {
         }
     }
 
-    /// Rays of photons that are emitted together, with their weights in radiance space; the weight
-    /// is zero for a ray that goes nowhere. `words` are those of one block of each photon.
+    /// Rays of photons that are emitted together, with their weights in radiance space; a ray that
+    /// carries no light has the weight zero. `words` returns the random words of a block of a
+    /// photon.
     #[must_use]
     pub fn emit(
         &self,
@@ -272,8 +274,8 @@ type AxisBounds = [[f64; 2]; 2];
 
 /// For each plane across the first leg, the bounds within which light crosses its window; for all
 /// other planes together, the bounds within which light meets the first surface. Bounds are slopes
-/// for a point or a projector, and positions for a beam. Empty if any of them is unknown or
-/// receives no light.
+/// for a point or a projector, and positions for a beam. The list is empty if any of these bounds
+/// is unknown or receives no light.
 fn even(scene: &Scene) -> Vec<AxisBounds> {
     let light = &scene.light;
     if light.has_extent() || matches!(light, Light::Rays { .. }) {

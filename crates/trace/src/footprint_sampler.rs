@@ -1,4 +1,4 @@
-//! Samples points of the first surface, for light from an environment to be aimed at.
+//! Samples points of the first surface, at which light from an environment is aimed.
 
 use crate::area_sampler::AreaSampler;
 use crate::line::{direction, start};
@@ -29,8 +29,8 @@ enum PatternPoints {
 }
 
 impl FootprintSampler {
-    /// A sampler of the whole first surface, or of the part that matters for a plane; `None` if no
-    /// part does.
+    /// A sampler of the whole first surface, or of the part that contributes to a plane; `None` if
+    /// no part contributes.
     pub(crate) fn new(scene: &Scene, plane: Option<&VirtualPlane>) -> Option<Self> {
         let around = Around(Frame::IDENTITY);
         let tagged = |primitive| TaggedPrimitive { primitive, tag: () };
@@ -52,7 +52,8 @@ impl FootprintSampler {
             Object::Mesh(i) => {
                 let mesh = &scene.meshes[i];
                 let pieces = AreaSampler::triangles(&mesh.triangles);
-                // Lines are intersected with the triangles themselves, regardless of their normals.
+                // Lines are intersected with the flat triangles; interpolated normals are not
+                // used.
                 let mesh = BlockerMesh::new(&mesh.triangles, None, Frame::IDENTITY);
                 let form = Primitive::Mesh(Box::new(mesh));
                 (vec![tagged(form)], PatternPoints::Flat(pieces))
@@ -83,15 +84,15 @@ impl FootprintSampler {
     }
 
     /// The density of lines through a sampled point, with respect to dx dy where they cross the
-    /// beginning of the leg. It is summed over all points in which a line meets the surface,
-    /// because the line can be drawn through each of them.
+    /// beginning of the leg. The sum covers all points at which a line meets the surface, because
+    /// each of them can lead to this line.
     pub(crate) fn density(&self, ray: &TwoPlane) -> f64 {
         let along = direction(ray);
         let mut sum = 0.0;
         self.primitives.each(ray, |at, primitive| {
             let point = start(ray) + at * along;
             let normal = primitive.normal(point);
-            // The density is per area of the surface.
+            // The density of points per unit area of the surface.
             let density = match &self.points {
                 PatternPoints::Flat(pieces) => 1.0 / pieces.area(),
                 PatternPoints::Smooth(patch) => {

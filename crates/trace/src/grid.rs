@@ -1,4 +1,4 @@
-//! Finds which of many flat shapes holds a point.
+//! Finds the flat shape, among many, that contains a point.
 
 use etendue_field::{Shape, whole};
 
@@ -13,7 +13,8 @@ pub(crate) struct Grid {
     counts: [usize; 2],
     /// Cells per metre along x and y.
     density: [f64; 2],
-    /// The index of the first shape of each cell, [y, x], and the end of the last.
+    /// The index in `shapes` of the first shape of each cell, [y, x], and the end of the last
+    /// cell.
     starts: Vec<usize>,
     /// The shapes of each cell, cell by cell.
     shapes: Vec<Shape>,
@@ -26,8 +27,8 @@ const FINENESS: f64 = 4.0;
 /// overlap.
 const COPIES: usize = 16;
 
-/// The extent of a shape with a small margin, because rounding errors may make a point just beyond
-/// the edge count as inside.
+/// The extent of a shape along an axis. The extent includes a small margin, because rounding
+/// errors may make a point just beyond the edge count as inside.
 fn reach(shape: &Shape, axis: usize) -> [f64; 2] {
     const ROUNDING: f64 = 1e-12;
     let [low, high] = shape.bounds().extent(axis);
@@ -36,7 +37,8 @@ fn reach(shape: &Shape, axis: usize) -> [f64; 2] {
 }
 
 impl Grid {
-    /// `None` where a grid does not help: for few shapes, and where many overlap.
+    /// Returns `None` if a grid would not save time, because there are few shapes or many of them
+    /// overlap.
     pub(crate) fn new(distance: f64, shapes: &[Shape]) -> Option<Self> {
         const MIN_SHAPES: usize = 8;
         if shapes.len() < MIN_SHAPES {

@@ -41,8 +41,9 @@ impl Heading {
         }
     }
 
-    /// The heading of a direction, and the ray through a point along it in the frame of that
-    /// heading; both arguments are in the frame of the leg. `None` for a direction across the leg.
+    /// The heading of a direction, and the ray through a point along this direction in the frame
+    /// of the heading. Both arguments are in the frame of the leg. Returns `None` for a direction
+    /// across the leg.
     #[inline]
     pub(crate) fn of(point: DVec3, direction: DVec3) -> Option<(Self, TwoPlane)> {
         let heading = if direction.z < 0.0 {

@@ -1,8 +1,8 @@
 //! Traces photons from a [`Scene`](etendue_scene::Scene) to crossings of its virtual planes.
 //!
 //! [`Tracer`] emits photons from the light, finds what each photon meets first and reports every
-//! virtual plane that the photon crosses before that. It keeps the ledger of flux. It does not
-//! depend on the spectra of windows or on theory.
+//! virtual plane that the photon crosses before that. The tracer also keeps the ledger of flux.
+//! The crate does not depend on the spectra of windows or on theory.
 //!
 //! Each leg of the path is computed in its own frame, so a direction is (u, v, 1) and a distance
 //! along the central ray is a coordinate. Light that travels back along a leg has a reversed frame.

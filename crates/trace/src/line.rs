@@ -1,4 +1,4 @@
-//! Treats rays of a leg as lines in space.
+//! Converts rays of a leg to lines in space.
 
 use etendue_field::TwoPlane;
 use glam::DVec3;

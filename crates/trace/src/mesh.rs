@@ -18,7 +18,7 @@ pub(crate) struct BlockerMesh {
     triangles: Triangles,
     /// Normals at the corners of a smooth mesh.
     normals: Option<Arc<[[DVec3; 3]]>>,
-    /// The frame of the leg, unless it is the frame at the light.
+    /// The frame of the leg; `None` if it is the frame at the light.
     leg: Option<Frame>,
 }
 
@@ -35,8 +35,8 @@ impl BlockerMesh {
         }
     }
 
-    /// The first triangle that a ray meets beyond `from`, and its distance; of several at that
-    /// distance, the one with the lowest number. Hits beyond `until` may be ignored.
+    /// The first triangle that a ray meets beyond `from`, and its distance; among triangles at the
+    /// same distance, it is the one with the lowest number. Hits beyond `until` may be ignored.
     pub(crate) fn closest_hit(
         &self,
         ray: &TwoPlane,
@@ -53,8 +53,8 @@ impl BlockerMesh {
         first
     }
 
-    /// The last triangle on the line of a ray before `until`; of several at the same distance, it
-    /// is chosen as in [`Self::first`].
+    /// The last triangle on the line of a ray before `until`; among triangles at the same
+    /// distance, it is the one with the lowest number.
     pub(crate) fn last(&self, ray: &TwoPlane, until: f64) -> Option<(f64, usize)> {
         let mut last: Option<(f64, Reverse<usize>)> = None;
         self.along(ray, -1.0, [until, f64::NEG_INFINITY], |at, i| {
@@ -92,8 +92,8 @@ impl BlockerMesh {
         });
     }
 
-    /// Visits triangles along a ray, forward or back (`way` 1 or −1). `meet` returns the distance
-    /// up to which triangles still matter.
+    /// Visits triangles along a ray, forwards if `way` is 1 and backwards if it is −1. `meet`
+    /// returns the distance beyond which triangles can be skipped.
     #[inline]
     fn along(
         &self,
@@ -126,7 +126,7 @@ impl BlockerMesh {
         }
     }
 
-    /// A normal at a point of a triangle, of unit length.
+    /// The unit normal at a point of a triangle.
     pub(crate) fn normal(&self, i: usize, point: DVec3) -> DVec3 {
         let corners = self.corners(i);
         let Some(normals) = &self.normals else {

@@ -1,10 +1,10 @@
-//! The random numbers that photons are drawn from.
+//! The random numbers from which photons are drawn.
 
 use etendue_scene::{Run, Sampling};
 use etendue_transform::Net;
 use etendue_transform::random::{self, Stream};
 
-/// The source of the numbers and their layout.
+/// The source of the random numbers of photons, and their layout.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PhotonNumbers {
     sampling: Sampling,
@@ -26,7 +26,7 @@ pub(crate) enum Numbers {
     Net(Net, u64),
 }
 
-/// Points of a net, as many as there are 32-bit numbers.
+/// The number of points of a net, which is the number of 32-bit numbers.
 const POINTS: u64 = 1 << 32;
 
 impl PhotonNumbers {
@@ -35,13 +35,13 @@ impl PhotonNumbers {
             sampling: run.sampling,
             seed: run.seed,
             streams,
-            // The emission takes two blocks, and each surface takes one.
+            // The emission takes two blocks of random numbers, and each surface takes one block.
             blocks: u32::try_from(legs + 1).unwrap_or(u32::MAX),
         }
     }
 
-    /// The numbers of the batch that begins with photon `first`, from photon `start` on. Nets are
-    /// keyed by the batch, and a batch of more than 2³² photons uses several.
+    /// The numbers for photons from `start` on, in the batch that begins with photon `first`. Each
+    /// batch has its own net, or several nets if it has more than 2³² photons.
     pub(crate) fn of(&self, batch: u32, first: u64, start: u64) -> Numbers {
         let Self { seed, blocks, .. } = *self;
         let [random, net] = self.streams;

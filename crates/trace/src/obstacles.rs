@@ -31,7 +31,7 @@ pub(crate) enum ObstacleKind {
 }
 
 impl HitKind {
-    /// The object, if it reflects.
+    /// The object that the photon meets, if it is a surface; `None` for a blocker.
     pub(crate) fn object(&self) -> Option<Object> {
         match self {
             Self::Blocker => None,
@@ -39,7 +39,7 @@ impl HitKind {
         }
     }
 
-    /// Whether it is the object on which a leg begins or ends.
+    /// Whether the photon meets the object on which a leg begins or ends.
     pub(crate) fn is(&self, end: Option<Object>) -> bool {
         end.is_some() && self.object() == end
     }
@@ -47,7 +47,7 @@ impl HitKind {
 
 /// All obstacles of light on one leg, with the queries of both tracers.
 ///
-/// Rays are given by where they cross the plane at the beginning of the leg; distances are along
+/// Rays are given by their points in the plane at the beginning of the leg; distances are along
 /// the leg.
 #[derive(Debug)]
 pub(crate) struct Obstacles {
@@ -57,11 +57,11 @@ pub(crate) struct Obstacles {
     semi_transparent: Vec<Layer<Mask>>,
 }
 
-/// A blocker that fills its plane.
+/// A blocker that extends over its whole plane.
 #[derive(Clone, Copy, Debug)]
 struct Layer<T> {
     distance: f64,
-    /// The frame of the leg, unless it is the first one.
+    /// The frame of the leg; `None` for the first leg.
     leg: Option<Frame>,
     what: T,
 }
@@ -86,7 +86,10 @@ impl<T> Layer<T> {
 
 impl Obstacles {
     /// The obstacles around a leg of the path.
-    #[expect(clippy::too_many_lines, reason = "a case for each kind of obstacle")]
+    #[expect(
+        clippy::too_many_lines,
+        reason = "the function has a case for each kind of obstacle"
+    )]
     pub(crate) fn new(scene: &Scene, leg: &Leg) -> Self {
         let mut primitives = Vec::new();
         let (mut half_planes, mut semi_transparent) = (Vec::new(), Vec::new());
@@ -155,7 +158,7 @@ impl Obstacles {
         }
         let ends = [0, 1].map(|axis| scene.light.extent(axis));
         let ends = ends.as_flattened().iter().map(|end| end.abs());
-        // Rays that start far to the side are tested from a nearer point.
+        // The hierarchy tests rays that start farther to the side from a nearer point.
         let origins = ends.filter(|end| end.is_finite()).fold(0.0, f64::max);
         Self {
             primitives: PrimitiveSet::new(&primitives, origins),
@@ -164,7 +167,7 @@ impl Obstacles {
         }
     }
 
-    /// The first thing that a ray meets beyond `from`, and its distance.
+    /// The first obstacle that a ray meets beyond `from`, and its distance.
     #[inline]
     pub(crate) fn closest_hit(
         &self,
@@ -213,8 +216,8 @@ impl Obstacles {
             .is_occluded(ray, from, f64::INFINITY, false, other)
     }
 
-    /// Whether a point at a distance on a ray is hidden by another point of the same object, beyond
-    /// `from`.
+    /// Whether another point of the same object, beyond `from`, hides the point at a given
+    /// distance on a ray.
     pub(crate) fn is_behind(
         &self,
         own: Option<Object>,
@@ -223,14 +226,15 @@ impl Obstacles {
         distance: f64,
     ) -> bool {
         let other = |what: &HitKind| !what.is(own);
-        // The point itself is at the same distance, up to rounding error.
+        // Hits just before the point are ignored, because they may be the point itself with a
+        // rounding error.
         let distance = distance - ROUNDING * distance.abs();
         self.primitives
             .is_occluded(ray, from, distance, false, other)
     }
 
-    /// The share of light on a ray from `from` that reaches a plane, searched backwards from the
-    /// plane. Objects that `ignored` accepts do not occlude.
+    /// The share of light on a ray that reaches a plane from `from`; the search goes backwards
+    /// from the plane. Objects that `ignored` accepts do not occlude.
     pub(crate) fn visibility(
         &self,
         ray: &TwoPlane,
@@ -260,7 +264,7 @@ impl Obstacles {
 /// The relative difference that rounding errors may make between two computations of a distance.
 const ROUNDING: f64 = 1e-9;
 
-/// The primitive for a hit on a half-plane.
+/// The primitive that stands for any half-plane that a ray hits.
 static HALF_PLANE: TaggedPrimitive<HitKind> = TaggedPrimitive {
     primitive: Primitive::Flat {
         distance: 0.0,
@@ -319,11 +323,11 @@ impl Around {
         Primitive::Mesh(Box::new(BlockerMesh::new(&mesh.triangles, normals, self.0)))
     }
 
-    /// A shape in the plane of a frame. If the frame is across the leg and its axes are along the
-    /// leg's own, distances are exact.
+    /// A shape in the plane of a frame. If the axes of the frame are those of the leg, distances
+    /// are exact.
     #[expect(
         clippy::float_cmp,
-        reason = "rounding errors would only prevent the use of the exact case"
+        reason = "with rounding errors, the general case is used, which is correct too"
     )]
     fn flat(frame: &Frame, shape: &Shape) -> Primitive {
         let across = frame.d.z.abs() == 1.0 && frame.x.x.abs() == 1.0;

@@ -30,23 +30,25 @@ pub(crate) struct SurfaceCoordinates {
     arriving: bool,
     /// Whether directions are also rotated about the normal.
     mirrored: bool,
-    /// The surface itself, in the frame of the leg, where rays are measured from its local normals.
+    /// The surface itself, in the frame of the leg; present only if angles are measured from its
+    /// local normals.
     patch: Option<Patch>,
 }
 
 /// The number of angles along each side of a window at which slopes are evaluated.
 const SIDE: u32 = 9;
-/// Between these angles, slopes may be larger by less than this factor.
+/// The factor by which the largest angle is increased, to cover directions between the evaluated
+/// ones.
 const MARGIN: f64 = 1.1;
 /// Light at larger angles to the central ray, in radians, is not aimed by its slopes.
 const MAX_AIMED_ANGLE: f64 = 0.8;
 
-/// The points of a line on a patch.
+/// The points at which a line meets a patch.
 fn points(patch: &Patch, start: DVec3, along: DVec3) -> impl Iterator<Item = DVec3> {
     let local = patch.frame.to_local(start);
     let direction = patch.frame.vector_to_local(along);
-    // A ray nearly across its leg starts far away, and a quadratic equation loses digits from
-    // there.
+    // A ray nearly across its leg starts far away, and a quadratic equation solved from there
+    // would lose digits.
     let near = -local.dot(direction) / direction.length_squared();
     let hits = patch.hits(local + near * direction, direction);
     let met = hits.into_iter().filter(|t| !t.is_nan());
@@ -54,8 +56,8 @@ fn points(patch: &Patch, start: DVec3, along: DVec3) -> impl Iterator<Item = DVe
 }
 
 impl PlaneOnLeg {
-    /// The ray at the beginning of the leg that has the coordinates `seen` at the plane, and dA
-    /// over dx dy there; `None` if there is no such ray.
+    /// The ray, given at the beginning of the leg, that has the coordinates `seen` at the plane,
+    /// and dA / dx dy there; `None` if there is no such ray.
     ///
     /// On a surface itself, light is counted per area of the surface (docs/theory.md, section 8);
     /// everywhere else dA is dx dy.
@@ -76,8 +78,8 @@ impl PlaneOnLeg {
         Some((point, frame.d, 1.0 / frame.d.dot(view.frame.d)))
     }
 
-    /// Whether the point (x, y) of the plane lies ahead of where the first leg begins. A surface
-    /// may reach back beside the light.
+    /// Whether the point (x, y) of the plane lies beyond the beginning of the first leg. Part of a
+    /// surface may reach back beside the light.
     pub(crate) fn is_ahead(&self, at: [f64; 2]) -> bool {
         let arrives = self.surface.is_some_and(|view| view.arriving);
         !arrives || self.point(at).is_some_and(|(point, ..)| point.z > 0.0)
@@ -93,7 +95,8 @@ impl PlaneOnLeg {
         Self::of(Heading::Along, leg, scene, index, plane)
     }
 
-    /// The plane as it sees light of one heading on its leg, in the frame of that heading.
+    /// The position and coordinates of a plane for light of one heading on its leg, in the frame
+    /// of that heading.
     pub(crate) fn of(
         heading: Heading,
         leg: &Leg,
@@ -130,12 +133,12 @@ impl PlaneOnLeg {
         }
     }
 
-    /// The distance along its heading, from `from` on, at which light on a ray of the leg reaches
-    /// the plane; `None` if it does not reach it.
+    /// The distance, at least `from`, at which light on a ray of the leg reaches the plane; `None`
+    /// if the light does not reach the plane.
     ///
     /// A plane on a surface records light where it meets the surface. An oblique surface extends
-    /// before and behind its central hit, so an occluder may shade one part of it alone. Light that
-    /// travels back along the leg only reaches planes on a surface.
+    /// before and behind its central hit, so an occluder may shade only a part of the surface.
+    /// Light that travels back along the leg only reaches planes on a surface.
     #[inline]
     pub(crate) fn crossing(&self, ray: &TwoPlane, from: f64) -> Option<f64> {
         let Some(surface) = &self.surface else {
@@ -145,9 +148,10 @@ impl PlaneOnLeg {
         (self.side == Side::After || point.z > from).then_some(point.z)
     }
 
-    /// Returns the same for a photon that starts at `from` and first arrives at the surface at the
-    /// end of the leg, or at something else (`None`). A photon that starts or ends on the surface
-    /// of the plane is at the plane already.
+    /// Returns the distance as [`Self::crossing`] does, for a photon that starts at `from`.
+    /// `arrival` is the distance at which it arrives at the surface at the end of the leg, or
+    /// `None` if it meets something else first. A photon that starts or ends on the surface of the
+    /// plane crosses the plane there.
     #[inline]
     pub(crate) fn crossing_of_photon(
         &self,
@@ -164,12 +168,13 @@ impl PlaneOnLeg {
     }
 
     /// The largest slopes in the leg, along x and y, of light that arrives on a surface in the
-    /// window of a plane. `None` across the leg, and where the slopes are too large to aim by.
+    /// window of a plane. Returns `None` for a plane across the leg, and if the slopes are too
+    /// large for aiming.
     pub(crate) fn slopes(&self, window: &Window) -> Option<[f64; 2]> {
         self.surface.as_ref()?.slopes(window)
     }
 
-    /// cos θ dω over du dv for a ray in the coordinates of the plane.
+    /// The ratio cos θ dω / du dv for a ray in the coordinates of the plane.
     pub(crate) fn flux_per_radiance(&self, seen: &TwoPlane) -> f64 {
         match &self.surface {
             None => 1.0 / (seen.secant_squared() * seen.secant_squared()),
@@ -194,8 +199,8 @@ impl PlaneOnLeg {
 
 impl SurfaceCoordinates {
     /// The frame of the local normal at a point, on the side of the normal at the central hit;
-    /// `None` where the normals differ by a right angle or more. Of two points with the same
-    /// coordinates only one has such a frame, because a line meets the surface once from each side.
+    /// `None` where the normals differ by a right angle or more. A line meets the surface once
+    /// from each side, so only one of two points with the same coordinates has such a frame.
     fn local(&self, patch: &Patch, point: DVec3) -> Option<Frame> {
         let side = patch.normal(self.frame.origin).dot(self.frame.d).signum();
         let normal = side * patch.normal(point);
@@ -251,8 +256,8 @@ impl SurfaceCoordinates {
         Some((ray, weight / (secant_squared * secant_squared * measure)))
     }
 
-    /// The coordinates of a direction away from the surface, measured in this frame, and dω cos θ
-    /// over du dv; `None` behind the surface.
+    /// The coordinates of a direction away from the surface, measured in `frame`, and the ratio
+    /// cos θ dω / du dv; `None` for a direction that points behind the surface.
     fn seen(&self, frame: &Frame, away: DVec3) -> Option<([f64; 2], f64)> {
         let turned = if self.mirrored { -1.0 } else { 1.0 };
         let DVec3 { x: t, y: b, z: n } = frame.vector_to_local(away.normalize());
@@ -268,7 +273,7 @@ impl SurfaceCoordinates {
         let turned = if self.mirrored { -1.0 } else { 1.0 };
         let angles = [turned * (u + self.longitude), turned * v];
         let [(sin, cos), (up, across)] = angles.map(libm::sincos);
-        // A direction a full turn away has the same coordinates.
+        // Larger angles would describe a direction that other coordinates already describe.
         angles
             .iter()
             .all(|angle| angle.abs() < FRAC_PI_2)
@@ -300,7 +305,7 @@ impl SurfaceCoordinates {
         self.arriving
     }
 
-    /// The frame that angles are measured in at a point of the surface.
+    /// The frame in which angles are measured at a point of the surface.
     fn frame_at(&self, point: DVec3) -> Option<Frame> {
         match &self.patch {
             None => Some(self.frame),

@@ -6,8 +6,8 @@ use crate::mesh::BlockerMesh;
 use etendue_field::{Frame, Patch, Shape, TwoPlane, enclosing};
 use glam::DVec3;
 
-/// The geometry of a target, in the frame of a leg. Large data are stored elsewhere, so that flat
-/// shapes, by far the most frequent, stay in the processor's cache.
+/// The geometry of an obstacle, in the frame of a leg. Large data are stored elsewhere, so that
+/// flat shapes, which are by far the most frequent, stay in the processor's cache.
 #[derive(Clone, Debug)]
 pub(crate) enum Primitive {
     /// A flat shape across the central ray.
@@ -24,8 +24,8 @@ pub(crate) enum Primitive {
 
 impl Primitive {
     /// The distance along the central ray at which a ray meets the primitive, and the part of the
-    /// primitive that the ray meets. Of several hits it returns the first beyond `from`; hits of a
-    /// mesh beyond `until` are ignored.
+    /// primitive that the ray meets. If there are several hits, it returns the first beyond
+    /// `from`; hits of a mesh beyond `until` are ignored.
     #[inline]
     pub(crate) fn closest_hit(
         &self,
@@ -44,8 +44,8 @@ impl Primitive {
         self.closest_hit_elsewhere(ray, from, until)
     }
 
-    /// [`Self::first`] for primitives that are not flat; kept out of the loops that mostly meet
-    /// flat shapes.
+    /// [`Self::closest_hit`] for primitives that are not flat. The function is not inlined, which
+    /// keeps loops short that mostly meet flat shapes.
     #[inline(never)]
     fn closest_hit_elsewhere(&self, ray: &TwoPlane, from: f64, until: f64) -> Option<(f64, usize)> {
         let whole = |distance| (distance, 0);
@@ -103,7 +103,7 @@ impl Primitive {
         match self {
             Self::Mesh(mesh) => mesh.each(ray, tell),
             Self::Smooth(patch) => {
-                // A line with a single hit has the same distance twice.
+                // If a line has a single hit, its distance is passed twice.
                 let [first, last] = smooth_hits(patch, ray);
                 let second = (last > first).then_some(last);
                 let hits = [Some(first).filter(|at| !at.is_nan()), second];

@@ -60,7 +60,7 @@ impl<T> PrimitiveHit<'_, T> {
 }
 
 impl<T: Clone> PrimitiveSet<T> {
-    /// `origins` is the largest coordinate a ray starts from.
+    /// `origins` is the largest coordinate of any ray's start.
     pub(crate) fn new(primitives: &[TaggedPrimitive<T>], origins: f64) -> Self {
         let bounds: Vec<_> = primitives
             .iter()
@@ -284,8 +284,8 @@ mod tests {
         }
     }
 
-    /// Invalid primitives, which no legal scene has, are not passed to the builder, and the valid
-    /// ones beside them are found.
+    /// Invalid primitives, which no valid scene has, are not passed to the builder, and valid
+    /// primitives beside them are still found.
     #[test]
     fn forms_without_a_box_are_candidates_everywhere() {
         for bad in [f64::NAN, f64::INFINITY, 1e300] {

@@ -18,7 +18,7 @@ pub(crate) struct ProfileDensity {
 enum ProposalKind {
     Constant,
     Tent,
-    /// Density in proportion to g(t) = (1 + t²)^(−3/2).
+    /// A density in proportion to g(t) = (1 + t²)^(−3/2).
     Cosine,
 }
 
@@ -38,8 +38,8 @@ impl ProfileDensity {
         Self { half, kind }
     }
 
-    /// The density for slopes, up to `half`, of light that a surface receives. It is weighted by
-    /// the cosine as in 2D (docs/theory.md (6)).
+    /// The density for slopes, up to `half`, of light that a surface receives. This density is
+    /// weighted by the cosine as in 2D (docs/theory.md (6)).
     pub(crate) fn cosine(half: f64) -> Self {
         let kind = ProposalKind::Cosine;
         Self { half, kind }
@@ -73,8 +73,8 @@ impl ProfileDensity {
     pub(crate) fn quantile(&self, p: f64) -> f64 {
         let s = match self.kind {
             ProposalKind::Constant => 2.0 * p - 1.0,
-            // One formula serves both signs of t, because a branch would be mispredicted every
-            // other time.
+            // One formula is used for both signs of t, because the processor would mispredict a
+            // branch every other time.
             ProposalKind::Tent => {
                 let beyond = p.min(1.0 - p).max(0.0);
                 (1.0 - (2.0 * beyond).sqrt()).copysign(p - 0.5)
@@ -104,8 +104,8 @@ impl ProfileDensity {
         }
     }
 
-    /// A function of this density for each of several numbers. The kind is known inside each loop,
-    /// so the loops are vectorised.
+    /// The values of a function of this density for several numbers. The kind of density is fixed
+    /// inside each loop, so the compiler can vectorise the loops.
     #[inline(always)]
     fn each<const N: usize>(&self, t: [f64; N], f: impl Fn(&Self, f64) -> f64) -> [f64; N] {
         let of = |kind: ProposalKind| Self { kind, ..*self };
@@ -117,7 +117,8 @@ impl ProfileDensity {
     }
 }
 
-/// A number for each index. The function of `std` would be called separately for each.
+/// An array with a number for each index. `std::array::from_fn` would call its function separately
+/// for each index.
 #[inline(always)]
 pub(crate) fn lanes<const N: usize>(f: impl Fn(usize) -> f64) -> [f64; N] {
     let mut all = [0.0; N];
@@ -128,7 +129,7 @@ pub(crate) fn lanes<const N: usize>(f: impl Fn(usize) -> f64) -> [f64; N] {
 }
 
 /// Slopes along one axis, at a point of a surface, of rays that cross a window at some distance.
-/// They are distributed by the window's profile over the slopes that cross it.
+/// The slopes are distributed by the window's profile over the slopes that cross the window.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Aim {
     distance: f64,
@@ -145,8 +146,8 @@ impl Aim {
         }
     }
 
-    /// The cumulative density of the slope at the ends of the range that crosses the window from
-    /// `x` at distance `from`; `None` if the range is empty.
+    /// The cumulative densities at the two ends of the range of slopes that lead from `x` at
+    /// distance `from` through the window; `None` if the range is empty.
     #[inline]
     fn range(&self, x: f64, from: f64) -> Option<[f64; 2]> {
         let distance = self.distance - from;
@@ -182,9 +183,10 @@ impl Aim {
 
 /// Rays in one pair of coordinates, (x, u) or (y, v), that leave the light and cross a window.
 ///
-/// Draws u first, by the window's profile over the slopes of rays that leave the light and cross
-/// the window. Then draws x, by the profile over the light's image at that slope. No sample misses
-/// the light or the window. For a point light x is fixed, and the density is that of u alone.
+/// The slope u is drawn first, by the window's profile, from the slopes of rays that leave the
+/// light and cross the window. The position x is drawn second, by the window's profile, from the
+/// positions that the light reaches in the window at that slope. All samples start on the light
+/// and cross the window. For a point light x is fixed, and the density is that of u alone.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Proposal {
     /// Distance of the window from the light.
@@ -193,7 +195,7 @@ pub(crate) struct Proposal {
     light: [f64; 2],
     space: ProfileDensity,
     slope: ProfileDensity,
-    /// The cumulative density of the slope at the ends of its range.
+    /// The cumulative densities at the two ends of the range of slopes.
     range: [f64; 2],
 }
 
@@ -201,7 +203,7 @@ impl Proposal {
     /// Builds the proposal for light of extent `extent` and a window with the profiles `space` and
     /// `slope` at `distance`.
     ///
-    /// `None` when no ray both leaves the light and crosses the window.
+    /// Returns `None` if no ray from the light crosses the window.
     pub(crate) fn new(
         distance: f64,
         extent: [f64; 2],
@@ -234,8 +236,8 @@ impl Proposal {
         self.light[1] <= self.light[0]
     }
 
-    /// The cumulative density of the position in the window, at the ends of the light's image at
-    /// slopes `u`.
+    /// The cumulative densities of the window's position, for slopes `u`, at the positions that
+    /// rays from the two ends of the light reach.
     #[inline(always)]
     fn images<const N: usize>(&self, u: &[f64; N]) -> [[f64; N]; 2] {
         let at = |x: f64| {

@@ -3,9 +3,10 @@
 use crate::sky;
 use etendue_field::{Light, TwoPlane, power};
 
-/// The radiance along a ray given at the light. It is with respect to du dv alone for a point
-/// light, to dx dy for a beam, and per share of flux for rays of a file. It uses that dω is du dv
-/// / (1 + u² + v²)^(3/2), and that a ray of flux Φ adds Φ (1 + u² + v²)² to radiance space.
+/// The radiance along a ray given at the light. The value is per du dv alone for a point light,
+/// per dx dy for a beam, and per share of flux for rays of a file. The value follows from dω = du
+/// dv / (1 + u² + v²)^(3/2), and from the contribution Φ (1 + u² + v²)² of a ray of flux Φ to
+/// radiance space.
 #[inline]
 pub(crate) fn radiance(light: &Light, ray: &TwoPlane) -> f64 {
     match light {

@@ -1,5 +1,5 @@
-//! The regions that light seen by a plane can come from, at which emission and scattering are
-//! aimed.
+//! The regions from which light can reach the window of a plane; emission and scattering are aimed
+//! at them.
 
 use crate::line::{direction, start};
 use crate::plane_on_leg::PlaneOnLeg;
@@ -10,9 +10,9 @@ use etendue_scene::{Event, Hit, Leg, Object, Scene, Surface};
 use glam::{DVec2, DVec3};
 
 /// Half-widths, across the end of `leg`, of a box around the central ray. All light from `origins`
-/// (in the frame of the leg) that can reach the window of `plane` passes through it. The plane is
-/// on a later leg, or on the surface that ends this one. `None` if there is no such light, and
-/// where light of a later leg must go across or back along that leg.
+/// (in the frame of the leg) that can reach the window of `plane` passes through this box. The
+/// plane is on a later leg, or on the surface that ends this leg. Returns `None` if there is no
+/// such light, or if light must go across or back along a later leg.
 pub(crate) fn reach(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -20,7 +20,8 @@ pub(crate) fn reach(
     origins: &[DVec3],
 ) -> Option<[f64; 2]> {
     let this = &scene.path.legs[leg];
-    // A plane that sees a surface from before it does not see light that has left the surface.
+    // A plane that records the light arriving at a surface sees no light that has left this
+    // surface.
     let before = leg + 1 == plane.leg && !looks_at_surface(plane);
     let points = if before || leg == plane.leg {
         seen(scene, plane)
@@ -36,7 +37,7 @@ pub(crate) fn reach(
             if leg > 0 && ahead < MIN_COSINE * this.length {
                 return None;
             }
-            // Points behind the light cannot be reached from the light.
+            // The light cannot reach points behind it.
             let share = (this.length - from.z) / ahead.max(MIN_COSINE * this.length);
             let at = from.lerp(*to, share);
             half = [half[0].max(at.x.abs()), half[1].max(at.y.abs())];
@@ -58,9 +59,9 @@ pub(crate) fn outline(scene: &Scene, object: Object) -> Vec<DVec3> {
     }
 }
 
-/// For a flat first surface: the part of it from which light can reach the window of a plane. The
-/// plane is on this surface or beyond it. It is given by its lowest and highest coordinates in the
-/// surface's frame; `None` if there is no such part.
+/// The part of a flat first surface from which light can reach the window of a plane on this
+/// surface or beyond it. The result is the lowest and the highest coordinates of this part in the
+/// surface's frame, or `None` if there is no such part.
 pub(crate) fn footprint(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -121,8 +122,8 @@ fn seen(scene: &Scene, plane: &VirtualPlane) -> Vec<DVec3> {
     };
     let surface = &scene.surfaces[i];
     let met: Option<Vec<DVec3>> = if plane.orientation == Orientation::Orthogonal {
-        // The edges of the tube of rays that cross the window meet the surface at the corners of
-        // the visible part.
+        // The outermost rays that cross the window meet the surface at the corners of the visible
+        // part.
         let tube = tube(plane, scene.path.along(plane), leg);
         let side = leg.frame.d.dot(surface.frame.d).signum();
         let met = tube.iter();
@@ -187,7 +188,7 @@ fn seen_of_patch(
     for x in ends(&w.x) {
         for y in ends(&w.y) {
             if plane.orientation.is_local() {
-                // The positions are the points hit.
+                // The positions are themselves points of the surface.
                 rays.push([DVec3::new(x, y, 0.0), DVec3::Z]);
                 continue;
             }
@@ -201,15 +202,15 @@ fn seen_of_patch(
             }
         }
     }
-    // Light that leaves along or behind the surface comes from an unbounded part of it.
+    // If light leaves along or behind the surface, the part from which it comes is unbounded.
     if rays.iter().any(|[_, along]| along.z < MIN_COSINE) {
         return None;
     }
     let corners = patch.corners().map(|p| at.to_local(p));
     let [mut low, mut high] = enclosing(&corners);
     // A point of the patch at distance r from the normal at the hit is at most |k| r² off the
-    // tangent plane. Lines of the window meet the slab of that thickness in a box. The bound is
-    // iterated, starting from the whole patch.
+    // tangent plane. Lines through the window meet a slab of this thickness within a box. The box
+    // is computed repeatedly, beginning with that of the whole patch.
     for _ in 0..8 {
         let [x, y] = [low.x.abs().max(high.x.abs()), low.y.abs().max(high.y.abs())];
         let depth = sharpest * (x * x + y * y);
@@ -231,8 +232,8 @@ fn seen_of_patch(
     })
 }
 
-/// The rays through the corners of a window with its extreme slopes, each given by two points in
-/// the frame at the light.
+/// The rays through the corners of a window with the extreme slopes of the window, each given by
+/// two points in the frame at the light.
 fn tube(plane: &VirtualPlane, along: f64, leg: &Leg) -> Vec<[DVec3; 2]> {
     let w = &plane.window;
     let ends = |profile: &Profile| [-1.0, 1.0].map(|s| s * profile.half_width());
@@ -252,14 +253,15 @@ fn tube(plane: &VirtualPlane, along: f64, leg: &Leg) -> Vec<[DVec3; 2]> {
 }
 
 /// The point where the line through two points meets the plane of a surface, in the surface's
-/// frame. `None` when the line runs to the other side of the surface or along it.
+/// frame. Returns `None` if the line runs to the other side of the surface or along it.
 fn meets(from: DVec3, to: DVec3, surface: &Frame, side: f64) -> Option<DVec3> {
     let [a, b] = [from, to].map(|p| surface.to_local(p));
     let leaves = (b - a).z;
     (side * leaves > MIN_COSINE).then(|| a - (a.z / leaves) * (b - a))
 }
 
-/// The cosine, and the share of a leg, below which light counts as parallel to a surface.
+/// The cosine to the normal, and the share of a leg's length, below which light counts as parallel
+/// to a surface.
 const MIN_COSINE: f64 = 1e-3;
-/// The margin, larger than rounding errors, by which the aimed region exceeds the visible one.
+/// The margin by which the aimed region exceeds the visible region, to allow for rounding errors.
 const MARGIN: f64 = 1e-9;

@@ -4,10 +4,10 @@ use etendue_field::Shape;
 use glam::DVec2;
 use std::f64::consts::PI;
 
-/// π: the flux that a Lambertian surface emits per radiance and area.
+/// π, the flux that a Lambertian surface emits per radiance and area.
 pub(crate) const LAMBERTIAN: f64 = PI;
 
-/// A uniform point of a shape, from two numbers in (0, 1).
+/// A point drawn uniformly in a shape, from two random numbers in (0, 1).
 pub(crate) fn point(shape: &Shape, r: [f64; 2]) -> [f64; 2] {
     match shape {
         Shape::Rectangle(rectangle) => [0, 1].map(|axis| {

@@ -23,11 +23,11 @@ pub(crate) struct Scatterer {
 /// One strategy to draw a ray.
 #[derive(Clone, Debug)]
 enum SamplingStrategy {
-    /// Directions towards a window, along X and along Y.
+    /// Draws directions towards a window, along X and along Y.
     Window([Aim; 2]),
-    /// Directions that a plane on the surface sees.
+    /// Draws directions that a plane on the surface sees.
     Angles(Box<Angles>),
-    /// Directions in proportion to the surface's own scattering.
+    /// Draws directions in proportion to the BRDF, or to the cosine for Lambertian scattering.
     Lobe,
 }
 
@@ -52,7 +52,8 @@ pub(crate) enum Spread<'a> {
     },
 }
 
-/// Practically no bound; slopes towards a surface are bounded by the surface's size alone.
+/// A slope so large that it sets no bound; only the size of a surface then limits the slopes
+/// towards it.
 const ANY_SLOPE: f64 = 1e6;
 
 impl Spread<'_> {
@@ -67,7 +68,8 @@ impl Spread<'_> {
         }
     }
 
-    /// The density of [`Self::sample`] with respect to du dv over n · (u, v, ±1), which is `cosine`.
+    /// The density of [`Self::sample`] with respect to n · (u, v, ±1) du dv, where `cosine` is n ·
+    /// (u, v, ±1).
     #[inline]
     fn density(&self, towards: DVec3, cosine: f64) -> f64 {
         let secant_squared = towards.length_squared();
@@ -80,7 +82,7 @@ impl Spread<'_> {
         }
     }
 
-    /// The BRDF towards a direction; for scattering by the cosine, without the albedo.
+    /// The BRDF towards a direction; for Lambertian scattering the albedo is left out.
     #[inline]
     pub(crate) fn value(&self, towards: DVec3) -> f64 {
         match self {
@@ -108,14 +110,14 @@ impl Angles {
     }
 }
 
-/// dω over du dv / n · (u, v, ±1): dω is du dv / (1 + u² + v²)^(3/2).
+/// The ratio dω / (n · (u, v, ±1) du dv), where dω = du dv / (1 + u² + v²)^(3/2).
 #[inline]
 fn per_slope(secant_squared: f64, cosine: f64) -> f64 {
     1.0 / (secant_squared * secant_squared.sqrt() * cosine)
 }
 
 impl Scatterer {
-    /// `None` when no plane sees light that has come to this leg.
+    /// Returns `None` if no plane sees light that has come to this leg.
     pub(crate) fn new(scene: &Scene, leg: usize) -> Option<Self> {
         let this = &scene.path.legs[leg];
         let leaves = this.leaves?.object;
@@ -143,8 +145,8 @@ impl Scatterer {
                 ]))
             } else {
                 let half = reach(scene, plane, leg, &origins).filter(|_| is_ahead)?;
-                // A plane on the surface that ends the leg sees some slopes only; a plane beyond it
-                // sees any slope.
+                // A plane on the surface that ends the leg sees only some slopes; a plane beyond
+                // this surface sees light of any slope.
                 let slopes = plane_on_leg.slopes(w).filter(|_| plane.leg == leg);
                 let slopes = slopes.unwrap_or([ANY_SLOPE; 2]).map(ProfileDensity::cosine);
                 Some(SamplingStrategy::Window([0, 1].map(|axis| {
@@ -158,8 +160,8 @@ impl Scatterer {
         looking.peek()?;
         let aims = looking.map(aim);
         let strategies: Vec<SamplingStrategy> = if by_brdf {
-            // A lobe may be narrower than any window or wider than all of them, so it gets half of
-            // the shares.
+            // A lobe may be narrower than any window or wider than all windows, so half of the
+            // directions are drawn by the lobe.
             let mut strategies: Vec<SamplingStrategy> = aims.flatten().collect();
             let lobes = strategies.len().max(1);
             strategies.extend((0..lobes).map(|_| SamplingStrategy::Lobe));
@@ -171,9 +173,9 @@ impl Scatterer {
         Some(Self { strategies })
     }
 
-    /// A direction in which light leaves a point where the surface has this normal, and its density
-    /// with respect to du dv over n · (u, v, ±1). `None` when the chosen plane cannot be reached
-    /// from the point, or the direction goes behind the surface.
+    /// A direction in which light leaves a point where the surface has this normal, and its
+    /// density with respect to n · (u, v, ±1) du dv. Returns `None` if light from the point cannot
+    /// reach the chosen plane, or if the direction goes behind the surface.
     #[inline]
     pub(crate) fn sample(
         &self,

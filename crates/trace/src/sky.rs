@@ -7,17 +7,18 @@ use etendue_sampling::{DiscreteDistribution, LatLongSampler, about, cosine_hemis
 use etendue_transform::random::{self, Stream};
 use glam::DVec3;
 
-/// An environment, with a strategy to draw directions of its light.
+/// An environment, with a strategy to draw the directions in which its light travels.
 #[derive(Clone, Debug)]
 pub(crate) struct Sky {
     environment: Environment,
     choice: Choice,
-    /// The share of slopes that are drawn by the cosine instead. This share is needed where most
-    /// light goes backwards and the rest would be drawn too rarely.
+    /// The share of slopes that are drawn by the cosine instead of the environment. The cosine is
+    /// needed if most light goes backwards, because forward directions would otherwise be drawn
+    /// too rarely.
     by_cosine: f64,
 }
 
-/// The distribution that directions are drawn from.
+/// The distribution from which directions are drawn.
 #[derive(Clone, Debug)]
 enum Choice {
     /// Lobes, selected by their flux.
@@ -27,7 +28,8 @@ enum Choice {
 
 /// The number of directions drawn to estimate how many go forward.
 const TRIED: u64 = 1000;
-/// The limit keeps some directions drawn by the light.
+/// The upper limit of the share by the cosine, so that some directions are still drawn by the
+/// environment.
 const MOST_BY_COSINE: f64 = 0.9;
 const LEAST_BY_COSINE: f64 = 0.1;
 
@@ -59,7 +61,7 @@ impl Sky {
             Choice::Lobes(lobes, flux) => {
                 let lobe = &lobes[flux.sample(r[0])];
                 let squared = lobe.width * lobe.width;
-                // This is 1 − cos γ.
+                // The value 1 − cos γ, where γ is the angle to the axis of the lobe.
                 let fall = -squared * libm::log1p(r[1] * libm::expm1(-2.0 / squared));
                 about(lobe.from, polar(fall.clamp(0.0, 2.0), r[2]))
             }
@@ -123,7 +125,7 @@ impl Sky {
         let Some(ray) = ray_through(point, -towards).filter(|_| cosine > 0.0) else {
             return 0.0;
         };
-        // This is the balance heuristic of one sample (Veach and Guibas 1995).
+        // The estimate uses the balance heuristic of one sample (Veach and Guibas 1995).
         let density = 0.5 * (cosine / LAMBERTIAN + self.density(-towards));
         cosine * incident(&ray, point.z) / density
     }

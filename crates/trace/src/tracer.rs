@@ -18,13 +18,13 @@ use std::ops::Range;
 /// The forward tracer of a scene.
 ///
 /// A photon leaves the light and crosses the planes in front of the first thing it meets; gratings
-/// on the way attenuate it. Blockers absorb it, and a Lambertian surface absorbs the share 1 −
-/// albedo. Light that the surface at the end of a leg scatters, reflects or refracts crosses the
-/// planes on the next leg, and so on. A photon that meets anything else ends.
+/// on the way attenuate it. Blockers absorb the photon, and a Lambertian surface absorbs the share
+/// 1 − albedo. Light that the surface at the end of a leg scatters, reflects or refracts crosses
+/// the planes on the next leg, and so on. A photon that meets anything else ends.
 ///
-/// Light that arrives at a surface with a BRDF, on the side that the surface faces, is booked as
-/// stopped, because the reflected share has no closed form. Light that is scattered onwards, by the
-/// cosine or by a BRDF, is aimed and not booked.
+/// The ledger counts light that arrives at the front of a surface with a BRDF as stopped, because
+/// the reflected share has no closed form. The ledger does not count light that a surface scatters
+/// onwards, because this light is aimed.
 #[derive(Debug)]
 pub struct Tracer {
     emitter: Emitter,
@@ -38,7 +38,7 @@ pub struct Tracer {
 #[derive(Debug)]
 struct FlightLeg {
     courses: Both<Course>,
-    /// The scattering at the beginning of the leg; `None` for the first.
+    /// The scattering at the beginning of the leg; `None` for the first leg.
     bounce: Option<Bounce>,
     /// The objects on which the leg begins and ends.
     leaves: Option<Object>,
@@ -46,11 +46,11 @@ struct FlightLeg {
     /// The object on which the leg begins, if light may meet it again; light never meets a flat
     /// surface again.
     rejoins: Option<Object>,
-    /// Distances up to which a hit is attributed to rounding errors.
+    /// The distance up to which a hit is attributed to rounding errors.
     rounding: f64,
 }
 
-/// What photons of one heading can meet on a leg.
+/// The objects that photons in one direction along a leg can meet.
 #[derive(Debug)]
 struct Course {
     /// The frame of the heading, in the frame at the light.
@@ -64,7 +64,7 @@ struct Course {
 pub(crate) struct Flight {
     pub(crate) ray: TwoPlane,
     pub(crate) heading: Heading,
-    /// The distance along its heading at which the photon begins.
+    /// The distance, along the heading of the photon, at which the photon begins.
     pub(crate) from: f64,
     /// The contribution to radiance space.
     pub(crate) weight: f64,
@@ -75,7 +75,7 @@ pub(crate) struct Flight {
 struct Photon {
     index: u64,
     flight: Flight,
-    /// Whether its flux is added to the ledger.
+    /// Whether the flux of the photon is added to the ledger.
     counts: bool,
 }
 
@@ -96,11 +96,12 @@ impl Tracer {
         }
     }
 
-    /// A second tracer of photons, for light without extent that no backward ray finds. It shares
-    /// no random number and no aim of the emission with the tracer of [`Self::new`].
+    /// A second tracer of photons, for light without extent that no backward ray finds. The two
+    /// tracers share no random numbers, and do not aim the emission in the same way.
     ///
-    /// It emits light uniformly towards the whole first surface and the windows before it. Photons
-    /// are traced, and scattered light is aimed, in the same way.
+    /// This tracer emits light uniformly towards the whole first surface and the windows before
+    /// this surface. It traces photons and aims scattered light in the same way as the tracer of
+    /// [`Self::new`].
     #[must_use]
     pub fn evenly(scene: &Scene) -> Self {
         let plain = Self::new(scene);
@@ -115,7 +116,7 @@ impl Tracer {
         }
     }
 
-    /// Emits the photons of a block, omitting those drawn outside the light.
+    /// Emits the photons of a block, except for photons drawn outside the light.
     #[inline]
     fn emit_block(
         &self,
@@ -125,12 +126,13 @@ impl Tracer {
         ledger: &mut Ledger,
     ) {
         for first in range.clone().step_by(ABREAST) {
-            // Beyond the end of the range, the last photon is emitted again and discarded.
+            // At the end of the range, the group is filled up with copies of the last photon,
+            // which are discarded.
             let index = |i: usize| (first + i as u64).min(range.end - 1);
             let (rays, weights) = self.emitter.emit(|i, block| numbers.words(index(i), block));
             for ((index, ray), weight) in (first..range.end).zip(rays).zip(weights) {
-                // A point drawn within the bounds of a disc but outside the disc is counted, and
-                // carries no light.
+                // A point drawn within the bounding square of a disc but outside the disc counts
+                // as a photon and carries no light.
                 if weight > 0.0 {
                     ledger.emitted += weight / radiance_per_flux(&ray);
                     photons.push(Photon {
@@ -148,8 +150,8 @@ impl Tracer {
         }
     }
 
-    /// Traces a photon over a leg: what it meets, the planes it crosses before that, and its start
-    /// on the next leg. Returns false where the photon ends.
+    /// Traces a photon over a leg: finds what it meets, reports the planes that it crosses before,
+    /// and determines its start on the next leg. Returns false if the photon ends on this leg.
     #[inline]
     fn follow(
         &self,
@@ -160,7 +162,7 @@ impl Tracer {
         ledger: &mut Ledger,
     ) -> bool {
         let this = &self.legs[leg];
-        // Scattered light is aimed at windows and not booked.
+        // Scattered light is aimed at windows, so the ledger does not count it.
         let mut beyond = Ledger::default();
         let account = if photon.counts { ledger } else { &mut beyond };
         let Flight {
@@ -241,8 +243,8 @@ impl FlightLeg {
         }
     }
 
-    /// The start on this leg of a photon that arrives at the end of the previous leg; `None` when
-    /// it ends there.
+    /// The start on this leg of a photon that arrives at the end of the previous leg; `None` if
+    /// the photon ends there.
     #[inline(never)]
     fn begin(&self, before: &Course, arrival: &Arrival, words: [u32; 4]) -> Option<Flight> {
         let arrival = arrival.moved(&before.frame, &self.courses.along.frame);
@@ -274,8 +276,8 @@ impl FlightLeg {
             planes_on_leg,
             ..
         } = course;
-        // Light that has left an object and would meet it again is lost, even if something stops
-        // the light before: a blocker beyond a plane does not add light.
+        // Light that has left an object and would meet it again is lost, even if a blocker stops
+        // the light first. Otherwise a blocker beyond a plane would add light at the plane.
         let stopped = self.rejoins.is_some() && met.is_some();
         if stopped && obstacles.meets(self.rejoins, &ray, from) {
             return;
@@ -294,8 +296,8 @@ impl FlightLeg {
                 Side::Before => distance <= end,
                 Side::After => distance < end,
             };
-            // A surface that is not flat, or not across the leg, may begin before the plane that
-            // records the light that the surface receives.
+            // A plane records the light that a surface receives. If this surface is curved or
+            // oblique, part of it may lie before the plane.
             let ends = |what: &HitKind| what.is(self.ends);
             let crossed =
                 crossed || on_path && obstacles.visibility(&ray, from, distance, side, ends) > 0.0;
@@ -313,7 +315,7 @@ impl FlightLeg {
     }
 }
 
-/// Whether a line may meet an object twice.
+/// Whether a straight line may meet an object twice.
 fn bends(scene: &Scene, object: Object) -> bool {
     match object {
         Object::Surface(_) => false,
@@ -373,8 +375,8 @@ impl PhotonSource for Tracer {
                 record(plane, crossings);
                 crossings.clear();
             }
-            // The sums of blocks are summed, so rounding errors grow with the number of blocks, not
-            // with that of photons.
+            // Each block has its own sum, so rounding errors grow with the number of blocks, not
+            // with the number of photons.
             total.add(&block);
             progress(end - start);
         }

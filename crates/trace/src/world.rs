@@ -26,7 +26,7 @@ impl PlaneInWorld {
     }
 
     /// The point where a ray crosses the plane, in metres, and the unit vector along which light
-    /// travels there. For a plane on a surface the point lies on the surface. `None` for
+    /// travels there. For a plane on a surface the point lies on the surface. Returns `None` for
     /// coordinates that no ray has.
     #[must_use]
     pub fn ray(&self, seen: &TwoPlane) -> Option<[DVec3; 2]> {
@@ -42,9 +42,9 @@ impl PlaneInWorld {
         Some([self.leg.to_world(point), along])
     }
 
-    /// The flux of a photon times the number of photons emitted, W. It is the photon's weight
-    /// without the factor that converts to radiance space, 1 over cos θ dω / du dv
-    /// (docs/conventions.md).
+    /// The flux of a photon times the number of photons emitted, W. This is the photon's weight
+    /// times cos θ dω / du dv, because the reciprocal of this factor converts flux to radiance
+    /// space (docs/conventions.md).
     #[must_use]
     pub fn flux(&self, crossing: &Crossing) -> f64 {
         crossing.weight * self.plane_on_leg.flux_per_radiance(&crossing.ray)

@@ -7,7 +7,7 @@ use crate::common::estimates;
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_trace::{Backward, Tracer};
 
-/// The name of a scene, its surfaces, its path and its planes.
+/// A test case: the name of a scene, its surfaces, its path and its planes.
 type Case = (&'static str, &'static str, &'static str, &'static str);
 
 /// All kinds of planes on one surface.

@@ -98,7 +98,7 @@ impl Bench<'_> {
     }
 }
 
-/// A map of 24 × 12 pixels, all faint but one, written to a file.
+/// Writes a map of 24 × 12 pixels to a file; one pixel is bright and all others are faint.
 fn write_map(folder: &Path, name: &str, bright: (usize, usize)) {
     let map = LatLong::from_fn(24, 12, |d| 0.1 + 0.05 * d.y);
     #[expect(clippy::cast_possible_truncation, reason = "what the file holds")]
@@ -259,7 +259,7 @@ fn irradiance(light: &str) -> [[f64; 2]; 2] {
         ..Bench::default()
     };
     let scene = bench.scene("Aimed", 400_000);
-    // This is the integral of Hann windows in x, y, u and v.
+    // The number is the integral of Hann windows in x, y, u and v.
     let window = 0.4_f64.powi(4);
     let found = [
         estimates(&Tracer::new(&scene), &scene).0,

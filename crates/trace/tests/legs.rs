@@ -79,7 +79,8 @@ fn all_ways_agree_on_every_leg() {
         (STAR, &nearer),
         (STAR, GRATING),
     ] {
-        // Light leaves a mesh in all directions, so a plain photon rarely finds a third surface.
+        // Light leaves a mesh in all directions, so a photon that is not aimed rarely meets a
+        // third surface.
         let visits = &["wall", "floor", "ceiling"][..if wall == STAR { 2 } else { 3 }];
         let aimed = scene(wall, blockers, visits, "Aimed", 800_000);
         let plain = scene(wall, blockers, visits, "Plain", 2_500_000);

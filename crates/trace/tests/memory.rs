@@ -1,7 +1,7 @@
-//! Measures the memory of a mesh of a million triangles: it has one hierarchy, however many legs
-//! see it.
+//! Measures the memory of a mesh of a million triangles, which has only one hierarchy for all
+//! legs.
 //!
-//! This is a process of its own, since it measures the memory of the whole process.
+//! The test runs in its own process, because it measures the memory of the whole process.
 
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
@@ -47,7 +47,7 @@ fn all_legs_and_tracers_share_what_a_mesh_takes() {
     let tracers = [Tracer::new(&scene), Tracer::evenly(&scene)];
     let backward = Backward::new(&scene).unwrap();
     let more = each(bytes("VmRSS") - held);
-    // The number of a triangle takes 4 bytes.
+    // The index of a triangle takes 4 bytes.
     assert!(more < 4.0, "{more} more bytes a triangle for three tracers");
     drop((tracers, backward));
 }

@@ -114,7 +114,7 @@ fn parts(draw: &Draw, kind: u64) -> Parts {
         3 => parts.triangles[any] = [a, c, b],
         4 => parts.triangles.extend([parts.triangles[any]; 2]),
         5 => parts.triangles.push([a, c, b]),
-        // Reverses the whole mesh.
+        // Adds the reverse of every triangle.
         6 => {
             let other = |[a, b, c]: &[usize; 3]| [*a, *c, *b];
             let other: Vec<_> = parts.triangles.iter().map(other).collect();
@@ -139,7 +139,7 @@ fn parts(draw: &Draw, kind: u64) -> Parts {
     parts
 }
 
-/// The text of a mesh file; OBJ counts from 1, PLY from 0.
+/// Returns the text of a mesh file. OBJ files count from 1, and PLY files from 0.
 fn written(parts: &Parts, obj: bool) -> String {
     let mut text = String::new();
     let Parts {

@@ -131,8 +131,8 @@ fn windows_before_a_small_mirror_are_sent_evenly() {
     }
 }
 
-/// A point light with uniform emission is not aimed; otherwise the check would share the aim that
-/// it checks.
+/// A point light with uniform emission is not aimed, because the check must be independent of the
+/// aiming that it checks.
 #[test]
 fn what_is_sent_evenly_has_one_density() {
     let mirror = BALL.replace("EVENT", "Mirror");

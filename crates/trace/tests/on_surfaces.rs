@@ -58,7 +58,7 @@ fn named((i, plane): (usize, &&str)) -> String {
     format!("(name: \"p{i}\", {plane})")
 }
 
-/// Arriving light is recorded completely, whatever the surface does to it.
+/// Arriving light is recorded completely, for every kind of surface.
 #[test]
 fn arriving() {
     let tangent = r#"at: Before("s"), orientation: Tangent"#;
@@ -74,7 +74,7 @@ fn arriving() {
     agree(&wall, &[tangent]);
 }
 
-/// A surface that reaches back beside the light is dark where it does.
+/// A surface that reaches back beside the light is dark in that part.
 #[test]
 fn arriving_behind_the_light() {
     let near = smooth("Mirror").replace("(0, 0, 1)", "(0, 0, 0.04)");
@@ -120,7 +120,7 @@ fn leaving_along_the_wall() {
     agree_in(window, "\"s\"", wall, &["at: Distance(1.6)"]);
 }
 
-/// Light with narrow slopes, too, is found from the whole of a wide light.
+/// Backward rays find light from all of a wide light, even if the slopes are narrow.
 #[test]
 fn narrow_slopes() {
     let window = "(x: Hann(0.1), u: Box(0.001))";

@@ -18,7 +18,7 @@ fn scene(overrides: &[(&str, &str)]) -> Scene {
 }
 
 /// Returns, for each plane, the mean of weight times window per emitted photon with its standard
-/// error; then the account of all photons.
+/// error, and the ledger of all photons.
 fn windowed_integrals(scene: &Scene) -> (Vec<[f64; 2]>, Ledger) {
     let tracer = Tracer::new(scene);
     let mut sums = vec![[0.0; 2]; scene.planes.len()];

@@ -48,7 +48,7 @@ fn total(rays: &[(DVec3, DVec3, f64)]) -> f64 {
     rays.iter().map(|(.., watts)| watts).sum()
 }
 
-/// All light that a Lambertian rectangle emits is π L A. With plain emission each photon has the
+/// A Lambertian rectangle emits the flux π L A in total. With plain emission each photon has the
 /// same flux.
 #[test]
 fn at_the_light_it_is_the_flux_of_the_light() {
@@ -59,8 +59,8 @@ fn at_the_light_it_is_the_flux_of_the_light() {
     for plane in 0..2 {
         let rays = rays(&scene, plane);
         let expected = PI * 2.0 * 0.06 * 0.04;
-        // The sum of 32768 rounding errors; on the way light grazes the adjacent surface, and some
-        // is lost.
+        // The limits are the sum of 32768 rounding errors and, at the second plane, the loss of
+        // light that grazes the adjacent surface.
         let slack = [1e-11, 0.3][plane];
         assert!(
             (total(&rays) / expected - 1.0).abs() < slack,

@@ -6,7 +6,7 @@ use clap::builder::TypedValueParser;
 use etendue_paper::Quality;
 use std::path::PathBuf;
 
-/// Effort levels of a figure.
+/// Parses the effort level of a figure.
 fn qualities() -> impl TypedValueParser<Value = Quality> {
     let named = |quality: Quality, help| (quality, quality.name(), help);
     one_of([
@@ -77,10 +77,10 @@ pub(crate) struct FigureArgs {
     #[arg(long, value_name = "DIR", default_value = "results/figures")]
     pub(crate) out: PathBuf,
 
-    /// Style file, in RON; each field is optional: (titles: false, scene: false, verdicts: false,
-    /// width: 3.33, floor: -40, palette: Viridis). titles also controls the notes; scene controls
-    /// the drawing above the planes; width is the page width in inches, 3.3 to 7; floor is the lowest
-    /// level of spectra in dB; palettes are Inferno, Magma, Viridis and Cividis
+    /// Style file, in RON, such as (titles: false, scene: false, verdicts: false, width: 3.33,
+    /// floor: -40); each field is optional. titles also controls the notes; scene controls the
+    /// drawing above the planes; width is the page width in inches, 3.3 to 7; floor is the lowest
+    /// level of spectra in dB; palette is Inferno, Magma, Viridis or Cividis
     #[arg(long, value_name = "FILE")]
     pub(crate) style: Option<PathBuf>,
 

@@ -33,9 +33,9 @@ pub(crate) struct RunArgs {
     #[command(flatten)]
     pub(crate) photons: PhotonArgs,
 
-    /// Trace until the noise of the photons at each plane is at most this share of the spectrum:
-    /// first 2^20 photons, then as many as are needed, up to --photons [default: 2^40]; the exit
-    /// code is 3 if these do not suffice. Errors of predictions are not included
+    /// Trace photons until their noise at each plane is at most this share of the spectrum, from
+    /// 2^20 photons up to --photons [default: 2^40]; the exit code is 3 if these do not suffice.
+    /// Errors of predictions are not included
     #[arg(long, value_name = "SHARE", value_parser = share)]
     pub(crate) target_error: Option<f64>,
 
@@ -128,7 +128,8 @@ pub(crate) struct PredictArgs {
     #[command(flatten)]
     pub(crate) out: StageFolderArgs,
 
-    /// Photons and seed of the measurement; where no theory applies, the other tracer uses as many
+    /// Photons, seed and method of the measurement. At planes without a theory, the other tracer
+    /// takes the place of the prediction, with the same number of photons
     #[command(flatten)]
     pub(crate) photons: PhotonArgs,
 
@@ -256,14 +257,14 @@ pub(crate) struct SchemaArgs {
     pub(crate) page: bool,
 }
 
-/// The values of `--to`.
+/// The values of the option `--to`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Program {
     /// Mitsuba 3: scene.xml, PLY files, and planes.json
     Mitsuba,
 }
 
-/// The values of `--save`.
+/// The values of the option `--save`.
 fn saves() -> impl TypedValueParser<Value = Save> {
     let named = |save: Save, help| (save, save.name(), help);
     one_of([
@@ -286,7 +287,7 @@ fn saves() -> impl TypedValueParser<Value = Save> {
     ])
 }
 
-/// The values of `--expect`.
+/// The values of the option `--expect`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Expect {
     /// Photons must agree with the exact predictions, and must show that the map of a first-order chain is wrong.

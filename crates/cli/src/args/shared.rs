@@ -11,11 +11,11 @@ use std::path::{Path, PathBuf};
 /// Overrides of the scene's measurement settings.
 #[derive(Debug, Args)]
 pub(crate) struct PhotonArgs {
-    /// Number of photons to emit, instead of the scene's
+    /// Number of photons to emit [default: as in the scene]
     #[arg(long, value_name = "N", value_parser = whole_number, allow_hyphen_values = true)]
     pub(crate) photons: Option<u64>,
 
-    /// Seed of the photons, instead of the scene's
+    /// Seed of the photons [default: as in the scene]
     #[arg(long, value_name = "N")]
     pub(crate) seed: Option<u64>,
 
@@ -46,7 +46,7 @@ pub(super) fn one_named<T: Copy + Send + Sync + 'static, const N: usize>(
     })
 }
 
-/// The methods a user may choose.
+/// Parses a measurement method.
 pub(super) fn methods() -> impl TypedValueParser<Value = Method> {
     let named = |method: Method, help| (method, method.name(), help);
     one_of([
@@ -80,7 +80,7 @@ pub(crate) struct ThreadArgs {
     pub(crate) count: Option<u16>,
 }
 
-/// Options of long commands.
+/// Options of commands that may take long.
 #[derive(Debug, Args)]
 pub(crate) struct WorkArgs {
     #[command(flatten)]
@@ -89,7 +89,7 @@ pub(crate) struct WorkArgs {
     #[command(flatten)]
     pub(crate) threads: ThreadArgs,
 
-    /// Print no progress, warnings or summary
+    /// Print no progress, no warnings about the scene and no summary
     #[arg(long)]
     pub(crate) quiet: bool,
 }
@@ -103,7 +103,7 @@ pub(crate) struct FolderArgs {
 }
 
 impl FolderArgs {
-    /// The requested folder, or else `out/NAME`.
+    /// Returns the requested folder, or `out/NAME` if no folder was requested.
     pub(crate) fn or_named(&self, name: impl AsRef<Path>) -> PathBuf {
         let named = || Path::new("out").join(name);
         self.folder.clone().unwrap_or_else(named)
@@ -130,7 +130,7 @@ pub(crate) struct SceneArgs {
 }
 
 impl SceneArgs {
-    /// The scene, for the pipeline.
+    /// Returns the scene file and its overrides, for the pipeline.
     pub(crate) fn source(&self) -> SceneSource {
         SceneSource::file(&self.path, &self.set)
     }
@@ -141,10 +141,11 @@ pub(super) fn assignment(text: &str) -> Result<(String, String), String> {
     Ok((path.trim().to_owned(), value.trim().to_owned()))
 }
 
-/// The largest share without a unit: a larger number is probably meant as a percentage.
+/// The largest share that may be written without a unit; a larger number is probably meant as a
+/// percentage.
 const MAX_PLAIN_SHARE: f64 = 0.05;
 
-/// Parses a share in (0, 1], in per cent or, if small, as a number.
+/// Parses a share in (0, 1], written in per cent or, if it is small, as a plain number.
 pub(super) fn share(text: &str) -> Result<f64, String> {
     let fault = || "must be a share of the spectrum, such as 0.1% or 0.001".to_owned();
     let parsed = |number: &str| number.trim().parse().ok().filter(|x: &f64| *x > 0.0);

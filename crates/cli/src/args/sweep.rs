@@ -44,8 +44,8 @@ pub(crate) struct SweepArgs {
     #[arg(long)]
     pub(crate) common_seed: bool,
 
-    /// Vary several fields together, value by value, instead of in all combinations; each must have
-    /// the same number of values
+    /// Vary several fields together, value by value, instead of in all combinations; all fields
+    /// must have the same number of values
     #[arg(long)]
     pub(crate) together: bool,
 

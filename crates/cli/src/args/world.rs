@@ -45,7 +45,8 @@ pub(crate) struct WorldArgs {
     #[arg(long, value_name = "N")]
     pub(crate) bounces: Option<u32>,
 
-    /// Add uniform light of this radiance, in W/(m² sr), from all directions, whatever lights the scene has
+    /// In addition to the lights of the scene, add uniform light of this radiance, in W/(m² sr),
+    /// from all directions
     #[arg(long, value_name = "RADIANCE", value_parser = radiance)]
     pub(crate) sky: Option<f64>,
 
@@ -53,8 +54,8 @@ pub(crate) struct WorldArgs {
     pub(crate) view: ViewArgs,
 }
 
-/// A camera from the command line, independent of the scene: it is named `command` and becomes the
-/// first.
+/// A camera from the command line, which does not depend on the scene. It is named `command` and
+/// becomes the first camera.
 #[derive(Debug, Args)]
 pub(crate) struct ViewArgs {
     /// Add a camera of 512 × 512 pixels at this point, in coordinates of the scene
@@ -150,7 +151,7 @@ impl RenderArgs {
     }
 }
 
-/// How the samples of a picture are distributed; `None` if all pixels have the same number of them.
+/// The distribution of a picture's samples; `None` if all pixels have the same number of samples.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RenderMethod(Option<SampleMethod>);
 

@@ -4,7 +4,7 @@ use etendue_compare::{AXES, CovarianceReport};
 use etendue_field::{tidy, uncertain};
 use etendue_pipeline::table::aligned;
 
-/// The matrix entries that are shown: variances, and the covariances created by travel.
+/// The matrix entries that are shown: variances, and the covariances that arise as light travels.
 const SHOWN: [[usize; 2]; 6] = [[0, 0], [0, 2], [2, 2], [1, 1], [1, 3], [3, 3]];
 
 /// A table for each plane, with remarks.

@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 
 /// Width and height of a picture in pixels.
 const PIXELS: usize = 1024;
-/// Extent of a picture, in widths of the light's Gaussian; our photons use the same extent.
+/// Extent of a picture, in widths of the light's Gaussian; Étendue's photons have the same extent.
 const WIDTHS: f64 = 3.0;
 
 impl Writer {
@@ -60,7 +60,8 @@ impl Writer {
         self.xml.projector(&file, angle);
     }
 
-    /// A sheet that emits along its normal. Its picture has x to the right and y down.
+    /// Writes a sheet that emits along its normal. The picture of the sheet has x to the right and
+    /// y down.
     fn beam(&mut self, irradiance: f64, image: &Image) {
         let half = WIDTHS * image.width[0].max(image.width[1]);
         let picture = sampled([PIXELS; 2], |column, row| {
@@ -93,6 +94,6 @@ fn error_of(image: &Image, half: f64) -> String {
         .map_or(0.0, |g| 2.0 * PI * PI * g.frequency * g.frequency);
     let error = pixel * pixel / 8.0 * (2.0 * PI / (narrow * narrow) + wave);
     format!(
-        "the light: a picture of {PIXELS} by {PIXELS} pixels, off by {error:.1e} of its peak at most"
+        "the light: a picture of {PIXELS} by {PIXELS} pixels, with errors of at most {error:.1e} of its peak"
     )
 }

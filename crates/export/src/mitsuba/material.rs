@@ -66,8 +66,8 @@ impl Writer {
         })
     }
 
-    /// Blends `inside` with `outside` beyond the edge of a picture: Mitsuba itself can only
-    /// continue the picture there.
+    /// Writes `inside` within the edge of a picture and `outside` beyond it, because Mitsuba
+    /// itself can only continue the picture there.
     fn inside(
         &mut self,
         pattern: &Pattern,
@@ -93,8 +93,8 @@ impl Writer {
                     format!("<bsdf type=\"diffuse\">{albedo}</bsdf>"),
                 )
             }
-            // `tests/peers/etendue_bsdfs.py` adds this plugin of Mitsuba 0.6 to Mitsuba 3. Its lobe
-            // is (n + 2)/2π cosⁿ, ours (n + 1)/2π cosⁿ.
+            // `tests/peers/etendue_bsdfs.py` adds this plugin of Mitsuba 0.6 to Mitsuba 3. The
+            // lobe of this plugin is (n + 2)/2π cosⁿ, and Étendue's lobe is (n + 1)/2π cosⁿ.
             Lobe::Phong { exponent } => {
                 let share = (exponent + 1.0) / (exponent + 2.0);
                 let albedo = self.varied("specular_reflectance", &albedo.times(share));
@@ -132,8 +132,8 @@ impl Writer {
 /// A perfect reflector.
 const NO_METAL: &str = "<string name=\"material\" value=\"none\"/>";
 
-/// Writes n and k. A dielectric is written as a metal without absorption, which reflects in the
-/// same way.
+/// Returns n and k. A dielectric becomes a metal without absorption, which reflects in the same
+/// way.
 fn index(fresnel: &Fresnel) -> Option<[f64; 2]> {
     match *fresnel {
         Fresnel::White => None,

@@ -1,5 +1,5 @@
-//! Smooth surfaces as fine meshes: Mitsuba has whole spheres and cylinders, but no patches of them
-//! around a vertex.
+//! Smooth surfaces as fine meshes, because Mitsuba has whole spheres and cylinders, but no pieces
+//! of them around a vertex.
 
 use etendue_field::Patch;
 use glam::{DVec2, DVec3};
@@ -7,14 +7,14 @@ use std::f64::consts::TAU;
 
 /// Minimum and maximum number of rings of triangles.
 const RINGS: [usize; 2] = [16, 256];
-/// Maximum distance of the triangles from the surface, relative to the aperture. It is exceeded if
-/// it would require more than the maximum number of rings.
+/// Maximum distance of the triangles from the surface, relative to the aperture. Patches for which
+/// this would require more than the maximum number of rings have a larger distance.
 const NEAR: f64 = 1e-5;
-/// Corners of ring i, divided by i. With 6, triangles at the edge are about as long as wide: 2π/6 ≈
-/// 1.
+/// The number of corners of ring i, divided by i. With 6 corners, triangles at the edge are about
+/// as long as wide, because 2π/6 ≈ 1.
 const SECTORS: usize = 6;
-/// Corners of the edge of a flat patch. The edge deviates from a circle by (π/512)²/2 = 2·10⁻⁵ of
-/// its radius.
+/// The number of corners of the edge of a flat patch. The edge deviates from a circle by
+/// (π/512)²/2 = 2·10⁻⁵ of its radius.
 const EDGE: usize = 512;
 
 /// A patch as triangles.
@@ -23,7 +23,7 @@ pub(super) struct PatchMesh {
     pub(super) vertices: Vec<MeshVertex>,
     /// Triangles, counterclockwise seen from the front of the patch.
     pub(super) faces: Vec<[u32; 3]>,
-    /// Maximum distance of its triangles from the patch, metres.
+    /// Maximum distance of the triangles from the patch, in metres.
     pub(super) error: f64,
 }
 
@@ -61,8 +61,8 @@ fn rings(patch: &Patch, rings: usize, sectors: usize) -> PatchMesh {
         let normal = patch.normal(point);
         MeshVertex { point, normal, uv }
     };
-    // A hemisphere is steep at its edge. Rings are closer together there: they are evenly spaced on
-    // the sphere.
+    // A hemisphere is steep at its edge. Rings are closer together near the edge, because they are
+    // evenly spaced on the sphere.
     let steep = (patch.aperture * patch.curvature[2].abs()).min(1.0);
     let radius = |share: f64| {
         if steep > 0.0 {
@@ -80,7 +80,10 @@ fn rings(patch: &Patch, rings: usize, sectors: usize) -> PatchMesh {
         };
         vertices.extend((0..sectors).map(|sector| vertex(r, sector as f64 / sectors as f64)));
     }
-    #[expect(clippy::cast_possible_truncation, reason = "some 400,000 at most")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "a patch has at most some 200,000 corners"
+    )]
     let corner = |ring: usize, sector: usize| match ring {
         0 => 0,
         _ => (1 + (ring - 1) * sectors + sector % sectors) as u32,
@@ -174,7 +177,7 @@ mod tests {
         }
     }
 
-    /// A hemisphere. Its edge is vertical, and its triangles are as accurate there as elsewhere.
+    /// The edge of a hemisphere is vertical; its triangles are as accurate there as elsewhere.
     #[test]
     fn half_a_ball_is_met_as_well() {
         let mesh = mesh(&patch([10.0 / 3.0; 3], 0.3));

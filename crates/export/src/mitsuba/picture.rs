@@ -7,7 +7,10 @@ pub(super) fn pfm(width: usize, values: &[f64]) -> Vec<u8> {
     let mut bytes = format!("Pf\n{width} {rows}\n-1.0\n").into_bytes();
     for row in values.chunks_exact(width).rev() {
         for value in row {
-            #[expect(clippy::cast_possible_truncation, reason = "32 bits are kept")]
+            #[expect(
+                clippy::cast_possible_truncation,
+                reason = "the file holds 32-bit numbers"
+            )]
             bytes.extend((*value as f32).to_le_bytes());
         }
     }

@@ -1,7 +1,8 @@
 //! Environments as Mitsuba's environment pictures.
 //!
-//! Columns are intervals of longitude in both formats. Rows are intervals of latitude in ours but
-//! samples in Mitsuba's: its first row is the upper pole, and its last row is the lower pole.
+//! Columns are intervals of longitude in both formats. Rows are intervals of latitude in Étendue's
+//! pictures and samples in Mitsuba's, whose first row is the upper pole and whose last row is the
+//! lower pole.
 
 use etendue_field::{Environment, EnvironmentMap};
 use glam::DVec3;
@@ -11,10 +12,10 @@ use std::f64::consts::{PI, TAU};
 /// (2π/4096/σ)²/8 of the peak: 2·10⁻⁶ at σ = 0.4, 2·10⁻⁴ at σ = 0.04.
 const AROUND: usize = 4096;
 
-/// The pixels per row, and the radiance row by row.
+/// Returns the number of pixels per row, and the radiance row by row.
 ///
-/// A pixel map is represented exactly: the new nodes include all old ones. Light against the
-/// central ray is set to 0.
+/// A pixel map is represented exactly, because the nodes of the new picture include all nodes of
+/// the map. Light against the central ray is set to 0.
 pub(super) fn map(environment: &Environment) -> (usize, Vec<f64>) {
     let [width, rows] = match &environment.map {
         EnvironmentMap::Lobes(_) => [AROUND, AROUND / 2 + 1],
@@ -46,8 +47,8 @@ pub(super) fn map(environment: &Environment) -> (usize, Vec<f64>) {
     (width, pixels.collect())
 }
 
-/// The subdivision factor of pixels. It is odd, so that centres of old pixels are centres of new
-/// ones.
+/// The subdivision factor of pixels. This factor is odd, so the centres of old pixels are also
+/// centres of new pixels.
 fn finer(width: usize) -> usize {
     let least = AROUND.div_ceil(width);
     if width >= AROUND / 2 { 1 } else { least | 1 }
@@ -67,7 +68,8 @@ mod tests {
     use etendue_field::{Frame, LatLong, Raster};
     use std::sync::Arc;
 
-    /// Mitsuba's interpolation between its nodes equals ours between our pixels.
+    /// Checks that Mitsuba's interpolation between its nodes equals Étendue's interpolation
+    /// between pixels.
     #[test]
     fn rows_become_nodes() {
         let values = (0..24).map(|i| f64::from(i * i % 17)).collect();

@@ -14,9 +14,9 @@ const PERIOD: usize = 512;
 /// A number that follows a pattern.
 #[derive(Clone, Copy)]
 pub(super) struct VariedTexture<'a> {
-    /// The pattern; `None` for a constant, which is the second value of the range.
+    /// The pattern, or `None` for a constant, whose value is then the second value of `range`.
     pub(super) pattern: Option<&'a Pattern>,
-    /// The values where the pattern is 0 and 1.
+    /// The values of the number where the pattern is 0 and where it is 1.
     pub(super) range: [f64; 2],
 }
 
@@ -26,7 +26,7 @@ impl VariedTexture<'_> {
         low + share * (high - low)
     }
 
-    /// The number times a factor.
+    /// Returns the number multiplied by a factor.
     pub(super) fn times(self, factor: f64) -> Self {
         let range = self.range.map(|value| factor * value);
         Self { range, ..self }
@@ -69,7 +69,7 @@ impl Writer {
             modulation,
             phase,
         } = *grating;
-        // Mitsuba enlarges pictures of one row.
+        // The picture has two rows, because Mitsuba enlarges pictures of one row.
         let (mut size, mut scale, mut offset) = ([2; 2], [0.0; 2], [0.0; 2]);
         size[axis] = PERIOD;
         scale[axis] = frequency;
@@ -81,8 +81,8 @@ impl Writer {
         self.bitmap(name, picture, "bilinear", "repeat", &scaled(scale, offset))
     }
 
-    /// A picture that is 1 within another picture and 0 beyond its edge. Only the middle one of its
-    /// nine pixels is 1.
+    /// A picture that is 1 within another picture and 0 beyond its edge. The picture has nine
+    /// pixels, and only the middle pixel is 1.
     pub(super) fn within(&mut self, name: &str, picture: &Picture) -> String {
         let middle = sampled([3, 3], |column, row| {
             let is_middle = |at: f64| (1.0..2.0).contains(&at);

@@ -45,9 +45,9 @@ impl Xml {
         self.line(&format!("<!-- {text} -->"));
     }
 
-    /// A flat shape across the central ray, facing along z.
+    /// Writes a flat shape across the central ray that faces along z.
     pub(super) fn flat(&mut self, id: &str, shape: &Shape, distance: f64, looks: &str) {
-        // Mitsuba's rectangle has corners (±1, ±1), its disk the radius 1.
+        // Mitsuba's rectangle has the corners (±1, ±1), and its disk has the radius 1.
         let (name, half, [x, y]) = match *shape {
             Shape::Rectangle(Rectangle { center, size }) => {
                 ("rectangle", size.map(|side| 0.5 * side), center)
@@ -142,7 +142,7 @@ pub(super) fn black() -> String {
     "<ref id=\"black\"/>".to_owned()
 }
 
-/// An unscaled picture over the whole of a light.
+/// Returns the texture for a picture that covers a whole light, without scaling.
 pub(super) fn picture(name: &str, file: &str) -> String {
     format!(
         "<texture type=\"bitmap\" name=\"{name}\"><string name=\"filename\" value=\"{file}\"/>\

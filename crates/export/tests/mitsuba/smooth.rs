@@ -63,7 +63,7 @@ fn every_lobe_has_its_word_and_its_numbers() {
     let xml = Document::parse(&xml).unwrap();
     let [phong] = of_type(&xml, "phong").try_into().unwrap();
     assert!((number(&phong, "exponent") - 30.0).abs() < 1e-12); // rounding
-    // (n + 2)/2π times this is (n + 1)/2π times the albedo.
+    // Multiplied by (n + 2)/2π, this value is (n + 1)/2π times the albedo.
     assert!((number(&phong, "specular_reflectance") - 0.8 * 31.0 / 32.0).abs() < 1e-12); // rounding
     assert!(number(&phong, "diffuse_reflectance").abs() < 1e-300); // the very number
     for (lobe, distribution) in [("Ggx(0.2)", "ggx"), ("Beckmann(0.2)", "beckmann")] {
@@ -161,8 +161,8 @@ fn patterns_become_pictures() {
     let cosine = texture("Cosine(axis: Y, frequency: 15, modulation: 0.9, phase: 1.5)");
     let ([width, rows], values) = picture(&cosine, "smooth_0_reflectance.pfm");
     assert_eq!([width, rows], [2, 512]);
-    // The last row is the lowest. It is half a pixel before the end of a period, where the cosine
-    // is nearly 1.
+    // The values begin with the lowest row, which is the last row of the picture. Its centre is
+    // half a pixel before the end of a period, where the cosine is nearly 1.
     let expected = 0.25 * (1.0 + 0.9 * f64::cos(std::f64::consts::TAU * 0.5 / 512.0));
     assert!((f64::from(values[0]) - expected).abs() < 1e-7); // 32 bits
     let xml = Document::parse(text(&cosine, "scene.xml")).unwrap();

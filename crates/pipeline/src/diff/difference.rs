@@ -58,8 +58,8 @@ impl Diff {
         [slices.count(), parameters.sum()]
     }
 
-    /// Returns the level of each test. With this level, the probability is α that any of the tests
-    /// finds a difference where there is none.
+    /// Returns the level of each test. At this level, the probability that any of the tests finds
+    /// a difference where there is none is α.
     pub(super) fn level(&self) -> f64 {
         let [slices, parameters] = self.tests();
         sidak(self.alpha, (slices + parameters).max(1))
@@ -74,7 +74,7 @@ impl Diff {
     }
 }
 
-/// Checks whether a field affects only how a scene is run.
+/// Checks whether a field affects only the measurement of a scene, and not the scene itself.
 pub(super) fn is_of_run(change: &FieldChange) -> bool {
     change.field.starts_with("run.")
 }

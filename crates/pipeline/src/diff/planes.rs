@@ -19,7 +19,7 @@ pub(super) struct PlaneDiff {
 /// The outcome for a plane.
 #[derive(Debug)]
 pub(super) enum PlaneDifference {
-    /// One result lacks the plane: 0 for the first, 1 for the second.
+    /// One result lacks the plane; the number is 0 for the first result and 1 for the second.
     Missing(usize),
     /// The plane is measured in different units, at different frequencies or in a different window,
     /// as described.
@@ -35,15 +35,15 @@ pub(super) struct Compared {
     pub(super) parameters: Vec<ParameterDiff>,
     pub(super) slopes: [Option<Estimate>; 2],
     pub(super) prediction: PredictionDiff,
-    /// Why the plane is undecided although the tests find no difference.
+    /// The reason why the plane is undecided although the tests find no difference.
     unresolved: Option<String>,
-    /// Why the tests are invalid whatever they find.
+    /// The reason why the outcome of the tests cannot be trusted.
     invalid: Option<String>,
     /// Whether the same photons gave the same numbers.
     pub(super) is_identical: bool,
 }
 
-/// A parameter that both measure.
+/// A parameter that both results measure.
 #[derive(Debug)]
 pub(super) struct ParameterDiff {
     pub(super) name: String,
@@ -58,19 +58,21 @@ pub(super) struct ParameterDiff {
 pub(super) struct PredictionDiff {
     /// ‖F_A − F_B‖ over the larger norm.
     pub(super) difference: f64,
-    /// Whether both were predicted for one scene, and differ by more than their errors.
+    /// Whether both predictions are for the same scene, and differ by more than their errors.
     pub(super) is_wrong: bool,
 }
 
-/// Smaller relative differences count as the rounding of sums.
+/// The relative difference below which two numbers are taken to differ only by the rounding of
+/// sums.
 pub(super) const ROUNDING: f64 = 1e-12;
-/// The largest difference of closed forms in two versions, which may order their sums differently.
-/// It is the rounding error of the largest terms.
+/// The largest accepted relative difference between closed forms in two versions, which may order
+/// their sums differently. This difference allows for the rounding errors of the largest terms.
 const CLOSED_FORM: f64 = 1e-9;
-/// The number of combined standard errors beyond which two predictions differ. The error is a norm
-/// over all frequencies, which hardly fluctuates.
+/// The number of combined standard errors beyond which two predictions differ. The difference is a
+/// norm over all frequencies, so its random fluctuation is small.
 const APART: f64 = 3.0;
-/// The probability, over all planes, of taking independent noise for shared photons.
+/// The probability, over all planes, that independent noise is mistaken for that of shared
+/// photons.
 const SHARED: f64 = 1e-4;
 
 impl PlaneDiff {
@@ -86,7 +88,7 @@ impl PlaneDiff {
             .map_or(Verdict::Undecided, |compared| compared.verdict(level))
     }
 
-    /// Returns why the plane is undecided.
+    /// Returns the reason why the plane is undecided, or `None` if it is decided.
     pub(super) fn undecided(&self, level: f64) -> Option<String> {
         match &self.found {
             PlaneDifference::Missing(0) => Some("only the second result has this plane".to_owned()),
@@ -102,7 +104,7 @@ impl PlaneDiff {
 }
 
 impl Compared {
-    /// Returns the tested parameters with their pulls.
+    /// Returns the tested parameters, with their differences in standard errors.
     pub(super) fn pulls(&self) -> impl Iterator<Item = &ParameterDiff> {
         self.parameters.iter().filter(|_| self.invalid.is_none())
     }
@@ -154,7 +156,7 @@ pub(super) fn of_results(
     Ok(planes)
 }
 
-/// Two results, of the same scene or not.
+/// Two results, which may belong to different scenes.
 struct ResultPair<'a> {
     a: &'a StoredResult,
     b: &'a StoredResult,
@@ -186,8 +188,8 @@ impl ResultPair<'_> {
         Ok(PlaneDifference::Compared(Box::new(compared)))
     }
 
-    /// Checks whether both results have the same method, seed, photons and batches, and so share
-    /// photons as far as their scenes agree.
+    /// Checks whether both results have the same method, seed, photons and batches. Such results
+    /// share the photons of everything that their scenes have in common.
     fn has_one_seed(&self) -> bool {
         let [a, b] = [self.a, self.b].map(|result| {
             let index = &result.index;
@@ -241,7 +243,7 @@ impl ResultPair<'_> {
         let difference = apart(&a.grid, &a.predicted, &b.predicted);
         let error = |plane: &StoredPlane| plane.quadrature_error.unwrap_or(0.0).powi(2);
         let error: f64 = planes.into_iter().map(error).sum();
-        // The prediction of a reference is another measurement.
+        // At a plane of the class `reference`, the prediction is itself a measurement.
         let reference = Class::Reference.to_string();
         let is_reference = planes.iter().any(|plane| plane.class == reference);
         let allowed = CLOSED_FORM.max(APART * error.sqrt());
@@ -251,7 +253,8 @@ impl ResultPair<'_> {
         }
     }
 
-    /// Returns why the tests are invalid for these photons, whatever they find.
+    /// Returns the reason why the outcome of the tests cannot be trusted for these photons, if
+    /// there is one.
     fn invalid(&self, planes: [&StoredPlane; 2], slices: [&StoredSlices; 2]) -> Option<String> {
         let results = [self.a, self.b];
         for ((plane, slices), result) in planes.into_iter().zip(slices).zip(results) {
@@ -265,7 +268,7 @@ impl ResultPair<'_> {
                 ));
             }
             let each = plane.in_window as f64 / result.index.batches as f64;
-            // For a plane that is dark in one result, the light in the other decides.
+            // A plane without light in one result is judged by the photons of the other result.
             if plane.in_window > 0 && each < MIN_PHOTONS_PER_BATCH {
                 return Some(format!(
                     "{folder} has {} photons in its window, too few for a test",
@@ -281,7 +284,7 @@ impl ResultPair<'_> {
         None
     }
 
-    /// Returns why a test without a detected difference does not prove that there is none.
+    /// Returns the reason why the results may differ although the test detects no difference.
     fn unresolved(&self, test: &TwoSamples) -> Option<String> {
         let [a, b] = [self.a, self.b].map(|result| &result.index);
         let [apart, noise] = [test.difference, test.noise].map(|share| percent(share, 3));
@@ -297,7 +300,7 @@ impl ResultPair<'_> {
             ));
         }
         let resolution = [a, b].map(|r| r.scene_file["run"]["resolution"].as_f64());
-        // Two results that each have this noise differ by √2 times as much.
+        // The difference of two results has √2 times the noise of each.
         let resolution = SQRT_2 * resolution.into_iter().flatten().fold(0.0, f64::max);
         (test.noise > resolution).then(|| {
             let resolution = percent(resolution, 3);
@@ -307,8 +310,8 @@ impl ResultPair<'_> {
 }
 
 /// Returns the number of photons of equal weight per batch that would vary as much as the light of
-/// this sample. `None` if the number is large enough that no batch would be empty, as for a single
-/// run (`etendue_compare`).
+/// this sample. Returns `None` if this number is so large that no batch would be empty;
+/// `etendue_compare` applies the same rule to a single run.
 fn carried_by(sample: &Sample, grid: &SliceGrid) -> Option<f64> {
     let zero = [0, 0, grid.nu.half];
     let batches = sample.batches as f64;
@@ -317,7 +320,7 @@ fn carried_by(sample: &Sample, grid: &SliceGrid) -> Option<f64> {
     (sigma > 0.0 && each < libm::log(batches)).then_some(each)
 }
 
-/// Returns ‖a − b‖ over the larger norm; 0 if both are dark.
+/// Returns ‖a − b‖ divided by the larger norm, or 0 if both norms are 0.
 fn apart(grid: &SliceGrid, a: &Array3<Complex>, b: &Array3<Complex>) -> f64 {
     let sample = |mean: &Array3<Complex>| Sample {
         mean: mean.clone(),

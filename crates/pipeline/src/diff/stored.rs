@@ -35,13 +35,14 @@ pub(super) struct ResultIndex {
     files: BTreeMap<String, String>,
 }
 
-/// The part of a plane in it that `diff` needs. Numbers that do not exist are null.
+/// The numbers of a plane in `summary.json` that `diff` needs. Numbers that do not exist are null.
 #[derive(Debug, Deserialize)]
 pub(super) struct StoredPlane {
     pub(super) name: String,
     pub(super) class: String,
     pub(super) in_window: u64,
-    /// Results of earlier versions lack it.
+    /// The effective number of independent real numbers in the noise, which results of earlier
+    /// versions lack.
     #[serde(default)]
     noise_dof: Option<f64>,
     pub(super) quadrature_error: Option<f64>,

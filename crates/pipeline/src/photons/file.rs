@@ -62,7 +62,8 @@ impl<'a> Content<'a> {
     /// Returns the content of an MCPL file: photons of unknown energy, in f64.
     pub(super) fn mcpl(rays: &'a Rays, rows: u64) -> Self {
         let mut comments = vec![WATTS.as_bytes().to_vec(), rays.about.clone().into_bytes()];
-        // The format stores the number of emitted photons as a sum.
+        // MCPL stores the number of emitted photons as a sum, which is added up when files are
+        // merged.
         comments.extend(stat_sum_comment("emitted_photons", rays.emitted as f64));
         let header = mcpl::McplHeader {
             universal_pdg: Some(PHOTON),

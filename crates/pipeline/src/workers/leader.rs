@@ -23,12 +23,11 @@ type Taken<'a> = dyn FnMut(&Piece, &[u8]) -> Result<(), Failure> + Send + 'a;
 /// Returns the piece with that number, to be handed out.
 type Given<'a> = dyn Fn(u32) -> Result<Packed, Failure> + Sync + 'a;
 
-/// The minimum number of seconds after which others return unfinished batches, and the further
-/// seconds for each process. They are long enough for the leading process to handle the returned
-/// batches.
+/// The number of seconds after which other processes return unfinished batches: a minimum, and an
+/// addition for each process. The leading process has enough time to handle the returned batches.
 const RETURN_SECONDS: [f64; 2] = [5.0, 0.05];
 
-/// The leading process and those it leads.
+/// The leading process, with the processes that it leads.
 pub struct Leader<'a> {
     workers: &'a dyn Workers,
     others: Mutex<Vec<Other>>,
@@ -37,11 +36,11 @@ pub struct Leader<'a> {
 /// One of the processes.
 #[derive(Clone, Copy, Debug)]
 struct Other {
-    /// Parts of batches that it measures in parallel.
+    /// Number of parts of batches that the process measures in parallel.
     abreast: usize,
-    /// Number of pieces it currently holds.
+    /// Number of pieces on which the process currently works.
     has: usize,
-    /// Whether it is waiting for an answer.
+    /// Whether the process is waiting for an answer.
     waits: bool,
 }
 
@@ -72,8 +71,8 @@ impl<'a> Leader<'a> {
         }
     }
 
-    /// Measures batches of a scene, each from where it stopped. Returns the finished ones, and
-    /// those that `watch` has stopped.
+    /// Measures batches of a scene, and continues each batch after its finished parts. Returns the
+    /// finished batches, and the batches that `watch` has stopped.
     pub(crate) fn measure(
         &self,
         packing: Packing<'_>,
@@ -123,8 +122,8 @@ impl<'a> Leader<'a> {
         Ok((all, begun.into_values().chain(stopped).collect()))
     }
 
-    /// Predicts planes of a scene: `own` computes one here, and `unpacked` decodes what another
-    /// process has sent.
+    /// Predicts planes of a scene: `own` predicts a plane in this process, and `unpacked` decodes
+    /// a prediction that another process has sent.
     pub fn predict(
         &self,
         scene: &Scene,
@@ -135,8 +134,8 @@ impl<'a> Leader<'a> {
         self.pieces(&key([scene]), Task::Planes, planes, own, unpacked)
     }
 
-    /// Runs the points of a sweep over these scenes: `own` computes one here, and `unpacked` stores
-    /// what another process has sent.
+    /// Runs the points of a sweep over these scenes: `own` runs a point in this process, and
+    /// `unpacked` stores a point that another process has sent.
     pub fn run<T: Send>(
         &self,
         scenes: &[Scene],
@@ -180,8 +179,8 @@ impl<'a> Leader<'a> {
         Ok(all)
     }
 
-    /// Processes the remaining pieces, here by `own` and in other processes on request; `give`
-    /// makes the pieces to send and `take` receives their results.
+    /// Processes the remaining pieces, by `own` in this process and on request in other processes.
+    /// `give` makes the pieces to send, and `take` receives their results.
     fn share<T>(
         &self,
         key: &str,
@@ -193,7 +192,7 @@ impl<'a> Leader<'a> {
         let (own, others) = thread::scope(|scope| {
             let others = scope.spawn(|| {
                 let served = self.serve(key, task, left, (give, take));
-                // If other processes have failed, this one need not continue.
+                // If other processes have failed, the leading process need not continue.
                 served.inspect_err(|_| left.drop_all())
             });
             let own = own().inspect_err(|_| left.drop_all());
@@ -233,11 +232,12 @@ impl<'a> Leader<'a> {
                     return Err(Failure::cannot_run(format!("process {who}: {message}")));
                 }
                 WorkerMessage::Done { pieces } => {
-                    // The other process continues while its pieces are decoded and stored.
+                    // The other process receives new pieces first, and works on them while its
+                    // results are decoded and stored.
                     self.hand(who, task, left, give)?;
                     let mut pieces = unpack(&pieces, &bytes);
                     pieces.try_for_each(|(piece, own)| take(piece, own))?;
-                    // Unfinished batches continue in a process that is waiting.
+                    // Returned unfinished batches are given to processes that are waiting.
                     hand_all()?;
                 }
             }
@@ -281,7 +281,7 @@ impl<'a> Leader<'a> {
         sent.map_err(Failure::cannot_run)
     }
 
-    /// Ends the work of all other processes when each next asks for more.
+    /// Ends the work of all other processes, each when it next asks for work.
     pub fn dismiss_all(&self) -> Result<(), Failure> {
         for who in 1..self.workers.count() {
             while !held(&self.others)[who].waits {
@@ -321,8 +321,8 @@ impl Left {
         held(&self.numbers).pop_front()
     }
 
-    /// Takes the last pieces with this many parts, because this process takes pieces from the
-    /// front.
+    /// Takes pieces with this many parts in total from the end of the list, because the leading
+    /// process takes pieces from the front.
     fn last(&self, parts: usize) -> Vec<u32> {
         let mut numbers = held(&self.numbers);
         let most = parts.div_ceil(self.parts).clamp(1, numbers.len().max(1));

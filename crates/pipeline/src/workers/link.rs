@@ -8,7 +8,7 @@ pub trait Workers: Sync {
     /// Returns the number of this process.
     fn number(&self) -> usize;
 
-    /// Returns the number of processes, including this one.
+    /// Returns the number of processes, including this process.
     fn count(&self) -> usize;
 
     /// Sends bytes to a process.
@@ -24,8 +24,8 @@ pub trait Workers: Sync {
     fn receive(&self) -> Result<(usize, Vec<u8>), String>;
 }
 
-/// Returns a key that all processes must have in common; otherwise they would work on different
-/// things.
+/// Returns a key of scenes and version. All processes must have the same key, which ensures that
+/// they work on the same scenes.
 pub fn key<'a>(scenes: impl IntoIterator<Item = &'a Scene>) -> String {
     let scenes = scenes.into_iter();
     let words = scenes.map(|scene| format!(" {} {}", scene.hash(), scene.run.seed));

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub(crate) enum WorkerMessage {
     /// The process has scenes with this key, and measures this many batches in parallel.
     Ready { key: String, abreast: usize },
-    /// The bytes of these pieces follow.
+    /// The process has finished or returned these pieces, whose bytes follow.
     Done { pieces: Vec<Piece> },
     /// The process cannot carry out its order.
     Failed { message: String },
@@ -25,7 +25,7 @@ pub(crate) enum Task {
     Points,
 }
 
-/// A piece of work, to do or done.
+/// A piece of work that is to be done or has been done.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(crate) struct Piece {
     pub number: u32,
@@ -47,7 +47,8 @@ pub(crate) struct Order {
 /// A piece with its bytes.
 pub(crate) type Packed = (Piece, Vec<u8>);
 
-/// Returns the message `words` about pieces, with their bytes.
+/// Returns the bytes of a message, which are those of `words` about pieces, followed by those of
+/// the pieces.
 pub(crate) fn packed<T: Serialize>(
     words: impl FnOnce(Vec<Piece>) -> T,
     pieces: Vec<Packed>,

@@ -20,8 +20,8 @@ impl Packing<'_> {
         checkpoints::packed(&self.scene.planes, batch)
     }
 
-    /// Returns the batch with that number from the bytes of [`Self::packed`], identical to one
-    /// emitted by `source`.
+    /// Returns the batch with this number from the bytes of [`Self::packed`]. It is identical to
+    /// the batch that `source` emits.
     pub(crate) fn unpacked(
         &self,
         source: &dyn PhotonSource,

@@ -1,7 +1,7 @@
 //! Packs unit vectors into two numbers and a sign, as MCPL does.
 
-/// The tolerance for |d|² of a direction, which should be 1; the same as that of the format's own
-/// writer.
+/// The tolerance for |d|² of a direction, which should be 1. The reference implementation of MCPL
+/// uses the same tolerance when it writes files.
 const SLACK: f64 = 1e-5;
 
 /// Refuses a vector that is not of unit length.
@@ -32,7 +32,7 @@ pub(super) fn pack(d: [f64; 3]) -> ([f64; 2], bool) {
     }
 }
 
-/// Returns 1/z, and +∞ for either zero.
+/// Returns 1/z, and +∞ for both 0 and −0.
 fn inverse(z: f64) -> f64 {
     if z == 0.0 { f64::INFINITY } else { 1.0 / z }
 }
@@ -50,7 +50,8 @@ pub(super) fn unpack([a, b]: [f64; 2], negative: bool) -> Result<[f64; 3], Strin
         }
     };
     match [a.abs() > 1.0, b.abs() > 1.0] {
-        // NaN satisfies no comparison; it reaches this case and is refused in `missing`.
+        // NaN also leads to this case, because comparisons with NaN are false; `missing` refuses
+        // it.
         [false, false] => Ok([a, b, missing(a, b)?]),
         [true, false] => Ok([missing(b, 1.0 / a)?, b, 1.0 / a]),
         [false, true] => Ok([a, missing(a, 1.0 / b)?, 1.0 / b]),
@@ -61,8 +62,8 @@ pub(super) fn unpack([a, b]: [f64; 2], negative: bool) -> Result<[f64; 3], Strin
 /// Unpacks a direction of version 2: a point of the octahedron |x| + |y| + |z| = 1, with its lower
 /// half folded out. `flat` means that z is 0.
 pub(super) fn unpack_octahedral([a, b]: [f64; 2], flat: bool) -> Result<[f64; 3], String> {
-    // Both are coordinates in a square; rounding to f32 may move them outside the square by this
-    // much.
+    // The numbers are coordinates in a square. Rounding to f32 may move them outside the square by
+    // up to 1e-6.
     if !(a.abs() <= 1.0 + 1e-6 && b.abs() <= 1.0 + 1e-6) {
         return Err(format!(
             "packed direction {a}, {b}; allowed: −1 to 1 for both"
@@ -96,8 +97,8 @@ mod tests {
                     let (packed, negative) = pack(d);
                     let again = unpack(packed, negative).unwrap();
                     for (a, b) in again.iter().zip(d) {
-                        // The limit covers two rounding errors of numbers up to 1, which the root
-                        // of a sum of at least 1/3 at most doubles.
+                        // The limit covers two rounding errors of numbers up to 1; the square
+                        // root, of a sum of at least 1/3, at most doubles them.
                         assert!((a - b).abs() < 1e-15, "{d:?} {again:?}");
                     }
                 }

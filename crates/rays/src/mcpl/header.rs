@@ -18,18 +18,18 @@ pub struct McplHeader {
     pub user_flags: bool,
     /// Whether particles have a polarisation.
     pub polarisation: bool,
-    /// Whether numbers of particles are f32; f64 otherwise.
+    /// Whether numbers of particles are stored as f32 and not as f64.
     pub single_precision: bool,
-    /// The PDG code of all particles; `None` where each has its own.
+    /// The PDG code of all particles; `None` if each particle has its own code.
     pub universal_pdg: Option<i32>,
-    /// The weight of all particles; `None` where each has its own.
+    /// The weight of all particles; `None` if each particle has its own weight.
     pub universal_weight: Option<f64>,
     /// The program that wrote the file, as bytes, usually UTF-8.
     pub source: Vec<u8>,
     /// Comments, as bytes like `source`. Comments that begin with `stat:sum:` have a meaning, see
     /// [`StatSum`].
     pub comments: Vec<Vec<u8>>,
-    /// Keys and their data.
+    /// The blobs of the file: keys and their data.
     pub blobs: Vec<(Vec<u8>, Vec<u8>)>,
 }
 
@@ -140,7 +140,7 @@ impl McplHeader {
             format!("MCPL{:03}{}", self.version, if little { 'L' } else { 'B' }).into_bytes();
         bytes.extend(ordered(count.to_le_bytes(), little));
         let mut number = |value: u32| bytes.extend(ordered(value.to_le_bytes(), little));
-        // No file contains a length that does not fit into 32 bits, since no file is that long.
+        // All lengths fit into 32 bits, because no file is longer.
         let short = |length: usize| u32::try_from(length).unwrap_or(u32::MAX);
         number(short(self.comments.len()));
         number(short(self.blobs.len()));
@@ -187,8 +187,8 @@ fn signature(bytes: &[u8]) -> Result<(u32, bool), Fault> {
     }
 }
 
-/// The largest number of comments, and of blobs, in a file: an empty one takes more memory than
-/// bytes of the file.
+/// The largest number of comments, and of blobs, in a file. The number is limited because an empty
+/// comment takes more bytes in memory than in the file.
 const MOST_TEXTS: u32 = 65_536;
 
 /// Returns the number of comments or blobs.
@@ -208,7 +208,7 @@ fn text(cursor: &mut ByteCursor<'_>, what: &str) -> Result<Vec<u8>, Fault> {
     cursor.take(length as usize, what).map(<[u8]>::to_vec)
 }
 
-/// Returns the bytes of a number, given lowest first, in the byte order of a file.
+/// Converts the bytes of a number, of which the lowest comes first, to the byte order of a file.
 pub(super) fn ordered<const N: usize>(mut bytes: [u8; N], little: bool) -> [u8; N] {
     if !little {
         bytes.reverse();

@@ -2,8 +2,8 @@
 //!
 //! Source: T. Kittelmann et al., "Monte Carlo Particle Lists: MCPL", Comput. Phys. Commun. 218
 //! (2017) 17–42, and <https://mctools.github.io/mcpl>. Units: cm, MeV, ms. A photon (PDG code 22)
-//! of energy E has the wavelength h c / E, see [`PHOTON_ENERGY_LENGTH`]. The format defines no unit
-//! of the weight; files of Étendue state in a comment, [`WATTS`], that it is W.
+//! of energy E has the wavelength h c / E, see [`PHOTON_ENERGY_LENGTH`]. The format defines no
+//! unit of the weight. Files of Étendue state in a comment, [`WATTS`], that the weight is in W.
 //!
 //! Files of either byte order are read, and records are kept as they are. Each record is checked
 //! once.
@@ -30,7 +30,8 @@ pub struct McplFile {
     header: McplHeader,
     count: usize,
     records: Vec<u8>,
-    /// Bytes after the last record, too few for another; a public test file ends with a line feed.
+    /// Bytes after the last record, which are too few for another record; for example, a public
+    /// test file ends with a line feed.
     rest: Vec<u8>,
 }
 
@@ -114,11 +115,11 @@ impl McplFile {
 
     /// Returns all particles, in their order.
     pub fn particles(&self) -> impl Iterator<Item = Particle> {
-        // Each record has been decoded before, so none is omitted.
+        // Each record was decoded when the file was read, so no particle is omitted.
         (0..self.count).filter_map(|index| self.decode(index).ok())
     }
 
-    /// Returns the bytes of the file; identical to those it was read from, if any.
+    /// Returns the bytes of the file; if it was read, they are the bytes from which it was read.
     #[must_use]
     pub fn write(&self) -> Vec<u8> {
         let mut bytes = self.header.bytes(self.count as u64);
@@ -127,9 +128,9 @@ impl McplFile {
         bytes
     }
 
-    /// Returns the rays of the file in metres. Their power is the weight of the particles, in W
-    /// where the comment [`WATTS`] states this. Particles other than photons, and photons of energy
-    /// 0, have no wavelength.
+    /// Returns the rays of the file in metres. Their power is the weight of the particles; it is
+    /// in W if the comment [`WATTS`] states this. Particles other than photons, and photons of
+    /// energy 0, have no wavelength.
     #[must_use]
     pub fn rays(&self) -> RaySet {
         let watts = self.header.comments.iter().any(|c| c == WATTS.as_bytes());
@@ -172,7 +173,7 @@ impl McplFile {
     }
 }
 
-/// Returns a single wavelength where all rays have the same.
+/// Returns a single wavelength if all rays have the same wavelength.
 fn shared(each: Vec<f64>) -> Wavelengths {
     let first = each.first().copied().unwrap_or(f64::NAN);
     if each.iter().all(|w| w.is_nan()) {

@@ -17,11 +17,11 @@ pub struct Particle {
     pub time_ms: f64,
     /// Weight, in an unspecified unit.
     pub weight: f64,
-    /// A vector whose meaning is up to programs; zero where a file has none.
+    /// A vector to which programs may give any meaning; zero if a file has no such vector.
     pub polarisation: [f64; 3],
     /// Kind of particle, as a code of the Particle Data Group.
     pub pdg: i32,
-    /// Bits whose meaning is up to programs.
+    /// Bits to which programs may give any meaning.
     pub user_flags: u32,
 }
 
@@ -94,9 +94,9 @@ impl Particle {
     /// Appends the record of a file with this header, packed as in version 3.
     ///
     /// # Errors
-    /// When no such file can hold the particle: a number is not finite or not in the file's
+    /// When the file cannot hold the particle: a number is not finite or not in the file's
     /// precision, the energy is negative, the direction is not a unit vector, or the weight or PDG
-    /// code differs from the universal one.
+    /// code differs from that of all particles.
     pub fn encode(&self, header: &McplHeader, records: &mut Vec<u8>) -> Result<(), String> {
         self.check()?;
         if header

@@ -14,7 +14,7 @@ const LONGEST: usize = 64;
 pub struct StatSum {
     /// Name of the counted quantity.
     pub key: String,
-    /// Value of the sum, 0 or more; `None` where it is marked as not available (−1).
+    /// Value of the sum, 0 or more; `None` if the file marks it as not available (−1).
     pub value: Option<f64>,
 }
 

@@ -4,10 +4,10 @@ use super::text;
 use crate::Fault;
 use crate::cursor::ByteCursor;
 
-/// Where the spectral information of rays is stored, 4.7.1.9.
+/// The way in which the spectral information of rays is stored, 4.7.1.9.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SpectrumType {
-    /// 0: there is none.
+    /// 0: there is no spectral information.
     None,
     /// 1: all rays have the wavelength of the header.
     OneWavelength,
@@ -28,7 +28,7 @@ pub struct Flags {
     pub wavelength: bool,
     /// Luminous flux, lm; the tristimulus value Y.
     pub luminous_flux: bool,
-    /// Stokes parameters S1, S2, S3 over S0, and the X axis they refer to.
+    /// Stokes parameters S1, S2, S3, divided by S0, and the X axis of their frame.
     pub stokes: bool,
     /// Tristimulus values X and Z.
     pub tristimulus: bool,
@@ -79,15 +79,16 @@ pub struct Tm25Header {
     pub version: i32,
     /// 0: simulated, 1: measured.
     pub creation_method: i32,
-    /// Total luminous flux, lm; NaN where it is not stated.
+    /// Total luminous flux, in lm; NaN if it is not stated.
     pub luminous_flux: f32,
-    /// Total radiant flux, W; NaN where it is not stated.
+    /// Total radiant flux, in W; NaN if it is not stated.
     pub radiant_flux: f32,
-    /// Date and time, ISO 8601 in 28 bytes, ended by zeros; all zero where not stated.
+    /// Date and time, in the notation of ISO 8601, in 28 bytes that end with zeros; all bytes are
+    /// zero if the file does not state it.
     pub date: [u8; 28],
     /// The place where rays begin, by the codes 0 (unknown) to 7 of 4.7.1.8.
     pub start_position: i32,
-    /// Where the spectral information is stored.
+    /// The way in which the spectral information is stored.
     pub spectrum_type: SpectrumType,
     /// The wavelength of all rays, nm, for [`SpectrumType::OneWavelength`].
     pub wavelength_nm: f32,
@@ -138,13 +139,14 @@ impl Default for Tm25Header {
 
 /// Number of characters of a text of 4.7.3.
 const TEXT: usize = 1000;
-/// The largest number of spectra in a file: an empty one takes more memory than bytes of the file.
+/// The largest number of spectra in a file. The number is limited because an empty spectrum takes
+/// more bytes in memory than in the file.
 const MOST_SPECTRA: u32 = 65_536;
 /// Number of characters of a column name, 4.7.5.
 const NAME: usize = 128;
 
 impl Tm25Header {
-    /// The subjects of the texts of 4.7.3.
+    /// What each of the texts of 4.7.3 describes.
     pub const TEXTS: [&str; 9] = [
         "light source",
         "manufacturer",
@@ -387,7 +389,7 @@ impl Tm25Header {
     /// Returns the bytes before the first ray, for files that are written incrementally.
     #[must_use]
     pub fn bytes(&self, rays: u64) -> Vec<u8> {
-        // No file contains a length that does not fit into 32 bits, since no file is that long.
+        // All lengths fit into 32 bits, because no file is longer.
         let short = |length: usize| u32::try_from(length).unwrap_or(u32::MAX).to_le_bytes();
         let mut bytes = b"TM25".to_vec();
         bytes.extend(self.version.to_le_bytes());

@@ -5,7 +5,7 @@
 //! makers and of LightTools. Numbers are little-endian, those of rays f32. Units: mm, nm, W, lm. Text is UTF-32.
 //!
 //! A file that is read and written again has the same bytes, except for bytes after the end of a
-//! text, and for invalid characters. Both cause a note.
+//! text, and for invalid characters. Such differences cause a note.
 //!
 //! Deviations that are accepted with a note: total flux in the header that differs from the sum
 //! over the rays (LightTools writes 1), directions of a length other than 1 (the set has unit
@@ -29,8 +29,8 @@ pub struct Tm25File {
     notes: Vec<String>,
 }
 
-/// The largest deviation of the length of a direction from 1 that causes no note: ten roundings of
-/// f32.
+/// The largest deviation of the length of a direction from 1 that causes no note: ten rounding
+/// errors of f32.
 const LENGTH_SLACK: f64 = 1e-6;
 /// The largest relative difference between the flux of the header and the sum over rays that causes
 /// no note: the error of f32 and of four printed digits.
@@ -132,7 +132,7 @@ impl Tm25File {
         bytes
     }
 
-    /// Returns the rays of the file in metres; power is in W where rays state radiant flux,
+    /// Returns the rays of the file, in metres. Power is in W if rays state radiant flux, and
     /// otherwise in lm. A wavelength of 0 is unknown.
     #[must_use]
     pub fn rays(&self) -> RaySet {
@@ -175,7 +175,7 @@ impl Tm25File {
         }
     }
 
-    /// Returns the radiant flux of 1 lm, W, where the header states both fluxes.
+    /// Returns the radiant flux of 1 lm, in W, if the header states both fluxes.
     #[must_use]
     pub fn watts_per_lumen(&self) -> Option<f64> {
         let Tm25Header {
@@ -195,7 +195,7 @@ impl Tm25File {
         table.map(row).collect()
     }
 
-    /// Refuses invalid rays, and adds notes on what is unusual in all of them together.
+    /// Refuses invalid rays, and adds notes on unusual values; a note covers all rays together.
     fn check(&mut self) -> Result<(), Fault> {
         let flags = self.header.flags;
         let spectrum = flags.spectrum_column();

@@ -11,7 +11,7 @@ use std::collections::HashMap;
 #[derive(Clone, Copy)]
 pub(super) struct CuttingPlane<'a> {
     pub(super) scene: &'a Scene,
-    /// The index of the plane: 0 for the plane of X, 1 for that of Y.
+    /// The index of the cutting plane: 0 for the plane of X, 1 for the plane of Y.
     pub(super) axis: usize,
 }
 
@@ -92,7 +92,8 @@ impl CuttingPlane<'_> {
         pieces
     }
 
-    /// The coordinates of a point in a leg's frame: along the leg, in the cut, and across the cut.
+    /// The coordinates of a point in a leg's frame: along the leg, across the leg within the cut,
+    /// and across the cut.
     fn local(&self, leg: &Leg, point: DVec3) -> [f64; 3] {
         let local = leg.frame.to_local(point);
         let [within, off] = if self.axis == 0 {
@@ -151,8 +152,8 @@ impl CuttingPlane<'_> {
         for (i, a) in corners.iter().enumerate() {
             let b = corners[(i + 1) % corners.len()];
             if (a[2] < 0.0) != (b[2] < 0.0) {
-                // The ends are ordered from below, so that two triangles get the same point on a
-                // shared edge.
+                // The ends of each edge are taken in a fixed order, so two triangles get the same
+                // point on a shared edge.
                 let (a, b) = if a[2] < 0.0 { (*a, b) } else { (b, *a) };
                 let t = a[2] / (a[2] - b[2]);
                 points.push([0, 1].map(|i| a[i] + t * (b[i] - a[i])));
@@ -210,7 +211,8 @@ impl CuttingPlane<'_> {
                 shapes,
                 half_planes,
             } => {
-                // Jitter moves a row of blockers off the cut, so the nearest row is shown.
+                // Jitter may move all rows of blockers off the cut, so the row nearest to the cut
+                // is shown.
                 let off = |shape: &Shape| shape.bounds().center[1 - axis].abs();
                 let nearest = shapes.iter().map(off).fold(f64::INFINITY, f64::min);
                 let row = shapes
@@ -221,7 +223,8 @@ impl CuttingPlane<'_> {
                     match (half.axis == axis, half.above) {
                         (true, true) => Some([half.edge, f64::INFINITY]),
                         (true, false) => Some([f64::NEG_INFINITY, half.edge]),
-                        // Along the other axis, the row either covers the cut or is beside it.
+                        // A half-plane along the other axis covers either the whole cut or none of
+                        // it.
                         (false, above) => (above == (half.edge < 0.0)).then_some(ENDLESS),
                     }
                 });
@@ -263,7 +266,7 @@ impl CuttingPlane<'_> {
             })
         });
         let mut pieces: Vec<Segment> = cuts.collect();
-        // The name is placed at the middle one.
+        // The name is placed at the piece in the middle.
         let ends =
             |least: fn(f64, f64) -> f64, from| pieces.iter().map(|p| p.start[0]).fold(from, least);
         let middle = 0.5 * (ends(f64::min, f64::INFINITY) + ends(f64::max, f64::NEG_INFINITY));
@@ -292,18 +295,18 @@ fn labelled(
     })
 }
 
-/// The whole X axis.
+/// The interval of the whole axis.
 const ENDLESS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
-/// The largest number of periods of a grating on either side at which they can still be
-/// distinguished.
+/// The largest number of periods of a grating on either side of the ray at which single periods
+/// can still be distinguished.
 const MOST_PERIODS: f64 = 40.0;
 
-/// The bits of a point as a key.
+/// The bits of a point's coordinates, as a key of a map.
 fn key(point: [f64; 2]) -> [u64; 2] {
     point.map(f64::to_bits)
 }
 
-/// The closed lines formed by segments that share ends.
+/// Returns the closed lines that segments with common ends form.
 fn outlines(pieces: &[Segment]) -> Vec<Vec<[f64; 2]>> {
     let mut at: HashMap<[u64; 2], Vec<usize>> = HashMap::new();
     for (i, piece) in pieces.iter().enumerate() {

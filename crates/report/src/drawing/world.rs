@@ -6,7 +6,7 @@ use etendue_figures::{DrawnObject, DrawnWorld, Segment};
 use etendue_scene::{Leg, Scene};
 use glam::DVec3;
 
-/// The length in metres at which infinite objects are cut off, beyond any picture.
+/// The length in metres at which infinite objects are cut off; it is larger than any drawn scene.
 const ENDLESS_METRES: f64 = 1e4;
 /// Angle of a turn below which a path counts as straight.
 const STRAIGHT: f64 = 1e-9;

@@ -64,7 +64,7 @@ struct PageAxes {
     nu: Labelled,
 }
 
-/// An axis from the outer edge of its first cell to that of its last.
+/// An axis, from the outer edge of its first cell to the outer edge of its last cell.
 #[derive(Serialize)]
 struct Labelled {
     name: String,
@@ -74,7 +74,7 @@ struct Labelled {
     count: usize,
 }
 
-/// Three pictures, [x, y] in rows, as 32-bit numbers in base 64.
+/// Three pictures, each as an array [x, y] of 32-bit numbers in base 64.
 #[derive(Serialize)]
 struct Grids {
     measured: String,
@@ -112,7 +112,7 @@ impl Grids {
 
 #[expect(
     clippy::cast_possible_truncation,
-    reason = "to be looked at, not to be computed with"
+    reason = "the numbers are shown, and nothing is computed from them"
 )]
 fn encoded(values: ArrayView2<'_, f64>) -> String {
     let bytes = values
@@ -212,7 +212,7 @@ impl<'a> PlaneData<'a> {
     }
 }
 
-/// |S|², |F|² and |S − F|/σ at each azimuth.
+/// The pictures |S|², |F|² and |S − F|/σ at each azimuth.
 fn slices(found: &PlaneComparison) -> Vec<Grids> {
     let measured = found.measured.half.outer_iter();
     let predicted = found.predicted.half.outer_iter();

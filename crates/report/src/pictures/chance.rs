@@ -1,4 +1,4 @@
-//! The number of cells of a difference that exceed the range of its colors by chance.
+//! The number of cells in the picture of a difference that exceed the range of colors by chance.
 
 use etendue_compare::PlaneComparison;
 use etendue_store::arrays::radial_z;
@@ -7,8 +7,8 @@ use ndarray::Axis;
 /// The difference at which the range of colors ends, in standard deviations.
 const BEYOND: f64 = 4.0;
 
-/// The number of independent frequencies, the number of them beyond 4 σ in the difference, and the
-/// number expected from noise alone.
+/// The number of independent frequencies, the number of frequencies beyond 4 σ in the difference,
+/// and the number expected from noise alone.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Outliers {
     cells: usize,
@@ -17,10 +17,10 @@ pub(super) struct Outliers {
 }
 
 impl Outliers {
-    /// Power is not normally distributed. Where there is only noise, it is the mean of one
-    /// exponential variable per azimuth, so large values are more frequent than for a normal
-    /// variable. A shifted gamma variable with the same first three moments is used. It has the
-    /// right distribution exactly where all azimuths have the same noise.
+    /// Power is not normally distributed. Without light, power is the mean of one exponential
+    /// variable per azimuth, so large values are more frequent than for a normal variable. A
+    /// shifted gamma variable with the same first three moments is used. The gamma variable has
+    /// exactly the right distribution if all azimuths have the same noise.
     pub(super) fn of(plane: &PlaneComparison) -> Self {
         let grid = plane.measured.grid;
         let z = radial_z(plane);
@@ -44,7 +44,7 @@ impl Outliers {
         all
     }
 
-    /// The numbers in a sentence.
+    /// Returns a sentence with these numbers.
     pub(super) fn words(&self) -> String {
         let Self {
             cells,

@@ -18,7 +18,7 @@ pub(super) fn differs_across(plane: &PlaneComparison) -> bool {
 
 /// The light field over (y, v), integrated over x and u with the window, in 64 × 64 cells that fill
 /// ± `half_widths`. Its spectrum is the slice at azimuth 90°, within the range of the frequencies.
-/// `None` where there is no such slice.
+/// Returns `None` if there is no such slice.
 pub fn across(slices: &Slices, half_widths: [f64; 2]) -> Option<Array2<f64>> {
     const CELLS: usize = 64;
     let SliceGrid { azimuths, rho, nu } = &slices.grid;
@@ -27,7 +27,7 @@ pub fn across(slices: &Slices, half_widths: [f64; 2]) -> Option<Array2<f64>> {
     }
     let full = slices.full();
     let slice = full.index_axis(ndarray::Axis(0), azimuths / 2);
-    // e^(2πi Ω z) dΩ, [cell, frequency].
+    // The factors e^(2πi Ω z) dΩ of the transform, [cell, frequency].
     let waves = |axis: &FrequencyAxis, half: f64| {
         let values = axis.values();
         Array2::from_shape_fn((CELLS, values.len()), |(cell, i)| {
@@ -36,7 +36,8 @@ pub fn across(slices: &Slices, half_widths: [f64; 2]) -> Option<Array2<f64>> {
         })
     };
     let [y, v] = [waves(rho, half_widths[0]), waves(nu, half_widths[1])];
-    // Products of the array library differ in their bits between processors.
+    // The sum is written out, because matrix products of the array library differ in their bits
+    // between processors.
     let sum = |a: ArrayView1<'_, Complex>, b: ArrayView1<'_, Complex>| {
         let terms = a.iter().zip(b).map(|(a, b)| a * b);
         terms.fold(Complex::ZERO, |sum, term| sum + term)

@@ -1,9 +1,9 @@
-//! Spectra between the frequencies of a scene, for pictures without visible cells.
+//! Interpolates spectra between the frequencies of a scene, for pictures without visible cells.
 //!
-//! Light outside the window does not count, so neighbouring frequencies determine the spectrum
-//! between them. Of all windowed light fields W ℓ with the given spectrum, the one with the least ∫
-//! ℓ² is drawn. Its spectrum is a weighted sum of the given values. The weights follow from the
-//! covariance of white noise behind the window, K(Ω) = ∫ W² e^(−2πi Ω z) dz / ∫ W².
+//! The window bounds the light field, so the spectrum between given frequencies is determined by
+//! these frequencies. Of all windowed light fields W ℓ with the given spectrum, the one with the
+//! least ∫ ℓ² is drawn. Its spectrum is a weighted sum of the given values. The weights follow
+//! from the covariance of white noise behind the window, K(Ω) = ∫ W² e^(−2πi Ω z) dz / ∫ W².
 
 use etendue_field::{Complex, FrequencyAxis, Profile, SliceGrid, Slices, Window};
 use ndarray::{Array1, Array2, ArrayView1, ArrayView2, Axis, Slice};
@@ -18,13 +18,13 @@ const OPEN: f64 = 0.01;
 /// The weights of a plane's frequencies that give values at finer frequencies.
 pub(super) struct Finer {
     grid: SliceGrid,
-    /// Along ρ ≥ 0 and along ν, for each azimuth, [finer, given].
+    /// The weights along ρ ≥ 0 and along ν for each azimuth, as arrays [finer, given].
     weights: Vec<[Array2<f64>; 2]>,
 }
 
 impl Finer {
-    /// Finer frequencies over the same range. `None` if the scene's frequencies are fine enough, or
-    /// too far apart to determine the values between them.
+    /// Finer frequencies over the same range. Returns `None` if the scene's frequencies are fine
+    /// enough for the picture, or too far apart to determine the values between them.
     pub(super) fn new(given: &SliceGrid, window: &Window) -> Option<Self> {
         let grid = SliceGrid {
             azimuths: given.azimuths,
@@ -83,7 +83,8 @@ pub(super) fn finer_power(finer: &Slices, slices: &Slices, power: &Array2<f64>) 
     finer
 }
 
-/// The number of finer frequencies for each given one is odd, so that each given one is among them.
+/// There is an odd number of finer frequencies for each given frequency, so each given frequency
+/// is also a finer frequency.
 fn divided(axis: &FrequencyAxis) -> FrequencyAxis {
     let parts = SMOOTH.div_ceil(axis.count());
     let parts = parts + usize::from(parts.is_multiple_of(2));
@@ -93,7 +94,7 @@ fn divided(axis: &FrequencyAxis) -> FrequencyAxis {
     }
 }
 
-/// The two given frequencies around each finer one, with their weights.
+/// The two given frequencies around each finer frequency, with their weights.
 fn linear(from: &FrequencyAxis, to: &FrequencyAxis) -> Vec<[(usize, f64); 2]> {
     let last = from.count() - 1;
     let place = |value: f64| {
@@ -101,7 +102,7 @@ fn linear(from: &FrequencyAxis, to: &FrequencyAxis) -> Vec<[(usize, f64); 2]> {
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
-            reason = "between 0 and the number of frequencies"
+            reason = "the index is between 0 and the number of frequencies"
         )]
         let low = (at.floor() as usize).min(last.saturating_sub(1));
         let share = at - low as f64;
@@ -148,8 +149,8 @@ impl WindowCovariance {
     }
 }
 
-/// The weights of given frequencies for finer ones, [finer, given]; `None` if the given ones leave
-/// some intermediate value undetermined.
+/// The weights of given frequencies for finer frequencies, [finer, given]; `None` if the given
+/// frequencies do not determine all intermediate values.
 fn weights(
     from: &FrequencyAxis,
     to: &FrequencyAxis,
@@ -163,13 +164,13 @@ fn weights(
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "a small odd number"
+        reason = "the number of parts is small and odd"
     )]
     let parts = parts as usize;
     let factor = Cholesky::new(count, |i, j| apart[parts * i.abs_diff(j)]);
     let mut weights = Array2::zeros((to.count(), count));
     for (finer, mut row) in weights.outer_iter_mut().enumerate() {
-        // The given frequency i is number parts · i + (parts − 1)/2 of the finer ones.
+        // The given frequency i is the finer frequency number parts · i + (parts − 1)/2.
         let known = |i: usize| apart[finer.abs_diff(parts * i + parts / 2)];
         let known: Array1<f64> = (0..count).map(known).collect();
         let solved = factor.solve(&known);
@@ -183,7 +184,7 @@ fn weights(
     Some(weights)
 }
 
-/// A symmetric matrix A = L Lᵀ.
+/// The factor L of a symmetric matrix A = L Lᵀ.
 struct Cholesky(Array2<f64>);
 
 impl Cholesky {
@@ -220,7 +221,8 @@ impl Cholesky {
     }
 }
 
-/// The product A Bᵀ. Products of the array library differ in their bits between processors.
+/// The product A Bᵀ. The sum is written out, because matrix products of the array library differ
+/// in their bits between processors.
 fn product(a: ArrayView2<'_, f64>, b: ArrayView2<'_, Complex>) -> Array2<Complex> {
     let sum = |a: ArrayView1<'_, f64>, b: ArrayView1<'_, Complex>| {
         let terms = a.iter().zip(b).map(|(a, b)| b * *a);

@@ -33,9 +33,9 @@ pub fn path(
     Ok(figure.svg)
 }
 
-/// Draws the planes in the order in which light meets them. In the style of a figure, their
-/// predicted spectra are below. `photons` is the number emitted; in a partial measurement it is
-/// lower than the scene requests.
+/// Draws the planes in the order in which light meets them. If the strip is a figure, predicted
+/// spectra are below the measured ones. `photons` is the number of emitted photons, which is lower
+/// in a partial measurement than the scene requests.
 pub fn strip_of(
     scene: &Scene,
     photons: u64,
@@ -63,7 +63,7 @@ pub fn strip_of(
         && (section.other.is_some() || planes.iter().any(differs_across));
     let is_seen = !is_figure && differs;
     if is_figure {
-        // A figure has no room for a second cut, nor for the light field in that cut.
+        // A figure has no room for a second cut and its light field.
         section.other = None;
     }
     let both = is_seen.then(|| along.iter().map(BothSlices::of).collect());
@@ -71,7 +71,7 @@ pub fn strip_of(
     for (column, both) in columns.iter_mut().zip(both.iter().flatten()) {
         both.show(column);
     }
-    // A figure was already run at finer frequencies.
+    // Figures are not interpolated, because they were run at finer frequencies.
     let drawn = along.iter().filter(|_| !is_figure && both.is_none());
     let drawn: Vec<_> = drawn.map(PlaneOnPath::finer_power).collect();
     for (column, values) in columns.iter_mut().zip(&drawn) {
@@ -105,11 +105,12 @@ pub fn strip_of(
     strip(&drawn, &style.copied().unwrap_or_default()).map_err(Failure::cannot_run)
 }
 
-/// The description of a strip whose light differs between azimuths 0 and 90°.
+/// The note below a strip whose light differs between azimuths 0 and 90°.
 const BOTH: &str = "at azimuth 0 below (*x*, *u*), and at 90° below (*y*, *v*). The light field \
     in (*y*, *v*) is the inverse transform of that spectrum; as the spectrum is cut off \
     at the highest frequencies, fringes accompany edges (Gibbs phenomenon)";
-/// The warning in a figure that shows the mean in place of both slices.
+/// The warning in a figure that shows the mean over azimuths, although the slices at 0 and 90°
+/// differ.
 const MIXED: &str = "; the light differs between azimuths 0 and 90°";
 
 /// A plane with its theory and its comparison.
@@ -157,7 +158,7 @@ struct BothSlices {
 }
 
 impl BothSlices {
-    /// `None` where there is no slice at 90°.
+    /// Returns `None` if there is no slice at 90°.
     fn of(at: &PlaneOnPath<'_>) -> Option<Self> {
         let measured = &at.compared.measured;
         let grid = &at.compared.projection.mean.grid;
@@ -178,7 +179,7 @@ impl BothSlices {
         })
     }
 
-    /// Puts both slices in place of the mean over azimuths.
+    /// Replaces the mean over azimuths by both slices.
     fn show<'a>(&'a self, column: &mut StripColumn<'a>) {
         let spectrum = column.spectrum.clone();
         let with = |values: &'a Array2<f64>| Picture {
@@ -304,17 +305,17 @@ fn column<'a>(scene: &Scene, at: &PlaneOnPath<'a>, is_figure: bool) -> StripColu
         verdict: verdict_lines(compared),
         guides: match (&theory.theory, &compared.report.first_order) {
             (Theory::Parallel(_), _) if compared.report.in_window > 0 => guides(scene, plane),
-            // Unlike a mirror, a lobe leaves no line of light.
+            // After a mirror, light lies along a line of the spectrum; after a lobe, it does not.
             (Theory::Specular(_), Some(first_order)) => ridges(scene, &first_order.chain.matrix),
             _ => Vec::new(),
         },
     }
 }
 
-/// Lines along which theory predicts the light. After travel d it lies along ν = −d ρ. At a
-/// distance h behind blockers of frequency f it also lies along parallel lines through (± f, ∓ h
-/// f), if the window and the frequencies resolve these. A diffuse surface keeps only ν = 0, and
-/// travel begins again.
+/// Lines along which theory predicts the light. After light has travelled a distance d, its
+/// spectrum lies along ν = −d ρ. At a distance h behind blockers of frequency f, it also lies
+/// along parallel lines through (± f, ∓ h f), if the window and the frequencies resolve these
+/// lines. A diffuse surface keeps only ν = 0, and d is counted from there.
 fn guides(scene: &Scene, plane: &VirtualPlane) -> Vec<Guide> {
     let reflected = plane.leg > 0;
     let through = |through| Guide {

@@ -7,7 +7,7 @@ use etendue_scenefile::Fault;
 use glam::{DVec2, DVec3};
 use std::path::Path;
 
-/// A mesh file with what belongs to shading: normals and texture coordinates of its vertices.
+/// The triangles of a mesh file, with the normals and texture coordinates of their vertices.
 ///
 /// Corners are valid indices of vertices, and there are as many normals and texture coordinates as
 /// vertices; all are finite. Triangles of zero area are kept. Corners at one place with different
@@ -25,8 +25,10 @@ pub struct DetailedMesh {
 }
 
 impl DetailedMesh {
-    /// Reads the bytes of an OBJ or a PLY file as [`Mesh::parse`](super::Mesh::parse) does, with its normals (OBJ: `vn`; PLY: nx, ny and nz) and its texture
-    /// coordinates (OBJ: `vt`; PLY: u and v, s and t, or `texture_u` and `texture_v`).
+    /// Reads the bytes of an OBJ or a PLY file as [`Mesh::parse`](super::Mesh::parse) does, but
+    /// with normals and texture coordinates. Normals are `vn` in OBJ files, and nx, ny and nz in
+    /// PLY files. Texture coordinates are `vt` in OBJ files; in PLY files they are u and v, s and
+    /// t, or `texture_u` and `texture_v`.
     ///
     /// # Errors
     /// The first fault found.
@@ -37,7 +39,7 @@ impl DetailedMesh {
     }
 }
 
-/// Requires numbers within the range of coordinates.
+/// Checks that numbers are within the range of coordinates.
 pub(super) fn check<const N: usize>(
     values: [f64; N],
     place: impl Fn(usize) -> String,

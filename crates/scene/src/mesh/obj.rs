@@ -9,7 +9,7 @@ use etendue_scenefile::{Fault, fault};
 use glam::DVec3;
 use std::borrow::Cow;
 
-/// Statements that do not affect the triangles.
+/// Statements of OBJ files that do not affect the triangles.
 const PASSED_OVER: [&[u8]; 19] = [
     b"vt",
     b"vn",
@@ -144,7 +144,7 @@ fn triangles(
     }
 }
 
-/// A fault of a corner: its value, and what is allowed.
+/// The value of a faulty corner, and the values that are allowed.
 type CornerFault = (String, String);
 
 /// Returns the index of a corner such as `7`, `7/3`, `7//5` or `-1/-1/-1`: counted from 1, or

@@ -8,9 +8,9 @@ impl Mesh {
     /// Returns a smooth open surface through the origin, z = −(k₁ x² + k₂ y²)/2 over |x|, |y| ≤
     /// `half`, facing along z.
     ///
-    /// `cells` × `cells` squares of two triangles, all cut along the same diagonal. Inside, the
-    /// triangles around a vertex are point-symmetric, and the vertex normal weighted by their areas
-    /// is accurate to the square of a cell. Vertices lie on the surface.
+    /// It has `cells` × `cells` squares, each cut into two triangles along the same diagonal. The
+    /// triangles around an inner vertex are point-symmetric, so the error of the area-weighted
+    /// normal is proportional to the square of the cell size. Vertices lie on the surface.
     ///
     /// # Errors
     /// When [`Self::new`] refuses the mesh, for example without cells or with vertices that are not

@@ -6,9 +6,10 @@ use glam::{DAffine3, DVec3};
 
 /// Triangles with shared vertices, in the file's units and frame.
 ///
-/// Valid by construction: at least one triangle, each with an area and with valid vertex indices;
-/// coordinates within ±10⁹. Corners run counterclockwise as seen from outside if the file lists
-/// them in this order. The surface need not be closed. Unused vertices are allowed.
+/// A `Mesh` is always valid: it has at least one triangle, each triangle has an area and valid
+/// vertex indices, and coordinates are within ±10⁹. Corners run counterclockwise as seen from
+/// outside if the file lists them in this order. The surface need not be closed. Unused vertices
+/// are allowed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     pub(super) vertices: Vec<DVec3>,
@@ -22,7 +23,7 @@ impl Mesh {
     /// # Errors
     /// When a coordinate or an index is out of range, or no triangle has an area.
     pub fn new(vertices: Vec<DVec3>, mut triangles: Vec<[u32; 3]>) -> Result<Self, Fault> {
-        // One index is kept free, so that the number of vertices also fits in a u32.
+        // The largest index is never used, so the number of vertices also fits in a u32.
         let count = u32::try_from(vertices.len())
             .map_err(|_| fault("vertices", vertices.len(), format!("at most {}", u32::MAX)))?;
         for (i, vertex) in vertices.iter().enumerate() {
@@ -46,8 +47,8 @@ impl Mesh {
         })
     }
 
-    /// Returns the mesh under an affine map. A map that mirrors also reverses the order of corners,
-    /// so that outside stays outside.
+    /// Returns the mesh under an affine map. A map that mirrors also reverses the order of
+    /// corners, so that triangles still face outward.
     ///
     /// # Errors
     /// When coordinates exceed ±10⁹, or no triangle has an area after the map.

@@ -13,8 +13,9 @@ impl Mesh {
     /// θ steps through `rings` bands and φ through 2 `rings` segments. Each pole is one vertex and
     /// no vertex is doubled at φ = 0, so the surface is watertight. It has 2 `rings`(`rings` − 1) +
     /// 2 vertices and 4 `rings`(`rings` − 1) triangles (50 624 for 113 rings), which face outward.
-    /// Vertices lie on the surface; because of the facets the volume falls short of R³(4π/3 + 2π
-    /// relief² (2l)!!/(2l+1)!!), l ≥ 1, by a part proportional to rings⁻².
+    /// Vertices lie on the smooth surface, whose volume for l ≥ 1 is R³(4π/3 + 2π relief²
+    /// (2l)!!/(2l+1)!!). The volume within the facets is smaller by an amount proportional to
+    /// rings⁻².
     ///
     /// # Errors
     /// When there are fewer than four segments per lobe, or [`Self::new`] refuses the mesh.
@@ -36,8 +37,8 @@ impl Mesh {
         };
         let segments = 2 * rings;
         let step = PI / f64::from(rings);
-        // sin π is not exactly zero in f64, so the poles are set explicitly; only l = 0 has a
-        // relief there.
+        // sin π is not exactly zero in f64, so the poles are set explicitly; they have a relief
+        // only for l = 0.
         let pole = point(0.0, 0.0).z;
         let mut vertices = vec![DVec3::new(0.0, 0.0, pole)];
         for ring in 1..rings {
@@ -49,7 +50,8 @@ impl Mesh {
     }
 }
 
-/// Returns triangles: caps about the two poles, and two for each cell between.
+/// Returns the triangles of the caps about the two poles, and two triangles for each cell between
+/// the caps.
 fn triangles(rings: u32, segments: u32) -> Vec<[u32; 3]> {
     let at = |ring: u32, segment: u32| 1 + (ring - 1) * segments + segment % segments;
     let (north, south) = (0, at(rings, 0));

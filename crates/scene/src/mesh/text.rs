@@ -2,8 +2,8 @@
 
 /// Lines with their number, from 1, without surrounding white space.
 ///
-/// All lines end as the first one does: at a line feed, with or without a carriage return before
-/// it, or at a carriage return alone (old Macintosh files).
+/// Every line ends at the character that ends the first line: a line feed, with or without a
+/// carriage return before it, or a carriage return alone (old Macintosh files).
 pub(super) struct Lines<'a> {
     /// The bytes after the last line returned.
     pub(super) rest: &'a [u8],

@@ -10,7 +10,7 @@ use etendue_scenefile::number;
 use etendue_scenefile::{BlockersFile, HalfName, LightFile, SceneFile, ShapeFile};
 use glam::DVec3;
 
-/// The approximate number of rectangles that a prediction divides a disc into.
+/// The approximate number of rectangles into which a prediction divides a disc.
 const STRIPS: f64 = 64.0;
 
 impl Resolver<'_> {
@@ -195,7 +195,8 @@ impl Resolver<'_> {
         }
     }
 
-    /// Limits the product of all layers, which a prediction multiplies out.
+    /// Limits the product of the numbers of shapes of all layers, because a prediction multiplies
+    /// them out.
     pub(super) fn layers(&mut self, file: &SceneFile) {
         let terms = |b: &BlockersFile| match b {
             BlockersFile::JitteredSquares { count, .. } => {

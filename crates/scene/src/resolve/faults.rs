@@ -12,7 +12,8 @@ pub(super) struct Faults {
     pub(super) all: Vec<Fault>,
     /// Whether there is a fault in the origin or the direction of the central ray.
     pub(super) astray: bool,
-    /// Whether there is such a fault, or one in the position of an object.
+    /// Whether there is a fault in the central ray's origin or direction, or in the position of an
+    /// object.
     displaced: bool,
 }
 
@@ -34,8 +35,8 @@ impl Faults {
         });
     }
 
-    /// Adds a fault of positions along the path. It is omitted when the positions of this or other
-    /// objects are already at fault, because nothing is known of the path then.
+    /// Adds a fault of positions along the path. The fault is omitted if the position of this or
+    /// another object is already faulty, because the path is then unknown.
     pub(super) fn add_on_path(
         &mut self,
         field: impl Into<String>,
@@ -47,7 +48,7 @@ impl Faults {
         }
     }
 
-    /// Checks whether there is a fault below a field.
+    /// Checks whether a field, or a field within it, has a fault.
     pub(super) fn has_below(&self, field: &str) -> bool {
         let below = |fault: &Fault| {
             fault
@@ -69,8 +70,8 @@ impl Faults {
     }
 }
 
-/// Checks whether a field sets the position of a surface or of blockers, and so what the central
-/// ray meets.
+/// Checks whether a field sets the position of a surface or of blockers, which determines what the
+/// central ray meets.
 fn is_of_place(field: &str) -> bool {
     let of_things = |list: &str| {
         field

@@ -1,4 +1,4 @@
-//! Checks the numbers of objects before any object itself.
+//! Checks the numbers of objects before any single object is checked.
 
 use super::Resolver;
 use etendue_scenefile::limits;
@@ -32,7 +32,7 @@ impl Resolver<'_> {
         ] {
             self.at_most(field, count as u64, what, most as u64);
         }
-        // A layer that is too large by itself is reported when it is checked.
+        // A single layer with too many shapes is reported later, when that layer is checked.
         let most = limits::SHAPES as u64;
         let shapes = file.blockers.iter().map(|b| shapes(b).min(most)).sum();
         self.at_most("blockers: shapes of all layers", shapes, "shapes", most);
@@ -70,8 +70,8 @@ fn meshes(file: &SceneFile) -> impl Iterator<Item = &MeshSource> {
     blockers.chain(surfaces)
 }
 
-/// Returns the approximate number of triangles of a generated mesh; zero for one that will be
-/// refused.
+/// Returns the approximate number of triangles of a generated mesh, or zero for a mesh that will
+/// be refused.
 fn triangles(mesh: &MeshSource) -> u64 {
     let square = |n: u32| u64::from(if n > limits::CELLS { 0 } else { n }).pow(2);
     match mesh {

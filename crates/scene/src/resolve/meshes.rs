@@ -147,7 +147,7 @@ impl Resolver<'_> {
                 };
                 Mesh::parse(Path::new(path), &bytes).map_err(fault).ok()
             }
-            // Its size has been reported as a fault already.
+            // A faulty size of the mesh has been reported already.
             _ if self.faults.has_below(&format!("{of}.mesh")) => None,
             &MeshSource::Paraboloid {
                 curvatures,
@@ -172,8 +172,8 @@ impl Resolver<'_> {
     }
 }
 
-/// Returns the largest distance from the origin at which light may begin or leave a surface: the
-/// coordinates of rays and meshes are that large.
+/// Returns the largest distance from the origin at which light may begin or leave a surface, which
+/// bounds the coordinates of rays and meshes.
 fn reach(file: &SceneFile) -> f64 {
     let centers = file.surfaces.iter().map(|surface| match surface {
         SurfaceFile::Rectangle { center, .. }

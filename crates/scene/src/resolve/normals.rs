@@ -5,17 +5,19 @@ use super::triangles::{MeshPlacement, others};
 use crate::Mesh;
 use glam::DVec3;
 
-/// The smallest cosine between the normal of a vertex and the normals of its triangles, 89.4°.
+/// The smallest allowed cosine between the normal of a vertex and the normals of its triangles;
+/// the angle is 89.4°.
 ///
-/// An interpolated normal is a mean, with shares from 0 to 1, of the normals of three vertices.
-/// Each of them has at least this component along the normal of the triangle, and so does their
-/// mean: it cannot vanish or turn over. The shares are off by at most 4e-4 each (`triangles.rs`),
-/// which leaves eight tenths of this component.
+/// An interpolated normal is a weighted mean of the normals of three vertices, with weights from 0
+/// to 1. The component of each vertex normal along the normal of the triangle is at least this
+/// cosine, and so is that of their mean: the mean cannot vanish or point to the other side. The
+/// error of each weight is at most 4e-4 (`triangles.rs`), so at least eight tenths of this
+/// component remain.
 ///
 /// The same limit applies to a ratio at each vertex: the length of the sum of the area-weighted
-/// normals of its triangles, divided by the sum of their lengths. This ratio is the mean of the
-/// cosines, weighted by area, so below the limit some triangle has a smaller cosine too. So the
-/// test of the ratio refuses no mesh that would pass the test of the cosines.
+/// normals of its triangles, divided by the sum of their lengths. This ratio is the area-weighted
+/// mean of the cosines, so if it is below the limit, the cosine of some triangle is too. The test
+/// of the ratio therefore refuses no mesh that would pass the test of the cosines.
 const MIN_NORMAL: f64 = 0.01;
 
 impl Resolver<'_> {
@@ -44,7 +46,7 @@ impl Resolver<'_> {
                 "without a normal: the normals of its triangles cancel to {left:.1e} of their summed lengths"
             );
             let allowed = format!(
-                "vertices of a smooth surface, at which at least {MIN_NORMAL} of these lengths is left{}",
+                "vertices of a smooth surface, whose normals sum to at least {MIN_NORMAL} of these lengths{}",
                 others(cancel.len())
             );
             self.faults.add(field, value, allowed);

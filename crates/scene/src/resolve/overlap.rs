@@ -13,7 +13,7 @@ pub(super) enum Thing {
 
 /// Returns the first two shapes or half-planes that overlap, given finite numbers.
 pub(super) fn overlap(shapes: &[Shape], half_planes: &[HalfPlane]) -> Option<[Thing; 2]> {
-    // Of any three half-planes two overlap, so the first three suffice.
+    // Among any three half-planes, two overlap, so only the first three are tested.
     let first = &half_planes[..half_planes.len().min(3)];
     let two = pairs(first.len()).find(|[i, j]| !facing_away(&first[*i], &first[*j]));
     if let Some(pair) = two {
@@ -32,8 +32,8 @@ fn pairs(count: usize) -> impl Iterator<Item = [usize; 2]> {
 
 /// Returns the first shape that overlaps another, and the first that it overlaps.
 ///
-/// Bounds of disjoint shapes meet only where the shapes touch, or in the corners of the bounds of
-/// discs. At any point few bounds of each order of magnitude meet, so few pairs are tested.
+/// The bounding boxes of disjoint shapes overlap only where the shapes touch, or in the corners of
+/// the boxes of discs. Few boxes of similar size overlap at any point, so few pairs are tested.
 fn overlap_of_shapes(shapes: &[Shape]) -> Option<[usize; 2]> {
     let indexed = shapes.iter().enumerate().map(|(i, shape)| {
         let [low, high] = corners(shape);
@@ -76,7 +76,7 @@ fn meet(a: &Shape, b: &Shape) -> bool {
             }
             (Shape::Disc(disc), Shape::Rectangle(rectangle))
             | (Shape::Rectangle(rectangle), Shape::Disc(disc)) => {
-                // The nearest point of the rectangle.
+                // The vector from the nearest point of the rectangle to the centre of the disc.
                 let beyond = |axis: usize| {
                     let [low, high] = rectangle.extent(axis);
                     disc.center[axis] - disc.center[axis].clamp(low, high)

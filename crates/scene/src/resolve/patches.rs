@@ -19,7 +19,7 @@ impl Resolver<'_> {
 
     #[expect(
         clippy::too_many_lines,
-        reason = "a case for each form and event of a surface"
+        reason = "the function has a case for each form and event"
     )]
     fn patch(&mut self, of: &str, surface: &SurfaceFile, light: &Frame) -> Option<PatchObject> {
         let SurfaceFile::Smooth {
@@ -40,7 +40,7 @@ impl Resolver<'_> {
             FormFile::Cylinder(k) => [k, 0.0, k],
             FormFile::Paraboloid(k, l) => [k, l, 0.0],
         };
-        // A sphere or a cylinder has no points beyond the half that holds the vertex.
+        // Only the half of a sphere or a cylinder that contains the vertex is used.
         if curvature[2] != 0.0 && *aperture > 1.0 / curvature[2].abs() {
             let allowed = format!(
                 "at most the radius of curvature, {} m",

@@ -9,14 +9,15 @@ use etendue_scenefile::did_you_mean;
 use etendue_scenefile::{SceneFile, SurfaceFile};
 use glam::DVec3;
 
-/// The share of a leg within which a hit on the surface just left is ignored.
+/// The share of a leg's length, from its beginning, within which hits on the surface that the ray
+/// leaves are ignored.
 const MIN_LEG_SHARE: f64 = 1e-9;
 
 /// The cosine of the angle to the normal below which a surface counts as edge-on.
 const GRAZING: f64 = 1.7e-3;
 
 impl Resolver<'_> {
-    /// Returns the legs, as far as they can be computed; the length of a faulty leg is NaN.
+    /// Returns the legs up to the first faulty leg, whose length is NaN.
     pub(super) fn path(
         &mut self,
         file: &SceneFile,
@@ -160,7 +161,7 @@ impl Resolver<'_> {
         let (of, value, d) = if let Some(next) = path.visits.get(i + 1) {
             let known = things.objects();
             let Some((object, _)) = known.iter().find(|(_, name)| name == next) else {
-                // The fault is reported for the visit itself.
+                // The fault is reported when the visit itself is checked.
                 return Some(hit.normal);
             };
             let towards = things.center(*object) - hit.point;
@@ -183,10 +184,11 @@ impl Resolver<'_> {
     }
 }
 
-/// Returns the frame in which light leaves a hit along `d`. It is the frame of a mirror, (−X, Y)
-/// reflected, rotated by the smallest angle until it faces along `d`. For light that goes straight
-/// back at normal incidence, the frame is (−X, Y, −D) (Durand et al. 2005, section 4.1, steps 1 and
-/// 7, at θ = 0). For light in the plane of incidence, it is the frame of docs/conventions.md.
+/// Returns the frame in which light leaves a hit along `d`. This frame is the frame behind a
+/// mirror, which has the reflected axes −X and Y, rotated by the smallest angle until it faces
+/// along `d`. For light that goes straight back at normal incidence, the frame is (−X, Y, −D)
+/// (Durand et al. 2005, section 4.1, steps 1 and 7, at θ = 0). For light in the plane of
+/// incidence, it is the frame of docs/conventions.md.
 ///
 /// Light that is transmitted keeps the frame in which it arrived, rotated in the same way.
 fn leaving(arriving: &Frame, hit: &Hit, d: DVec3, through: bool) -> Frame {

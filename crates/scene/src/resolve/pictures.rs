@@ -76,7 +76,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Reports lobes that send no light forward.
+    /// Adds a fault for each lobe that sends no light forward.
     fn behind(&mut self, frame: &Frame, lobes: &[SphericalGaussian]) {
         for (i, lobe) in lobes.iter().enumerate() {
             let from = frame.vector_to_world(lobe.from);

@@ -212,7 +212,7 @@ impl Resolver<'_> {
         Some(stop)
     }
 
-    /// Checks that the distance of a place beside the path is not behind the light.
+    /// Checks that a place, by its distance along the first leg, is not behind the light.
     fn beyond_light(&mut self, of: &str, place: &Place, distance: f64) -> f64 {
         if distance < 0.0 {
             let allowed = format!(
@@ -224,7 +224,7 @@ impl Resolver<'_> {
         distance
     }
 
-    /// Returns the place on the leg that holds this distance along the path.
+    /// Returns the place on the path at this distance, with the leg that contains it.
     fn at_distance(
         &mut self,
         of: &str,
@@ -260,8 +260,8 @@ impl Resolver<'_> {
             .filter(|stop| stop.is_flat() && is_across(&at))
             .find(beside)
         {
-            // Rounding alone would decide whether light on its way back is before or after the
-            // plane.
+            // Rounding errors alone would determine whether light that travels back crosses the
+            // plane before or after the object.
             let name = shown(stop.name, limits::NAME);
             let allowed = format!("a distance at which {name} does not lie in the plane");
             self.faults.add_on_path(of, value(), allowed);
@@ -299,7 +299,7 @@ impl Resolver<'_> {
         match *profile {
             Profile::Hann(_) | Profile::Box(_) => {}
             Profile::Gaussian { width, cut } => {
-                // The number of terms in a series of copies grows with the width of the cut.
+                // A prediction sums a series whose number of terms grows with the cut.
                 if width.is_finite() && cut.is_finite() && cut > 10.0 * width {
                     let allowed =
                         "at most 10 widths: beyond 3.5 widths the Gaussian is below 1e-16";
@@ -354,7 +354,7 @@ impl Resolver<'_> {
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
-            reason = "checked to be in 1..2^32"
+            reason = "the number was checked to be in 1..2^32"
         )]
         let half = half as usize;
         Some(FrequencyAxis { half, spacing })
@@ -364,9 +364,9 @@ impl Resolver<'_> {
     pub(super) fn memory(&mut self, planes: &[VirtualPlane], batches: u32, memory: u64) {
         let cells =
             |grid: &SliceGrid| -> f64 { grid.half_shape().iter().map(|n| *n as f64).product() };
-        // Memory holds batches and their residuals. A hundred copies more suffice for the
-        // prediction, its derivatives and errors, and for seven fine grids of the transform on each
-        // of a dozen threads.
+        // Memory holds the spectra of all batches and their residuals. A hundred further copies
+        // suffice for the prediction, its derivatives and errors, and for seven fine grids of the
+        // transform on each of a dozen threads.
         let copies = 2.0 * f64::from(batches) + 100.0;
         let bytes: f64 = planes
             .iter()

@@ -19,7 +19,7 @@ impl Resolver<'_> {
     ) -> Light {
         let axes = self.axes_of_rays(axes, light);
         let rays = self.ray_light(name, &axes, flux);
-        // The result is unused after a fault.
+        // After a fault, the light is only a placeholder that is never used.
         let dark = || RayLight::new(vec![of_flux(1.0)], 0.0);
         match rays.or_else(dark) {
             Some(rays) => Light::Rays {

@@ -8,11 +8,13 @@ use etendue_scenefile::{
     BrdfFile, EventFile, FresnelFile, GratingFile, LobeFile, PatternFile, TermFile,
 };
 
-/// The largest number of values of a factor of an angle: one for each tenth of a degree.
+/// The largest number of values of a factor that depends on an angle: one value for each tenth of
+/// a degree.
 const FINEST: usize = 901;
 
 impl Resolver<'_> {
-    /// Returns the reflectance of a surface; `None` for one that sends each ray in one direction.
+    /// Returns the reflectance of a surface; `None` for a surface that sends each ray in one
+    /// direction.
     pub(super) fn reflectance(&mut self, of: &str, event: &EventFile) -> Option<Reflectance> {
         let (mut resolved, texture) = match event {
             EventFile::Reflects {
@@ -57,7 +59,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Returns the sum of BRDFs; `None` where there are no terms, or too many.
+    /// Returns the sum of BRDFs; `None` if there are no terms, or too many.
     fn sum(&mut self, of: &str, terms: &[TermFile]) -> Option<Reflectance> {
         let count = terms.len();
         if !(1..=MOST_TERMS).contains(&count) {

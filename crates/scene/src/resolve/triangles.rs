@@ -1,5 +1,5 @@
-//! Checks the triangles of a placed mesh: within the coordinates of a scene, and thick enough to be
-//! distinguished from lines.
+//! Checks that the triangles of a placed mesh are within the range of coordinates of a scene, and
+//! thick enough to be distinguished from lines.
 
 use super::Resolver;
 use crate::Mesh;
@@ -11,19 +11,19 @@ use std::path::Path;
 /// The ratio of a triangle's height to the largest coordinate below which the triangle cannot be
 /// distinguished from a line.
 ///
-/// A coordinate in the frame of a leg is rounded by up to 4e-16 of the largest. At this height a
-/// normal is tilted by 4e-4 of a radian, and the barycentric shares of a point are off by as much;
-/// below this height rounding dominates.
+/// A coordinate in the frame of a leg is rounded by up to 4e-16 of the largest. At this height,
+/// rounding tilts a normal by 4e-4 radians and changes the barycentric coordinates of a point by
+/// as much; rounding dominates below this height.
 const THIN: f64 = 1e-12;
-/// The smallest height in metres: the smallest size of a scene times the smallest scale. Products
-/// of six such lengths stay within f64.
+/// The smallest allowed height of a triangle in metres: the smallest size in a scene times the
+/// smallest scale. Products of six such lengths are within the range of f64.
 const LEAST_HEIGHT: f64 = 1e-18;
 /// The largest share of a mesh's area up to which thin triangles are dropped; the missing light is
 /// far below the noise.
 const MAX_DROPPED_SHARE: f64 = 1e-6;
 /// The placement of a mesh, and how its faults are reported.
 pub(super) struct MeshPlacement<'a> {
-    /// The field of the blocker or the surface.
+    /// The path of the field of the blocker or the surface in the scene file.
     pub(super) of: String,
     pub(super) source: &'a MeshSource,
     pub(super) center: DVec3,
@@ -38,8 +38,8 @@ impl MeshPlacement<'_> {
         self.center + vertex * self.scale
     }
 
-    /// Returns the index of a vertex as its mesh file counts it: OBJ from 1, PLY and generated
-    /// meshes from 0.
+    /// Returns the index of a vertex as its mesh file counts it, from 1 in OBJ files and from 0 in
+    /// PLY files and generated meshes.
     pub(super) fn number(&self, vertex: u32) -> u64 {
         let extension = match self.source {
             MeshSource::File(path) => Path::new(path).extension(),
@@ -56,7 +56,7 @@ impl MeshPlacement<'_> {
         }
     }
 
-    /// Returns a triangle by the numbers of its vertices.
+    /// Returns the description of a triangle in messages, by the numbers of its vertices.
     pub(super) fn triangle(&self, corners: [u32; 3]) -> String {
         let [a, b, c] = corners.map(|i| self.number(i));
         format!("the triangle of vertices {a}, {b} and {c}")
@@ -102,7 +102,7 @@ impl Resolver<'_> {
         None
     }
 
-    /// Requires vertices within the coordinates of a scene.
+    /// Checks that vertices are within the range of coordinates of a scene.
     fn inside(&mut self, at: &MeshPlacement<'_>, mesh: &Mesh) -> Option<()> {
         let mut corners: Vec<u32> = mesh.triangles().as_flattened().to_vec();
         corners.sort_unstable();
@@ -131,7 +131,7 @@ fn height([a, b, c]: [DVec3; 3]) -> [f64; 2] {
     [twice / longest, twice]
 }
 
-/// Returns words that count the faults after the first.
+/// Returns a note for messages that counts the faults after the first.
 pub(super) fn others(count: usize) -> String {
     match count {
         0 | 1 => String::new(),

@@ -12,11 +12,12 @@ use etendue_field::{Complex, FrequencyAxis, Slices};
 pub struct Aliasing {
     /// Number of frequencies compared, one of each conjugate pair.
     pub compared: usize,
-    /// The difference. It includes the slices' own error: below 2·10⁻⁷ Σw at each frequency.
+    /// The difference. The difference includes the error of the slices themselves, which is below
+    /// 2·10⁻⁷ Σw at each frequency.
     pub difference: f64,
     /// The expected difference from aliasing if the spectrum beyond Nyquist is as strong as in the
-    /// outermost quarter below Nyquist. It is not a bound: it is correct for white noise, too large
-    /// if the spectrum falls off, and too small if the spectrum rises again.
+    /// outermost quarter below Nyquist. This value is not a bound: it is correct for white noise,
+    /// too large if the spectrum falls off, and too small if the spectrum rises again.
     pub expected: f64,
     /// The bound of [`FieldSpectrum::alias_bound`]: it holds for any photons, and is far above the
     /// difference for most.
@@ -37,9 +38,10 @@ impl FieldSpectrum {
     ///
     /// Ωy = Ωv = 0 is azimuth 0, and Ωx = Ωu = 0 is azimuth π/2 if the number of azimuths is even;
     /// if the slices are finer than the natural spacing, only every n-th frequency is shared.
-    /// `None` if nothing is shared or there is no light.
+    /// Returns `None` if no frequency is shared or there is no light.
     ///
-    /// On these lines only the two axes along the line have aliasing; elsewhere all four do.
+    /// On these lines, only the two axes along the line have aliasing; at other frequencies, all
+    /// four axes have aliasing.
     #[must_use]
     pub fn aliasing(&self, slices: &Slices, share: f64) -> Option<Aliasing> {
         let all = self.shared(slices);
@@ -109,7 +111,10 @@ impl FieldSpectrum {
 
     /// Returns which multiple of the spacing along `axis` the frequency at `index` of `frequencies`
     /// is, if it is a multiple up to Nyquist.
-    #[expect(clippy::cast_possible_truncation, reason = "below the number of cells")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "the multiple is below the number of cells"
+    )]
     fn harmonic_at(&self, axis: usize, frequencies: &FrequencyAxis, index: usize) -> Option<isize> {
         let exact = frequencies.value(index) / self.grid.spacing(axis);
         let whole = exact.round();

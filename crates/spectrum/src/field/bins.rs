@@ -210,8 +210,8 @@ mod tests {
             [1.0, v * v]
         });
         assert!(one.iter().all(|mean| (mean - 1.0).abs() < 1e-14)); // rounding of sums of ones
-        // By symmetry of u and v the mean of Ωv² is half of that of |Ωuv|²: ring 1 has four at 1,
-        // four at 2.
+        // By symmetry of u and v, the mean of Ωv² is half of the mean of |Ωuv|². In ring 1, |Ωuv|²
+        // is 1 at four frequencies and 2 at four.
         assert!((square[[2, 1]] - 0.75).abs() < 1e-14); // rounding
         let by_frequency = full_radial_of(&grid, |[_, _, u, _]| Complex::new(0.0, u));
         assert!((by_frequency[[3, 1]] - 0.75).abs() < 1e-14);

@@ -52,7 +52,7 @@ impl FieldTransform {
     ///
     /// # Panics
     ///
-    /// If `cells` belongs to another plan.
+    /// Panics if `cells` belongs to another plan.
     #[must_use]
     pub fn spectrum(&self, cells: FieldCells) -> FieldSpectrum {
         assert_eq!((cells.grid, cells.assignment), (self.grid, self.assignment));
@@ -94,9 +94,9 @@ impl FieldTransform {
 pub struct FieldCells {
     grid: FieldGrid,
     assignment: Assignment,
-    /// Number of complex numbers of a row.
+    /// Number of complex numbers in a row.
     row: usize,
-    /// Laid out for [`RealFft4`].
+    /// The cells, in the layout of [`RealFft4`].
     data: Vec<Complex>,
 }
 

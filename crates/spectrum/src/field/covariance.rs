@@ -15,9 +15,9 @@ const COUNT: usize = 11;
 /// ∫ P and ∫ P Ωᵢ Ωⱼ over a band of frequencies, for a power P = |ℓ̂|².
 ///
 /// The covariance of the spectrum, ∫ P Ω Ωᵀ/∫ P, equals ∫ ∇ℓ ∇ℓᵀ/(4π² ∫ ℓ²) of the windowed light
-/// field if the band contains the whole spectrum. If the field has an edge neither exists: P falls
-/// as Ω⁻² there, and the sum grows with the band. So each result belongs to a band, and only
-/// results over the same band can be compared.
+/// field if the band contains the whole spectrum. If the field has an edge, neither exists: P
+/// falls as Ω⁻² there, and the sum grows with the band. Each result therefore belongs to a band,
+/// and only results over the same band can be compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PowerMoments {
     /// ∫ P, up to a factor common to all moments.
@@ -44,14 +44,14 @@ impl PowerMoments {
     }
 }
 
-/// Returns (i, j) with i ≤ j, in order.
+/// Returns the index pairs (i, j) with i ≤ j, in order.
 fn pairs() -> impl Iterator<Item = (usize, usize)> {
     (0..4).flat_map(|i| (i..4).map(move |j| (i, j)))
 }
 
-/// The frequencies over which moments are taken: those of a 4D grid within the largest ones of a
-/// plane's slices, |Ωx| and |Ωy| ≤ ρ_max, |Ωu| and |Ωv| ≤ ν_max. Frequencies at Nyquist are
-/// excluded.
+/// The frequencies over which moments are taken. The band holds the frequencies of a 4D grid with
+/// |Ωx| and |Ωy| ≤ ρ_max, |Ωu| and |Ωv| ≤ ν_max, where ρ_max and ν_max are the largest frequencies
+/// of a plane's slices. Frequencies at Nyquist are excluded.
 #[derive(Clone, Debug)]
 pub struct Moments {
     grid: FieldGrid,
@@ -164,9 +164,9 @@ impl GroupMoments {
 
 /// The covariance of a spectrum, measured without bias from noise.
 ///
-/// Noise is a floor of power at all frequencies, and it dominates second moments. So products of
-/// different groups of batches are used: with Re(G_r conj G_s) over all pairs r ≠ s in place of
-/// |G|², both ∫ P and ∫ P Ω Ωᵀ are unbiased, however few photons there are (docs/theory.md (13)).
+/// Noise is a floor of power at all frequencies, and it dominates second moments. Products of
+/// different groups of batches are therefore used. With Re(G_r conj G_s) over all pairs r ≠ s in
+/// place of |G|², ∫ P and ∫ P Ω Ωᵀ are unbiased for any number of photons (docs/theory.md (13)).
 /// The error of their ratio is of second order in the noise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldCovariance {
@@ -176,7 +176,7 @@ pub struct FieldCovariance {
     pub moments: PowerMoments,
     /// The moments over half of the band.
     half: PowerMoments,
-    /// The moments without each of the groups, up to a factor.
+    /// The moments with each of the groups left out, up to a factor.
     without: Vec<PowerMoments>,
 }
 
@@ -229,8 +229,8 @@ impl FieldCovariance {
 
     /// Returns the factor by which each variance grows from half of the band to all of it: 1 if the
     /// band contains the spectrum, about 2 if the field has an edge, and more if replicas lie in
-    /// between. The spectrum of an edge has no second moment. `None` if there is no light beyond
-    /// noise.
+    /// between. The spectrum of an edge has no second moment. Returns `None` if there is no light
+    /// beyond noise.
     #[must_use]
     pub fn growth(&self) -> Option<[f64; 4]> {
         let [all, half] = [self.moments.covariance()?, self.half.covariance()?];
@@ -238,7 +238,8 @@ impl FieldCovariance {
     }
 
     /// Returns the estimate of a matrix that is a function of the covariance, such as its image
-    /// under a map. `None` if that does not exist for all groups, or for all but one.
+    /// under a map. Returns `None` if this matrix does not exist for all groups together, or with
+    /// one group left out.
     pub fn estimate_of(
         &self,
         of: impl Fn(&FrequencyMatrix) -> Option<FrequencyMatrix>,

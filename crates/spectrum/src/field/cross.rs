@@ -21,11 +21,11 @@ pub struct FullRadial {
     /// The power without the noise of the photons: unbiased except for aliasing, and possibly
     /// negative due to noise.
     pub power: Array2<f64>,
-    /// The contribution of the photons' noise to the power of the mean spectrum, which `power`
-    /// leaves out.
+    /// The contribution of the photons' noise to the power of the mean spectrum; `power` does not
+    /// include it.
     pub shot_noise: Array2<f64>,
-    /// The standard error of `power` by the delete-one jackknife over groups of batches: about √2
-    /// times too large where there is only noise.
+    /// The standard error of `power` by the delete-one jackknife over groups of batches. It is
+    /// about √2 times too large for frequencies with noise alone.
     pub sigma: Array2<f64>,
 }
 

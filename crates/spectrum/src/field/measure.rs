@@ -21,8 +21,8 @@ pub struct FieldOptions {
     pub assignment: Assignment,
     /// Independent groups of batches for the errors: at least 3, at most as many as there are batches.
     pub groups: usize,
-    /// Whether to keep the grids of all groups. Otherwise photons are traced twice: once for the
-    /// sum, once for the groups. The result is bitwise the same.
+    /// Whether to keep the grids of all groups. If not, photons are traced twice: once for the
+    /// sum, and once for the groups. The result is bitwise the same.
     pub keep: bool,
     /// Whether to return the spectra of all groups, which are then in memory together.
     pub spectra: bool,
@@ -118,7 +118,7 @@ pub struct FieldGroup {
 ///
 /// # Errors
 ///
-/// With fewer than three non-empty batches.
+/// Fails with fewer than three non-empty batches.
 pub fn measure_field(
     source: &dyn PhotonSource,
     index: usize,
@@ -236,8 +236,8 @@ impl GroupContext<'_> {
         powers
     }
 
-    /// Returns the groups processed at the same time, as many as threads, which limits the number
-    /// of grids in memory.
+    /// Returns ranges of groups that are processed at the same time. Each has as many groups as
+    /// there are threads, which limits the number of grids in memory.
     fn waves(&self) -> impl Iterator<Item = Range<usize>> {
         let threads = rayon::current_num_threads();
         let starts = (0..self.groups).step_by(threads);

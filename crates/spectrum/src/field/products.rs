@@ -23,7 +23,7 @@ impl RadialBins {
             .map(|ring| self.ring_products(ring, spectra))
             .collect();
         let products = Array3::from_shape_vec((rings * columns, n, n), of_ring.concat());
-        products.expect("as many products as bins and pairs")
+        products.expect("there is a product for each bin and pair")
     }
 
     /// Returns the products of a ring of (Ωx, Ωy), [|Ωuv|, i, j].

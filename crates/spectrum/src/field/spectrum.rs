@@ -30,7 +30,7 @@ impl FieldSpectrum {
     ///
     /// # Panics
     ///
-    /// If a multiple is beyond Nyquist.
+    /// Panics if a multiple is beyond Nyquist.
     #[must_use]
     pub fn at(&self, harmonics: [isize; 4]) -> Complex {
         if harmonics[3] < 0 {
@@ -60,15 +60,15 @@ impl FieldSpectrum {
     /// along axis d.
     ///
     /// The bound is rigorous for any field: it is reached (orders 1 and 2) if all light is in one
-    /// ray at the worst position. It grows as the frequency to the power p: near Nyquist it is
-    /// almost useless.
+    /// ray at the worst position. The bound grows as the frequency to the power p, so it is almost
+    /// useless near Nyquist.
     #[must_use]
     pub fn alias_bound(&self, harmonics: [isize; 4]) -> f64 {
         let worst = |axis: usize| {
             let f = harmonics[axis] as f64 / self.grid.cells[axis] as f64;
             worst_alias(self.assignment, f)
         };
-        // Computes Π(1 + ε) − 1 without losing small ε to rounding.
+        // Computes Π(1 + ε) − 1 such that small ε are not lost to rounding.
         let sum = (0..4).fold(0.0, |sum, axis| sum + worst(axis) * (1.0 + sum));
         self.at_zero() * sum
     }

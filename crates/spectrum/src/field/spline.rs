@@ -6,7 +6,8 @@
 //!
 //! e^(−2πift) (1 + ε),   ε = Σ_(n≠0) (sinc^p(f + n)/sinc^p(f)) e^(−2πint),   sinc(f + n)/sinc(f) = (−1)ⁿ f/(f + n).
 //!
-//! The first factor is the ray's exact phase, ε the aliases (Hockney and Eastwood 1981, chapter 5; Jing 2005, ApJ 620).
+//! The first factor is the ray's exact phase, and ε is the sum of the aliases (Hockney and
+//! Eastwood 1981, chapter 5; Jing 2005, ApJ 620).
 
 use etendue_field::{Assignment, sinc};
 use std::f64::consts::PI;
@@ -16,13 +17,13 @@ pub(crate) fn transform(assignment: Assignment, f: f64) -> f64 {
     (0..assignment.order()).map(|_| sinc(f)).product()
 }
 
-/// Returns the cells among 0..`n`, a period, that a ray at `t` ≥ 0 contributes to along one axis,
-/// with its shares, which add up to 1.
+/// Returns the cells, within the period 0..`n`, to which a ray at `t` ≥ 0 contributes along one
+/// axis, with the shares of the ray, which add up to 1.
 #[inline]
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "whole, not negative and at most n: a ray in the window is in the box"
+    reason = "the index is whole and from 0 to n, because a ray in the window is in the box"
 )]
 pub(crate) fn taps<const P: usize>(t: f64, n: usize) -> ([usize; P], [f64; P]) {
     // The cell below t or, for odd P, the cell nearest to t.
@@ -44,14 +45,14 @@ pub(crate) fn taps<const P: usize>(t: f64, n: usize) -> ([usize; P], [f64; P]) {
 
 /// Returns the largest |ε| of a ray at `f`, over all positions of the ray.
 ///
-/// Exact for orders 1 and 2. For order 3 it is the sum of the moduli, up to a fifth above the
-/// actual maximum.
+/// The value is exact for orders 1 and 2. For order 3 it is the sum of the moduli, which exceeds
+/// the actual maximum by up to a fifth.
 pub(crate) fn worst_alias(assignment: Assignment, f: f64) -> f64 {
     let f = f.abs();
     let one = sinc(f);
     match assignment {
-        // The ray lies up to half a cell from the position it is assigned to: |e^(iθ)/sinc f − 1|
-        // with |θ| ≤ πf.
+        // The ray is at most half a cell from the position to which it is assigned, so ε is at
+        // most |e^(iθ)/sinc f − 1| with |θ| ≤ πf.
         Assignment::Nearest => {
             let square = 1.0 / (one * one) - 2.0 * libm::cos(PI * f) / one + 1.0;
             square.max(0.0).sqrt()

@@ -46,8 +46,8 @@ impl Results {
         Ok(())
     }
 
-    /// Refuses to write where a file of somebody else is in the way; with `force`, refuses only if
-    /// that file is not a regular file.
+    /// Refuses to write if etendue did not write a file that is in the way; with `force`, refuses
+    /// only if this file is not a regular file.
     pub(super) fn refuse_foreign(&self) -> Result<(), Failure> {
         let earlier = self.earlier();
         let mut foreign = Vec::new();

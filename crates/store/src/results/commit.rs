@@ -1,9 +1,9 @@
-//! Replaces earlier files by new ones.
+//! Replaces earlier files by new files.
 //!
-//! Before the first file moves, all are complete and synced and their index is ready beside them.
-//! So if this process is ended, the next one that writes to the folder can continue; any step may
-//! have been done already. Earlier files move aside and are removed last: where a move fails, all
-//! previous moves are undone.
+//! Before the first file moves, all files are complete and synced, and their index is ready beside
+//! them. If this process is ended at any step, the next process that writes to the folder can
+//! therefore continue. Earlier files move aside and are removed last, so all moves can be undone
+//! if one fails.
 
 use super::{
     LINKED, Results, TIMING, UNFINISHED, has_hash, is_regular, listed, parents, sealed_bytes,
@@ -19,7 +19,7 @@ use tempfile::TempPath;
 pub(super) struct MovedFiles {
     /// Files of the earlier result.
     pub(super) gone: Vec<String>,
-    /// Files of somebody else.
+    /// Files that etendue did not write.
     pub(super) replaced: Vec<String>,
     /// All moves so far, to be undone on failure.
     done: Vec<[PathBuf; 2]>,
@@ -56,7 +56,7 @@ impl MovedFiles {
     /// Moves everything back.
     fn undo(&self) {
         for [from, to] in self.done.iter().rev() {
-            // If a file cannot be moved back now, the next process completes its move.
+            // If a file cannot be moved back, the next process completes its move.
             let _ = fs::rename(to, from);
         }
     }
@@ -72,7 +72,7 @@ impl Results {
         fs::rename(self.staged(index), &ready).map_err(failure)?;
         self.move_all(index).inspect_err(|_| {
             if !self.aside("").exists() {
-                // Everything is as before, and nothing is left for the next process.
+                // All moves are undone, so the next process has nothing to complete.
                 let _ = fs::remove_file(&ready);
             }
         })
@@ -99,13 +99,14 @@ impl Results {
         let result = self.moves(index, &mut moved);
         if let Err(error) = result {
             moved.undo();
-            // The folder is empty now, unless a file could not be moved back or was aside before.
+            // This folder is now empty, unless a file could not be moved back or an earlier
+            // process had moved a file there.
             remove_empty(&self.aside(""));
             return Err(error);
         }
         let earlier = listed(&self.aside(index)).unwrap_or_default();
         for folder in parents(earlier.keys()).into_iter().rev() {
-            // A folder that is not empty stays.
+            // A folder that is not empty is kept.
             let _ = fs::remove_dir(self.folder.join(folder));
         }
         let finished = || {
@@ -152,7 +153,8 @@ impl Results {
         self.place(ready, index, moved)
     }
 
-    /// Moves a new file to its name; with `force`, a file of somebody else is moved aside.
+    /// Moves a new file to its name; with `force`, a file there that etendue did not write is
+    /// moved aside.
     fn place(&self, from: PathBuf, name: &str, moved: &mut MovedFiles) -> Result<(), Failure> {
         let to = self.inside(name).ok_or_else(|| {
             let shown = self.shown.join(name);
@@ -180,7 +182,7 @@ fn remove_empty(folder: &Path) {
     let _ = fs::remove_dir(folder);
 }
 
-/// Makes the names in a folder durable, where folders can be synced.
+/// Syncs a folder, so that renamed files survive a crash, on systems that can sync folders.
 fn sync(folder: &Path) -> io::Result<()> {
     if cfg!(unix) {
         File::open(folder)?.sync_all()?;

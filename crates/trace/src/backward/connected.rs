@@ -1,15 +1,15 @@
 //! Connects points to light without extent, which no ray hits by chance: point lights, projectors
 //! and beams.
 //!
-//! For a given point the path to such a light is known, so only this path is traced.
+//! The path from a given point to such a light is known, so only this path is traced.
 
 use etendue_field::{Light, TwoPlane, VirtualPlane};
 use etendue_scene::{Event, Object, Scene};
 use glam::DVec3;
 
-/// Whether rays traced back from a plane find the light. Light without extent is found only where
-/// nothing deflects it before it reaches the plane, or the first surface that scatters it. A point
-/// light is not found from its own position. Rays of a file are never found.
+/// Whether rays traced back from a plane find the light. Light without extent is found only if no
+/// mirror, interface or lens deflects it before it reaches the plane or the first surface that
+/// scatters it. A point light is not found from its own position. Rays of a file are never found.
 #[must_use]
 pub fn finds(scene: &Scene, plane: &VirtualPlane) -> bool {
     let first = scene.path.legs.get(1).and_then(|leg| leg.leaves.as_ref());
@@ -19,7 +19,7 @@ pub fn finds(scene: &Scene, plane: &VirtualPlane) -> bool {
         Object::Patch(i) => matches!(scene.patches[i].event, Event::Specular(_)),
     });
     let light = &scene.light;
-    // A randomly drawn ray meets none of the rays of a file.
+    // A randomly drawn ray never coincides with a ray of a file.
     if matches!(light, Light::Rays { .. }) {
         return false;
     }
@@ -28,8 +28,8 @@ pub fn finds(scene: &Scene, plane: &VirtualPlane) -> bool {
 }
 
 /// Returns the ray from a light without extent to a point in the frame at the light, given at the
-/// light. Also returns the irradiance at the point across the ray, divided by the value that the
-/// ray carries per du dv or dx dy.
+/// light. Also returns the irradiance that the light causes at the point, on an area across the
+/// ray, divided by the value of the ray per du dv or dx dy.
 pub(super) fn connection(light: &Light, point: DVec3) -> Option<(TwoPlane, f64)> {
     let [x, y] = [point.x, point.y];
     if point.z < 0.0 || point.z == 0.0 && !light.is_distant() {

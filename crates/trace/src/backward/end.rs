@@ -1,15 +1,15 @@
-//! The point where a ray traced back begins, and what it implies about the surface that the ray
-//! reaches.
+//! The point at which a backward ray begins, and the part of its line on which light may leave the
+//! next surface.
 
 use etendue_field::Side;
 
-/// The point at which a ray is evaluated, along its leg.
+/// The point along a leg at which the radiance of a ray is evaluated.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum End {
-    /// At a plane. Light that has left a surface, and would meet it again beyond the plane, does
-    /// not count.
+    /// A virtual plane. Light that has left a surface, and would meet it again beyond the plane,
+    /// does not count.
     Plane(f64, Side),
-    /// At a surface that ends the ray.
+    /// A surface that ends the ray.
     Surface(f64),
 }
 

@@ -1,4 +1,4 @@
-//! A leg of the path for rays that are traced back.
+//! A leg of the path for backward rays.
 
 use crate::area_sampler::AreaSampler;
 use crate::courses::{Both, rounding};
@@ -17,7 +17,7 @@ pub(super) struct BackwardLeg {
     pub(super) ends: Option<Object>,
 }
 
-/// What light of one heading can meet on a leg.
+/// The objects that light in one direction along a leg can meet.
 #[derive(Debug)]
 pub(super) struct BackwardCourse {
     /// The frame of the heading, in the frame at the light.
@@ -39,7 +39,7 @@ pub(super) struct IncomingRay {
 #[derive(Debug)]
 pub(super) struct LeftSurface {
     pub(super) object: Object,
-    /// The pieces of the surface, in the frame of the course.
+    /// The pieces of the surface, in the frame of the light's direction along the leg.
     pub(super) primitives: PrimitiveSet<()>,
     pub(super) how: Scattering,
     pub(super) rounding: f64,
@@ -50,17 +50,19 @@ pub(super) struct LeftSurface {
 pub(super) enum Scattering {
     /// Diffuse reflection, from pieces whose points can be sampled.
     Diffuse { albedo: f64, pieces: AreaSampler },
-    /// Reflection by a BRDF that may vary over a patch, in the frame of the course.
+    /// Reflection by a BRDF that may vary over a patch, in the frame of the light's direction
+    /// along the leg.
     Reflects {
         patch: Patch,
         reflectance: Box<Reflectance>,
     },
-    /// Reflection, refraction or a lens, with the lens's frame in the frame of the course.
+    /// Reflection, refraction or a lens; the frame of the lens is in the frame of the light's
+    /// direction along the leg.
     Turned { lens: Frame, event: Specular },
 }
 
 impl IncomingRay {
-    /// A ray of the light.
+    /// A ray on the first leg, given at the light.
     pub(super) fn from_light(ray: TwoPlane) -> Self {
         Self {
             leg: 0,

@@ -17,8 +17,8 @@ pub(super) struct PlaneSampler {
     pub(super) planes_on_leg: Both<PlaneOnLeg>,
     pub(super) position: [ProfileDensity; 2],
     pub(super) slope: [ProfileDensity; 2],
-    /// Whether slopes are drawn towards points of the light. This is done where the light restricts
-    /// slopes more than the window does.
+    /// Whether slopes are drawn towards points of the light. Slopes are drawn in this way if the
+    /// light restricts slopes more than the window does.
     pub(super) to_light: bool,
 }
 
@@ -50,8 +50,8 @@ impl PlaneSampler {
         }
     }
 
-    /// The ray of the leg that has the coordinates `seen` at the plane, with its end point, and dA
-    /// over dx dy there; `None` if there is no such ray.
+    /// The ray of the leg that has the coordinates `seen` at the plane, its end point, and dA / dx
+    /// dy there; `None` if there is no such ray.
     pub(super) fn leg_ray(&self, seen: &TwoPlane) -> Option<(IncomingRay, End, f64)> {
         let headings = [Heading::Along, Heading::Against];
         headings.into_iter().find_map(|heading| {

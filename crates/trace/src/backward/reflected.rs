@@ -8,7 +8,7 @@ use glam::DVec3;
 pub(super) struct Reflection<'a> {
     pub(super) brdf: Mixture<'a>,
     pub(super) point: DVec3,
-    /// The frame with D along the normal.
+    /// The frame whose D is the normal of the surface.
     pub(super) frame: Frame,
     /// The unit direction of the reflected light, in `frame`.
     pub(super) to: DVec3,

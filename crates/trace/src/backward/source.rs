@@ -1,11 +1,11 @@
-//! What a ray traced back can find at the beginning of the path.
+//! The lights that a backward ray can find at the beginning of the path.
 
 use crate::radiance::radiance;
 use crate::sky::Sky;
 use etendue_field::{Light, Shape, TwoPlane};
 use glam::DVec3;
 
-/// What a ray can find at the beginning of the path.
+/// The light that a backward ray can find at the beginning of the path.
 #[derive(Debug)]
 pub(super) enum TracedLight {
     /// An area light that the ray hits.

@@ -21,9 +21,9 @@ use glam::DVec3;
 
 /// The backward tracer of a scene, the independent check of [`Tracer`](crate::Tracer).
 ///
-/// For each plane separately, and for each photon, it draws a ray in the plane's window, traces the
-/// ray back and finds the radiance that arrives along it. Nothing is emitted, aimed or absorbed,
-/// and there is no ledger.
+/// For each plane and each photon separately, the tracer draws a ray in the plane's window, traces
+/// the ray back and finds the radiance that arrives along it. Nothing is emitted, aimed or
+/// absorbed, and there is no ledger.
 #[derive(Debug)]
 pub struct Backward {
     light: TracedLight,
@@ -33,8 +33,8 @@ pub struct Backward {
     seed: u64,
 }
 
-/// The error for a plane at which the light of a point source arrives deflected: no backward ray
-/// finds the source.
+/// The error for a plane at which no backward ray finds the light, for example because a mirror
+/// deflects the light of a point source.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "no ray traced back from {plane} finds the light: the plane lies at a point light, or a mirror, an interface or a lens deflects the light of a point or a beam; measure this plane with photons"
@@ -80,7 +80,7 @@ impl Backward {
 
     /// The ray of one plane with number `index`, and its weight in radiance space.
     fn sample(&self, sampler: &PlaneSampler, plane: u32, index: u64) -> Crossing {
-        // The ray takes one block, and each surface on its way takes one.
+        // The ray itself uses one block of random numbers, and so does each surface that it meets.
         let blocks = u32::try_from(self.legs.len().max(2)).unwrap_or(u32::MAX);
         let words = |block| {
             let block = blocks * plane + block;
@@ -109,8 +109,8 @@ impl Backward {
                 [(x - x0) / distance, (y - y0) / distance]
             }
             TracedLight::Sky(sky) if sampler.to_light => {
-                // Half of the rays are drawn by the environment; a direction that does not go
-                // forward is discarded.
+                // The slopes of half of the rays are drawn by the environment; directions that do
+                // not go forward are discarded.
                 let drawn = if r[2] < 0.5 {
                     sky.slopes(words(1))
                 } else {
@@ -145,7 +145,7 @@ impl Backward {
     /// next surface on the way back.
     #[expect(
         clippy::too_many_lines,
-        reason = "a case for each kind of surface that a ray may meet"
+        reason = "the function has a case for each kind of surface"
     )]
     fn incident(
         &self,
@@ -188,7 +188,7 @@ impl Backward {
         let point = start(ray) + begin * along;
         match &leaves.how {
             Scattering::Diffuse { albedo, .. } => {
-                // Light left the surface on the side to which it travels.
+                // The normal is that on the side to which the light travels.
                 let normal = primitive.normal(point);
                 let normal = frame.vector_to_world(normal.dot(along).signum() * normal);
                 let point = frame.to_world(point);
@@ -246,7 +246,7 @@ impl Backward {
     }
 
     /// The radiance that arrives along a ray at a point, at distance `end`, of the surface that
-    /// ends its leg. Another part of a concave or solid surface may occlude it.
+    /// ends its leg. Another part of a concave or solid surface may block this ray.
     fn arriving(
         &self,
         incoming: &IncomingRay,
@@ -255,7 +255,7 @@ impl Backward {
         words: &impl Fn(u32) -> [f64; 4],
     ) -> f64 {
         let IncomingRay { leg, heading, ray } = incoming;
-        // Light begins in the plane across the central ray at the light's centre.
+        // Light begins in the plane through the light's centre, across the central ray.
         if *leg == 0 && end <= 0.0 {
             return 0.0;
         }
@@ -276,7 +276,7 @@ impl Backward {
     }
 
     /// The irradiance at a point with a normal at the end of a leg, from one point of the surface
-    /// or light at the beginning of the leg. All are in the frame at the light.
+    /// or light at the beginning of the leg. All vectors are in the frame at the light.
     fn irradiance(
         &self,
         leg: usize,
@@ -328,7 +328,7 @@ impl Backward {
             return 0.0;
         };
         let [end, begin] = [end, begin].map(|p| heading.turned(p).z);
-        // A nearer point of the surface on the same line hides the point that was drawn.
+        // A nearer point of the same surface on the line hides the point that was drawn.
         let nearer = |leaves: &LeftSurface| {
             leaves
                 .primitives
@@ -347,8 +347,8 @@ impl Backward {
 }
 
 impl Backward {
-    /// The irradiance at a point behind a mirror, an interface or a lens, from one direction that
-    /// is drawn by the cosine.
+    /// The irradiance at a point behind a mirror, an interface or a lens, estimated from one
+    /// direction with a density in proportion to the cosine.
     fn through_turn(
         &self,
         leg: usize,
@@ -363,8 +363,8 @@ impl Backward {
     }
 }
 
-/// The ratio of the radiance after a deflection at a point to that before, for light that arrived
-/// from the direction `came` and leaves along `along`: (n'/n)² at an interface; at an ideal lens,
+/// The ratio of the radiance after a deflection to the radiance before, for light that arrives
+/// along `came` and leaves along `along`. It is (n'/n)² at an interface; at an ideal lens, it is
 /// the value that conserves flux in two-plane coordinates.
 fn radiance_factor(
     lens: &Frame,
@@ -387,10 +387,10 @@ fn radiance_factor(
 }
 
 impl Backward {
-    /// The radiance reflected at the end of a leg, from one direction. With equal probability, the
-    /// direction is drawn by the lobe or, where the leg begins at the light, towards a point of the
-    /// light. Both use the density of the mixture (the balance heuristic of Veach and Guibas 1995
-    /// for one sample).
+    /// The radiance reflected at the end of a leg, estimated from one direction. The direction is
+    /// drawn by the lobe or, on the first leg, with equal probability towards a point of the
+    /// light. Both choices use the density of their mixture (the balance heuristic of Veach and
+    /// Guibas 1995 for one sample).
     fn reflected(
         &self,
         leg: usize,
@@ -455,7 +455,7 @@ impl Backward {
         let (point, normal, area) = plane_on_leg.point([x, y])?;
         let (at_light, _) = connection(light, point)?;
         let along = DVec3::new(at_light.u, at_light.v, 1.0);
-        // This is dA over du dv of the light, or over its dx dy for distant light.
+        // The ratio of dA to du dv at the light, or to dx dy there for distant light.
         let cosine = along.dot(normal).abs();
         let per_ray = if light.is_distant() {
             cosine
@@ -463,7 +463,8 @@ impl Backward {
             cosine / (point.z * point.z)
         };
         let nothing = |_| [0.0; 4];
-        // A plane on a surface records all light that arrives there, as it does for photons.
+        // A plane on a surface records all light that arrives at the surface, as it does in the
+        // forward tracer.
         let end = End::Plane(point.z, plane_on_leg.side);
         let found = self.incident(&IncomingRay::from_light(at_light), end, 1, &nothing);
         let weight = found * per_ray * area / density;

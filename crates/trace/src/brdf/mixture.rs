@@ -1,5 +1,5 @@
-//! Weighted sums of BRDFs: the value is the sum, and a direction is drawn by one of them, whose
-//! probability is its share of the albedo.
+//! Weighted sums of BRDFs. A direction is drawn by one of the BRDFs, which is selected with its
+//! share of the albedo as probability.
 
 use super::{density, sample, value};
 use etendue_field::Mixture;
@@ -33,7 +33,7 @@ pub(crate) fn towards(mixture: &Mixture<'_>, wi: DVec3, [a, b]: [f64; 2]) -> DVe
     chosen.map_or(DVec3::Z, |(of, a)| sample(of, wi, [a, b]))
 }
 
-/// The largest number that a direction is drawn from.
+/// The largest random number from which a direction is drawn.
 const BELOW_ONE: f64 = 1.0 - f64::EPSILON;
 
 /// The density of [`towards`] per solid angle.
@@ -72,8 +72,8 @@ mod tests {
         }
     }
 
-    /// Returns, for several f, the distance of the mean of f over the density from ∫ f, in standard
-    /// errors.
+    /// Returns, for several functions f, how far the mean of f divided by the density is from ∫ f,
+    /// in standard errors.
     fn deviations(drawn: &Mixture<'_>, claimed: &Mixture<'_>, wi: DVec3) -> Vec<f64> {
         const SAMPLES: u32 = 100_000;
         // Integrals over the hemisphere; functions that are non-zero on one side of a plane detect

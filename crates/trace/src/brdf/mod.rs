@@ -31,17 +31,17 @@ pub fn value(brdf: &Brdf, wi: DVec3, wo: DVec3) -> f64 {
         * factor(brdf.outgoing.as_ref(), wo)
 }
 
-/// The value of a table for a direction; 1 without a table.
+/// The value of an angular factor's table for a direction, or 1 if there is no table.
 #[inline]
 fn factor(table: Option<&AngleTable>, direction: DVec3) -> f64 {
     table.map_or(1.0, |table| table.value(direction.z))
 }
 
-/// A direction wo for wi in front of the surface, from two numbers in (0, 1). The direction may lie
-/// below the surface; it then carries no light.
+/// A direction wo for a direction wi in front of the surface, from two random numbers in (0, 1).
+/// The direction may lie below the surface; it then carries no light.
 ///
-/// Backward rays draw wi for a given wo by the same lobes, which are symmetric. The albedo and
-/// angular factors are part of the weight.
+/// Backward rays draw wi for a given wo by the same lobes, which are symmetric. The albedo and the
+/// angular factors are applied as weights, and do not affect the density.
 #[inline]
 pub(crate) fn sample(brdf: &Brdf, wi: DVec3, random: [f64; 2]) -> DVec3 {
     match brdf.lobe {

@@ -5,12 +5,13 @@ use etendue_field::{Image, RayLight, Shape, TwoPlane, power};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// The distribution that rays are drawn from.
+/// The distribution from which rays are drawn.
 #[derive(Debug)]
 pub(super) enum Plain {
-    /// Points of an area, and directions by cosⁿ⁺¹θ for light of radiance L cosⁿθ: the shape and n.
+    /// Points of an area light of radiance L cosⁿθ, and directions by cosⁿ⁺¹θ. The fields are the
+    /// shape and n.
     Area(Shape, f64),
-    /// Directions of a point light, forward, by solid angle.
+    /// Directions of a point light, uniform in solid angle over the forward hemisphere.
     Point,
     /// Slopes of a projector by the envelope of its picture.
     Slopes(Image),
@@ -46,16 +47,16 @@ impl Plain {
             }
             Self::Slopes(image) => [[0.0; 2], normal(image)],
             Self::Positions(image) => [normal(image), [0.0; 2]],
-            // The second number refines the first, because a file may have as many rays as a word
-            // has values.
+            // The second random number adds digits to the first, because a file may have as many
+            // rays as a 32-bit word has values.
             Self::Rays(rays) => return rays.at_share(r[0] + (r[1] - 0.5) / WORD).ray,
         };
         TwoPlane { x, y, u, v }
     }
 
     /// The density of [`Self::sample`] with respect to dx dy du dv; to du dv for a point or a
-    /// projector, to dx dy for a beam. For a file it is 1: each ray is drawn with its share of the
-    /// flux as probability, and represents the whole flux.
+    /// projector, to dx dy for a beam. For rays of a file the density is 1, because each ray is
+    /// drawn with its share of the flux as probability, and represents the whole flux.
     #[inline]
     pub(super) fn density(&self, ray: &TwoPlane) -> f64 {
         let secant_squared = ray.secant_squared();

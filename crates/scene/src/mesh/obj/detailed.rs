@@ -42,8 +42,8 @@ pub(in super::super) fn read(bytes: &[u8]) -> Result<DetailedMesh, Fault> {
     })
 }
 
-/// Returns the numbers of all lines that begin with a given word. The second of two texture
-/// coordinates may be missing.
+/// Returns the numbers on each line that begins with a given word. A `vt` line may omit its second
+/// number.
 fn rows<const N: usize>(bytes: &[u8], word: &[u8]) -> Result<Vec<[f64; N]>, Fault> {
     let mut rows = Vec::new();
     for (line, statement) in statements(bytes) {

@@ -29,8 +29,8 @@ pub struct ObjFile {
     pub parts: Vec<ObjPart>,
     /// Lines of `mtllib`, with the files they name.
     pub libraries: Vec<(usize, String)>,
-    /// Ignored statements: the line of the first, its word, and how many there are. In a file
-    /// without normals `s` is among them.
+    /// Ignored statements, by their word: the line of the first statement, the word, and the
+    /// number of such statements. The statement `s` is ignored in files without normals.
     pub left_out: Vec<(usize, String, usize)>,
 }
 

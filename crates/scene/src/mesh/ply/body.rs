@@ -49,7 +49,7 @@ impl<'a> Body<'a> {
         Self { data }
     }
 
-    /// Passes on each row of an element: for every property its value, or the values of its list.
+    /// Calls `each` with each row of an element; a row has a list of values for each property.
     pub(super) fn rows(
         &mut self,
         element: &PlyElement,
@@ -145,8 +145,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Requires the end of the file, because further data would be a mesh that the header does not
-    /// announce.
+    /// Checks that the file ends here, because the header announces no further data.
     pub(super) fn end(self) -> Result<(), Fault> {
         let rest = match self.data {
             Data::Text { lines, .. } => lines.rest,
@@ -190,12 +189,12 @@ fn decode(scalar: Scalar, raw: &[u8], big_endian: bool) -> f64 {
     }
 }
 
-/// Returns the number as a count or an index, if it is one.
+/// Returns the number as a count or an index, if it is a whole number in range.
 pub(super) fn whole(value: f64) -> Option<u32> {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "checked to be whole and in range"
+        reason = "the value was checked to be whole and in range"
     )]
     let cast = |value| value as u32;
     let fits = (0.0..=f64::from(u32::MAX)).contains(&value) && value.fract() == 0.0;

@@ -51,7 +51,7 @@ const ELEMENT: &str = "element NAME COUNT, a name of at most 100 bytes";
 const PROPERTIES: &str = "property TYPE NAME, property list TYPE TYPE NAME; char, uchar, short, ushort, int, uint, float, double; a name of at most 100 bytes";
 /// The largest length of a name in bytes, because messages repeat names.
 const LONGEST_NAME: usize = 100;
-/// The largest number of elements that a message lists.
+/// The largest number of PLY elements that a message lists.
 const MOST_LISTED: usize = 4;
 
 impl PlyHeader {
@@ -64,8 +64,8 @@ impl PlyHeader {
         }
         let mut encoding = None;
         let mut elements: Vec<PlyElement> = Vec::new();
-        // Hash sets hold the names of all elements, and of the properties of the last one, so
-        // reading takes time linear in the length of the header.
+        // Hash sets hold the names of all elements, and of the properties of the last element, so
+        // the time to read a header is proportional to its length.
         let (mut known, mut properties) = (HashSet::new(), HashSet::new());
         for (at, line) in lines.by_ref() {
             let refused = |allowed: &str| fault(format!("line {at}"), quoted(line), allowed);
@@ -121,8 +121,8 @@ impl PlyHeader {
         found.ok_or_else(|| fault(place(), "missing", "elements vertex and face"))
     }
 
-    /// Checks that the data are long enough for the announced counts. Each row takes bytes, so no
-    /// count, however large, can take more time or memory than the file's length allows.
+    /// Checks that the data are long enough for the announced counts. Each row takes some bytes,
+    /// so the length of the file limits time and memory, however large a count is.
     fn check_length(&self, length: usize) -> Result<(), Fault> {
         let mut least: u128 = 0;
         for element in self.elements.iter().filter(|e| e.count > 0) {
@@ -142,7 +142,10 @@ impl PlyHeader {
             if let Some(more @ 1..) = self.elements.len().checked_sub(MOST_LISTED) {
                 rows.push(format!("{more} more elements"));
             }
-            let allowed = format!("at least {least}, for {} as announced", rows.join(", "));
+            let allowed = format!(
+                "at least {least}, because the header announces {}",
+                rows.join(", ")
+            );
             return Err(fault("number of bytes after the header", length, allowed));
         }
         Ok(())
