@@ -74,7 +74,7 @@ enum ValidationCommand {
         /// Number of seeds.
         #[arg(long, default_value_t = 1000)]
         seeds: u64,
-        /// First seed. Faults are planted only with the first thousand.
+        /// First seed. Faults are planted only if the first thousand seeds are included.
         #[arg(long, default_value_t = 1)]
         first: u64,
         /// Photons per seed.
@@ -245,7 +245,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Prints sections that are not part of a page.
+/// Prints sections that no page contains.
 #[expect(
     clippy::print_stdout,
     clippy::print_stderr,
@@ -363,7 +363,7 @@ fn sections(command: &ValidationCommand) -> Vec<ReportSection> {
             full_radial::full_radial(seeds, photons)
         }
         ValidationCommand::Bandwidth { photons } => vec![shading::glossy(photons).0],
-        // These commands write their own reports.
+        // Each of these commands writes its own report.
         ValidationCommand::Nets
         | ValidationCommand::Second
         | ValidationCommand::Hostile(_)
@@ -390,7 +390,7 @@ fn faults(photons: u64) -> Vec<ReportSection> {
     ]
 }
 
-/// Calibration with both kinds of random numbers.
+/// Returns the sections of the calibration, with nets and with independent random numbers.
 fn calibrations(seeds: Range<u64>, photons: u64) -> Vec<ReportSection> {
     let kinds = [Sampling::Net, Sampling::Random].into_iter();
     let sections = kinds.flat_map(|kind| calibration::calibration(seeds.clone(), photons, kind));

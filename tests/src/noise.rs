@@ -34,8 +34,8 @@ pub(crate) fn planes(photons: u64, seed: u64) -> ReportSection {
 pub(crate) fn parameters(photons: u64, seed: u64) -> ReportSection {
     let reports = reports(&fig9b(photons, seed));
     let mut rows = Vec::new();
-    // The two-sided 1 % bound for the largest of ten normal numbers (Šidák): level 0.1 %, quantile
-    // 3.29.
+    // The largest of ten normal numbers exceeds 3.29 in magnitude with a probability of 1 %
+    // (Šidák: 0.1 % for each number).
     let bound = 3.29;
     for plane in &reports {
         for p in &plane.parameters {
@@ -132,7 +132,7 @@ pub(crate) fn gain(photons: u64, batches: u32) -> ReportSection {
     }
 }
 
-/// The receiver plane at increasing numbers of photons.
+/// Returns the section on the noise at the receiver plane for increasing numbers of photons.
 pub(crate) fn floor(photons: &[u64], seed: u64) -> ReportSection {
     let mut rows: Vec<Row> = Vec::new();
     let mut before = None;

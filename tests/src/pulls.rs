@@ -45,11 +45,12 @@ const NORMAL: [(f64, f64); 3] = [(2.0, 0.0455), (3.0, 0.0027), (4.0, 6.3e-5)];
 /// Permitted deviation of the mean from 0 and of the standard deviation from 1, in addition to
 /// their standard errors.
 const MAX_DEVIATION: f64 = 0.05;
-/// Permitted deviation in standard errors. One figure in 400 exceeds it by chance.
+/// Maximum permitted deviation, in standard errors; one figure in 400 exceeds it by chance.
 const MAX_ERRORS: f64 = 3.0;
-/// Maximum noise relative to the spectrum of a plane that is judged.
+/// Maximum noise, relative to the spectrum, of a plane that is judged.
 const MAX_NOISE: f64 = 0.25;
-/// Minimum number of scenes of a group that is judged. Errors over fewer scenes are uncertain.
+/// Minimum number of scenes in a group that is judged; with fewer scenes, the errors of its
+/// figures are uncertain.
 const MIN_SCENES: usize = 10;
 /// Maximum number of rows in the tables of single pulls and scenes.
 const LISTED: usize = 12;
@@ -104,8 +105,8 @@ pub(crate) fn pulls(options: &PullOptions) -> io::Result<Vec<ReportSection>> {
     ])
 }
 
-/// Draws scenes alternately from `wild` and from the generator for nets; `None` if the scene is
-/// invalid.
+/// Draws the scene with this number: even and odd numbers alternate between `wild` and the
+/// generator for nets. Returns `None` if the scene is invalid.
 fn drawn(options: &PullOptions, number: u64) -> io::Result<Option<Scene>> {
     let folder = tempfile::tempdir()?;
     let file = if number.is_multiple_of(2) {
@@ -127,8 +128,8 @@ fn drawn(options: &PullOptions, number: u64) -> io::Result<Option<Scene>> {
     Ok(resolve("scene", file, folder.path(), u64::MAX).ok())
 }
 
-/// Adds the pulls of a scene, and returns its cost. `None` if no theory applies to any plane, or
-/// the work is refused.
+/// Adds the pulls of a scene, and returns its cost. Returns `None` if no theory applies to any
+/// plane, or if the work is refused.
 fn judged(scene: &Scene, number: u64, pulls: &mut Vec<Pull>) -> io::Result<Option<Cost>> {
     let planes = scene.planes.iter();
     let theories: Vec<Applicability> = planes
@@ -169,8 +170,8 @@ fn judged(scene: &Scene, number: u64, pulls: &mut Vec<Pull>) -> io::Result<Optio
             0 => measurement.batches().len(),
             replicates => replicates.min(measurement.batches().len()),
         };
-        // The noise exceeds the resolution: errors from so few photons are not normally
-        // distributed.
+        // The plane is skipped because its noise exceeds the resolution: with so few photons,
+        // errors are not normally distributed.
         if report.exact_verdict() == Verdict::Undecided {
             continue;
         }
@@ -214,7 +215,7 @@ fn normal(t: f64, freedom: usize) -> f64 {
     t * (1.0 - 0.25 / freedom) / (1.0 + t * t / (2.0 * freedom)).sqrt()
 }
 
-/// A name for the theory of a plane and its evaluation.
+/// Returns a name for the theory of a plane and the way in which it is evaluated.
 fn kind(theory: &Applicability, prediction: &Prediction) -> &'static str {
     let nets = !prediction.replicates.is_empty();
     let is_rule = prediction.quadrature_error.is_some();
@@ -240,7 +241,7 @@ fn cpu_seconds() -> io::Result<f64> {
     Ok(ticks.filter_map(|t| t.parse::<f64>().ok()).sum::<f64>() * TICK)
 }
 
-/// A row for the pulls of each group.
+/// Returns a section with a row for the pulls of each group.
 fn grouped(
     pulls: &[Pull],
     options: &PullOptions,

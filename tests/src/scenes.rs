@@ -104,7 +104,8 @@ pub(crate) fn traced_backwards(scene: &Scene) -> Option<Measurement> {
     Some(measured(scene, &backward))
 }
 
-/// The predictions of all planes of a scene; where no theory applies, `reference` is used.
+/// Predicts all planes of a scene; the measurement `reference` replaces theory at planes where no
+/// theory applies.
 ///
 /// # Panics
 /// If a plane needs a reference and there is none.
@@ -121,7 +122,7 @@ pub(crate) fn predicted(scene: &Scene, reference: Option<&Measurement>) -> Vec<P
         .collect()
 }
 
-/// The prediction of plane `index` from a reference measurement.
+/// Returns the prediction of plane `index` that a reference measurement gives.
 ///
 /// # Panics
 /// If it has too few batches.

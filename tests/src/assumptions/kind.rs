@@ -38,14 +38,14 @@ const PHRASES: [(&str, &str); 15] = [
 
 const ACROSS: &str = "the plane is across the path";
 
-/// A phrase from a further reason that `check` gives. This assumption is needed only for fast
-/// predictions, not for correct ones.
+/// A phrase from one more reason that `check` gives: a violation of this assumption makes
+/// predictions slow, but not wrong.
 pub(super) const DARK: &str = "some light comes";
 
 /// The name for reasons with unknown wording, and for panics of a check.
 pub(super) const UNKNOWN: &str = "not in this list";
 
-/// The violated assumption named in a reason; `None` if no phrase matches.
+/// Returns the violated assumption that a reason names, or `None` if no phrase matches.
 pub(super) fn assumption(reason: &str) -> Option<&'static str> {
     let found = PHRASES.iter().find(|(_, phrase)| reason.contains(phrase));
     found.map(|(assumption, _)| *assumption)

@@ -1,7 +1,7 @@
 //! Tests whether each checked assumption of theory is needed.
 //!
-//! If a plane violates exactly one assumption, theory predicts it nevertheless, and photons judge
-//! the prediction.
+//! Each plane that violates exactly one assumption is predicted nevertheless, and the prediction
+//! is compared with photons.
 
 mod kind;
 mod tally;
@@ -36,10 +36,11 @@ pub(crate) struct AssumptionOptions {
     photons: u64,
 }
 
-/// A scene, and the trials of its planes; `None` if it was not drawn, or is invalid.
+/// The name of a scene, and the trials of its planes; `None` if the scene could not be generated
+/// or is invalid.
 type TriedScene = (String, Option<Vec<Trial>>);
 
-/// Tries all random scenes, and those of the repository.
+/// Runs the trials of all random scenes, and of the scenes in the repository.
 pub(crate) fn assumptions(options: &AssumptionOptions) -> io::Result<ReportSection> {
     let mut files = Vec::new();
     files_of(Path::new(FOLDER), &mut files)?;
@@ -120,7 +121,8 @@ mod tests {
     use etendue_compare::Verdict;
     use std::path::Path;
 
-    /// The only violated assumption at each plane, and the verdict of photons on theory.
+    /// Returns, for each plane that violates a single assumption, this assumption and the verdict
+    /// of the comparison with photons.
     fn judged(scene: &Scene) -> Vec<(&'static str, Verdict)> {
         let judged = |trial: Trial| match trial.ending {
             Some(TrialEnding::Judged { verdict, .. }) => {

@@ -13,7 +13,7 @@ pub(super) struct ClaimNumber {
 }
 
 impl ClaimNumber {
-    /// Measured minus predicted, in standard errors.
+    /// Returns the measured value minus the prediction, in standard errors.
     pub(super) fn pull(&self) -> f64 {
         (self.value - self.predicted) / self.error
     }
@@ -44,7 +44,7 @@ impl ClaimNumber {
     }
 }
 
-/// Slices in independent batches: one list for each plane used by a number.
+/// The slices of independent batches: one list for each plane from which a number is computed.
 pub(super) type Batches = Vec<Vec<Slices>>;
 
 /// A number computed from the mean slices, and its standard error, by the delete-one jackknife. The
@@ -130,7 +130,8 @@ mod tests {
         let values = [1.0, 3.0, 2.0, 6.0];
         let batches = vec![values.map(batch).to_vec()];
         let [power, _] = jackknife(&batches, &|s| s[0].half[[0, 0, 0]].norm_sqr());
-        // The mean over pairs of different batches: (Σ² − Σ of squares)/(R(R − 1)).
+        // The mean of the products over pairs of different batches: (Σ² − Σ of squares)/(R(R −
+        // 1)).
         assert!((power - (144.0 - 50.0) / 12.0).abs() < 1e-12); // rounding
         let [mean, error] = jackknife(&batches, &|s| s[0].at_zero());
         assert!((mean - 3.0).abs() < 1e-12 && (error - (14.0_f64 / 12.0).sqrt()).abs() < 1e-12); // rounding

@@ -10,7 +10,7 @@ use etendue_spectrum::Measurement;
 /// Light, blockers and a floor, all perpendicular to the central ray.
 pub(super) struct ClaimBench<'a> {
     pub(super) light: &'a str,
-    /// The blockers as in a scene file, 1 m from the light.
+    /// The blockers, written as in a scene file; they are 1 m from the light.
     pub(super) blockers: &'a str,
     /// Distance from the light to the floor, metres.
     pub(super) floor: f64,
@@ -54,7 +54,7 @@ pub(super) fn plane(at: &str, window: &str, frequencies: &str) -> String {
     )
 }
 
-/// A scene from a text without window and run.
+/// Returns the scene of a text, with a window and settings of the run added.
 ///
 /// # Panics
 /// If the scene is invalid.
@@ -94,7 +94,7 @@ impl SeenScene {
     }
 }
 
-/// A number computed from several planes, possibly of different scenes, batch by batch.
+/// Computes a number from several planes, which may belong to different scenes, batch by batch.
 pub(super) fn number(planes: &[(&SeenScene, usize)], of: &dyn Fn(&[Slices]) -> f64) -> ClaimNumber {
     let each = planes.iter();
     let batches: Batches = each.clone().map(|(seen, i)| seen.batches(*i)).collect();
@@ -102,7 +102,7 @@ pub(super) fn number(planes: &[(&SeenScene, usize)], of: &dyn Fn(&[Slices]) -> f
     let said = each.map(|(seen, i)| &seen.predictions[*i]);
     let replicates: Batches = said.clone().map(|p| p.replicates.clone()).collect();
     let count = replicates[0].len();
-    // Closed forms have no replicates, so their error is 0.
+    // A closed form has no replicates, so its error is 0.
     let [predicted, error] = if count > 0 && replicates.iter().all(|r| r.len() == count) {
         jackknife(&replicates, of)
     } else {

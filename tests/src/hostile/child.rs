@@ -10,10 +10,10 @@ use std::time::{Duration, Instant};
 /// Time after which a child counts as hung.
 pub(crate) const LONGEST: Duration = Duration::from_secs(30);
 
-/// Memory that is excessive for any of these inputs.
+/// Memory above which a child counts as using too much, for any input, bytes.
 pub(crate) const LARGEST: u64 = 1 << 30;
 
-/// Memory at which a child is killed, to protect the machine.
+/// Memory at which a child is killed to protect the machine, bytes.
 const DANGEROUS: u64 = 4 << 30;
 
 /// The time limits of a child.
@@ -40,7 +40,8 @@ pub(crate) struct Ended {
     pub(crate) stderr: Vec<u8>,
 }
 
-/// The program to attack: the given program, or the one in the folder of this program.
+/// Returns the path of the program to attack: the given one, or `etendue` in the folder of this
+/// program.
 pub(crate) fn program(given: Option<&Path>) -> io::Result<PathBuf> {
     let path = match given {
         Some(path) => path.to_owned(),

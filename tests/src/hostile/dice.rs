@@ -1,4 +1,5 @@
-//! Random choices of one case: a function of the seed, the case and the number of previous choices.
+//! Random choices of one case. Each is a function of the seed, the case and the number of previous
+//! choices.
 
 use etendue_transform::random::{self, Stream};
 
@@ -39,7 +40,7 @@ impl Dice {
         &all[self.below(all.len())]
     }
 
-    /// A length up to `most`, short and long ones with equal probability.
+    /// Returns a length up to `most`; all orders of magnitude are about equally likely.
     pub(crate) fn length(&mut self, most: usize) -> usize {
         let doublings = usize::BITS - most.leading_zeros();
         let reach = 1_usize << self.below(doublings as usize + 1).min(62);

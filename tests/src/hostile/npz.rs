@@ -29,7 +29,7 @@ const WORDS: [&str; 14] = [
 pub(crate) fn mutated(npz: &[u8], dice: &mut Dice) -> io::Result<Vec<u8>> {
     if dice.one_in(4) {
         let mut new = npz.to_vec();
-        // The directory of a ZIP file is at its end.
+        // The end of a ZIP file holds its directory.
         let directory = npz.len().saturating_sub(1000)..npz.len();
         bytes::mutate_within(&mut new, &directory, dice);
         return Ok(new);

@@ -1,4 +1,5 @@
-//! The commands to kill, and their folder, which contains an earlier result among the user's files.
+//! The commands to kill, and the folder of each, which contains an earlier result and files of the
+//! user.
 
 use crate::hostile::child;
 use crate::hostile::folder::{self, Folder};
@@ -29,7 +30,7 @@ impl Verb {
         Self::Figure,
     ];
 
-    /// The name of its index in the output folder.
+    /// Returns the name of the index that the command writes into its folder.
     pub(super) fn index(self) -> &'static str {
         match self {
             Self::Run | Self::Compare => "summary.json",
@@ -103,7 +104,7 @@ fn task(
     let out = place.join("out");
     let mut arguments = verb.arguments(EARLIER);
     if verb == Verb::Run {
-        // The earlier result contains files that the next one does not.
+        // The earlier result contains files that the next result does not contain.
         arguments.extend(words("--save photons"));
     }
     let mut takes = Duration::MAX;

@@ -8,21 +8,22 @@ use crate::statistics::{mean, uniformity};
 
 /// Permitted deviation of fractions and means, in standard errors.
 const BORNE: f64 = 3.0;
-/// Maximum permitted L2 ratio. With a single real number, 3·10⁻⁵ of all scenes would exceed it.
+/// Maximum permitted L2 ratio. If a prediction were a single real number, 3·10⁻⁵ of all scenes
+/// would exceed it.
 const LARGEST: f64 = 5.0;
 /// The mean square of a Student's t with 31 degrees of freedom.
 const OF_ONE: f64 = 31.0 / 29.0;
-/// The fraction of Student's t with 31 degrees of freedom beyond 1, 2 and 3.
+/// The fractions of Student's t with 31 degrees of freedom whose magnitude is above 1, 2 and 3.
 const STUDENT: [f64; 3] = [0.3251, 0.0543, 0.0053];
 /// Number of scenes listed by largest ratio.
 const WORST: usize = 12;
 
-/// The expected fraction of complex numbers beyond a distance.
+/// Returns the expected fraction of complex numbers whose magnitude is above a distance.
 fn beyond(distance: f64) -> f64 {
     (1.0 + 2.0 * distance.powi(2) / 31.0).powi(-15)
 }
 
-/// The quantity of a scene's outcome that is judged.
+/// A function that selects the quantity to judge from the outcome of a scene.
 type Reading = fn(&SceneOutcome) -> &Measured;
 
 /// All tables, including those of planted faults.
@@ -151,7 +152,8 @@ fn common(of_group: &[&Measured], scale: f64) -> f64 {
 /// Adds a fraction to a row, with a check against the expectation for this many numbers.
 fn put(row: &mut Row, shares: &[f64], expected: f64, numbers: f64) {
     let [share, error] = mean(shares);
-    // If few values are that far away, their scatter over the scenes is a poor estimate.
+    // If few values are beyond this distance, the error estimated from their scatter is
+    // inaccurate.
     let error = error.max((expected * (1.0 - expected) / numbers).sqrt());
     let cell = format!("{:.2} ± {:.2} %", 100.0 * share, 100.0 * error);
     row.cells.push(cell);

@@ -44,7 +44,7 @@ fn by_angle(values: &[f64], angle: f64, fault: &str) -> f64 {
     })
 }
 
-/// A BRDF without the factors of its lists.
+/// The value of a BRDF without the factors given by its lists.
 fn lobe(brdf: &Brdf, incidence: f64, [from, to]: [Vector; 2], fault: &str) -> f64 {
     let reflected = |angle: f64| brdf.albedo * reflected(&brdf.fresnel, angle, fault);
     match brdf.lobe {
@@ -68,7 +68,8 @@ fn lobe(brdf: &Brdf, incidence: f64, [from, to]: [Vector; 2], fault: &str) -> f6
     }
 }
 
-/// (n + 1)/2π cosⁿ of the angle to the mirror direction (Phong 1975), of unit integral.
+/// The Phong lobe (n + 1)/2π cosⁿ of the angle to the mirror direction, of unit integral (Phong
+/// 1975).
 fn phong(exponent: f64, from: Vector, to: Vector, fault: &str) -> f64 {
     let mirror = turned(from, NORMAL, PI);
     let cosine = match fault {
@@ -93,7 +94,8 @@ fn facet(from: Vector, to: Vector, fault: &str) -> Vector {
     }
 }
 
-/// D G F / (4 cos cos), without F (Cook and Torrance 1982; Walter et al. 2007, Eq. 20).
+/// The microfacet BRDF D G F / (4 cos cos) without its Fresnel factor F (Cook and Torrance 1982;
+/// Walter et al. 2007, Eq. 20).
 fn facets(density: f64, mask: impl Fn(Vector) -> f64, [from, to]: [Vector; 2], fault: &str) -> f64 {
     let masks = match fault {
         "masked one way only" => mask(from),
@@ -130,7 +132,8 @@ fn ggx(roughness: f64, facet: Vector, fault: &str) -> f64 {
 
 /// Smith's Λ (Smith 1967; Heitz 2014, *Understanding the masking-shadowing function*): ∫ (s − μ)
 /// p(s) ds / μ over s > μ. Here s is the slope of a microfacet along a direction, and μ is the
-/// cotangent of the angle of that direction. Here p = exp(−s²/α²)/(α√π), and s = α w.
+/// cotangent of the angle of that direction. For Beckmann's distribution, p = exp(−s²/α²)/(α√π),
+/// and the integral is over w = s/α.
 fn masked_beckmann(roughness: f64, angle: f64) -> f64 {
     let from = 1.0 / (angle.tan() * roughness);
     if from > 6.0 {
@@ -140,7 +143,7 @@ fn masked_beckmann(roughness: f64, angle: f64) -> f64 {
     integral([from, from + 7.0], 600, exceeds) / from
 }
 
-/// The same Λ with p = α²/(2 (α² + s²)^(3/2)), and s = α tan ψ.
+/// Smith's Λ for GGX, with p = α²/(2 (α² + s²)^(3/2)); the integral is over ψ, where s = α tan ψ.
 fn masked_ggx(roughness: f64, angle: f64) -> f64 {
     let cotangent = 1.0 / angle.tan();
     let from = (cotangent / roughness).atan();
@@ -156,10 +159,10 @@ fn integral([from, to]: [f64; 2], pairs: u32, value: impl Fn(f64) -> f64) -> f64
     step / 3.0 * (at(0) + inner.sum::<f64>() + at(2 * pairs))
 }
 
-/// The reflectance of unpolarised light: the mean of |r|² for polarisation across (s) and along (p)
-/// the plane of incidence (Fresnel 1823; Born and Wolf 1999, 1.5.2 and 14.2). The angle of
-/// refraction follows Snell's law, and is complex if the index is complex. Swapping s and p would
-/// not change the mean, so the fault affects only one of them.
+/// The reflectance of unpolarised light: the mean of |r|² for polarisation across (s) and along
+/// (p) the plane of incidence (Fresnel 1823; Born and Wolf 1999, 1.5.2 and 14.2). The angle of
+/// refraction follows Snell's law, and is complex if the index is complex. The fault affects only
+/// one polarisation, because swapping s and p would not change the mean.
 fn reflected(fresnel: &Fresnel, angle: f64, fault: &str) -> f64 {
     let index = match *fresnel {
         Fresnel::White => return 1.0,

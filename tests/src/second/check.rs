@@ -9,8 +9,8 @@ use crate::report::{
     Bound::{Above, AtMost, Below},
 };
 
-/// The largest difference in a round, with the named fault planted in the second implementation, if
-/// any.
+/// A function that returns the largest difference in a round; its text names the fault planted in
+/// the second implementation, if any.
 type Difference = dyn Fn(&mut Dice, &str) -> f64;
 
 /// A comparison of two implementations.

@@ -1,5 +1,5 @@
-//! A surface with a picture, defined in a scene file: the picture's format, its placement on the
-//! surface, blend and texture.
+//! Pictures on surfaces as scene files define them: their formats, their placement, and their use
+//! as blend and texture.
 
 use super::check::{SecondCheck, worse};
 use super::pattern::{Levels, Pattern, Varied};

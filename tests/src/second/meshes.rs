@@ -52,7 +52,7 @@ pub(super) fn checks() -> Vec<SecondCheck> {
     ]
 }
 
-/// A ray and a triangle in front of it, which some rays miss.
+/// Checks the hit of a ray with a triangle in front of it, which some rays miss.
 fn triangle(dice: &mut Dice, fault: &str) -> f64 {
     let corners = [0; 3].map(|_| plus([0.0, 0.0, 2.0], 1.0, direction(dice)));
     let normals = [0; 3].map(|_| {
@@ -181,8 +181,8 @@ fn curvatures(dice: &mut Dice, fault: &str) -> f64 {
         let tangent: DVec3 = hill.light.components(unit(tangent)).into();
         let [a, b] = [tangent.dot(x), tangent.dot(y)];
         let [k, l, _] = patch.curvature;
-        // The formula of Euler 1760, divided by the squared length of the tangent's projection onto
-        // the fitted plane.
+        // Euler's formula for normal curvature (1760), divided by the squared length of the
+        // tangent's projection onto the fitted plane.
         let fast = (k * a * a + l * b * b) / (a * a + b * b);
         (fast - second).abs() / largest
     });

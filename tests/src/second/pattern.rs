@@ -12,12 +12,12 @@ pub(super) struct Levels {
     pub(super) values: Vec<f64>,
 }
 
-/// A pattern in the second implementation.
+/// A pattern on a surface, as the second implementation represents it.
 #[derive(Clone, Debug)]
 pub(super) enum Pattern {
     Cosine(Grating),
     Checkerboard(f64),
-    /// A picture with its width and height, metres.
+    /// A picture: its levels, and its width and height in metres.
     Picture(Levels, [f64; 2]),
 }
 
@@ -127,8 +127,8 @@ pub(super) struct Varied {
 }
 
 impl Varied {
-    /// The weight of each BRDF at a point: the blend for `brdf`, and the rest for `other`. The
-    /// texture multiplies both weights.
+    /// Returns both BRDFs with their weights at a point: `brdf` has the value of the blend, and
+    /// `other` the rest up to 1. The texture multiplies both weights.
     pub(super) fn at(&self, at: [f64; 2], fault: &str) -> [(f64, &Brdf); 2] {
         let share = self.blend.value(at, fault);
         let share = match fault {

@@ -57,7 +57,7 @@ fn axes(dice: &mut Dice) -> (Axes, String) {
     (Axes::new([0.0; 3], up, front), text)
 }
 
-/// The components of a direction along X, up and front of the map.
+/// Returns the components of a direction along the map's axes X, up and front.
 fn seen(axes: &Axes, from: Vector, fault: &str) -> Vector {
     if fault == "axes of the world" {
         return from;
@@ -185,7 +185,7 @@ fn lobed(dice: &mut Dice, fault: &str, folder: &Path) -> f64 {
                 radiance * (-fall / squared).exp()
             })
             .sum();
-        // Where the lobes vanish there is nothing to compare.
+        // The constants are added because there is nothing to compare where the lobes vanish.
         relative(
             fast(&world, &scene.light, along) + 1e-9,
             brightness * second + 1e-9,

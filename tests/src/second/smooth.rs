@@ -59,7 +59,7 @@ impl Smooth {
         (smooth, words)
     }
 
-    /// The surface with a fault.
+    /// Returns the surface with the named fault planted in it.
     pub(super) fn wrong(mut self, fault: &str) -> Self {
         let Axes { origin, x, y, d } = self.axes;
         match (fault, self.form) {
@@ -75,15 +75,15 @@ impl Smooth {
         self
     }
 
-    /// The centre of the ball, or of the bar at the vertex: behind the vertex if the surface is
-    /// convex.
+    /// Returns the centre of the ball, or the point of the bar's axis nearest to the vertex; it is
+    /// behind the vertex if the surface is convex.
     fn middle(&self, k: f64) -> Vector {
         plus(self.axes.origin, -1.0 / k, self.axes.d)
     }
 
-    /// The point over (s, t).
+    /// Returns the point of the surface with the coordinates s and t on its tangent plane.
     pub(super) fn point(&self, s: f64, t: f64) -> Vector {
-        // The sag of a circle of radius 1/k.
+        // The depth of a circle of radius 1/k below its tangent.
         let sagged = |k: f64, r2: f64| (1.0 - (1.0 - k * k * r2).sqrt()) / k;
         let below = match self.form {
             Form::Plane => 0.0,

@@ -67,8 +67,8 @@ fn blended(dice: &mut Dice, fault: &str) -> f64 {
     apart(&reflectance.at(at[0], at[1]), varied.at(at, fault))
 }
 
-/// The difference of the weights in two sums. The full weight of a BRDF counts if it is in only one
-/// of the sums.
+/// Returns the largest difference of the weights in two sums; if only one of the sums contains a
+/// BRDF, the full weight of this BRDF counts.
 pub(super) fn apart(mixture: &Mixture<'_>, varied: [(f64, &Brdf); 2]) -> f64 {
     let weight = |brdf: &Brdf| {
         let weights = mixture.weighted().filter(|(_, of)| *of == brdf);

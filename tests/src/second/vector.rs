@@ -122,7 +122,7 @@ pub(super) fn between(dice: &mut Dice, low: f64, high: f64) -> f64 {
     low + (high - low) * dice.unit()
 }
 
-/// A random number with uniform logarithm.
+/// Returns a random number between two bounds, with a uniformly distributed logarithm.
 pub(super) fn scale(dice: &mut Dice, low: f64, high: f64) -> f64 {
     low * (high / low).powf(dice.unit())
 }

@@ -12,12 +12,12 @@ use std::path::Path;
 pub(super) struct World {
     /// The frame at the light.
     pub(super) light: Axes,
-    /// X as in the file, where it need not be orthogonal to D.
+    /// The X axis in the scene file, which need not be orthogonal to D.
     x_axis: Vector,
     pub(super) lamp: String,
     pub(super) blockers: String,
     pub(super) surfaces: String,
-    /// Further fields of the path, after a comma.
+    /// Text of further fields of the path, which begins with a comma.
     pub(super) onwards: String,
     pub(super) planes: String,
 }
@@ -40,7 +40,7 @@ impl World {
         }
     }
 
-    /// Rotates the central ray to another direction.
+    /// Turns the central ray at the light to the direction `d`.
     pub(super) fn turn_to(&mut self, d: Vector) {
         self.light = Axes::new(self.light.origin, d, self.x_axis);
     }

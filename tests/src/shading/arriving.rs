@@ -48,7 +48,8 @@ impl Sphere<'_> {
                 .collect();
             for k in 0..grid.azimuths {
                 let (sin, cos) = grid.azimuth(k).sin_cos();
-                // Along one azimuth, the position and the angle are one number each.
+                // A slice along one azimuth depends only on one component of the position and one
+                // of the angle.
                 let place = x * cos + y * sin;
                 for (n, nu) in grid.nu.values().into_iter().enumerate() {
                     let terms = directions.iter().zip(&values).map(|([u, v], value)| {

@@ -37,7 +37,7 @@ impl Bench {
         }
     }
 
-    /// The prediction of a modified system.
+    /// Predicts the slices of a modified system.
     pub(super) fn predicted(&self, change: impl Fn(&mut ScatteringSystem)) -> Slices {
         let mut view = seen(&self.scene);
         change(&mut view.system);
@@ -56,7 +56,7 @@ impl Bench {
         measure(&source, &scene.planes, 0..scene.run.batches, &|_| ())
     }
 
-    /// p of photons against a prediction.
+    /// Returns p of the comparison of photons with a prediction.
     ///
     /// # Panics
     /// If there is no light and no light is predicted.
@@ -65,7 +65,7 @@ impl Bench {
         p.expect("light")
     }
 
-    /// ‖a − b‖ over the norm of the sound prediction.
+    /// Returns ‖a − b‖ divided by the norm of the prediction without a fault.
     pub(super) fn apart(&self, a: &Slices, b: &Slices) -> f64 {
         let norm = |values: &mut dyn Iterator<Item = Complex>| {
             values.map(|v| v.norm_sqr()).sum::<f64>().sqrt()

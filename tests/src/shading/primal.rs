@@ -3,8 +3,7 @@
 use etendue_field::Complex;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// Beyond this limit, the nodes of the double exponential rule differ from the ends by less than
-/// rounding.
+/// The limit beyond which the nodes of the double exponential rule equal the ends up to rounding.
 const LAST: f64 = 3.1;
 
 /// Nodes and weights of the double exponential rule between two ends (Takahasi and Mori 1974):

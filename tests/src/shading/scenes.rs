@@ -42,7 +42,7 @@ pub(super) fn all(photons: Option<u64>) -> Vec<Scene> {
         .collect()
 }
 
-/// A scene with texts of its file replaced in order.
+/// Returns a scene in whose file each of these texts was replaced by another, in this order.
 ///
 /// # Panics
 /// If there is no such scene, a text is not in it, or it becomes invalid.

@@ -1,4 +1,4 @@
-//! Transparent strips over a period of 1, and the Fourier coefficients of the openings.
+//! Masks with transparent strips over a period of 1, and their Fourier coefficients.
 
 use super::primal::wave;
 use etendue_field::Complex;
@@ -7,8 +7,8 @@ use std::f64::consts::TAU;
 /// Open intervals, [from, to].
 pub(crate) type Strips = Vec<[f64; 2]>;
 
-/// Three strips between 0 and 1 of a mask of a pair, with an offset for the second mask;
-/// reproducible (additive recurrences, Weyl).
+/// Returns three strips between 0 and 1 for a mask of a pair, where `offset` distinguishes the
+/// second mask from the first. The edges are reproducible (additive recurrences, Weyl).
 pub(crate) fn strips(pair: u32, offset: f64) -> Strips {
     let cut = |i: u32| (0.618_034 * f64::from(6 * pair + i) + offset * f64::from(i + 1)).fract();
     let mut cuts: Vec<f64> = (0..6).map(cut).collect();

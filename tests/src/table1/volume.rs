@@ -11,7 +11,8 @@ use glam::DVec3;
 
 /// Step of the differences, metres and direction cosines; their error is of sixth order.
 const STEP: f64 = 2e-3;
-/// The remaining error, from rounding (10⁻¹⁶ divided by the step) and from the sixth order.
+/// Maximum error of the differences, from rounding (10⁻¹⁶ divided by the step) and from terms of
+/// sixth order.
 const ROUNDING: f64 = 1e-10;
 
 /// A straight leg of a ray.
@@ -83,7 +84,7 @@ pub(super) fn volume(outcomes: &[&TableRun]) -> ReportSection {
     }
 }
 
-/// Ratio of the index at the light to that at the plane.
+/// Returns the ratio of the index of refraction at the light to that at the plane.
 fn index_ratio(system: &SpecularSystem) -> f64 {
     let mut ratio = 1.0;
     let mut ray = start([0.0; 4]);
@@ -118,7 +119,7 @@ fn bundle() -> impl Iterator<Item = [f64; 4]> {
     })
 }
 
-/// The errors of volume, of the invariant, and of the way back.
+/// Returns the errors of the phase-space volume, of the invariant, and of the rays traced back.
 fn defects(system: &SpecularSystem, plane: &Frame, at: [f64; 4], ratio: f64) -> Option<[f64; 3]> {
     let slopes = has_lens(system);
     let map = |z: [f64; 4]| -> Option<[f64; 4]> {

@@ -9,7 +9,8 @@ use std::path::{Path, PathBuf};
 /// The choices of one scene, in order of use.
 pub(super) struct SceneDraw {
     dice: Dice,
-    /// One value in this number of values is extreme; if it is 0, none is.
+    /// On average, one of this number of values is extreme; if the number is 0, no value is
+    /// extreme.
     rarity: usize,
     /// The scale of all lengths in the scene, metres.
     pub(super) unit: f64,

@@ -26,7 +26,8 @@ pub(crate) fn scene(seed: u64, index: u64, photons: u64, folder: &Path) -> io::R
     if draw.one_in(10) {
         file.surfaces
             .push(passed(&mut draw, "beside".into(), first));
-        // A surface on an earlier leg would have to be visited by the path.
+        // The surface is removed if it makes the path invalid: one that stands on an earlier leg
+        // would have to be visited.
         if central_ray(&file, folder).is_none() {
             file.surfaces.pop();
         }
@@ -126,8 +127,8 @@ fn surfaces(draw: &mut SceneDraw, file: &mut SceneFile) -> io::Result<CentralRay
     Ok(path)
 }
 
-/// The leg for the next surface. After a specular surface it is along the central ray; after
-/// another surface it is in any direction in front of that surface.
+/// Returns the leg on which the next surface is placed. After a specular surface this leg is along
+/// the central ray, after any other surface in any direction in front of it.
 fn onwards(draw: &mut SceneDraw, file: &SceneFile, path: &CentralRay) -> Frame {
     let last = &path.legs[path.legs.len() - 1];
     let specular = file.surfaces.last().is_some_and(is_specular);

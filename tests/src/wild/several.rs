@@ -14,7 +14,8 @@ use std::io;
 use std::path::Path;
 use std::time::Instant;
 
-/// Cycles across the window at the highest frequencies. There are few, because few photons arrive.
+/// Cycles across the window at the highest frequencies. The number is small because few photons
+/// arrive.
 const CYCLES: f64 = 3.0;
 /// Maximum number of scattering surfaces that are counted separately.
 const MAX_SCATTERERS: usize = 3;
@@ -25,7 +26,7 @@ const WIDE: [f64; 2] = [0.02, 0.4];
 struct Tried {
     number: u64,
     scatterers: usize,
-    /// Whether it is predicted by the theory for several surfaces.
+    /// Whether the theory for several surfaces predicts the plane.
     by_paths: bool,
     ending: SmallEnding,
     seconds: f64,

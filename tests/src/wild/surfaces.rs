@@ -58,7 +58,7 @@ fn rectangle(
     on_axis: DVec3,
     normal: DVec3,
 ) -> SurfaceFile {
-    // Across the first leg the file may omit the facing direction.
+    // For a surface perpendicular to the first leg, the file may omit the facing direction.
     let plain = leg.d == DVec3::Z && draw.one_in(2);
     SurfaceFile::Rectangle {
         name,
