@@ -10,7 +10,7 @@ use std::path::PathBuf;
 /// The keyword arguments of a caller. An argument that is left out or `None` keeps its default.
 pub(crate) struct Arguments<'a, 'py>(pub(crate) &'a Bound<'py, PyDict>);
 
-/// The exception for a value that is not allowed.
+/// Returns the exception for a value that is not allowed.
 fn wrong(name: &str, value: &Bound<'_, PyAny>, allowed: impl Display) -> PyErr {
     let shown = value
         .repr()
@@ -30,7 +30,7 @@ fn whole_float(value: &Bound<'_, PyAny>) -> Option<u64> {
 }
 
 impl<'py> Arguments<'_, 'py> {
-    /// The value of an argument, if given.
+    /// Returns the value of an argument, unless it is left out or `None`.
     pub(crate) fn get(&self, name: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
         Ok(self.0.get_item(name)?.filter(|value| !value.is_none()))
     }
@@ -111,7 +111,7 @@ impl<'py> Arguments<'_, 'py> {
         self.set(name, to, "a path", |value| value.extract().ok().map(Some))
     }
 
-    /// One of several named values.
+    /// Returns the value with the name that the argument gives.
     pub(crate) fn one_of<T: Copy>(
         &self,
         name: &str,

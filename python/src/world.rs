@@ -32,7 +32,7 @@ pub(crate) fn source(path: PathBuf, arguments: &Arguments<'_, '_>) -> PyResult<W
     Ok(source)
 }
 
-/// The camera added to the scene, if any.
+/// Returns the camera that the arguments add to the scene, if any.
 fn viewpoint(arguments: &Arguments<'_, '_>) -> PyResult<Option<Viewpoint>> {
     let point = |name| arguments.point(name, MAX_COORDINATE);
     let up = point("up")?;

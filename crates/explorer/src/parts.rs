@@ -7,7 +7,7 @@ use etendue_transform::random::{self, Stream};
 
 /// Length of a slat along Y, metres: larger than any window.
 pub(crate) const SLAT: f64 = 8.0;
-/// Cells of a picture along each axis, as in the command.
+/// Number of cells of a picture along each axis, as in the command.
 pub const CELLS: usize = 64;
 
 /// Maximum number of frequencies to each side of zero: more are too slow for interaction.
@@ -61,7 +61,7 @@ pub(crate) fn seed(setup: &Setup) -> u64 {
     setup.get(SettingKey::Seed).round() as u64
 }
 
-/// The blockers, relative to the central ray.
+/// Returns the blockers, with positions relative to the central ray.
 pub(crate) fn shapes(setup: &Setup) -> Vec<Shape> {
     let count = count(setup);
     let [pitch, fill, jitter] =

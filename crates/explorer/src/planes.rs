@@ -19,7 +19,8 @@ impl PathPlace {
             Self::Blurred | Self::Glossy => {
                 let chain = imaged(setup, if self == Self::Glossy { 2.0 } else { 1.0 });
                 let mut found = blurred_slices(&chain, &lobe(setup), &window, &grid);
-                // The reflected ray goes straight back: (x, u) becomes (−x, −u), times the albedo.
+                // The reflected ray goes straight back, so (x, u) becomes (−x, −u), and light is
+                // multiplied by the albedo.
                 let albedo = setup.get(SettingKey::Albedo);
                 found.half.mapv_inplace(|value| value.conj() * albedo);
                 found
@@ -53,7 +54,7 @@ impl PathPlace {
     }
 
     /// Spectrum and light field on a glossy receiver by nets of rays, as in `etendue predict`;
-    /// `None` for other planes, where nothing is approximated to first order.
+    /// Returns `None` for other planes, whose predictions are not first-order approximations.
     #[must_use]
     pub fn followed(self, setup: &Setup) -> Option<(Slices, Projection)> {
         let found = rays::followed(self, setup)?;

@@ -11,15 +11,16 @@ use etendue_field::{
 use etendue_theory::{Model, Observed, Over, Predicted, RayBudget, rays, scattering};
 use glam::DVec3;
 
-/// The command's budget for a scene with as many photons as saved scenes: total number of rays, and
-/// the target error.
+/// The budget that the command uses for a saved scene: the total number of rays, and the target
+/// error.
 const BUDGET: RayBudget = RayBudget {
     nodes: 1.1e6,
     error: 3e-3,
 };
 /// Radius of the receiver, metres.
 pub(crate) const APERTURE: f64 = 0.6;
-/// Azimuths of a saved scene; rays are added until all of its slices reach the target error.
+/// Number of azimuths of a saved scene; rays are added until the slices at all azimuths reach the
+/// target error.
 pub(crate) const AZIMUTHS: usize = 2;
 
 /// The light field at a plane on a glossy receiver by nets of rays; `None` for other planes.

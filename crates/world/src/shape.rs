@@ -7,19 +7,19 @@ use std::sync::Arc;
 /// A surface with one material.
 #[derive(Clone, Debug)]
 pub struct Shape {
-    /// Its name in the file.
+    /// The name of the surface in the file.
     pub name: String,
     /// The geometry in local coordinates.
     pub geometry: Geometry,
     /// The map from local to world coordinates. Normals are mapped by the inverse transpose: a
-    /// mirror keeps the front. Spheres and cylinders are scaled uniformly, but cylinders may have
-    /// another factor along Z.
+    /// mirror keeps the front. Spheres are scaled uniformly; cylinders too, except that they may
+    /// have another factor along Z.
     pub to_world: DAffine3,
-    /// Whether its front is opposite to that of [`Geometry`].
+    /// Whether the front of the surface is opposite to that of [`Geometry`].
     pub is_flipped: bool,
-    /// The index of its material.
+    /// The index of the surface's material.
     pub material: usize,
-    /// Radiance emitted on its front, W m⁻² sr⁻¹; `None` if it does not emit.
+    /// Radiance that the front emits, W m⁻² sr⁻¹; `None` if the surface does not emit.
     pub emission: Option<EmittedRadiance>,
 }
 
@@ -34,7 +34,7 @@ pub enum Geometry {
     Sphere,
     /// x² + y² = 1, z from 0 to 1, open at both ends. Front: outside. u is the azimuth over 2π from X to Y, v is z.
     Cylinder,
-    /// Triangles, which several shapes may share.
+    /// A mesh of triangles, which several shapes may share.
     Mesh(Arc<Triangles>),
 }
 
@@ -51,8 +51,8 @@ pub struct Triangles {
 }
 
 impl Triangles {
-    /// `None` unless corners refer to vertices and lengths agree. Normals may have any length but
-    /// zero; without normals, triangles are flat.
+    /// Returns `None` unless corners refer to vertices and lengths agree. Normals may have any
+    /// length but zero; without normals, triangles are flat.
     #[must_use]
     pub fn new(
         vertices: Vec<DVec3>,

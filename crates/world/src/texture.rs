@@ -35,14 +35,14 @@ pub struct Bitmap {
     pub filter: Filter,
 }
 
-/// The continuation of a picture beyond its edges.
+/// How a picture continues beyond its edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wrap {
     /// Repeated.
     Repeat,
     /// Repeated with alternating mirror images.
     Mirror,
-    /// The nearest edge pixel.
+    /// Each place beyond an edge has the value of the nearest pixel.
     Clamp,
 }
 

@@ -275,8 +275,8 @@ impl Circle {
         sums
     }
 
-    /// The position of light that leaves at arc length s in a local direction, and the ratio of its
-    /// coordinates' area to ds dθ.
+    /// Returns the coordinates of light that leaves at arc length s in a local direction, and the
+    /// ratio of their area element to ds dθ.
     fn leaves(&self, step: ReflectionStep, s: f64, local: f64) -> ([f64; 2], f64) {
         let turn = self.k * s;
         match step {
@@ -286,8 +286,7 @@ impl Circle {
                 let theta = local + turn + self.theta0;
                 let point = [turn.sin() / self.k, (turn.cos() - 1.0) / self.k];
                 let x = self.across(-self.theta0, point, theta);
-                // The position of light that leaves at arc length s in a local direction, and the
-                // ratio of its coordinates' area to ds dθ.
+                // The second value is the ratio of dx dθ to ds dθ.
                 ([x, theta], local.cos() / theta.cos())
             }
         }

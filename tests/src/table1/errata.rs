@@ -30,8 +30,8 @@ fn all() -> Vec<(&'static str, &'static str, StepMisprint)> {
     };
     let cosine = |cosine: fn(f64) -> f64, sign: f64| -> StepMisprint {
         Box::new(move |steps, theta0, shape| {
-            // With longitude 0 the shear has no cosines and is M alone, here with the correct
-            // sign.
+            // With longitude 0 the shear has no cosines and is M alone; it has the correct sign if
+            // `sign` is 1.
             let longitude = cosine(theta0);
             steps.curvature =
                 AffineMap::<4>::curvature(shape.map(|r| r.map(|m| sign * m)), longitude)

@@ -103,7 +103,8 @@ impl MirrorPath {
         if stage == Back {
             return [back, global];
         }
-        // After the surface X is c₁ T − sin θ₁ N; transmitted light has another sign.
+        // After the surface X is c₁ T − sin θ₁ N for reflected light, and its opposite for
+        // transmitted light.
         let theta1 = self.theta1();
         let (sin, cos) = theta1.sin_cos();
         let sign = if self.media.is_some() { -1.0 } else { 1.0 };

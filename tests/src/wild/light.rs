@@ -113,7 +113,7 @@ fn environment(draw: &mut SceneDraw, center: [f64; 3]) -> io::Result<LightFile> 
 
 fn lobe(draw: &mut SceneDraw, plain: bool) -> SphericalGaussianFile {
     let width = draw.value([0.05, 0.6], [1e-3, 100.0]);
-    // Where the map has axes of its own, only a wide lobe is certain to send light forward.
+    // Around a random direction, a lobe must be wide to send light forward.
     let (from, width) = if plain {
         let [x, y] = [(); 2].map(|()| draw.between(-0.7, 0.7));
         (draw.along(DVec3::new(x, y, -1.0)), width)

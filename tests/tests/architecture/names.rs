@@ -4,7 +4,7 @@ use super::files;
 use super::modules::code;
 use std::collections::BTreeMap;
 
-/// Names of more than one type, each with the reason.
+/// Names that more than one type may have, each with the reason.
 const SHARED_NAMES: &[(&str, &str)] = &[
     (
         "Conductor",
