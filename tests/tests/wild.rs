@@ -458,8 +458,8 @@ fn a_low_sky_is_decided() {
     holds_in(&scene, &[("p", Class::FirstOrder)]);
 }
 
-/// Rays that leave the triangles of a mesh continue differently from rays that leave its
-/// osculating patch: in one scene they meet the mesh again, and in the other the mesh is round.
+/// In these scenes rays that leave the triangles of a mesh continue differently from rays that
+/// leave its osculating patch: they meet the mesh again, or another direction results.
 #[test]
 fn meshes_unlike_their_patches_are_decided() {
     let glass = scene("glass_star");
@@ -569,8 +569,7 @@ fn a_later_surface_beside_the_first_leg_is_decided() {
     });
 }
 
-/// Coordinates beyond a right angle hold no light, although the directions that differ by a full
-/// turn have light.
+/// Angles beyond a right angle hold no light, although the same angles less a full turn do.
 #[test]
 fn angles_beyond_a_turn_are_decided() {
     let scene = scene("angles_beyond_a_turn");

@@ -11,7 +11,7 @@ pub(crate) struct PathNumbers<'a> {
     block: u32,
     left: [u32; 4],
     used: usize,
-    /// The net, and the index of the point that gives the first numbers, if any.
+    /// The net whose point gives the first numbers, and the index of this point, if any.
     net: Option<(&'a Net, u32)>,
 }
 

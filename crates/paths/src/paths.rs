@@ -22,11 +22,12 @@ pub struct Paths {
     pub(crate) hides_sources: bool,
 }
 
-/// From this surface on, a path continues with a probability given by its throughput.
+/// Number of the surface from which on a path continues only with a probability, given by its
+/// throughput (Russian roulette).
 pub(crate) const ROULETTE: u32 = 6;
 
-/// Maximum path length, for endless paths between mirrors; the remaining throughput is below the
-/// rounding error of a picture.
+/// Maximum path length, which ends paths between mirrors whose throughput is below the rounding
+/// error of a picture.
 const LONGEST: u32 = 10_000;
 
 impl Paths {
@@ -71,9 +72,9 @@ impl Paths {
         }
     }
 
-    /// The radiance that a hit surface scatters back along the ray, as the parts that one path
-    /// finds. Each part has its incident direction in the frame of the hit. `before` is the number
-    /// of surfaces between the hit and the camera.
+    /// Returns the radiance that a hit surface scatters back along the ray, as the parts that one
+    /// path finds, each with its incident direction in the frame of the hit. `before` is the
+    /// number of surfaces between the hit and the camera.
     pub(crate) fn scattered(
         &self,
         mut ray: Ray,
@@ -122,12 +123,13 @@ impl Paths {
         &self.materials[self.of_shape[hit.shape]]
     }
 
-    /// Whether distant light arrives from all directions.
+    /// Whether the world has a light of distant radiance from all directions.
     pub(crate) fn has_sky(&self) -> bool {
         self.lights.of_sky(DVec3::Z).next().is_some()
     }
 
-    /// Light emitted along a ray that hits a light, weighted against light sampling.
+    /// Returns the light emitted along a ray that hits a light, with its weight in multiple
+    /// importance sampling.
     fn emitted(&self, ray: &Ray, hit: Option<&Hit>, last: Option<f64>) -> f64 {
         let balanced = |(radiance, looked): (f64, f64)| match last {
             Some(last) => radiance * last / (last + looked),
@@ -139,7 +141,8 @@ impl Paths {
         }
     }
 
-    /// Light found by light sampling, and its incident direction in the frame of the hit.
+    /// Returns the light that light sampling finds, and its incident direction in the frame of the
+    /// hit.
     fn looked_for(
         &self,
         hit: &Hit,

@@ -1,5 +1,5 @@
-//! Surface points that a camera sees: their light, and the distances of what they reflect. Used by
-//! renderers with adaptive sampling.
+//! Surface points that a camera sees: their light, and the distances of what they reflect.
+//! Renderers with adaptive sampling use them.
 
 use crate::numbers::{JOINT, PathNumbers};
 use crate::paths::Paths;
@@ -13,9 +13,9 @@ use glam::DVec3;
 /// The hit of a camera ray.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
-    /// Radiance emitted by sources along the ray, W m⁻² sr⁻¹.
+    /// Radiance that sources emit along the ray, W m⁻² sr⁻¹.
     pub emitted: f64,
-    /// The surface hit; `None` if the ray leaves the world.
+    /// The point of a surface that the ray hits; `None` if the ray leaves the world.
     pub surface: Option<SurfaceHit>,
 }
 
@@ -77,8 +77,8 @@ pub struct Nearness {
     /// counts as 0. Its inverse is the harmonic mean of Durand et al. 2005, section
     /// 6.2.
     pub reflected: f64,
-    /// The highest frequency of penumbrae, cycles per metre across the light: the inverse of the
-    /// penumbra width, where light is partly blocked.
+    /// The highest frequency of penumbrae, in cycles per metre perpendicular to the light: the
+    /// inverse of the width of the penumbra, where light is partly blocked.
     pub shadow: f64,
 }
 
@@ -109,9 +109,9 @@ impl Paths {
         self.scatter(&seen.hit).factors(seen.hit.uv, seen.wo())
     }
 
-    /// The radiance that base and lobe scatter to the eye, W m⁻² sr⁻¹, as means of `paths` paths;
-    /// and the variance of their sum, divided by the number of paths. It depends only on the point,
-    /// the seed and `number`.
+    /// Returns the radiance that base and lobe scatter to the eye, W m⁻² sr⁻¹, as means of `paths`
+    /// paths, and the variance of their sum, divided by the number of paths. The result depends
+    /// only on the point, the seed and `number`.
     ///
     /// Paths of one point use a scrambled net for their first numbers, so the error of the mean is
     /// smaller than this variance suggests.
@@ -141,7 +141,7 @@ impl Paths {
     }
 
     /// The nearness of a point to what it reflects and to its blockers, from `rays` rays of each
-    /// kind. Distances below `nearest` are set to it.
+    /// kind. Distances below `nearest` count as `nearest`.
     #[must_use]
     pub fn nearness(
         &self,
@@ -159,8 +159,8 @@ impl Paths {
             if let Some(shadow) = self.shadow(seen, numbers.draw()) {
                 if shadow.nearness > 0.0 {
                     blocked += shadow.light;
-                    // This is the geometric mean, so that a few very near blockers do not dominate
-                    // the shadow.
+                    // The mean is geometric, so that a few very near blockers do not dominate the
+                    // shadow.
                     sharp += shadow.light * libm::log(shadow.nearness.min(nearest.recip()));
                 } else {
                     lit += shadow.light;
@@ -188,7 +188,7 @@ impl Paths {
         }
     }
 
-    /// A light sample, and its blocker.
+    /// Samples a light, and finds what blocks it.
     fn shadow(&self, seen: &SurfaceHit, random: [f64; 4]) -> Option<Shadow> {
         let Hit {
             position: from,
@@ -213,7 +213,7 @@ impl Paths {
             });
         }
         let blocker = self.geometry.first(&ray, [0.0, light.distance])?.distance;
-        // The solid angle represented by a sample of this density is about 1/density.
+        // A sample represents a solid angle of about 1/density.
         let angle = light
             .density
             .map_or(POINT, |density| density.recip().sqrt());
@@ -229,7 +229,7 @@ impl Paths {
 const POINT: f64 = 1e-3;
 
 struct Shadow {
-    /// The light that would be reflected without a blocker.
+    /// The light that the surface would reflect without the blocker.
     light: f64,
     /// The inverse of the penumbra width, per metre; 0 if nothing blocks.
     nearness: f64,

@@ -1,8 +1,8 @@
 //! Furnace tests: under a sky of radiance 1 a lossless surface is invisible, and no surface is brighter than the sky.
 //!
 //! Sheets and opaque surfaces are tested on a disc from its front and its back, and on an open
-//! cylinder, of which both sides are visible. Every material is tested on a cube and a sphere from
-//! outside and, if it transmits light, on a sphere from inside.
+//! cylinder, whose inside and outside are visible. Every material is tested on a cube and a sphere
+//! from outside and, if it transmits light, on a sphere from inside.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -183,7 +183,7 @@ enum View {
 }
 
 impl View {
-    /// The views in which the law holds.
+    /// Returns the views in which radiance 1 must be seen.
     fn of(behind: Behind) -> &'static [Self] {
         let all = &[
             Self::SphereInside,
@@ -288,7 +288,7 @@ fn no_surface_changes_the_energy_of_a_furnace() {
                 (View::SphereInside, Behind::Medium(index)) => index * index,
                 _ => 1.0,
             };
-            // Each row alone and the whole picture are tested.
+            // Each row is tested alone, and then the whole picture.
             for row in 0..=SIDE {
                 let (mean, error) = mean(&picture, |i| row == SIDE || i / SIDE == row);
                 let place = format!("{name} {view:?} row {row}: {mean} ± {error}");

@@ -94,7 +94,7 @@ fn a_closed_sphere_gathers_light() {
         ..World::default()
     };
     let at = DVec3::new(0.1, 0.2, -1.9);
-    // The sum is 1 + ½ + ¼ + …, up to the given depth.
+    // The radiance is the sum 1 + ½ + ¼ + …, up to the given depth.
     for (depth, expected) in [
         (None, 2.0),
         (Some(0), 1.0),
@@ -138,7 +138,8 @@ fn lights_shine_by_their_units() {
         DVec3::ZERO,
         0.35,
     );
-    // The camera sees a point in the falloff of the spot.
+    // The camera sees a point that the spot lights with the reduced intensity between its two
+    // angles.
     let down = DAffine3::from_mat3_translation(
         DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0)),
         DVec3::new(0.0, 0.0, 1.0),

@@ -26,13 +26,17 @@ pub struct Shape {
 /// The geometry of a surface, with its front and its texture coordinates (u, v).
 #[derive(Clone, Debug)]
 pub enum Geometry {
-    /// z = 0, x and y from −1 to 1. Front: Z. (u, v) = ((x + 1)/2, (y + 1)/2).
+    /// The square z = 0 with x and y from −1 to 1. Its front is towards Z, and (u, v) = ((x +
+    /// 1)/2, (y + 1)/2).
     Rectangle,
-    /// z = 0, x² + y² ≤ 1. Front: Z. u is the radius, v the azimuth over 2π from X to Y.
+    /// The disc z = 0, x² + y² ≤ 1. Its front is towards Z. u is the radius, and v is the azimuth
+    /// from X to Y, divided by 2π.
     Disc,
-    /// x² + y² + z² = 1. Front: outside. u is the azimuth over 2π from X to Y, v the angle to Z over π.
+    /// The sphere x² + y² + z² = 1. Its front is the outside. u is the azimuth from X to Y,
+    /// divided by 2π, and v is the angle to Z, divided by π.
     Sphere,
-    /// x² + y² = 1, z from 0 to 1, open at both ends. Front: outside. u is the azimuth over 2π from X to Y, v is z.
+    /// The cylinder x² + y² = 1 with z from 0 to 1, open at both ends. Its front is the outside. u
+    /// is the azimuth from X to Y, divided by 2π, and v is z.
     Cylinder,
     /// A mesh of triangles, which several shapes may share.
     Mesh(Arc<Triangles>),
@@ -40,8 +44,8 @@ pub enum Geometry {
 
 /// Triangles with shared vertices.
 ///
-/// Corners are counterclockwise seen from the front. Valid by construction: corners refer to
-/// vertices, and there are as many normals and texture coordinates as vertices.
+/// Corners are counterclockwise as seen from the front. The constructor ensures that corners refer
+/// to vertices, and that normals and texture coordinates, if any, are as many as vertices.
 #[derive(Clone, Debug)]
 pub struct Triangles {
     vertices: Vec<DVec3>,

@@ -148,7 +148,7 @@ mod tests {
             (Wrap::Clamp, 7.5, 4.0),
             (Wrap::Clamp, -7.5, 1.0),
         ] {
-            // The tolerance for the rounding error of u / 3.
+            // The tolerance covers the rounding error of u / 3.
             assert!(
                 (at(wrap, Filter::Nearest, u) - nearest).abs() < 1e-12,
                 "{wrap:?} {u}"
@@ -170,7 +170,7 @@ mod tests {
             (0.6, 0.9, 0.4),
             (-0.1, 0.2, 0.2),
         ] {
-            // The values are exactly equal.
+            // The tolerance admits only equal values.
             assert!(
                 (board.value(DVec2::new(u, v)) - value).abs() < 1e-300,
                 "({u}, {v})"

@@ -65,7 +65,7 @@ impl ShiningSphere {
 
     pub(super) fn of_hit(&self, from: DVec3, along: DVec3, hit: &Hit) -> (f64, f64) {
         let radiance = emitted(&self.emission, hit.uv, hit.normal, -along);
-        // A hit is within the cone, despite rounding errors at its edge.
+        // A hit counts as within the cone, even if rounding errors place it outside the edge.
         let density = self.cone(from).map(|cone| 1.0 / cone.solid_angle());
         (radiance, density.unwrap_or(0.0))
     }

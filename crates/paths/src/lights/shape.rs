@@ -11,7 +11,7 @@ use glam::{DVec2, DVec3};
 pub(super) struct ShiningShape {
     shape: usize,
     emission: Texture,
-    /// The distribution of its pieces by area.
+    /// The distribution that draws pieces of the shape in proportion to their area.
     pieces: DiscreteDistribution,
 }
 

@@ -12,7 +12,7 @@ use glam::{DVec2, DVec3};
 pub(super) fn facets(roughness: Option<&Roughness>, uv: DVec2) -> Option<Microfacets> {
     roughness.map(|of| Microfacets {
         distribution: of.distribution,
-        // The minimum is the smallest roughness that directions in f64 resolve.
+        // Directions in f64 do not resolve a roughness below this minimum.
         alpha: [0, 1].map(|axis: usize| of.alpha[axis].value(uv).max(1e-4)),
     })
 }
@@ -71,7 +71,7 @@ pub(super) fn smooth_dielectric(of: &world::Dielectric, wo: DVec3) -> SmoothDiel
     }
 }
 
-/// The factor on reflected or transmitted light, with wo in front.
+/// Returns the factor on light that is reflected (wi in front, as wo) or transmitted.
 pub(super) fn factor(of: &world::Dielectric, uv: DVec2, wi: DVec3) -> f64 {
     if wi.z > 0.0 {
         of.reflectance.value(uv)
@@ -91,7 +91,7 @@ pub(crate) struct Coated {
 
 impl Coated {
     pub(super) fn new(plastic: &world::Plastic) -> Self {
-        // A table is made for the coat, whose roughness is constant.
+        // The table of the coat needs only one roughness, because it is constant.
         let facets = facets(plastic.roughness.as_ref(), DVec2::ZERO);
         Self {
             coat: Coat::new(plastic.index, facets),
@@ -111,8 +111,8 @@ impl Coated {
         }
     }
 
-    /// The share of the base in scattered light; it is 0 in the mirror direction of a smooth coat,
-    /// which is a delta component.
+    /// Returns the share of the base in scattered light. It is 0 in the mirror direction of a
+    /// smooth coat, whose reflection is a delta component.
     pub(super) fn base_share(&self, uv: DVec2, wi: DVec3, wo: DVec3) -> f64 {
         let is_mirrored = (wi + wo).truncate().length_squared() < 1e-24;
         if self.coat.facets().is_none() && is_mirrored {
@@ -123,7 +123,7 @@ impl Coated {
     }
 }
 
-/// A part of a value, as a fraction of it.
+/// Returns the ratio of a part to the whole value, or 0 if the value is 0.
 pub(super) fn share(part: f64, value: f64) -> f64 {
     if value > 0.0 { part / value } else { 0.0 }
 }

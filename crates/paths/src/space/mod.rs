@@ -37,10 +37,10 @@ pub struct Hit {
     pub position: DVec3,
     /// The index of the shape.
     pub shape: usize,
-    /// The surface normal on the front.
+    /// The geometric normal, on the front of the surface.
     pub normal: DVec3,
-    /// The shading frame, from its coordinates to those of the world. Its Z is the normal,
-    /// interpolated on smooth meshes; X is along u.
+    /// The shading frame, as a map to world coordinates. Z is the normal, interpolated on smooth
+    /// meshes, and X is along u.
     pub frame: DMat3,
     /// Texture coordinates.
     pub uv: DVec2,
@@ -51,7 +51,7 @@ pub struct Hit {
 pub struct SceneGeometry {
     placed: Vec<Placed>,
     hierarchy: WideHierarchy,
-    /// Minimum hit distance: a nearer hit is on the surface at the ray's origin.
+    /// Minimum distance of a hit; a nearer hit is on the surface from which the ray starts.
     nearest: f64,
     /// Centre of a sphere around all surfaces.
     pub(crate) center: DVec3,
@@ -64,7 +64,7 @@ pub(crate) struct Placed {
     pub(crate) form: Form,
     pub(crate) to_world: DAffine3,
     to_local: DAffine3,
-    /// −1 if the front is flipped.
+    /// −1 if the front of the surface is flipped, otherwise 1.
     side: f64,
 }
 
@@ -200,7 +200,8 @@ impl Placed {
         self.form.is_met(start, along, within.map(|at| at * scale))
     }
 
-    /// The origin and direction of a ray in local coordinates, and the scale of distances there.
+    /// Returns origin and direction of a ray in local coordinates, and the scale of distances
+    /// there.
     fn seen(&self, ray: &Ray) -> (DVec3, DVec3, f64) {
         let start = self.to_local.transform_point3(ray.from);
         let along = self.to_local.transform_vector3(ray.along);
@@ -230,7 +231,7 @@ impl Placed {
         (self.to_world.transform_point3(place), normal, local.uv)
     }
 
-    /// The areas of its pieces in the world: triangles, or the whole surface.
+    /// Returns the areas, in the world, of the pieces of the surface: its triangles, or the whole.
     pub(crate) fn areas(&self) -> Vec<f64> {
         self.form.areas(&self.to_world)
     }
