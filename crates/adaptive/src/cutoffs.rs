@@ -65,7 +65,7 @@ impl Cutoffs {
     }
 }
 
-/// Rounds a width to a few per cent, so that textured roughness gives few different lobes.
+/// Rounds a width to a few per cent, so that a textured roughness requires few cutoffs.
 fn rounded(width: f64) -> f64 {
     let steps = 16.0;
     libm::exp2((steps * libm::log2(width.max(1e-4))).round() / steps)

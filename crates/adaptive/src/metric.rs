@@ -2,15 +2,15 @@
 
 /// A symmetric 2 × 2 matrix over the picture, columns to the right and rows down, per pixel².
 ///
-/// For a criterion, the matrix is the squared bandwidth in cycles per pixel along each direction.
-/// For samples, it defines distances in which neighbours are about 1 apart.
+/// The matrix of a criterion gives the squared bandwidth along each direction, in cycles per
+/// pixel. The matrix of samples defines distances in which neighbours are about 1 apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Metric {
-    /// The entry along columns.
+    /// The diagonal entry for steps along columns.
     pub xx: f64,
     /// The mixed entry.
     pub xy: f64,
-    /// The entry along rows.
+    /// The diagonal entry for steps along rows.
     pub yy: f64,
 }
 
@@ -61,7 +61,8 @@ impl Metric {
         mean + (off * off + self.xy * self.xy).sqrt()
     }
 
-    /// The half-extents of the ellipse of steps up to length `radius`, along columns and rows.
+    /// Returns half of the extents, along columns and rows, of the ellipse of all steps up to the
+    /// length `radius`.
     #[must_use]
     pub(crate) fn reach(&self, radius: f64) -> [f64; 2] {
         let determinant = self.determinant();
@@ -75,7 +76,7 @@ impl Metric {
         let large = self.largest();
         let small = self.xx + self.yy - large;
         let wanted = large / (most * most);
-        // Adds an isotropic part.
+        // An isotropic metric is added, which makes the sum rounder.
         let added = (wanted - small) / (1.0 - (most * most).recip());
         self.plus(Self::even(added.max(0.0)))
     }

@@ -9,13 +9,13 @@ use crate::visible::{FOUR, SeenSurface, Visible, at};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// A value at a point of the picture.
+/// A shaded point of the picture, with its value.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShadedSample {
     pub(crate) at: PixelPosition,
     pub(crate) metric: Metric,
     pub(crate) surface: SeenSurface,
-    /// The values of base and lobe.
+    /// The values of the base and of the lobe, without texture factors.
     pub(crate) value: [f64; 2],
 }
 
@@ -27,19 +27,21 @@ impl ShadedSample {
     }
 }
 
-/// Standard deviation of the filter, in units in which neighbours are about 1 apart. With a smaller
-/// one, some points would use only one sample; with a larger one, sampled detail would be lost.
+/// Standard deviation of the filter, in units in which neighbours are about 1 apart. With a
+/// narrower filter some points would use only one sample, and a wider filter would blur details
+/// that the samples show.
 const WIDTH: f64 = 0.5;
 
-/// Cutoffs of the filter in standard deviations. The first is that of the first round. The others
-/// are those of later rounds, at points that no sample has reached.
+/// Distances at which the filter ends, in standard deviations: the first for the first round, the
+/// others for later rounds at points that no sample has reached.
 const REACHES: [f64; 3] = [3.0, 9.0, 27.0];
 
-/// Standard deviation of normals. It separates faces that meet at a right angle, but not normals
-/// that turn within the distance of samples.
+/// Standard deviation of the filter over normals. It separates faces that meet at a right angle,
+/// but not neighbouring samples on a curved surface.
 const NORMALS: f64 = 0.35;
 
-/// Standard deviation of the elevation angle of a sample above the surface at a point.
+/// Standard deviation of the filter over the elevation angle of a sample above the surface at a
+/// point.
 const HEIGHTS: f64 = 0.2;
 
 /// Pixel rows per band, the unit of work of a thread.
@@ -119,8 +121,8 @@ impl LocalSums {
 
     /// The value of the fitted plane at the point.
     fn plane(&self, of: &ValueSums) -> f64 {
-        // Positions are relative to their mean. Spread is added to keep the slope from few samples
-        // small.
+        // Positions are relative to their mean. The added spread keeps the slope small if there
+        // are few samples.
         let [x, y] = self.x.map(|x| x / self.weight);
         let mean = of.value / self.weight;
         let ridge = 0.1 * WIDTH * WIDTH;
@@ -209,7 +211,8 @@ impl<'a> Band<'a> {
     }
 }
 
-/// The dissimilarity of two points of a shape, in squared standard deviations.
+/// Returns how much two points of a shape differ in normal and elevation, in squared standard
+/// deviations.
 fn unlike(place: &SeenSurface, sample: &SeenSurface) -> f64 {
     let turned = (place.normal - sample.normal).length_squared() / (NORMALS * NORMALS);
     let between = sample.position - place.position;
@@ -218,8 +221,8 @@ fn unlike(place: &SeenSurface, sample: &SeenSurface) -> f64 {
         return turned;
     }
     let height = between.dot(place.normal);
-    // On a curved surface, normals turn by twice the elevation angle; a larger elevation angle
-    // means another sheet.
+    // On a curved surface the normal turns by twice the elevation angle, so a larger elevation
+    // angle shows that the points are on different parts of the shape.
     turned + height * height / (length * HEIGHTS * HEIGHTS)
 }
 

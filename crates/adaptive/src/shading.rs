@@ -8,7 +8,7 @@ use etendue_paths::Paths;
 use etendue_world::Camera;
 use rayon::prelude::*;
 
-/// The context for shading.
+/// What is needed to shade a point: the visible points, the paths and their settings.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shader<'a> {
     pub(crate) paths: &'a Paths,

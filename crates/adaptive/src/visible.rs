@@ -51,12 +51,12 @@ pub(crate) struct SeenSurface {
     /// The central direction of incident light: the mirror direction, or the normal of a material
     /// without a lobe.
     pub(crate) axis: DVec3,
-    /// Whether the axis is the mirror direction.
+    /// Whether the axis is the mirror direction, because the material has a lobe.
     pub(crate) has_lobe: bool,
-    /// The highest frequency that the material preserves around the axis, cycles per radian; 0 if
-    /// it is black.
+    /// The highest frequency around the axis that the material preserves, cycles per radian; 0 if
+    /// the material is black.
     pub(crate) cutoff: f64,
-    /// The texture factors of base and lobe. The shading is divided by these factors.
+    /// The texture factors of base and lobe, by which shading samples are divided.
     pub(crate) factors: [f64; 2],
 }
 

@@ -20,7 +20,7 @@ pub struct WorldSource {
     pub sky: Option<f64>,
     /// A camera that is added to the scene as the first, with the name `command`.
     pub viewpoint: Option<Viewpoint>,
-    /// The style in which messages name arguments.
+    /// How messages name arguments: as options of the command, or as keywords of Python.
     pub arguments: ArgumentStyle,
 }
 
