@@ -16,7 +16,8 @@ use etendue_paths::Nearness;
 use etendue_theory::shading::Criterion;
 use glam::DVec3;
 
-/// The squared bandwidth of a pixel, (cycles per pixel)²; `None` if nothing is to be shaded.
+/// Returns the squared bandwidth of a pixel, (cycles per pixel)², or `None` if nothing is to be
+/// shaded.
 pub(crate) fn criterion(
     visible: &Visible,
     pixel: [usize; 2],

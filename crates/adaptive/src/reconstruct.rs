@@ -56,7 +56,7 @@ pub(crate) enum SampleFit {
     Plane,
 }
 
-/// The values at all points; `None` if nothing is shaded or no sample is near.
+/// Returns the values at all points, or `None` if nothing is shaded or no sample is near.
 pub(crate) fn reconstruct(
     visible: &Visible,
     samples: &[ShadedSample],

@@ -23,7 +23,8 @@ pub(crate) const APERTURE: f64 = 0.6;
 /// target error.
 pub(crate) const AZIMUTHS: usize = 2;
 
-/// The light field at a plane on a glossy receiver by nets of rays; `None` for other planes.
+/// Returns the light field at a plane on a glossy receiver by nets of rays, or `None` for other
+/// planes.
 pub(crate) fn followed(plane: PathPlace, setup: &Setup) -> Option<Predicted> {
     let window = window(setup);
     let grid = SliceGrid {

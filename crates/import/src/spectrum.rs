@@ -60,7 +60,7 @@ pub(crate) fn from_xyz([x, y, z]: [f64; 3]) -> [f64; 3] {
     ]
 }
 
-/// The value at a wavelength before sample `next`; `None` beyond the ends.
+/// Returns the value at a wavelength before sample `next`, or `None` beyond the ends.
 fn between(samples: &[[f64; 2]], next: usize, wavelength: f64) -> Option<f64> {
     let [w0, v0] = *samples.get(next.checked_sub(1)?)?;
     match samples.get(next) {

@@ -15,7 +15,7 @@ fn constant(texture: &Texture) -> f64 {
     }
 }
 
-/// α along u and v; `None` for a mirror.
+/// Returns α along u and v, or `None` for a mirror.
 fn alpha(parameters: &str) -> Option<[f64; 2]> {
     match material(&format!("Material \"conductor\" {parameters}")) {
         Material::Conductor(metal) => metal.roughness.map(|rough| {

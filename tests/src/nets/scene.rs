@@ -81,7 +81,7 @@ const PLANTED: f64 = 1.02;
 /// that the prediction depends on a few rays.
 const DARK: f64 = 0.3;
 
-/// The outcome; `None` if no theory applies or no light arrives.
+/// Returns the outcome, or `None` if no theory applies or no light arrives.
 fn outcome(kind: BlockerKind, number: u64) -> Result<Option<SceneOutcome>, Untold> {
     let mut dice = SceneDice::new(number);
     let text = scene(kind, &mut dice);

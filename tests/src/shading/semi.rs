@@ -120,7 +120,7 @@ impl Sides {
     }
 }
 
-/// The index of a frequency on an axis; `None` beyond its ends.
+/// Returns the index of a frequency on an axis, or `None` beyond its ends.
 fn index(axis: &FrequencyAxis, value: f64) -> Option<usize> {
     let values = axis.values();
     values

@@ -150,7 +150,7 @@ const fn line(step: ReflectionStep) -> Line {
 }
 
 impl Circle {
-    /// The known order of the error; `None` if the step is exact.
+    /// Returns the known order of the error, or `None` if the step is exact.
     fn known(&self, step: ReflectionStep) -> Option<f64> {
         match step {
             _ if self.theta0 != 0.0 => Some(1.0),

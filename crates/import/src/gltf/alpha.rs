@@ -28,7 +28,8 @@ pub(super) fn read(
     Raster::new(width, height, values).ok_or_else(|| "has no pixels".to_owned())
 }
 
-/// The alpha values of a PNG picture whose size was checked; `None` if the picture has no alpha.
+/// Returns the alpha values of a PNG picture whose size was checked, or `None` if the picture has
+/// no alpha.
 fn alphas(bytes: &[u8]) -> Result<Option<Vec<f64>>, String> {
     let damaged = |error: png::DecodingError| format!("is damaged ({error})");
     let mut decoder = Decoder::new(Cursor::new(bytes));

@@ -19,7 +19,8 @@ fn extension(bytes: &[u8]) -> Option<&'static str> {
 }
 
 impl GltfReader<'_> {
-    /// The pixels of an image as one number each; `None` if a cause of refusal was reported.
+    /// Returns the pixels of an image as one number each, or `None` if a cause of refusal was
+    /// reported.
     pub(super) fn raster(&mut self, image: usize, level: TextureChannel) -> Option<Arc<Raster>> {
         let key = RasterKey::new(image, level);
         if let Some(known) = self.rasters.get(&key) {

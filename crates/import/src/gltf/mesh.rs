@@ -16,8 +16,8 @@ fn attribute(primitive: &Primitive, of: Semantic) -> Option<Index<Accessor>> {
 }
 
 impl GltfReader<'_> {
-    /// The triangles of a primitive, with the texture coordinates that its material uses; `None` if
-    /// there are none, or if a cause of refusal was reported.
+    /// Returns the triangles of a primitive, with the texture coordinates that its material uses,
+    /// or `None` if there are none, or if a cause of refusal was reported.
     pub(super) fn parts(
         &mut self,
         primitive: &Primitive,

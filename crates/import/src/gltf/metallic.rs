@@ -18,8 +18,8 @@ struct DielectricCoat {
 }
 
 impl GltfReader<'_> {
-    /// The scattering at the front of an opaque material; `None` if a cause of refusal was
-    /// reported.
+    /// Returns the scattering at the front of an opaque material, or `None` if a cause of refusal
+    /// was reported.
     pub(super) fn metallic_roughness(&mut self, draft: &mut Draft<'_>) -> Option<Material> {
         let color = self.base_color(draft);
         let metallic = self.share(draft, "metallicFactor");
@@ -128,7 +128,7 @@ impl GltfReader<'_> {
         }))
     }
 
-    /// The index of refraction; `None` if a cause of refusal was reported.
+    /// Returns the index of refraction, or `None` if a cause of refusal was reported.
     pub(super) fn index(&self, draft: &Draft<'_>) -> Option<f64> {
         let ior = draft
             .source
@@ -174,7 +174,7 @@ impl GltfReader<'_> {
     }
 }
 
-/// Isotropic microfacet roughness α; `None` for a smooth surface.
+/// Returns the isotropic microfacet roughness α, or `None` for a smooth surface.
 pub(super) fn roughness(alpha: Texture) -> Option<Roughness> {
     match alpha {
         Texture::Constant(..=0.0) => None,

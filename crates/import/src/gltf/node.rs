@@ -116,7 +116,7 @@ impl<'a> GltfReader<'a> {
         }
     }
 
-    /// The local transform of a node; `None` if a cause of refusal was reported.
+    /// Returns the local transform of a node, or `None` if a cause of refusal was reported.
     fn own(&self, node: &Node, path: &str) -> Option<DAffine3> {
         let is_split =
             node.translation.is_some() || node.rotation.is_some() || node.scale.is_some();

@@ -21,7 +21,7 @@ impl GltfReader<'_> {
         })
     }
 
-    /// A picture of a material; `None` if a cause of refusal was reported.
+    /// Returns a picture of a material, or `None` if a cause of refusal was reported.
     pub(super) fn bitmap(
         &mut self,
         draft: &mut Draft<'_>,

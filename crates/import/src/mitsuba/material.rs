@@ -21,7 +21,7 @@ const MAX_MATERIALS: usize = 1 << 20;
 const ALLOWED: &str = "diffuse, conductor, roughconductor, dielectric, thindielectric, roughdielectric, plastic, roughplastic, phong, twosided, mask, blendbsdf, null";
 
 impl<'a> MitsubaReader<'a> {
-    /// The index of a material; `None` if a cause of refusal was reported.
+    /// Returns the index of a material, or `None` if a cause of refusal was reported.
     pub(super) fn material(&mut self, object: &'a MitsubaObject) -> Option<usize> {
         let at = object.number;
         if let Some(known) = self.materials.get(&at) {

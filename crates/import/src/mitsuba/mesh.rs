@@ -189,7 +189,7 @@ fn bits(linear: DMat3) -> [u64; 9] {
     linear.to_cols_array().map(|v| (v + 0.0).to_bits())
 }
 
-/// The direction to which a map takes Z; `None` for a singular map.
+/// Returns the direction to which a map takes Z, or `None` for a singular map.
 pub(super) fn z_of(map: DAffine3) -> Option<DVec3> {
     map.matrix3.z_axis.try_normalize()
 }

@@ -6,7 +6,7 @@
 /// Red, green and blue.
 type MetalRgb = [f64; 3];
 
-/// n and k of a conductor; `None` for an unknown name.
+/// Returns n and k of a conductor, or `None` for an unknown name.
 pub(super) fn index(name: &str) -> Option<[MetalRgb; 2]> {
     let found = NAMED.iter().find(|(known, ..)| *known == name)?;
     Some([found.1, found.2])

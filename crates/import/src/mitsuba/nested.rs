@@ -53,7 +53,7 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// All nested bsdfs; `None` if a cause of refusal was reported.
+    /// Returns all nested bsdfs, or `None` if a cause of refusal was reported.
     fn nested(&mut self, object: &'a MitsubaObject, depth: usize) -> Option<Vec<Material>> {
         let within = self.children(object, ObjectKind::Bsdf);
         // All bsdfs are read, to find all causes.

@@ -25,7 +25,7 @@ impl ObjReader<'_> {
         }
     }
 
-    /// The surface of a material; `None` if a cause of refusal was reported.
+    /// Returns the surface of a material, or `None` if a cause of refusal was reported.
     pub(super) fn surface(&mut self, entry: &MtlEntry) -> Option<ObjSurface> {
         let scatter = self.scatter(entry);
         let emission = self.emission(entry);

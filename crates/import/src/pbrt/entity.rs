@@ -85,7 +85,7 @@ impl Entity {
         }
     }
 
-    /// The values of a parameter of one of these types; `None` if it is missing.
+    /// Returns the values of a parameter of one of these types, or `None` if it is missing.
     fn values(
         &self,
         report: &Report,

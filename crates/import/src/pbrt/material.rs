@@ -30,7 +30,7 @@ const DEFAULT: usize = usize::MAX;
 const ALBEDO: Ask = Ask::Spectrum(Role::Reflectance);
 
 impl PbrtReader<'_> {
-    /// The index of a material; `None` if there is no surface at all.
+    /// Returns the index of a material, or `None` if there is no surface at all.
     pub(super) fn material(&mut self, of: &MaterialOf, uv: Uv) -> Read<Option<usize>> {
         let number = match of {
             MaterialOf::Default => DEFAULT,
@@ -237,7 +237,7 @@ impl PbrtReader<'_> {
         })
     }
 
-    /// The roughness; `None` for a smooth surface.
+    /// Returns the roughness, or `None` for a smooth surface.
     fn roughness(&mut self, entity: &Entity, uv: Uv) -> Read<Option<Roughness>> {
         let remaps = entity.truth(self.report, "remaproughness", true);
         let names = ["uroughness", "vroughness"];

@@ -5,7 +5,7 @@
 //! reasons: Mitsuba weights its tables with the equal-energy white, and the numbers in pbrt's
 //! tables differ.
 
-/// Red, green and blue of the spectrum of a glass or metal; `None` for an unknown name.
+/// Returns red, green and blue of the spectrum of a glass or metal, or `None` for an unknown name.
 pub(super) fn index(name: &str) -> Option<[f64; 3]> {
     let found = NAMED.iter().find(|(known, _)| *known == name)?;
     Some(found.1)

@@ -77,8 +77,8 @@ impl PbrtReader<'_> {
         true
     }
 
-    /// A shape placed by its own transform; `None` if a cause of refusal was reported, or if there
-    /// is no surface.
+    /// Returns a shape placed by its own transform, or `None` if a cause of refusal was reported,
+    /// or if there is no surface.
     fn shape(&mut self, shape: &PbrtShape, is_in_object: bool) -> Option<etendue_world::Shape> {
         let entity = &shape.entity;
         entity.is_used.set(true);

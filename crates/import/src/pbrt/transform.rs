@@ -40,7 +40,8 @@ pub(super) fn matrix(numbers: &[f64; 16]) -> Result<DAffine3, String> {
     Ok(DAffine3::from_mat4(matrix))
 }
 
-/// A map without its scale, and the scale; `None` if it shears or scales axes unequally.
+/// Returns a map without its scale, and the scale, or `None` if it shears or scales axes
+/// unequally.
 pub(super) fn without_scale(map: DAffine3) -> Option<(DAffine3, f64)> {
     let scale = libm::cbrt(map.matrix3.determinant().abs());
     let linear = map.matrix3 * (1.0 / scale);

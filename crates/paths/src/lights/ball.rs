@@ -26,8 +26,8 @@ impl ShiningSphere {
         }
     }
 
-    /// The cone that the sphere subtends; `None` for a point inside, where the sphere does not
-    /// emit.
+    /// Returns the cone that the sphere subtends, or `None` for a point inside, where the sphere
+    /// does not emit.
     fn cone(&self, at: DVec3) -> Option<Cone> {
         Cone::around_sphere(self.center - at, self.radius)
     }

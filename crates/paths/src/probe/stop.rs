@@ -109,8 +109,8 @@ fn curvature(
     })
 }
 
-/// The curvature between points of a shape one step to either side; `None` if one of them misses
-/// the shape.
+/// Returns the curvature between points of a shape one step to either side, or `None` if one of
+/// them misses the shape.
 fn between(geometry: &SceneGeometry, hit: &Hit, normal: DVec3, step: DVec3) -> Option<f64> {
     let height = 4.0 * step.length();
     let at = |side: f64| {

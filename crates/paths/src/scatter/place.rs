@@ -8,7 +8,7 @@ use etendue_scatter::{
 use etendue_world::{self as world, Roughness, Texture};
 use glam::{DVec2, DVec3};
 
-/// The microfacet distribution at a point; `None` for a smooth surface.
+/// Returns the microfacet distribution at a point, or `None` for a smooth surface.
 pub(super) fn facets(roughness: Option<&Roughness>, uv: DVec2) -> Option<Microfacets> {
     roughness.map(|of| Microfacets {
         distribution: of.distribution,
@@ -17,7 +17,7 @@ pub(super) fn facets(roughness: Option<&Roughness>, uv: DVec2) -> Option<Microfa
     })
 }
 
-/// A rough metal at a point; `None` for a mirror.
+/// Returns a rough metal at a point, or `None` for a mirror.
 pub(super) fn conductor(of: &world::Conductor, uv: DVec2) -> Option<Conductor> {
     facets(of.roughness.as_ref(), uv).map(|facets| Conductor {
         facets,
@@ -52,7 +52,7 @@ fn index(of: &world::Dielectric, wo: DVec3) -> f64 {
     }
 }
 
-/// A rough interface as `wo` sees it; `None` for a smooth one.
+/// Returns a rough interface as `wo` sees it, or `None` for a smooth one.
 pub(super) fn rough_dielectric(
     of: &world::Dielectric,
     uv: DVec2,

@@ -12,8 +12,8 @@ use std::f64::consts::FRAC_PI_2;
 
 /// The smallest window that is tried, pixels.
 const NARROWEST: f64 = 16.0;
-/// The ratio of a measured bandwidth to the bandwidth of the window above which the window is
-/// narrow enough.
+/// The ratio of a measured bandwidth to the bandwidth of the window above which the window is wide
+/// enough.
 const CLEAR: f64 = 3.0;
 /// The ratio up to which a bandwidth may be due to the window: light that is linear across the
 /// window has 1.49 times its bandwidth, and quadratic light 1.89 times.
