@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 /// Maximum number of bytes that one import reads or unpacks, over all files.
 const MOST_BYTES: u64 = 4 << 30;
 
-/// The files that a scene may refer to. All must lie within one folder after links are followed.
+/// The files that a scene may refer to. After links are followed, all of them must lie within one
+/// folder.
 #[derive(Debug)]
 pub(crate) struct Files {
     root: PathBuf,
@@ -28,13 +29,15 @@ impl Files {
         })
     }
 
-    /// Returns the path of the file or folder `name`, searching the folders in order.
+    /// Returns the path of the file or folder `name`, which is searched for in these folders in
+    /// order.
     ///
-    /// The name may contain `..`, because only the resolved path must lie below the root.
+    /// The name may contain `..`, because only the path to which it resolves must lie below the
+    /// root.
     pub(crate) fn find(&self, folders: &[PathBuf], name: &str) -> Result<PathBuf, String> {
         let mut is_outside = false;
         for folder in folders {
-            // An absolute name replaces the folder.
+            // If the name is absolute, `join` ignores the folder.
             let Ok(path) = folder.join(name).canonicalize() else {
                 continue;
             };
@@ -63,7 +66,7 @@ impl Files {
         text(self.read(path)?)
     }
 
-    /// The number of bytes that may still be read or unpacked.
+    /// Returns the number of bytes that may still be read or unpacked.
     pub(crate) fn left(&self) -> u64 {
         self.left.get()
     }

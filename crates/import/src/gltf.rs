@@ -3,7 +3,8 @@
 //! - Coordinates are right-handed with Y up, and are kept. Angles are in radians and lengths in
 //!   metres.
 //! - Light is radiometric: a candela is read as 1 W/sr, a lux as 1 W/m², a nit of emission as 1 W m⁻² sr⁻¹.
-//! - Cameras look, and lights shine, along −Z of their node. The scale of the node affects neither.
+//! - Cameras look, and lights shine, along −Z of their node. The scale of the node affects neither
+//!   cameras nor lights.
 //! - The front of a triangle is the side from which its corners run counterclockwise, or clockwise
 //!   if the node mirrors. Normals do not determine the front.
 //! - Surfaces scatter on their front alone unless they are `doubleSided`.

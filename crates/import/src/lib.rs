@@ -29,10 +29,10 @@ use std::path::Path;
 ///
 /// - `xml`: Mitsuba 3.
 /// - `pbrt`: pbrt-v4.
-/// - `gltf`, `glb`: glTF 2.0. Right-handed with Y up; cameras look along −Z. They have no number of
-///   pixels, so pictures are 512 pixels wide. The numbers of lights are taken as radiometric: 1 cd
-///   as 1 W/sr, 1 lx as 1 W/m², 1 nit as 1 W m⁻² sr⁻¹. Surfaces that are not `doubleSided` are
-///   black on their back.
+/// - `gltf`, `glb`: glTF 2.0. Right-handed with Y up; cameras look along −Z. The cameras do not
+///   state a number of pixels, so pictures are 512 pixels wide. The numbers of lights are taken as
+///   radiometric: 1 cd as 1 W/sr, 1 lx as 1 W/m², 1 nit as 1 W m⁻² sr⁻¹. Surfaces that are not
+///   `doubleSided` are black on their back.
 /// - `obj`: surfaces with the materials of MTL files, on both sides, and `Ke` as radiance on their front. No camera.
 /// - `ply`: one diffuse surface, 0.5 on both sides. No camera.
 ///

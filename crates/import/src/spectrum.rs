@@ -4,9 +4,9 @@ use crate::cie::{COUNT, D65, FIRST_WAVELENGTH, LAST_WAVELENGTH, OBSERVER};
 
 /// Number of wavelengths at which a spectrum is summed.
 const STEPS: u32 = 1000;
-/// Normalises a spectrum of 1 to luminance 1.
+/// The factor that normalises the constant spectrum 1 to luminance 1.
 const PER_OBSERVER: f64 = 1.0 / 106.750_259_399_414_06;
-/// Normalises the power of D65 to luminance 1.
+/// The factor that normalises the power of D65 to luminance 1.
 const PER_D65: f64 = 1.0 / 98.997_417_518_762_55;
 
 /// The quantity that a spectrum represents.
@@ -65,7 +65,7 @@ fn between(samples: &[[f64; 2]], next: usize, wavelength: f64) -> Option<f64> {
     let [w0, v0] = *samples.get(next.checked_sub(1)?)?;
     match samples.get(next) {
         Some([w1, v1]) => Some(v0 + (wavelength - w0) / (w1 - w0) * (v1 - v0)),
-        // The last wavelength is still inside the range.
+        // The last wavelength itself is inside the range.
         None => (wavelength <= w0).then_some(v0),
     }
 }

@@ -1,4 +1,4 @@
-//! Damaged scenes. Each is read or refused, and none causes a panic.
+//! Damaged scenes. Each damaged scene is imported or refused, and none causes a panic.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -72,7 +72,8 @@ fn no_byte_of_a_pbrt_scene_makes_it_panic() {
     );
 }
 
-/// Damages the files in turn, the first one most often, and imports the scene each time.
+/// Damages one of the files in each round, the first one in every second round, and imports the
+/// scene.
 fn damage(files: &[(&str, &[u8])], rounds: usize) {
     let folder = folder(files);
     let main = folder.path().join(files[0].0);
@@ -81,7 +82,7 @@ fn damage(files: &[(&str, &[u8])], rounds: usize) {
     let mut state = 88_172_645_463_325_252;
     let (mut read, mut refused) = (0, 0);
     for round in 0..rounds {
-        // Every second round damages the scene file, the others one of its files.
+        // Even rounds damage the scene file, and odd ones one of the files that it uses.
         let which = match files.len() {
             others @ 2.. if round % 2 == 1 => 1 + next(&mut state) % (others - 1),
             _ => 0,

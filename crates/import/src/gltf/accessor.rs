@@ -135,8 +135,8 @@ impl GltfReader<'_> {
         })
     }
 
-    /// The start and the number of the elements, if all elements lie within their view and the view
-    /// lies within its buffer.
+    /// Returns the offset of the first element and the number of elements, if all elements lie
+    /// within their view and the view lies within its buffer.
     fn fit(
         &self,
         accessor: &Accessor,
@@ -199,7 +199,7 @@ impl GltfReader<'_> {
             .ok_or_else(|| format!("has {found} bytes; byteLength is {said}"))
     }
 
-    /// The bytes that a URI refers to.
+    /// Returns the bytes that a URI refers to.
     pub(super) fn bytes_of(&self, uri: &str) -> Result<Vec<u8>, String> {
         match source(uri, self.files.left())? {
             BufferSource::Data(bytes) => {

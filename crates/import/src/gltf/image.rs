@@ -9,7 +9,7 @@ use etendue_scene::Channels;
 use std::path::Path;
 use std::sync::Arc;
 
-/// The file extension that matches the first bytes of an image.
+/// Returns the file extension of the format that the first bytes of an image indicate.
 fn extension(bytes: &[u8]) -> Option<&'static str> {
     match bytes {
         [0x89, b'P', b'N', b'G', ..] => Some("png"),
@@ -63,8 +63,8 @@ impl GltfReader<'_> {
         let color = self.color;
         let is_grey = channels.count == 1;
         let raster = channels.raster(|rgb| match level {
-            // Three equal numbers are not converted: rounding would make their luminance differ
-            // from them.
+            // Three equal numbers are used as they are, because rounding would make their
+            // luminance differ from them.
             TextureChannel::Color(factor) if is_grey => pictures::linear(rgb[0]) * color.of(factor),
             TextureChannel::Color(factor) => {
                 let linear = rgb.map(pictures::linear);

@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// The mesh of a shape.
 pub(super) struct MitsubaMesh {
     pub(super) triangles: Arc<Triangles>,
-    /// Whether the front is on the side opposite to the normals.
+    /// Whether the front of the mesh is opposite to its normals.
     pub(super) is_flipped: bool,
 }
 
@@ -61,8 +61,8 @@ impl<'a> MitsubaReader<'a> {
                 return None;
             }
         };
-        // Mitsuba computes normals from the placed triangles, so a mirror flips them. It transforms
-        // normals of the file as normals.
+        // Mitsuba computes missing normals from the placed triangles, so a mirror flips them, but
+        // it transforms the normals of a file.
         let is_mirrored = to_world.matrix3.determinant() < 0.0;
         Some(MitsubaMesh {
             triangles,
@@ -107,7 +107,7 @@ impl<'a> MitsubaReader<'a> {
         to_world: DAffine3,
         is_new: bool,
     ) -> (Result<Arc<Triangles>, String>, bool) {
-        // All placements can share a mesh that has its own normals.
+        // A mesh that has its own normals can be shared by all its placements.
         let everywhere = MitsubaMeshKey {
             linear: None,
             is_flat: false,
@@ -159,7 +159,8 @@ impl<'a> MitsubaReader<'a> {
         key: &MitsubaMeshKey,
         linear: DMat3,
     ) -> Result<Arc<Triangles>, String> {
-        // Shapes that share a file may have different meshes.
+        // The memory is counted for each mesh, because shapes that share a file may have different
+        // meshes.
         self.files.spend(parts.bytes())?;
         parts.drop_empty();
         if key.is_flipped {

@@ -12,7 +12,7 @@ pub(super) fn index(name: &str) -> Option<[MetalRgb; 2]> {
     Some([found.1, found.2])
 }
 
-/// Names, with n and k.
+/// Each conductor with its n and k.
 #[rustfmt::skip]
 const NAMED: &[(&str, MetalRgb, MetalRgb)] = &[
     ("Ag", [0.1552762, 0.116728, 0.1383876], [4.828354, 3.122222, 2.146901]),

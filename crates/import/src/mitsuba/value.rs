@@ -6,7 +6,7 @@ use crate::report::quoted;
 use glam::DVec3;
 use std::rc::Rc;
 
-/// A number in range. `Err` is the fault.
+/// Parses a number in the allowed range; `Err` describes a fault.
 pub(super) fn number(text: &str) -> Result<f64, String> {
     let parsed: Option<f64> = text.trim().parse().ok();
     match parsed {
@@ -55,7 +55,7 @@ pub(super) fn triple(text: &str) -> Result<[f64; 3], String> {
     }
 }
 
-/// One number, or pairs such as `400:0.3`.
+/// Parses a spectrum: one number, or pairs such as `400:0.3`.
 pub(super) fn spectrum(text: &str) -> Result<Value, String> {
     let all: Vec<&str> = words(text).collect();
     if let [single] = all[..]

@@ -14,8 +14,8 @@ use std::sync::Arc;
 /// Maximum number of pixels along a side: the converted map has eight times as many pixels.
 const MAX_PIXELS: usize = 2048;
 
-/// Samples along each side of a pixel in a map of one pixel. Larger maps use fewer samples per
-/// pixel, to bound the time.
+/// Number of samples along a side of a map, before that in each pixel is limited to between 3 and
+/// 16. Larger maps use fewer samples per pixel, to bound the time.
 const WITHIN: usize = 4096;
 
 impl PbrtReader<'_> {
@@ -63,7 +63,7 @@ impl PbrtReader<'_> {
     }
 }
 
-/// The illuminance from above, on a surface with normal Z.
+/// Returns the illuminance of a surface with normal Z.
 fn illuminance(square: &Raster) -> f64 {
     let side = square.width();
     let pixel = 4.0 * PI / (side * side) as f64;
@@ -83,7 +83,7 @@ fn longitudes(square: &Raster, scale: f64) -> Option<Raster> {
     let pixel = |i: usize| {
         let (column, row) = ((i % w) as f64 + 0.5, (i / w) as f64);
         let places = (0..count * count).map(|k| {
-            // There is no area beyond the poles.
+            // The angle is limited because there is no area beyond the poles.
             let polar = ((row + within(k / count)) * PI / (h - 1) as f64).clamp(0.0, PI);
             let (sin, cos) = libm::sincos(polar);
             let (x, z) = libm::sincos((column + within(k % count)) * TAU / w as f64);
@@ -106,7 +106,7 @@ fn nearest(square: &Raster, toward: DVec3) -> f64 {
     square.values()[y * side + x].max(0.0)
 }
 
-/// The position in the unit square for a direction.
+/// Returns the position of a direction in the unit square.
 fn place(toward: DVec3) -> [f64; 2] {
     let [x, y, z] = toward.abs().to_array();
     let r = (1.0 - z).max(0.0).sqrt();
@@ -149,7 +149,7 @@ mod tests {
         for i in 0..64 {
             let at = [f64::from(i % 8) / 8.0 + 0.07, f64::from(i / 8) / 8.0 + 0.03];
             let back = place(direction(at));
-            // The difference is only rounding.
+            // The tolerance is the rounding error.
             assert!(
                 (back[0] - at[0]).abs() + (back[1] - at[1]).abs() < 1e-12,
                 "{at:?}"

@@ -7,7 +7,7 @@ use std::rc::Rc;
 /// A token.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Token<'a> {
-    /// A directive, a number or a truth value.
+    /// A word without quotes: a directive, a number or a truth value.
     Word(&'a str),
     /// A quoted string.
     Text(Cow<'a, str>),
@@ -168,7 +168,7 @@ fn escape(c: char) -> Option<char> {
     })
 }
 
-/// A finite number; `Err` is the fault. The range of integers is checked elsewhere.
+/// Parses a finite number; `Err` describes a fault. The range of integers is checked elsewhere.
 pub(super) fn number(word: &str) -> Result<f64, String> {
     let parsed: Option<f64> = word.parse().ok();
     let finite = parsed.filter(|value| value.is_finite());

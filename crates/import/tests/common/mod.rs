@@ -11,7 +11,7 @@ use etendue_world::World;
 use std::fs;
 use std::path::Path;
 
-/// A scene of version 3 with this content, which begins at line 2.
+/// Returns a scene of version 3 with this content, which begins on line 2.
 pub(crate) fn scene(inside: &str) -> String {
     format!("<scene version=\"3.0.0\">\n{inside}\n</scene>")
 }
@@ -58,7 +58,7 @@ pub(crate) fn folder(files: &[(&str, &[u8])]) -> tempfile::TempDir {
     folder
 }
 
-/// Requires numbers to agree within `digits`, the precision of the printed reference.
+/// Asserts that numbers agree within `digits`, the precision of the printed reference.
 pub(crate) fn assert_close(found: &[f64], expected: &[f64], digits: f64) {
     assert_eq!(found.len(), expected.len());
     for (a, b) in found.iter().zip(expected) {

@@ -16,7 +16,7 @@ use etendue_world::World;
 pub(crate) const BASE: &str =
     r#","textures":[{"source":0}],"images":[{"uri":"data:image/png;base64,PICTURE"}]"#;
 
-/// A file with these nodes and other members.
+/// Returns the text of a file with these nodes and other members.
 pub(crate) fn with(nodes: &str, more: &str) -> String {
     format!(r#"{{"asset":{{"version":"2.0"}},"nodes":[{nodes}],{more}}}"#)
 }
@@ -61,7 +61,7 @@ pub(crate) fn mesh(nodes: &str, material: &str, more: &str) -> String {
     )
 }
 
-/// The same as a binary file.
+/// Returns the text of a file, with its embedded buffer, as a binary file.
 pub(crate) fn binary(text: &str) -> Vec<u8> {
     let uri = format!(
         r#","uri":"data:application/octet-stream;base64,{}""#,

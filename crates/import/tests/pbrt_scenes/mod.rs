@@ -10,7 +10,7 @@ use etendue_import::{Color, Imported, Options, import_pbrt};
 use etendue_world::{Light, Material, Shape, World};
 use std::path::Path;
 
-/// A scene with `before` before `WorldBegin` and `inside` after it, in line 3.
+/// Returns a scene with the text `before` ahead of `WorldBegin`, and `inside` after it, on line 3.
 pub(crate) fn scene(before: &str, inside: &str) -> String {
     format!("PixelFilter \"box\" {before}\nWorldBegin\n{inside}\n")
 }
@@ -68,7 +68,7 @@ pub(crate) fn light(inside: &str) -> Light {
     world(inside).lights.remove(0)
 }
 
-/// The material of a sphere; if both sides are equal, one of them.
+/// Returns the material of a sphere or, if it has two equal sides, that of one side.
 pub(crate) fn material(declared: &str) -> Material {
     let mut world = world(&format!("{declared}\nShape \"sphere\""));
     match world.materials.remove(world.shapes[0].material) {
