@@ -3,9 +3,9 @@
 //!
 //! `mpirun -n 32 etendue-mpi run scenes/fig9b.ron --photons 2^36 --threads 4 --resume`
 //!
-//! Rank 0 runs the command as `etendue` does. It also hands out pieces of work to the other ranks
-//! on request, and works on pieces itself. MPI carries bytes and sums nothing, so the result has
-//! the same bytes as that of `etendue run`. The arguments are those of `etendue`; the crate of
+//! Rank 0 runs the command as `etendue` does. Rank 0 also hands out pieces of work to the other
+//! ranks on request, and works on pieces itself. MPI carries bytes and sums nothing, so the result
+//! has the same bytes as that of `etendue run`. The arguments are those of `etendue`; the crate of
 //! `etendue` parses them.
 //!
 //! The crate uses `ferrompi`, because it needs no libclang, its calls return errors instead of

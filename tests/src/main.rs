@@ -3,11 +3,11 @@
 //! `short` takes a few minutes and is run after every change. `suite` runs all scenes without
 //! smooth surfaces and writes `results/suite.md`. `table1` checks the operators of the paper,
 //! `shading` the reflection of light at surfaces, `claims` the statements in the paper's text, and
-//! `main` all results of the main scene. Each of these four writes its part of
-//! `results/validation.md`. `all` writes the whole page, with every row of the paper's Table 1.
-//! `second` compares the code shared by theory and tracers with a second implementation. `hostile`
-//! and `kills` attack the program `etendue` from outside; `wild` searches for scenes on which it is
-//! wrong. `assumptions` disables the checks of a scene that precede a prediction.
+//! `main` all results of the main scene. Each of `table1`, `shading`, `claims` and `main` writes
+//! its part of `results/validation.md`. `all` writes the whole page, with every row of the paper's
+//! Table 1. `second` compares the code shared by theory and tracers with a second implementation.
+//! `hostile` and `kills` attack the program `etendue` from outside; `wild` searches for scenes on
+//! which it is wrong. `assumptions` disables the checks of a scene that precede a prediction.
 
 #![allow(clippy::too_many_lines, reason = "checks are lists of rows")]
 
@@ -165,7 +165,7 @@ enum ValidationCommand {
     All,
 }
 
-/// The seed of every single run. It was fixed in advance, and not chosen by its results.
+/// The seed of every single run. This seed was fixed in advance, and not chosen by its results.
 const SEED: u64 = 1;
 
 #[expect(

@@ -209,7 +209,7 @@ fn row(scene: &Scene, report: &PlaneReport) -> Row {
 /// All planes of a scene, measured and compared.
 ///
 /// # Panics
-/// If the scene has too few batches. A resolved scene always has enough.
+/// If the scene has too few batches. Every resolved scene has enough batches.
 fn reports(scene: &Scene) -> Vec<PlaneReport> {
     let measurement = traced(scene);
     let test = Test::of(scene);

@@ -207,9 +207,9 @@ fn judged(scene: &Scene, number: u64, pulls: &mut Vec<Pull>) -> io::Result<Optio
 }
 
 /// The normal quantile that corresponds to the quantile `t` of Student's distribution with this
-/// number of degrees of freedom. It is accurate to 0.01 for 30 or more (Abramowitz and Stegun 1964,
-/// 26.7.8). Stated errors follow this distribution because they come from the spread of a few dozen
-/// batches.
+/// number of degrees of freedom. The approximation is accurate to 0.01 for 30 or more degrees of
+/// freedom (Abramowitz and Stegun 1964, 26.7.8). Stated errors follow this distribution because
+/// they come from the spread of a few dozen batches.
 fn normal(t: f64, freedom: usize) -> f64 {
     let freedom = freedom as f64;
     t * (1.0 - 0.25 / freedom) / (1.0 + t * t / (2.0 * freedom)).sqrt()

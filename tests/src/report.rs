@@ -45,9 +45,9 @@ impl Check {
         Self::new(id, p.unwrap_or(0.0), bound, "α over all planes")
     }
 
-    /// A check of photons against the exact prediction, judged as in a run. It passes if p does,
-    /// and also if the stated error of the prediction is below the resolution and may explain the
-    /// difference.
+    /// A check of photons against the exact prediction, judged as in a run. The check passes if p
+    /// passes, and also if the stated error of the prediction is below the resolution and may
+    /// explain the difference.
     pub(crate) fn exact(report: &PlaneReport, level: f64) -> Self {
         let check = Self::p(EXACT, report.p_value, level);
         if check.passes() || report.exact_verdict() != Verdict::Pass {

@@ -111,7 +111,7 @@ fn row(line: Line, sections: &[ReportSection]) -> Row {
     Row::new(cells, checks)
 }
 
-/// p against the exact prediction.
+/// The check of p against the exact prediction, if the row has one.
 fn exact(row: &Row) -> Option<f64> {
     let check = row.checks.iter().find(|check| check.id == EXACT);
     check.map(|check| check.figure)

@@ -117,8 +117,8 @@ fn outcome<'a>(outcomes: &'a [SuiteRun], name: &str) -> Option<&'a SuiteRun> {
     outcomes.iter().find(|o| o.scene.name == name)
 }
 
-/// Two occluders that together block all light, but each alone blocks little (Durand et al. 2005,
-/// Fig. 7).
+/// Checks two occluders that together block all light, but of which each alone blocks little
+/// (Durand et al. 2005, Fig. 7).
 fn occluders(outcomes: &[SuiteRun]) -> ReportSection {
     let mut rows = Vec::new();
     let at = |name: &str| {

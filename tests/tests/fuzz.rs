@@ -141,8 +141,8 @@ fn tried(index: u64) -> [bool; 2] {
     [true, is_run]
 }
 
-/// There are few photons, frequencies and blockers, because the test is about values of fields and
-/// not about the number of items.
+/// Photons, frequencies and blockers are few, because the test is about values of fields and not
+/// about the number of items.
 fn make_small(scene: &mut Scene) {
     scene.run.photons = 200;
     scene.run.batches = 32;

@@ -23,8 +23,8 @@ fn attack(arguments: &[&str]) {
     assert_eq!(output.status.code(), Some(0), "{report}\n{message}");
 }
 
-/// Returns the path of `etendue` in the folder of the validation. It belongs to another package,
-/// which is not built if only this package is tested.
+/// Returns the path of `etendue` in the folder of the validation. The program belongs to another
+/// package, which is not built if only this package is tested.
 fn program() -> PathBuf {
     let path = Path::new(VALIDATION).with_file_name("etendue");
     let built = fs::metadata(&path).and_then(|file| file.modified());

@@ -24,7 +24,7 @@ use std::time::Instant;
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/wild");
 
-/// A scene of the folder, with parts of its text replaced.
+/// Returns a scene of `scenes/wild`, with parts of its text replaced.
 fn edited(name: &str, edits: &[(&str, &str)]) -> Scene {
     let mut text = std::fs::read_to_string(format!("{FOLDER}/{name}.ron")).unwrap();
     for (from, to) in edits {
@@ -35,7 +35,7 @@ fn edited(name: &str, edits: &[(&str, &str)]) -> Scene {
     resolve(name, file, FOLDER.as_ref(), u64::MAX).unwrap()
 }
 
-/// A scene of the folder.
+/// Returns a scene of `scenes/wild`.
 fn scene(name: &str) -> Scene {
     edited(name, &[])
 }
@@ -368,7 +368,8 @@ fn decided_by_reference(
     assert_eq!(wrong.verdict, Verdict::Fail);
 }
 
-/// Two half-planes without a gap are reported as the cause of a dark plane; two with a gap are not.
+/// Two half-planes are reported as the cause of a dark plane if there is no gap between them, but
+/// not if there is one.
 #[test]
 fn darkness_behind_two_occluders_is_decided() {
     let scene = scene("projector_two_occluders");
@@ -481,7 +482,7 @@ fn meshes_unlike_their_patches_are_decided() {
     }
 }
 
-/// Scenes in which only few rays of the window meet the blockers, or a mesh that light visits
+/// In these scenes only few rays of the window meet the blockers, or a mesh that light visits
 /// later.
 #[test]
 #[ignore = "long: half a minute; .ci/long runs it"]

@@ -53,8 +53,8 @@ pub(crate) fn blue_noise(
         .collect()
 }
 
-/// Random points drawn from the density. They are drawn independently. Stratified points would be
-/// less crowded in dense regions, so elimination would leave too many there.
+/// Random points drawn from the density. The points are drawn independently, because stratified
+/// points would be less crowded in dense regions, and elimination would leave too many there.
 fn candidates(
     metrics: &[Option<Metric>],
     wide: usize,

@@ -1,14 +1,15 @@
 //! The bandwidth of light across the picture, by the criteria of Durand et al. 2005, Eqs. 20 and
 //! 21, corrected.
 //!
-//! A lobe reflects light about its axis, up to its cutoff Ω_ρ. From one pixel to the next, the axis
-//! r turns by ∂r and the point on the surface moves by ∂p. An object at a distance d' then moves
-//! relative to the axis by the component of ∂p across r, divided by d'. So the bandwidth along a
-//! direction of the picture is Ω_ρ |∂r + ∂p/d'| cycles per pixel. In the plane of incidence of a
-//! sphere this is Ω_ρ |1 + d (cos θ₀/d' + 2k)/cos θ₁| times the angle of a pixel: Eq. 21 with its
-//! missing factors. Without the term in d' it is Eq. 20. Finite differences on the screen include
-//! the angle of view, the distance and both curvatures, as the paper states. The equations as
-//! printed use the larger curvature alone, and are isotropic.
+//! A lobe reflects light about its axis, up to its cutoff Ω_ρ. From one pixel to the next, the
+//! axis r turns by ∂r and the point on the surface moves by ∂p. An object at a distance d' then
+//! moves relative to the axis by the component of ∂p across r, divided by d'. Hence the bandwidth
+//! along a direction of the picture is Ω_ρ |∂r + ∂p/d'| cycles per pixel. In the plane of
+//! incidence of a sphere this is Ω_ρ |1 + d (cos θ₀/d' + 2k)/cos θ₁| times the angle of a pixel:
+//! Eq. 21 with its missing factors. Without the term in d' this bandwidth is that of Eq. 20.
+//! Finite differences on the screen include the angle of view, the distance and both curvatures,
+//! as the paper states. The equations as printed use the larger curvature alone, and are
+//! isotropic.
 
 use crate::metric::Metric;
 use crate::visible::{OFFSETS, SeenPlace, SeenSurface, Visible};
@@ -116,7 +117,7 @@ struct PixelStep {
 }
 
 /// Returns the steps to the right and down: the slopes of the plane fitted to the points of a
-/// pixel. Both steps are zero unless all points are on this shape.
+/// pixel. The steps are zero unless all points are on this shape.
 fn steps(places: &[SeenPlace], shape: usize) -> [PixelStep; 2] {
     let mut steps = [PixelStep::default(); 2];
     for (place, offset) in places.iter().zip(OFFSETS) {

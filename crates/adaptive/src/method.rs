@@ -26,8 +26,8 @@ pub enum SampleMethod {
     /// evaluated at the other half.
     Weighted,
     /// The default: the first samples evenly, then half of the rest by the criteria and half by
-    /// the errors that the first samples reveal. These errors also decide, object by object, how
-    /// many samples the criteria are worth.
+    /// the errors that the first samples reveal. The errors of the first samples also decide,
+    /// object by object, how many samples the criteria are worth.
     Auto,
     /// By the measured light alone: the standard deviation of a first quarter of the samples, which
     /// are distributed uniformly.
@@ -108,8 +108,9 @@ pub struct Rendered {
 const FIRST_SHARE: f64 = 0.25;
 
 /// The squared error of a plane through samples is proportional to the fourth power of their
-/// distance, and so to 1/n² for a density n of samples. Its sum over the picture is minimal for a
-/// fixed number of samples if n ∝ (c² B⁴)^(1/3), with the contrast c and the bandwidth B.
+/// distance, and so to 1/n² for a density n of samples. For a fixed number of samples, the sum of
+/// this error over the picture is minimal if n ∝ (c² B⁴)^(1/3), with the contrast c and the
+/// bandwidth B.
 pub(crate) const POWER: f64 = 2.0 / 3.0;
 
 /// Renders a picture; `stage` receives the next stage and its number of steps, `progress` the

@@ -1,6 +1,7 @@
 //! Reconstruction between samples. At each point a plane is fitted to the samples around it,
-//! weighted by similarity in shape, normal and position. This is a bilateral filter (Tomasi and
-//! Manduchi 1998), whose width follows the samples' metric, as in Durand et al. 2005, section 6.2.
+//! weighted by similarity in shape, normal and position. The weights are those of a bilateral
+//! filter (Tomasi and Manduchi 1998), whose width follows the samples' metric, as in Durand et al.
+//! 2005, section 6.2.
 
 use crate::blue_noise::PixelPosition;
 use crate::criterion::shaded;
@@ -36,8 +37,8 @@ const WIDTH: f64 = 0.5;
 /// others for later rounds at points that no sample has reached.
 const REACHES: [f64; 3] = [3.0, 9.0, 27.0];
 
-/// Standard deviation of the filter over normals. It separates faces that meet at a right angle,
-/// but not neighbouring samples on a curved surface.
+/// Standard deviation of the filter over normals. This value separates faces that meet at a right
+/// angle, but not neighbouring samples on a curved surface.
 const NORMALS: f64 = 0.35;
 
 /// Standard deviation of the filter over the elevation angle of a sample above the surface at a

@@ -12,7 +12,8 @@
 //!   Metallic 1 is a metal that reflects its base colour at all angles. Values between 0 and 1 are
 //!   a mixture of both. A material with metallic 0 and without specular reflection
 //!   (`specularFactor` 0, or index 1) is Lambertian.
-//! - Pictures of colours are sRGB, of other quantities linear. Their first row is at v = 0, as in a world.
+//! - Pictures of colours are sRGB, of other quantities linear. The first row of a picture is at v
+//!   = 0, as in a world.
 //!
 //! Limits: 2²⁰ shapes, 2²⁰ lights, and the byte limit of an import.
 

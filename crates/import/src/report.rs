@@ -5,8 +5,8 @@ use etendue_world::World;
 use std::cell::RefCell;
 use std::rc::Rc;
 
-/// Maximum number of causes that are kept, and of notes. It is needed because each element of a
-/// file could give one.
+/// Maximum number of causes that are kept, and of notes. The limit is needed because each element
+/// of a file could give a message.
 const MAX_MESSAGES: usize = 100;
 
 /// Maximum number of bytes of a value in a message.

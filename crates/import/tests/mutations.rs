@@ -108,7 +108,7 @@ fn damage(files: &[(&str, &[u8])], rounds: usize) {
         }
         fs::write(folder.path().join(name), sound).unwrap();
     }
-    // Both outcomes occur, so both are tested.
+    // Some damaged scenes are imported and others are refused, so both outcomes are tested.
     let few = rounds / 15;
     assert!(
         read > few && refused > few,

@@ -40,7 +40,7 @@ fn transforms_stand_before_those_they_are_applied_after() {
         &[0.0, 2.0, 0.0],
         1e-15,
     );
-    // The matrix is given by columns: X goes to Y.
+    // The matrix is given by columns, and takes X to Y.
     let matrix = "[0 1 0 0  -1 0 0 0  0 0 1 0  4 5 6 1]";
     assert_close(&at(&format!("Transform {matrix}")), &[4.0, 6.0, 6.0], 0.0);
     assert_close(
@@ -91,7 +91,7 @@ fn fronts_are_where_normals_point() {
             outward,
             "{plugin}"
         );
-        // pbrt flips normals after a mirror. A mirror also reverses the order of the corners of a
+        // In pbrt a mirror flips normals. A mirror also reverses the order of the corners of a
         // mesh, so normals of meshes are flipped twice.
         let is_mesh = plugin.contains("mesh");
         let mirrored = if is_mesh { outward } else { -outward };

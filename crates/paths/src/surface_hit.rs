@@ -1,5 +1,5 @@
 //! Surface points that a camera sees: their light, and the distances of what they reflect.
-//! Renderers with adaptive sampling use them.
+//! Renderers with adaptive sampling use these points.
 
 use crate::numbers::{JOINT, PathNumbers};
 use crate::paths::Paths;
@@ -23,12 +23,12 @@ pub struct View {
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceHit {
     hit: Hit,
-    /// The ray that sees it.
+    /// The ray that sees the point.
     ray: Ray,
 }
 
 impl SurfaceHit {
-    /// The index of its shape.
+    /// The index of the shape of the surface.
     #[must_use]
     pub fn shape(&self) -> usize {
         self.hit.shape
@@ -73,9 +73,8 @@ impl SurfaceHit {
 /// The nearness of a point to its blockers and reflected surroundings.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Nearness {
-    /// The mean of 1/distance over what the material reflects, per metre; distant light
-    /// counts as 0. Its inverse is the harmonic mean of Durand et al. 2005, section
-    /// 6.2.
+    /// The mean of 1/distance over what the material reflects, per metre; distant light counts as
+    /// 0. The inverse of this mean is the harmonic mean of Durand et al. 2005, section 6.2.
     pub reflected: f64,
     /// The highest frequency of penumbrae, in cycles per metre perpendicular to the light: the
     /// inverse of the width of the penumbra, where light is partly blocked.

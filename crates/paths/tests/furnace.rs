@@ -85,7 +85,7 @@ fn mask(of: Material) -> Material {
 /// The medium behind a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Behind {
-    /// The same medium as in front.
+    /// The medium behind the surface is that in front of it.
     Same,
     /// A medium of this index, in which radiance is larger by the square of the index.
     Medium(f64),

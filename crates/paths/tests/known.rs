@@ -191,7 +191,8 @@ fn surfaces_shine_by_their_area() {
         DVec3::ZERO,
         0.5 * 6.0 * 0.25 / 4.0,
     );
-    // The same square is given as a rectangle and as two triangles; it emits only on its front.
+    // A square is given once as a rectangle and once as two triangles, and emits only on its
+    // front.
     let square = Triangles::new(
         vec![
             DVec3::new(-1.0, -1.0, 0.0),

@@ -2,7 +2,8 @@
 
 use etendue_store::Failure;
 
-/// Refuses a picture with a pixel that is not finite in 32 bits. Nothing is written in this case.
+/// Refuses a picture with a pixel that is not finite in 32 bits. If there is such a pixel, nothing
+/// is written.
 pub(crate) fn require_finite([w, _]: [usize; 2], radiance: &[f64]) -> Result<(), Failure> {
     #[expect(clippy::cast_possible_truncation, reason = "EXR files hold 32 bits")]
     let is_lost = |value: &f64| !(*value as f32).is_finite();

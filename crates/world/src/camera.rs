@@ -38,9 +38,9 @@ pub enum Projection {
 /// A thin lens in the plane z = 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Lens {
-    /// Radius of its disc.
+    /// Radius of the lens.
     pub radius: f64,
-    /// z of the plane of focus.
+    /// The z coordinate of the plane of focus.
     pub focus: f64,
 }
 

@@ -26,17 +26,17 @@ pub struct Shape {
 /// The geometry of a surface, with its front and its texture coordinates (u, v).
 #[derive(Clone, Debug)]
 pub enum Geometry {
-    /// The square z = 0 with x and y from −1 to 1. Its front is towards Z, and (u, v) = ((x +
-    /// 1)/2, (y + 1)/2).
+    /// The square z = 0 with x and y from −1 to 1. The square's front is towards Z, and (u, v) =
+    /// ((x + 1)/2, (y + 1)/2).
     Rectangle,
-    /// The disc z = 0, x² + y² ≤ 1. Its front is towards Z. u is the radius, and v is the azimuth
-    /// from X to Y, divided by 2π.
+    /// The disc z = 0, x² + y² ≤ 1. The disc's front is towards Z, u is the radius, and v is the
+    /// azimuth from X to Y, divided by 2π.
     Disc,
-    /// The sphere x² + y² + z² = 1. Its front is the outside. u is the azimuth from X to Y,
-    /// divided by 2π, and v is the angle to Z, divided by π.
+    /// The sphere x² + y² + z² = 1. The sphere's front is the outside, u is the azimuth from X to
+    /// Y, divided by 2π, and v is the angle to Z, divided by π.
     Sphere,
-    /// The cylinder x² + y² = 1 with z from 0 to 1, open at both ends. Its front is the outside. u
-    /// is the azimuth from X to Y, divided by 2π, and v is z.
+    /// The cylinder x² + y² = 1 with z from 0 to 1, open at both ends. The cylinder's front is the
+    /// outside, u is the azimuth from X to Y, divided by 2π, and v is z.
     Cylinder,
     /// A mesh of triangles, which several shapes may share.
     Mesh(Arc<Triangles>),

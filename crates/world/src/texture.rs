@@ -29,7 +29,7 @@ pub struct Bitmap {
     pub to_uv: DAffine2,
     /// Its pixels.
     pub pixels: Arc<Raster>,
-    /// The values beyond its edges.
+    /// The values of the picture beyond its edges.
     pub wrap: Wrap,
     /// The interpolation between pixel centres.
     pub filter: Filter,

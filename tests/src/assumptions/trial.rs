@@ -18,8 +18,8 @@ pub(super) struct Trial {
     pub(super) plane: String,
     /// The violated assumptions, each once.
     pub(super) broken: BTreeSet<&'static str>,
-    /// The outcome of the unchecked prediction. It is `None` if more than one assumption is
-    /// violated, because the outcome would be inconclusive.
+    /// The outcome of the unchecked prediction. A plane that violates more than one assumption has
+    /// `None`, because its outcome would be inconclusive.
     pub(super) ending: Option<TrialEnding>,
 }
 

@@ -1,4 +1,4 @@
-//! Statements in the paper's text, measured with photons. Each statement has a row.
+//! Statements in the paper's text, measured with photons. The table has a row for each statement.
 
 mod blockers;
 mod criteria;

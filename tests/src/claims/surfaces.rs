@@ -271,7 +271,7 @@ fn cosine(photons: u64) -> Claim {
             slices[0].relative_difference(&slices[1])
         })
     });
-    // Both spectra are from photons of one scene, with different weights, and their difference has
+    // The two spectra are from the same photons with different weights, and their difference has
     // no prediction.
     let numbers: Vec<ClaimNumber> = apart
         .iter()

@@ -205,7 +205,7 @@ fn faults(ended: &Ended) -> Vec<HostileFault> {
     .collect()
 }
 
-/// Returns the names of files that the command must not change but did. It may change only
+/// Returns the names of files that the command must not change but did. A command may change only
 /// results, and only if it makes results and accepts the input.
 fn wrote(
     attack: &Attack,

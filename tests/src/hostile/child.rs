@@ -31,7 +31,7 @@ pub(crate) struct Ended {
     /// The exit code; `None` if a signal ended it.
     pub(crate) code: Option<i32>,
     pub(crate) signal: Option<i32>,
-    /// Whether it was killed because it took too long.
+    /// Whether the child was killed because it took too long.
     pub(crate) hung: bool,
     pub(crate) seconds: f64,
     /// The peak memory observed, bytes.
@@ -71,7 +71,7 @@ pub(crate) fn call(
     call_within(limit, program, folder, arguments, scratch)
 }
 
-/// Like [`call`], with another time limit.
+/// Runs a child as [`call`] does, but with this time limit.
 pub(crate) fn call_within(
     limit: Limit,
     program: &Path,

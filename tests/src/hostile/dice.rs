@@ -1,5 +1,5 @@
-//! Random choices of one case. Each is a function of the seed, the case and the number of previous
-//! choices.
+//! Random choices of one case. Each choice is a function of the seed, the case and the number of
+//! previous choices.
 
 use etendue_transform::random::{self, Stream};
 

@@ -91,7 +91,7 @@ fn printed(tree: &Value, seal: bool) -> String {
     }
 }
 
-/// Changes a value somewhere below this one.
+/// Changes a random value in the tree below this one.
 fn change(value: &mut Value, dice: &mut Dice) {
     let here = dice.one_in(8);
     match value {

@@ -26,15 +26,15 @@ pub(crate) const SMALL: &str = r#"(
     run: (photons: 2000, seed: 1, batches: 32),
 )"#;
 
-/// The same scene with a mesh from a file. For this scene another tracer replaces theory, and the
-/// folders of its stages contain copies of the mesh.
+/// Returns the text of a second scene, which has a mesh from a file besides. For this scene
+/// another tracer replaces theory, and the folders of its stages contain copies of the mesh.
 pub(crate) fn with_mesh() -> String {
     let mesh = r#"blockers: [Mesh(name: "tetra", center: (0.1, 0.2, 1), 
         mesh: File("meshes/tetra.obj"), scale: 0.1), "#;
     SMALL.replace("blockers: [", mesh)
 }
 
-/// The mesh of that scene.
+/// The OBJ file of the scene with a mesh.
 pub(crate) const TETRA: &str =
     "v 1 1 1\nv -1 -1 1\nv -1 1 -1\nv 1 -1 -1\nf 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n";
 

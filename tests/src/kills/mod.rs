@@ -1,5 +1,5 @@
-//! Kills at random moments, two writers at once, and full disks. Each must leave a complete result
-//! or no result.
+//! Kills at random moments, two writers at once, and full disks. Every disturbance must leave a
+//! complete result or no result.
 
 mod check;
 mod disk;

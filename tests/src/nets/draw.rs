@@ -79,7 +79,7 @@ pub(super) struct SceneDice {
     next: u32,
 }
 
-/// The seed of all scenes. It was fixed in advance, and not chosen by its results.
+/// The seed of all scenes. This seed was fixed in advance, and not chosen by its results.
 const SEED: u64 = 1;
 
 impl SceneDice {

@@ -137,8 +137,8 @@ fn row(name: &str, of_group: &[&Measured], scale: f64) -> Row {
     row
 }
 
-/// The standard error of a mean square over scenes. It is estimated from the scatter over pairs of
-/// nets, because all scenes use the same nets.
+/// The standard error of a mean square over scenes. This error is estimated from the scatter over
+/// pairs of nets, because all scenes use the same nets.
 fn common(of_group: &[&Measured], scale: f64) -> f64 {
     let count = of_group[0].pairs.len();
     let squares = (0..count).map(|pair| {

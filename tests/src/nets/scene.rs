@@ -32,7 +32,7 @@ pub(super) struct Measured {
     /// The squared ratios for the means of adjacent pairs of nets; the error of such a mean is
     /// four times that of the mean of all nets.
     pub(super) pairs: Vec<f64>,
-    /// (F − truth)/(standard error) at zero frequency.
+    /// The deviation at zero frequency: (F − truth)/(standard error).
     pub(super) zero: f64,
     /// The deviations at other frequencies: Hotelling's T of real and imaginary part, divided by
     /// √2.

@@ -131,9 +131,9 @@ fn ggx(roughness: f64, facet: Vector, fault: &str) -> f64 {
 }
 
 /// Smith's Λ (Smith 1967; Heitz 2014, *Understanding the masking-shadowing function*): ∫ (s − μ)
-/// p(s) ds / μ over s > μ. Here s is the slope of a microfacet along a direction, and μ is the
-/// cotangent of the angle of that direction. For Beckmann's distribution, p = exp(−s²/α²)/(α√π),
-/// and the integral is over w = s/α.
+/// p(s) ds / μ over s > μ. In Smith's Λ, s is the slope of a microfacet along a direction, and μ
+/// is the cotangent of the angle between this direction and the normal. For Beckmann's
+/// distribution, p = exp(−s²/α²)/(α√π), and the integral is over w = s/α.
 fn masked_beckmann(roughness: f64, angle: f64) -> f64 {
     let from = 1.0 / (angle.tan() * roughness);
     if from > 6.0 {

@@ -1,5 +1,5 @@
 //! Theory's affine maps at surfaces, compared with differences of rays traced by the second
-//! implementation. Only theory uses the maps, but they depend on conventions that the tracers
+//! implementation. The maps are used only by theory, but depend on conventions that the tracers
 //! share.
 
 use super::check::{SecondCheck, worse};

@@ -154,8 +154,9 @@ impl Hill {
         hit.map_or(1.0, |hit| distance(hit.normal.to_array(), normal))
     }
 
-    /// The curvature of the normal section along (dx, dy, p dx + q dy): the second fundamental form
-    /// divided by the first (do Carmo 1976, section 3.3). It is positive if the surface is convex.
+    /// The curvature of the normal section along (dx, dy, p dx + q dy): the second fundamental
+    /// form divided by the first (do Carmo 1976, section 3.3). The curvature is positive if the
+    /// surface is convex.
     fn along(&self, [dx, dy]: [f64; 2]) -> (Vector, f64) {
         let [p, q] = self.slopes();
         let [k, l] = self.curvature;

@@ -1,8 +1,8 @@
 //! A second implementation of the code that theory and both tracers share, and of the BRDFs that
 //! theory and the tracers implement separately.
 //!
-//! A comparison of photons with theory cannot reveal a mistake in code that both use. So every
-//! shared function is implemented again here, in a slow and plain way, from its documentation:
+//! A comparison of photons with theory cannot reveal a mistake in code that both use. So this
+//! module implements every shared function again, in a slow and plain way, from its documentation:
 //! docs/scenes.md, docs/conventions.md, docs/theory.md, and the cited literature. The second
 //! implementation never calls the fast code, and shares only the plain data that describes a
 //! scene. If a function depends on how a scene file is read, a file is written and read. Faults
@@ -31,7 +31,7 @@ use check::SecondCheck;
 use std::io;
 use std::rc::Rc;
 
-/// The seed of all points. It was fixed in advance, and not chosen by its results.
+/// The seed of all points. This seed was fixed in advance, and not chosen by its results.
 const SEED: u64 = 1;
 
 /// Compares every shared function with its second implementation.

@@ -68,8 +68,8 @@ impl Levels {
         self.values[row * self.width + column]
     }
 
-    /// A picture around the vertex, with its top along Y. It is bilinear between pixel centres,
-    /// constant beyond the outermost centres, and 0 beyond its edge.
+    /// A picture around the vertex, with its top along Y. The picture is bilinear between pixel
+    /// centres, constant beyond the outermost centres, and 0 beyond its edge.
     fn picture(&self, [width, height]: [f64; 2], [s, t]: [f64; 2], fault: &str) -> f64 {
         if s.abs() > width / 2.0 || t.abs() > height / 2.0 {
             return 0.0;

@@ -82,7 +82,7 @@ fn place(dice: &mut Dice) -> [f64; 2] {
     [between(dice, -0.7, 0.7), between(dice, -0.7, 0.7)]
 }
 
-/// The same pattern in the fast implementation.
+/// Converts a pattern to the type of the fast implementation.
 fn fast(pattern: &Pattern) -> field::Pattern {
     match pattern {
         Pattern::Cosine(grating) => field::Pattern::Cosine(*grating),

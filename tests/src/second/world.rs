@@ -23,7 +23,7 @@ pub(super) struct World {
 }
 
 impl World {
-    /// A point light without occluders.
+    /// Creates a scene with a point light and without occluders.
     pub(super) fn new(dice: &mut Dice) -> Self {
         let origin = direction(dice);
         let d = direction(dice);

@@ -21,8 +21,8 @@ pub(super) struct Sphere<'a> {
 impl Sphere<'_> {
     /// The windowed spectrum at the scene's plane on the sphere, in local normals.
     ///
-    /// `turn` is −1 if (θ, φ) are the angles of the direction from which light comes, rotated about
-    /// the normal. It is +1 if they are not rotated.
+    /// `turn` is −1 if (θ, φ) are the angles of the direction from which light comes, rotated
+    /// about the normal. `turn` is +1 if these angles are not rotated.
     pub(super) fn slices(&self, turn: f64) -> Slices {
         let plane = &self.scene.planes[0];
         let w = &plane.window;

@@ -97,7 +97,7 @@ fn said(view: &Observed<ScatteringSystem>, plane: &VirtualPlane) -> Slices {
 /// The BRDF of a scene, for modification.
 ///
 /// # Panics
-/// If the scene has none.
+/// If the scene has no BRDF.
 pub(super) fn reflectance(scene: &mut Scene) -> &mut etendue_field::Reflectance {
     match &mut scene.patches[0].event {
         Event::Reflects(reflectance) => reflectance,

@@ -144,8 +144,8 @@ fn combined() -> Vec<Statement> {
 fn complementary() -> f64 {
     let [a, b] = [[0.0, 0.5], [0.5, 1.0]].map(|half| coefficients(&vec![half], SUMMED));
     let middle = a.len() / 2;
-    // The product is Σ c_m d_(n−m), and the size is the sum of magnitudes. Both include the tail
-    // of 1/m², whose terms are negative in the product for n = 0.
+    // The product is Σ c_m d_(n−m), and the size is the sum of magnitudes. Product and size
+    // include the tail of 1/m², whose terms are negative in the product for n = 0.
     let product: Complex = (0..a.len()).map(|m| a[m] * b[2 * middle - m]).sum();
     let size: f64 = (0..a.len())
         .map(|m| a[m].norm() * b[2 * middle - m].norm())

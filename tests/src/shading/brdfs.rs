@@ -35,7 +35,7 @@ pub(super) fn reflection(terms: Vec<SeparableTerm<'_>>) -> PlanarReflection<'_> 
     }
 }
 
-/// The same surface in the primal domain, with a clamped cosine.
+/// Returns the surface of [`reflection`] in the primal domain, with a clamped cosine.
 pub(super) fn surface<'a>(lobe: Option<&'a dyn Fn(f64, f64) -> f64>) -> PrimalSurface<'a> {
     PrimalSurface {
         theta0: THETA0,

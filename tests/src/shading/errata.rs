@@ -19,8 +19,8 @@ use etendue_theory::shading::{
 };
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Maximum error of corrected formulas. Both sides are quadratures accurate to 10⁻¹², or are traced
-/// with six digits.
+/// Maximum error of corrected formulas. The two sides of a comparison are quadratures accurate to
+/// 10⁻¹², or are traced with six digits.
 const QUADRATURE: f64 = 1e-9;
 const TRACED: f64 = 1e-6;
 /// Minimum error of a misprint whose error is not known in advance. This minimum is far above

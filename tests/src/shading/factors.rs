@@ -41,7 +41,7 @@ fn plain(end: f64, inner: f64, f: &dyn Fn(f64) -> f64) -> Vec<Complex> {
     line().into_iter().map(panels).collect()
 }
 
-/// Rows without a surface.
+/// Returns the comparisons that involve no surface.
 pub(super) fn all() -> Vec<OperatorComparison> {
     let mut rows = cosines();
     rows.extend(fresnel());
@@ -310,8 +310,8 @@ fn environments() -> Vec<OperatorComparison> {
         let omegas: Vec<[f64; 2]> = (0..12)
             .map(|i| [0.05 * f64::from(i) - 0.2, 0.3 * f64::from(i % 5) - 0.5])
             .collect();
-        // The field is dE'_r(s, θ_r') = env(k s − θ_r') cos θ_r'. Its width over s is that of the
-        // Gaussians divided by |k|.
+        // The field is dE'_r(s, θ_r') = env(k s − θ_r') cos θ_r'. The width of the field over s is
+        // that of the Gaussians divided by |k|.
         let primal = |[x, t]: [f64; 2]| -> Complex {
             let mirrored = between([-FRAC_PI_2, FRAC_PI_2], 60).into_iter();
             mirrored

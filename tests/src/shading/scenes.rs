@@ -27,7 +27,7 @@ const SCENES: &[(&str, &str)] = &[
     scene!("fresnel_aluminium", "table1/fresnel_aluminium"),
     scene!("fresnel_diamond", "table1/fresnel_diamond"),
     scene!("semi_convolution", "table1/semi_convolution"),
-    // This scene is used for a misprint about mirrors; it is listed in Table 1.
+    // A misprint about mirrors is tested with this scene, which is among the scenes of Table 1.
     scene!("concave_oblique", "table1/concave_oblique"),
 ];
 

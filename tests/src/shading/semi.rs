@@ -92,8 +92,8 @@ impl Sides {
     }
 
     /// Returns ‖operator(before) − after‖ without its part from noise, and the noise, both
-    /// relative to ‖after‖. Both are for the slice along x, over all frequencies whose shifts stay
-    /// within the grid.
+    /// relative to ‖after‖. The two numbers are for the slice along x, over all frequencies whose
+    /// shifts stay within the grid.
     fn apart(&self, reflectance: &Reflectance, axes: [[f64; 2]; 2]) -> [f64; 2] {
         let grid = &self.after.grid;
         let (before, after) = (self.before.full(), self.after.full());

@@ -23,7 +23,7 @@ pub(crate) fn in_common(a: &Strips, b: &Strips) -> Strips {
     both.filter(|[low, high]| high > low).collect()
 }
 
-/// Fourier coefficients −N … N.
+/// Returns the Fourier coefficients from −N to N.
 pub(crate) fn coefficients(open: &Strips, most: usize) -> Vec<Complex> {
     (0..=2 * most)
         .map(|i| {

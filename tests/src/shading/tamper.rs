@@ -39,8 +39,8 @@ pub(super) fn textured_here(scene: &Scene, crossing: Crossing) -> Crossing {
     scaled(crossing, factor)
 }
 
-/// Rotates the leaving light so that the mirror direction becomes the normal. This preserves solid
-/// angles, but not areas in (θ, φ).
+/// Rotates the leaving light so that the mirror direction becomes the normal. The rotation
+/// preserves solid angles, but not areas in (θ, φ).
 pub(super) fn around_the_normal(scene: &Scene, mut crossing: Crossing) -> Crossing {
     let [away, from] = on_flat(scene, &crossing);
     let mirrored = DVec3::new(-from.x, -from.y, from.z);

@@ -113,8 +113,8 @@ fn all() -> Vec<(&'static str, &'static str, StepMisprint)> {
     ]
 }
 
-/// A row for each misprint alone. All of them are tested on a hollow sphere, and those that concern
-/// a plane mirror also on a plane mirror.
+/// Returns a row for each single misprint. All misprints are tested on a hollow sphere, and those
+/// that concern plane mirrors also on a plane mirror.
 fn rows(outcome: &TableRun) -> Vec<Row> {
     let bench = MirrorBench::new(outcome);
     let mut rows = Vec::new();

@@ -56,7 +56,7 @@ impl TableRun {
     }
 }
 
-/// All sections, with the photons of the files or with `photons` for each scene.
+/// Returns all sections, with the photons of the files or with `photons` for each scene.
 pub(crate) fn table1(photons: Option<u64>) -> Vec<ReportSection> {
     let all: Vec<Scene> = scenes::all(photons);
     let planes = all.iter().map(|scene| scene.planes.len()).sum();

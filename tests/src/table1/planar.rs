@@ -150,8 +150,8 @@ impl MirrorPath {
         }
     }
 
-    /// The order known in advance. It is 1 at oblique incidence. It is 2 at normal incidence, and
-    /// also if the only approximation is that of tangents by angles.
+    /// The order known in advance. The order is 1 at oblique incidence. The order is 2 at normal
+    /// incidence, and also if the only approximation is that of tangents by angles.
     fn known(&self, stage: PathStage) -> f64 {
         let flat_mirror = self.k == 0.0 && self.media.is_none();
         match stage {

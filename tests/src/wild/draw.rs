@@ -18,7 +18,7 @@ pub(super) struct SceneDraw {
     pub(super) frame: Frame,
     /// The folder for pictures and meshes of the scene.
     pub(super) folder: PathBuf,
-    /// The number of these files.
+    /// The number of picture and mesh files written so far.
     pub(super) inputs: usize,
 }
 

@@ -15,7 +15,7 @@ pub(super) enum SceneTrouble {
     Panic,
     Hang,
     Killed,
-    /// This plane fails, with photons or with backward rays, and again with other seeds.
+    /// The named plane fails, with photons or with backward rays, and again with other seeds.
     Wrong {
         plane: String,
         backward: bool,

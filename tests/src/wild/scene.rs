@@ -16,7 +16,8 @@ use std::path::Path;
 /// Maximum number of attempts to place a surface on the central ray.
 const TRIES: usize = 8;
 
-/// The scene with an index, for a seed. Its pictures and meshes are written to the folder.
+/// The scene with an index, for a seed. The pictures and meshes of the scene are written to the
+/// folder.
 pub(crate) fn scene(seed: u64, index: u64, photons: u64, folder: &Path) -> io::Result<SceneFile> {
     let mut draw = SceneDraw::new(seed, index, folder);
     let mut file = empty(&mut draw, photons)?;

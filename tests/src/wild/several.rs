@@ -32,7 +32,7 @@ struct Tried {
     seconds: f64,
 }
 
-/// Plants faults, or tests all scenes.
+/// Plants faults if this is requested, else tests all scenes.
 pub(crate) fn several(options: &SmallOptions) -> io::Result<ReportSection> {
     if options.planted {
         return Ok(planted());

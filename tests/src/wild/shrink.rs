@@ -71,7 +71,8 @@ pub(super) fn shrink(
     serde_json::from_value(best).map_err(io::Error::other)
 }
 
-/// All scenes that are one step smaller, those with the largest removals first.
+/// Returns all scenes that are one step smaller, of which those with the largest removals come
+/// first.
 fn candidates(tree: &Value) -> Vec<Value> {
     let mut found = Vec::new();
     let places = places(tree, String::new());

@@ -1,4 +1,4 @@
-//! The integrator, which sets the path depth.
+//! The integrator of a scene, which limits the depth of paths.
 
 use super::object::{MitsubaObject, ObjectKind};
 use super::reader::MitsubaReader;

@@ -186,7 +186,7 @@ impl<'a> MitsubaReader<'a> {
 }
 
 fn bits(linear: DMat3) -> [u64; 9] {
-    // Turns −0 into 0.
+    // The sum with 0 turns −0 into 0.
     linear.to_cols_array().map(|v| (v + 0.0).to_bits())
 }
 

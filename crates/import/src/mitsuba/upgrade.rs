@@ -3,7 +3,7 @@
 use super::object::{MitsubaObject, ObjectProperty, Value};
 use glam::{DAffine3, DVec3};
 
-/// Converts names: `toWorld` → `to_world`, `intIOR` → `int_ior`.
+/// Converts names: Converts names such as `toWorld` to `to_world`, and `intIOR` to `int_ior`.
 pub(super) fn underscored(name: &str) -> String {
     let mut made = String::with_capacity(name.len() + 4);
     let mut before: Option<char> = None;

@@ -15,7 +15,7 @@ pub(super) fn number(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Numbers separated by commas and white space.
+/// Parses numbers that are separated by commas and white space.
 pub(super) fn numbers(text: &str) -> Result<Vec<f64>, String> {
     words(text).map(number).collect()
 }
@@ -38,7 +38,7 @@ pub(super) fn truth(text: &str) -> Result<bool, String> {
     }
 }
 
-/// Three numbers.
+/// Parses three numbers.
 pub(super) fn vector(text: &str) -> Result<DVec3, String> {
     match numbers(text)?[..] {
         [x, y, z] => Ok(DVec3::new(x, y, z)),
@@ -46,7 +46,7 @@ pub(super) fn vector(text: &str) -> Result<DVec3, String> {
     }
 }
 
-/// Three numbers, or one used for all three.
+/// Parses three numbers, or one number that is used for all three.
 pub(super) fn triple(text: &str) -> Result<[f64; 3], String> {
     match numbers(text)?[..] {
         [value] => Ok([value; 3]),

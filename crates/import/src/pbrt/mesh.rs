@@ -117,7 +117,7 @@ impl PbrtReader<'_> {
         for patch in patches {
             let at = patch.map(|i| i as usize);
             self.check_patch(entity, at.map(|i| vertices[i]), needs_uv)?;
-            // There are fewer than 2³² vertices, since there is one for each index of the file.
+            // The number of vertices is below 2³², since each index of the file gives one vertex.
             let first = u32::try_from(parts.vertices.len()).map_err(|_| CauseGiven)?;
             parts.vertices.extend(at.map(|i| vertices[i]));
             if let (Some(to), Some(of)) = (&mut parts.normals, &normals) {

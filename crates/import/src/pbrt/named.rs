@@ -1,6 +1,6 @@
 //! Named spectra of pbrt-v4, as colours in linear sRGB.
 //!
-//! They are pbrt's tables of n and k by wavelength, converted by the rule stated at
+//! The colours are pbrt's tables of n and k by wavelength, converted by the rule stated at
 //! [`Color`](crate::Color) and weighted with D65. Metals differ from those of Mitsuba for two
 //! reasons: Mitsuba weights its tables with the equal-energy white, and the numbers in pbrt's
 //! tables differ.

@@ -9,7 +9,7 @@ use glam::DVec3;
 /// A surface on the central ray of a pixel.
 #[derive(Clone, Debug)]
 pub struct Stop {
-    /// The index of its shape.
+    /// The index of the shape of the surface.
     pub shape: usize,
     /// The hit point of the ray.
     pub position: DVec3,

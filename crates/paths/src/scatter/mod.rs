@@ -194,8 +194,8 @@ impl Scatter {
         })
     }
 
-    /// Returns the squared index on the side of `to` divided by that on the side of `from`. It is 1
-    /// unless light is refracted.
+    /// Returns the squared index on the side of `to` divided by that on the side of `from`. The
+    /// result is 1 unless light is refracted.
     pub(crate) fn squared_index(&self, from: DVec3, to: DVec3) -> f64 {
         match self {
             Self::Dielectric(of) if !of.is_thin && from.z * to.z < 0.0 => {

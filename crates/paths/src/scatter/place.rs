@@ -111,8 +111,8 @@ impl Coated {
         }
     }
 
-    /// Returns the share of the base in scattered light. It is 0 in the mirror direction of a
-    /// smooth coat, whose reflection is a delta component.
+    /// Returns the share of the base in scattered light. The share is 0 in the mirror direction of
+    /// a smooth coat, whose reflection is a delta component.
     pub(super) fn base_share(&self, uv: DVec2, wi: DVec3, wo: DVec3) -> f64 {
         let is_mirrored = (wi + wo).truncate().length_squared() < 1e-24;
         if self.coat.facets().is_none() && is_mirrored {

@@ -18,7 +18,7 @@ pub(crate) enum Form {
 }
 
 impl Form {
-    /// Corners of its bounding box.
+    /// Returns the eight corners of the bounding box of the geometry.
     pub(crate) fn corners(&self) -> impl Iterator<Item = DVec3> + use<> {
         let [low, high] = match self {
             Self::Rectangle | Self::Disc => {

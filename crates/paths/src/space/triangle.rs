@@ -77,7 +77,7 @@ mod tests {
             let place = a.lerp(b, 0.1 + 0.4 * (1.0 + numbers(index, 4).x));
             let (start, aside) = (4.0 * start, aside.cross(b - a));
             let sight = TriangleRay::new(start, (place - start).normalize());
-            // Both triangles have the same edge, traversed in opposite directions.
+            // The two triangles have a common edge, which they traverse in opposite directions.
             let [one, other] = [[a, b, place + aside], [b, a, place - aside]];
             let met = [sight.meets(one), sight.meets(other)];
             assert!(met.iter().any(Option::is_some), "{start} to {a}, {b}");

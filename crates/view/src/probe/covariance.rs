@@ -12,9 +12,9 @@ use etendue_theory::covariance::{SpectralCovariance, window};
 use etendue_theory::geometry::AffineMap;
 use serde_json::{Value, json as tree_of};
 
-/// The number of frequencies on either side of zero over which covariances are computed. It is
-/// half of the plane's, which contains the spectra of the windows, because the noise of a second
-/// moment grows as the fourth power of the band.
+/// The number of frequencies on either side of zero over which covariances are computed. This is
+/// half of the number at the plane, because the noise of a second moment grows as the fourth power
+/// of the band, and half of the band contains the spectra of the windows.
 const BAND: usize = FREQUENCIES / 2;
 
 /// The covariance of the spectrum of a plane.
