@@ -35,7 +35,7 @@ impl<'py> Arguments<'_, 'py> {
         Ok(self.0.get_item(name)?.filter(|value| !value.is_none()))
     }
 
-    /// Sets `to` to an argument of its type.
+    /// Sets `to` to the value of an argument, if it is given.
     fn set<T>(
         &self,
         name: &str,

@@ -59,7 +59,7 @@ impl Live {
         }
     }
 
-    /// Reports progress of work that traces `total` of these items.
+    /// Begins work that traces `total` items, whose progress is reported.
     pub(crate) fn trace(&self, total: u64, things: &'static str) -> Tracing<'_> {
         let work = Work::Steps {
             verb: "tracing",

@@ -154,10 +154,10 @@ fn judge(planes: &[CalibratedPlane], seeds: u64, scene: &Scene, scale: f64) -> R
         .iter()
         .flat_map(|p| p.p_values.iter().copied())
         .collect();
-    // The binomial standard deviation of the share of one plane. Planes of a seed share photons,
-    // so the share of all planes varies less than that of one plane, and more than that of as many
-    // independent planes. The share of all planes may deviate by two standard deviations of one
-    // plane, and the share of each plane by three.
+    // The binomial standard deviation of the share of p-values below 0.1 at one plane. Planes of a
+    // seed have the same photons, so the share over all planes varies less than that of one plane,
+    // but more than that of as many independent planes. The share of all planes may deviate by two
+    // standard deviations of one plane, and the share of each plane by three.
     let deviation = (0.1 * 0.9 / seeds as f64).sqrt();
     let [allowed, allowed_each] = [2.0, 3.0].map(|n| n * deviation);
     let below = |p: &[f64]| p.iter().filter(|p| **p < 0.1).count() as f64 / p.len() as f64;

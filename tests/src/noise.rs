@@ -108,7 +108,8 @@ pub(crate) fn gain(photons: u64, batches: u32) -> ReportSection {
             .to_vec();
         row.insert(0, name.clone());
         row.push(format!("{:.2} %", 100.0 * worse));
-        // With 1000 independent frequencies and 64 batches, a total is accurate to 0.03 dB.
+        // With 1000 independent frequencies and 64 batches, the total noise is accurate to 0.03
+        // dB.
         let check = Check::new("total", total, Below(-0.1), "three of its errors, dB");
         Row::new(row, vec![check])
     };

@@ -54,7 +54,7 @@ const MAX_NOISE: f64 = 0.25;
 const MIN_SCENES: usize = 10;
 /// Maximum number of rows in the tables of single pulls and scenes.
 const LISTED: usize = 12;
-/// Maximum CPU seconds of a prediction whose photons take less time.
+/// Maximum CPU seconds of a prediction that takes longer than the photons of its scene.
 const MAX_SECONDS: f64 = 10.0;
 
 /// The pull of one measured number.

@@ -79,8 +79,8 @@ pub(crate) fn words(sampling: Sampling) -> &'static str {
     }
 }
 
-/// Changes the number of photons of a run. The resolution is scaled by the inverse root of this
-/// number, as noise is.
+/// Changes the number of photons of a run. The resolution is scaled, as noise is, by the inverse
+/// square root of this number.
 pub(crate) fn emit(run: &mut RunFile, photons: Option<u64>) {
     let Some(photons) = photons else { return };
     let more_noise = (run.photons as f64 / photons as f64).sqrt();

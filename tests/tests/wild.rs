@@ -164,7 +164,8 @@ fn scenes_that_took_long_have_an_answer() {
 }
 
 /// The deviation of a fine mesh from its osculating patch exceeds the noise of photon nets. The
-/// stated error of the prediction includes this deviation; when it did not, this scene failed.
+/// stated error of the prediction includes the deviation of mesh from patch; before it did, this
+/// scene failed.
 #[test]
 fn a_mesh_beside_its_patch_is_no_disagreement() {
     let folder = Path::new(FOLDER).join("../table1");
@@ -351,7 +352,8 @@ fn a_surface_in_its_own_shadow_is_decided() {
     }
 }
 
-/// Checks that both tracers agree, and that a theory which ignores the reason disagrees with them.
+/// Checks that both tracers agree, and that they disagree with a prediction by `theory`, which
+/// does not apply.
 fn decided_by_reference(
     scene: &Scene,
     plane: usize,
@@ -694,7 +696,8 @@ fn a_dim_part_of_the_sky_is_found() {
     assert!((found / there - 1.0).abs() < 0.5, "{found} of {there}");
 }
 
-/// A plane on the surface after one with a BRDF has its own coordinates.
+/// A plane on the second surface of a path, after one with a BRDF, has the coordinates of the
+/// second surface.
 #[test]
 fn a_plane_before_a_second_surface_is_decided() {
     let planes = [("tangent", Class::FirstOrder), ("local", Class::FirstOrder)];

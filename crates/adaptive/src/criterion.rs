@@ -5,11 +5,11 @@
 //! axis r turns by ∂r and the point on the surface moves by ∂p. An object at a distance d' then
 //! moves relative to the axis by the component of ∂p across r, divided by d'. Hence the bandwidth
 //! along a direction of the picture is Ω_ρ |∂r + ∂p/d'| cycles per pixel. In the plane of
-//! incidence of a sphere this is Ω_ρ |1 + d (cos θ₀/d' + 2k)/cos θ₁| times the angle of a pixel:
-//! Eq. 21 with its missing factors. Without the term in d' this bandwidth is that of Eq. 20.
-//! Finite differences on the screen include the angle of view, the distance and both curvatures,
-//! as the paper states. The equations as printed use the larger curvature alone, and are
-//! isotropic.
+//! incidence of a sphere, the bandwidth is Ω_ρ |1 + d (cos θ₀/d' + 2k)/cos θ₁| times the angle of
+//! a pixel, which is Eq. 21 with its missing factors. Without the term in d' this bandwidth is
+//! that of Eq. 20. Finite differences on the screen include the angle of view, the distance and
+//! both curvatures, as the paper states. The equations as printed use the larger curvature alone,
+//! and are isotropic.
 
 use crate::metric::Metric;
 use crate::visible::{OFFSETS, SeenPlace, SeenSurface, Visible};

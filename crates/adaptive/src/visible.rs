@@ -10,8 +10,8 @@ use std::ops::Range;
 /// Number of points per pixel.
 pub(crate) const FOUR: usize = 4;
 
-/// Positions of the points in a pixel. No two share a row or a column, so a nearly horizontal or
-/// vertical edge gets four steps instead of two.
+/// Positions of the points in a pixel. No two points have the same row or column, so a nearly
+/// horizontal or vertical edge gets four steps instead of two.
 pub(crate) const OFFSETS: [[f64; 2]; FOUR] = [
     [0.375, 0.125],
     [0.875, 0.375],

@@ -37,7 +37,7 @@ use std::path::Path;
 /// - `ply`: one diffuse surface, 0.5 on both sides. No camera.
 ///
 /// # Errors
-/// All causes why the file cannot be imported.
+/// Returns all causes why the file cannot be imported.
 pub fn import(file: &Path, options: &Options) -> Result<Imported, Refused> {
     let extension = file.extension().unwrap_or_default().to_string_lossy();
     match extension.to_ascii_lowercase().as_str() {
@@ -62,7 +62,7 @@ pub fn import(file: &Path, options: &Options) -> Result<Imported, Refused> {
 /// Reads the text of a Mitsuba 3 scene; files are searched for from `folder`.
 ///
 /// # Errors
-/// All causes why the text cannot be imported.
+/// Returns all causes why the text cannot be imported.
 pub fn import_mitsuba(text: &str, folder: &Path, options: &Options) -> Result<Imported, Refused> {
     mitsuba::import_text(text, folder, options)
 }
@@ -70,7 +70,7 @@ pub fn import_mitsuba(text: &str, folder: &Path, options: &Options) -> Result<Im
 /// Reads the text of a pbrt-v4 scene; files are searched for from `folder`.
 ///
 /// # Errors
-/// All causes why the text cannot be imported.
+/// Returns all causes why the text cannot be imported.
 pub fn import_pbrt(text: &str, folder: &Path, options: &Options) -> Result<Imported, Refused> {
     pbrt::import_text(text, folder, options)
 }

@@ -25,7 +25,7 @@ pub(crate) enum TransferCurve {
     Srgb,
     /// Levels are proportional to light.
     Linear,
-    /// Light is the level raised to this power.
+    /// The amount of light is the level raised to this power.
     Gamma(f64),
 }
 

@@ -10,7 +10,7 @@ pub(crate) const MAX_NUMBER: f64 = 1e9;
 /// channels add up to 1 only up to rounding errors.
 pub(crate) const MAX_SHARE: f64 = 1.0 + 1e-9;
 
-/// Checks that a number is in range; `Err` is the fault.
+/// Checks that a number is in range; `Err` describes the fault.
 pub(crate) fn in_range(value: f64) -> Result<f64, String> {
     match value.abs() <= MAX_NUMBER {
         true => Ok(value),

@@ -25,7 +25,7 @@ mod tests {
     #[test]
     fn pixels_that_are_not_finite_are_refused() {
         assert!(require_finite([2, 2], &[0.0, 1.0, 1e30, 1e-300]).is_ok());
-        // The first value exceeds the range of 32 bits.
+        // The first value of the test exceeds the range of 32 bits.
         for lost in [1e39, f64::INFINITY, f64::NAN] {
             let refused = require_finite([2, 2], &[0.0, 1.0, 2.0, lost]).unwrap_err();
             assert_eq!(refused.code, 2);

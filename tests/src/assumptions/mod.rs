@@ -95,7 +95,7 @@ fn files_of(folder: &Path, found: &mut Vec<PathBuf>) -> io::Result<()> {
     Ok(())
 }
 
-/// A scene of the repository, with this number of photons.
+/// Reads a scene of the repository, and sets its number of photons.
 fn kept(path: &Path, photons: u64) -> Option<Scene> {
     let mut file = SceneFile::parse(&fs::read_to_string(path).ok()?).ok()?;
     emit(&mut file.run, Some(photons));

@@ -39,7 +39,8 @@ impl ClaimBench<'_> {
     }
 }
 
-/// Squares, without jitter unless `rest` gives one, 1 m from the light.
+/// Returns the text of an array of squares 1 m from the light, without jitter unless `rest`
+/// specifies it.
 pub(super) fn squares(count: [u32; 2], pitch: f64, rest: &str) -> String {
     let [x, y] = count;
     format!(

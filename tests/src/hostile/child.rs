@@ -140,6 +140,6 @@ fn work_of(stat: &str) -> Option<Duration> {
     let (_, fields) = stat.rsplit_once(')')?;
     let ticks = fields.split_whitespace().skip(11).take(2);
     let ticks: u64 = ticks.filter_map(|field| field.parse::<u64>().ok()).sum();
-    // Linux uses hundredths of a second here, on any machine.
+    // On any machine, Linux states these times in hundredths of a second.
     Some(Duration::from_millis(10 * ticks))
 }

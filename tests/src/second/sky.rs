@@ -66,7 +66,7 @@ fn seen(axes: &Axes, from: Vector, fault: &str) -> Vector {
     [x, up, front]
 }
 
-/// The direction from which light that travels along a direction comes.
+/// Returns the direction from which light comes, opposite to that in which it travels.
 fn origin(along: Vector, fault: &str) -> Vector {
     match fault {
         "the way light goes" => along,
@@ -119,7 +119,7 @@ impl Levels {
             _ => latitude,
         };
         let row = |j: usize| {
-            // The adjacent columns, with the last one repeated before the first.
+            // The two adjacent columns; the last column of the map also stands before the first.
             let columns = (0..=self.width).map(|i| {
                 let right = PI * (1.0 - (2.0 * i as f64 + 1.0) / w);
                 let past = (right + TAU / w - longitude).rem_euclid(TAU) / (TAU / w);

@@ -59,7 +59,7 @@ pub(super) fn turned(a: Vector, axis: Vector, by: f64) -> Vector {
     plus(along, 1.0, turned)
 }
 
-/// A vector under the smallest rotation from one unit vector to another.
+/// Returns a vector after the smallest rotation that takes one unit vector to another.
 pub(super) fn turned_along(a: Vector, from: Vector, to: Vector) -> Vector {
     let axis = cross(from, to);
     if length(axis) < 1e-12 {

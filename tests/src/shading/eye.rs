@@ -19,7 +19,8 @@ struct EyeHit {
 }
 
 impl EyeScene {
-    /// The hit on the circle of the ray that reaches the eye with a slope.
+    /// Returns the point at which the circle is hit by the ray that reaches the eye with this
+    /// slope.
     fn hit(&self, slope: f64) -> EyeHit {
         let c = &self.criterion;
         let (sine, cosine) = c.outgoing.sin_cos();
@@ -50,8 +51,8 @@ impl EyeScene {
         self.from(&hit, self.aside() - hit.local)
     }
 
-    /// The offset of the outgoing central ray from the mirror direction; the lobe does not change
-    /// it.
+    /// Returns the angle from the mirror direction to the outgoing central ray, which the lobe
+    /// does not change.
     fn aside(&self) -> f64 {
         self.criterion.incidence + self.criterion.outgoing
     }

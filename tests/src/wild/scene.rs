@@ -16,8 +16,8 @@ use std::path::Path;
 /// Maximum number of attempts to place a surface on the central ray.
 const TRIES: usize = 8;
 
-/// The scene with an index, for a seed. The pictures and meshes of the scene are written to the
-/// folder.
+/// Returns the scene with this index for this seed. The pictures and meshes of the scene are
+/// written to the folder.
 pub(crate) fn scene(seed: u64, index: u64, photons: u64, folder: &Path) -> io::Result<SceneFile> {
     let mut draw = SceneDraw::new(seed, index, folder);
     let mut file = empty(&mut draw, photons)?;
@@ -33,7 +33,7 @@ pub(crate) fn scene(seed: u64, index: u64, photons: u64, folder: &Path) -> io::R
             file.surfaces.pop();
         }
     }
-    // A surface placed beside the path may shorten its last leg.
+    // The added surface may shorten the last leg of the path.
     let path = central_ray(&file, folder).unwrap_or(path);
     file.planes = planes(&mut draw, &file, &path);
     if draw.one_in(4) {

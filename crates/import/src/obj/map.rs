@@ -11,7 +11,7 @@ use std::path::PathBuf;
 pub(super) struct MtlMap {
     pub(super) place: SourcePlace,
     pub(super) file: String,
-    /// The folder in which it is searched for.
+    /// The folder in which the picture is searched for.
     pub(super) folder: PathBuf,
     /// The map from (u, v) of a world, with v downwards, to (u, v) of the picture.
     pub(super) to_uv: DAffine2,
@@ -48,7 +48,7 @@ impl MtlMap {
         while rest.starts_with('-') {
             let (word, after) = cut(rest);
             let Some((option, most)) = OPTIONS.iter().find(|(known, _)| *known == word) else {
-                // A file name may look like an option.
+                // If no value follows, the word is a file name that looks like an option.
                 break;
             };
             let (values, after) = arguments(after, *most, option);

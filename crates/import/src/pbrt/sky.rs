@@ -74,7 +74,8 @@ fn illuminance(square: &Raster) -> f64 {
     (0..side * side).map(at).sum::<f64>() * pixel
 }
 
-/// The picture in longitude and latitude, from pole to pole; each pixel is the mean over its area.
+/// Returns the picture in longitude and latitude, from pole to pole, in which each pixel is the
+/// mean over its area.
 fn longitudes(square: &Raster, scale: f64) -> Option<Raster> {
     let side = square.width();
     let (w, h) = (4 * side, 2 * side + 1);
@@ -110,7 +111,7 @@ fn nearest(square: &Raster, toward: DVec3) -> f64 {
 fn place(toward: DVec3) -> [f64; 2] {
     let [x, y, z] = toward.abs().to_array();
     let r = (1.0 - z).max(0.0).sqrt();
-    // The azimuth, from 0 to 1 over a quarter turn.
+    // Returns the azimuth as a share of a quarter turn, from 0 to 1.
     let turn = FRAC_2_PI * libm::atan2(y, x);
     let (u, v) = (r * (1.0 - turn), r * turn);
     let (u, v) = if toward.z < 0.0 {

@@ -156,7 +156,7 @@ fn sampled(numbers: &[f64]) -> Result<Vec<[f64; 2]>, String> {
     }
 }
 
-/// Planck's law, normalised to a maximum of 1.
+/// Returns the spectrum of Planck's law, normalised to a maximum of 1.
 fn blackbody(kelvin: f64) -> Vec<[f64; 2]> {
     // The logarithms are taken relative to 560 nm, to avoid overflow in the ratio.
     let log = |nm: f64| {

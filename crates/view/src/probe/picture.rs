@@ -30,8 +30,8 @@ const MAX_ERROR: f64 = 0.1;
 /// The largest number of rays that are traced to choose the window.
 const RAYS_OF_TRIAL: u64 = 1 << 17;
 
-/// The bandwidth of the picture around a pixel: of light that arrives at the middle of the lens, as
-/// a function of direction.
+/// The bandwidth of the picture around a pixel, which is that of light at the middle of the lens
+/// as a function of direction.
 #[derive(Clone, Debug)]
 pub(super) struct PictureBandwidth {
     /// Width of the window, pixels.
@@ -74,15 +74,16 @@ impl PictureBandwidth {
         measured(scene, (pixel, pixels), (rays, seed), progress)
     }
 
-    /// Returns the largest bandwidth over directions, if it is above what the window limits.
+    /// Returns the largest bandwidth over directions, if it is above the limit that the window
+    /// sets.
     pub(super) fn widest(&self) -> Option<Widest<Uncertain>> {
         let widest = self.variation.as_ref()?.widest;
         let is_above = widest.value.value > SMOOTH * self.window.at(widest.azimuth);
         is_above.then_some(widest)
     }
 
-    /// Returns the bandwidth perpendicular to the direction of the largest one, if it is above
-    /// what the window limits.
+    /// Returns the bandwidth perpendicular to the direction of the largest one, if it is above the
+    /// limit that the window sets.
     pub(super) fn across(&self) -> Option<Uncertain> {
         let widest = self.widest()?;
         let across = self.variation.as_ref()?.across;
