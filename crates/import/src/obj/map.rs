@@ -48,7 +48,7 @@ impl MtlMap {
         while rest.starts_with('-') {
             let (word, after) = cut(rest);
             let Some((option, most)) = OPTIONS.iter().find(|(known, _)| *known == word) else {
-                // If no value follows, the word is a file name that looks like an option.
+                // A word that is no known option is a file name that begins with a hyphen.
                 break;
             };
             let (values, after) = arguments(after, *most, option);
