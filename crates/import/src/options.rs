@@ -16,9 +16,9 @@ pub struct Options {
 
 /// The conversion of a colour to one number; worlds are monochrome.
 ///
-/// Colours are linear sRGB; levels of 8-bit pictures are linearised first. Luminance is 0.212671 R
-/// + 0.715160 G + 0.072169 B. This luminance matches the `mono` variants of Mitsuba 3.9, and the
-/// channels match its `rgb` variants.
+/// Colours are linear sRGB; levels of 8-bit pictures are linearised first. The luminance, 0.212671
+/// R + 0.715160 G + 0.072169 B, matches the `mono` variants of Mitsuba 3.9, and the channels match
+/// its `rgb` variants.
 ///
 /// A sampled spectrum becomes a colour as in Mitsuba. The spectrum is interpolated linearly at
 /// 1000 wavelengths from 360 to 830 nm, and is zero beyond its ends. These values are weighted

@@ -73,8 +73,9 @@ impl SurfaceHit {
 /// The nearness of a point to its blockers and reflected surroundings.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Nearness {
-    /// The mean of 1/distance over what the material reflects, per metre; distant light counts as
-    /// 0. The inverse of this mean is the harmonic mean of Durand et al. 2005, section 6.2.
+    /// The mean of 1/distance over what the material reflects, per metre, to which distant light
+    /// adds nothing. The inverse of this mean is the harmonic mean of Durand et al. 2005, section
+    /// 6.2.
     pub reflected: f64,
     /// The highest frequency of penumbrae, in cycles per metre perpendicular to the light: the
     /// inverse of the width of the penumbra, where light is partly blocked.

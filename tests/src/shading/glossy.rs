@@ -170,8 +170,7 @@ impl GlossyBench {
         }
     }
 
-    /// Returns windows that contain the lobe, with grids that contain the spectrum, and by how
-    /// much the window in u widens the spectrum.
+    /// Returns windows that hold the lobe, grids, and how much the window in u widens a spectrum.
     fn windows(&self, c: &Criterion) -> (Windows, f64) {
         let deviation = GAUSSIAN / c.lobe_cutoff;
         let finer = self.says(c)[0] / c.lobe_cutoff;
@@ -191,9 +190,8 @@ impl GlossyBench {
             (tails * deviation + self.aside.abs() + 0.7 * along.abs() * ACROSS) / finer.max(1e-6);
         let u = wanted.min(WIDEST);
         let floor = if wanted > WIDEST { BOX / u } else { 0.0 };
-        // The slice at azimuth 0 integrates over y and v. If the lobe is not a product of factors
-        // in u and v, the window is narrow, so that the visible light is in the plane of
-        // incidence.
+        // The slice at azimuth 0 integrates over y and v. If the lobe is no product in u and v, a
+        // narrow window keeps the visible light in the plane of incidence.
         let across = 1.0
             + self.distance
                 * (nearness / c.incidence.cos() + 2.0 * c.curvature * c.incidence.cos());

@@ -39,7 +39,7 @@ impl Parameters {
         }
     }
 
-    /// Sets a value if there is none yet.
+    /// Sets the value of a parameter that has none yet.
     pub(super) fn default(&mut self, name: &str, value: &str) {
         self.values
             .entry(name.to_owned())

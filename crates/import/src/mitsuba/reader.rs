@@ -59,7 +59,7 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// The world of the scene, which is the first object.
+    /// Returns the world of the scene, which is the first object.
     pub(super) fn world(mut self) -> World {
         let scene = &self.objects[0];
         scene.is_used.set(true);
@@ -110,7 +110,7 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// Skips the object and its contents after a message.
+    /// Marks the object and its contents as read, after a message that covers them.
     pub(super) fn drop_all(&self, object: &'a MitsubaObject) {
         object.is_used.set(true);
         for property in &object.properties {

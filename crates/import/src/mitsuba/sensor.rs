@@ -153,7 +153,7 @@ impl<'a> MitsubaReader<'a> {
         })
     }
 
-    /// The focal length in millimetres, for 35 mm film.
+    /// Returns the focal length in millimetres, for 35 mm film.
     fn focal_length(&self, object: &'a MitsubaObject) -> Option<f64> {
         if !self.has(object, "focal_length") {
             return Some(50.0);

@@ -64,7 +64,7 @@ fn find(bytes: &[u8], number: u32) -> Result<(u16, usize), String> {
     Ok((version, offset.saturating_add(4)))
 }
 
-/// The version stored at the start of a mesh.
+/// Returns the version that is stored at the start of a mesh.
 fn head(bytes: &[u8], at: usize) -> Result<u16, String> {
     let Some([a, b, c, d]) = bytes.get(at..).and_then(|rest| rest.first_chunk::<4>()) else {
         return Err("ends before a mesh".to_owned());

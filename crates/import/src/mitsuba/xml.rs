@@ -356,7 +356,7 @@ pub(super) fn unknown(id: &str) -> String {
     format!("no object has id {}", quoted(id))
 }
 
-/// The first number of a version such as 3.0.0.
+/// Returns the first number of a version such as 3.0.0.
 fn version(text: &str) -> Option<u32> {
     text.trim().split('.').next()?.parse().ok()
 }

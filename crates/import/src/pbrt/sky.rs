@@ -14,8 +14,8 @@ use std::sync::Arc;
 /// Maximum number of pixels along a side: the converted map has eight times as many pixels.
 const MAX_PIXELS: usize = 2048;
 
-/// Number of samples along a side of a map, before that in each pixel is limited to between 3 and
-/// 16. Larger maps use fewer samples per pixel, to bound the time.
+/// Number of samples along a side of a map, before the samples of a pixel are limited to between 3
+/// and 16 along a side. Larger maps use fewer samples per pixel, to bound the time.
 const WITHIN: usize = 4096;
 
 impl PbrtReader<'_> {
