@@ -102,8 +102,8 @@ impl Bitmap {
     }
 }
 
-/// The index of a pixel; very large texture coordinates are clamped.
-#[expect(clippy::cast_possible_truncation, reason = "brought into range before")]
+/// Returns the index of a pixel, before it is wrapped; very large texture coordinates are clamped.
+#[expect(clippy::cast_possible_truncation, reason = "the value is clamped")]
 fn whole(x: f64) -> i64 {
     x.floor().clamp(-1e15, 1e15) as i64
 }

@@ -33,7 +33,7 @@ pub(super) enum TrialEnding {
     /// The prediction would take too long.
     Skipped,
     /// The prediction panicked; the text is the message of the panic.
-    Panicked(#[expect(dead_code, reason = "what it said is printed")] String),
+    Panicked(#[expect(dead_code, reason = "the message is only printed")] String),
 }
 
 /// Seeds that must both find a fault, because one correct plane in a hundred fails with a single

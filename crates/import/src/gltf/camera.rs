@@ -112,7 +112,7 @@ fn size(aspect: f64) -> [usize; 2] {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "aspects are within bounds"
+        reason = "the aspect ratio was checked"
     )]
     let down = (ACROSS as f64 / aspect).round() as usize;
     [ACROSS, down.max(1)]

@@ -169,7 +169,7 @@ impl Entity {
         }
     }
 
-    #[expect(clippy::cast_possible_truncation, reason = "32 bits were checked")]
+    #[expect(clippy::cast_possible_truncation, reason = "integers fit 32 bits")]
     pub(super) fn integer_or(&self, report: &Report, name: &str, default: i64) -> Read<i64> {
         let one = self.exactly::<1>(report, name, ParameterKind::Integer)?;
         Ok(one.map_or(default, |[value]| value as i64))

@@ -283,7 +283,7 @@ pub(super) fn reads_uv(material: &Material) -> bool {
     let varies = |texture: &Texture| !matches!(texture, Texture::Constant(_));
     let rough = |roughness: &Option<Roughness>| {
         roughness.as_ref().is_some_and(|r| match &r.alpha {
-            #[expect(clippy::float_cmp, reason = "checks for the same number")]
+            #[expect(clippy::float_cmp, reason = "only identical numbers are isotropic")]
             [Texture::Constant(u), Texture::Constant(v)] => u != v,
             _ => true,
         })

@@ -177,7 +177,7 @@ impl PbrtReader<'_> {
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
-            reason = "among the vertices, in 32 bits"
+            reason = "each number is the index of a vertex"
         )]
         let face = |face: &[f64]| std::array::from_fn(|k| face[k] as u32);
         Ok((vertices, indices.chunks_exact(N).map(face).collect()))
