@@ -29,7 +29,7 @@ pub(crate) struct Prediction(Vec<etendue_compare::Prediction>);
 
 #[pymethods]
 impl Job {
-    /// The scene of a file or of a text, with some fields set.
+    /// Returns the scene of a file or of a text, with some fields set.
     #[staticmethod]
     fn read(
         py: Python<'_>,
@@ -59,7 +59,7 @@ impl Job {
         &self.0.scene().name
     }
 
-    /// The scene file in JSON, including defaults and overrides.
+    /// Returns the scene file in JSON, including defaults and overrides.
     fn json(&self) -> String {
         serde_json::to_string(&self.0.scene().file).unwrap_or_default()
     }

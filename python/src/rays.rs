@@ -99,7 +99,7 @@ pub(crate) struct Spectrum {
     numbers: [(&'static str, Option<Uncertain>); 3],
 }
 
-/// The spectrum of rays, with errors from the spread between batches.
+/// Returns the spectrum of rays, with errors from the spread between batches.
 pub(crate) fn spectrum(
     rays: &Rays,
     plane: &VirtualPlane,

@@ -23,7 +23,7 @@ use std::path::Path;
 /// negligible.
 const PHOTONS: u64 = 1 << 16;
 
-/// A scene of the repository, in batches of [`PHOTONS`].
+/// Returns a scene of the repository, in batches of [`PHOTONS`].
 fn scene(name: &str) -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scenes/{name}.ron"));
     let text = std::fs::read_to_string(&path).unwrap();

@@ -380,7 +380,7 @@ fn each_rectangle(chain: &mut Chain, change: impl Fn(&mut Rectangle)) {
     });
 }
 
-/// The slices of the field shifted by `shift` along x.
+/// Returns the slices of the field shifted by `shift` along x.
 fn shifted(mut slices: Slices, shift: f64) -> Slices {
     let grid = slices.grid;
     for ((k, m, _), value) in slices.half.indexed_iter_mut() {

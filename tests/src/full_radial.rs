@@ -170,7 +170,7 @@ fn each_seed(seeds: u64, of: impl Fn(u64) -> FullRadialReport + Sync) -> Vec<Ful
     found
 }
 
-/// A row for the p-values of many seeds.
+/// Returns a row for the p-values of many seeds.
 fn row(name: &str, found: &[FullRadialReport], level: f64) -> Row {
     let p: Vec<f64> = found.iter().filter_map(|report| report.p_value).collect();
     let chi2: Vec<f64> = found

@@ -265,8 +265,8 @@ fn printed(outcome: std::io::Result<Vec<ReportSection>>) -> ExitCode {
     }
 }
 
-/// The page of which a command writes a part: the file of the page, the title of the part, the name
-/// of the command and a description.
+/// Returns the page of which a command writes a part: the file of the page, the title of the part,
+/// the name of the command and a description.
 fn page(command: &ValidationCommand) -> Option<[&'static str; 4]> {
     Some(match command {
         ValidationCommand::Main => [
@@ -318,7 +318,7 @@ fn page(command: &ValidationCommand) -> Option<[&'static str; 4]> {
     })
 }
 
-/// A page with one of its parts replaced or added; parts begin with their titles.
+/// Returns a page with one of its parts replaced or added; parts begin with their titles.
 fn with_part(page: &str, title: &str, part: &str) -> String {
     let heading = format!("# {title}\n");
     // A part may contain `##` headings.

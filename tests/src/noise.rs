@@ -10,7 +10,7 @@ use etendue_scene::{Sampling, Scene};
 use etendue_spectrum::estimate;
 use ndarray::Array3;
 
-/// Every plane at one number of photons.
+/// Returns the section on every plane at one number of photons.
 pub(crate) fn planes(photons: u64, seed: u64) -> ReportSection {
     let scene = fig9b(photons, seed);
     let row = |report: &PlaneReport| {
@@ -30,7 +30,7 @@ pub(crate) fn planes(photons: u64, seed: u64) -> ReportSection {
     }
 }
 
-/// The score tests of every plane at one number of photons.
+/// Returns the section on the score tests of every plane at one number of photons.
 pub(crate) fn parameters(photons: u64, seed: u64) -> ReportSection {
     let reports = reports(&fig9b(photons, seed));
     let mut rows = Vec::new();
@@ -74,8 +74,8 @@ pub(crate) fn parameters(photons: u64, seed: u64) -> ReportSection {
     }
 }
 
-/// The ratio of the noise of photons from nets to that of photons from random numbers, over all
-/// frequencies of a plane.
+/// Returns the ratio of the noise of photons from nets to that of photons from random numbers,
+/// over all frequencies of a plane.
 pub(crate) fn gain(photons: u64, batches: u32) -> ReportSection {
     let variances = |sampling: Sampling| {
         let mut scene = sampled(fig9b(photons, SEED), sampling);
@@ -207,7 +207,7 @@ fn row(scene: &Scene, report: &PlaneReport) -> Row {
     Row::new(cells, checks)
 }
 
-/// All planes of a scene, measured and compared.
+/// Measures and compares all planes of a scene.
 ///
 /// # Panics
 /// If the scene has too few batches. Every resolved scene has enough batches.

@@ -206,9 +206,9 @@ fn judged(scene: &Scene, number: u64, pulls: &mut Vec<Pull>) -> io::Result<Optio
     Ok(Some(cost))
 }
 
-/// The normal quantile that corresponds to the quantile `t` of Student's distribution with this
-/// number of degrees of freedom. The approximation is accurate to 0.01 for 30 or more degrees of
-/// freedom (Abramowitz and Stegun 1964, 26.7.8). Stated errors follow this distribution because
+/// Returns the normal quantile that corresponds to the quantile `t` of Student's distribution with
+/// this number of degrees of freedom. The approximation is accurate to 0.01 for 30 or more degrees
+/// of freedom (Abramowitz and Stegun 1964, 26.7.8). Stated errors follow this distribution because
 /// they come from the spread of a few dozen batches.
 fn normal(t: f64, freedom: usize) -> f64 {
     let freedom = freedom as f64;
@@ -325,7 +325,7 @@ fn row(name: &str, pulls: &[&Pull], is_judged: bool) -> Row {
     }
 }
 
-/// The largest pulls.
+/// Returns the largest pulls.
 fn largest(pulls: &[Pull]) -> ReportSection {
     let mut sorted: Vec<&Pull> = pulls.iter().collect();
     sorted.sort_by(|a, b| b.value.abs().total_cmp(&a.value.abs()));
@@ -348,7 +348,7 @@ fn largest(pulls: &[Pull]) -> ReportSection {
     }
 }
 
-/// The cost of predictions, compared with that of photons.
+/// Returns the cost of predictions, compared with that of photons.
 fn cost(costs: &[Cost]) -> ReportSection {
     let ratio = |cost: &Cost| cost.predicted / cost.traced.max(0.01);
     let mut sorted: Vec<&Cost> = costs.iter().collect();

@@ -34,7 +34,7 @@ impl Check {
         }
     }
 
-    /// A check of a fact: the figure is 1 or 0.
+    /// Returns a check of a fact: the figure is 1 or 0.
     pub(crate) fn fact(id: &'static str, holds: bool, reason: &'static str) -> Self {
         Self::new(id, f64::from(holds), Bound::AtLeast(1.0), reason)
     }
@@ -45,9 +45,9 @@ impl Check {
         Self::new(id, p.unwrap_or(0.0), bound, "α over all planes")
     }
 
-    /// A check of photons against the exact prediction, judged as in a run. The check passes if p
-    /// passes, and also if the stated error of the prediction is below the resolution and may
-    /// explain the difference.
+    /// Returns a check of photons against the exact prediction, judged as in a run. The check
+    /// passes if p passes, and also if the stated error of the prediction is below the resolution
+    /// and may explain the difference.
     pub(crate) fn exact(report: &PlaneReport, level: f64) -> Self {
         let check = Self::p(EXACT, report.p_value, level);
         if check.passes() || report.exact_verdict() != Verdict::Pass {
@@ -60,7 +60,7 @@ impl Check {
         }
     }
 
-    /// A check that something never occurs.
+    /// Returns a check that something never occurs.
     pub(crate) fn none(id: &'static str, count: usize) -> Self {
         Self::new(id, count as f64, Bound::AtMost(0.0), "none is borne")
     }
@@ -69,7 +69,7 @@ impl Check {
         self.held().2
     }
 
-    /// The requirement in words, the bound, and whether the figure meets it.
+    /// Returns the requirement in words, the bound, and whether the figure meets it.
     fn held(&self) -> (&'static str, f64, bool) {
         let figure = self.figure;
         match self.bound {
@@ -154,8 +154,8 @@ impl ReportSection {
         self.failures().is_empty()
     }
 
-    /// Returns the section as that of a planted fault, which passes if at least one of its checks
-    /// fails, although all of them pass without the fault.
+    /// Returns the section on a planted fault. It passes if at least one check of `self` fails,
+    /// although all of them pass without the fault.
     pub(crate) fn planted(mut self, title: String, text: &str, is_sound: bool) -> Self {
         let is_seen = !self.passes();
         self.rows.iter_mut().for_each(|row| row.checks.clear());

@@ -70,7 +70,7 @@ impl Line {
     }
 }
 
-/// The results for every row, from the sections of all parts.
+/// Returns the results for every row, from the sections of all parts.
 pub(crate) fn rows(sections: &[ReportSection]) -> ReportSection {
     ReportSection {
         title: "Every row".to_owned(),
@@ -111,7 +111,7 @@ fn row(line: Line, sections: &[ReportSection]) -> Row {
     Row::new(cells, checks)
 }
 
-/// The check of p against the exact prediction, if the row has one.
+/// Returns the check of p against the exact prediction, if the row has one.
 fn exact(row: &Row) -> Option<f64> {
     let check = row.checks.iter().find(|check| check.id == EXACT);
     check.map(|check| check.figure)

@@ -40,7 +40,7 @@ pub(crate) const SUITE: &[(&str, &str)] = &[
     scene!("two_glossy"),
 ];
 
-/// A scene of the suite, with the photons and the seed of its file by default.
+/// Returns a scene of the suite, with the photons and the seed of its file by default.
 ///
 /// # Panics
 /// If there is no such scene, or it is invalid.
@@ -65,13 +65,13 @@ pub(crate) fn receiver(photons: u64, seed: u64) -> Scene {
     scene
 }
 
-/// A scene whose photons use this kind of random numbers.
+/// Returns a scene whose photons use this kind of random numbers.
 pub(crate) fn sampled(mut scene: Scene, sampling: Sampling) -> Scene {
     scene.run.sampling = sampling;
     scene
 }
 
-/// A description of the photons' random numbers.
+/// Returns a description of the photons' random numbers.
 pub(crate) fn words(sampling: Sampling) -> &'static str {
     match sampling {
         Sampling::Net => "nets",

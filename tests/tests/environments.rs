@@ -26,7 +26,7 @@ const ALPHA: f64 = 0.01;
 /// A fault planted in a system.
 type Fault<S = SpecularSystem> = (&'static str, fn(&mut Observed<S>));
 
-/// A scene file of the repository, with fewer photons.
+/// Returns a scene file of the repository, with fewer photons.
 fn scene(name: &str) -> Scene {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes");
     let text = std::fs::read_to_string(format!("{folder}/{name}.ron")).unwrap();

@@ -28,7 +28,7 @@ fn scene(edits: &[(&str, &str)]) -> Scene {
     resolve("test", file, ".".as_ref(), u64::MAX).expect("the edited scene is sound")
 }
 
-/// The verdicts of all planes of `traced` on the predictions of `predicted`.
+/// Returns the verdicts of all planes of `traced` on the predictions of `predicted`.
 fn verdicts(traced: &Scene, predicted: &Scene) -> Vec<Verdict> {
     let measurement = measure(
         &Tracer::new(traced),
@@ -175,7 +175,7 @@ fn a_black_receiver_is_dark() {
     assert_eq!(verdicts(&black, &black), [Verdict::Pass; 5]);
 }
 
-/// Every scene file of the repository whose planes lie behind smooth surfaces.
+/// Returns every scene file of the repository whose planes lie behind smooth surfaces.
 fn scene_files() -> Vec<Scene> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes");
     let read = |folder: &str| {

@@ -40,8 +40,8 @@ fn scene(name: &str) -> Scene {
     edited(name, &[])
 }
 
-/// A replacement of the number of photons, with which many rays of each batch hit a bright pixel
-/// through the lobe.
+/// The number of photons in a scene file and its replacement, with which many rays of each batch
+/// hit a bright pixel through the lobe.
 const MORE: (&str, &str) = ("photons: 200_000", "photons: 2_000_000");
 
 fn measured(scene: &Scene, source: &dyn PhotonSource) -> Measurement {

@@ -55,7 +55,7 @@ pub(crate) fn nearness(
     })
 }
 
-/// The slope between adjacent pixels at the centre of the picture.
+/// Returns the slope between adjacent pixels at the centre of the picture.
 fn pixel_angle(camera: &Camera) -> f64 {
     let [w, h] = camera.size.map(|n| 0.5 * n as f64);
     let [a, b] = [w, w + 1.0].map(|x| camera.look([x, h], [0.0; 2]).along);

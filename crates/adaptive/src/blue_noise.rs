@@ -116,7 +116,7 @@ impl Ord for Candidate {
     }
 }
 
-/// The maximum radius of discs of density 1 (Yuksel 2015, Eq. 1).
+/// Returns the maximum radius of discs of density 1 (Yuksel 2015, Eq. 1).
 fn largest_radius() -> f64 {
     (2.0 * 3.0_f64.sqrt()).recip().sqrt()
 }

@@ -34,8 +34,8 @@ pub(crate) fn criterion(
     Some(lobe.plus(shadow))
 }
 
-/// The squared bandwidth by Eqs. 20 and 21 as printed, as seen from `eye`; `None` if the surface
-/// has no lobe.
+/// Returns the squared bandwidth by Eqs. 20 and 21 as printed, as seen from `eye`; `None` if the
+/// surface has no lobe.
 pub(crate) fn printed(
     visible: &Visible,
     pixel: [usize; 2],
@@ -165,7 +165,7 @@ mod tests {
     const DISTANCE: f64 = 3.0;
     const ALPHA: f64 = 0.2;
 
-    /// A rough metal ball before a camera of narrow pixels.
+    /// Returns a rough metal ball before a camera of narrow pixels.
     fn seen() -> (Paths, Camera) {
         let world = World {
             shapes: vec![Shape {

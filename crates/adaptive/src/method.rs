@@ -275,7 +275,7 @@ impl AdaptiveRun<'_> {
         })
     }
 
-    /// The metrics by the criteria.
+    /// Returns the metrics by the criteria.
     pub(crate) fn predicted(&mut self) -> Vec<Option<Metric>> {
         let [w, h] = self.visible.size;
         let Shader {
@@ -471,7 +471,7 @@ fn pixel_at(at: [f64; 2], size: [usize; 2]) -> [usize; 2] {
     [0, 1].map(|k: usize| (at[k].max(0.0) as usize).min(size[k] - 1))
 }
 
-/// The index of the pixel at a position.
+/// Returns the index of the pixel at a position.
 pub(crate) fn pixel_of(at: [f64; 2], size: [usize; 2]) -> usize {
     let [column, row] = pixel_at(at, size);
     row * size[0] + column

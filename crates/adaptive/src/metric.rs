@@ -15,7 +15,7 @@ pub struct Metric {
 }
 
 impl Metric {
-    /// An isotropic metric.
+    /// Returns an isotropic metric.
     #[must_use]
     pub fn even(square: f64) -> Self {
         Self {
@@ -43,7 +43,7 @@ impl Metric {
         }
     }
 
-    /// The squared length of a step.
+    /// Returns the squared length of a step.
     #[must_use]
     pub(crate) fn square(&self, [x, y]: [f64; 2]) -> f64 {
         x * (self.xx * x + self.xy * y) + y * (self.xy * x + self.yy * y)
@@ -54,7 +54,7 @@ impl Metric {
         self.xx * self.yy - self.xy * self.xy
     }
 
-    /// The larger eigenvalue.
+    /// Returns the larger eigenvalue.
     #[must_use]
     pub fn largest(&self) -> f64 {
         let (mean, off) = (0.5 * (self.xx + self.yy), 0.5 * (self.xx - self.yy));

@@ -21,7 +21,7 @@ pub(crate) struct ShadedSample {
 }
 
 impl ShadedSample {
-    /// The radiance for values of base and lobe, with the factors of the surface.
+    /// Returns the radiance for values of base and lobe, with the factors of the surface.
     pub(crate) fn light(&self, value: [f64; 2]) -> f64 {
         let [base, lobe] = self.surface.factors;
         base * value[0] + lobe * value[1]
@@ -120,7 +120,7 @@ impl LocalSums {
         })
     }
 
-    /// The value of the fitted plane at the point.
+    /// Returns the value of the fitted plane at the point.
     fn plane(&self, of: &ValueSums) -> f64 {
         // Positions are relative to their mean. The added spread keeps the slope small if there
         // are few samples.

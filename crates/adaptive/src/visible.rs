@@ -109,12 +109,12 @@ impl Visible {
         }
     }
 
-    /// The points of a pixel.
+    /// Returns the points of a pixel.
     pub(crate) fn of_pixel(&self, [column, row]: [usize; 2]) -> &[SeenPlace] {
         &self.places[self.range([column, row])]
     }
 
-    /// The indices of a pixel's points.
+    /// Returns the indices of a pixel's points.
     pub(crate) fn range(&self, [column, row]: [usize; 2]) -> Range<usize> {
         let first = FOUR * (row * self.size[0] + column);
         first..first + FOUR

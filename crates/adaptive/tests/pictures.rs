@@ -13,7 +13,7 @@ const ALL: [SampleMethod; 5] = [
     SampleMethod::Variance,
 ];
 
-/// A ball of radius 1 and reflectance one half, in uniform light.
+/// Returns a ball of radius 1 and reflectance one half, in uniform light.
 fn ball() -> World {
     World {
         shapes: vec![Shape {

@@ -10,7 +10,7 @@ use etendue_theory::{
 };
 
 impl PathPlace {
-    /// The spectrum slice at azimuth 0.
+    /// Returns the spectrum slice at azimuth 0.
     #[must_use]
     pub fn spectrum(self, setup: &Setup) -> Slices {
         let (window, grid) = (window(setup), grid(setup));
@@ -29,8 +29,8 @@ impl PathPlace {
         }
     }
 
-    /// The light field in (x, u) with this many cells along each axis, its values in rows of
-    /// constant x.
+    /// Returns the light field in (x, u) with this many cells along each axis, its values in rows
+    /// of constant x.
     #[must_use]
     pub fn field(self, setup: &Setup, cells: usize) -> Projection {
         let window = window(setup);
@@ -53,15 +53,16 @@ impl PathPlace {
         }
     }
 
-    /// Spectrum and light field on a glossy receiver by nets of rays, as in `etendue predict`;
-    /// Returns `None` for other planes, whose predictions are not first-order approximations.
+    /// Predicts spectrum and light field on a glossy receiver by nets of rays, as `etendue
+    /// predict` does. Returns `None` for other planes, whose predictions are not first-order
+    /// approximations.
     #[must_use]
     pub fn followed(self, setup: &Setup) -> Option<(Slices, Projection)> {
         let found = rays::followed(self, setup)?;
         Some((found.slices, found.projection))
     }
 
-    /// The chain of operators before this plane, between parallel planes.
+    /// Returns the chain of operators before this plane, between parallel planes.
     fn chain(self, setup: &Setup) -> Chain {
         let (blockers, receiver) = (
             setup.get(SettingKey::Distance),

@@ -78,7 +78,7 @@ fn layers(setup: &Setup) -> Vec<(f64, Mask)> {
     vec![(setup.get(SettingKey::Distance), mask)]
 }
 
-/// The receiver in the frame at the light, facing it.
+/// Returns the receiver in the frame at the light, facing it.
 fn patch(setup: &Setup) -> Patch {
     let vertex = DVec3::Z * setup.get(SettingKey::Travel);
     Patch {
@@ -94,7 +94,8 @@ fn reflectance(setup: &Setup) -> Reflectance {
     Brdf::new(lobe, setup.get(SettingKey::Albedo), Fresnel::White).into()
 }
 
-/// A plane where the central ray meets the receiver. The ray goes straight back, so X is reversed.
+/// Returns a plane where the central ray meets the receiver. The ray goes straight back, so X is
+/// reversed.
 fn seen(patch: &Patch, orientation: Orientation, arriving: bool) -> rays::Plane {
     let frame = Frame::new(patch.frame.origin, DVec3::NEG_Z, DVec3::NEG_X);
     rays::Plane {

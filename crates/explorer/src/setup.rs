@@ -260,7 +260,7 @@ impl Default for Setup {
 const CLEARANCE: f64 = 0.02;
 
 impl Setup {
-    /// The value of a setting.
+    /// Returns the value of a setting.
     #[must_use]
     pub fn get(&self, key: SettingKey) -> f64 {
         self.values[key as usize]
@@ -300,8 +300,8 @@ impl Setup {
             .map(|entry| entry.key)
     }
 
-    /// The fragment of a URL, after #: all settings that differ from their defaults; it is never
-    /// empty.
+    /// Returns the fragment of a URL, after #: all settings that differ from their defaults; it is
+    /// never empty.
     #[must_use]
     pub fn fragment(&self) -> String {
         let mut text = String::new();

@@ -54,14 +54,14 @@ impl Files {
         })
     }
 
-    /// The bytes of a file found by [`Self::find`].
+    /// Returns the bytes of a file found by [`Self::find`].
     pub(crate) fn read(&self, path: &Path) -> Result<Vec<u8>, String> {
         let bytes = read_file(path, self.left.get()).map_err(|error| error.to_string())?;
         self.spend(bytes.len() as u64)?;
         Ok(bytes)
     }
 
-    /// The text of a file found by [`Self::find`].
+    /// Returns the text of a file found by [`Self::find`].
     pub(crate) fn read_text(&self, path: &Path) -> Result<String, String> {
         text(self.read(path)?)
     }

@@ -24,7 +24,7 @@ pub(crate) struct SourcePlace {
 }
 
 impl SourcePlace {
-    /// The place of a file as a whole.
+    /// Returns the place of a file as a whole.
     pub(crate) fn whole(file: &str) -> Self {
         let (line, column) = (0, 0);
         Self {

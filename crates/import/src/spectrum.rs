@@ -20,8 +20,8 @@ pub(crate) enum Role {
     Emission,
 }
 
-/// The linear sRGB colour of a spectrum: pairs of a wavelength, nm, in rising order, and a value.
-/// See [`Color`](crate::Color).
+/// Returns the linear sRGB colour of a spectrum: pairs of a wavelength, nm, in rising order, and a
+/// value. See [`Color`](crate::Color).
 pub(crate) fn rgb(samples: &[[f64; 2]], role: Role) -> [f64; 3] {
     let mut xyz = [0.0; 3];
     let mut next = 0;

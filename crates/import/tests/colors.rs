@@ -140,7 +140,7 @@ fn conductors_have_indices_of_refraction() {
     assert!(common::causes(both)[0].contains("material together with eta or k"));
 }
 
-/// A PNG picture of 2 × 1 pixels.
+/// Returns a PNG picture of 2 × 1 pixels.
 fn png() -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, 2, 1);

@@ -7,7 +7,7 @@ use crate::gltf_scene::{BASE, causes, mesh, notes, with, world};
 use etendue_world::{Light, Material, MicrofacetDistribution, Projection, Texture};
 use glam::{DVec2, DVec3};
 
-/// The value of a constant texture.
+/// Returns the value of a constant texture.
 fn constant(texture: &Texture) -> f64 {
     match texture {
         Texture::Constant(value) => *value,

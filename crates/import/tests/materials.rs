@@ -4,7 +4,7 @@ use crate::common::world;
 use etendue_world::{Material, Texture};
 use glam::DVec2;
 
-/// The texture's value in the first square of a checkerboard.
+/// Returns the texture's value in the first square of a checkerboard.
 fn first(texture: &Texture) -> f64 {
     texture.value(DVec2::splat(0.1))
 }

@@ -38,7 +38,7 @@ LightSource "infinite" "string filename" "b.hdr" LightSource "spot" "spectrum I"
 const SQUARE: &str = "#?RADIANCE\n\n-Y 2 +X 2\nabcdabcdabcdabcd";
 const PBRT_PART: &str = "Scale 2 2 2\nMaterial \"dielectric\" \"float eta\" 1.4\nShape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0]\n";
 
-/// A reproducible random sequence (Marsaglia 2003).
+/// Returns a reproducible random sequence (Marsaglia 2003).
 fn next(state: &mut u64) -> usize {
     *state ^= *state << 13;
     *state ^= *state >> 7;
@@ -137,7 +137,7 @@ fn no_byte_of_obj_makes_it_panic() {
     damage(&files, 6000);
 }
 
-/// A glTF scene that uses every feature.
+/// Returns a glTF scene that uses every feature.
 fn everything() -> String {
     let nodes = r#"{"mesh":0,"children":[1,2]},{"mesh":0,"rotation":[0,0.6,0,0.8],"scale":[-1,2,1],"camera":0},
 {"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,3,4,5,1],"extensions":{"KHR_lights_punctual":{"light":0}}}"#;

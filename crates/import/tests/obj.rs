@@ -33,7 +33,7 @@ fn read(obj: &str, mtl: &str) -> Imported {
     read_all(&text, mtl).unwrap_or_else(|causes| panic!("{causes:#?}"))
 }
 
-/// The material of a single square.
+/// Returns the material of a single square.
 fn material(mtl: &str) -> Material {
     let read = read(
         "usemtl m\nf 1/1 2/2 3/3 4/4\n",

@@ -168,7 +168,7 @@ fn lights_without_an_equal_are_refused() {
     );
 }
 
-/// A square Radiance picture of equal pixels, with one brighter pixel.
+/// Returns a square Radiance picture of equal pixels, with one brighter pixel.
 fn square(side: usize, bright: usize) -> Vec<u8> {
     let mut bytes = format!("#?RADIANCE\n\n-Y {side} +X {side}\n").into_bytes();
     for i in 0..side * side {

@@ -21,7 +21,7 @@ fn pbrt_causes(text: &str) -> Vec<String> {
     refused.causes.iter().map(ToString::to_string).collect()
 }
 
-/// The causes to refuse a scene of these files.
+/// Returns the causes to refuse a scene of these files.
 fn file_causes(files: &[(&str, &[u8])]) -> Vec<String> {
     let folder = folder(files);
     let refused = import(&folder.path().join(files[0].0), &Options::default()).unwrap_err();
@@ -93,7 +93,7 @@ fn an_illuminance_that_no_factor_reaches_is_refused() {
     );
 }
 
-/// A grey picture of two by two pixels.
+/// Returns a grey picture of two by two pixels.
 fn png(levels: &[u8; 4]) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, 2, 2);

@@ -51,7 +51,7 @@ impl<'a> PathNumbers<'a> {
         unit(self.left[self.used - 1])
     }
 
-    /// The next `N` numbers.
+    /// Returns the next `N` numbers.
     pub(crate) fn draw<const N: usize>(&mut self) -> [f64; N] {
         [(); N].map(|()| self.next())
     }

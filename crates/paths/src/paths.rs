@@ -45,9 +45,9 @@ impl Paths {
         }
     }
 
-    /// The radiance arriving at the origin of a ray, from distances within the visible range: an
-    /// unbiased estimate by one path. `before` is the number of surfaces between the origin and the
-    /// camera.
+    /// Returns the radiance arriving at the origin of a ray, from distances within the visible
+    /// range: an unbiased estimate by one path. `before` is the number of surfaces between the
+    /// origin and the camera.
     pub(crate) fn radiance(
         &self,
         ray: Ray,
@@ -63,7 +63,8 @@ impl Paths {
         sum
     }
 
-    /// The radiance emitted by sources along a ray, as seen by a camera behind `before` surfaces.
+    /// Returns the radiance emitted by sources along a ray, as seen by a camera behind `before`
+    /// surfaces.
     pub(crate) fn shown(&self, ray: &Ray, hit: Option<&Hit>, before: u32) -> f64 {
         if before > 0 || !self.hides_sources {
             self.emitted(ray, hit, None)
@@ -118,7 +119,7 @@ impl Paths {
         }
     }
 
-    /// The material at the hit.
+    /// Returns the material at the hit.
     pub(crate) fn scatter(&self, hit: &Hit) -> &Scatter {
         &self.materials[self.of_shape[hit.shape]]
     }

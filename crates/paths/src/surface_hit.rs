@@ -28,25 +28,25 @@ pub struct SurfaceHit {
 }
 
 impl SurfaceHit {
-    /// The index of the shape of the surface.
+    /// Returns the index of the shape of the surface.
     #[must_use]
     pub fn shape(&self) -> usize {
         self.hit.shape
     }
 
-    /// The position in the world.
+    /// Returns the position in the world.
     #[must_use]
     pub fn position(&self) -> DVec3 {
         self.hit.position
     }
 
-    /// The distance along the ray.
+    /// Returns the distance along the ray.
     #[must_use]
     pub fn distance(&self) -> f64 {
         self.hit.distance
     }
 
-    /// The shading normal, on the visible side.
+    /// Returns the shading normal, on the visible side.
     #[must_use]
     pub fn normal(&self) -> DVec3 {
         let normal = self.hit.frame.z_axis;
@@ -57,14 +57,14 @@ impl SurfaceHit {
         }
     }
 
-    /// The mirror direction of the ray, of unit length.
+    /// Returns the mirror direction of the ray, of unit length.
     #[must_use]
     pub fn mirrored(&self) -> DVec3 {
         let normal = self.normal();
         self.ray.along - 2.0 * self.ray.along.dot(normal) * normal
     }
 
-    /// The direction to the eye, in the frame of the surface.
+    /// Returns the direction to the eye, in the frame of the surface.
     fn wo(&self) -> DVec3 {
         self.hit.frame.transpose() * -self.ray.along
     }
@@ -97,13 +97,13 @@ impl Paths {
         }
     }
 
-    /// The kind of reflection of the surface.
+    /// Returns the kind of reflection of the surface.
     #[must_use]
     pub fn reflects(&self, seen: &SurfaceHit) -> Reflects {
         self.scatter(&seen.hit).kind(seen.hit.uv, seen.wo())
     }
 
-    /// The texture factors of base and lobe. A material with one part has only a base.
+    /// Returns the texture factors of base and lobe. A material with one part has only a base.
     #[must_use]
     pub fn factors(&self, seen: &SurfaceHit) -> [f64; 2] {
         self.scatter(&seen.hit).factors(seen.hit.uv, seen.wo())
@@ -140,8 +140,8 @@ impl Paths {
         ([base, mean - base], variance)
     }
 
-    /// The nearness of a point to what it reflects and to its blockers, from `rays` rays of each
-    /// kind. Distances below `nearest` count as `nearest`.
+    /// Returns the nearness of a point to what it reflects and to its blockers, from `rays` rays
+    /// of each kind. Distances below `nearest` count as `nearest`.
     #[must_use]
     pub fn nearness(
         &self,

@@ -245,7 +245,7 @@ impl View {
     }
 }
 
-/// A cube from −1 to 1 with flat faces.
+/// Returns a cube from −1 to 1 with flat faces.
 fn cube() -> Geometry {
     let sign = |i: usize, axis: usize| if i >> axis & 1 == 0 { -1.0 } else { 1.0 };
     let vertices = (0..8).map(|i| DVec3::new(sign(i, 0), sign(i, 1), sign(i, 2)));
@@ -264,7 +264,7 @@ fn cube() -> Geometry {
     ))
 }
 
-/// The mean of some pixels, with its standard error.
+/// Returns the mean of some pixels, with its standard error.
 fn mean(picture: &Picture, of: impl Fn(usize) -> bool) -> (f64, f64) {
     let pixels: Vec<usize> = (0..SIDE * SIDE).filter(|i| of(*i)).collect();
     let count = pixels.len() as f64;

@@ -10,7 +10,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// A narrow camera at a point that looks at another.
+/// Returns a narrow camera at a point that looks at another.
 fn camera(from: DVec3, at: DVec3) -> Camera {
     let along = (at - from).normalize();
     let left = along.any_orthonormal_vector();
@@ -53,7 +53,7 @@ fn scaled(scale: f64, z: f64) -> DAffine3 {
     )
 }
 
-/// A floor in z = 0 with reflectance one half, and more shapes and lights.
+/// Returns a floor in z = 0 with reflectance one half, and more shapes and lights.
 fn floor(more: Vec<Shape>, lights: Vec<Light>) -> World {
     let mut shapes = vec![shape(Geometry::Rectangle, scaled(10.0, 0.0), 0, None)];
     shapes.extend(more);
@@ -65,7 +65,7 @@ fn floor(more: Vec<Shape>, lights: Vec<Light>) -> World {
     }
 }
 
-/// The radiance of one pixel, with its standard error.
+/// Returns the radiance of one pixel, with its standard error.
 fn seen(world: &World, from: DVec3, at: DVec3, samples: u32) -> (f64, f64) {
     let picture = Paths::new(world).picture(&camera(from, at), samples, 3, &|_| {});
     (picture.mean[0], picture.variance[0].sqrt())

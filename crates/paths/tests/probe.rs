@@ -16,7 +16,7 @@ const QUESTION: Question = Question {
     azimuths: 2,
 };
 
-/// A camera at (0, −3, 2) that looks at the origin, 64 × 64 pixels.
+/// Returns a camera at (0, −3, 2) that looks at the origin, 64 × 64 pixels.
 fn camera() -> Camera {
     let from = DVec3::new(0.0, -3.0, 2.0);
     let along = -from.normalize();

@@ -56,8 +56,8 @@ pub struct Look {
 }
 
 impl Camera {
-    /// The ray through a point of the picture, in pixels to the right and down from its top left,
-    /// and a point of the lens in the unit disc.
+    /// Returns the ray through a point of the picture, in pixels to the right and down from its
+    /// top left, and a point of the lens in the unit disc.
     #[must_use]
     pub fn look(&self, [right, down]: [f64; 2], lens: [f64; 2]) -> Look {
         let [w, h] = self.size.map(|n| n as f64);

@@ -85,7 +85,7 @@ impl Triangles {
         &self.vertices
     }
 
-    /// The vertices of each triangle.
+    /// Returns the vertices of each triangle.
     #[must_use]
     pub fn corners(&self) -> &[[u32; 3]] {
         &self.corners

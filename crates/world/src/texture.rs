@@ -56,7 +56,7 @@ pub enum Filter {
 }
 
 impl Texture {
-    /// The value at texture coordinates of the surface.
+    /// Returns the value at texture coordinates of the surface.
     #[must_use]
     pub fn value(&self, uv: DVec2) -> f64 {
         match self {

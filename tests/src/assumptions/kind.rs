@@ -51,7 +51,7 @@ pub(super) fn assumption(reason: &str) -> Option<&'static str> {
     found.map(|(assumption, _)| *assumption)
 }
 
-/// All assumptions, each once.
+/// Returns all assumptions, each once.
 pub(super) fn assumptions() -> Vec<&'static str> {
     let mut all: Vec<&str> = PHRASES.iter().map(|(assumption, _)| *assumption).collect();
     all.extend([DARK, UNKNOWN]);

@@ -81,7 +81,7 @@ fn trial(scene: &Scene) -> Option<Trial> {
     }
 }
 
-/// The result of `work`, or its panic message.
+/// Returns the result of `work`, or its panic message.
 fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     // After a panic, nothing that the work modified is used.
     catch_unwind(AssertUnwindSafe(work)).map_err(|panic| {
@@ -142,7 +142,7 @@ fn has_words(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> bool {
         })
 }
 
-/// The prediction of a theory for a plane, without derivatives.
+/// Returns the prediction of a theory for a plane, without derivatives.
 fn predicted(plane: &VirtualPlane, theory: &Theory) -> Predicted {
     let picture = ProjectionGrid::new(&plane.window, 1);
     let over = (&plane.window, &plane.grid, &picture);

@@ -14,7 +14,8 @@ pub(super) fn claims(photons: u64) -> Vec<Claim> {
     all
 }
 
-/// Light with and without a small square in its way, in a window that contains the whole shadow.
+/// Measures light with and without a small square in its way, in a window that contains the whole
+/// shadow.
 fn shadow(
     light: &str,
     floor: f64,
@@ -83,7 +84,7 @@ fn tails(photons: u64) -> Claim {
 /// Half-widths of narrowing windows, metres.
 const HALVES: [f64; 4] = [0.8, 0.4, 0.2, 0.1];
 
-/// Light behind a grating of 5 /m in narrowing windows.
+/// Measures light behind a grating of 5 /m in narrowing windows.
 fn through(modulation: f64, photons: u64) -> [SeenScene; 4] {
     let grating = format!(
         "Grating(name: \"blockers\", center: (0, 0, 1), axis: X, frequency: 5, modulation: {modulation})"

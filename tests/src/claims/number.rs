@@ -23,7 +23,7 @@ impl ClaimNumber {
         format!("{} ({predicted})", uncertain(self.value, self.error))
     }
 
-    /// The number in another unit.
+    /// Returns the number in another unit, which is given by a factor.
     pub(super) fn per(&self, unit: f64) -> Self {
         Self {
             value: self.value / unit,
@@ -32,7 +32,7 @@ impl ClaimNumber {
         }
     }
 
-    /// The ratio of two independent numbers.
+    /// Returns the ratio of two independent numbers.
     pub(super) fn over(&self, other: &Self) -> Self {
         let value = self.value / other.value;
         let share = (self.error / self.value).hypot(other.error / other.value);
@@ -47,8 +47,8 @@ impl ClaimNumber {
 /// The slices of independent batches: one list for each plane from which a number is computed.
 pub(super) type Batches = Vec<Vec<Slices>>;
 
-/// A number computed from the mean slices, and its standard error, by the delete-one jackknife. The
-/// bias of |S|², of the order of the noise power, is removed (Quenouille 1956).
+/// Returns a number computed from the mean slices, and its standard error, by the delete-one
+/// jackknife. The bias of |S|², of the order of the noise power, is removed (Quenouille 1956).
 pub(super) fn jackknife(batches: &Batches, of: &dyn Fn(&[Slices]) -> f64) -> [f64; 2] {
     let count = batches[0].len();
     let sums: Vec<Slices> = batches.iter().map(|each| sum(each)).collect();
@@ -82,7 +82,7 @@ fn sum(batches: &[Slices]) -> Slices {
     sum
 }
 
-/// The value at a frequency of the grid, ρ ≥ 0 and ν ≥ 0, in slice `k`.
+/// Returns the value at a frequency of the grid, ρ ≥ 0 and ν ≥ 0, in slice `k`.
 pub(super) fn at(slices: &Slices, k: usize, [rho, nu]: [f64; 2]) -> Complex {
     let grid = &slices.grid;
     let m = whole((rho / grid.rho.spacing).round());

@@ -48,7 +48,7 @@ pub(super) fn squares(count: [u32; 2], pitch: f64, rest: &str) -> String {
     )
 }
 
-/// A plane with its own window and frequencies.
+/// Returns a plane with its own window and frequencies.
 pub(super) fn plane(at: &str, window: &str, frequencies: &str) -> String {
     format!(
         "(name: \"plane\", at: {at}, window: ({window}), frequencies: (azimuths: 1, {frequencies})),"
@@ -84,7 +84,7 @@ impl SeenScene {
         }
     }
 
-    /// A number computed from one plane.
+    /// Returns a number computed from one plane.
     pub(super) fn number(&self, plane: usize, of: impl Fn(&Slices) -> f64) -> ClaimNumber {
         number(&[(self, plane)], &|slices| of(&slices[0]))
     }

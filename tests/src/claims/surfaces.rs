@@ -106,7 +106,7 @@ fn fresnel(photons: u64) -> Claim {
     }
 }
 
-/// A sphere of 0.5 m in a wider beam, seen from three sides.
+/// Measures a sphere of 0.5 m in a wider beam, seen from three sides.
 fn mirror_sphere(photons: u64) -> Claim {
     let found = [0.0, 0.7, 1.4].map(|incidence| {
         let text = surface(

@@ -116,7 +116,7 @@ pub(crate) fn smallest(photons: u64, seed: u64) -> ReportSection {
     }
 }
 
-/// The smallest rejected size.
+/// Returns the smallest rejected size.
 fn rejected(fault: &SizedFault, scene: &Scene, sound: &Measurement) -> Option<f64> {
     let sizes = (0..=HALVES).map(|halves| LARGEST * 0.5_f64.powi(halves));
     sizes

@@ -25,7 +25,7 @@ impl InputKind {
         Self::Prediction,
     ];
 
-    /// The kind of a case: half of them are scenes.
+    /// Returns the kind of a case: half of them are scenes.
     pub(crate) fn of(case: u64) -> Self {
         match case % 20 {
             0..10 => Self::Scene,
@@ -177,7 +177,7 @@ fn is_slow(program: &Path, attack: &Attack, then: &[String], at: &Path) -> io::R
     Ok(ended.seconds > LONGEST.as_secs_f64() / 3.0)
 }
 
-/// The faults of the process itself.
+/// Returns the faults of the process itself.
 fn faults(ended: &Ended) -> Vec<HostileFault> {
     let message = String::from_utf8_lossy(&ended.stderr);
     let slow = ended.hung || ended.seconds > LONGEST.as_secs_f64();

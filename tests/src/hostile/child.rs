@@ -134,7 +134,7 @@ fn peak_of(status: &str) -> Option<u64> {
     Some(kilobytes * 1024)
 }
 
-/// The processor time in user and kernel mode.
+/// Returns the processor time in user and kernel mode.
 fn work_of(stat: &str) -> Option<Duration> {
     // The program name, in parentheses, may contain spaces.
     let (_, fields) = stat.rsplit_once(')')?;

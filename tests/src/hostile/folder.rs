@@ -57,7 +57,7 @@ pub(crate) fn differences<'a>(one: &'a Folder, other: &'a Folder) -> Vec<&'a str
     names.filter(differs).map(String::as_str).collect()
 }
 
-/// The files with all their parent folders.
+/// Returns the files with all their parent folders.
 pub(crate) fn with_parents(files: &Folder) -> Folder {
     let mut all = files.clone();
     for name in files.keys() {

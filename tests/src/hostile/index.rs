@@ -27,19 +27,19 @@ const WORDS: [&str; 16] = [
     "0.1.1",
 ];
 
-/// The text of an index, mutated.
+/// Returns the text of an index, mutated.
 pub(crate) fn mutated(index: &str, dice: &mut Dice) -> Vec<u8> {
     text::mutated(index, &WORDS, dice)
 }
 
-/// The index with one value changed, and a matching hash.
+/// Returns the index with one value changed, and a matching hash.
 pub(crate) fn with_other_value(index: &str, dice: &mut Dice) -> Option<String> {
     let mut tree: Value = serde_json::from_str(index).ok()?;
     change(&mut tree, dice);
     Some(printed(&tree, index.contains(TAIL)))
 }
 
-/// The index with another scene file, and matching hashes.
+/// Returns the index with another scene file, and matching hashes.
 pub(crate) fn with_scene(index: &str, scene: &Value) -> Option<String> {
     let mut tree: Value = serde_json::from_str(index).ok()?;
     tree["scene_file"] = scene.clone();
@@ -51,7 +51,7 @@ pub(crate) fn with_scene(index: &str, scene: &Value) -> Option<String> {
     Some(printed(&tree, index.contains(TAIL)))
 }
 
-/// The scene file in an index, with one value changed.
+/// Returns the scene file in an index, with one value changed.
 pub(crate) fn other_scene(index: &str, dice: &mut Dice) -> Option<Value> {
     let tree: Value = serde_json::from_str(index).ok()?;
     let mut scene = tree["scene_file"].clone();

@@ -132,7 +132,7 @@ fn one_png(color: png::ColorType, depth: png::BitDepth) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// A mutated picture in a valid scene.
+/// Returns a mutated picture in a valid scene.
 pub(crate) fn attack(seeds: &[Vec<Vec<u8>>; 2], dice: &mut Dice) -> Attack {
     let format = dice.below(2);
     let mut picture = dice.pick(&seeds[format]).clone();

@@ -81,18 +81,18 @@ fn seed(program: &Path, at: &Path, scene: &str) -> io::Result<Seed> {
     Ok(Seed { files, summary })
 }
 
-/// A command line without quotes, split into words.
+/// Returns a command line without quotes, split into words.
 pub(crate) fn words(command: &str) -> Vec<String> {
     command.split_whitespace().map(str::to_owned).collect()
 }
 
-/// A mutated part of a measurement.
+/// Returns a mutated part of a measurement.
 pub(crate) fn part(seeds: &[Seed], dice: &mut Dice) -> io::Result<Attack> {
     let stage = *dice.pick(&["a/", "b/"]);
     attack(dice.pick(seeds), stage, "measurement.json", dice)
 }
 
-/// A mutated prediction.
+/// Returns a mutated prediction.
 pub(crate) fn prediction(seeds: &[Seed], dice: &mut Dice) -> io::Result<Attack> {
     attack(dice.pick(seeds), "p/", "prediction.json", dice)
 }

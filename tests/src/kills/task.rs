@@ -9,7 +9,7 @@ use std::io;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// A command that writes.
+/// A command that writes results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Verb {
     Run,
@@ -41,7 +41,7 @@ impl Verb {
         }
     }
 
-    /// The command line for a seed; another seed gives another result.
+    /// Returns the command line for a seed; another seed gives another result.
     pub(super) fn arguments(self, seed: u64) -> Vec<String> {
         let ending = format!("--out out --quiet --threads 2 --seed {seed}");
         words(&match self {
@@ -135,7 +135,7 @@ fn task(
     })
 }
 
-/// The scene, in the folder of its results, and its mesh.
+/// Returns the scene, in the folder of its results, and its mesh.
 fn users() -> Folder {
     let scene = stages::with_mesh().replace("meshes/tetra.obj", "tetra.obj");
     let files = [("scene.ron", scene.as_str()), ("tetra.obj", TETRA)];

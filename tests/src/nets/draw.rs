@@ -101,7 +101,7 @@ impl SceneDice {
     }
 }
 
-/// A scene of a kind, as the text of its file.
+/// Returns a scene of a kind, as the text of its file.
 pub(super) fn scene(kind: BlockerKind, dice: &mut SceneDice) -> String {
     let [x, u] = [dice.between(0.15, 0.5), dice.between(0.15, 0.45)];
     let window = match dice.of(4) {
@@ -210,7 +210,7 @@ fn shapes(dice: &mut SceneDice, square: bool) -> String {
     shapes.join(", ")
 }
 
-/// A floor, its name, and a plane at it.
+/// Returns a floor, its name, and a plane at it.
 fn parallel(kind: BlockerKind, dice: &mut SceneDice) -> (String, &'static str, String) {
     let z = dice.between(1.1, 2.0);
     let floor = format!("Rectangle(name: \"floor\", center: (0, 0, {z}), size: (20, 20))");
@@ -227,7 +227,7 @@ fn parallel(kind: BlockerKind, dice: &mut SceneDice) -> (String, &'static str, S
     (floor, "floor", format!("(name: \"plane\", {plane})"))
 }
 
-/// A smooth surface, its name, and a plane behind it.
+/// Returns a smooth surface, its name, and a plane behind it.
 fn smooth(kind: BlockerKind, dice: &mut SceneDice) -> (String, &'static str, String) {
     let angle = dice.between(0.05, 0.7);
     let event = match kind {

@@ -26,7 +26,7 @@ fn beyond(distance: f64) -> f64 {
 /// A function that selects the quantity to judge from the outcome of a scene.
 type Reading = fn(&SceneOutcome) -> &Measured;
 
-/// All tables, including those of planted faults.
+/// Returns all tables, including those of planted faults.
 pub(super) fn sections(outcomes: &[SceneOutcome], left_out: usize) -> Vec<ReportSection> {
     let sound: Reading = |outcome| &outcome.sound;
     let all = judged(outcomes, sound, 1.0);
@@ -48,7 +48,7 @@ pub(super) fn sections(outcomes: &[SceneOutcome], left_out: usize) -> Vec<Report
 /// Whether a kind of scene belongs to a group.
 type Belongs = fn(BlockerKind) -> bool;
 
-/// The fractions beyond 1, 2 and 3 standard errors, with errors scaled by a factor.
+/// Returns the fractions beyond 1, 2 and 3 standard errors, with errors scaled by a factor.
 fn judged(outcomes: &[SceneOutcome], reading: Reading, scale: f64) -> ReportSection {
     let mut rows = Vec::new();
     let groups: [(&str, Belongs); 3] = [
@@ -98,7 +98,7 @@ fn judged(outcomes: &[SceneOutcome], reading: Reading, scale: f64) -> ReportSect
     }
 }
 
-/// The fractions for a group of scenes.
+/// Returns the fractions for a group of scenes.
 fn row(name: &str, of_group: &[&Measured], scale: f64) -> Row {
     let cells = vec![name.to_owned(), of_group.len().to_string()];
     let mut row = Row::new(cells, Vec::new());
@@ -137,8 +137,8 @@ fn row(name: &str, of_group: &[&Measured], scale: f64) -> Row {
     row
 }
 
-/// The standard error of a mean square over scenes. This error is estimated from the scatter over
-/// pairs of nets, because all scenes use the same nets.
+/// Returns the standard error of a mean square over scenes. This error is estimated from the
+/// scatter over pairs of nets, because all scenes use the same nets.
 fn common(of_group: &[&Measured], scale: f64) -> f64 {
     let count = of_group[0].pairs.len();
     let squares = (0..count).map(|pair| {
@@ -219,7 +219,7 @@ fn by_kind(outcomes: &[SceneOutcome], left_out: usize) -> ReportSection {
     }
 }
 
-/// The scenes with the largest ratios.
+/// Returns the scenes with the largest ratios.
 fn worst(outcomes: &[SceneOutcome]) -> ReportSection {
     let mut all: Vec<&SceneOutcome> = outcomes.iter().collect();
     all.sort_by(|a, b| b.sound.ratio.total_cmp(&a.sound.ratio));

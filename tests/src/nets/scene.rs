@@ -129,7 +129,7 @@ fn measured(found: &PredictionFound, truth: &Slices) -> Measured {
     }
 }
 
-/// The squared L2 ratio for the mean of two nets.
+/// Returns the squared L2 ratio for the mean of two nets.
 fn of_pair(pair: &[Slices], truth: &Slices, error: f64) -> f64 {
     let mut mean = pair[0].clone();
     mean.half += &pair[1].half;
@@ -162,7 +162,7 @@ fn theory(scene: &Scene, plane: &VirtualPlane) -> Option<Theory> {
     applicability.dark.is_none().then_some(applicability.theory)
 }
 
-/// A prediction by nets.
+/// Returns a prediction by nets.
 fn found(theory: &Theory, plane: &VirtualPlane, budget: RayBudget) -> Option<PredictionFound> {
     let picture = ProjectionGrid::new(&plane.window, 1);
     let over = (&plane.window, &plane.grid, &picture);
@@ -180,8 +180,8 @@ fn found(theory: &Theory, plane: &VirtualPlane, budget: RayBudget) -> Option<Pre
     })
 }
 
-/// The truth and its error: a closed form, or a prediction with enough rays to make the error
-/// small.
+/// Returns the truth and its error: a closed form, or a prediction with enough rays to make the
+/// error small.
 fn truth(
     theory: &Theory,
     plane: &VirtualPlane,

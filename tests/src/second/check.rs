@@ -60,7 +60,7 @@ impl SecondCheck {
     }
 }
 
-/// The difference of two numbers relative to the larger.
+/// Returns the difference of two numbers relative to the larger.
 pub(super) fn relative(a: f64, b: f64) -> f64 {
     let larger = worse(a.abs(), b.abs());
     if larger > 0.0 {

@@ -30,7 +30,7 @@ const FAULTS: &[&str] = &[
 /// The file name of the picture.
 const FILE: &str = "blend.png";
 
-/// The luminance of red, green and blue (Rec. ITU-R BT.709).
+/// Returns the luminance of red, green and blue (Rec. ITU-R BT.709).
 fn luminance([r, g, b]: [f64; 3]) -> f64 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }

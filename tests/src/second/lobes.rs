@@ -191,7 +191,7 @@ pub(super) fn fresnel(dice: &mut Dice) -> Fresnel {
     }
 }
 
-/// A direction within the lobe, occasionally below the surface.
+/// Returns a direction within the lobe, occasionally below the surface.
 fn to(dice: &mut Dice, lobe: Lobe, from: Vector) -> Vector {
     match lobe {
         Lobe::Lambertian => direction(dice),

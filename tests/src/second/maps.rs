@@ -74,7 +74,7 @@ impl Met {
         }
     }
 
-    /// The frame of axes in the coordinates at the light.
+    /// Returns the frame of axes in the coordinates at the light.
     fn frame(&self, axes: &Axes) -> Frame {
         let vector = |a: Vector| self.world.light.components(a).into();
         Frame {
@@ -123,7 +123,7 @@ impl Met {
     }
 }
 
-/// The deviation of a map from the derivative of a function at a ray.
+/// Returns the deviation of a map from the derivative of a function at a ray.
 fn apart(map: &AffineMap<4>, at: [f64; 4], of: impl Fn([f64; 4]) -> Option<[f64; 4]>) -> f64 {
     let each = (0..4).map(|i| {
         let moved = |by: f64| {

@@ -53,7 +53,7 @@ fn layer(dice: &mut Dice, world: &World) -> ([f64; 2], Vector) {
     ([x, y], world.light.point([x, y, 0.5]))
 }
 
-/// The transmittance of the resolved mask at points around its center, compared with its
+/// Compares the transmittance of the resolved mask, at points around its center, with its
 /// definition.
 fn against(
     dice: &mut Dice,

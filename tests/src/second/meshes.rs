@@ -142,7 +142,7 @@ impl Hill {
         }
     }
 
-    /// The slopes of the paraboloid at the hit.
+    /// Returns the slopes of the paraboloid at the hit.
     fn slopes(&self) -> [f64; 2] {
         [0, 1].map(|i| -self.curvature[i] * self.at[i])
     }
@@ -154,9 +154,9 @@ impl Hill {
         hit.map_or(1.0, |hit| distance(hit.normal.to_array(), normal))
     }
 
-    /// The curvature of the normal section along (dx, dy, p dx + q dy): the second fundamental
-    /// form divided by the first (do Carmo 1976, section 3.3). The curvature is positive if the
-    /// surface is convex.
+    /// Returns the curvature of the normal section along (dx, dy, p dx + q dy): the second
+    /// fundamental form divided by the first (do Carmo 1976, section 3.3). The curvature is
+    /// positive if the surface is convex.
     fn along(&self, [dx, dy]: [f64; 2]) -> (Vector, f64) {
         let [p, q] = self.slopes();
         let [k, l] = self.curvature;

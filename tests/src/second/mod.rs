@@ -80,7 +80,7 @@ fn checks() -> io::Result<Vec<SecondCheck>> {
     Ok(all.into_iter().flatten().collect())
 }
 
-/// A row for each planted fault.
+/// Returns a row for each planted fault.
 fn rows(check: &SecondCheck) -> Vec<Row> {
     let outcome = check.run();
     let (tolerance, reason) = check.tolerance;

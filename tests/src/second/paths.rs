@@ -135,13 +135,13 @@ impl Legs {
     }
 }
 
-/// A direction that leaves a surface on the side of the arriving light.
+/// Returns a direction that leaves a surface on the side of the arriving light.
 fn leaves(dice: &mut Dice, normal: Vector) -> Vector {
     let tilt = between(dice, 0.0, 1.3);
     super::vector::aside(dice, normal, tilt)
 }
 
-/// A random event of the central ray, and its text.
+/// Returns a random event of the central ray, and its text.
 fn turn(dice: &mut Dice, light: &Axes, facing: Vector) -> (Turn, String, String) {
     let mirror = plus(light.d, -2.0 * dot(light.d, facing), facing);
     match dice.below(3) {

@@ -22,7 +22,7 @@ pub(super) enum Pattern {
 }
 
 impl Pattern {
-    /// The value at a point given along the axes of the surface.
+    /// Returns the value at a point given along the axes of the surface.
     pub(super) fn value(&self, at: [f64; 2], fault: &str) -> f64 {
         let [s, t] = match fault {
             "axes swapped" => [at[1], at[0]],
@@ -47,8 +47,8 @@ pub(super) fn cosine(grating: &Grating, at: [f64; 2], fault: &str) -> f64 {
     0.5 + 0.5 * grating.modulation * angle.cos()
 }
 
-/// A checkerboard. Squares of half a period are counted along both axes from the vertex, and the
-/// value is 1 where the sum of the counts is even.
+/// Returns a checkerboard. Squares of half a period are counted along both axes from the vertex,
+/// and the value is 1 where the sum of the counts is even.
 fn checkerboard(period: f64, at: [f64; 2], fault: &str) -> f64 {
     let side = match fault {
         "a side is a period" => period,
@@ -68,8 +68,8 @@ impl Levels {
         self.values[row * self.width + column]
     }
 
-    /// A picture around the vertex, with its top along Y. The picture is bilinear between pixel
-    /// centres, constant beyond the outermost centres, and 0 beyond its edge.
+    /// Returns a picture around the vertex, with its top along Y. The picture is bilinear between
+    /// pixel centres, constant beyond the outermost centres, and 0 beyond its edge.
     fn picture(&self, [width, height]: [f64; 2], [s, t]: [f64; 2], fault: &str) -> f64 {
         if s.abs() > width / 2.0 || t.abs() > height / 2.0 {
             return 0.0;
@@ -99,8 +99,8 @@ impl Levels {
     }
 }
 
-/// The last of the ascending centres before a position, and the fraction of the way to the next
-/// centre. Positions beyond the outermost centres are clamped.
+/// Returns the last of the ascending centres before a position, and the fraction of the way to the
+/// next centre. Positions beyond the outermost centres are clamped.
 fn between(centres: &[f64], at: f64, fault: &str) -> (usize, f64) {
     let last = centres.len() - 1;
     if at <= centres[0] {

@@ -47,7 +47,8 @@ pub(super) fn checks(folder: &Rc<TempDir>, map: &Levels) -> Vec<SecondCheck> {
     ]
 }
 
-/// The axes of a map: Y is `up`, Z is the component of `front` orthogonal to it, X = Y × Z.
+/// Returns the axes of a map: Y is `up`, Z is the component of `front` orthogonal to it, X = Y ×
+/// Z.
 fn axes(dice: &mut Dice) -> (Axes, String) {
     let up = direction(dice);
     let tilt = between(dice, 0.3, 2.8);
@@ -74,7 +75,7 @@ fn origin(along: Vector, fault: &str) -> Vector {
     }
 }
 
-/// The radiance of the scene's light along a direction of the world.
+/// Returns the radiance of the scene's light along a direction of the world.
 fn fast(world: &World, light: &Light, along: Vector) -> f64 {
     let Light::Environment { environment } = light else {
         return f64::NAN;

@@ -159,7 +159,7 @@ impl Looking<'_> {
         worse(z, factors)
     }
 
-    /// The coordinates of the ray through a point along a unit vector.
+    /// Returns the coordinates of the ray through a point along a unit vector.
     pub(super) fn seen(&self, foot: Vector, along: Vector, fault: &str) -> Option<[f64; 4]> {
         if self.view == View::Across {
             let [x, y, z] = self.leg.coordinates(foot);
@@ -187,8 +187,8 @@ impl Looking<'_> {
         Some([s, t, theta - self.longitude, phi])
     }
 
-    /// The point where the line of a ray meets the plane's surface nearest to the central hit, and
-    /// the normal there.
+    /// Returns the point where the line of a ray meets the plane's surface nearest to the central
+    /// hit, and the normal there.
     fn met(&self, foot: Vector, along: Vector, fault: &str) -> Option<(Vector, Vector)> {
         let n = self.surface.d;
         let tangent = || {

@@ -87,7 +87,7 @@ pub(super) fn pair([a, b]: [f64; 2]) -> String {
     format!("({a:?}, {b:?})")
 }
 
-/// The difference of two frames in position and directions.
+/// Returns the difference of two frames in position and directions.
 pub(super) fn frames_apart(fast: &Frame, axes: &Axes) -> f64 {
     let pairs = [
         (fast.origin, axes.origin),

@@ -19,7 +19,7 @@ pub(super) struct Sphere<'a> {
 }
 
 impl Sphere<'_> {
-    /// The windowed spectrum at the scene's plane on the sphere, in local normals.
+    /// Returns the windowed spectrum at the scene's plane on the sphere, in local normals.
     ///
     /// `turn` is −1 if (θ, φ) are the angles of the direction from which light comes, rotated
     /// about the normal. `turn` is +1 if these angles are not rotated.

@@ -44,7 +44,7 @@ impl Bench {
         said(&view, &self.scene.planes[0])
     }
 
-    /// The photons of a modified scene, with modified crossings.
+    /// Returns the photons of a modified scene, with modified crossings.
     pub(super) fn tampered(
         &self,
         change: impl Fn(&mut Scene),
@@ -75,7 +75,7 @@ impl Bench {
     }
 }
 
-/// The measured slices.
+/// Returns the measured slices.
 ///
 /// # Panics
 /// If there are too few batches.
@@ -94,7 +94,7 @@ fn said(view: &Observed<ScatteringSystem>, plane: &VirtualPlane) -> Slices {
     exact
 }
 
-/// The BRDF of a scene, for modification.
+/// Returns the BRDF of a scene, for modification.
 ///
 /// # Panics
 /// If the scene has no BRDF.
@@ -105,8 +105,8 @@ pub(super) fn reflectance(scene: &mut Scene) -> &mut etendue_field::Reflectance 
     }
 }
 
-/// The direction at a point of a plane on a flat surface, and the direction towards a projector
-/// there: unit vectors along (T, B, N).
+/// Returns the direction at a point of a plane on a flat surface, and the direction towards a
+/// projector there: unit vectors along (T, B, N).
 pub(super) fn on_flat(scene: &Scene, crossing: &Crossing) -> [DVec3; 2] {
     let plane = &scene.planes[0];
     let ray = crossing.ray;

@@ -68,7 +68,8 @@ fn replicas() -> Statement {
     }
 }
 
-/// The 90 % bandwidth of coefficients: the smallest |n| below which 90 % of the energy lies.
+/// Returns the 90 % bandwidth of coefficients: the smallest |n| below which 90 % of the energy
+/// lies.
 fn bandwidth(coefficients: &[Complex]) -> usize {
     let middle = coefficients.len() / 2;
     let energy =

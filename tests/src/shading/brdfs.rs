@@ -22,7 +22,7 @@ const SCHLICK: FresnelFactor = FresnelFactor::Schlick {
     normal_reflectance: 0.04,
 };
 
-/// The theory's reflection by a sum of terms.
+/// Returns the theory's reflection by a sum of terms.
 pub(super) fn reflection(terms: Vec<SeparableTerm<'_>>) -> PlanarReflection<'_> {
     PlanarReflection {
         incidence: THETA0,
@@ -77,7 +77,7 @@ pub(super) fn lopsided(theta: f64) -> f64 {
     theta.cos() * (1.0 + 0.6 * theta.sin())
 }
 
-/// The Fourier transform of [`lopsided`].
+/// Returns the Fourier transform of [`lopsided`].
 pub(super) fn lopsided_hat(q: f64) -> Complex {
     let side = cosine_hat(q - 1.0 / TAU) - cosine_hat(q + 1.0 / TAU);
     Complex::new(cosine_hat(q), -0.3 * side)

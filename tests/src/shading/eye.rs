@@ -97,9 +97,9 @@ impl EyeScene {
         [c.lobe_cutoff * environment, c.lobe_cutoff * blocker, most]
     }
 
-    /// The frequency below which 99 % of the energy of an image lies, divided by the predicted
-    /// one. The Gaussian lobe is narrow enough for the surface to be linear. The image is that of
-    /// a distant point or, if `edge` is set, the derivative of the image of an edge.
+    /// Returns the frequency below which 99 % of the energy of an image lies, divided by the
+    /// predicted one. The Gaussian lobe is narrow enough for the surface to be linear. The image
+    /// is that of a distant point or, if `edge` is set, the derivative of the image of an edge.
     pub(super) fn image(&self, edge: bool, said: f64) -> f64 {
         const DEVIATION: f64 = 1e-4;
         const COUNT: i32 = 240;
@@ -149,7 +149,7 @@ impl EyeScene {
     }
 }
 
-/// The derivative by central differences, extrapolated.
+/// Returns the derivative by central differences, extrapolated.
 fn derivative(f: &dyn Fn(f64) -> [f64; 2]) -> [f64; 2] {
     let slope = |h: f64, i: usize| (f(h)[i] - f(-h)[i]) / (2.0 * h);
     [0, 1].map(|i| (4.0 * slope(0.5 * STEP, i) - slope(STEP, i)) / 3.0)

@@ -12,7 +12,7 @@ use etendue_theory::shading::{
 };
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// The 24 frequencies at which transforms are compared, in cycles per radian.
+/// Returns the 24 frequencies at which transforms are compared, in cycles per radian.
 fn line() -> Vec<f64> {
     (0..24).map(|i| 0.26 * f64::from(i) + 0.01).collect()
 }
@@ -21,8 +21,8 @@ fn curve(f: impl Fn(f64) -> f64) -> Vec<Complex> {
     line().into_iter().map(|omega| f(omega).into()).collect()
 }
 
-/// The transform, by quadrature, of an even function on |θ| < `end` that is given for θ > 0; the
-/// panels are finer towards the middle and the end.
+/// Returns the transform, by quadrature, of an even function on |θ| < `end` that is given for θ >
+/// 0; the panels are finer towards the middle and the end.
 fn plain(end: f64, inner: f64, f: &dyn Fn(f64) -> f64) -> Vec<Complex> {
     let mut cuts = vec![0.0];
     let mut at = inner;

@@ -463,7 +463,7 @@ fn range(bandwidth: f64, floor: f64) -> [f64; 2] {
     [bandwidth - error, bandwidth.hypot(floor) + error]
 }
 
-/// The measured points and the curves of the criteria.
+/// Returns the measured points and the curves of the criteria.
 fn panel(sweep: &GlossySweep, points: Vec<[f64; 3]>) -> CurvePanel {
     const COUNT: u32 = 80;
     // Four digits are enough for curves.

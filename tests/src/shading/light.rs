@@ -99,9 +99,9 @@ impl PrimalSurface<'_> {
         pieces.flatten().collect()
     }
 
-    /// The transform of the reflected light field in the outgoing light frame, with all angles and
-    /// positions linear in the incoming ones: x = −c₀ s, θ = θ_i' + k s − θ₀, θ_r' = −θ_i', x'' =
-    /// c₁ s, θ'' = θ_o' + k s − θ₁.
+    /// Returns the transform of the reflected light field in the outgoing light frame, with all
+    /// angles and positions linear in the incoming ones: x = −c₀ s, θ = θ_i' + k s − θ₀, θ_r' =
+    /// −θ_i', x'' = c₁ s, θ'' = θ_o' + k s − θ₁.
     pub(super) fn transform(&self, light: &dyn Fn([f64; 2]) -> f64, omega: [f64; 2]) -> Complex {
         let (c0, c1) = (self.theta0.cos(), self.theta1.cos());
         let incident = self.pieces(self.horizon, 120);

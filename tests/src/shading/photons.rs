@@ -160,7 +160,7 @@ fn operator(scene: &Scene, plane: &VirtualPlane) -> (String, Vec<Line>) {
     (word.to_owned(), vec![line])
 }
 
-/// The BRDF of the first surface.
+/// Returns the BRDF of the first surface.
 fn reflection(scene: &Scene) -> (String, Vec<Line>) {
     let hit = scene.path.legs[1].leaves.map(|hit| hit.object);
     let Some(Object::Patch(i)) = hit else {

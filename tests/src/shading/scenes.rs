@@ -34,7 +34,7 @@ const SCENES: &[(&str, &str)] = &[
 /// The number of scenes that scatter light: all but the last.
 const SHADED: usize = 14;
 
-/// Every scattering scene, by default with the photons of its file.
+/// Returns every scattering scene, by default with the photons of its file.
 pub(super) fn all(photons: Option<u64>) -> Vec<Scene> {
     let shaded = SCENES[..SHADED].iter();
     shaded
@@ -58,7 +58,7 @@ pub(super) fn changed(name: &str, photons: Option<u64>, texts: &[[&str; 2]]) -> 
     resolve(name, file, ".".as_ref(), u64::MAX).expect("a scene of shading is sound")
 }
 
-/// A scene reduced to one of its planes: all photons are aimed at its window.
+/// Returns a scene reduced to one of its planes: all photons are aimed at its window.
 ///
 /// # Panics
 /// If there is no such plane.

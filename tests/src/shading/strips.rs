@@ -16,7 +16,7 @@ pub(crate) fn strips(pair: u32, offset: f64) -> Strips {
     cuts.chunks(2).map(|cut| [cut[0], cut[1]]).collect()
 }
 
-/// The common openings of two masks in one plane.
+/// Returns the common openings of two masks in one plane.
 pub(crate) fn in_common(a: &Strips, b: &Strips) -> Strips {
     let pairs = a.iter().flat_map(|p| b.iter().map(move |q| (p, q)));
     let both = pairs.map(|(p, q)| [p[0].max(q[0]), p[1].min(q[1])]);

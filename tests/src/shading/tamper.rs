@@ -10,7 +10,7 @@ pub(super) fn scaled(mut crossing: Crossing, factor: f64) -> Crossing {
     crossing
 }
 
-/// The cosine of the angle of incidence.
+/// Returns the cosine of the angle of incidence.
 pub(super) fn cosine(scene: &Scene, crossing: &Crossing) -> f64 {
     let [_, from] = on_flat(scene, crossing);
     from.z

@@ -17,7 +17,7 @@ const WINDOW: [f64; 2] = [0.4, 0.5];
 /// Number of nodes on either side of the centre of each interval between two kinks.
 const NODES: i32 = 30;
 
-/// A rectangle and a half-plane as occluders.
+/// Compares the light behind a rectangle and behind a half-plane.
 pub(super) fn all() -> Vec<OperatorComparison> {
     let rectangle = Rectangle {
         center: [0.1, -0.05],

@@ -157,7 +157,7 @@ fn rows(outcome: &TableRun) -> Vec<Row> {
     rows
 }
 
-/// The section on the errata.
+/// Returns the section on the errata.
 fn section(outcomes: &[&TableRun]) -> ReportSection {
     ReportSection {
         title: "Errata: each misprint alone".to_owned(),

@@ -136,7 +136,7 @@ fn total(batches: &[Vec<CrossingSums>], without: Option<usize>) -> Vec<[f64; 2]>
     (0..planes).map(variance).collect()
 }
 
-/// The foci predicted by rays.
+/// Returns the foci predicted by rays.
 ///
 /// # Panics
 /// If no light arrives.
@@ -158,7 +158,7 @@ fn predicted(scene: &Scene, distances: &[f64]) -> [f64; 2] {
     narrowest(&variances, distances)
 }
 
-/// The minima of parabolas fitted to variances.
+/// Returns the minima of parabolas fitted to variances.
 fn narrowest(variances: &[[f64; 2]], distances: &[f64]) -> [f64; 2] {
     [0, 1].map(|axis: usize| {
         let values: Vec<f64> = variances.iter().map(|v| v[axis]).collect();
@@ -166,7 +166,7 @@ fn narrowest(variances: &[[f64; 2]], distances: &[f64]) -> [f64; 2] {
     })
 }
 
-/// The vertex of the least-squares parabola.
+/// Returns the vertex of the least-squares parabola.
 fn vertex(x: &[f64], y: &[f64]) -> f64 {
     let count = x.len() as f64;
     let mean = x.iter().sum::<f64>() / count;

@@ -36,7 +36,7 @@ pub(super) enum KnownOrder {
 }
 
 impl KnownOrder {
-    /// The known order for a plane.
+    /// Returns the known order for a plane.
     pub(super) fn expected(view: &Observed<SpecularSystem>) -> Self {
         let Observed { system, plane } = view;
         let across = plane.orientation == Orientation::Orthogonal;
@@ -99,7 +99,7 @@ pub(super) fn fall(outcome: &TableRun, index: usize) -> Fall {
     }
 }
 
-/// The slope of the least-squares line.
+/// Returns the slope of the least-squares line.
 pub(crate) fn slope(points: &[[f64; 2]]) -> f64 {
     let count = points.len() as f64;
     let mean = |axis: usize| points.iter().map(|p| p[axis]).sum::<f64>() / count;

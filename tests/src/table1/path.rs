@@ -124,7 +124,7 @@ impl MirrorPath {
         [x + self.travels[1] * theta.tan(), theta]
     }
 
-    /// The point where a line hits the circle near the origin.
+    /// Returns the point where a line hits the circle near the origin.
     fn hit(&self, [s, h]: [f64; 2], along: Direction) -> [f64; 2] {
         let Direction(a, b) = along;
         // k (s² + h²) + 2 h = 0.

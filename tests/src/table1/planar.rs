@@ -131,7 +131,7 @@ impl StageFound {
 }
 
 impl MirrorPath {
-    /// Both comparisons.
+    /// Returns both comparisons.
     pub(super) fn found(&self, stage: PathStage) -> StageFound {
         let traced = SIZES.map(|size| {
             let (said, frequencies, field) = self.said(stage, size);
@@ -150,8 +150,8 @@ impl MirrorPath {
         }
     }
 
-    /// The order known in advance. The order is 1 at oblique incidence. The order is 2 at normal
-    /// incidence, and also if the only approximation is that of tangents by angles.
+    /// Returns the order known in advance. The order is 1 at oblique incidence. The order is 2 at
+    /// normal incidence, and also if the only approximation is that of tangents by angles.
     fn known(&self, stage: PathStage) -> f64 {
         let flat_mirror = self.k == 0.0 && self.media.is_none();
         match stage {

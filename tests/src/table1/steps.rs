@@ -27,7 +27,7 @@ impl Steps {
         }
     }
 
-    /// The chain up to a plane.
+    /// Returns the chain up to a plane.
     pub(super) fn chain(&self, plane: &VirtualPlane) -> SpectrumMap<4> {
         let mut map = AffineMap::travel(match plane.leg {
             0 => plane.distance,

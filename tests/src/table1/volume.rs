@@ -187,7 +187,7 @@ fn with_cosines([x, y, u, v]: [f64; 4]) -> [f64; 4] {
     [x, y, u / length, v / length]
 }
 
-/// A ray from a point of the light's plane with direction cosines.
+/// Returns a ray from a point of the light's plane with direction cosines.
 fn start([x, y, p, q]: [f64; 4]) -> VolumeRay {
     VolumeRay {
         point: DVec3::new(x, y, 0.0),
@@ -220,7 +220,7 @@ fn follow(element: &SpecularSurface, ray: &VolumeRay) -> Option<VolumeRay> {
     })
 }
 
-/// The point where a ray's line crosses a plane, and its direction cosines.
+/// Returns the point where a ray's line crosses a plane, and its direction cosines.
 fn coordinates(plane: &Frame, ray: &VolumeRay) -> Option<[f64; 4]> {
     let (at, along) = (
         plane.to_local(ray.point),

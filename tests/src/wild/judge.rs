@@ -67,7 +67,7 @@ pub(super) struct JudgedScene {
 /// rays in each batch.
 pub(crate) const HANDFUL: u64 = 640;
 
-/// The seed of the scene for its first run, and those of two more runs.
+/// Returns the seed of the scene for its first run, and those of two more runs.
 fn seeds(file: &SceneFile) -> [u64; 3] {
     [0, 1, 2].map(|i| file.run.seed + i)
 }
@@ -102,7 +102,7 @@ pub(super) fn judge(runner: &Runner, file: &SceneFile) -> io::Result<JudgedScene
     Ok(judged)
 }
 
-/// The fault of a run that did not finish.
+/// Returns the fault of a run that did not finish.
 fn trouble(ending: &RunEnding) -> Option<(SceneTrouble, String)> {
     match ending {
         RunEnding::Panic(says) => Some((SceneTrouble::Panic, says.clone())),

@@ -82,7 +82,7 @@ impl PlaneSummary {
     }
 }
 
-/// A scene file as its text.
+/// Returns a scene file as its text.
 pub(crate) fn text(file: &SceneFile) -> io::Result<String> {
     let pretty = PrettyConfig::new().depth_limit(3);
     ron::Options::default()
@@ -131,7 +131,7 @@ impl Runner {
     }
 }
 
-/// The outcome of a run without a result.
+/// Returns the outcome of a run without a result.
 fn early(ended: &Ended) -> Option<RunEnding> {
     let stderr = String::from_utf8_lossy(&ended.stderr);
     if ended.hung {

@@ -44,7 +44,7 @@ pub(crate) fn scene(seed: u64, index: u64, photons: u64, folder: &Path) -> io::R
     Ok(file)
 }
 
-/// A light, and a plane at it.
+/// Returns a light, and a plane at it.
 fn empty(draw: &mut SceneDraw, photons: u64) -> io::Result<SceneFile> {
     let light = light::light(draw)?;
     let window = window(draw);
@@ -155,7 +155,7 @@ fn is_specular(surface: &SurfaceFile) -> bool {
     event.is_some_and(|event| !matches!(event, EventFile::Reflects { .. } | EventFile::Sum { .. }))
 }
 
-/// The central ray of a valid scene.
+/// Returns the central ray of a valid scene.
 fn central_ray(file: &SceneFile, folder: &Path) -> Option<CentralRay> {
     let scene = resolve("wild", file.clone(), folder, u64::MAX).ok()?;
     Some(scene.path)

@@ -67,7 +67,8 @@ pub(crate) fn several(options: &SmallOptions) -> io::Result<ReportSection> {
     Ok(section(options, &tried?))
 }
 
-/// A scene whose central ray visits two or more surfaces, with one plane and usually an occluder.
+/// Returns a scene whose central ray visits two or more surfaces, with one plane and usually an
+/// occluder.
 fn drawn(options: &SmallOptions, number: u64, folder: &Path) -> Option<Scene> {
     const TRIES: u64 = 40;
     let resolved = |file: &SceneFile| resolve("several", file.clone(), folder, u64::MAX).ok();
@@ -100,7 +101,7 @@ fn drawn(options: &SmallOptions, number: u64, folder: &Path) -> Option<Scene> {
     None
 }
 
-/// The number of scattering surfaces before the plane.
+/// Returns the number of scattering surfaces before the plane.
 fn scatterers(scene: &Scene) -> usize {
     let legs = scene.path.legs[..=scene.planes[0].leg].iter();
     let hits = legs.filter_map(|leg| leg.leaves);

@@ -164,7 +164,7 @@ fn digits(x: f64) -> usize {
     }
 }
 
-/// Every value of a tree, with its path.
+/// Returns every value of a tree, with its path.
 fn places(tree: &Value, at: String) -> Vec<(String, &Value)> {
     let mut found = vec![(at.clone(), tree)];
     match tree {

@@ -122,7 +122,7 @@ pub(super) fn keep(
     fs::write(folder.join("scene.ron"), text(&scene.file)?)
 }
 
-/// A scene with one plane and a small object of one of [`KINDS`] in its light.
+/// Returns a scene with one plane and a small object of one of [`KINDS`] in its light.
 fn drawn(options: &SmallOptions, number: u64, folder: &Path) -> Option<(Scene, usize)> {
     let mut draw = SceneDraw::new(options.seed ^ 0x5311, number, folder);
     let mut file = scene(options.seed, number, options.photons, folder).ok()?;
@@ -187,7 +187,7 @@ pub(super) fn plane(draw: &mut SceneDraw, scene: &Scene) -> PlaneFile {
     }
 }
 
-/// A relative coordinate in the window: anywhere, or near its edge.
+/// Returns a relative coordinate in the window: anywhere, or near its edge.
 fn share(draw: &mut SceneDraw) -> f64 {
     if draw.one_in(2) {
         draw.between(-1.0, 1.0)
@@ -262,7 +262,7 @@ pub(super) fn object(
     kind
 }
 
-/// The direction from which light comes to the plane.
+/// Returns the direction from which light comes to the plane.
 fn towards_light(scene: &Scene) -> DVec3 {
     let plane = &scene.planes[0];
     -scene.path.frame.decompose(&plane.frame).d

@@ -138,7 +138,7 @@ fn crates() -> Vec<String> {
     names
 }
 
-/// The workspace crates among the dependencies of a manifest, without those of tests.
+/// Returns the workspace crates among the dependencies of a manifest, without those of tests.
 fn uses(manifest: &str) -> BTreeSet<String> {
     let own = manifest
         .split("\n[dependencies]")
@@ -280,7 +280,7 @@ fn a_planted_circle_is_found() {
     );
 }
 
-/// The source files of the workspace with their text.
+/// Returns the source files of the workspace with their text.
 fn files() -> BTreeMap<String, String> {
     fn collect(folder: &Path, found: &mut BTreeMap<String, String>) {
         for entry in fs::read_dir(folder).unwrap() {

@@ -16,7 +16,8 @@ type Imports = BTreeMap<String, Vec<String>>;
 /// Maximum length of a chain of re-exports; a longer chain is a cycle.
 const MAX_REEXPORTS: usize = 8;
 
-/// The modules below a source folder, each without comments and code compiled only for tests.
+/// Returns the modules below a source folder, each without comments and code compiled only for
+/// tests.
 pub(crate) fn modules(src: &Path) -> Modules {
     let mut found = Modules::new();
     collect(src, &Module::new(), &mut found);
@@ -44,7 +45,7 @@ fn collect(folder: &Path, parent: &Module, found: &mut Modules) {
     }
 }
 
-/// A text without tests, comments and string contents.
+/// Returns a text without tests, comments and string contents.
 pub(crate) fn code(text: &str) -> String {
     let end = text.find("\n#[cfg(test)]\n").unwrap_or(text.len());
     let lines = text[..end].lines();
@@ -54,7 +55,7 @@ pub(crate) fn code(text: &str) -> String {
     outside.collect::<Vec<_>>().join("\"\"")
 }
 
-/// The cycles of modules that use each other, each sorted by name.
+/// Returns the cycles of modules that use each other, each sorted by name.
 pub(crate) fn circles(modules: &Modules) -> Vec<BTreeSet<String>> {
     let names: Vec<&Module> = modules.keys().collect();
     let uses: BTreeMap<&Module, BTreeSet<Module>> = names
@@ -85,7 +86,7 @@ fn shown(module: &Module) -> String {
     }
 }
 
-/// All modules reachable from a module.
+/// Returns all modules reachable from a module.
 fn reached<'a>(
     uses: &'a BTreeMap<&'a Module, BTreeSet<Module>>,
     from: &Module,
@@ -114,7 +115,7 @@ fn used(modules: &Modules, module: &Module) -> BTreeSet<Module> {
     resolved.filter(|found| found != module).collect()
 }
 
-/// The imports of a text, each with a flag for re-exports, and the remaining text.
+/// Returns the imports of a text, each with a flag for re-exports, and the remaining text.
 fn split(text: &str) -> (Vec<(bool, Vec<String>)>, String) {
     let mut imports = Vec::new();
     let mut rest = String::new();
@@ -133,7 +134,7 @@ fn split(text: &str) -> (Vec<(bool, Vec<String>)>, String) {
     (imports, rest)
 }
 
-/// The position of the first `use`.
+/// Returns the position of the first `use`.
 fn find_use(text: &str) -> Option<usize> {
     let starts = text.match_indices("use ").map(|(at, _)| at);
     let is_word = |at: &usize| {

@@ -131,7 +131,7 @@ impl<'a> GltfReader<'a> {
         }
     }
 
-    /// A matrix from sixteen numbers in column-major order.
+    /// Returns a matrix from sixteen numbers in column-major order.
     fn matrix(&self, matrix: [f32; 16], path: &str) -> Option<DAffine3> {
         let m = matrix.map(f64::from);
         let is_affine = [m[3], m[7], m[11], m[15] - 1.0]
@@ -146,7 +146,7 @@ impl<'a> GltfReader<'a> {
         Some(DAffine3::from_mat3_translation(linear, column(3)))
     }
 
-    /// A transform from scale, rotation and translation, applied in this order.
+    /// Returns a transform from scale, rotation and translation, applied in this order.
     fn split(&self, node: &Node, path: &str) -> Option<DAffine3> {
         let three = |v: Option<[f32; 3]>, or| v.map_or(or, |v| DVec3::from(v.map(f64::from)));
         let turn = match &node.rotation {

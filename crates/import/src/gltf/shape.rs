@@ -144,7 +144,7 @@ impl<'a> GltfReader<'a> {
     }
 }
 
-/// The diagonal of the bounding box of a mesh.
+/// Returns the diagonal of the bounding box of a mesh.
 fn extent(mesh: &Triangles) -> f64 {
     let nothing = [DVec3::INFINITY, DVec3::NEG_INFINITY];
     let grow = |[low, high]: [DVec3; 2], v: &DVec3| [low.min(*v), high.max(*v)];

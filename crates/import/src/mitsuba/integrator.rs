@@ -46,8 +46,8 @@ impl<'a> MitsubaReader<'a> {
         self.report.note(&object.place, message);
     }
 
-    /// The depth. Mitsuba counts the edges of a path, so depth 1 shows only sources, and depth 2
-    /// adds direct light.
+    /// Returns the depth. Mitsuba counts the edges of a path, so depth 1 shows only sources, and
+    /// depth 2 adds direct light.
     fn depth(&self, object: &'a MitsubaObject) -> Option<u32> {
         match self.whole(object, "max_depth")? {
             -1 => None,

@@ -99,7 +99,7 @@ impl<'a> MitsubaReader<'a> {
         Some(path)
     }
 
-    /// The triangles of a mesh, and whether their normals were computed.
+    /// Returns the triangles of a mesh, and whether their normals were computed.
     fn triangles(
         &mut self,
         object: &'a MitsubaObject,

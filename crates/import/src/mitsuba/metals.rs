@@ -1,7 +1,8 @@
 //! Complex indices of refraction of named conductors, as colours in linear sRGB.
 //!
-//! Mitsuba 3.9.1 converted them from its tables of n and k by wavelength (from luxpop.com, Palik
-//! and others), by the rule stated at [`Color`](crate::Color). Negative components are set to 0.
+//! Mitsuba 3.9.1 converted these indices from its tables of n and k by wavelength (from
+//! luxpop.com, Palik and others), by the rule stated at [`Color`](crate::Color). Negative
+//! components are set to 0.
 
 /// Red, green and blue.
 type MetalRgb = [f64; 3];

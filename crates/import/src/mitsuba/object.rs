@@ -100,7 +100,7 @@ impl ObjectKind {
         })
     }
 
-    /// The element name.
+    /// Returns the element name.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Scene => "scene",

@@ -214,7 +214,7 @@ impl<'a> MitsubaReader<'a> {
         }))
     }
 
-    /// The picture given by `filename`.
+    /// Returns the picture given by `filename`.
     pub(super) fn picture(
         &mut self,
         object: &'a MitsubaObject,

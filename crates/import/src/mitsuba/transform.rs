@@ -63,7 +63,7 @@ fn look_at(origin: DVec3, target: DVec3, up: DVec3) -> Option<DAffine3> {
     Some(DAffine3::from_mat3_translation(linear, origin))
 }
 
-/// The frame around a unit vector, as in Mitsuba (Duff et al. 2017).
+/// Returns the frame around a unit vector, as in Mitsuba (Duff et al. 2017).
 pub(super) fn frame(z: DVec3) -> DMat3 {
     let sign = 1.0_f64.copysign(z.z);
     let a = -1.0 / (sign + z.z);
@@ -73,7 +73,7 @@ pub(super) fn frame(z: DVec3) -> DMat3 {
     DMat3::from_cols(s, t, z)
 }
 
-/// The rotation about a unit axis (Rodrigues).
+/// Returns the rotation about a unit axis (Rodrigues).
 fn rotation(axis: DVec3, angle: f64) -> DAffine3 {
     let (sin, cos) = libm::sincos(angle);
     let column =

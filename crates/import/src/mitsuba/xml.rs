@@ -180,7 +180,7 @@ impl<'a> Tree<'a> {
         }
     }
 
-    /// The attributes with parameters substituted.
+    /// Returns the attributes with parameters substituted.
     pub(super) fn attributes(&mut self, node: Node<'_, '_>) -> Result<Attributes, String> {
         let mut made = Vec::new();
         for attribute in node.attributes() {

@@ -138,7 +138,7 @@ impl ObjReader<'_> {
         })
     }
 
-    /// The transparency. The outer `None` means that a cause of refusal was reported.
+    /// Returns the transparency. The outer `None` means that a cause of refusal was reported.
     #[expect(
         clippy::option_option,
         reason = "the outer `None` means a reported cause"

@@ -44,7 +44,7 @@ impl PbrtReader<'_> {
         }
     }
 
-    /// An emitting picture.
+    /// Returns an emitting picture.
     fn shown(&mut self, area: &Entity, uv: Uv) -> Read<EmittedRadiance> {
         for name in ["L", "power"] {
             if area.has(name) {

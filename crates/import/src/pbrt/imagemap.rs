@@ -83,7 +83,7 @@ impl PbrtReader<'_> {
         self.picture(entity, curve)
     }
 
-    /// The picture given by `filename`.
+    /// Returns the picture given by `filename`.
     pub(super) fn picture(&mut self, entity: &Entity, curve: TransferCurve) -> Read<Arc<Raster>> {
         let name = self.file_name(entity)?;
         let found = self.find(name);

@@ -55,12 +55,12 @@ impl Builder<'_> {
     }
 }
 
-/// The text of a file, unpacked if its name ends in .gz.
+/// Returns the text of a file, unpacked if its name ends in .gz.
 pub(super) fn read(files: &Files, path: &Path) -> Result<String, String> {
     text(bytes(files, path)?)
 }
 
-/// The bytes of a file, unpacked if its name ends in .gz.
+/// Returns the bytes of a file, unpacked if its name ends in .gz.
 pub(super) fn bytes(files: &Files, path: &Path) -> Result<Vec<u8>, String> {
     let packed = files.read(path)?;
     if path

@@ -101,12 +101,12 @@ impl<'a> PbrtReader<'a> {
         self.noted.borrow_mut().insert(key)
     }
 
-    /// The path of a file; names are relative to the folder of the scene.
+    /// Returns the path of a file; names are relative to the folder of the scene.
     pub(super) fn find(&self, name: &str) -> Result<PathBuf, String> {
         self.files.find(std::slice::from_ref(&self.folder), name)
     }
 
-    /// The file name parameter of an entity.
+    /// Returns the file name parameter of an entity.
     pub(super) fn file_name<'b>(&self, entity: &'b Entity) -> Read<&'b str> {
         let name = entity.text(self.report, "filename")?;
         name.ok_or_else(|| {

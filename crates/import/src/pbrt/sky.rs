@@ -95,7 +95,7 @@ fn longitudes(square: &Raster, scale: f64) -> Option<Raster> {
     Raster::new(w, h, (0..w * h).map(pixel).collect())
 }
 
-/// The pixel that a direction falls into.
+/// Returns the pixel that a direction falls into.
 fn nearest(square: &Raster, toward: DVec3) -> f64 {
     let side = square.width();
     #[expect(
@@ -122,7 +122,7 @@ fn place(toward: DVec3) -> [f64; 2] {
     [u.copysign(toward.x), v.copysign(toward.y)].map(|v| (v + 1.0) / 2.0)
 }
 
-/// The direction for a position in the unit square.
+/// Returns the direction for a position in the unit square.
 fn direction(place: [f64; 2]) -> DVec3 {
     let [u, v] = place.map(|v| 2.0 * v - 1.0);
     let signed = 1.0 - (u.abs() + v.abs());

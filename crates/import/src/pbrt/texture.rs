@@ -26,7 +26,7 @@ pub(super) enum Ask {
 }
 
 impl PbrtReader<'_> {
-    /// The texture of a parameter, or a constant if it is missing.
+    /// Returns the texture of a parameter, or a constant if it is missing.
     pub(super) fn texture_or(
         &mut self,
         entity: &Entity,
@@ -136,8 +136,8 @@ impl PbrtReader<'_> {
         }
     }
 
-    /// A checkerboard with squares of one unit: the first value applies where the coordinates,
-    /// rounded down, are both even or both odd.
+    /// Returns a checkerboard with squares of one unit: the first value applies where the
+    /// coordinates, rounded down, are both even or both odd.
     fn checkerboard(&mut self, entity: &Entity, ask: Ask, uv: Uv) -> Read<Texture> {
         if entity.integer_or(self.report, "dimension", 2)? != 2 {
             let message = "a checkerboard of dimension 3; allowed: 2".to_owned();

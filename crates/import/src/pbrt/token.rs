@@ -45,7 +45,7 @@ impl<'a> Tokens<'a> {
         }
     }
 
-    /// A place in this file.
+    /// Returns a place in this file.
     pub(super) fn place(&self, at: LineColumn) -> SourcePlace {
         SourcePlace {
             file: Rc::clone(&self.file),
@@ -54,7 +54,7 @@ impl<'a> Tokens<'a> {
         }
     }
 
-    /// The current position.
+    /// Returns the current position.
     pub(super) fn here(&self) -> SourcePlace {
         self.place(self.at)
     }

@@ -26,28 +26,28 @@ pub(crate) fn read_in(inside: &str, folder: &Path, color: Color) -> Result<Impor
     read.map_err(|refused| refused.causes.iter().map(ToString::to_string).collect())
 }
 
-/// The world of a scene without files.
+/// Returns the world of a scene without files.
 pub(crate) fn world(inside: &str) -> World {
     let folder = tempfile::tempdir().unwrap();
     let read = read_in(inside, folder.path(), Color::Luminance);
     read.unwrap_or_else(|causes| panic!("{causes:#?}")).world
 }
 
-/// All causes to refuse a scene without files.
+/// Returns all causes to refuse a scene without files.
 pub(crate) fn causes(inside: &str) -> Vec<String> {
     let folder = tempfile::tempdir().unwrap();
     let read = read_in(inside, folder.path(), Color::Luminance);
     read.map(|read| read.world).unwrap_err()
 }
 
-/// All notes on a scene without files.
+/// Returns all notes on a scene without files.
 pub(crate) fn notes(inside: &str) -> Vec<String> {
     let folder = tempfile::tempdir().unwrap();
     let read = read_in(inside, folder.path(), Color::Luminance).unwrap();
     read.notes.iter().map(ToString::to_string).collect()
 }
 
-/// A folder with files.
+/// Returns a folder with files.
 pub(crate) fn folder(files: &[(&str, &[u8])]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     for (name, bytes) in files {

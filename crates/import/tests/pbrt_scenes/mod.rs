@@ -30,31 +30,31 @@ fn read(text: &str) -> Result<Imported, Vec<String>> {
     read_in(text, folder.path(), Color::Luminance)
 }
 
-/// The world of a scene without files.
+/// Returns the world of a scene without files.
 pub(crate) fn world(inside: &str) -> World {
     read(&scene("", inside))
         .unwrap_or_else(|causes| panic!("{causes:#?}"))
         .world
 }
 
-/// The world of a scene with settings only.
+/// Returns the world of a scene with settings only.
 pub(crate) fn set_up(before: &str) -> World {
     read(&scene(before, ""))
         .unwrap_or_else(|causes| panic!("{causes:#?}"))
         .world
 }
 
-/// All causes to refuse a scene without files.
+/// Returns all causes to refuse a scene without files.
 pub(crate) fn causes(inside: &str) -> Vec<String> {
     read(&scene("", inside)).map(|read| read.world).unwrap_err()
 }
 
-/// All causes to refuse settings.
+/// Returns all causes to refuse settings.
 pub(crate) fn unsettled(before: &str) -> Vec<String> {
     read(&scene(before, "")).map(|read| read.world).unwrap_err()
 }
 
-/// All notes on a scene without files.
+/// Returns all notes on a scene without files.
 pub(crate) fn notes(inside: &str) -> Vec<String> {
     let read = read(&scene("", inside)).unwrap();
     read.notes.iter().map(ToString::to_string).collect()

@@ -55,8 +55,8 @@ impl ShiningSphere {
         })
     }
 
-    /// A point sampled uniformly by area, its normal, and the radiance there divided by the
-    /// density.
+    /// Returns a point sampled uniformly by area, its normal, and the radiance there divided by
+    /// the density.
     pub(super) fn emit(&self, geometry: &SceneGeometry, [a, b]: [f64; 2]) -> (DVec3, DVec3, f64) {
         let (place, normal, uv) = geometry.placed(self.shape).sample(0, [a, b]);
         let area = 4.0 * PI * self.radius * self.radius;

@@ -25,7 +25,7 @@ pub(super) fn way(from: DVec3, to: DVec3) -> (DVec3, f64) {
     (between / distance, distance)
 }
 
-/// The emission of a shape at texture coordinates in a direction: uniform over the front.
+/// Returns the emission of a shape at texture coordinates in a direction: uniform over the front.
 pub(super) fn emitted(emission: &Texture, uv: DVec2, normal: DVec3, away: DVec3) -> f64 {
     if normal.dot(away) > 0.0 {
         emission.value(uv)

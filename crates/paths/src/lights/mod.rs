@@ -209,7 +209,7 @@ impl SampledLight {
 }
 
 impl SampledLight {
-    /// The intensity of a spot along a direction in its own coordinates, W sr⁻¹.
+    /// Returns the intensity of a spot along a direction in its own coordinates, W sr⁻¹.
     fn intensity(&self, local: DVec3) -> f64 {
         let Self::Spot {
             intensity,

@@ -35,7 +35,7 @@ impl SurfaceLeg {
         self.through(geometry, point, along)
     }
 
-    /// The line through a point along the direction of light.
+    /// Returns the line through a point along the direction of light.
     pub(super) fn through(&self, geometry: &SceneGeometry, point: DVec3, along: DVec3) -> Ray {
         let end = &self.frame;
         let left = (end.origin - point).dot(end.d) / along.dot(end.d);
@@ -55,7 +55,7 @@ impl SurfaceLeg {
     }
 }
 
-/// A line in the coordinates of a plane.
+/// Returns a line in the coordinates of a plane.
 pub(super) fn seen_by(plane: &Frame, point: DVec3, along: DVec3) -> TwoPlane {
     let (from, way) = (plane.to_local(point), plane.vector_to_local(along));
     let (u, v) = (way.x / way.z, way.y / way.z);

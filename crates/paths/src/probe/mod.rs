@@ -64,8 +64,8 @@ const PICTURE_FREQUENCIES: usize = 24;
 const PICTURE_AZIMUTHS: usize = 40;
 
 impl<'a> Probe<'a> {
-    /// The light field behind a pixel of a camera. Returns `None` if the camera is orthographic,
-    /// or the ray hits nothing.
+    /// Returns the light field behind a pixel of a camera. Returns `None` if the camera is
+    /// orthographic, or the ray hits nothing.
     #[must_use]
     pub fn new(paths: &'a Paths, camera: &Camera, question: &Question) -> Option<Self> {
         let Projection::Perspective { half_width, .. } = camera.projection else {

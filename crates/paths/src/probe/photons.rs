@@ -54,7 +54,8 @@ impl<'a> PhotonProbe<'a> {
         }
     }
 
-    /// The reason why photons miss light of a plane, found from what is seen through its window.
+    /// Returns the reason why photons miss light of a plane, found from what is seen through its
+    /// window.
     #[must_use]
     pub fn misses(&self, plane: usize) -> Option<&'static str> {
         let Probe {

@@ -80,7 +80,7 @@ impl Scatter {
         }
     }
 
-    /// The density of [`Self::sample`] per solid angle, without delta components.
+    /// Returns the density of [`Self::sample`] per solid angle, without delta components.
     pub(crate) fn density(&self, uv: DVec2, wi: DVec3, wo: DVec3) -> f64 {
         let is_front = wi.z > 0.0 && wo.z > 0.0;
         match self {

@@ -25,13 +25,13 @@ pub(super) fn conductor(of: &world::Conductor, uv: DVec2) -> Option<Conductor> {
     })
 }
 
-/// The Fresnel reflectance of a metal.
+/// Returns the Fresnel reflectance of a metal.
 pub(super) fn fresnel(of: &world::Conductor) -> Fresnel {
     of.index
         .map_or(Fresnel::White, |[n, k]| Fresnel::Conductor { n, k })
 }
 
-/// The modified Phong BRDF at a point.
+/// Returns the modified Phong BRDF at a point.
 pub(super) fn phong([diffuse, specular, exponent]: &[Texture; 3], uv: DVec2) -> ModifiedPhong {
     ModifiedPhong {
         diffuse: diffuse.value(uv),
@@ -42,8 +42,8 @@ pub(super) fn phong([diffuse, specular, exponent]: &[Texture; 3], uv: DVec2) -> 
     }
 }
 
-/// The ratio of the index on the far side of an interface to that on the side of `wo`. A thin sheet
-/// has the same medium on both sides.
+/// Returns the ratio of the index on the far side of an interface to that on the side of `wo`. A
+/// thin sheet has the same medium on both sides.
 fn index(of: &world::Dielectric, wo: DVec3) -> f64 {
     if of.is_thin || wo.z > 0.0 {
         of.index
@@ -63,7 +63,7 @@ pub(super) fn rough_dielectric(
     Some(RoughDielectric { facets, index })
 }
 
-/// A smooth interface as `wo` sees it.
+/// Returns a smooth interface as `wo` sees it.
 pub(super) fn smooth_dielectric(of: &world::Dielectric, wo: DVec3) -> SmoothDielectric {
     SmoothDielectric {
         index: index(of, wo),
@@ -101,7 +101,7 @@ impl Coated {
         }
     }
 
-    /// The plastic at a point.
+    /// Returns the plastic at a point.
     pub(super) fn at(&self, uv: DVec2) -> Plastic<'_> {
         Plastic {
             coat: &self.coat,

@@ -113,7 +113,7 @@ impl Form {
         vec![whole]
     }
 
-    /// A point sampled uniformly by area on a piece.
+    /// Returns a point sampled uniformly by area on a piece.
     pub(crate) fn sample(&self, piece: usize, [a, b]: [f64; 2]) -> (DVec3, Local) {
         match self {
             Self::Rectangle => {

@@ -117,7 +117,7 @@ impl WorldMesh {
         }
     }
 
-    /// The area of each triangle in the world.
+    /// Returns the area of each triangle in the world.
     pub(super) fn areas(&self, to_world: &DAffine3) -> impl Iterator<Item = f64> {
         self.triangles.corners().iter().map(|corners| {
             let [a, b, c] = places(&self.triangles, *corners);
@@ -126,7 +126,7 @@ impl WorldMesh {
         })
     }
 
-    /// A point sampled uniformly on a triangle.
+    /// Returns a point sampled uniformly on a triangle.
     pub(super) fn sample(&self, number: usize, random: [f64; 2]) -> (DVec3, Local) {
         let place = triangle(random);
         let corners = self.triangles.corners()[number];

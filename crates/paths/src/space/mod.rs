@@ -106,7 +106,7 @@ impl SceneGeometry {
         &self.placed[shape]
     }
 
-    /// The first hit of a ray, at distances within bounds.
+    /// Returns the first hit of a ray, at distances within bounds.
     #[must_use]
     pub fn first(&self, ray: &Ray, [from, until]: [f64; 2]) -> Option<Hit> {
         let from = from.max(self.nearest);
@@ -124,7 +124,7 @@ impl SceneGeometry {
         Some(self.placed[shape].hit(ray, distance, shape, &local))
     }
 
-    /// The first hit of a ray with one shape, ignoring all others.
+    /// Returns the first hit of a ray with one shape, ignoring all others.
     pub(crate) fn meets(&self, shape: usize, ray: &Ray, within: [f64; 2]) -> Option<Hit> {
         let (distance, local) = self.placed[shape].first(ray, within)?;
         Some(self.placed[shape].hit(ray, distance, shape, &local))
@@ -223,8 +223,8 @@ impl Placed {
         }
     }
 
-    /// A point sampled uniformly by area on a piece of the surface, with its normal and texture
-    /// coordinates.
+    /// Returns a point sampled uniformly by area on a piece of the surface, with its normal and
+    /// texture coordinates.
     pub(crate) fn sample(&self, piece: usize, random: [f64; 2]) -> (DVec3, DVec3, DVec2) {
         let (place, local) = self.form.sample(piece, random);
         let normal = self.side * (self.to_local.matrix3.transpose() * local.normal).normalize();
@@ -237,7 +237,7 @@ impl Placed {
     }
 }
 
-/// A frame around a normal, with X along the component of a direction across it.
+/// Returns a frame around a normal, with X along the component of a direction across it.
 fn frame(normal: DVec3, along: DVec3) -> DMat3 {
     let across = along - along.dot(normal) * normal;
     let x = across

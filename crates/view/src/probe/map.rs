@@ -92,7 +92,7 @@ pub fn map_bandwidths(
     Ok(BandwidthMap { folder, words })
 }
 
-/// The bandwidths behind one pixel of the lattice.
+/// Returns the bandwidths behind one pixel of the lattice.
 fn point(case: &ProbedScene<'_>, at: [usize; 2], lattice: [usize; 2]) -> Result<MapPoint, Failure> {
     let pixel = [0, 1].map(|i| (2 * at[i] + 1) * case.camera.size[i] / (2 * lattice[i]));
     let number = (at[1] * lattice[0] + at[0]) as u64;
@@ -191,7 +191,8 @@ fn drawn(
     .map_err(Failure::cannot_run)
 }
 
-/// The expected measurement: the bandwidth of the criterion, or of the window where that is larger.
+/// Returns the expected measurement: the bandwidth of the criterion, or of the window where that
+/// is larger.
 fn expected(point: &MapPoint) -> f64 {
     // NaN is kept.
     if point.criterion < point.window {
@@ -201,7 +202,7 @@ fn expected(point: &MapPoint) -> f64 {
     }
 }
 
-/// A comparison of measured and predicted bandwidths.
+/// Returns a comparison of measured and predicted bandwidths.
 fn words(map: &Array2<MapPoint>) -> String {
     let seen = map
         .iter()

@@ -58,7 +58,7 @@ impl ProbeRequest {
     /// Default seed.
     pub const SEED: u64 = 1;
 
-    /// A probe of the light seen by the first camera of a scene.
+    /// Returns a probe of the light seen by the first camera of a scene.
     #[must_use]
     pub fn new(source: WorldSource) -> Self {
         Self {

@@ -18,13 +18,13 @@ use serde_json::{Value, json as tree_of};
 /// The share of noise in a spectrum above which the noise is underestimated.
 const NOISY: f64 = 0.3;
 
-/// The angle of the central ray to the normal of a surface, radians.
+/// Returns the angle of the central ray to the normal of a surface, radians.
 fn angle(stop: &Stop) -> f64 {
     libm::acos(stop.cosine().clamp(-1.0, 1.0))
 }
 
-/// The paper's criterion for light that leaves a surface, in cycles per radian at the camera
-/// (Durand et al. 2005, Eq. 20, corrected); `None` where the surface has no lobe.
+/// Returns the paper's criterion for light that leaves a surface, in cycles per radian at the
+/// camera (Durand et al. 2005, Eq. 20, corrected); `None` where the surface has no lobe.
 pub(super) fn criterion(stop: &Stop) -> Option<f64> {
     let Reflects::Lobe(lobe) = stop.reflects else {
         return None;
@@ -128,7 +128,7 @@ pub(super) fn lines(
     lines
 }
 
-/// A table with a header.
+/// Returns a table with a header.
 fn table(head: [&str; 6], rows: impl Iterator<Item = [String; 6]>) -> Vec<String> {
     let head = head.map(str::to_owned);
     aligned(std::iter::once(head).chain(rows).map(Vec::from).collect())
