@@ -23,7 +23,7 @@ impl ClaimNumber {
         format!("{} ({predicted})", uncertain(self.value, self.error))
     }
 
-    /// Returns the number in another unit, which is given by a factor.
+    /// Returns the number in units of `unit`.
     pub(super) fn per(&self, unit: f64) -> Self {
         Self {
             value: self.value / unit,
