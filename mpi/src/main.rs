@@ -3,14 +3,14 @@
 //!
 //! `mpirun -n 32 etendue-mpi run scenes/fig9b.ron --photons 2^36 --threads 4 --resume`
 //!
-//! Rank 0 does what `etendue` does. It also hands out pieces of work to the other ranks on request,
-//! and works on pieces itself. MPI carries bytes and sums nothing, so the result has the same bytes
-//! as that of `etendue run`. The arguments are those of `etendue`; the crate of `etendue` parses
-//! them.
+//! Rank 0 runs the command as `etendue` does. Rank 0 also hands out pieces of work to the other
+//! ranks on request, and works on pieces itself. MPI carries bytes and sums nothing, so the result
+//! has the same bytes as that of `etendue run`. The arguments are those of `etendue`; the crate of
+//! `etendue` parses them.
 //!
-//! Reasons for `ferrompi`: it needs no libclang, its calls return errors instead of aborting, and
-//! it is tested with both MPICH and Open MPI. `mpi` (rsmpi) generates its bindings with libclang,
-//! which cluster nodes often lack.
+//! The crate uses `ferrompi`, because it needs no libclang, its calls return errors instead of
+//! aborting, and it is tested with both MPICH and Open MPI. `mpi` (rsmpi) generates its bindings
+//! with libclang, which cluster nodes often lack.
 
 use etendue::command_of_workers;
 use etendue_pipeline::Workers;

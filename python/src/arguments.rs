@@ -10,7 +10,7 @@ use std::path::PathBuf;
 /// The keyword arguments of a caller. An argument that is left out or `None` keeps its default.
 pub(crate) struct Arguments<'a, 'py>(pub(crate) &'a Bound<'py, PyDict>);
 
-/// The exception for a value that is not allowed.
+/// Returns the exception for a value that is not allowed.
 fn wrong(name: &str, value: &Bound<'_, PyAny>, allowed: impl Display) -> PyErr {
     let shown = value
         .repr()
@@ -18,7 +18,7 @@ fn wrong(name: &str, value: &Bound<'_, PyAny>, allowed: impl Display) -> PyErr {
     PyValueError::new_err(format!("{name} is {shown}; allowed: {allowed}"))
 }
 
-/// A whole number, which may be a Python float such as 1e6.
+/// Reads a whole number, which may be a Python float such as 1e6.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -30,12 +30,12 @@ fn whole_float(value: &Bound<'_, PyAny>) -> Option<u64> {
 }
 
 impl<'py> Arguments<'_, 'py> {
-    /// The value of an argument, if given.
+    /// Returns the value of an argument, unless it is left out or `None`.
     pub(crate) fn get(&self, name: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
         Ok(self.0.get_item(name)?.filter(|value| !value.is_none()))
     }
 
-    /// Sets `to` to an argument of its type.
+    /// Sets `to` to the value of an argument, if it is given.
     fn set<T>(
         &self,
         name: &str,
@@ -49,7 +49,7 @@ impl<'py> Arguments<'_, 'py> {
         Ok(())
     }
 
-    /// A whole number.
+    /// Reads a whole number.
     pub(crate) fn whole<T: TryFrom<u64>>(
         &self,
         name: &str,
@@ -64,7 +64,7 @@ impl<'py> Arguments<'_, 'py> {
         })
     }
 
-    /// A number of rays, which may be a float such as 1e6.
+    /// Reads a number of rays, which may be a float such as 1e6.
     pub(crate) fn count(
         &self,
         name: &str,
@@ -83,7 +83,7 @@ impl<'py> Arguments<'_, 'py> {
         })
     }
 
-    /// A floating-point number.
+    /// Reads a floating-point number.
     pub(crate) fn number(
         &self,
         name: &str,
@@ -96,22 +96,22 @@ impl<'py> Arguments<'_, 'py> {
         })
     }
 
-    /// A truth value.
+    /// Reads a truth value.
     pub(crate) fn flag(&self, name: &str, to: &mut bool) -> PyResult<()> {
         self.set(name, to, "True or False", |value| value.extract().ok())
     }
 
-    /// A text.
+    /// Reads a text.
     pub(crate) fn text(&self, name: &str, to: &mut Option<String>) -> PyResult<()> {
         self.set(name, to, "a text", |value| value.extract().ok().map(Some))
     }
 
-    /// A file or a folder.
+    /// Reads a file or a folder.
     pub(crate) fn path(&self, name: &str, to: &mut Option<PathBuf>) -> PyResult<()> {
         self.set(name, to, "a path", |value| value.extract().ok().map(Some))
     }
 
-    /// One of several named values.
+    /// Returns the value with the name that the argument gives.
     pub(crate) fn one_of<T: Copy>(
         &self,
         name: &str,

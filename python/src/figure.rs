@@ -1,4 +1,4 @@
-//! Figures of the paper, and of scenes.
+//! Draws figures of the paper, and figures of scenes.
 
 use crate::arguments::Arguments;
 use crate::live::alive;

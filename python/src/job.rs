@@ -19,7 +19,7 @@ use std::sync::Arc;
 #[pyclass(frozen, module = "etendue._etendue")]
 pub(crate) struct Job(Arc<etendue_pipeline::Job>);
 
-/// Some batches of a scene.
+/// The measurement of some or all batches of a scene.
 #[pyclass(frozen, module = "etendue._etendue")]
 pub(crate) struct Measurement(etendue_spectrum::Measurement);
 
@@ -29,7 +29,7 @@ pub(crate) struct Prediction(Vec<etendue_compare::Prediction>);
 
 #[pymethods]
 impl Job {
-    /// The scene of a file or of a text, with some fields set.
+    /// Returns the scene of a file or of a text, with some fields set.
     #[staticmethod]
     fn read(
         py: Python<'_>,
@@ -59,7 +59,7 @@ impl Job {
         &self.0.scene().name
     }
 
-    /// The scene file in JSON, including defaults and overrides.
+    /// Returns the scene file in JSON, including defaults and overrides.
     fn json(&self) -> String {
         serde_json::to_string(&self.0.scene().file).unwrap_or_default()
     }
@@ -78,7 +78,8 @@ impl Job {
         self.0.scene().warnings()
     }
 
-    /// For each plane its name, class, steps of its chain, and the parts that no theory describes.
+    /// Returns, for each plane, its name, its class, the steps of its chain, and the parts of the
+    /// scene that no theory describes.
     fn planes(&self) -> Vec<(String, String, Vec<String>, Vec<String>)> {
         let scene = self.0.scene();
         let planes = scene.planes.iter().zip(self.0.theories());
@@ -131,9 +132,9 @@ impl Job {
         found.map(Outcome)
     }
 
-    /// Photons at a plane, with columns x, y, u, v and weight, in the order of their batches; and,
-    /// for each batch, the number of these photons and of emitted photons.
-    #[expect(clippy::type_complexity, reason = "a tuple of Python")]
+    /// Returns the photons at a plane, with the columns x, y, u, v and weight, in the order of
+    /// their batches, and for each batch the number of these photons and of emitted photons.
+    #[expect(clippy::type_complexity, reason = "Python receives a tuple")]
     fn crossings<'py>(
         &self,
         py: Python<'py>,
@@ -163,8 +164,8 @@ impl Job {
         Ok((PyArray2::from_owned_array(py, rows), counts, emitted))
     }
 
-    /// The spectrum of a user's rays, with the window and the frequencies of the first plane.
-    /// `batch` holds the batch number of each ray.
+    /// Computes the spectrum of a user's rays, with the window and the frequencies of the first
+    /// plane. `batch` holds the batch number of each ray.
     fn spectrum<'py>(
         &self,
         py: Python<'py>,
@@ -182,7 +183,7 @@ impl Job {
         found.arrays(py)
     }
 
-    /// The batches of a measurement as numbers and bytes.
+    /// Returns the batches of a measurement as their numbers and their bytes.
     fn packed<'py>(
         &self,
         py: Python<'py>,

@@ -19,18 +19,18 @@ const TICK: Duration = Duration::from_millis(50);
 /// Time for stopped work to remove its files before the caller continues without it.
 const GRACE: Duration = Duration::from_millis(500);
 
-/// State shared by the working thread and the waiting one.
+/// State that the working thread shares with the thread that waits for it.
 #[derive(Default)]
 pub(crate) struct Live {
     is_stopped: AtomicBool,
     works: Mutex<Works>,
 }
 
-/// Current and finished work.
+/// The work in progress, and the last finished work.
 #[derive(Default)]
 struct Works {
     begun: u64,
-    /// Nested work, the innermost last.
+    /// Work in progress, nested, with the innermost last.
     in_hand: Vec<Arc<Counted>>,
     ended: Option<Arc<Counted>>,
 }
@@ -59,7 +59,7 @@ impl Live {
         }
     }
 
-    /// Reports progress of work that traces `total` of these items.
+    /// Begins work that traces `total` items, whose progress is reported.
     pub(crate) fn trace(&self, total: u64, things: &'static str) -> Tracing<'_> {
         let work = Work::Steps {
             verb: "tracing",
@@ -109,7 +109,7 @@ impl Reporter for Live {
                 total,
                 things,
             } => (verb, things, total as u64),
-            // Stages are not counted.
+            // A stage of the work has no count.
             Work::Stage(_) => return Box::new(Bar(self, None)),
         };
         let mut works = self.works();
@@ -126,7 +126,7 @@ impl Reporter for Live {
     }
 }
 
-/// Work with a count, or a stage without one.
+/// The progress of counted work, or of a stage without a count.
 struct Bar<'a>(&'a Live, Option<Arc<Counted>>);
 
 impl Progress for Bar<'_> {
@@ -174,8 +174,8 @@ impl Watch for Tracing<'_> {
 
 /// Runs work on the given number of threads, by default one for each core. Meanwhile other Python
 /// threads continue, `progress` receives the progress, and Ctrl-C is detected. After Ctrl-C the
-/// work stops at the next block of photons or the next step. The function returns when the work has
-/// ended, or soon after. If the work is not counted, it returns at once.
+/// work stops at the next block of photons or the next step, and the function returns when the
+/// work has ended or soon after; if the work is not counted, the function returns at once.
 pub(crate) fn alive<T: Send + 'static>(
     py: Python<'_>,
     threads: Option<usize>,
@@ -191,7 +191,7 @@ pub(crate) fn alive<T: Send + 'static>(
             Ok(pool) => pool.install(|| work(&of_thread)),
             Err(error) => Err(Failure::cannot_run(error)),
         };
-        // After Ctrl-C there is no receiver.
+        // Sending fails if the caller has left after Ctrl-C.
         let _ = tell.send(found);
     });
     let mut told = told;

@@ -23,7 +23,7 @@ impl Outcome {
     }
 }
 
-/// The axes of a light field: the centres of its cells along x and along u.
+/// Returns the axes of a light field: the centres of its cells along x and along u.
 pub(crate) fn cells(grid: &ProjectionGrid) -> [Array1<f64>; 2] {
     [grid.half_x, grid.half_u].map(|half| (0..grid.bins).map(|i| grid.center(i, half)).collect())
 }

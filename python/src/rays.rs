@@ -71,7 +71,7 @@ impl Rays {
 
 impl PhotonSource for Rays {
     fn emitted(&self, _batch: u32) -> u64 {
-        // The result of a batch is its sum.
+        // With one emitted photon, the result of a batch is its sum.
         1
     }
 
@@ -95,11 +95,11 @@ pub(crate) struct Spectrum {
     radial: RadialPower,
     projection: estimate::ProjectionEstimate,
     in_window: u64,
-    /// Slope, and both bandwidths.
+    /// The slope and the two bandwidths, with their names.
     numbers: [(&'static str, Option<Uncertain>); 3],
 }
 
-/// The spectrum of rays, with errors from the spread between batches.
+/// Returns the spectrum of rays, with errors from the spread between batches.
 pub(crate) fn spectrum(
     rays: &Rays,
     plane: &VirtualPlane,

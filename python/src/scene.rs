@@ -6,7 +6,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::path::{Path, PathBuf};
 
-/// A scene file, or the text of one.
+/// The path of a scene file, or the text of a scene.
 #[derive(FromPyObject)]
 pub(crate) enum SceneArgument {
     /// Text in RON or JSON, the name of the scene, and the folder of its meshes and pictures.
@@ -16,7 +16,7 @@ pub(crate) enum SceneArgument {
 }
 
 impl SceneArgument {
-    /// The scene with some fields set.
+    /// Returns the scene with some of its fields replaced.
     pub(crate) fn source(self, set: &[(String, String)]) -> PyResult<SceneSource> {
         let (path, text) = match self {
             Self::File(path) => (path, None),

@@ -9,7 +9,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
-/// The scene of a file, modified by the arguments.
+/// Returns the scene of a file, modified by the arguments.
 pub(crate) fn source(path: PathBuf, arguments: &Arguments<'_, '_>) -> PyResult<WorldSource> {
     let mut source = WorldSource::new(path, ArgumentStyle::Python);
     arguments.path("root", &mut source.options.root)?;
@@ -32,7 +32,7 @@ pub(crate) fn source(path: PathBuf, arguments: &Arguments<'_, '_>) -> PyResult<W
     Ok(source)
 }
 
-/// The camera added to the scene, if any.
+/// Returns the camera that the arguments add to the scene, if any.
 fn viewpoint(arguments: &Arguments<'_, '_>) -> PyResult<Option<Viewpoint>> {
     let point = |name| arguments.point(name, MAX_COORDINATE);
     let up = point("up")?;
@@ -54,7 +54,7 @@ fn viewpoint(arguments: &Arguments<'_, '_>) -> PyResult<Option<Viewpoint>> {
     }
 }
 
-/// The selected camera.
+/// Returns the selected camera.
 pub(crate) fn camera(arguments: &Arguments<'_, '_>) -> PyResult<CameraChoice> {
     let mut choice = CameraChoice::default();
     arguments.text("camera", &mut choice.name)?;

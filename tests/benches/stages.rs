@@ -1,7 +1,7 @@
 //! Benchmarks of the stages of a run: photons, their sums on slices, and Fourier transforms.
 //!
 //!     cargo bench -p etendue-validation
-//!     cargo bench -p etendue-validation -- photons      # those whose name holds a word
+//!     cargo bench -p etendue-validation -- photons      # only those with this word in their name
 //!
 //! Throughput is in photons, crossings or cells per second, on one thread except for the 4D
 //! transform.
@@ -19,11 +19,11 @@ use etendue_transform::random::Stream;
 use std::hint::black_box;
 use std::path::Path;
 
-/// Photons per batch. A batch is one net, and is large enough that the cost of its first block is
+/// Photons per batch. A batch is one net, and so large that the cost of its first block is
 /// negligible.
 const PHOTONS: u64 = 1 << 16;
 
-/// A scene of the repository, in batches of [`PHOTONS`].
+/// Returns a scene of the repository, in batches of [`PHOTONS`].
 fn scene(name: &str) -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scenes/{name}.ron"));
     let text = std::fs::read_to_string(&path).unwrap();
@@ -32,7 +32,7 @@ fn scene(name: &str) -> Scene {
     resolve(name, file, path.parent().unwrap(), u64::MAX).unwrap()
 }
 
-/// Emission of a batch: points of a net, aimed rays from them, and their weights.
+/// Measures the emission of a batch: points of a net, the rays aimed from them, and their weights.
 fn emission(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("emission");
     group.sample_size(20);
@@ -61,7 +61,7 @@ fn emission(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Tracing of a batch: emission, hits, bounces and crossings of all planes.
+/// Measures the tracing of a batch: emission, hits, bounces and crossings of all planes.
 fn photons(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("photons");
     group.sample_size(20);
@@ -78,7 +78,8 @@ fn photons(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Deposition of a plane's crossings on the slices of its grid, and the slices of the sum.
+/// Measures how fast a plane's crossings are added to an accumulator, and how fast this is
+/// transformed to slices.
 fn slices(criterion: &mut Criterion) {
     let scene = scene("bench_peer");
     let mut rays = Vec::new();
@@ -104,7 +105,7 @@ fn slices(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// The 4D transform of a measured field, on all threads.
+/// Measures the 4D transform of a recorded light field, on all threads.
 fn field(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("field");
     group.sample_size(10);

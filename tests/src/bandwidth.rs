@@ -5,8 +5,8 @@ use etendue_figures::Style;
 use std::fs;
 use std::process::ExitCode;
 
-/// Measures, prints the results, and writes the page, its picture and the numbers behind it, unless
-/// photons are given.
+/// Measures the bandwidths and prints them. Unless a number of photons is given, this also writes
+/// results/bandwidth.md, its picture and the numbers behind it.
 #[expect(
     clippy::print_stdout,
     clippy::print_stderr,

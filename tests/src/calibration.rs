@@ -21,7 +21,7 @@ struct CalibratedPlane {
     pulls: Vec<f64>,
 }
 
-/// A violation of the independence of batches, which p assumes.
+/// A way to make batches dependent, although p assumes that they are independent.
 #[derive(Clone, Copy)]
 enum DependenceFault {
     /// The second half of the batches has the photons of the first.
@@ -50,7 +50,7 @@ pub(crate) fn calibration(
     photons: u64,
     sampling: Sampling,
 ) -> Vec<ReportSection> {
-    // With fewer seeds, 3 % of the variance cannot be resolved.
+    // With fewer seeds, a change of the variance by 3 % cannot be detected.
     let count = seeds.end - seeds.start;
     let plants = count >= 1000 && seeds.start == 1;
     let faults = FAULTS.iter().filter(|_| plants);
@@ -75,7 +75,7 @@ pub(crate) fn calibration(
     sections
 }
 
-/// The measurement with dependent batches.
+/// Returns the measurement with its batches made dependent.
 fn planted(measurement: &Measurement, fault: DependenceFault) -> Measurement {
     let batches: Vec<&Batch> = measurement.batches().collect();
     let mut planted = Measurement::new(measurement.planes().to_vec());
@@ -95,7 +95,7 @@ fn planted(measurement: &Measurement, fault: DependenceFault) -> Measurement {
     planted
 }
 
-/// The results of the seeds with each of the faults, and without.
+/// Returns the results of all seeds, for each fault and for no fault.
 fn sample(
     seeds: Range<u64>,
     scene: &Scene,
@@ -125,7 +125,7 @@ fn sample(
     (0..faults.len()).map(planes).collect()
 }
 
-/// The reports on the planes of one seed, with each of the faults.
+/// Returns the reports on the planes of one seed, for each of the faults.
 fn reports(
     mut scene: Scene,
     seed: u64,
@@ -154,10 +154,10 @@ fn judge(planes: &[CalibratedPlane], seeds: u64, scene: &Scene, scale: f64) -> R
         .iter()
         .flat_map(|p| p.p_values.iter().copied())
         .collect();
-    // The binomial standard deviation of the share of one plane. Planes of a seed share photons, so
-    // the share of all planes varies less than that of one plane, and more than that of as many
-    // independent planes. It may deviate by two standard deviations of one plane, and the share of
-    // each plane by three.
+    // The binomial standard deviation of the share of p-values below 0.1 at one plane. Planes of a
+    // seed have the same photons, so the share over all planes varies less than that of one plane,
+    // but more than that of as many independent planes. The share of all planes may deviate by two
+    // standard deviations of one plane, and the share of each plane by three.
     let deviation = (0.1 * 0.9 / seeds as f64).sqrt();
     let [allowed, allowed_each] = [2.0, 3.0].map(|n| n * deviation);
     let below = |p: &[f64]| p.iter().filter(|p| **p < 0.1).count() as f64 / p.len() as f64;

@@ -15,7 +15,8 @@ use etendue_theory::{Chain, Model, Operator, Parameter};
 use etendue_trace::Tracer;
 pub(crate) use smallest::smallest;
 
-/// All planted faults at one number of photons; the first row is the scene without a fault.
+/// Returns the section of all faults planted in the main scene, whose first row is without a
+/// fault.
 pub(crate) fn planted(photons: u64, seed: u64) -> ReportSection {
     let scene = fig9b(photons, seed);
     let tracer = Tracer::new(&scene);
@@ -58,7 +59,8 @@ pub(crate) fn planted(photons: u64, seed: u64) -> ReportSection {
     }
 }
 
-/// Faults that only other scenes can reveal, each planted in the named scene.
+/// Returns the section of faults that only other scenes can reveal, each planted in the named
+/// scene.
 pub(crate) fn planted_elsewhere(photons: u64, seed: u64) -> ReportSection {
     let mut rows = Vec::new();
     let mut checks = Vec::new();
@@ -109,7 +111,8 @@ pub(crate) fn planted_elsewhere(photons: u64, seed: u64) -> ReportSection {
 
 type PlantedFaults = Vec<(&'static str, Box<Predict>)>;
 
-/// A prediction from a modified chain; `None` if the modification has no effect.
+/// Returns a predictor with a modified chain; it predicts `None` if the modification has no
+/// effect.
 fn chained(change: impl Fn(&mut Chain) + 'static) -> Box<Predict> {
     Box::new(move |scene, plane| {
         let mut tampered = chain(scene, plane);
@@ -209,7 +212,7 @@ fn elsewhere() -> Vec<(&'static str, PlantedFaults)> {
     ]
 }
 
-/// Moves only the `nth` layer, away from the light, by `by` metres.
+/// Moves only the layer number `nth` away from the light by `by` metres.
 fn move_layer(chain: &mut Chain, nth: usize, by: f64) {
     let is_layer = |o: &Operator| matches!(o, Operator::Visibility { .. });
     let places: Vec<usize> = (0..chain.operators.len())
@@ -228,7 +231,7 @@ fn move_layer(chain: &mut Chain, nth: usize, by: f64) {
 /// The name of the row without a fault.
 const NONE: &str = "none";
 
-/// The slices predicted for a plane; `None` if the fault has no effect.
+/// A function that predicts the slices of a plane, or `None` if its fault has no effect.
 type Predict = dyn Fn(&Scene, &VirtualPlane) -> Option<Slices>;
 
 fn row(scene: &Scene, measurement: &Measurement, name: &'static str, predict: &Predict) -> Row {
@@ -341,7 +344,7 @@ fn predictions() -> Vec<(&'static str, Box<Predict>)> {
     ]
 }
 
-/// Multiplies one of the parameters of a chain.
+/// Multiplies a parameter of a chain by a factor.
 fn scale(chain: &mut Chain, parameter: Parameter, factor: f64) {
     let value = chain.value(parameter).expect("a parameter of the chain");
     *chain = chain.with(parameter, factor * value).expect("the same");
@@ -377,7 +380,7 @@ fn each_rectangle(chain: &mut Chain, change: impl Fn(&mut Rectangle)) {
     });
 }
 
-/// The slices of the field shifted by `shift` along x.
+/// Returns the slices of the field shifted by `shift` along x.
 fn shifted(mut slices: Slices, shift: f64) -> Slices {
     let grid = slices.grid;
     for ((k, m, _), value) in slices.half.indexed_iter_mut() {

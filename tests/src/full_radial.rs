@@ -16,7 +16,7 @@ use rayon::prelude::*;
 struct Case {
     scene: &'static str,
     plane: &'static str,
-    /// Fields of the scene that are set.
+    /// Fields of the scene file that are replaced, with their values.
     set: &'static [(&'static str, &'static str)],
     by: &'static str,
 }
@@ -66,7 +66,7 @@ const FAULTS: &[(&str, &str, &str)] = &[
 ];
 
 impl Case {
-    /// The scene with only that plane.
+    /// Returns the scene of the case with only the plane of the case.
     fn scene(&self, photons: u64, seed: u64, set: &[(&str, &str)]) -> Scene {
         let found = TEXTS.iter().find(|(name, _)| *name == self.scene);
         let (name, text) = found.expect("a scene of these");
@@ -148,7 +148,7 @@ fn over_seeds(case: &Case, seeds: u64, photons: u64) -> (String, Vec<FullRadialR
     )
 }
 
-/// Compares photons with backward rays, as a run does where no theory applies.
+/// Compares photons with backward rays, as a run does for planes without a theory.
 fn against_rays(case: &Case, seeds: u64, photons: u64) -> (String, Vec<FullRadialReport>) {
     let title = format!("{} {}: backward rays", case.scene, case.plane);
     (
@@ -170,7 +170,7 @@ fn each_seed(seeds: u64, of: impl Fn(u64) -> FullRadialReport + Sync) -> Vec<Ful
     found
 }
 
-/// A row for the p-values of many seeds.
+/// Returns a row for the p-values of many seeds.
 fn row(name: &str, found: &[FullRadialReport], level: f64) -> Row {
     let p: Vec<f64> = found.iter().filter_map(|report| report.p_value).collect();
     let chi2: Vec<f64> = found
@@ -279,7 +279,7 @@ fn faults(photons: u64) -> ReportSection {
     }
 }
 
-/// The continuous spectrum, without the aliasing of a grid.
+/// Predicts the continuous spectrum, without the aliasing of a grid: a planted fault.
 fn alias_free(scene: &Scene) -> PredictedField {
     use etendue_compare::Theory;
     let plane = &scene.planes[0];

@@ -3,11 +3,11 @@
 //! `short` takes a few minutes and is run after every change. `suite` runs all scenes without
 //! smooth surfaces and writes `results/suite.md`. `table1` checks the operators of the paper,
 //! `shading` the reflection of light at surfaces, `claims` the statements in the paper's text, and
-//! `main` all results of the main scene. Each of these four writes its part of
-//! `results/validation.md`. `all` writes the whole page, with every row of the paper's Table 1.
-//! `second` compares the code shared by theory and tracers with a second implementation. `hostile`
-//! and `kills` attack the program `etendue` from outside; `wild` searches for scenes on which it is
-//! wrong. `assumptions` disables the checks of a scene that precede a prediction.
+//! `main` all results of the main scene. Each of `table1`, `shading`, `claims` and `main` writes
+//! its part of `results/validation.md`. `all` writes the whole page, with every row of the paper's
+//! Table 1. `second` compares the code shared by theory and tracers with a second implementation.
+//! `hostile` and `kills` attack the program `etendue` from outside; `wild` searches for scenes on
+//! which it is wrong. `assumptions` disables the checks of a scene that precede a prediction.
 
 #![allow(clippy::too_many_lines, reason = "checks are lists of rows")]
 
@@ -74,7 +74,7 @@ enum ValidationCommand {
         /// Number of seeds.
         #[arg(long, default_value_t = 1000)]
         seeds: u64,
-        /// First seed. Faults are planted only with the first thousand.
+        /// First seed. Faults are planted only if the first thousand seeds are included.
         #[arg(long, default_value_t = 1)]
         first: u64,
         /// Photons per seed.
@@ -165,7 +165,7 @@ enum ValidationCommand {
     All,
 }
 
-/// The seed of every single run. It was fixed in advance, and not chosen by its results.
+/// The seed of every single run. This seed was fixed in advance, and not chosen by its results.
 const SEED: u64 = 1;
 
 #[expect(
@@ -245,7 +245,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Prints sections that are not part of a page.
+/// Prints sections that no page contains.
 #[expect(
     clippy::print_stdout,
     clippy::print_stderr,
@@ -265,8 +265,8 @@ fn printed(outcome: std::io::Result<Vec<ReportSection>>) -> ExitCode {
     }
 }
 
-/// The page of which a command writes a part: the file of the page, the title of the part, the name
-/// of the command and a description.
+/// Returns the page of which a command writes a part: the file of the page, the title of the part,
+/// the name of the command and a description.
 fn page(command: &ValidationCommand) -> Option<[&'static str; 4]> {
     Some(match command {
         ValidationCommand::Main => [
@@ -318,7 +318,7 @@ fn page(command: &ValidationCommand) -> Option<[&'static str; 4]> {
     })
 }
 
-/// A page with one of its parts replaced or added; parts begin with their titles.
+/// Returns a page with one of its parts replaced or added; parts begin with their titles.
 fn with_part(page: &str, title: &str, part: &str) -> String {
     let heading = format!("# {title}\n");
     // A part may contain `##` headings.
@@ -363,7 +363,7 @@ fn sections(command: &ValidationCommand) -> Vec<ReportSection> {
             full_radial::full_radial(seeds, photons)
         }
         ValidationCommand::Bandwidth { photons } => vec![shading::glossy(photons).0],
-        // These commands write their own reports.
+        // Each of these commands writes its own report.
         ValidationCommand::Nets
         | ValidationCommand::Second
         | ValidationCommand::Hostile(_)
@@ -390,7 +390,7 @@ fn faults(photons: u64) -> Vec<ReportSection> {
     ]
 }
 
-/// Calibration with both kinds of random numbers.
+/// Returns the sections of the calibration, with nets and with independent random numbers.
 fn calibrations(seeds: Range<u64>, photons: u64) -> Vec<ReportSection> {
     let kinds = [Sampling::Net, Sampling::Random].into_iter();
     let sections = kinds.flat_map(|kind| calibration::calibration(seeds.clone(), photons, kind));

@@ -10,7 +10,7 @@ use etendue_scene::{Sampling, Scene};
 use etendue_spectrum::estimate;
 use ndarray::Array3;
 
-/// Every plane at one number of photons.
+/// Returns the section on every plane at one number of photons.
 pub(crate) fn planes(photons: u64, seed: u64) -> ReportSection {
     let scene = fig9b(photons, seed);
     let row = |report: &PlaneReport| {
@@ -30,12 +30,12 @@ pub(crate) fn planes(photons: u64, seed: u64) -> ReportSection {
     }
 }
 
-/// The score tests of every plane at one number of photons.
+/// Returns the section on the score tests of every plane at one number of photons.
 pub(crate) fn parameters(photons: u64, seed: u64) -> ReportSection {
     let reports = reports(&fig9b(photons, seed));
     let mut rows = Vec::new();
-    // The two-sided 1 % bound for the largest of ten normal numbers (Šidák): level 0.1 %, quantile
-    // 3.29.
+    // The largest of ten normal numbers exceeds 3.29 in magnitude with a probability of 1 %
+    // (Šidák: 0.1 % for each number).
     let bound = 3.29;
     for plane in &reports {
         for p in &plane.parameters {
@@ -74,8 +74,8 @@ pub(crate) fn parameters(photons: u64, seed: u64) -> ReportSection {
     }
 }
 
-/// The ratio of the noise of photons from nets to that of photons from random numbers, over all
-/// frequencies of a plane.
+/// Returns the ratio of the noise of photons from nets to that of photons from random numbers,
+/// over all frequencies of a plane.
 pub(crate) fn gain(photons: u64, batches: u32) -> ReportSection {
     let variances = |sampling: Sampling| {
         let mut scene = sampled(fig9b(photons, SEED), sampling);
@@ -108,7 +108,8 @@ pub(crate) fn gain(photons: u64, batches: u32) -> ReportSection {
             .to_vec();
         row.insert(0, name.clone());
         row.push(format!("{:.2} %", 100.0 * worse));
-        // With 1000 independent frequencies and 64 batches, a total is accurate to 0.03 dB.
+        // With 1000 independent frequencies and 64 batches, the total noise is accurate to 0.03
+        // dB.
         let check = Check::new("total", total, Below(-0.1), "three of its errors, dB");
         Row::new(row, vec![check])
     };
@@ -132,7 +133,7 @@ pub(crate) fn gain(photons: u64, batches: u32) -> ReportSection {
     }
 }
 
-/// The receiver plane at increasing numbers of photons.
+/// Returns the section on the noise at the receiver plane for increasing numbers of photons.
 pub(crate) fn floor(photons: &[u64], seed: u64) -> ReportSection {
     let mut rows: Vec<Row> = Vec::new();
     let mut before = None;
@@ -206,10 +207,10 @@ fn row(scene: &Scene, report: &PlaneReport) -> Row {
     Row::new(cells, checks)
 }
 
-/// All planes of a scene, measured and compared.
+/// Measures and compares all planes of a scene.
 ///
 /// # Panics
-/// If the scene has too few batches. A resolved scene always has enough.
+/// If the scene has too few batches. Every resolved scene has enough batches.
 fn reports(scene: &Scene) -> Vec<PlaneReport> {
     let measurement = traced(scene);
     let test = Test::of(scene);

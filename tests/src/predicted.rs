@@ -11,7 +11,7 @@ const BUDGET: RayBudget = RayBudget {
     error: 5e-4,
 };
 
-/// The prediction behind specular surfaces, by rays.
+/// Predicts the slices behind specular surfaces by rays.
 pub(crate) fn traced(
     view: &Observed<rays::SpecularSystem>,
     window: &Window,
@@ -21,7 +21,7 @@ pub(crate) fn traced(
     view.predict(&[], (window, grid, &picture), BUDGET)
 }
 
-/// The prediction behind specular surfaces, by a chain.
+/// Predicts the slices behind specular surfaces by a chain.
 pub(crate) fn linear(
     view: &Observed<rays::SpecularSystem>,
     window: &Window,
@@ -32,7 +32,7 @@ pub(crate) fn linear(
     rays::linear(view, (window, grid, &picture), map, BUDGET).slices
 }
 
-/// The predictions behind a surface with a BRDF: exact, and by a chain.
+/// Predicts the slices behind a surface with a BRDF, exactly and by a chain.
 pub(crate) fn scattered(
     view: &Observed<scattering::ScatteringSystem>,
     plane: &VirtualPlane,

@@ -45,15 +45,16 @@ const NORMAL: [(f64, f64); 3] = [(2.0, 0.0455), (3.0, 0.0027), (4.0, 6.3e-5)];
 /// Permitted deviation of the mean from 0 and of the standard deviation from 1, in addition to
 /// their standard errors.
 const MAX_DEVIATION: f64 = 0.05;
-/// Permitted deviation in standard errors. One figure in 400 exceeds it by chance.
+/// Maximum permitted deviation, in standard errors; one figure in 400 exceeds it by chance.
 const MAX_ERRORS: f64 = 3.0;
-/// Maximum noise relative to the spectrum of a plane that is judged.
+/// Maximum noise, relative to the spectrum, of a plane that is judged.
 const MAX_NOISE: f64 = 0.25;
-/// Minimum number of scenes of a group that is judged. Errors over fewer scenes are uncertain.
+/// Minimum number of scenes in a group that is judged; with fewer scenes, the errors of its
+/// figures are uncertain.
 const MIN_SCENES: usize = 10;
 /// Maximum number of rows in the tables of single pulls and scenes.
 const LISTED: usize = 12;
-/// Maximum CPU seconds of a prediction whose photons take less time.
+/// Maximum CPU seconds of a prediction that takes longer than the photons of its scene.
 const MAX_SECONDS: f64 = 10.0;
 
 /// The pull of one measured number.
@@ -104,8 +105,8 @@ pub(crate) fn pulls(options: &PullOptions) -> io::Result<Vec<ReportSection>> {
     ])
 }
 
-/// Draws scenes alternately from `wild` and from the generator for nets; `None` if the scene is
-/// invalid.
+/// Draws the scene with this number: even and odd numbers alternate between `wild` and the
+/// generator for nets. Returns `None` if the scene is invalid.
 fn drawn(options: &PullOptions, number: u64) -> io::Result<Option<Scene>> {
     let folder = tempfile::tempdir()?;
     let file = if number.is_multiple_of(2) {
@@ -127,8 +128,8 @@ fn drawn(options: &PullOptions, number: u64) -> io::Result<Option<Scene>> {
     Ok(resolve("scene", file, folder.path(), u64::MAX).ok())
 }
 
-/// Adds the pulls of a scene, and returns its cost. `None` if no theory applies to any plane, or
-/// the work is refused.
+/// Adds the pulls of a scene, and returns its cost. Returns `None` if no theory applies to any
+/// plane, or if the work is refused.
 fn judged(scene: &Scene, number: u64, pulls: &mut Vec<Pull>) -> io::Result<Option<Cost>> {
     let planes = scene.planes.iter();
     let theories: Vec<Applicability> = planes
@@ -169,8 +170,8 @@ fn judged(scene: &Scene, number: u64, pulls: &mut Vec<Pull>) -> io::Result<Optio
             0 => measurement.batches().len(),
             replicates => replicates.min(measurement.batches().len()),
         };
-        // The noise exceeds the resolution: errors from so few photons are not normally
-        // distributed.
+        // The plane is skipped because its noise exceeds the resolution: with so few photons,
+        // errors are not normally distributed.
         if report.exact_verdict() == Verdict::Undecided {
             continue;
         }
@@ -205,16 +206,16 @@ fn judged(scene: &Scene, number: u64, pulls: &mut Vec<Pull>) -> io::Result<Optio
     Ok(Some(cost))
 }
 
-/// The normal quantile that corresponds to the quantile `t` of Student's distribution with this
-/// number of degrees of freedom. It is accurate to 0.01 for 30 or more (Abramowitz and Stegun 1964,
-/// 26.7.8). Stated errors follow this distribution because they come from the spread of a few dozen
-/// batches.
+/// Returns the normal quantile that corresponds to the quantile `t` of Student's distribution with
+/// this number of degrees of freedom. The approximation is accurate to 0.01 for 30 or more degrees
+/// of freedom (Abramowitz and Stegun 1964, 26.7.8). Stated errors follow this distribution because
+/// they come from the spread of a few dozen batches.
 fn normal(t: f64, freedom: usize) -> f64 {
     let freedom = freedom as f64;
     t * (1.0 - 0.25 / freedom) / (1.0 + t * t / (2.0 * freedom)).sqrt()
 }
 
-/// A name for the theory of a plane and its evaluation.
+/// Returns a name for the theory of a plane and the way in which it is evaluated.
 fn kind(theory: &Applicability, prediction: &Prediction) -> &'static str {
     let nets = !prediction.replicates.is_empty();
     let is_rule = prediction.quadrature_error.is_some();
@@ -240,7 +241,7 @@ fn cpu_seconds() -> io::Result<f64> {
     Ok(ticks.filter_map(|t| t.parse::<f64>().ok()).sum::<f64>() * TICK)
 }
 
-/// A row for the pulls of each group.
+/// Returns a section with a row for the pulls of each group.
 fn grouped(
     pulls: &[Pull],
     options: &PullOptions,
@@ -324,7 +325,7 @@ fn row(name: &str, pulls: &[&Pull], is_judged: bool) -> Row {
     }
 }
 
-/// The largest pulls.
+/// Returns the largest pulls.
 fn largest(pulls: &[Pull]) -> ReportSection {
     let mut sorted: Vec<&Pull> = pulls.iter().collect();
     sorted.sort_by(|a, b| b.value.abs().total_cmp(&a.value.abs()));
@@ -347,7 +348,7 @@ fn largest(pulls: &[Pull]) -> ReportSection {
     }
 }
 
-/// The cost of predictions, compared with that of photons.
+/// Returns the cost of predictions, compared with that of photons.
 fn cost(costs: &[Cost]) -> ReportSection {
     let ratio = |cost: &Cost| cost.predicted / cost.traced.max(0.01);
     let mut sorted: Vec<&Cost> = costs.iter().collect();

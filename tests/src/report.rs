@@ -3,7 +3,7 @@
 use crate::rows::Line;
 use etendue_compare::{PlaneReport, Verdict};
 
-/// The requirement on a figure. NaN meets none of them.
+/// The requirement on a figure; NaN meets no requirement.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Bound {
     Below(f64),
@@ -34,20 +34,20 @@ impl Check {
         }
     }
 
-    /// A check of a fact: the figure is 1 or 0.
+    /// Returns a check of a fact: the figure is 1 or 0.
     pub(crate) fn fact(id: &'static str, holds: bool, reason: &'static str) -> Self {
         Self::new(id, f64::from(holds), Bound::AtLeast(1.0), reason)
     }
 
-    /// A check of p, at a level; a missing p counts as 0.
+    /// Creates a check that p is at least a level; a missing p counts as 0.
     pub(crate) fn p(id: &'static str, p: Option<f64>, level: f64) -> Self {
         let bound = Bound::AtLeast(level);
         Self::new(id, p.unwrap_or(0.0), bound, "α over all planes")
     }
 
-    /// A check of photons against the exact prediction, judged as in a run. It passes by p. It also
-    /// passes if the stated error of the prediction is below the resolution and may explain the
-    /// difference.
+    /// Returns a check of photons against the exact prediction, judged as in a run. The check
+    /// passes if p passes, and also if the stated error of the prediction is below the resolution
+    /// and may explain the difference.
     pub(crate) fn exact(report: &PlaneReport, level: f64) -> Self {
         let check = Self::p(EXACT, report.p_value, level);
         if check.passes() || report.exact_verdict() != Verdict::Pass {
@@ -60,7 +60,7 @@ impl Check {
         }
     }
 
-    /// A check that something never occurs.
+    /// Returns a check that something never occurs.
     pub(crate) fn none(id: &'static str, count: usize) -> Self {
         Self::new(id, count as f64, Bound::AtMost(0.0), "none is borne")
     }
@@ -69,7 +69,7 @@ impl Check {
         self.held().2
     }
 
-    /// The requirement in words, the bound, and whether the figure meets it.
+    /// Returns the requirement in words, the bound, and whether the figure meets it.
     fn held(&self) -> (&'static str, f64, bool) {
         let figure = self.figure;
         match self.bound {
@@ -91,12 +91,12 @@ fn failed(checks: &[Check]) -> impl Iterator<Item = &Check> {
     checks.iter().filter(|check| !check.passes())
 }
 
-/// The larger figure; NaN counts as the largest.
+/// Returns the larger of two figures; NaN counts as the largest.
 pub(crate) fn worse(a: f64, b: f64) -> f64 {
     if b.is_nan() { f64::INFINITY } else { a.max(b) }
 }
 
-/// A row of a table, and the checks of it.
+/// A row of a table, with its checks.
 #[derive(Clone, Debug)]
 pub(crate) struct Row {
     pub(crate) cells: Vec<String>,
@@ -141,8 +141,8 @@ pub(crate) struct ReportSection {
     pub(crate) title: String,
     /// A description of the procedure and the requirements.
     pub(crate) text: String,
-    /// The column headings. If rows have one cell less than there are headings, the last column
-    /// shows their verdicts.
+    /// The column headings. If each row has one cell less than there are headings, the last column
+    /// shows the verdict on the row.
     pub(crate) header: Vec<&'static str>,
     pub(crate) rows: Vec<Row>,
     /// Checks in addition to those of the rows.
@@ -154,8 +154,8 @@ impl ReportSection {
         self.failures().is_empty()
     }
 
-    /// The section with a planted fault. At least one of its checks must fail, although all of them
-    /// pass without the fault.
+    /// Returns the section on a planted fault. It passes if at least one check of `self` fails,
+    /// although all of them pass without the fault.
     pub(crate) fn planted(mut self, title: String, text: &str, is_sound: bool) -> Self {
         let is_seen = !self.passes();
         self.rows.iter_mut().for_each(|row| row.checks.clear());
@@ -199,7 +199,7 @@ impl ReportSection {
         )
     }
 
-    /// A line for each failed check, preceded by the start of its row.
+    /// Returns a line for each failed check, which begins with the first cells of its row.
     fn failures(&self) -> String {
         let of_row = |row: &Row| {
             let line = |check: &Check| format!("* {}: {}", row.cells[..2].join(", "), check.told());

@@ -3,7 +3,8 @@
 use crate::report::Bound::AtLeast;
 use crate::report::{Check, EXACT, ReportSection, Row};
 
-/// A row of the paper's Table 1. Rows of sections refer to the rows of Table 1 to which they apply.
+/// A row of the paper's Table 1. Each row of a section names the rows of Table 1 to which it
+/// applies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Line {
     Travel,
@@ -36,7 +37,7 @@ impl Line {
         Self::Environment,
     ];
 
-    /// Its name, and its operator in ray space and in Fourier space.
+    /// Returns the name of the row, and its operator in ray space and in Fourier space.
     fn words(self) -> [&'static str; 3] {
         let [shear, scale, turn] = ["shear", "scale, spatial", "reflection of angles"];
         let [times, spread] = ["multiplication", "convolution"];
@@ -69,7 +70,7 @@ impl Line {
     }
 }
 
-/// The results for every row, from the sections of all parts.
+/// Returns the results for every row, from the sections of all parts.
 pub(crate) fn rows(sections: &[ReportSection]) -> ReportSection {
     ReportSection {
         title: "Every row".to_owned(),
@@ -95,7 +96,7 @@ pub(crate) fn rows(sections: &[ReportSection]) -> ReportSection {
 fn row(line: Line, sections: &[ReportSection]) -> Row {
     let all = sections.iter().flat_map(|section| &section.rows);
     let of_line = all.filter(|row| row.lines.contains(&line));
-    // Rows that have a p are checked with photons.
+    // A row with a check of p is one that photons check.
     let (planes, others): (Vec<&Row>, Vec<&Row>) = of_line.partition(|row| exact(row).is_some());
     let mut cells = line.words().map(str::to_owned).to_vec();
     let mut checks = Vec::new();
@@ -110,7 +111,7 @@ fn row(line: Line, sections: &[ReportSection]) -> Row {
     Row::new(cells, checks)
 }
 
-/// p against the exact prediction.
+/// Returns the check of p against the exact prediction, if the row has one.
 fn exact(row: &Row) -> Option<f64> {
     let check = row.checks.iter().find(|check| check.id == EXACT);
     check.map(|check| check.figure)
@@ -161,7 +162,7 @@ mod tests {
     #[test]
     fn words_do_not_make_a_failing_check_pass() {
         let p = || section(&["texture", "pass"], vec![Check::p(EXACT, Some(0.3), 0.01)]);
-        // A figure that is too large, NaN, or unchecked.
+        // The figure is too large, is NaN, or has no check.
         for checks in [off(1e-6), off(f64::NAN), Vec::new()] {
             let planted = section(&["texture", "pass"], checks);
             let shown = planted.markdown();

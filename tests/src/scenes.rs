@@ -40,7 +40,7 @@ pub(crate) const SUITE: &[(&str, &str)] = &[
     scene!("two_glossy"),
 ];
 
-/// A scene of the suite, with the photons and the seed of its file by default.
+/// Returns a scene of the suite, with the photons and the seed of its file by default.
 ///
 /// # Panics
 /// If there is no such scene, or it is invalid.
@@ -65,13 +65,13 @@ pub(crate) fn receiver(photons: u64, seed: u64) -> Scene {
     scene
 }
 
-/// A scene whose photons use this kind of random numbers.
+/// Returns a scene whose photons use this kind of random numbers.
 pub(crate) fn sampled(mut scene: Scene, sampling: Sampling) -> Scene {
     scene.run.sampling = sampling;
     scene
 }
 
-/// A description of the photons' random numbers.
+/// Returns a description of the photons' random numbers.
 pub(crate) fn words(sampling: Sampling) -> &'static str {
     match sampling {
         Sampling::Net => "nets",
@@ -79,8 +79,8 @@ pub(crate) fn words(sampling: Sampling) -> &'static str {
     }
 }
 
-/// Changes the number of photons of a run. The resolution is scaled by the inverse root of this
-/// number, as noise is.
+/// Changes the number of photons of a run. The resolution is scaled, as noise is, by the inverse
+/// square root of this number.
 pub(crate) fn emit(run: &mut RunFile, photons: Option<u64>) {
     let Some(photons) = photons else { return };
     let more_noise = (run.photons as f64 / photons as f64).sqrt();
@@ -104,7 +104,8 @@ pub(crate) fn traced_backwards(scene: &Scene) -> Option<Measurement> {
     Some(measured(scene, &backward))
 }
 
-/// The predictions of all planes of a scene; where no theory applies, `reference` is used.
+/// Predicts all planes of a scene; the measurement `reference` replaces theory at planes where no
+/// theory applies.
 ///
 /// # Panics
 /// If a plane needs a reference and there is none.
@@ -121,7 +122,7 @@ pub(crate) fn predicted(scene: &Scene, reference: Option<&Measurement>) -> Vec<P
         .collect()
 }
 
-/// The prediction of plane `index` from a reference measurement.
+/// Returns the prediction of plane `index` that a reference measurement gives.
 ///
 /// # Panics
 /// If it has too few batches.

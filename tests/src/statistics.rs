@@ -1,8 +1,8 @@
 //! The statistics used by the calibration.
 
-/// The probability that the maximum deviation of the empirical distribution of `count` uniform
-/// numbers is at least `distance` (Kolmogorov's series, with Stephens' 1970 correction for finite
-/// counts).
+/// Returns the probability that the maximum deviation of the empirical distribution of `count`
+/// uniform numbers is at least `distance` (Kolmogorov's series, with Stephens' 1970 correction for
+/// finite counts).
 pub(crate) fn kolmogorov(distance: f64, count: usize) -> f64 {
     let root = (count as f64).sqrt();
     let t = (root + 0.12 + 0.11 / root) * distance;
@@ -14,7 +14,7 @@ pub(crate) fn kolmogorov(distance: f64, count: usize) -> f64 {
     (2.0 * (1..=100).map(term).sum::<f64>()).clamp(0.0, 1.0)
 }
 
-/// The Kolmogorov–Smirnov p-value of the hypothesis that `values` are uniform on (0, 1).
+/// Returns the Kolmogorov–Smirnov p-value of the hypothesis that `values` are uniform on (0, 1).
 pub(crate) fn uniformity(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);

@@ -11,7 +11,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 struct SuiteRun {
     scene: Scene,
     planes: Vec<PlaneComparison>,
-    /// p of photons against backward rays; `None` where there are none.
+    /// For each plane, p of photons against backward rays; `None` without backward rays.
     backward: Vec<Option<f64>>,
 }
 
@@ -117,8 +117,8 @@ fn outcome<'a>(outcomes: &'a [SuiteRun], name: &str) -> Option<&'a SuiteRun> {
     outcomes.iter().find(|o| o.scene.name == name)
 }
 
-/// Two occluders that together block all light, but each alone blocks little (Durand et al. 2005,
-/// Fig. 7).
+/// Checks two occluders that together block all light, but of which each alone blocks little
+/// (Durand et al. 2005, Fig. 7).
 fn occluders(outcomes: &[SuiteRun]) -> ReportSection {
     let mut rows = Vec::new();
     let at = |name: &str| {
@@ -133,7 +133,7 @@ fn occluders(outcomes: &[SuiteRun]) -> ReportSection {
         ("fig7_two", 0, 0.0),
     ] {
         let through = at(name).map_or(0, |plane| plane.report.crossed);
-        // A short suite has fewer photons than the required million.
+        // A short suite traces fewer photons than the million that is otherwise required.
         let wanted = outcome(outcomes, name)
             .map_or(0, |o| o.scene.run.photons / 4)
             .min(least);
@@ -151,8 +151,8 @@ fn occluders(outcomes: &[SuiteRun]) -> ReportSection {
         outcome(outcomes, "fig7_two"),
     ) {
         (Some(one), Some(other), Some(both)) => {
-            // The open light minus the light that each occluder blocks: F − (F − F₁) − (F − F₂) =
-            // F₁ + F₂ − F.
+            // The unblocked light minus the light that each occluder blocks: F − (F − F₁) − (F −
+            // F₂) = F₁ + F₂ − F.
             let open = etendue_compare::chain(&both.scene, &both.scene.planes[2]);
             let open = etendue_theory::Chain {
                 operators: open.operators.into_iter().filter(travels).collect(),
@@ -212,7 +212,8 @@ fn travels(operator: &etendue_theory::Operator) -> bool {
     matches!(operator, etendue_theory::Operator::Travel { .. })
 }
 
-/// H of the light that leaves the receiver under blockers of three sizes (Durand et al. 2005, Fig. 9).
+/// Checks H of the light that leaves the receiver behind blockers of three sizes (Durand et al.
+/// 2005, Fig. 9).
 fn high_frequencies(outcomes: &[SuiteRun]) -> ReportSection {
     let shares = |name: &str| {
         let leaving = outcome(outcomes, name)?
@@ -259,7 +260,8 @@ fn high_frequencies(outcomes: &[SuiteRun]) -> ReportSection {
     }
 }
 
-/// The white furnace: radiance times the configuration factor of the light, in closed form.
+/// Checks the white furnace against its closed form: radiance times the configuration factor of
+/// the light.
 fn furnace(outcomes: &[SuiteRun]) -> ReportSection {
     let mut rows = Vec::new();
     if let Some(outcome) = outcome(outcomes, "furnace") {

@@ -13,8 +13,7 @@ use etendue_theory::{Model, Observed, Predicted, RayBudget};
 use etendue_trace::Tracer;
 use glam::{DQuat, DVec3};
 
-/// The budget of a prediction. In these tests, the error of the prediction is a few times that of
-/// the photons.
+/// The budget of a prediction, whose error in these tests is a few times that of the photons.
 const BUDGET: RayBudget = RayBudget {
     nodes: 2e6,
     error: 1e-3,
@@ -27,7 +26,7 @@ const ALPHA: f64 = 0.01;
 /// A fault planted in a system.
 type Fault<S = SpecularSystem> = (&'static str, fn(&mut Observed<S>));
 
-/// A scene file of the repository, with fewer photons.
+/// Returns a scene file of the repository, with fewer photons.
 fn scene(name: &str) -> Scene {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes");
     let text = std::fs::read_to_string(format!("{folder}/{name}.ron")).unwrap();
@@ -123,8 +122,8 @@ fn traced(scene: &Scene) -> Measurement {
     measure(&tracer, &scene.planes, 0..scene.run.batches, &|_| ())
 }
 
-/// Fig. 3: five suns behind a grating, in slopes and in angles. They are symmetric under half a
-/// turn.
+/// Checks Fig. 3, five suns behind a grating, in slopes and in angles. The suns are symmetric
+/// under half a turn.
 #[test]
 fn two_parameterisations() {
     let scene = scene("fig3");
@@ -135,7 +134,7 @@ fn two_parameterisations() {
     }
 }
 
-/// Fig. 14: light on a sphere, before the lobes of its surface.
+/// Checks Fig. 14: light on a sphere, before the lobes of its surface act.
 #[test]
 #[ignore = "long: half a minute; .ci/long runs it"]
 fn the_steps_of_shading() {

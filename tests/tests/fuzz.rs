@@ -8,7 +8,8 @@ use etendue_trace::Tracer;
 use etendue_transform::random::{self, Stream};
 use rayon::prelude::*;
 
-/// A scene with each kind of light, blockers and planes; the first is mutated most often.
+/// Scenes that together contain each kind of light, blockers and planes; the first one is mutated
+/// most often.
 const SCENES: [&str; 6] = [
     include_str!("../../scenes/fig9b.ron"),
     include_str!("../../scenes/disc_light.ron"),
@@ -60,7 +61,8 @@ impl Dice {
     }
 }
 
-/// The scene file with one to three tokens replaced, removed or doubled, or cut short.
+/// Returns a scene file that is cut short, or has one to three tokens replaced, removed or
+/// doubled.
 fn mutated(index: u64) -> String {
     let mut dice = Dice { index, block: 0 };
     let scene = SCENES[dice.below(2 * SCENES.len()).saturating_sub(SCENES.len())];
@@ -139,8 +141,8 @@ fn tried(index: u64) -> [bool; 2] {
     [true, is_run]
 }
 
-/// There are few photons, frequencies and blockers, because the test is about values of fields and
-/// not about the number of items.
+/// Photons, frequencies and blockers are few, because the test is about values of fields and not
+/// about the number of items.
 fn make_small(scene: &mut Scene) {
     scene.run.photons = 200;
     scene.run.batches = 32;
@@ -158,7 +160,7 @@ fn make_small(scene: &mut Scene) {
         let some = mesh.triangles.iter().take(200).copied().collect();
         mesh.triangles = Triangles::new(some, 0.0);
     }
-    // Predictions at a receiver take seconds, for any frequencies.
+    // A prediction at a receiver takes seconds, however few frequencies there are.
     scene.planes.retain(|plane| plane.leg == 0);
 }
 

@@ -23,15 +23,16 @@ fn attack(arguments: &[&str]) {
     assert_eq!(output.status.code(), Some(0), "{report}\n{message}");
 }
 
-/// The program in the same folder as the validation. The program belongs to another package, which
-/// is not built if only this package is tested.
+/// Returns the path of `etendue` in the folder of the validation. The program belongs to another
+/// package, which is not built if only this package is tested.
 fn program() -> PathBuf {
     let path = Path::new(VALIDATION).with_file_name("etendue");
     let built = fs::metadata(&path).and_then(|file| file.modified());
     let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates");
     if built.is_err() || built.unwrap() < changed(&crates) {
         let folder = path.parent().and_then(Path::file_name).unwrap();
-        // The folder of a profile has the profile's name, except for `dev`.
+        // The folder of a build profile has the name of the profile, except that of `dev`, which
+        // is `debug`.
         let profile = match folder.to_str().unwrap() {
             "debug" => "dev",
             profile => profile,
@@ -43,7 +44,7 @@ fn program() -> PathBuf {
     path
 }
 
-/// The time of the last change of a source file, without tests.
+/// Returns the time of the last change in a source folder, tests excluded.
 fn changed(folder: &Path) -> SystemTime {
     let entries = fs::read_dir(folder).unwrap().map(|e| e.unwrap().path());
     let times = entries.map(|path| {

@@ -23,12 +23,12 @@ fn scene(edits: &[(&str, &str)]) -> Scene {
     }
     let mut file = SceneFile::parse(&text).expect("the edited scene is a scene file");
     file.run.photons = PHOTONS;
-    // Unaimed emission leaves noise of 16 %, which is low enough here.
+    // Photons that are not aimed have noise of 16 %, which is low enough here.
     file.run.resolution = 0.5;
     resolve("test", file, ".".as_ref(), u64::MAX).expect("the edited scene is sound")
 }
 
-/// The verdicts of all planes of `traced` on the predictions of `predicted`.
+/// Returns the verdicts of all planes of `traced` on the predictions of `predicted`.
 fn verdicts(traced: &Scene, predicted: &Scene) -> Vec<Verdict> {
     let measurement = measure(
         &Tracer::new(traced),
@@ -52,8 +52,8 @@ fn verdicts(traced: &Scene, predicted: &Scene) -> Vec<Verdict> {
         .collect()
 }
 
-/// Variants of fig9b must agree as fig9b does: with objects beside or behind the light, large or
-/// small, distant, rotated or dark.
+/// Variants of fig9b must pass as fig9b does: with objects beside or behind the light, and with
+/// scenes that are large or small, distant, rotated or dark.
 #[test]
 fn other_scenes_agree() {
     let fin = r#"(name: "floor", center: (0, 0, 2), size: (6, 6), albedo: 0.5),
@@ -150,8 +150,8 @@ fn a_forgotten_surface_is_noticed() {
     );
 }
 
-/// The closed form assumes an infinite receiver. Where a window contains the receiver's edge, paths
-/// are traced.
+/// The closed form assumes an infinite receiver. If a window contains the edge of the receiver,
+/// the theory of paths predicts the plane.
 #[test]
 fn the_edge_of_the_receiver_is_left_to_paths() {
     let classes = |size: &str| -> Vec<Class> {
@@ -175,7 +175,7 @@ fn a_black_receiver_is_dark() {
     assert_eq!(verdicts(&black, &black), [Verdict::Pass; 5]);
 }
 
-/// Every scene file of the repository whose planes lie behind smooth surfaces.
+/// Returns every scene file of the repository whose planes lie behind smooth surfaces.
 fn scene_files() -> Vec<Scene> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes");
     let read = |folder: &str| {
@@ -197,7 +197,8 @@ fn scene_files() -> Vec<Scene> {
     resolved.collect()
 }
 
-/// A first-order chain in which a step is omitted or doubled fails, if this changes the chain.
+/// A first-order chain fails if a step is omitted or doubled, unless this does not change the
+/// chain.
 #[test]
 fn every_step_of_a_chain_counts() {
     let (mut steps, mut changed) = (0, 0);
@@ -251,7 +252,8 @@ fn every_step_of_a_chain_counts() {
             }
         }
     }
-    // The other steps are identities, such as a rotation by zero.
+    // The steps that can be omitted or doubled without a change are identities, such as a rotation
+    // by zero.
     assert!(
         changed > 1000 && changed > steps * 9 / 10,
         "{changed} of {steps}"

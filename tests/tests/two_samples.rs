@@ -23,7 +23,7 @@ fn scene(seed: u64) -> Scene {
     scene
 }
 
-/// The data of each plane in a result of `scene`.
+/// Returns, for each plane, the data of a result of `scene`.
 fn samples(scene: &Scene, source: &dyn PhotonSource) -> Vec<Sample> {
     let batches = scene.run.batches;
     let measurement = measure(source, &scene.planes, 0..batches, &|_| ());
@@ -62,7 +62,7 @@ fn p_is_uniform_over_200_pairs_of_seeds() {
     for seed in 1..=200 {
         let a = photons(2 * seed);
         let b = photons(2 * seed + 1);
-        // The tracers have noise of different size and correlation.
+        // The noise of the two tracers differs in size and correlation.
         let c = backward(2 * seed + 1);
         for (i, plane) in planes.iter().enumerate() {
             let test = |other: &Sample| TwoSamples::new(&plane.grid, &a[i], other).p_value;
@@ -89,7 +89,7 @@ fn p_is_uniform_over_200_pairs_of_seeds() {
                 "{name} at {}: p of uniformity {uniform:.3}, {low} of 200 below 5 %",
                 plane.name
             );
-            // A joint level for ten tests at 1 %.
+            // The level 0.1 % for each of ten tests gives 1 % for all.
             assert!(uniform > 1e-3, "{line}");
         }
     }

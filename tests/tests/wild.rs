@@ -1,4 +1,5 @@
-//! Scenes on which theory was once wrong, wrongly certain, or without an answer (results/wild.md).
+//! Scenes on which theory was once wrong, stated too small an error, or gave no prediction
+//! (results/wild.md).
 
 #![allow(
     clippy::unwrap_used,
@@ -23,7 +24,7 @@ use std::time::Instant;
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/wild");
 
-/// A scene of the folder, with parts of its text replaced.
+/// Returns a scene of `scenes/wild`, with parts of its text replaced.
 fn edited(name: &str, edits: &[(&str, &str)]) -> Scene {
     let mut text = std::fs::read_to_string(format!("{FOLDER}/{name}.ron")).unwrap();
     for (from, to) in edits {
@@ -34,12 +35,13 @@ fn edited(name: &str, edits: &[(&str, &str)]) -> Scene {
     resolve(name, file, FOLDER.as_ref(), u64::MAX).unwrap()
 }
 
-/// A scene of the folder.
+/// Returns a scene of `scenes/wild`.
 fn scene(name: &str) -> Scene {
     edited(name, &[])
 }
 
-/// Enough rays that, in each batch, many hit a bright pixel through the lobe.
+/// The number of photons in a scene file and its replacement, with which many rays of each batch
+/// hit a bright pixel through the lobe.
 const MORE: (&str, &str) = ("photons: 200_000", "photons: 2_000_000");
 
 fn measured(scene: &Scene, source: &dyn PhotonSource) -> Measurement {
@@ -82,7 +84,7 @@ fn by_reference(scene: &Scene, plane: usize, reference: &Measurement) -> Predict
     Prediction::reference(scene, plane, &theory, reference, plane).unwrap()
 }
 
-/// The prediction by exact rays, without the affine chain, which has its own verdict.
+/// Returns the prediction by exact rays, without the affine chain, whose verdict is separate.
 fn as_it_is(scene: &Scene, plane: usize) -> Prediction {
     Prediction {
         first_order: None,
@@ -105,9 +107,8 @@ fn row(scene: &Scene, class: Class, by: &str, seconds: f64, report: &PlaneReport
     );
 }
 
-/// Checks that every plane of a scene has its class, and that no verdict is a failure. Photons
-/// judge each plane; backward rays judge it where photons are undecided and a backward tracer
-/// exists.
+/// Checks that every plane of a scene has its class, and that no verdict is a failure. The photons
+/// decide at each plane; if they are undecided and a backward tracer exists, backward rays decide.
 fn holds(name: &str, planes: &[(&str, Class)]) {
     holds_in(&scene(name), planes);
 }
@@ -163,7 +164,8 @@ fn scenes_that_took_long_have_an_answer() {
 }
 
 /// The deviation of a fine mesh from its osculating patch exceeds the noise of photon nets. The
-/// stated error of the prediction includes this deviation; when it did not, this scene failed.
+/// stated error of the prediction includes the deviation of mesh from patch; before it did, this
+/// scene failed.
 #[test]
 fn a_mesh_beside_its_patch_is_no_disagreement() {
     let folder = Path::new(FOLDER).join("../table1");
@@ -197,8 +199,8 @@ fn triangles_are_as_far_off_as_is_stated() {
     assert_eq!(judged.verdict, Verdict::Pass);
     let [stated, seen] = [prediction.mesh_error, judged.excess].map(Option::unwrap);
     let ratio = stated / seen;
-    // The stated error is a sampled value plus its standard error. The observed error has a noise
-    // of a fifth of its value.
+    // The stated error is a sampled value plus its standard error. The observed error has a
+    // standard error of a fifth of its value.
     assert!(
         (1.0..1.3).contains(&ratio),
         "{stated:e} stated, {seen:e} seen"
@@ -240,7 +242,8 @@ fn scenes_that_were_wrong_do_not_fail() {
     holds("projector_two_occluders", &dark);
 }
 
-/// The first-order chain is the exact prediction plus a difference, and has the same noise.
+/// The first-order chain is computed as the exact prediction plus a difference, and so has the
+/// same noise.
 #[test]
 fn the_chain_of_a_small_map_does_not_fail() {
     use Class::FirstOrder;
@@ -249,7 +252,7 @@ fn the_chain_of_a_small_map_does_not_fail() {
 }
 
 /// Nets of rays resolve a grating that the quadrature nodes on a receiver do not resolve. A
-/// prediction with these nodes is still wrong.
+/// prediction with these quadrature nodes is still wrong.
 #[test]
 fn a_fine_grating_is_decided() {
     let scene = scene("fine_grating_floor");
@@ -268,8 +271,8 @@ fn a_fine_grating_is_decided() {
     assert_eq!(verdict(&scene, &photons, &by_nodes), Verdict::Fail);
 }
 
-/// An environment map with few pixels under a narrow lobe, at planes on the surface and after it. A
-/// lobe that is a fifth wider is distinguished from it.
+/// The light is an environment map with few pixels, reflected by a narrow lobe, at planes on the
+/// surface and after it. Photons reject a lobe that is a fifth wider.
 #[test]
 fn a_small_map_is_decided() {
     let scene = edited("small_map_phong", &[MORE]);
@@ -287,7 +290,8 @@ fn a_small_map_is_decided() {
 /// Number of widths beyond which the tail of a sky lobe was once treated as dark.
 const CUT: f64 = 5.0;
 
-/// The tail of a wide lobe is light; a prediction without it is rejected.
+/// The tail of a wide sky lobe contributes light, and photons reject a prediction without this
+/// tail.
 #[test]
 fn a_wide_glow_is_decided() {
     let scene = scene("wide_gaussian_sky");
@@ -325,7 +329,7 @@ fn a_small_disc_in_a_later_leg_is_decided() {
     is_followed_past("corner_disc", &["disc"]);
 }
 
-/// Theory's rays meet a surface once. For light that meets it twice, the other tracer is used.
+/// Theory's rays meet a surface once, so the other tracer is used for light that meets it twice.
 #[test]
 fn a_hollow_met_twice_is_decided() {
     let scene = edited("hollow_twice", &[MORE]);
@@ -348,7 +352,8 @@ fn a_surface_in_its_own_shadow_is_decided() {
     }
 }
 
-/// Checks that both tracers agree, and that a theory which ignores the reason disagrees with them.
+/// Checks that both tracers agree, and that they disagree with a prediction by `theory`, which
+/// does not apply.
 fn decided_by_reference(
     scene: &Scene,
     plane: usize,
@@ -365,7 +370,8 @@ fn decided_by_reference(
     assert_eq!(wrong.verdict, Verdict::Fail);
 }
 
-/// Two half-planes without a gap are reported as the cause of a dark plane; two with a gap are not.
+/// Two half-planes are reported as the cause of a dark plane if there is no gap between them, but
+/// not if there is one.
 #[test]
 fn darkness_behind_two_occluders_is_decided() {
     let scene = scene("projector_two_occluders");
@@ -387,7 +393,7 @@ fn darkness_behind_two_occluders_is_decided() {
     }
 }
 
-/// Number of rays that gives an error of half a per cent in each of these scenes.
+/// Budget with which a prediction has an error of half a per cent in each of these scenes.
 const BUDGET: RayBudget = RayBudget {
     nodes: 1e6,
     error: 5e-3,
@@ -424,7 +430,7 @@ fn by_scattering(
     replaced(like, found.slices, found.replicates)
 }
 
-/// A prediction with other slices.
+/// Returns a prediction whose slices are replaced.
 fn replaced(like: Prediction, slices: Slices, replicates: Vec<Slices>) -> Prediction {
     Prediction {
         quadrature_error: None,
@@ -451,12 +457,12 @@ fn a_low_sky_is_decided() {
     let scene = scene("low_sky");
     let declined = Applicability::new(&scene, &scene.planes[0]).declined;
     assert_eq!(declined, ["light that meets glass out of order"]);
-    // Paths that are drawn from nets end where they meet the glass out of order.
+    // A path of the prediction ends where it meets the glass out of order.
     holds_in(&scene, &[("p", Class::FirstOrder)]);
 }
 
-/// Rays continue differently from the triangles of a mesh and from its osculating patch. In one
-/// scene they meet the mesh again; in the other scene the mesh is round.
+/// In these scenes rays that leave the triangles of a mesh continue differently from rays that
+/// leave its osculating patch: they meet the mesh again, or another direction results.
 #[test]
 fn meshes_unlike_their_patches_are_decided() {
     let glass = scene("glass_star");
@@ -478,7 +484,7 @@ fn meshes_unlike_their_patches_are_decided() {
     }
 }
 
-/// Scenes in which only few rays of the window meet the blockers, or a mesh that light visits
+/// In these scenes only few rays of the window meet the blockers, or a mesh that light visits
 /// later.
 #[test]
 #[ignore = "long: half a minute; .ci/long runs it"]
@@ -535,8 +541,8 @@ fn is_followed_past(name: &str, obstacles: &[&str]) {
     assert!(measured.iter().any(wrong), "{name}");
 }
 
-/// Part of a mirror is before the mask that is in front of the mirror. No ray sampled from the
-/// light hits so narrow a window.
+/// A part of a mirror is nearer to the light than the mask in front of it, and the window is so
+/// narrow that no ray sampled from the light hits it.
 #[test]
 fn a_sliver_of_slopes_is_decided() {
     is_followed_past("sliver_of_slopes", &["slit"]);
@@ -550,14 +556,14 @@ fn a_plane_behind_its_surface_is_decided() {
     assert_eq!(verdict(&scene, &photons(&scene), &reference), Verdict::Pass);
 }
 
-/// A wall beside the light extends behind it, where no light is emitted.
+/// A wall beside the light extends behind the light, which emits only forward.
 #[test]
 fn a_wall_that_reaches_behind_the_light_is_decided() {
     holds("beside_the_light", &[("p", Class::FirstOrder)]);
 }
 
-/// A surface that light visits later is in a corner of a window before the first surface. Few
-/// projector rays that are sampled over the whole of a wide wall reach this corner.
+/// A surface that light visits later is in a corner of a window before the first surface. Of the
+/// projector rays that are sampled over a whole wide wall, few reach this corner.
 #[test]
 fn a_later_surface_beside_the_first_leg_is_decided() {
     let scene = scene("beside_the_beam");
@@ -566,8 +572,7 @@ fn a_later_surface_beside_the_first_leg_is_decided() {
     });
 }
 
-/// Backward rays at angles beyond a right angle find no light, although the same directions, less a
-/// full turn, have light.
+/// Angles beyond a right angle hold no light, although the same angles less a full turn do.
 #[test]
 fn angles_beyond_a_turn_are_decided() {
     let scene = scene("angles_beyond_a_turn");
@@ -594,8 +599,8 @@ fn a_sky_from_behind_is_decided() {
     });
 }
 
-/// Photons are recorded where they first meet a surface that curves by more than a right angle,
-/// with the same coordinates as backward rays there.
+/// If a surface curves by more than a right angle, photons are recorded where they first meet it,
+/// with the coordinates that backward rays have there.
 #[test]
 fn a_ridge_under_a_sky_is_decided() {
     let scene = scene("ridge_under_a_sky");
@@ -603,8 +608,8 @@ fn a_ridge_under_a_sky_is_decided() {
     assert_eq!(verdict(&scene, &photons(&scene), &reference), Verdict::Pass);
 }
 
-/// A discontinuous window cuts the light of a projector. Quadratures with few rays may agree by
-/// chance for such light.
+/// A discontinuous window cuts the light of a projector. For such light two quadratures with few
+/// rays may agree by chance.
 #[test]
 fn a_box_before_a_projector_is_decided() {
     let scene = scene("box_before_a_projector");
@@ -622,7 +627,7 @@ fn irradiance_after_a_floor_is_decided() {
     holds("irradiance_after_floor", &[("p", Class::FirstOrder)]);
 }
 
-/// A wall that light visits later is beside its first leg.
+/// A wall that light visits later is beside the first leg of the path.
 #[test]
 fn a_wall_in_the_way_is_decided() {
     decided_against_chain("wall_in_the_way", Class::Reference);
@@ -647,7 +652,7 @@ fn decided_against_chain(name: &str, class: Class) {
 }
 
 /// Light whose line meets a hollow surface again does not count, even if a blocker stops it first.
-/// Light that a floor inside the surface stops continues from the floor.
+/// Light that a floor inside the hollow surface stops continues from the floor.
 #[test]
 fn light_that_would_meet_its_surface_again_is_decided() {
     for name in ["stopped_in_a_hollow", "floor_in_a_hollow"] {
@@ -658,8 +663,8 @@ fn light_that_would_meet_its_surface_again_is_decided() {
     }
 }
 
-/// Hardly any ray aimed by the affine chain lands in so narrow a window. Exact rays traced back
-/// from the window have almost no noise.
+/// The window is so narrow that it receives hardly any ray aimed by the affine chain, but exact
+/// rays traced back from it have almost no noise.
 #[test]
 fn a_narrow_window_is_decided() {
     for name in ["pinhole_beyond_glass", "pinhole_on_a_mirror"] {
@@ -673,8 +678,8 @@ fn a_narrow_window_is_decided() {
 }
 
 /// Photons sampled in proportion to the sky rarely come from the direction of a lobe, so some are
-/// sampled by the cosine. While only a few of these carry the light, they do not contradict the
-/// other tracer.
+/// sampled by the cosine. If only a few of the photons sampled by the cosine carry the light, they
+/// do not contradict the other tracer.
 #[test]
 fn a_dim_part_of_the_sky_is_found() {
     let few = scene("dim_lobe_of_a_sky");
@@ -686,18 +691,20 @@ fn a_dim_part_of_the_sky_is_found() {
         let batches = measured.at_plane(0).map(|batch| batch.slices.at_zero());
         batches.sum::<f64>()
     });
-    // With cosine sampling photons have a noise of 15 %; without it they find 10⁻⁹ of the light.
+    // With samples by the cosine the noise of photons is 15 %; without them photons find 10⁻⁹ of
+    // the light.
     assert!((found / there - 1.0).abs() < 0.5, "{found} of {there}");
 }
 
-/// A plane on the surface after one with a BRDF has its own coordinates.
+/// A plane on the second surface of a path, after one with a BRDF, has the coordinates of the
+/// second surface.
 #[test]
 fn a_plane_before_a_second_surface_is_decided() {
     let planes = [("tangent", Class::FirstOrder), ("local", Class::FirstOrder)];
     holds("before_second_after_brdf", &planes);
 }
 
-/// A refracting mesh lit from behind refracts in the opposite direction.
+/// A mesh that light meets from behind has the ratio of its indices of refraction inverted.
 #[test]
 fn a_mesh_met_from_behind_is_decided() {
     let turned = edited(
@@ -716,7 +723,8 @@ fn a_mesh_met_from_behind_is_decided() {
     );
 }
 
-/// Light of an environment begins in a plane, and everything behind it is dark for both tracers.
+/// Light of an environment begins in a plane, and for both tracers everything behind this plane is
+/// dark.
 #[test]
 fn a_surface_behind_the_plane_of_the_sky_is_decided() {
     let scene = scene("behind_the_sky_plane");
@@ -737,8 +745,8 @@ fn a_coarse_mesh_is_decided() {
     );
 }
 
-/// On a thin lens there is no affine chain; beyond the lens there is one. Rays are right in both
-/// cases.
+/// On a thin lens there is no affine chain; beyond the lens there is one. Exact rays are correct
+/// in both cases.
 #[test]
 fn a_plane_on_a_lens_is_decided() {
     let scene = scene("on_a_lens");

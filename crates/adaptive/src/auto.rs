@@ -1,12 +1,12 @@
 //! The default distribution of samples: the criteria, calibrated by the errors of even samples.
 //!
-//! A criterion bounds how fast light may change, and does not know how much of the light changes
-//! at all. So the first samples are even, and planes through one half of them are compared with the
-//! other half. The squared error e² at a density n is k n_c²/n², where n_c is the density by the
-//! criterion, if the criterion is right up to a factor k. This factor is measured for each object.
-//! The best density is then (k n_c²)^(1/3). Half of the remaining samples follow it, and half
-//! follow the errors themselves, which also show what the criterion does not know, such as
-//! shadows that it has missed.
+//! A criterion bounds how fast light may change, but not how much of the light changes. So the
+//! first samples are evenly distributed, and planes fitted to one half of them are compared with
+//! the other half. If the criterion is right up to a factor k, the squared error e² at a density n
+//! is k n_c²/n², where n_c is the density by the criterion. The factor k is measured for each
+//! object, and the best density is (k n_c²)^(1/3). Half of the remaining samples have this
+//! density, and half are distributed by the errors themselves, which also show what the criterion
+//! has missed, such as shadows.
 
 use crate::criterion::shaded;
 use crate::cross::{cross_errors, squared};
@@ -17,18 +17,18 @@ use crate::metric::Metric;
 use crate::reconstruct::ShadedSample;
 use std::collections::BTreeMap;
 
-/// The share of samples that are even, and first.
+/// The share of the samples that are taken first, evenly distributed.
 const EVEN_SHARE: f64 = 1.0 / 3.0;
 
-/// The weight of all objects in the factor of each, in samples: an object with few samples has the
-/// factor of all.
+/// The weight, in samples, with which the factor of all objects enters that of each, so that an
+/// object with few samples has about the factor of all.
 const SHARED: f64 = 4.0;
 
-/// The smallest factor of an object, relative to that of all.
+/// The smallest factor of an object, relative to the factor of all objects.
 const MIN_FACTOR: f64 = 1e-3;
 
 impl AdaptiveRun<'_> {
-    /// Takes all samples of the default method.
+    /// Shades all samples of the default method.
     pub(crate) fn auto(&mut self) -> Vec<ShadedSample> {
         let count = self.plan.samples as f64;
         let rest = (1.0 - EVEN_SHARE) * count;
@@ -71,7 +71,7 @@ impl AdaptiveRun<'_> {
         squared(pilot, &left)
     }
 
-    /// The factors k of all objects.
+    /// Computes the factors k of all objects.
     fn factors(
         &self,
         first: &[Option<Metric>],
@@ -108,7 +108,8 @@ impl Sums {
     }
 }
 
-/// Measured squared errors over those by the criterion, up to a common factor.
+/// Sums that give the ratio k of measured squared errors to those by the criterion, up to a common
+/// factor.
 #[derive(Debug, Default)]
 struct Factors {
     all: Sums,
@@ -121,7 +122,8 @@ impl Factors {
         self.objects.entry(object).or_default().add(squares);
     }
 
-    /// The factor of an object; never zero, because the first samples may have missed its light.
+    /// Returns the factor of an object, which is never zero, because the first samples may have
+    /// missed the object's light.
     fn of(&self, object: usize) -> f64 {
         let all = self.all;
         if all.error <= 0.0 || all.criterion <= 0.0 {
@@ -138,8 +140,8 @@ impl Factors {
 mod tests {
     use super::*;
 
-    /// An object whose errors are a hundredth of those by the criterion has a hundredth of the
-    /// factor, and an unknown one that of all.
+    /// An object with a hundredth of the squared errors has a hundredth of the factor, and an
+    /// object without samples has the factor of all.
     #[test]
     fn factors_are_those_of_the_objects() {
         let mut factors = Factors::default();

@@ -18,8 +18,8 @@ const STEP: usize = 4;
 /// would dominate.
 pub const BLOCKER_RAYS: u32 = 16;
 
-/// Returns the nearness at each pixel. From each point, `rays` rays go towards what it reflects,
-/// and as many towards lights.
+/// Returns the nearness at each pixel. From each of the sparse points, `rays` rays go towards what
+/// the point reflects, and as many towards lights.
 pub(crate) fn nearness(
     visible: &Visible,
     (paths, camera, cutoffs, seed): (&Paths, &Camera, &Cutoffs, u64),
@@ -33,7 +33,7 @@ pub(crate) fn nearness(
             let at = [i % w, i / w].map(|i| (i as f64 + 0.5) * STEP as f64);
             let seen = paths.view(&camera.look(at, [0.0; 2])).surface?;
             progress(1);
-            // Blockers nearer than the width of a pixel cannot be resolved.
+            // A pixel does not resolve blockers that are nearer than its width.
             let nearest = seen.distance() * pixel_angle(camera);
             let Nearness { reflected, shadow } =
                 paths.nearness(&seen, rays, nearest, seed, i as u64);
@@ -55,7 +55,7 @@ pub(crate) fn nearness(
     })
 }
 
-/// The slope between adjacent pixels at the centre of the picture.
+/// Returns the slope between adjacent pixels at the centre of the picture.
 fn pixel_angle(camera: &Camera) -> f64 {
     let [w, h] = camera.size.map(|n| 0.5 * n as f64);
     let [a, b] = [w, w + 1.0].map(|x| camera.look([x, h], [0.0; 2]).along);

@@ -14,7 +14,7 @@ use std::collections::BinaryHeap;
 /// Number of candidates per point kept.
 const CANDIDATES: usize = 5;
 
-/// The eighth power, from Yuksel 2015, Eq. 3.
+/// Returns the eighth power, which Eq. 3 of Yuksel 2015 uses.
 fn eighth(x: f64) -> f64 {
     let square = x * x;
     let fourth = square * square;
@@ -53,8 +53,8 @@ pub(crate) fn blue_noise(
         .collect()
 }
 
-/// Random points drawn from the density. They are drawn independently. Stratified points would be
-/// less crowded in dense regions, so elimination would leave too many there.
+/// Random points drawn from the density. The points are drawn independently, because stratified
+/// points would be less crowded in dense regions, and elimination would leave too many there.
 fn candidates(
     metrics: &[Option<Metric>],
     wide: usize,
@@ -88,7 +88,7 @@ struct Crowd {
     queue: BinaryHeap<Candidate>,
 }
 
-/// A candidate with a possibly outdated weight; weights only decrease.
+/// A candidate with its weight, which may be outdated; weights only decrease.
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
     weight: f64,
@@ -116,7 +116,7 @@ impl Ord for Candidate {
     }
 }
 
-/// The maximum radius of discs of density 1 (Yuksel 2015, Eq. 1).
+/// Returns the maximum radius of discs of density 1 (Yuksel 2015, Eq. 1).
 fn largest_radius() -> f64 {
     (2.0 * 3.0_f64.sqrt()).recip().sqrt()
 }
@@ -124,8 +124,8 @@ fn largest_radius() -> f64 {
 impl Crowd {
     fn new(points: &[PicturePoint], wide: usize, high: usize) -> Self {
         let most = 2.0 * largest_radius();
-        // This limits the weight of candidates that are close by chance and do not crowd their
-        // whole region (Yuksel 2015, Eq. 4).
+        // This minimum distance limits the weight of two candidates that are close by chance in a
+        // region that is not crowded (Yuksel 2015, Eq. 4).
         let kept = (CANDIDATES as f64).recip();
         let least = most * (1.0 - kept * kept.sqrt()) * 0.65;
         let grid = PointGrid::new(points, wide, high);
@@ -244,7 +244,7 @@ mod tests {
         squares.fold(f64::INFINITY, f64::min).sqrt()
     }
 
-    /// Some nearest neighbours of random points are at distance 0. Yuksel's points keep three
+    /// The smallest distance between random points is almost 0. Yuksel's points keep three
     /// quarters of the maximum radius (his Table 1 has 0.73 to 0.82 of 2 r).
     #[test]
     fn points_keep_their_distance() {
@@ -298,7 +298,7 @@ mod tests {
             };
             (0..24).map(at).sum::<f64>() / 24.0
         };
-        // In a triangular lattice neighbours would be 3.4 pixels apart, with rows that repeat 0.34
+        // In a triangular lattice neighbours would be 3.4 pixels apart, and rows would repeat 0.34
         // times per pixel.
         let [low, peak] = [ring(0.1), ring(0.34)];
         assert!(low < 0.15 && peak > 1.5, "{low} {peak}");

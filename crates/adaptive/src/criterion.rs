@@ -1,14 +1,15 @@
 //! The bandwidth of light across the picture, by the criteria of Durand et al. 2005, Eqs. 20 and
 //! 21, corrected.
 //!
-//! A lobe reflects light about its axis, up to its cutoff Ω_ρ. From one pixel to the next, the axis
-//! r turns by ∂r and the point on the surface moves by ∂p. An object at a distance d' then moves
-//! relative to the axis by the component of ∂p across r, divided by d'. So the bandwidth along a
-//! direction of the picture is Ω_ρ |∂r + ∂p/d'| cycles per pixel. In the plane of incidence of a
-//! sphere this is Ω_ρ |1 + d (cos θ₀/d' + 2k)/cos θ₁| times the angle of a pixel: Eq. 21 with its
-//! missing factors. Without the term in d' it is Eq. 20. Finite differences on the screen include
-//! the angle of view, the distance and both curvatures, as the paper states. The equations as
-//! printed use the larger curvature alone, and are isotropic.
+//! A lobe reflects light about its axis, up to its cutoff Ω_ρ. From one pixel to the next, the
+//! axis r turns by ∂r and the point on the surface moves by ∂p. An object at a distance d' then
+//! moves relative to the axis by the component of ∂p across r, divided by d'. Hence the bandwidth
+//! along a direction of the picture is Ω_ρ |∂r + ∂p/d'| cycles per pixel. In the plane of
+//! incidence of a sphere, the bandwidth is Ω_ρ |1 + d (cos θ₀/d' + 2k)/cos θ₁| times the angle of
+//! a pixel, which is Eq. 21 with its missing factors. Without the term in d' this bandwidth is
+//! that of Eq. 20. Finite differences on the screen include the angle of view, the distance and
+//! both curvatures, as the paper states. The equations as printed use the larger curvature alone,
+//! and are isotropic.
 
 use crate::metric::Metric;
 use crate::visible::{OFFSETS, SeenPlace, SeenSurface, Visible};
@@ -16,7 +17,8 @@ use etendue_paths::Nearness;
 use etendue_theory::shading::Criterion;
 use glam::DVec3;
 
-/// The squared bandwidth of a pixel, (cycles per pixel)²; `None` if nothing is to be shaded.
+/// Returns the squared bandwidth of a pixel, (cycles per pixel)², or `None` if nothing is to be
+/// shaded.
 pub(crate) fn criterion(
     visible: &Visible,
     pixel: [usize; 2],
@@ -32,8 +34,8 @@ pub(crate) fn criterion(
     Some(lobe.plus(shadow))
 }
 
-/// The squared bandwidth by Eqs. 20 and 21 as printed, as seen from `eye`; `None` if the surface
-/// has no lobe.
+/// Returns the squared bandwidth by Eqs. 20 and 21 as printed, as seen from `eye`; `None` if the
+/// surface has no lobe.
 pub(crate) fn printed(
     visible: &Visible,
     pixel: [usize; 2],
@@ -69,15 +71,15 @@ pub(crate) fn printed(
     Some(lobe.plus(of_position.times(nearness.shadow * nearness.shadow)))
 }
 
-/// The larger curvature of the surface in a pixel, per unit of length, positive if convex; NaN if
-/// nothing is shaded.
+/// Returns the principal curvature of larger magnitude in a pixel, per unit of length, positive if
+/// convex; NaN if nothing is shaded.
 pub(crate) fn curvature(visible: &Visible, pixel: [usize; 2]) -> f64 {
     let places = visible.of_pixel(pixel);
     let first = places.iter().find_map(shaded);
     first.map_or(f64::NAN, |first| bend(&steps(places, first.shape)))
 }
 
-/// The larger principal curvature, from the change of normals between pixels.
+/// Computes the principal curvature of larger magnitude from the change of normals between pixels.
 fn bend(steps: &[PixelStep; 2]) -> f64 {
     let [a, b] = steps;
     let lengths = of_columns(a.position, b.position);
@@ -90,7 +92,7 @@ fn bend(steps: &[PixelStep; 2]) -> f64 {
     if determinant <= 0.0 {
         return 0.0;
     }
-    // Trace and determinant of the shape operator.
+    // `both` is the trace of the shape operator, and `product` is its determinant.
     let both =
         (lengths.yy * turns.xx - 2.0 * lengths.xy * turns.xy + lengths.xx * turns.yy) / determinant;
     let product = turns.determinant() / determinant;
@@ -98,7 +100,7 @@ fn bend(steps: &[PixelStep; 2]) -> f64 {
     0.5 * both + root.copysign(both)
 }
 
-/// The surface at a point, if it scatters light.
+/// Returns the surface at a point, if it scatters light.
 pub(crate) fn shaded(place: &SeenPlace) -> Option<&SeenSurface> {
     place
         .surface
@@ -106,7 +108,7 @@ pub(crate) fn shaded(place: &SeenPlace) -> Option<&SeenSurface> {
         .filter(|surface| surface.cutoff > 0.0 && surface.factors.iter().any(|f| *f > 0.0))
 }
 
-/// The change of quantities from one pixel to the next.
+/// The change of axis, normal and position from one pixel to the next.
 #[derive(Clone, Copy, Debug, Default)]
 struct PixelStep {
     axis: DVec3,
@@ -115,7 +117,7 @@ struct PixelStep {
 }
 
 /// Returns the steps to the right and down: the slopes of the plane fitted to the points of a
-/// pixel. They are zero unless all points are on one shape.
+/// pixel. The steps are zero unless all points are on this shape.
 fn steps(places: &[SeenPlace], shape: usize) -> [PixelStep; 2] {
     let mut steps = [PixelStep::default(); 2];
     for (place, offset) in places.iter().zip(OFFSETS) {
@@ -123,7 +125,8 @@ fn steps(places: &[SeenPlace], shape: usize) -> [PixelStep; 2] {
             return [PixelStep::default(); 2];
         };
         for (step, at) in steps.iter_mut().zip(offset) {
-            // The offsets are orthogonal, and the squares of each sum to 5/16.
+            // The offsets along the two axes are orthogonal, and the sum of the squares along each
+            // axis is 5/16.
             let weight = (at - 0.5) * 16.0 / 5.0;
             step.axis += weight * surface.axis;
             step.normal += weight * surface.normal;
@@ -133,12 +136,12 @@ fn steps(places: &[SeenPlace], shape: usize) -> [PixelStep; 2] {
     steps
 }
 
-/// The component of a step across a direction.
+/// Returns the component of a step perpendicular to a direction.
 fn across(step: DVec3, along: DVec3) -> DVec3 {
     step - step.dot(along) * along
 }
 
-/// JᵀJ of a Jacobian given by its columns.
+/// Returns JᵀJ for the Jacobian J with these columns.
 fn of_columns(right: DVec3, down: DVec3) -> Metric {
     Metric {
         xx: right.length_squared(),
@@ -162,7 +165,7 @@ mod tests {
     const DISTANCE: f64 = 3.0;
     const ALPHA: f64 = 0.2;
 
-    /// A rough metal ball before a camera of narrow pixels.
+    /// Returns a rough metal ball before a camera of narrow pixels.
     fn seen() -> (Paths, Camera) {
         let world = World {
             shapes: vec![Shape {
@@ -238,11 +241,12 @@ mod tests {
                     },
                 )
                 .unwrap();
-                // The angle of a pixel is proportional to the squared cosine of its direction.
+                // The angle that a pixel subtends is proportional to the squared cosine of its
+                // direction.
                 let off = (column as f64 - 400.0) * slope;
                 let found = metric.xx.sqrt() / (slope / (1.0 + off * off));
-                // The tolerance covers finite differences over a pixel, and the change of the
-                // cosine within it.
+                // The tolerance covers the error of finite differences over a pixel, and the
+                // change of the cosine within the pixel.
                 assert!(
                     (found / expected - 1.0).abs() < 0.02,
                     "{column} {nearness}: {found} {expected}"
@@ -253,8 +257,8 @@ mod tests {
                     theory.printed_environment()
                 };
                 farthest = farthest.max((found / printed - 1.0).abs());
-                // The printed criterion of the methods equals that of theory, and the curvature is
-                // that of the ball.
+                // The printed criterion equals that of the theory crate, and the curvature is that
+                // of the ball.
                 let drawn = super::printed(
                     &visible,
                     [column, 400],
@@ -273,7 +277,7 @@ mod tests {
                 assert!((curvature - 1.0).abs() < 0.02, "{curvature}");
             }
         }
-        // The printed equations lack the 1 and a cosine, which makes a visible difference.
+        // The printed equations differ noticeably, because they lack the term 1 and a cosine.
         assert!(farthest > 0.05, "{farthest}");
     }
 }

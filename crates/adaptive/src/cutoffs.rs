@@ -17,7 +17,7 @@ pub(crate) struct Cutoffs {
 }
 
 impl Cutoffs {
-    /// The cutoff in cycles per radian.
+    /// Returns the cutoff in cycles per radian.
     pub(crate) fn of(&self, reflects: Reflects) -> f64 {
         match reflects {
             Reflects::Nothing => 0.0,
@@ -65,7 +65,7 @@ impl Cutoffs {
     }
 }
 
-/// Rounds a width to a few per cent, so that textured roughness gives few different lobes.
+/// Rounds a width to a few per cent, so that a textured roughness requires few cutoffs.
 fn rounded(width: f64) -> f64 {
     let steps = 16.0;
     libm::exp2((steps * libm::log2(width.max(1e-4))).round() / steps)

@@ -2,7 +2,7 @@
 
 use crate::metric::Metric;
 
-/// Maximum number of samples per pixel, equal to the number of points per pixel.
+/// Maximum number of samples per pixel, equal to the number of visible points per pixel.
 const DENSEST: f64 = 4.0;
 
 /// Maximum distance of samples in pixels.
@@ -11,8 +11,8 @@ const MAX_SPACING: f64 = 32.0;
 /// Maximum anisotropy of the density: finite differences are not accurate enough for a larger one.
 const LONGEST: f64 = 3.0;
 
-/// Returns metrics proportional to `wanted` within the bounds. The roots of their determinants are
-/// the samples per pixel, and their sum is `samples`.
+/// Returns metrics proportional to `wanted` within the bounds. The square root of the determinant
+/// of a metric is the number of samples in its pixel, and the sum of these is `samples`.
 pub(crate) fn scaled(wanted: &[Option<Metric>], samples: f64) -> Vec<Option<Metric>> {
     let rates: Vec<Option<f64>> = wanted
         .iter()
@@ -47,11 +47,11 @@ pub(crate) fn scaled(wanted: &[Option<Metric>], samples: f64) -> Vec<Option<Metr
     wanted.iter().zip(&rates).map(of).collect()
 }
 
-/// Returns the metric for a squared bandwidth. If `is_even`, it is isotropic and uses the larger
-/// eigenvalue, as in the paper; otherwise it is anisotropic.
+/// Returns the metric for a squared bandwidth. If `is_even` is set, the metric is isotropic and
+/// has the larger eigenvalue, as in the paper; otherwise it is anisotropic.
 pub(crate) fn wanted(squared: Metric, is_even: bool) -> Metric {
-    // Twice the bandwidth along each direction (Shannon), plus a minimum for pixels without
-    // bandwidth.
+    // Along each direction there are twice as many samples as cycles (Shannon), plus a minimum for
+    // pixels without bandwidth.
     let shannon = squared
         .times(4.0)
         .plus(Metric::even((4.0 * MAX_SPACING).powi(-2)));
@@ -62,7 +62,7 @@ pub(crate) fn wanted(squared: Metric, is_even: bool) -> Metric {
     }
 }
 
-/// The metric with its density raised to a power.
+/// Returns the metric whose density is this power of the given one.
 pub(crate) fn to_power(metric: Metric, power: f64) -> Metric {
     let density = metric.determinant().max(0.0).sqrt();
     if density > 0.0 {

@@ -1,4 +1,4 @@
-//! The methods to distribute shading samples, from a camera to a picture.
+//! The methods to distribute shading samples, and the stages from the camera to the picture.
 
 use crate::blockers::nearness;
 use crate::blue_noise::{PicturePoint, blue_noise};
@@ -22,15 +22,15 @@ pub enum SampleMethod {
     Uniform,
     /// By the criteria of Durand et al. 2005, Eqs. 20 and 21, with corrections.
     Predicted,
-    /// By the same criteria as printed, to show the cost of their approximations.
+    /// By the criteria as printed, to show the cost of their approximations.
     Printed,
-    /// In equal parts by the criteria and by the measured light. A first quarter of the samples
+    /// Half by the criteria and half by the measured light. A first quarter of the samples
     /// measures the light: planes are fitted to one half of this quarter, and their error is
     /// evaluated at the other half.
     Weighted,
-    /// The default: evenly at first, then in equal parts by the criteria and by the errors that the
-    /// first samples find. These errors also decide, object by object, how many samples the
-    /// criteria are worth.
+    /// The default: the first samples evenly, then half of the rest by the criteria and half by
+    /// the errors that the first samples reveal. The errors of the first samples also decide,
+    /// object by object, how many samples the criteria are worth.
     Auto,
     /// By the measured light alone: the standard deviation of a first quarter of the samples, which
     /// are distributed uniformly.
@@ -74,18 +74,18 @@ pub enum Stage {
 /// Layers with a number for each pixel, rows from the top; NaN where nothing is shaded.
 #[derive(Clone, Debug, Default)]
 pub struct Layers {
-    /// The larger of the two principal bandwidths by the criterion, cycles per pixel.
+    /// The bandwidth by the criterion, cycles per pixel, along the direction where it is larger.
     pub bandwidth: Vec<f64>,
-    /// The larger curvature by finite differences on the screen, per unit of length, positive if
-    /// convex.
+    /// The principal curvature of larger magnitude by finite differences on the screen, per unit
+    /// of length, positive if convex.
     pub curvature: Vec<f64>,
-    /// 1/distance of the reflected objects, per unit of length.
+    /// The mean of 1/distance over the reflected objects, per unit of length.
     pub blockers: Vec<f64>,
     /// The highest frequency of penumbrae, cycles per unit of length.
     pub shadow: Vec<f64>,
-    /// Requested shading samples per pixel.
+    /// The number of shading samples per pixel that the method requests.
     pub density: Vec<f64>,
-    /// Shading samples in the pixel.
+    /// The number of shading samples in the pixel.
     pub samples: Vec<f64>,
     /// The variance of shading samples around the pixel, after noise removal.
     pub variance: Vec<f64>,
@@ -100,18 +100,20 @@ pub struct Rendered {
     pub radiance: Vec<f64>,
     /// Positions of samples: pixels to the right and down from the top left.
     pub points: Vec<[f64; 2]>,
-    /// Number of these samples that were added at points far from all others.
+    /// Number of samples that were added at points far from all others.
     pub added: usize,
-    /// The layers behind the picture.
+    /// The quantities from which the picture was made.
     pub layers: Layers,
 }
 
-/// The share of samples that are taken first, if the first samples determine where the others go.
+/// The share of samples that are taken first in methods whose first samples determine where the
+/// others go.
 const FIRST_SHARE: f64 = 0.25;
 
 /// The squared error of a plane through samples is proportional to the fourth power of their
-/// distance, and so to 1/n² for a density n of samples. Its sum over the picture is minimal for a
-/// fixed number of samples if n ∝ (c² B⁴)^(1/3), with the contrast c and the bandwidth B.
+/// distance, and so to 1/n² for a density n of samples. For a fixed number of samples, the sum of
+/// this error over the picture is minimal if n ∝ (c² B⁴)^(1/3), with the contrast c and the
+/// bandwidth B.
 pub(crate) const POWER: f64 = 2.0 / 3.0;
 
 /// Renders a picture; `stage` receives the next stage and its number of steps, `progress` the
@@ -160,7 +162,8 @@ pub(crate) struct AdaptiveRun<'a> {
 }
 
 impl AdaptiveRun<'_> {
-    /// Takes all samples of the method, and stores the metric of all samples with each of them.
+    /// Shades all samples of the method, and stores with each of them the metric of all samples
+    /// together.
     fn samples(&mut self) -> Vec<ShadedSample> {
         let method = self.plan.method;
         let (wanted, power) = match method {
@@ -202,7 +205,7 @@ impl AdaptiveRun<'_> {
         self.both(&first, pilot, &then, rest)
     }
 
-    /// The metric of evenly distributed samples.
+    /// Returns the metrics of evenly distributed samples.
     pub(crate) fn even(&self) -> Vec<Option<Metric>> {
         self.visible.pixels(|pixel| {
             let places = self.visible.of_pixel(pixel);
@@ -211,7 +214,7 @@ impl AdaptiveRun<'_> {
         })
     }
 
-    /// Takes the `rest` of the samples, and returns all of them with the metric of all.
+    /// Shades the `rest` of the samples, and returns all samples with the metric of all together.
     pub(crate) fn both(
         &mut self,
         first: &[Option<Metric>],
@@ -231,7 +234,7 @@ impl AdaptiveRun<'_> {
         .collect()
     }
 
-    /// The mean of squared errors around each pixel.
+    /// Returns the mean of squared errors around each pixel.
     pub(crate) fn around(&self, missed: &[ShadedSample]) -> Vec<f64> {
         let places = reconstruct(self.visible, missed, SampleFit::Mean);
         self.visible.pixels(|pixel| {
@@ -240,7 +243,7 @@ impl AdaptiveRun<'_> {
         })
     }
 
-    /// The metrics by the criteria.
+    /// Returns the metrics by the criteria.
     pub(crate) fn predicted(&mut self) -> Vec<Option<Metric>> {
         let [w, h] = self.visible.size;
         let Shader {
@@ -297,13 +300,13 @@ impl AdaptiveRun<'_> {
         self.shader.shade(points, first, self.progress)
     }
 
-    /// The relative standard deviation of samples around each pixel, after noise removal.
+    /// Returns the relative standard deviation of samples around each pixel, after noise removal.
     fn contrast(&mut self, samples: &[(ShadedSample, f64)]) -> Vec<f64> {
         let wider: Vec<ShadedSample> = samples
             .iter()
             .map(|(sample, noise)| {
-                // Textures cause no contrast on materials with one part, because their factor is
-                // multiplied in later.
+                // If a material has a single part, its texture causes no contrast, because the
+                // picture is multiplied by the texture later.
                 let factors = match sample.surface.factors {
                     [base, 0.0] => [1.0, base],
                     [base, lobe] => [base, lobe],
@@ -387,7 +390,8 @@ impl AdaptiveRun<'_> {
         values
     }
 
-    /// Shades one point of each small patch far from all samples, and uses its value for the patch.
+    /// Shades one point of each small patch that is far from all samples, and uses the value of
+    /// this point for the whole patch.
     fn fill(&self, values: &mut [Option<[f64; 2]>], samples: &mut Vec<ShadedSample>) -> usize {
         let wide = self.visible.size[0];
         let mut added: Vec<ShadedSample> = Vec::new();
@@ -421,13 +425,14 @@ impl AdaptiveRun<'_> {
     }
 }
 
-/// Width in pixels of a patch far from all samples.
+/// Width in pixels of a patch that is far from all samples.
 const PATCH: f64 = 2.0;
 
-/// Number of recent samples whose distance is checked: those of the last few rows.
+/// Number of the most recently added samples whose distance is checked, which are those of the
+/// last few rows.
 const RECENT: usize = 256;
 
-/// Minimum contrast, because the first samples, one in four, may have missed the contrast.
+/// Minimum contrast, because the first quarter of the samples may have missed the contrast.
 const MIN_CONTRAST: f64 = 0.02;
 
 #[expect(
@@ -439,7 +444,7 @@ pub(crate) fn pixel_at(at: [f64; 2], size: [usize; 2]) -> [usize; 2] {
     [0, 1].map(|k: usize| (at[k].max(0.0) as usize).min(size[k] - 1))
 }
 
-/// The index of the pixel at a position.
+/// Returns the index of the pixel at a position.
 pub(crate) fn pixel_of(at: [f64; 2], size: [usize; 2]) -> usize {
     let [column, row] = pixel_at(at, size);
     row * size[0] + column
@@ -450,8 +455,8 @@ pub(crate) fn values(samples: &[(ShadedSample, f64)]) -> Vec<ShadedSample> {
     samples.iter().map(|(sample, _)| *sample).collect()
 }
 
-/// The metrics that minimise errors found at samples with the metrics of `first`: the density
-/// (e² n²)^(1/3) for a squared error e² at a density n.
+/// Returns the metrics that minimise the error, from errors found with the metrics `first`: a
+/// squared error e² at a density n requires the density (e² n²)^(1/3).
 pub(crate) fn by_error(first: &[Option<Metric>], missed: &[f64]) -> Vec<Option<Metric>> {
     let pairs = first.iter().zip(missed);
     let of = |(metric, missed): (&Option<Metric>, &f64)| {
@@ -461,7 +466,7 @@ pub(crate) fn by_error(first: &[Option<Metric>], missed: &[f64]) -> Vec<Option<M
     pairs.map(of).collect()
 }
 
-/// The sums of the metrics of two sets of samples.
+/// Returns the metrics of two sets of samples together, which are sums.
 pub(crate) fn sums(a: &[Option<Metric>], b: &[Option<Metric>]) -> Vec<Option<Metric>> {
     let both = a.iter().zip(b);
     both.map(|(a, b)| Some(a.as_ref()?.plus(*b.as_ref()?)))

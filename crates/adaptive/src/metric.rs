@@ -2,20 +2,20 @@
 
 /// A symmetric 2 × 2 matrix over the picture, columns to the right and rows down, per pixel².
 ///
-/// For a criterion, the matrix is the squared bandwidth in cycles per pixel along each direction.
-/// For samples, it defines distances in which neighbours are about 1 apart.
+/// The matrix of a criterion gives the squared bandwidth along each direction, in cycles per
+/// pixel. The matrix of samples defines distances in which neighbours are about 1 apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Metric {
-    /// The entry along columns.
+    /// The diagonal entry for steps along columns.
     pub xx: f64,
     /// The mixed entry.
     pub xy: f64,
-    /// The entry along rows.
+    /// The diagonal entry for steps along rows.
     pub yy: f64,
 }
 
 impl Metric {
-    /// An isotropic metric.
+    /// Returns an isotropic metric.
     #[must_use]
     pub fn even(square: f64) -> Self {
         Self {
@@ -43,7 +43,7 @@ impl Metric {
         }
     }
 
-    /// The squared length of a step.
+    /// Returns the squared length of a step.
     #[must_use]
     pub(crate) fn square(&self, [x, y]: [f64; 2]) -> f64 {
         x * (self.xx * x + self.xy * y) + y * (self.xy * x + self.yy * y)
@@ -54,14 +54,15 @@ impl Metric {
         self.xx * self.yy - self.xy * self.xy
     }
 
-    /// The larger eigenvalue.
+    /// Returns the larger eigenvalue.
     #[must_use]
     pub fn largest(&self) -> f64 {
         let (mean, off) = (0.5 * (self.xx + self.yy), 0.5 * (self.xx - self.yy));
         mean + (off * off + self.xy * self.xy).sqrt()
     }
 
-    /// The half-extents of the ellipse of steps up to length `radius`, along columns and rows.
+    /// Returns half of the extents, along columns and rows, of the ellipse of all steps up to the
+    /// length `radius`.
     #[must_use]
     pub(crate) fn reach(&self, radius: f64) -> [f64; 2] {
         let determinant = self.determinant();
@@ -75,7 +76,7 @@ impl Metric {
         let large = self.largest();
         let small = self.xx + self.yy - large;
         let wanted = large / (most * most);
-        // Adds an isotropic part.
+        // An isotropic metric is added, which makes the sum rounder.
         let added = (wanted - small) / (1.0 - (most * most).recip());
         self.plus(Self::even(added.max(0.0)))
     }

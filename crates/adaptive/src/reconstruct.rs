@@ -1,6 +1,7 @@
 //! Reconstruction between samples. At each point a plane is fitted to the samples around it,
-//! weighted by similarity in shape, normal and position. This is a bilateral filter (Tomasi and
-//! Manduchi 1998), whose width follows the samples' metric, as in Durand et al. 2005, section 6.2.
+//! weighted by similarity in shape, normal and position. The weights are those of a bilateral
+//! filter (Tomasi and Manduchi 1998), whose width follows the samples' metric, as in Durand et al.
+//! 2005, section 6.2.
 
 use crate::blue_noise::PixelPosition;
 use crate::criterion::shaded;
@@ -9,37 +10,39 @@ use crate::visible::{FOUR, SeenSurface, Visible, at};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// A value at a point of the picture.
+/// A shaded point of the picture, with its value.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShadedSample {
     pub(crate) at: PixelPosition,
     pub(crate) metric: Metric,
     pub(crate) surface: SeenSurface,
-    /// The values of base and lobe.
+    /// The values of the base and of the lobe, without texture factors.
     pub(crate) value: [f64; 2],
 }
 
 impl ShadedSample {
-    /// The radiance for values of base and lobe, with the factors of the surface.
+    /// Returns the radiance for values of base and lobe, with the factors of the surface.
     pub(crate) fn light(&self, value: [f64; 2]) -> f64 {
         let [base, lobe] = self.surface.factors;
         base * value[0] + lobe * value[1]
     }
 }
 
-/// Standard deviation of the filter, in units in which neighbours are about 1 apart. With a smaller
-/// one, some points would use only one sample; with a larger one, sampled detail would be lost.
+/// Standard deviation of the filter, in units in which neighbours are about 1 apart. With a
+/// narrower filter some points would use only one sample, and a wider filter would blur details
+/// that the samples show.
 const WIDTH: f64 = 0.5;
 
-/// Cutoffs of the filter in standard deviations. The first is that of the first round. The others
-/// are those of later rounds, at points that no sample has reached.
+/// Distances at which the filter ends, in standard deviations: the first for the first round, the
+/// others for later rounds at points that no sample has reached.
 const REACHES: [f64; 3] = [3.0, 9.0, 27.0];
 
-/// Standard deviation of normals. It separates faces that meet at a right angle, but not normals
-/// that turn within the distance of samples.
+/// Standard deviation of the filter over normals. This value separates faces that meet at a right
+/// angle, but not neighbouring samples on a curved surface.
 const NORMALS: f64 = 0.35;
 
-/// Standard deviation of the elevation angle of a sample above the surface at a point.
+/// Standard deviation of the filter over the elevation angle of a sample above the surface at a
+/// point.
 const HEIGHTS: f64 = 0.2;
 
 /// Pixel rows per band, the unit of work of a thread.
@@ -54,7 +57,7 @@ pub(crate) enum SampleFit {
     Plane,
 }
 
-/// The values at all points; `None` if nothing is shaded or no sample is near.
+/// Returns the values at all points, or `None` if nothing is shaded or no sample is near.
 pub(crate) fn reconstruct(
     visible: &Visible,
     samples: &[ShadedSample],
@@ -117,10 +120,10 @@ impl LocalSums {
         })
     }
 
-    /// The value of the fitted plane at the point.
+    /// Returns the value of the fitted plane at the point.
     fn plane(&self, of: &ValueSums) -> f64 {
-        // Positions are relative to their mean. Spread is added to keep the slope from few samples
-        // small.
+        // Positions are relative to their mean. The added spread keeps the slope small if there
+        // are few samples.
         let [x, y] = self.x.map(|x| x / self.weight);
         let mean = of.value / self.weight;
         let ridge = 0.1 * WIDTH * WIDTH;
@@ -216,7 +219,8 @@ pub(crate) fn bell(square: f64) -> f64 {
     (root * root * root * root).powi(-2)
 }
 
-/// The dissimilarity of two points of a shape, in squared standard deviations.
+/// Returns how much two points of a shape differ in normal and elevation, in squared standard
+/// deviations.
 pub(crate) fn unlike(place: &SeenSurface, sample: &SeenSurface) -> f64 {
     let turned = (place.normal - sample.normal).length_squared() / (NORMALS * NORMALS);
     let between = sample.position - place.position;
@@ -225,8 +229,8 @@ pub(crate) fn unlike(place: &SeenSurface, sample: &SeenSurface) -> f64 {
         return turned;
     }
     let height = between.dot(place.normal);
-    // On a curved surface, normals turn by twice the elevation angle; a larger elevation angle
-    // means another sheet.
+    // On a curved surface the normal turns by twice the elevation angle, so a larger elevation
+    // angle shows that the points are on different parts of the shape.
     turned + height * height / (length * HEIGHTS * HEIGHTS)
 }
 

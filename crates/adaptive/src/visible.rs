@@ -10,8 +10,8 @@ use std::ops::Range;
 /// Number of points per pixel.
 pub(crate) const FOUR: usize = 4;
 
-/// Positions of the points in a pixel. No two share a row or a column, so a nearly horizontal or
-/// vertical edge gets four steps instead of two.
+/// Positions of the points in a pixel. No two points have the same row or column, so a nearly
+/// horizontal or vertical edge gets four steps instead of two.
 pub(crate) const OFFSETS: [[f64; 2]; FOUR] = [
     [0.375, 0.125],
     [0.875, 0.375],
@@ -64,12 +64,12 @@ pub(crate) struct SeenSurface {
     /// The central direction of incident light: the mirror direction, or the normal of a material
     /// without a lobe.
     pub(crate) axis: DVec3,
-    /// Whether the axis is the mirror direction.
+    /// Whether the axis is the mirror direction, because the material has a lobe.
     pub(crate) has_lobe: bool,
-    /// The highest frequency that the material preserves around the axis, cycles per radian; 0 if
-    /// it is black.
+    /// The highest frequency around the axis that the material preserves, cycles per radian; 0 if
+    /// the material is black.
     pub(crate) cutoff: f64,
-    /// The texture factors of base and lobe. The shading is divided by these factors.
+    /// The texture factors of base and lobe, by which shading samples are divided.
     pub(crate) factors: [f64; 2],
 }
 
@@ -115,12 +115,12 @@ impl Visible {
         }
     }
 
-    /// The points of a pixel.
+    /// Returns the points of a pixel.
     pub(crate) fn of_pixel(&self, [column, row]: [usize; 2]) -> &[SeenPlace] {
         &self.places[self.range([column, row])]
     }
 
-    /// The indices of a pixel's points.
+    /// Returns the indices of a pixel's points.
     pub(crate) fn range(&self, [column, row]: [usize; 2]) -> Range<usize> {
         let first = FOUR * (row * self.size[0] + column);
         first..first + FOUR

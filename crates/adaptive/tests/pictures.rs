@@ -13,7 +13,7 @@ const ALL: [SampleMethod; 5] = [
     SampleMethod::Variance,
 ];
 
-/// A ball of radius 1 and reflectance one half, in uniform light.
+/// Returns a ball of radius 1 and reflectance one half, in uniform light.
 fn ball() -> World {
     World {
         shapes: vec![Shape {
@@ -68,8 +68,8 @@ fn even_light_stays_even() {
         let lit = found.radiance.iter().filter(|x| **x < 2.0).count();
         assert!(lit > 1000, "{method:?}: {lit} pixels of the ball");
         for radiance in &found.radiance {
-            // A pixel at the edge mixes ball and background in quarters; the rest is noise of 128
-            // paths.
+            // A pixel at the edge mixes ball and background in multiples of a quarter; other
+            // deviations are noise of 128 paths.
             let quarters = (radiance - 1.5) / 0.375;
             assert!(
                 (quarters - quarters.round()).abs() < 0.15,
@@ -93,7 +93,7 @@ fn the_same_bytes_on_any_threads() {
     }
 }
 
-/// The number of samples is as requested, except for samples whose points hit nothing.
+/// As many samples are shaded as requested, except those whose points hit nothing.
 #[test]
 fn samples_are_spent() {
     for method in ALL {

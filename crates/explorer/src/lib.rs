@@ -1,10 +1,11 @@
 //! The computations of `docs/explorer.html`: a page with interactive light, blockers, travel and
 //! receiver, which shows each light field and spectrum along the path.
 //!
-//! A [`Setup`] holds the settings. A [`PathPlace`] is a place on the path. Its light field and
-//! spectrum are those of [`etendue_theory`]. Between parallel planes they equal the results of
-//! `etendue predict` for the scene that [`scene`] writes. On a curved glossy receiver they hold to
-//! first order and lack the cosine; exact rays reflected by the sphere are traced on request.
+//! A [`Setup`] holds the settings, and a [`PathPlace`] is a place on the path, whose light field
+//! and spectrum [`etendue_theory`] predicts. Between parallel planes both equal the results of
+//! `etendue predict` for the scene that [`scene`] writes. On a curved glossy receiver both are
+//! first-order predictions without the cosine; exact rays reflected by the sphere are traced on
+//! request.
 //!
 //! For WebAssembly the crate is a JavaScript library (`page`); `.ci/explorer` builds the page.
 

@@ -26,7 +26,7 @@ impl Explorer {
     }
 
     /// Makes updates during interaction fast: keeps every other frequency, if the window needs no
-    /// more, and enlarges the cells. Each number remains as exact as before.
+    /// more, and enlarges the cells. The remaining values are as accurate as before.
     pub fn coarsen(&mut self) {
         for key in [SettingKey::RhoStep, SettingKey::NuStep] {
             self.setup.set(key, 2.0 * self.setup.get(key));
@@ -98,8 +98,8 @@ impl Explorer {
             .collect()
     }
 
-    /// The spectrum and then the light field at a plane by ray tracing, in the same order as above;
-    /// empty where the values above are exact already.
+    /// The spectrum and then the light field at a plane by ray tracing, each with its values in
+    /// the order of `spectrum` and `field`; empty if those are already exact.
     #[must_use]
     pub fn follow(&self, plane: usize) -> Vec<f64> {
         let plane = PathPlace::all(&self.setup)[plane];
@@ -112,8 +112,8 @@ impl Explorer {
         spectrum.chain(field.values.iter().copied()).collect()
     }
 
-    /// Cells of a light field along each axis, half-widths in x and u, then the number of steps to
-    /// each side and the spacing along ρ and along ν.
+    /// The axes as a list: the number of cells of a light field along each axis, the half-widths
+    /// in x and u, and along ρ and along ν the number of steps to each side and their spacing.
     #[must_use]
     pub fn axes(&self) -> Vec<f64> {
         let grid = grid(&self.setup);

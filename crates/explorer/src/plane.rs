@@ -26,7 +26,7 @@ pub enum PathPlace {
 }
 
 impl PathPlace {
-    /// The planes of a scene, in the order of light.
+    /// Returns the planes of a scene, in the order of light.
     #[must_use]
     pub fn all(setup: &Setup) -> Vec<Self> {
         let mut all = vec![Self::Light, Self::Travelled, Self::Blocked, Self::Arrived];
@@ -38,7 +38,7 @@ impl PathPlace {
         all
     }
 
-    /// The name of the plane in the scene file.
+    /// Returns the name of the plane in the scene file.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {

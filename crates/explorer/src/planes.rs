@@ -10,7 +10,7 @@ use etendue_theory::{
 };
 
 impl PathPlace {
-    /// The spectrum slice at azimuth 0.
+    /// Returns the spectrum slice at azimuth 0.
     #[must_use]
     pub fn spectrum(self, setup: &Setup) -> Slices {
         let (window, grid) = (window(setup), grid(setup));
@@ -19,7 +19,8 @@ impl PathPlace {
             Self::Blurred | Self::Glossy => {
                 let chain = imaged(setup, if self == Self::Glossy { 2.0 } else { 1.0 });
                 let mut found = blurred_slices(&chain, &lobe(setup), &window, &grid);
-                // The reflected ray goes straight back: (x, u) becomes (−x, −u), times the albedo.
+                // The reflected ray goes straight back, so (x, u) becomes (−x, −u), and light is
+                // multiplied by the albedo.
                 let albedo = setup.get(SettingKey::Albedo);
                 found.half.mapv_inplace(|value| value.conj() * albedo);
                 found
@@ -28,8 +29,8 @@ impl PathPlace {
         }
     }
 
-    /// The light field in (x, u) with this many cells along each axis, its values in rows of
-    /// constant x.
+    /// Returns the light field in (x, u) with this many cells along each axis, its values in rows
+    /// of constant x.
     #[must_use]
     pub fn field(self, setup: &Setup, cells: usize) -> Projection {
         let window = window(setup);
@@ -52,15 +53,16 @@ impl PathPlace {
         }
     }
 
-    /// Spectrum and light field on a glossy receiver by nets of rays, as in `etendue predict`;
-    /// `None` for other planes, where nothing is approximated to first order.
+    /// Predicts spectrum and light field on a glossy receiver by nets of rays, as `etendue
+    /// predict` does. Returns `None` for other planes, whose predictions are not first-order
+    /// approximations.
     #[must_use]
     pub fn followed(self, setup: &Setup) -> Option<(Slices, Projection)> {
         let found = rays::followed(self, setup)?;
         Some((found.slices, found.projection))
     }
 
-    /// The chain of operators before this plane, between parallel planes.
+    /// Returns the chain of operators before this plane, between parallel planes.
     fn chain(self, setup: &Setup) -> Chain {
         let (blockers, receiver) = (
             setup.get(SettingKey::Distance),

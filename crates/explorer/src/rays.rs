@@ -11,18 +11,20 @@ use etendue_field::{
 use etendue_theory::{Model, Observed, Over, Predicted, RayBudget, rays, scattering};
 use glam::DVec3;
 
-/// The command's budget for a scene with as many photons as saved scenes: total number of rays, and
-/// the target error.
+/// The budget that the command uses for a saved scene: the total number of rays, and the target
+/// error.
 const BUDGET: RayBudget = RayBudget {
     nodes: 1.1e6,
     error: 3e-3,
 };
 /// Radius of the receiver, metres.
 pub(crate) const APERTURE: f64 = 0.6;
-/// Azimuths of a saved scene; rays are added until all of its slices reach the target error.
+/// Number of azimuths of a saved scene; rays are added until the slices at all azimuths reach the
+/// target error.
 pub(crate) const AZIMUTHS: usize = 2;
 
-/// The light field at a plane on a glossy receiver by nets of rays; `None` for other planes.
+/// Returns the light field at a plane on a glossy receiver by nets of rays, or `None` for other
+/// planes.
 pub(crate) fn followed(plane: PathPlace, setup: &Setup) -> Option<Predicted> {
     let window = window(setup);
     let grid = SliceGrid {
@@ -76,7 +78,7 @@ fn layers(setup: &Setup) -> Vec<(f64, Mask)> {
     vec![(setup.get(SettingKey::Distance), mask)]
 }
 
-/// The receiver in the frame at the light, facing it.
+/// Returns the receiver in the frame at the light, facing it.
 fn patch(setup: &Setup) -> Patch {
     let vertex = DVec3::Z * setup.get(SettingKey::Travel);
     Patch {
@@ -92,7 +94,8 @@ fn reflectance(setup: &Setup) -> Reflectance {
     Brdf::new(lobe, setup.get(SettingKey::Albedo), Fresnel::White).into()
 }
 
-/// A plane where the central ray meets the receiver. The ray goes straight back, so X is reversed.
+/// Returns a plane where the central ray meets the receiver. The ray goes straight back, so X is
+/// reversed.
 fn seen(patch: &Patch, orientation: Orientation, arriving: bool) -> rays::Plane {
     let frame = Frame::new(patch.frame.origin, DVec3::NEG_Z, DVec3::NEG_X);
     rays::Plane {

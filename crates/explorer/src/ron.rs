@@ -10,7 +10,7 @@ use std::fmt::Write;
 /// Photons of a run that takes a few seconds.
 const PHOTONS: u64 = 4_194_304;
 
-/// The scene file.
+/// Returns the scene file.
 #[must_use]
 pub fn scene(setup: &Setup) -> String {
     let get = |key| setup.get(key);
@@ -104,7 +104,8 @@ fn receiver(setup: &Setup, x: f64, end: f64) -> String {
     )
 }
 
-/// A plane of the scene file; if there are no blockers, the planes beside them keep their position.
+/// Writes a plane of the scene file. Without blockers, the planes before and after them keep their
+/// distance from the light.
 fn plane(plane: PathPlace, setup: &Setup) -> String {
     let distance = setup.get(SettingKey::Distance);
     let are_there = setup.get(SettingKey::Fill) > 0.0;

@@ -19,17 +19,17 @@ pub enum SettingKey {
     Fill,
     /// Number of blockers along X.
     Count,
-    /// 1 for squares on a jittered grid, 0 for slats along Y.
+    /// The shape of the blockers: 1 for squares on a jittered grid, 0 for slats along Y.
     Squares,
     /// Maximum displacement of squares in pitches.
     Jitter,
     /// Seed of the displacements.
     Seed,
-    /// 1 for a curved glossy receiver, 0 for a flat diffuse one.
+    /// The kind of receiver: 1 for a curved glossy one, 0 for a flat diffuse one.
     Glossy,
     /// Curvature of the glossy receiver, 1/m, convex positive.
     Curvature,
-    /// Exponent of its Phong lobe.
+    /// Exponent of the Phong lobe of the glossy receiver.
     Exponent,
     /// Albedo of the receiver.
     Albedo,
@@ -260,13 +260,13 @@ impl Default for Setup {
 const CLEARANCE: f64 = 0.02;
 
 impl Setup {
-    /// The value of a setting.
+    /// Returns the value of a setting.
     #[must_use]
     pub fn get(&self, key: SettingKey) -> f64 {
         self.values[key as usize]
     }
 
-    /// Whether a setting with the values 0 and 1 is 1.
+    /// Whether a setting that is either 0 or 1 has the value 1.
     #[must_use]
     pub fn is(&self, key: SettingKey) -> bool {
         self.get(key) > 0.5
@@ -291,7 +291,7 @@ impl Setup {
         self.values[SettingKey::Jitter as usize] = jitter;
     }
 
-    /// The key with a name.
+    /// Returns the key of the setting with this name.
     #[must_use]
     pub fn named(name: &str) -> Option<SettingKey> {
         let mut table = TABLE.iter();
@@ -300,8 +300,8 @@ impl Setup {
             .map(|entry| entry.key)
     }
 
-    /// The fragment of a URL, after #: all settings that differ from their defaults; it is never
-    /// empty.
+    /// Returns the fragment of a URL, after #: all settings that differ from their defaults; it is
+    /// never empty.
     #[must_use]
     pub fn fragment(&self) -> String {
         let mut text = String::new();

@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 /// Maximum number of bytes that one import reads or unpacks, over all files.
 const MOST_BYTES: u64 = 4 << 30;
 
-/// The files that a scene may refer to. All must lie within one folder after links are followed.
+/// The files that a scene may refer to. After links are followed, all of them must lie within one
+/// folder.
 #[derive(Debug)]
 pub(crate) struct Files {
     root: PathBuf,
@@ -28,13 +29,15 @@ impl Files {
         })
     }
 
-    /// Returns the path of the file or folder `name`, searching the folders in order.
+    /// Returns the path of the file or folder `name`, which is searched for in these folders in
+    /// order.
     ///
-    /// The name may contain `..`, because only the resolved path must lie below the root.
+    /// The name may contain `..`, because only the path to which it resolves must lie below the
+    /// root.
     pub(crate) fn find(&self, folders: &[PathBuf], name: &str) -> Result<PathBuf, String> {
         let mut is_outside = false;
         for folder in folders {
-            // An absolute name replaces the folder.
+            // If the name is absolute, `join` ignores the folder.
             let Ok(path) = folder.join(name).canonicalize() else {
                 continue;
             };
@@ -51,19 +54,19 @@ impl Files {
         })
     }
 
-    /// The bytes of a file found by [`Self::find`].
+    /// Returns the bytes of a file found by [`Self::find`].
     pub(crate) fn read(&self, path: &Path) -> Result<Vec<u8>, String> {
         let bytes = read_file(path, self.left.get()).map_err(|error| error.to_string())?;
         self.spend(bytes.len() as u64)?;
         Ok(bytes)
     }
 
-    /// The text of a file found by [`Self::find`].
+    /// Returns the text of a file found by [`Self::find`].
     pub(crate) fn read_text(&self, path: &Path) -> Result<String, String> {
         text(self.read(path)?)
     }
 
-    /// The number of bytes that may still be read or unpacked.
+    /// Returns the number of bytes that may still be read or unpacked.
     pub(crate) fn left(&self) -> u64 {
         self.left.get()
     }

@@ -3,7 +3,8 @@
 //! - Coordinates are right-handed with Y up, and are kept. Angles are in radians and lengths in
 //!   metres.
 //! - Light is radiometric: a candela is read as 1 W/sr, a lux as 1 W/m², a nit of emission as 1 W m⁻² sr⁻¹.
-//! - Cameras look, and lights shine, along −Z of their node. The scale of the node affects neither.
+//! - Cameras look, and lights shine, along −Z of their node. The scale of the node affects neither
+//!   cameras nor lights.
 //! - The front of a triangle is the side from which its corners run counterclockwise, or clockwise
 //!   if the node mirrors. Normals do not determine the front.
 //! - Surfaces scatter on their front alone unless they are `doubleSided`.
@@ -11,7 +12,8 @@
 //!   Metallic 1 is a metal that reflects its base colour at all angles. Values between 0 and 1 are
 //!   a mixture of both. A material with metallic 0 and without specular reflection
 //!   (`specularFactor` 0, or index 1) is Lambertian.
-//! - Pictures of colours are sRGB, of other quantities linear. Their first row is at v = 0, as in a world.
+//! - Pictures of colours are sRGB, of other quantities linear. The first row of a picture is at v
+//!   = 0, as in a world.
 //!
 //! Limits: 2²⁰ shapes, 2²⁰ lights, and the byte limit of an import.
 

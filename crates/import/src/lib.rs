@@ -29,15 +29,15 @@ use std::path::Path;
 ///
 /// - `xml`: Mitsuba 3.
 /// - `pbrt`: pbrt-v4.
-/// - `gltf`, `glb`: glTF 2.0. Right-handed with Y up; cameras look along −Z. They have no number of
-///   pixels, so pictures are 512 pixels wide. The numbers of lights are taken as radiometric: 1 cd
-///   as 1 W/sr, 1 lx as 1 W/m², 1 nit as 1 W m⁻² sr⁻¹. Surfaces that are not `doubleSided` are
-///   black on their back.
+/// - `gltf`, `glb`: glTF 2.0. Right-handed with Y up; cameras look along −Z. The cameras do not
+///   state a number of pixels, so pictures are 512 pixels wide. The numbers of lights are taken as
+///   radiometric: 1 cd as 1 W/sr, 1 lx as 1 W/m², 1 nit as 1 W m⁻² sr⁻¹. Surfaces that are not
+///   `doubleSided` are black on their back.
 /// - `obj`: surfaces with the materials of MTL files, on both sides, and `Ke` as radiance on their front. No camera.
 /// - `ply`: one diffuse surface, 0.5 on both sides. No camera.
 ///
 /// # Errors
-/// All causes why the file cannot be imported.
+/// Returns all causes why the file cannot be imported.
 pub fn import(file: &Path, options: &Options) -> Result<Imported, Refused> {
     let extension = file.extension().unwrap_or_default().to_string_lossy();
     match extension.to_ascii_lowercase().as_str() {
@@ -62,7 +62,7 @@ pub fn import(file: &Path, options: &Options) -> Result<Imported, Refused> {
 /// Reads the text of a Mitsuba 3 scene; files are searched for from `folder`.
 ///
 /// # Errors
-/// All causes why the text cannot be imported.
+/// Returns all causes why the text cannot be imported.
 pub fn import_mitsuba(text: &str, folder: &Path, options: &Options) -> Result<Imported, Refused> {
     mitsuba::import_text(text, folder, options)
 }
@@ -70,7 +70,7 @@ pub fn import_mitsuba(text: &str, folder: &Path, options: &Options) -> Result<Im
 /// Reads the text of a pbrt-v4 scene; files are searched for from `folder`.
 ///
 /// # Errors
-/// All causes why the text cannot be imported.
+/// Returns all causes why the text cannot be imported.
 pub fn import_pbrt(text: &str, folder: &Path, options: &Options) -> Result<Imported, Refused> {
     pbrt::import_text(text, folder, options)
 }

@@ -27,7 +27,7 @@ impl<'a> MainFile<'a> {
         Self::new(path, folder, &name, options)
     }
 
-    /// A text in place of the file of this name in `folder`.
+    /// Creates a main file from a text that replaces the file of this name in `folder`.
     pub(crate) fn of_text(
         folder: &'a Path,
         name: &str,
@@ -55,12 +55,12 @@ impl<'a> MainFile<'a> {
         bytes.map_err(|error| self.refused(error))
     }
 
-    /// The folder that contains the file.
+    /// Returns the folder that contains the file.
     pub(crate) fn folder(&self) -> PathBuf {
         self.path.parent().unwrap_or(Path::new("")).to_owned()
     }
 
-    /// The place of the file as a whole, for messages.
+    /// Returns the place of the file as a whole, for messages.
     pub(crate) fn place(&self) -> SourcePlace {
         SourcePlace::whole(&self.name)
     }

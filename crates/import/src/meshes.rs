@@ -4,7 +4,7 @@ use etendue_scene::DetailedMesh;
 use etendue_world::Triangles;
 use glam::{DMat3, DVec2, DVec3};
 
-/// A mesh that is to become [`Triangles`].
+/// The parts of a mesh from which [`Triangles`] will be made.
 #[derive(Debug)]
 pub(crate) struct MeshParts {
     pub(crate) vertices: Vec<DVec3>,
@@ -25,7 +25,7 @@ impl From<DetailedMesh> for MeshParts {
 }
 
 impl MeshParts {
-    /// The approximate memory size.
+    /// Returns the approximate size in memory, in bytes.
     pub(crate) fn bytes(&self) -> u64 {
         let vertex = size_of::<[DVec3; 2]>() + size_of::<DVec2>();
         let all = self.vertices.len() * vertex + size_of_val(self.corners.as_slice());
@@ -53,8 +53,8 @@ impl MeshParts {
                 sums[corners[k] as usize] += normal * angle(b - a, c - a);
             }
         }
-        // The inverse transpose transforms the sums. The sign undoes the flip of triangle normals
-        // by a mirror.
+        // This transpose maps normals of the world to local coordinates. The sign undoes the flip
+        // of triangle normals by a mirror.
         let sign = 1.0_f64.copysign(linear.determinant());
         let back = linear.transpose() * sign;
         let normals = sums
@@ -76,8 +76,8 @@ impl MeshParts {
         }
     }
 
-    /// Uses the normal of the triangle where a vertex has none; returns whether any vertex had
-    /// none.
+    /// Gives vertices without a normal the normal of a triangle; returns whether there was such a
+    /// vertex.
     pub(crate) fn mend_normals(&mut self) -> bool {
         let Some(normals) = &mut self.normals else {
             return false;
@@ -92,7 +92,7 @@ impl MeshParts {
                 }
             }
         }
-        // Normals of vertices without triangles.
+        // Vertices that belong to no triangle get an arbitrary normal.
         for normal in normals {
             *normal = normal.normalize_or(DVec3::X);
         }
@@ -130,7 +130,7 @@ impl MeshParts {
     }
 }
 
-/// The normal of a triangle, with twice its area as length.
+/// Returns the normal of a triangle, whose length is twice the area.
 fn across(vertices: &[DVec3], corners: [u32; 3]) -> DVec3 {
     let [a, b, c] = corners.map(|i| vertices[i as usize]);
     (b - a).cross(c - a)

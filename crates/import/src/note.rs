@@ -37,8 +37,8 @@ impl fmt::Display for Note {
 pub struct Imported {
     /// The world.
     pub world: World,
-    /// Omissions and approximations, in the order of reading; if there are too many, the last note
-    /// gives the number of the rest.
+    /// Notes on omissions and approximations, in the order of reading; if there are too many, the
+    /// last one states how many more there are.
     pub notes: Vec<Note>,
 }
 

@@ -4,7 +4,7 @@
 //! - Each part between `usemtl` lines is a shape. Without a material it is diffuse, 0.5.
 //! - Surfaces scatter light on both sides and shine on their front: where their normals point, or where corners run counterclockwise.
 //! - `Kd`, `Ks`, `Ke` and `Tf` are linear. Pictures are sRGB; their linear values multiply these
-//!   numbers. Their first row is at v = 1.
+//!   numbers. The first row of a picture is at v = 1.
 //! - `Ke` is radiance, W m⁻² sr⁻¹.
 
 mod entry;

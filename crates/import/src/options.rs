@@ -14,18 +14,18 @@ pub struct Options {
     pub set: Vec<(String, String)>,
 }
 
-/// The conversion of a colour to one number, since worlds are monochrome.
+/// The conversion of a colour to one number; worlds are monochrome.
 ///
-/// Colours are linear sRGB; levels of 8-bit pictures are linearised first. Luminance is
-/// 0.212671 R + 0.715160 G + 0.072169 B. It matches the `mono` variants of Mitsuba 3.9,
-/// and the channels match its `rgb` variants.
+/// Colours are linear sRGB; levels of 8-bit pictures are linearised first. The luminance, 0.212671
+/// R + 0.715160 G + 0.072169 B, matches the `mono` variants of Mitsuba 3.9, and the channels match
+/// its `rgb` variants.
 ///
-/// A sampled spectrum becomes a colour as in Mitsuba. It is interpolated linearly at 1000
-/// wavelengths from 360 to 830 nm, and is zero beyond its ends. Then it is weighted with the CIE
-/// 1931 matching functions and converted to linear sRGB. Reflectances are also weighted with D65
-/// and clamped to 0 to 1; radiances and indices of refraction are clamped to at least 0. A spectrum
-/// of one number stays that number, except that the channels of a light use the colour of the
-/// equal-energy white, (1.2048, 0.9483, 0.9089).
+/// A sampled spectrum becomes a colour as in Mitsuba. The spectrum is interpolated linearly at
+/// 1000 wavelengths from 360 to 830 nm, and is zero beyond its ends. These values are weighted
+/// with the CIE 1931 matching functions and converted to linear sRGB. Reflectances are also
+/// weighted with D65 and clamped to 0 to 1; radiances and indices of refraction are clamped to at
+/// least 0. A spectrum that is given by one number becomes this number, except that each channel
+/// of a light is multiplied by that of the equal-energy white, (1.2048, 0.9483, 0.9089).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Color {
     /// The luminance of linear sRGB.

@@ -18,14 +18,14 @@
 //!   multiplied by the required value, divided by the value that the light has with radiance or
 //!   intensity 1.
 //!
-//! Reflectances and indices are colours in linear sRGB too. Their spectra are weighted with D65 and
-//! converted as described at [`Color`](crate::Color).
+//! Reflectances and indices are colours in linear sRGB too. Spectra of reflectances and indices
+//! are weighted with D65 and converted as described at [`Color`](crate::Color).
 //!
 //! # Space
 //!
-//! pbrt's coordinates are left-handed. These coordinates are kept. The camera's map mirrors
-//! instead, so its X points to the left of the picture. A mirror does not change light transport.
-//! The front of a surface is where pbrt's normal points.
+//! pbrt's left-handed coordinates are kept. The camera's map mirrors instead, so its X points to
+//! the left of the picture. A mirror does not change light transport. The front of a surface is
+//! where pbrt's normal points.
 //!
 //! # Limits
 //!

@@ -12,20 +12,20 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Cache of pictures, each read once.
+/// A cache of pictures, from which each picture is read only once.
 #[derive(Debug, Default)]
 pub(crate) struct Pictures {
     known: HashMap<(PathBuf, u64), Result<Arc<Raster>, String>>,
 }
 
-/// The relation between the levels of a picture and light.
+/// How the levels of a picture represent light.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum TransferCurve {
     /// The sRGB curve.
     Srgb,
     /// Levels are proportional to light.
     Linear,
-    /// Light is the level raised to this power.
+    /// The amount of light is the level raised to this power.
     Gamma(f64),
 }
 
@@ -65,7 +65,7 @@ impl Pictures {
 }
 
 impl TransferCurve {
-    /// A key that distinguishes curves; 0 for sRGB.
+    /// Returns a number that distinguishes curves: the exponent, or 0 for sRGB.
     fn exponent(self) -> f64 {
         match self {
             Self::Srgb => 0.0,
@@ -89,7 +89,8 @@ fn read(files: &Files, path: &Path, color: Color, curve: TransferCurve) -> Resul
         _ => v,
     };
     let grey = channels.count == 1;
-    // Three equal numbers are not converted: rounding would make their luminance differ from them.
+    // Three equal numbers are used as they are, because rounding would make their luminance differ
+    // from them.
     let number = |rgb: [f64; 3]| match grey {
         true => linear(rgb[0]),
         false => color.of(rgb.map(linear)),

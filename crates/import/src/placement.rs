@@ -8,7 +8,7 @@ use glam::{DAffine3, DVec3};
 /// numbers, so the axes differ slightly.
 const ALIKE: f64 = 1e-4;
 
-/// The reason why a geometry cannot be placed like this, if there is one.
+/// Returns the reason why a geometry cannot have this placement, if there is one.
 pub(crate) fn fault(geometry: &Geometry, to_world: DAffine3) -> Option<&'static str> {
     let [x, y, z] = [0, 1, 2].map(|i| to_world.matrix3.col(i));
     let alike = |a: DVec3, b: DVec3| (a.length() - b.length()).abs() <= ALIKE * a.length();

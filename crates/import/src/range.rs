@@ -6,11 +6,11 @@ use glam::DAffine3;
 /// several numbers stay far within the range of f64.
 pub(crate) const MAX_NUMBER: f64 = 1e9;
 
-/// The largest albedo of a surface. It slightly exceeds 1 because the weights of colour channels
-/// add up to 1 only up to rounding errors.
+/// The largest albedo of a surface. The limit slightly exceeds 1 because the weights of colour
+/// channels add up to 1 only up to rounding errors.
 pub(crate) const MAX_SHARE: f64 = 1.0 + 1e-9;
 
-/// Checks that a number is in range; `Err` is the fault.
+/// Checks that a number is in range; `Err` describes the fault.
 pub(crate) fn in_range(value: f64) -> Result<f64, String> {
     match value.abs() <= MAX_NUMBER {
         true => Ok(value),

@@ -5,8 +5,8 @@ use etendue_world::World;
 use std::cell::RefCell;
 use std::rc::Rc;
 
-/// Maximum number of causes, and of notes, that are kept. A file could give one for each of its
-/// elements.
+/// Maximum number of causes that are kept, and of notes. The limit is needed because each element
+/// of a file could give a message.
 const MAX_MESSAGES: usize = 100;
 
 /// Maximum number of bytes of a value in a message.
@@ -24,7 +24,7 @@ pub(crate) struct SourcePlace {
 }
 
 impl SourcePlace {
-    /// The place of a file as a whole.
+    /// Returns the place of a file as a whole.
     pub(crate) fn whole(file: &str) -> Self {
         let (line, column) = (0, 0);
         Self {
@@ -51,7 +51,7 @@ pub(crate) struct Report {
     notes: RefCell<Messages>,
 }
 
-/// The first messages, and the number of further ones.
+/// The messages of one kind: the first ones, and the number of further ones.
 #[derive(Debug, Default)]
 struct Messages {
     kept: Vec<Note>,

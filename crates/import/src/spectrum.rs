@@ -4,9 +4,9 @@ use crate::cie::{COUNT, D65, FIRST_WAVELENGTH, LAST_WAVELENGTH, OBSERVER};
 
 /// Number of wavelengths at which a spectrum is summed.
 const STEPS: u32 = 1000;
-/// Normalises a spectrum of 1 to luminance 1.
+/// The factor that normalises the constant spectrum 1 to luminance 1.
 const PER_OBSERVER: f64 = 1.0 / 106.750_259_399_414_06;
-/// Normalises the power of D65 to luminance 1.
+/// The factor that normalises the power of D65 to luminance 1.
 const PER_D65: f64 = 1.0 / 98.997_417_518_762_55;
 
 /// The quantity that a spectrum represents.
@@ -20,8 +20,8 @@ pub(crate) enum Role {
     Emission,
 }
 
-/// The linear sRGB colour of a spectrum: pairs of a wavelength, nm, in rising order, and a value.
-/// See [`Color`](crate::Color).
+/// Returns the linear sRGB colour of a spectrum: pairs of a wavelength, nm, in rising order, and a
+/// value. See [`Color`](crate::Color).
 pub(crate) fn rgb(samples: &[[f64; 2]], role: Role) -> [f64; 3] {
     let mut xyz = [0.0; 3];
     let mut next = 0;
@@ -60,12 +60,12 @@ pub(crate) fn from_xyz([x, y, z]: [f64; 3]) -> [f64; 3] {
     ]
 }
 
-/// The value at a wavelength before sample `next`; `None` beyond the ends.
+/// Returns the value at a wavelength before sample `next`, or `None` beyond the ends.
 fn between(samples: &[[f64; 2]], next: usize, wavelength: f64) -> Option<f64> {
     let [w0, v0] = *samples.get(next.checked_sub(1)?)?;
     match samples.get(next) {
         Some([w1, v1]) => Some(v0 + (wavelength - w0) / (w1 - w0) * (v1 - v0)),
-        // The last wavelength is still inside the range.
+        // The last wavelength itself is inside the range.
         None => (wavelength <= w0).then_some(v0),
     }
 }

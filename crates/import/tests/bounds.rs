@@ -17,7 +17,8 @@ fn an_element_of_many_attributes_is_not_parsed() {
             all
         })
     };
-    // 64 attributes reach the reader, which refuses them as unknown. Comments are not counted.
+    // An element with 64 attributes reaches the reader, which refuses the attributes as unknown.
+    // Attributes in comments are not counted.
     let few = format!("<!-- {} --><shape{}/>", attributes(200), attributes(64));
     assert!(causes(&few)[0].contains("attribute a0"), "{few}");
     let many = format!("\n<shape type='sphere'{}/>", attributes(100_000));
@@ -44,8 +45,8 @@ fn files_that_include_each_other_are_read_a_bounded_number_of_times() {
         .collect();
     let folder = folder(&files);
     let refused = import(&folder.path().join("f0.xml"), &Options::default()).unwrap_err();
-    // Each refused include is counted. Of 10⁸ includes, at most a thousand files of eleven includes
-    // were read.
+    // Each refused include is counted. Of the 10⁸ includes, at most a thousand files were read,
+    // with eleven includes each.
     let last = &refused.causes[refused.causes.len() - 1].message;
     let more = last
         .strip_prefix("and ")

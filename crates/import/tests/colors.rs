@@ -43,7 +43,7 @@ fn colours_become_one_number() {
     assert_close(&ALL.map(|c| radiance(grey, c)), &[3.0; 4], 1e-12);
     let number = "<float name=\"radiance\" value=\"3\"/>";
     assert_close(&ALL.map(|c| radiance(number, c)), &[3.0; 4], 0.0);
-    // A spectrum of equal power is not grey in sRGB for a light.
+    // The spectrum of a light with equal power at all wavelengths is not grey in sRGB.
     let uniform = "<spectrum name=\"radiance\" value=\"2\"/>";
     let expected = [2.0, 2.409_59, 1.896_58, 1.817_83];
     assert_close(&ALL.map(|c| radiance(uniform, c)), &expected, 1e-5);
@@ -140,7 +140,7 @@ fn conductors_have_indices_of_refraction() {
     assert!(common::causes(both)[0].contains("material together with eta or k"));
 }
 
-/// A PNG picture of 2 × 1 pixels.
+/// Returns a PNG picture of 2 × 1 pixels.
 fn png() -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, 2, 1);
@@ -197,7 +197,7 @@ fn jpeg_and_radiance_pictures_are_read() {
     let found = ALL.map(|c| at("a.hdr", "", 0.25, c));
     assert_close(&found[1..], &[1.0, 0.5, 0.0], 0.0);
     assert_close(&[at("a.hdr", "", 0.75, Color::Red)], &[0.0], 0.0);
-    // The values Mitsuba decodes; decoders may differ by one level.
+    // The expected levels are those that Mitsuba decodes; decoders may differ by one level.
     let raw = "<boolean name=\"raw\" value=\"true\"/>";
     for (u, levels) in [(0.25, [200.0, 100.0, 50.0]), (0.75, [30.0, 60.0, 90.0])] {
         let found = ALL.map(|c| at("b.jpg", raw, u, c) * 255.0);

@@ -7,7 +7,7 @@ use crate::gltf_scene::{BASE, causes, mesh, notes, with, world};
 use etendue_world::{Light, Material, MicrofacetDistribution, Projection, Texture};
 use glam::{DVec2, DVec3};
 
-/// The value of a constant texture.
+/// Returns the value of a constant texture.
 fn constant(texture: &Texture) -> f64 {
     match texture {
         Texture::Constant(value) => *value,
@@ -58,7 +58,7 @@ fn matrices_are_columns_and_parts_are_scaled_first() {
     };
     let matrix = of(r#"{"mesh":0,"matrix":[0,2,0,0, -1,0,0,0, 0,0,1,0, 5,6,7,1]}"#);
     assert_close(&matrix.to_array(), &[5.0, 8.0, 7.0], 1e-12);
-    // A quarter turn about Z takes X, which is twice as long, to Y.
+    // A quarter turn about Z takes the X axis, which is scaled by 2, to Y.
     let parts = of(
         r#"{"mesh":0,"translation":[5,6,7],"rotation":[0,0,0.70710678,0.70710678],"scale":[2,3,4]}"#,
     );
@@ -98,7 +98,7 @@ fn the_front_is_where_corners_run_counterclockwise() {
     let etendue_world::Geometry::Mesh(first) = &world.shapes[0].geometry else {
         panic!("no mesh");
     };
-    // X points to the right and Y up, so the front is towards Z.
+    // The corners are counterclockwise with X to the right and Y up, so the front is towards Z.
     let [a, b, c] = first.corners()[0].map(|i| first.vertices()[i as usize]);
     assert!((b - a).cross(c - a).z > 0.0);
     // A mirrored surface keeps its front, because its normals are transformed by the inverse
@@ -198,7 +198,7 @@ fn double_sided_lamps_are_two_surfaces() {
         ((b - a).cross(c - a).normalize().z, a.z)
     });
     let fronts: Vec<(f64, f64)> = fronts.collect();
-    // The back faces away, and lies behind the front.
+    // The back side has the opposite normal, and lies behind the front.
     assert_close(&[fronts[0].0, fronts[1].0], &[-1.0, 1.0], 1e-9);
     assert!(fronts[0].1 < fronts[1].1, "{fronts:?}");
 }

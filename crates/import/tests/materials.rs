@@ -4,7 +4,7 @@ use crate::common::world;
 use etendue_world::{Material, Texture};
 use glam::DVec2;
 
-/// The texture's value in the first square of a checkerboard.
+/// Returns the texture's value in the first square of a checkerboard.
 fn first(texture: &Texture) -> f64 {
     texture.value(DVec2::splat(0.1))
 }
@@ -40,7 +40,7 @@ fn checkerboards_are_turned_where_they_are_numbers() {
     };
     let alpha = &metal.roughness.as_ref().unwrap().alpha[0];
     for (texture, expected) in [(reflectance, 0.1), (alpha, 0.3), (opacity, 0.3)] {
-        // The number itself, unconverted.
+        // The texture has the number itself, without conversion.
         assert!((first(texture) - expected).abs() < 1e-12, "{texture:?}");
     }
 }

@@ -1,4 +1,4 @@
-//! Damaged scenes. Each is read or refused, and none causes a panic.
+//! Damaged scenes. Each damaged scene is imported or refused, and none causes a panic.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -38,7 +38,7 @@ LightSource "infinite" "string filename" "b.hdr" LightSource "spot" "spectrum I"
 const SQUARE: &str = "#?RADIANCE\n\n-Y 2 +X 2\nabcdabcdabcdabcd";
 const PBRT_PART: &str = "Scale 2 2 2\nMaterial \"dielectric\" \"float eta\" 1.4\nShape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0]\n";
 
-/// A reproducible random sequence (Marsaglia 2003).
+/// Returns a reproducible random sequence (Marsaglia 2003).
 fn next(state: &mut u64) -> usize {
     *state ^= *state << 13;
     *state ^= *state >> 7;
@@ -72,7 +72,8 @@ fn no_byte_of_a_pbrt_scene_makes_it_panic() {
     );
 }
 
-/// Damages the files in turn, the first one most often, and imports the scene each time.
+/// Damages one of the files in each round, the first one in every second round, and imports the
+/// scene.
 fn damage(files: &[(&str, &[u8])], rounds: usize) {
     let folder = folder(files);
     let main = folder.path().join(files[0].0);
@@ -81,7 +82,7 @@ fn damage(files: &[(&str, &[u8])], rounds: usize) {
     let mut state = 88_172_645_463_325_252;
     let (mut read, mut refused) = (0, 0);
     for round in 0..rounds {
-        // Every second round damages the scene file, the others one of its files.
+        // Even rounds damage the scene file, and odd ones one of the files that it uses.
         let which = match files.len() {
             others @ 2.. if round % 2 == 1 => 1 + next(&mut state) % (others - 1),
             _ => 0,
@@ -107,7 +108,7 @@ fn damage(files: &[(&str, &[u8])], rounds: usize) {
         }
         fs::write(folder.path().join(name), sound).unwrap();
     }
-    // Both outcomes occur, so both are tested.
+    // Some damaged scenes are imported and others are refused, so both outcomes are tested.
     let few = rounds / 15;
     assert!(
         read > few && refused > few,
@@ -136,7 +137,7 @@ fn no_byte_of_obj_makes_it_panic() {
     damage(&files, 6000);
 }
 
-/// A glTF scene that uses every feature.
+/// Returns a glTF scene that uses every feature.
 fn everything() -> String {
     let nodes = r#"{"mesh":0,"children":[1,2]},{"mesh":0,"rotation":[0,0.6,0,0.8],"scale":[-1,2,1],"camera":0},
 {"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,3,4,5,1],"extensions":{"KHR_lights_punctual":{"light":0}}}"#;

@@ -33,7 +33,7 @@ fn read(obj: &str, mtl: &str) -> Imported {
     read_all(&text, mtl).unwrap_or_else(|causes| panic!("{causes:#?}"))
 }
 
-/// The material of a single square.
+/// Returns the material of a single square.
 fn material(mtl: &str) -> Material {
     let read = read(
         "usemtl m\nf 1/1 2/2 3/3 4/4\n",
@@ -42,7 +42,7 @@ fn material(mtl: &str) -> Material {
     read.world.materials.into_iter().next().unwrap()
 }
 
-/// The material of both sides.
+/// Returns the material that both sides have.
 fn side(mtl: &str) -> Material {
     match material(mtl) {
         Material::TwoSided(sides) => sides[0].clone(),
@@ -136,7 +136,7 @@ fn options_of_pictures_place_them_upwards() {
     else {
         panic!("{:?}", sides[0]);
     };
-    // v = 0.5 in the file maps to 0.375, which is 0.625 from the top.
+    // In the file v = 0.5 maps to 0.375 from below, which is 0.625 from the top.
     let found = bitmap.to_uv.transform_point2(DVec2::new(0.5, 0.5));
     assert_close(&found.to_array(), &[1.25, 0.625], 1e-12);
 }

@@ -20,7 +20,7 @@ fn along(look: Look) -> [f64; 3] {
 #[test]
 fn x_is_to_the_right() {
     let top_right = camera(&format!("{WIDE} Camera \"perspective\"")).look([40.0, 0.0], [0.0; 2]);
-    // Half of 90 degrees vertically, twice as much horizontally.
+    // The slope is that of 45 degrees vertically, and twice that horizontally.
     assert_close(
         &along(top_right),
         &[2.0 / 6_f64.sqrt(), 1.0 / 6_f64.sqrt(), 1.0 / 6_f64.sqrt()],
@@ -29,13 +29,13 @@ fn x_is_to_the_right() {
     let placed = format!("LookAt 1 2 3  1 2 -5  0 1 0 {WIDE} Camera \"perspective\"");
     let look = camera(&placed).look([40.0, 10.0], [0.0; 2]);
     assert_close(&look.from.to_array(), &[1.0, 2.0, 3.0], 1e-12);
-    // Looking along −Z in left-handed coordinates, right is −X.
+    // The camera looks along −Z in left-handed coordinates, so −X is to the right.
     assert_close(
         &along(look),
         &[-2.0 / 5_f64.sqrt(), 0.0, -1.0 / 5_f64.sqrt()],
         1e-12,
     );
-    // A mirroring transform before the camera, as exporters write it.
+    // Exporters write a mirroring transform before the camera.
     let mirrored = format!("Scale -1 1 1 {placed}");
     let look = camera(&mirrored).look([40.0, 10.0], [0.0; 2]);
     assert_close(
@@ -79,7 +79,8 @@ fn lenses_focus_on_a_plane() {
     let lens = "Scale 0.5 0.5 0.5 Camera \"perspective\" \"float lensradius\" 0.1 \"float focaldistance\" 3";
     let camera = camera(lens);
     let [middle, edge] = [[0.0, 0.0], [0.6, -0.8]].map(|lens| camera.look([4.0, 6.0], lens));
-    // The camera is scaled by two.
+    // The scale of one half doubles the size of the camera, so its plane of focus is at a distance
+    // of 6.
     let at = |look: Look| look.from + look.along * (6.0 / look.along.z);
     assert_close(&(at(middle) - at(edge)).to_array(), &[0.0; 3], 1e-12);
     assert_close(&[edge.from.length()], &[0.2], 1e-12);

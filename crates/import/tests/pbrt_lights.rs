@@ -1,5 +1,5 @@
-//! Lights of pbrt-v4. A colour has the value that pbrt's own picture shows, and a spectrum has
-//! luminance 1.
+//! Lights of pbrt-v4. A light with a colour has the value that a picture of pbrt shows, and a
+//! light with a spectrum has luminance 1.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -57,7 +57,7 @@ fn spectra_have_colours() {
         }
     };
     let [r, g, b] = [Color::Red, Color::Green, Color::Blue].map(channel);
-    // Reddish, with luminance 1.
+    // The colour is reddish, with luminance 1.
     assert!(r > 1.5 && g < 0.9 && b < 0.3, "{r} {g} {b}");
     assert_close(
         &[0.212_671 * r + 0.715_160 * g + 0.072_169 * b],
@@ -168,7 +168,7 @@ fn lights_without_an_equal_are_refused() {
     );
 }
 
-/// A square Radiance picture of equal pixels, with one brighter pixel.
+/// Returns a square Radiance picture of equal pixels, with one brighter pixel.
 fn square(side: usize, bright: usize) -> Vec<u8> {
     let mut bytes = format!("#?RADIANCE\n\n-Y {side} +X {side}\n").into_bytes();
     for i in 0..side * side {
@@ -198,7 +198,7 @@ fn skies_are_squares_of_equal_area() {
     let Light::Sky(map) = &read_sky.world.lights[0] else {
         panic!("{:?}", read_sky.world.lights);
     };
-    // The total light of the map, and its mean direction.
+    // The sums are the total light of the map and its mean direction.
     let raster = map.radiance.raster();
     let (w, h) = (raster.width(), raster.height());
     let (mut sum, mut toward) = (0.0, DVec3::ZERO);
@@ -209,14 +209,16 @@ fn skies_are_squares_of_equal_area() {
         sum += light;
         toward += light * DVec3::new(sin * x, cos, -sin * z);
     }
-    // Means over pixels conserve the light of so small a spot to a few per cent.
+    // The means over pixels conserve the light of this spot, which has the size of a pixel, to a
+    // few per cent.
     let pixel = 4.0 * PI / (side * side) as f64;
     assert!((sum / (4.0 * pixel) - 1.0).abs() < 0.1, "{sum}");
-    // The centre of the pixel: u = 9/16, v = 1/16 of ±1, so that r = 10/16.
+    // The centre of the pixel is at u = 9/16 and v = 1/16 in coordinates from −1 to 1, so r =
+    // 10/16.
     let r = 10.0_f64 / 16.0;
     let turn = (1.0 / 16.0 / r) * PI / 2.0;
     let across = r * (2.0 - r * r).sqrt();
-    // Rotated from X to Y.
+    // The expected direction is rotated by a quarter turn from X to Y.
     let expected = DVec3::new(-across * turn.sin(), across * turn.cos(), 1.0 - r * r);
     let found = map.to_world * toward.normalize();
     assert!(found.angle_between(expected) < 0.02, "{found} {expected}");

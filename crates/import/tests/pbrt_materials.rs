@@ -15,7 +15,7 @@ fn constant(texture: &Texture) -> f64 {
     }
 }
 
-/// α along u and v; `None` for a mirror.
+/// Returns α along u and v, or `None` for a mirror.
 fn alpha(parameters: &str) -> Option<[f64; 2]> {
     match material(&format!("Material \"conductor\" {parameters}")) {
         Material::Conductor(metal) => metal.roughness.map(|rough| {
@@ -68,7 +68,7 @@ fn metals_have_an_index() {
         Material::Conductor(metal) => metal.index.unwrap(),
         other => panic!("{other:?}"),
     };
-    // Copper, the default, in luminance.
+    // The default metal is copper.
     let copper = index("\"spectrum eta\" \"metal-Cu-eta\" \"spectrum k\" \"metal-Cu-k\"");
     assert_close(&index(""), &copper, 0.0);
     let luminance = |[r, g, b]: [f64; 3]| 0.212_671 * r + 0.715_160 * g + 0.072_169 * b;
@@ -82,7 +82,7 @@ fn metals_have_an_index() {
         &[2.0, 3.0],
         1e-5,
     );
-    // At normal incidence, n = 1 and k reflect k² / (4 + k²).
+    // At normal incidence a metal with n = 1 reflects k² / (4 + k²).
     let [n, k] = index("\"rgb reflectance\" [0.6 0.6 0.6]");
     assert_close(&[n, k * k / (4.0 + k * k)], &[1.0, 0.6], 1e-5);
 }
@@ -147,7 +147,7 @@ fn interfaces_are_no_surfaces() {
     assert!(world(inside).shapes.is_empty());
 }
 
-/// The value at a point of a shape with pbrt's (u, v).
+/// Returns the value of the reflectance at the point (u, v) of a shape in a world.
 fn value(inside: &str, shape: &str, uv: [f64; 2]) -> f64 {
     let declared = format!("{inside} Material \"diffuse\" \"texture reflectance\" \"t\" {shape}");
     let world = world(&declared);
@@ -173,7 +173,7 @@ fn squares_of_a_checkerboard_are_one_unit() {
     ] {
         assert_close(&[value(board, mesh, uv)], &[expected], 1e-5);
     }
-    // v of a sphere increases from its lower pole; u of a disk is its azimuth.
+    // In pbrt, v of a sphere increases from its lower pole, and u of a disk is the azimuth.
     let rings = "Texture \"t\" \"spectrum\" \"checkerboard\" \"float vscale\" 4 \"rgb tex1\" [.8 .8 .8] \"rgb tex2\" [.2 .2 .2]";
     assert_close(
         &[value(rings, "Shape \"sphere\"", [0.5, 0.99])],
@@ -207,7 +207,7 @@ fn textures_scale_and_mix() {
     assert!(causes(noise)[0].contains("texture `marble` is not supported"));
 }
 
-/// A grey picture of 1 × 2 pixels, the upper one white.
+/// Returns a grey picture of 1 × 2 pixels, the upper one white.
 fn png() -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, 1, 2);

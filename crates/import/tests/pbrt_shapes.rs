@@ -15,7 +15,8 @@ fn mesh(shape: &Shape) -> &Triangles {
     }
 }
 
-/// The normal on the front of a shape, near a direction in its own coordinates.
+/// Returns the normal on the front of a shape at the point nearest to a direction in its own
+/// coordinates.
 fn front(shape: &Shape, own: DVec3) -> DVec3 {
     let side = if shape.is_flipped { -1.0 } else { 1.0 };
     let normal = match &shape.geometry {
@@ -39,7 +40,7 @@ fn transforms_stand_before_those_they_are_applied_after() {
         &[0.0, 2.0, 0.0],
         1e-15,
     );
-    // The matrix is given by columns: X goes to Y.
+    // The matrix is given by columns, and takes X to Y.
     let matrix = "[0 1 0 0  -1 0 0 0  0 0 1 0  4 5 6 1]";
     assert_close(&at(&format!("Transform {matrix}")), &[4.0, 6.0, 6.0], 0.0);
     assert_close(
@@ -58,7 +59,7 @@ fn transforms_stand_before_those_they_are_applied_after() {
     let block =
         "AttributeBegin Translate 5 5 5 AttributeEnd TransformBegin Scale 3 3 3 TransformEnd";
     assert_close(&at(block), &[1.0, 0.0, 0.0], 0.0);
-    // LookAt maps to camera coordinates, in which X is to the right.
+    // `LookAt` gives the map to camera coordinates, in which X points to the right.
     let look = place("LookAt 0 0 5  0 0 0  0 1 0");
     let expected = DMat4::from_cols_array(&[
         -1., 0., 0., 0., 0., 1., 0., 0., 0., 0., -1., 0., 0., 0., 5., 1.,
@@ -90,8 +91,8 @@ fn fronts_are_where_normals_point() {
             outward,
             "{plugin}"
         );
-        // pbrt flips normals after a mirror. It also mirrors the corners of meshes, so normals of
-        // meshes are flipped twice.
+        // In pbrt a mirror flips normals. A mirror also reverses the order of the corners of a
+        // mesh, so normals of meshes are flipped twice.
         let is_mesh = plugin.contains("mesh");
         let mirrored = if is_mesh { outward } else { -outward };
         assert_eq!(of("Scale 1 -1 1"), mirrored, "{plugin}");

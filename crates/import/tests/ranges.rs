@@ -21,7 +21,7 @@ fn pbrt_causes(text: &str) -> Vec<String> {
     refused.causes.iter().map(ToString::to_string).collect()
 }
 
-/// The causes to refuse a scene of these files.
+/// Returns the causes to refuse a scene of these files.
 fn file_causes(files: &[(&str, &[u8])]) -> Vec<String> {
     let folder = folder(files);
     let refused = import(&folder.path().join(files[0].0), &Options::default()).unwrap_err();
@@ -80,7 +80,7 @@ fn numbers_out_of_range_are_refused_at_their_line() {
 
 #[test]
 fn an_illuminance_that_no_factor_reaches_is_refused() {
-    // A black picture has no illuminance that could be scaled to 1.
+    // The illuminance of a black picture cannot be scaled to 1.
     let light = r#"LightSource "infinite" "string filename" "a.png" "float illuminance" 1"#;
     let folder = tempfile::tempdir().unwrap();
     let black = png(&[0; 4]);
@@ -93,7 +93,7 @@ fn an_illuminance_that_no_factor_reaches_is_refused() {
     );
 }
 
-/// A grey picture of two by two pixels.
+/// Returns a grey picture of two by two pixels.
 fn png(levels: &[u8; 4]) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, 2, 2);
@@ -129,7 +129,7 @@ fn surfaces_reflect_no_more_light_than_there_is() {
     ] {
         assert_refused(&causes(&bsdf(inside)), "text:2:", words);
     }
-    // White pictures and colours are 1 up to rounding.
+    // White pictures and colours have the value 1 up to rounding.
     world(&bsdf(
         r#"<bsdf type="diffuse"><rgb name="reflectance" value="1"/></bsdf>"#,
     ));

@@ -46,13 +46,13 @@ fn mesh(shape: &Shape) -> &Arc<Triangles> {
     }
 }
 
-/// The shading normal of a vertex in the world.
+/// Returns the shading normal of a vertex in the world.
 fn shading_normal(shape: &Shape, vertex: usize) -> [f64; 3] {
     let normal = mesh(shape).normals().unwrap()[vertex];
     turned(shape, normal)
 }
 
-/// A normal of a shape in the world, on its front.
+/// Returns a normal of a shape in the world, on its front.
 fn turned(shape: &Shape, normal: DVec3) -> [f64; 3] {
     let sign = if shape.is_flipped { -1.0 } else { 1.0 };
     let map = shape.to_world.matrix3.inverse().transpose();
@@ -72,7 +72,7 @@ fn fronts_of_simple_shapes() {
         ),
         ("disk", MIRROR, DVec3::Z, DVec3::Z),
         ("sphere", "", DVec3::Z, DVec3::Z),
-        // Only spheres are turned inside out.
+        // A mirror turns only spheres inside out.
         ("sphere", MIRROR, DVec3::Z, DVec3::NEG_Z),
         ("cylinder", MIRROR, DVec3::Y, DVec3::Y),
         ("cube", MIRROR, DVec3::Z, DVec3::Z),
@@ -225,7 +225,7 @@ fn shapes_without_a_material_are_grey_or_black() {
     assert!(world.shapes[0].emission.is_none());
 }
 
-/// A mesh file of version 4 with two meshes of one triangle each; the second is 1 higher.
+/// Returns a mesh file of version 4 with two meshes of one triangle each; the second is 1 higher.
 fn serialized() -> Vec<u8> {
     let mut file = Vec::new();
     let mut offsets = Vec::new();

@@ -3,11 +3,11 @@
 //!     cargo build --release -p etendue-paths --example rays_per_second
 //!     rays_per_second MESH.ply < QUESTIONS
 //!
-//! Each input line is a command: `build` prints the processor seconds and bytes of memory it takes.
-//! `first RAYS` finds the first hits, and `free RAYS` tests whether rays hit anything before their
-//! end. Both print the processor seconds of this thread, and write distances (infinite for no hit,
-//! zero for `free` with a hit) to `RAYS.met` as f64. Rays are seven f32 each: origin, direction,
-//! end.
+//! Each input line is a command: `build` prints the processor seconds and bytes of memory it
+//! takes. `first RAYS` finds the first hits, and `free RAYS` tests whether rays hit anything
+//! before their end. `first` and `free` print the processor seconds of this thread, and write
+//! distances (infinite for no hit, zero for `free` with a hit) to `RAYS.met` as f64. Rays are
+//! seven f32 each: origin, direction, end.
 
 #![allow(clippy::print_stdout, reason = "a program for people")]
 
@@ -85,7 +85,7 @@ fn read(file: &str) -> Result<Vec<(Ray, f64)>, Box<dyn Error>> {
     Ok(rays.iter().map(ray).collect())
 }
 
-/// Processor seconds of all threads.
+/// Returns the processor seconds that all threads have used.
 fn seconds() -> Result<f64, Box<dyn Error>> {
     let mut nanoseconds = 0.0;
     for task in std::fs::read_dir("/proc/self/task")? {
@@ -95,7 +95,7 @@ fn seconds() -> Result<f64, Box<dyn Error>> {
     Ok(1e-9 * nanoseconds)
 }
 
-/// Bytes of memory in use.
+/// Returns the memory in use, in bytes.
 fn resident() -> Result<f64, Box<dyn Error>> {
     let status = std::fs::read_to_string("/proc/self/status")?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));

@@ -11,7 +11,7 @@ pub(crate) struct PathNumbers<'a> {
     block: u32,
     left: [u32; 4],
     used: usize,
-    /// The net, and the index of the point that gives the first numbers, if any.
+    /// The net whose point gives the first numbers, and the index of this point, if any.
     net: Option<(&'a Net, u32)>,
 }
 
@@ -51,7 +51,7 @@ impl<'a> PathNumbers<'a> {
         unit(self.left[self.used - 1])
     }
 
-    /// The next `N` numbers.
+    /// Returns the next `N` numbers.
     pub(crate) fn draw<const N: usize>(&mut self) -> [f64; N] {
         [(); N].map(|()| self.next())
     }

@@ -22,11 +22,12 @@ pub struct Paths {
     pub(crate) hides_sources: bool,
 }
 
-/// From this surface on, a path continues with a probability given by its throughput.
+/// Number of the surface from which on a path continues only with a probability, given by its
+/// throughput (Russian roulette).
 pub(crate) const ROULETTE: u32 = 6;
 
-/// Maximum path length, for endless paths between mirrors; the remaining throughput is below the
-/// rounding error of a picture.
+/// Maximum path length, which ends paths between mirrors whose throughput is below the rounding
+/// error of a picture.
 const LONGEST: u32 = 10_000;
 
 impl Paths {
@@ -44,9 +45,9 @@ impl Paths {
         }
     }
 
-    /// The radiance arriving at the origin of a ray, from distances within the visible range: an
-    /// unbiased estimate by one path. `before` is the number of surfaces between the origin and the
-    /// camera.
+    /// Returns the radiance arriving at the origin of a ray, from distances within the visible
+    /// range: an unbiased estimate by one path. `before` is the number of surfaces between the
+    /// origin and the camera.
     pub(crate) fn radiance(
         &self,
         ray: Ray,
@@ -62,7 +63,8 @@ impl Paths {
         sum
     }
 
-    /// The radiance emitted by sources along a ray, as seen by a camera behind `before` surfaces.
+    /// Returns the radiance emitted by sources along a ray, as seen by a camera behind `before`
+    /// surfaces.
     pub(crate) fn shown(&self, ray: &Ray, hit: Option<&Hit>, before: u32) -> f64 {
         if before > 0 || !self.hides_sources {
             self.emitted(ray, hit, None)
@@ -71,9 +73,9 @@ impl Paths {
         }
     }
 
-    /// The radiance that a hit surface scatters back along the ray, as the parts that one path
-    /// finds. Each part has its incident direction in the frame of the hit. `before` is the number
-    /// of surfaces between the hit and the camera.
+    /// Returns the radiance that a hit surface scatters back along the ray, as the parts that one
+    /// path finds, each with its incident direction in the frame of the hit. `before` is the
+    /// number of surfaces between the hit and the camera.
     pub(crate) fn scattered(
         &self,
         mut ray: Ray,
@@ -117,17 +119,18 @@ impl Paths {
         }
     }
 
-    /// The material at the hit.
+    /// Returns the material at the hit.
     pub(crate) fn scatter(&self, hit: &Hit) -> &Scatter {
         &self.materials[self.of_shape[hit.shape]]
     }
 
-    /// Whether distant light arrives from all directions.
+    /// Whether the world has a light of distant radiance from all directions.
     pub(crate) fn has_sky(&self) -> bool {
         self.lights.of_sky(DVec3::Z).next().is_some()
     }
 
-    /// Light emitted along a ray that hits a light, weighted against light sampling.
+    /// Returns the light emitted along a ray that hits a light, with its weight in multiple
+    /// importance sampling.
     fn emitted(&self, ray: &Ray, hit: Option<&Hit>, last: Option<f64>) -> f64 {
         let balanced = |(radiance, looked): (f64, f64)| match last {
             Some(last) => radiance * last / (last + looked),
@@ -139,7 +142,8 @@ impl Paths {
         }
     }
 
-    /// Light found by light sampling, and its incident direction in the frame of the hit.
+    /// Returns the light that light sampling finds, and its incident direction in the frame of the
+    /// hit.
     fn looked_for(
         &self,
         hit: &Hit,

@@ -31,7 +31,7 @@ impl Paths {
     ) -> Picture {
         let [w, h] = camera.size;
         let row = |row: usize| {
-            // If `progress` unwinds, rows that have not begun end here.
+            // If `progress` unwinds to stop the work, each further row ends here.
             progress(0);
             let pixels = (0..w).map(|column| self.pixel(camera, [column, row], samples, seed));
             let pixels: Vec<[f64; 2]> = pixels.collect();
@@ -60,7 +60,7 @@ impl Paths {
             let mut numbers =
                 PathNumbers::new(seed, number * u64::from(samples) + u64::from(sample));
             let radiance = self.seen(camera, [column as f64, row as f64], &mut numbers);
-            // Welford 1962: numerically stable.
+            // This recurrence is numerically stable (Welford 1962).
             let off = radiance - mean;
             mean += off / f64::from(sample + 1);
             squares += off * (radiance - mean);

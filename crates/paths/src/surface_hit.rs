@@ -1,5 +1,5 @@
-//! Surface points that a camera sees: their light, and the distances of what they reflect. Used by
-//! renderers with adaptive sampling.
+//! Surface points that a camera sees: their light, and the distances of what they reflect.
+//! Renderers with adaptive sampling use these points.
 
 use crate::numbers::{JOINT, PathNumbers};
 use crate::paths::Paths;
@@ -13,9 +13,9 @@ use glam::DVec3;
 /// The hit of a camera ray.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
-    /// Radiance emitted by sources along the ray, W m⁻² sr⁻¹.
+    /// Radiance that sources emit along the ray, W m⁻² sr⁻¹.
     pub emitted: f64,
-    /// The surface hit; `None` if the ray leaves the world.
+    /// The point of a surface that the ray hits; `None` if the ray leaves the world.
     pub surface: Option<SurfaceHit>,
 }
 
@@ -23,30 +23,30 @@ pub struct View {
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceHit {
     hit: Hit,
-    /// The ray that sees it.
+    /// The ray that sees the point.
     ray: Ray,
 }
 
 impl SurfaceHit {
-    /// The index of its shape.
+    /// Returns the index of the shape of the surface.
     #[must_use]
     pub fn shape(&self) -> usize {
         self.hit.shape
     }
 
-    /// The position in the world.
+    /// Returns the position in the world.
     #[must_use]
     pub fn position(&self) -> DVec3 {
         self.hit.position
     }
 
-    /// The distance along the ray.
+    /// Returns the distance along the ray.
     #[must_use]
     pub fn distance(&self) -> f64 {
         self.hit.distance
     }
 
-    /// The shading normal, on the visible side.
+    /// Returns the shading normal, on the visible side.
     #[must_use]
     pub fn normal(&self) -> DVec3 {
         let normal = self.hit.frame.z_axis;
@@ -57,14 +57,14 @@ impl SurfaceHit {
         }
     }
 
-    /// The mirror direction of the ray, of unit length.
+    /// Returns the mirror direction of the ray, of unit length.
     #[must_use]
     pub fn mirrored(&self) -> DVec3 {
         let normal = self.normal();
         self.ray.along - 2.0 * self.ray.along.dot(normal) * normal
     }
 
-    /// The direction to the eye, in the frame of the surface.
+    /// Returns the direction to the eye, in the frame of the surface.
     fn wo(&self) -> DVec3 {
         self.hit.frame.transpose() * -self.ray.along
     }
@@ -73,12 +73,12 @@ impl SurfaceHit {
 /// The nearness of a point to its blockers and reflected surroundings.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Nearness {
-    /// The mean of 1/distance over what the material reflects, per metre; distant light
-    /// counts as 0. Its inverse is the harmonic mean of Durand et al. 2005, section
+    /// The mean of 1/distance over what the material reflects, per metre, to which distant light
+    /// adds nothing. The inverse of this mean is the harmonic mean of Durand et al. 2005, section
     /// 6.2.
     pub reflected: f64,
-    /// The highest frequency of penumbrae, cycles per metre across the light: the inverse of the
-    /// penumbra width, where light is partly blocked.
+    /// The highest frequency of penumbrae, in cycles per metre perpendicular to the light: the
+    /// inverse of the width of the penumbra, where light is partly blocked.
     pub shadow: f64,
 }
 
@@ -97,21 +97,21 @@ impl Paths {
         }
     }
 
-    /// The kind of reflection of the surface.
+    /// Returns the kind of reflection of the surface.
     #[must_use]
     pub fn reflects(&self, seen: &SurfaceHit) -> Reflects {
         self.scatter(&seen.hit).kind(seen.hit.uv, seen.wo())
     }
 
-    /// The texture factors of base and lobe. A material with one part has only a base.
+    /// Returns the texture factors of base and lobe. A material with one part has only a base.
     #[must_use]
     pub fn factors(&self, seen: &SurfaceHit) -> [f64; 2] {
         self.scatter(&seen.hit).factors(seen.hit.uv, seen.wo())
     }
 
-    /// The radiance that base and lobe scatter to the eye, W m⁻² sr⁻¹, as means of `paths` paths;
-    /// and the variance of their sum, divided by the number of paths. It depends only on the point,
-    /// the seed and `number`.
+    /// Returns the radiance that base and lobe scatter to the eye, W m⁻² sr⁻¹, as means of `paths`
+    /// paths, and the variance of their sum, divided by the number of paths. The result depends
+    /// only on the point, the seed and `number`.
     ///
     /// Paths of one point use a scrambled net for their first numbers, so the error of the mean is
     /// smaller than this variance suggests.
@@ -164,8 +164,8 @@ impl Paths {
         parts
     }
 
-    /// The nearness of a point to what it reflects and to its blockers, from `rays` rays of each
-    /// kind. Distances below `nearest` are set to it.
+    /// Returns the nearness of a point to what it reflects and to its blockers, from `rays` rays
+    /// of each kind. Distances below `nearest` count as `nearest`.
     #[must_use]
     pub fn nearness(
         &self,
@@ -183,8 +183,8 @@ impl Paths {
             if let Some(shadow) = self.shadow(seen, numbers.draw()) {
                 if shadow.nearness > 0.0 {
                     blocked += shadow.light;
-                    // This is the geometric mean, so that a few very near blockers do not dominate
-                    // the shadow.
+                    // The mean is geometric, so that a few very near blockers do not dominate the
+                    // shadow.
                     sharp += shadow.light * libm::log(shadow.nearness.min(nearest.recip()));
                 } else {
                     lit += shadow.light;
@@ -212,7 +212,7 @@ impl Paths {
         }
     }
 
-    /// A light sample, and its blocker.
+    /// Samples a light, and finds what blocks it.
     fn shadow(&self, seen: &SurfaceHit, random: [f64; 4]) -> Option<Shadow> {
         let Hit {
             position: from,
@@ -237,7 +237,7 @@ impl Paths {
             });
         }
         let blocker = self.geometry.first(&ray, [0.0, light.distance])?.distance;
-        // The solid angle represented by a sample of this density is about 1/density.
+        // A sample represents a solid angle of about 1/density.
         let angle = light
             .density
             .map_or(POINT, |density| density.recip().sqrt());
@@ -253,7 +253,7 @@ impl Paths {
 const POINT: f64 = 1e-3;
 
 struct Shadow {
-    /// The light that would be reflected without a blocker.
+    /// The light that the surface would reflect without the blocker.
     light: f64,
     /// The inverse of the penumbra width, per metre; 0 if nothing blocks.
     nearness: f64,

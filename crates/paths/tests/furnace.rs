@@ -1,8 +1,8 @@
 //! Furnace tests: under a sky of radiance 1 a lossless surface is invisible, and no surface is brighter than the sky.
 //!
 //! Sheets and opaque surfaces are tested on a disc from its front and its back, and on an open
-//! cylinder, of which both sides are visible. Every material is tested on a cube and a sphere from
-//! outside and, if it transmits light, on a sphere from inside.
+//! cylinder, whose inside and outside are visible. Every material is tested on a cube and a sphere
+//! from outside and, if it transmits light, on a sphere from inside.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -85,7 +85,7 @@ fn mask(of: Material) -> Material {
 /// The medium behind a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Behind {
-    /// The same medium as in front.
+    /// The medium behind the surface is that in front of it.
     Same,
     /// A medium of this index, in which radiance is larger by the square of the index.
     Medium(f64),
@@ -183,7 +183,7 @@ enum View {
 }
 
 impl View {
-    /// The views in which the law holds.
+    /// Returns the views in which radiance 1 must be seen.
     fn of(behind: Behind) -> &'static [Self] {
         let all = &[
             Self::SphereInside,
@@ -245,7 +245,7 @@ impl View {
     }
 }
 
-/// A cube from −1 to 1 with flat faces.
+/// Returns a cube from −1 to 1 with flat faces.
 fn cube() -> Geometry {
     let sign = |i: usize, axis: usize| if i >> axis & 1 == 0 { -1.0 } else { 1.0 };
     let vertices = (0..8).map(|i| DVec3::new(sign(i, 0), sign(i, 1), sign(i, 2)));
@@ -264,7 +264,7 @@ fn cube() -> Geometry {
     ))
 }
 
-/// The mean of some pixels, with its standard error.
+/// Returns the mean of some pixels, with its standard error.
 fn mean(picture: &Picture, of: impl Fn(usize) -> bool) -> (f64, f64) {
     let pixels: Vec<usize> = (0..SIDE * SIDE).filter(|i| of(*i)).collect();
     let count = pixels.len() as f64;
@@ -288,7 +288,7 @@ fn no_surface_changes_the_energy_of_a_furnace() {
                 (View::SphereInside, Behind::Medium(index)) => index * index,
                 _ => 1.0,
             };
-            // Each row alone and the whole picture are tested.
+            // Each row is tested alone, and then the whole picture.
             for row in 0..=SIDE {
                 let (mean, error) = mean(&picture, |i| row == SIDE || i / SIDE == row);
                 let place = format!("{name} {view:?} row {row}: {mean} ± {error}");

@@ -10,7 +10,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// A narrow camera at a point that looks at another.
+/// Returns a narrow camera at a point that looks at another.
 fn camera(from: DVec3, at: DVec3) -> Camera {
     let along = (at - from).normalize();
     let left = along.any_orthonormal_vector();
@@ -53,7 +53,7 @@ fn scaled(scale: f64, z: f64) -> DAffine3 {
     )
 }
 
-/// A floor in z = 0 with reflectance one half, and more shapes and lights.
+/// Returns a floor in z = 0 with reflectance one half, and more shapes and lights.
 fn floor(more: Vec<Shape>, lights: Vec<Light>) -> World {
     let mut shapes = vec![shape(Geometry::Rectangle, scaled(10.0, 0.0), 0, None)];
     shapes.extend(more);
@@ -65,7 +65,7 @@ fn floor(more: Vec<Shape>, lights: Vec<Light>) -> World {
     }
 }
 
-/// The radiance of one pixel, with its standard error.
+/// Returns the radiance of one pixel, with its standard error.
 fn seen(world: &World, from: DVec3, at: DVec3, samples: u32) -> (f64, f64) {
     let picture = Paths::new(world).picture(&camera(from, at), samples, 3, &|_| {});
     (picture.mean[0], picture.variance[0].sqrt())
@@ -94,7 +94,7 @@ fn a_closed_sphere_gathers_light() {
         ..World::default()
     };
     let at = DVec3::new(0.1, 0.2, -1.9);
-    // The sum is 1 + ½ + ¼ + …, up to the given depth.
+    // The radiance is the sum 1 + ½ + ¼ + …, up to the given depth.
     for (depth, expected) in [
         (None, 2.0),
         (Some(0), 1.0),
@@ -138,7 +138,8 @@ fn lights_shine_by_their_units() {
         DVec3::ZERO,
         0.35,
     );
-    // The camera sees a point in the falloff of the spot.
+    // The camera sees a point that the spot lights with the reduced intensity between its two
+    // angles.
     let down = DAffine3::from_mat3_translation(
         DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0)),
         DVec3::new(0.0, 0.0, 1.0),
@@ -190,7 +191,8 @@ fn surfaces_shine_by_their_area() {
         DVec3::ZERO,
         0.5 * 6.0 * 0.25 / 4.0,
     );
-    // The same square is given as a rectangle and as two triangles; it emits only on its front.
+    // A square is given once as a rectangle and once as two triangles, and emits only on its
+    // front.
     let square = Triangles::new(
         vec![
             DVec3::new(-1.0, -1.0, 0.0),

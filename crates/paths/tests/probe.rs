@@ -16,7 +16,7 @@ const QUESTION: Question = Question {
     azimuths: 2,
 };
 
-/// A camera at (0, −3, 2) that looks at the origin, 64 × 64 pixels.
+/// Returns a camera at (0, −3, 2) that looks at the origin, 64 × 64 pixels.
 fn camera() -> Camera {
     let from = DVec3::new(0.0, -3.0, 2.0);
     let along = -from.normalize();
@@ -71,7 +71,8 @@ fn floor(material: usize) -> Shape {
     )
 }
 
-/// The mean flux through the window of each plane, with its standard error over 32 batches.
+/// Returns the mean flux through the window of each plane, with its standard error over 32
+/// batches.
 fn sums(probe: &Probe<'_>, source: &dyn PhotonSource) -> Vec<[f64; 2]> {
     const BATCHES: u32 = 32;
     let mut each = vec![Vec::new(); probe.planes.len()];
@@ -186,7 +187,7 @@ fn surfaces_curve_as_they_do() {
         // Curvatures are finite differences over a few hundredths of the radius.
         assert!((k - 2.0).abs() < 0.03, "{k}");
     }
-    // The axis is along X, perpendicular to the plane of incidence.
+    // The axis of the cylinder is along X, perpendicular to the plane of incidence.
     let turned = DMat3::from_cols(DVec3::Z * 0.5, DVec3::Y * 0.5, -4.0 * DVec3::X);
     let to_world = DAffine3::from_mat3_translation(turned, DVec3::X * 2.0);
     let [along, across] = of(Geometry::Cylinder, to_world);

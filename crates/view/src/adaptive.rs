@@ -17,10 +17,10 @@ use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-/// Files in addition to those of a reference.
+/// The files that are written in addition to those of a reference picture.
 pub(crate) const FILES: &[&str] = &["bandwidth.png", "samples.png", TIMING];
 
-/// Renders and writes a picture; returns a description of the effort.
+/// Renders and writes a picture; returns a text that states the number of samples and the time.
 pub(crate) fn render(
     request: &PictureRequest,
     method: SampleMethod,

@@ -2,7 +2,8 @@
 
 use etendue_store::Failure;
 
-/// Refuses a picture with a pixel that is not finite in 32 bits. Nothing is written in this case.
+/// Refuses a picture with a pixel that is not finite in 32 bits. If there is such a pixel, nothing
+/// is written.
 pub(crate) fn require_finite([w, _]: [usize; 2], radiance: &[f64]) -> Result<(), Failure> {
     #[expect(clippy::cast_possible_truncation, reason = "EXR files hold 32 bits")]
     let is_lost = |value: &f64| !(*value as f32).is_finite();
@@ -24,7 +25,7 @@ mod tests {
     #[test]
     fn pixels_that_are_not_finite_are_refused() {
         assert!(require_finite([2, 2], &[0.0, 1.0, 1e30, 1e-300]).is_ok());
-        // The first value exceeds the range of 32 bits.
+        // The first value of the test exceeds the range of 32 bits.
         for lost in [1e39, f64::INFINITY, f64::NAN] {
             let refused = require_finite([2, 2], &[0.0, 1.0, 2.0, lost]).unwrap_err();
             assert_eq!(refused.code, 2);

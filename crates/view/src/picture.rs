@@ -110,7 +110,8 @@ pub fn render(
     })
 }
 
-/// Writes radiance and its standard error, for programs, and a picture for viewing.
+/// Writes files of the radiance and its standard error for use in programs, and a picture to look
+/// at.
 fn write(results: &mut Results, picture: &Picture, made_from: &Value) -> Result<(), Failure> {
     let [w, h] = picture.size;
     let errors: Vec<f64> = picture

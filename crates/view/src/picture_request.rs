@@ -10,7 +10,7 @@ pub struct PictureRequest {
     pub source: WorldSource,
     /// The camera.
     pub camera: CameraChoice,
-    /// The method of placing few shading samples; `None` for a reference.
+    /// The method of placing few shading samples; `None` requests a reference picture.
     pub method: Option<SampleMethod>,
     /// Paths for each pixel of a reference.
     pub samples: u32,
@@ -49,7 +49,7 @@ impl PictureRequest {
         ("variance", Some(SampleMethod::Variance)),
     ];
 
-    /// A reference picture of a scene from its first camera.
+    /// Returns a reference picture of a scene from its first camera.
     #[must_use]
     pub fn new(source: WorldSource) -> Self {
         Self {
@@ -66,7 +66,7 @@ impl PictureRequest {
         }
     }
 
-    /// The default method: a reference, unless a number of shading samples is given.
+    /// Returns the default method: a reference, unless a number of shading samples is given.
     #[must_use]
     pub fn usual_method(shading_samples: Option<u32>) -> Option<SampleMethod> {
         shading_samples.map(|_| SampleMethod::Auto)

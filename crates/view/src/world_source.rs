@@ -20,7 +20,7 @@ pub struct WorldSource {
     pub sky: Option<f64>,
     /// A camera that is added to the scene as the first, with the name `command`.
     pub viewpoint: Option<Viewpoint>,
-    /// The style in which messages name arguments.
+    /// How messages name arguments: as options of the command, or as keywords of Python.
     pub arguments: ArgumentStyle,
 }
 
@@ -47,7 +47,7 @@ pub struct CameraChoice {
 }
 
 impl WorldSource {
-    /// A scene file without changes.
+    /// Returns a scene file without changes.
     #[must_use]
     pub fn new(path: PathBuf, arguments: ArgumentStyle) -> Self {
         Self {
@@ -68,13 +68,13 @@ impl Viewpoint {
     pub const FOV: f64 = 45.0;
 }
 
-/// A message on how to add a camera to a scene.
+/// Returns a message on how to add a camera to a scene.
 pub(crate) fn no_camera(arguments: ArgumentStyle) -> String {
     let [from, at] = ["look_from", "look_at"].map(|name| arguments.name(name));
     format!("the scene has no camera: {from} and {at} add one")
 }
 
-/// A message on how to add a light to a scene.
+/// Returns a message on how to add a light to a scene.
 pub(crate) fn no_light(arguments: ArgumentStyle) -> String {
     format!("the scene has no light: {} adds one", arguments.name("sky"))
 }
@@ -102,7 +102,7 @@ pub(crate) fn notes(imported: &Imported) -> Vec<String> {
     imported.notes.iter().map(ToString::to_string).collect()
 }
 
-/// The camera that a viewpoint adds to the scene.
+/// Returns the camera that a viewpoint adds to the scene.
 fn camera_at(viewpoint: &Viewpoint, arguments: ArgumentStyle) -> Result<Camera, Failure> {
     let ahead = (viewpoint.at - viewpoint.from).try_normalize();
     let frame = ahead.and_then(|ahead| {
@@ -142,7 +142,7 @@ pub(crate) fn require_light(world: &World, arguments: ArgumentStyle) -> Result<(
     Err(Failure::bad_input(no_light(arguments)))
 }
 
-/// The requested camera, or the first, with the requested size.
+/// Returns the requested camera, or the first, with the requested size.
 pub(crate) fn camera(
     world: &World,
     choice: &CameraChoice,

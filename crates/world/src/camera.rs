@@ -2,10 +2,11 @@
 
 use glam::{DAffine3, DVec3};
 
-/// A camera. It looks along Z of `to_world`, Y is up in the picture and X to the left.
+/// A camera. In the coordinates that `to_world` maps to the world, the camera looks along Z, Y
+/// points up in the picture, and X to the left.
 #[derive(Clone, Debug)]
 pub struct Camera {
-    /// Its name in the file.
+    /// The name of the camera in the file.
     pub name: String,
     /// The map from camera to world coordinates; without scale, except for orthographic cameras.
     pub to_world: DAffine3,
@@ -13,7 +14,7 @@ pub struct Camera {
     pub size: [usize; 2],
     /// The projection.
     pub projection: Projection,
-    /// The near and far distance along Z of the visible range.
+    /// The visible range along Z: its near and its far distance.
     pub clip: [f64; 2],
 }
 
@@ -24,22 +25,22 @@ pub enum Projection {
     Perspective {
         /// Half the width of the picture at z = 1.
         half_width: f64,
-        /// The shift of the picture's centre to the right and down, relative to its width and
-        /// height.
+        /// The shift of the picture's centre to the right and down, in units of the picture's
+        /// width and height.
         shift: [f64; 2],
         /// The lens; `None` for a pinhole.
         lens: Option<Lens>,
     },
-    /// Rays along Z, from x within ±1; the range of y makes pixels square.
+    /// Parallel rays along Z that start at x from −1 to 1; the range of y makes pixels square.
     Orthographic,
 }
 
 /// A thin lens in the plane z = 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Lens {
-    /// Radius of its disc.
+    /// Radius of the lens.
     pub radius: f64,
-    /// z of the plane of focus.
+    /// The z coordinate of the plane of focus.
     pub focus: f64,
 }
 
@@ -48,15 +49,15 @@ pub struct Lens {
 pub struct Look {
     /// Its origin.
     pub from: DVec3,
-    /// Its direction, of unit length.
+    /// The direction of the ray, of unit length.
     pub along: DVec3,
-    /// The range of distances along it that is visible.
+    /// The visible range of distances along the ray.
     pub seen: [f64; 2],
 }
 
 impl Camera {
-    /// The ray through a point of the picture, in pixels to the right and down from its top left,
-    /// and a point of the lens in the unit disc.
+    /// Returns the ray through a point of the picture, in pixels to the right and down from its
+    /// top left, and a point of the lens in the unit disc.
     #[must_use]
     pub fn look(&self, [right, down]: [f64; 2], lens: [f64; 2]) -> Look {
         let [w, h] = self.size.map(|n| n as f64);

@@ -1,9 +1,9 @@
 //! A world: surfaces, each with a geometry and a material, lights, and cameras.
 //!
 //! Scenes of other programs are read into worlds. Coordinates are right-handed, or left-handed if
-//! the file's are: the maps of cameras then contain a reflection. They are in the units of the
-//! file, metres by default. Light is one number: the luminance of a colour in the file, or one of
-//! its channels.
+//! the file's are: the maps of cameras then contain a reflection. Coordinates are in the units of
+//! the file, metres by default. Worlds are monochrome: a colour of the file becomes one number,
+//! its luminance or one of its channels.
 
 mod camera;
 mod light;
@@ -32,6 +32,6 @@ pub struct World {
     /// Maximum number of surfaces between a source and the camera; `None` for no limit. 0 shows
     /// only sources, 1 adds direct light.
     pub depth: Option<u32>,
-    /// Whether directly visible sources are shown black.
+    /// Whether sources that the camera sees directly appear black.
     pub hides_sources: bool,
 }

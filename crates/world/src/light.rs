@@ -10,14 +10,14 @@ use std::sync::Arc;
 pub enum Light {
     /// A point light that emits in all directions.
     Point {
-        /// Its position.
+        /// The position of the light.
         position: DVec3,
         /// W sr⁻¹.
         intensity: f64,
     },
     /// A point light that emits into a cone around the Z axis of `to_world`.
     Spot {
-        /// Its position and orientation; without scale.
+        /// The position and orientation of the light, without scale.
         to_world: DAffine3,
         /// Intensity within `beam`, W sr⁻¹.
         intensity: f64,
@@ -25,14 +25,14 @@ pub enum Light {
         beam: f64,
         /// Half-angle beyond which the spot is dark, radians.
         cutoff: f64,
-        /// The falloff of intensity between both angles.
+        /// The falloff of intensity between the two angles.
         falloff: Falloff,
     },
     /// A distant light in a single direction.
     Directional {
-        /// The direction of light, of unit length.
+        /// The direction in which the light travels, of unit length.
         direction: DVec3,
-        /// Irradiance of a surface across that direction, W m⁻².
+        /// Irradiance of a surface perpendicular to this direction, W m⁻².
         irradiance: f64,
     },
     /// Uniform radiance from all directions.
@@ -57,7 +57,7 @@ pub enum Falloff {
 }
 
 impl Falloff {
-    /// The fraction of the intensity at an angle, for a beam and a cutoff.
+    /// Returns the fraction of the intensity at an angle, for a beam and a cutoff.
     #[must_use]
     pub fn share(self, angle: f64, beam: f64, cutoff: f64) -> f64 {
         // If both angles are equal, the beam has a sharp edge.
@@ -89,5 +89,5 @@ pub struct SkyMap {
     pub radiance: Arc<LatLong>,
 }
 
-/// The radiance emitted by the front of a surface, the same in all directions: an area light.
+/// The radiance that the front of a surface emits, equal in all directions.
 pub type EmittedRadiance = Texture;

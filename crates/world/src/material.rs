@@ -14,11 +14,11 @@ pub enum Material {
         /// The fraction of light that is reflected.
         reflectance: Texture,
     },
-    /// A metal, on its front.
+    /// A metal on the front.
     Conductor(Conductor),
-    /// A transmitting interface between two media, on both sides.
+    /// An interface between two media, which reflects and transmits light on both sides.
     Dielectric(Dielectric),
-    /// A diffuse base below a dielectric coat, on its front.
+    /// A diffuse base below a dielectric coat, on the front.
     Plastic(Plastic),
     /// The modified Phong BRDF on the front: kd / π + ks (n + 2)/(2π) cosⁿ α, with α the angle to the mirror direction (Lafortune and Willems 1994).
     Phong {
@@ -29,12 +29,12 @@ pub enum Material {
         /// n.
         exponent: Texture,
     },
-    /// One opaque material on each side; each scatters as it does on its front.
+    /// Two opaque materials, one on each side of the surface; each scatters as on its own front.
     TwoSided(Box<[Self; 2]>),
     /// A partly transparent surface: light passes unchanged except for a fraction that hits the
     /// material.
     Mask {
-        /// The fraction that hits the material.
+        /// The fraction of the light that hits the material.
         opacity: Texture,
         /// The material.
         of: Box<Self>,
@@ -70,8 +70,8 @@ pub struct Dielectric {
     pub transmittance: Texture,
     /// The roughness; `None` for a smooth interface.
     pub roughness: Option<Roughness>,
-    /// Whether it is a thin sheet with such an interface on both sides: light passes straight
-    /// through, with all internal reflections summed.
+    /// Whether the surface is a thin sheet with such an interface on either side, which light
+    /// passes in a straight line, with all internal reflections summed.
     pub is_thin: bool,
 }
 
@@ -96,6 +96,7 @@ pub struct Plastic {
 pub struct Roughness {
     /// The distribution.
     pub distribution: MicrofacetDistribution,
-    /// α along the tangents of u and v: for Beckmann, √2 times the root mean square slope.
+    /// The roughness α along the tangents of u and v; for Beckmann's distribution, √2 times the
+    /// root mean square slope.
     pub alpha: [Texture; 2],
 }

@@ -7,41 +7,45 @@ use std::sync::Arc;
 /// A surface with one material.
 #[derive(Clone, Debug)]
 pub struct Shape {
-    /// Its name in the file.
+    /// The name of the surface in the file.
     pub name: String,
     /// The geometry in local coordinates.
     pub geometry: Geometry,
     /// The map from local to world coordinates. Normals are mapped by the inverse transpose: a
-    /// mirror keeps the front. Spheres and cylinders are scaled uniformly, but cylinders may have
-    /// another factor along Z.
+    /// mirror keeps the front. Spheres are scaled uniformly; cylinders too, except that they may
+    /// have another factor along Z.
     pub to_world: DAffine3,
-    /// Whether its front is opposite to that of [`Geometry`].
+    /// Whether the front of the surface is opposite to that of [`Geometry`].
     pub is_flipped: bool,
-    /// The index of its material.
+    /// The index of the surface's material.
     pub material: usize,
-    /// Radiance emitted on its front, W m⁻² sr⁻¹; `None` if it does not emit.
+    /// Radiance that the front emits, W m⁻² sr⁻¹; `None` if the surface does not emit.
     pub emission: Option<EmittedRadiance>,
 }
 
 /// The geometry of a surface, with its front and its texture coordinates (u, v).
 #[derive(Clone, Debug)]
 pub enum Geometry {
-    /// z = 0, x and y from −1 to 1. Front: Z. (u, v) = ((x + 1)/2, (y + 1)/2).
+    /// The square z = 0 with x and y from −1 to 1. The square's front is towards Z, and (u, v) =
+    /// ((x + 1)/2, (y + 1)/2).
     Rectangle,
-    /// z = 0, x² + y² ≤ 1. Front: Z. u is the radius, v the azimuth over 2π from X to Y.
+    /// The disc z = 0, x² + y² ≤ 1. The disc's front is towards Z, u is the radius, and v is the
+    /// azimuth from X to Y, divided by 2π.
     Disc,
-    /// x² + y² + z² = 1. Front: outside. u is the azimuth over 2π from X to Y, v the angle to Z over π.
+    /// The sphere x² + y² + z² = 1. The sphere's front is the outside, u is the azimuth from X to
+    /// Y, divided by 2π, and v is the angle to Z, divided by π.
     Sphere,
-    /// x² + y² = 1, z from 0 to 1, open at both ends. Front: outside. u is the azimuth over 2π from X to Y, v is z.
+    /// The cylinder x² + y² = 1 with z from 0 to 1, open at both ends. The cylinder's front is the
+    /// outside, u is the azimuth from X to Y, divided by 2π, and v is z.
     Cylinder,
-    /// Triangles, which several shapes may share.
+    /// A mesh of triangles, which several shapes may share.
     Mesh(Arc<Triangles>),
 }
 
 /// Triangles with shared vertices.
 ///
-/// Corners are counterclockwise seen from the front. Valid by construction: corners refer to
-/// vertices, and there are as many normals and texture coordinates as vertices.
+/// Corners are counterclockwise as seen from the front. The constructor ensures that corners refer
+/// to vertices, and that normals and texture coordinates, if any, are as many as vertices.
 #[derive(Clone, Debug)]
 pub struct Triangles {
     vertices: Vec<DVec3>,
@@ -51,8 +55,8 @@ pub struct Triangles {
 }
 
 impl Triangles {
-    /// `None` unless corners refer to vertices and lengths agree. Normals may have any length but
-    /// zero; without normals, triangles are flat.
+    /// Returns `None` unless corners refer to vertices and lengths agree. Normals may have any
+    /// length but zero; without normals, triangles are flat.
     #[must_use]
     pub fn new(
         vertices: Vec<DVec3>,
@@ -81,7 +85,7 @@ impl Triangles {
         &self.vertices
     }
 
-    /// The vertices of each triangle.
+    /// Returns the vertices of each triangle.
     #[must_use]
     pub fn corners(&self) -> &[[u32; 3]] {
         &self.corners

@@ -29,20 +29,20 @@ pub struct Bitmap {
     pub to_uv: DAffine2,
     /// Its pixels.
     pub pixels: Arc<Raster>,
-    /// The values beyond its edges.
+    /// The values of the picture beyond its edges.
     pub wrap: Wrap,
     /// The interpolation between pixel centres.
     pub filter: Filter,
 }
 
-/// The continuation of a picture beyond its edges.
+/// How a picture continues beyond its edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wrap {
     /// Repeated.
     Repeat,
     /// Repeated with alternating mirror images.
     Mirror,
-    /// The nearest edge pixel.
+    /// Each place beyond an edge has the value of the nearest pixel.
     Clamp,
 }
 
@@ -56,7 +56,7 @@ pub enum Filter {
 }
 
 impl Texture {
-    /// The value at texture coordinates of the surface.
+    /// Returns the value at texture coordinates of the surface.
     #[must_use]
     pub fn value(&self, uv: DVec2) -> f64 {
         match self {
@@ -102,8 +102,8 @@ impl Bitmap {
     }
 }
 
-/// The index of a pixel; very large texture coordinates are clamped.
-#[expect(clippy::cast_possible_truncation, reason = "brought into range before")]
+/// Returns the index of a pixel, before it is wrapped; very large texture coordinates are clamped.
+#[expect(clippy::cast_possible_truncation, reason = "the value is clamped")]
 fn whole(x: f64) -> i64 {
     x.floor().clamp(-1e15, 1e15) as i64
 }
@@ -148,7 +148,7 @@ mod tests {
             (Wrap::Clamp, 7.5, 4.0),
             (Wrap::Clamp, -7.5, 1.0),
         ] {
-            // The tolerance for the rounding error of u / 3.
+            // The tolerance covers the rounding error of u / 3.
             assert!(
                 (at(wrap, Filter::Nearest, u) - nearest).abs() < 1e-12,
                 "{wrap:?} {u}"
@@ -170,7 +170,7 @@ mod tests {
             (0.6, 0.9, 0.4),
             (-0.1, 0.2, 0.2),
         ] {
-            // The values are exactly equal.
+            // The tolerance admits only equal values.
             assert!(
                 (board.value(DVec2::new(u, v)) - value).abs() < 1e-300,
                 "({u}, {v})"

@@ -1,8 +1,8 @@
 //! The assumptions of theory, identified by phrases in the reasons that `check` gives for
 //! violations.
 
-/// Each assumption, with a phrase from the reasons for its violation. A reason belongs to the first
-/// phrase it contains.
+/// Each assumption, with a phrase from the reasons for its violation. A reason is assigned to the
+/// first phrase that it contains.
 const PHRASES: [(&str, &str); 15] = [
     ("surfaces are met in their order", "out of order"),
     (
@@ -38,20 +38,20 @@ const PHRASES: [(&str, &str); 15] = [
 
 const ACROSS: &str = "the plane is across the path";
 
-/// A phrase from a further reason that `check` gives. This assumption is needed only for fast
-/// predictions, not for correct ones.
+/// A phrase from one more reason that `check` gives: a violation of this assumption makes
+/// predictions slow, but not wrong.
 pub(super) const DARK: &str = "some light comes";
 
 /// The name for reasons with unknown wording, and for panics of a check.
 pub(super) const UNKNOWN: &str = "not in this list";
 
-/// The violated assumption named in a reason; `None` if no phrase matches.
+/// Returns the violated assumption that a reason names, or `None` if no phrase matches.
 pub(super) fn assumption(reason: &str) -> Option<&'static str> {
     let found = PHRASES.iter().find(|(_, phrase)| reason.contains(phrase));
     found.map(|(assumption, _)| *assumption)
 }
 
-/// All assumptions, each once.
+/// Returns all assumptions, each once.
 pub(super) fn assumptions() -> Vec<&'static str> {
     let mut all: Vec<&str> = PHRASES.iter().map(|(assumption, _)| *assumption).collect();
     all.extend([DARK, UNKNOWN]);

@@ -1,7 +1,7 @@
 //! Tests whether each checked assumption of theory is needed.
 //!
-//! If a plane violates exactly one assumption, theory predicts it nevertheless, and photons judge
-//! the prediction.
+//! Each plane that violates exactly one assumption is predicted nevertheless, and the prediction
+//! is compared with photons.
 
 mod kind;
 mod tally;
@@ -36,10 +36,11 @@ pub(crate) struct AssumptionOptions {
     photons: u64,
 }
 
-/// A scene, and the trials of its planes; `None` if it was not drawn, or is invalid.
+/// The name of a scene, and the trials of its planes; `None` if the scene could not be generated
+/// or is invalid.
 type TriedScene = (String, Option<Vec<Trial>>);
 
-/// Tries all random scenes, and those of the repository.
+/// Runs the trials of all random scenes, and of the scenes in the repository.
 pub(crate) fn assumptions(options: &AssumptionOptions) -> io::Result<ReportSection> {
     let mut files = Vec::new();
     files_of(Path::new(FOLDER), &mut files)?;
@@ -68,7 +69,7 @@ pub(crate) fn assumptions(options: &AssumptionOptions) -> io::Result<ReportSecti
     Ok(section(options, &random?, &kept))
 }
 
-/// A random scene.
+/// Returns a random scene.
 fn random(options: &AssumptionOptions, number: u64) -> io::Result<Option<Scene>> {
     let folder = tempfile::tempdir()?;
     let file = wild::scene(options.seed, number, options.photons, folder.path());
@@ -79,7 +80,7 @@ fn random(options: &AssumptionOptions, number: u64) -> io::Result<Option<Scene>>
 /// The scenes of the repository.
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes");
 
-/// The scene files in a folder and its subfolders, sorted by name.
+/// Returns the scene files in a folder and its subfolders, sorted by name.
 fn files_of(folder: &Path, found: &mut Vec<PathBuf>) -> io::Result<()> {
     let entries: io::Result<Vec<_>> = fs::read_dir(folder)?.collect();
     let mut paths: Vec<PathBuf> = entries?.iter().map(fs::DirEntry::path).collect();
@@ -94,7 +95,7 @@ fn files_of(folder: &Path, found: &mut Vec<PathBuf>) -> io::Result<()> {
     Ok(())
 }
 
-/// A scene of the repository, with this number of photons.
+/// Reads a scene of the repository, and sets its number of photons.
 fn kept(path: &Path, photons: u64) -> Option<Scene> {
     let mut file = SceneFile::parse(&fs::read_to_string(path).ok()?).ok()?;
     emit(&mut file.run, Some(photons));
@@ -120,7 +121,8 @@ mod tests {
     use etendue_compare::Verdict;
     use std::path::Path;
 
-    /// The only violated assumption at each plane, and the verdict of photons on theory.
+    /// Returns, for each plane that violates a single assumption, this assumption and the verdict
+    /// of the comparison with photons.
     fn judged(scene: &Scene) -> Vec<(&'static str, Verdict)> {
         let judged = |trial: Trial| match trial.ending {
             Some(TrialEnding::Judged { verdict, .. }) => {

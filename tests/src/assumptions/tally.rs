@@ -14,12 +14,12 @@ const NAMED: usize = 4;
 #[derive(Default)]
 struct AssumptionRow {
     planes: usize,
-    /// Number of planes where nothing else is violated.
+    /// Number of planes that violate this assumption and no other.
     alone: usize,
     speechless: usize,
     skipped: usize,
     panics: usize,
-    /// The scenes of the failed planes.
+    /// Names of the scenes whose planes failed.
     fails: Vec<String>,
     undecided: usize,
     passes: usize,
@@ -62,7 +62,7 @@ impl AssumptionRow {
         self.fails.len() + self.undecided + self.passes
     }
 
-    /// The number of failures among the judged planes, and the first of them.
+    /// Returns, as text, how many of the judged planes failed, and the first of their scenes.
     fn caught(&self) -> String {
         let mut named = self.fails.clone();
         named.dedup();
@@ -77,7 +77,7 @@ impl AssumptionRow {
     }
 }
 
-/// The table, and checks that the violation of each tested assumption is detected.
+/// Returns the table, with checks that the violation of each tested assumption is detected.
 pub(super) fn section(
     options: &AssumptionOptions,
     random: &[TriedScene],

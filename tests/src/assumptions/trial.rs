@@ -1,4 +1,5 @@
-//! A plane predicted as if the assumptions of theory held, and compared with photons.
+//! Predicts a plane as if the assumptions of theory held, and compares the prediction with
+//! photons.
 
 use super::kind::{DARK, UNKNOWN, assumption};
 use crate::scenes::traced;
@@ -12,35 +13,35 @@ use etendue_theory::{Model, Predicted, RayBudget};
 use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// A plane that `check` reports as outside theory, or as dark.
+/// The trial of a plane that `check` reports as outside theory, or as dark.
 pub(super) struct Trial {
     pub(super) plane: String,
     /// The violated assumptions, each once.
     pub(super) broken: BTreeSet<&'static str>,
-    /// The outcome of theory without the check. `None` if more than one assumption is violated,
-    /// because the outcome would be inconclusive.
+    /// The outcome of the unchecked prediction. A plane that violates more than one assumption has
+    /// `None`, because its outcome would be inconclusive.
     pub(super) ending: Option<TrialEnding>,
 }
 
 /// The outcome of an unchecked prediction.
 #[derive(Debug)]
 pub(super) enum TrialEnding {
-    /// The prediction was compared with photons; with the number of photons in the window.
+    /// The prediction was compared with photons; `inside` is the number of photons in the window.
     Judged { verdict: Verdict, inside: u64 },
     /// No theory can describe the surfaces on the central ray.
     Speechless,
     /// The prediction would take too long.
     Skipped,
-    /// The prediction panicked, with this message.
-    Panicked(#[expect(dead_code, reason = "what it said is printed")] String),
+    /// The prediction panicked; the text is the message of the panic.
+    Panicked(#[expect(dead_code, reason = "the message is only printed")] String),
 }
 
-/// Both seeds must find the same fault, because one correct plane in a hundred fails with a single
+/// Seeds that must both find a fault, because one correct plane in a hundred fails with a single
 /// seed.
 const SEEDS: [u64; 2] = [1, 2];
 /// Maximum seconds of one core for a prediction with its derivatives.
 const LONGEST: f64 = 60.0;
-/// The budget for 2·10⁵ photons of a run.
+/// The budget that a run with 2·10⁵ photons gives to a prediction.
 const BUDGET: RayBudget = RayBudget {
     nodes: 1.1e6,
     error: 3e-3,
@@ -80,9 +81,9 @@ fn trial(scene: &Scene) -> Option<Trial> {
     }
 }
 
-/// The result of `work`, or its panic message.
+/// Returns the result of `work`, or its panic message.
 fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
-    // Nothing modified by the work is used after a panic.
+    // After a panic, nothing that the work modified is used.
     catch_unwind(AssertUnwindSafe(work)).map_err(|panic| {
         let text = panic.downcast_ref::<&str>().map(ToString::to_string);
         let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
@@ -125,8 +126,8 @@ fn unchecked(scene: &Scene, plane: &VirtualPlane, checked: &Applicability) -> Tr
     }
 }
 
-/// Whether a theory can describe the surfaces on the central ray. Between parallel planes a theory
-/// describes one Lambertian surface lit by a lamp.
+/// Whether a theory can describe the surfaces on the central ray. The theory of parallel planes
+/// describes at most one surface, Lambertian and lit by a lamp.
 fn has_words(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> bool {
     let Theory::Parallel(_) = theory else {
         return true;
@@ -141,7 +142,7 @@ fn has_words(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> bool {
         })
 }
 
-/// The prediction of a theory for a plane, without derivatives.
+/// Returns the prediction of a theory for a plane, without derivatives.
 fn predicted(plane: &VirtualPlane, theory: &Theory) -> Predicted {
     let picture = ProjectionGrid::new(&plane.window, 1);
     let over = (&plane.window, &plane.grid, &picture);
@@ -154,7 +155,7 @@ fn predicted(plane: &VirtualPlane, theory: &Theory) -> Predicted {
     }
 }
 
-/// The verdict of photons with this seed on the prediction of the only plane.
+/// Compares the prediction of the only plane with photons of this seed.
 fn judged(scene: &Scene, seed: u64, prediction: &Prediction) -> TrialEnding {
     let mut scene = scene.clone();
     scene.run.seed = seed;

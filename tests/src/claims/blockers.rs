@@ -22,7 +22,7 @@ pub(super) fn claims(photons: u64) -> Vec<Claim> {
     ]
 }
 
-/// Light directly behind blockers, in a wide window.
+/// Measures the light directly behind blockers, in a wide window.
 fn behind(blockers: &str, half: f64, [rho, spacing]: [f64; 2], photons: u64) -> SeenScene {
     let window = format!("x: Hann({half}), u: Box(2)");
     let frequencies = format!("rho: (max: {rho}, spacing: {spacing}), nu: (max: 1)");
@@ -80,7 +80,7 @@ fn replicas(photons: u64) -> Claim {
     let places = [(0.4, 20), (0.2, 40), (0.1, 80)].map(|(pitch, count)| {
         let blockers = squares([count; 2], pitch, "fill: 0.5");
         let seen = behind(&blockers, 1.5, [14.0, 0.05], photons);
-        // The vertex of a parabola through the highest values, times the pitch.
+        // The frequency at the vertex of a parabola through the highest values, times the pitch.
         seen.number(0, |slices| {
             let along = line(slices, 0);
             let step = slices.grid.rho.spacing;
@@ -149,8 +149,9 @@ fn jitter(photons: u64) -> Claim {
     }
 }
 
-/// Squares with fill one half, and their number along each axis. Ripples are largest at these
-/// pitches, for which the light's image covers an odd number of half periods.
+/// Pitches of arrays of squares with fill one half, and the number of squares along each axis.
+/// Ripples are largest at these pitches, for which the light's image covers an odd number of half
+/// periods.
 const PITCHES: [(f64, u32); 3] = [(0.2, 14), (0.2 / 3.0, 38), (0.04, 62)];
 
 fn ripples(at: &str, frequencies: &str, photons: u64) -> [ClaimNumber; 3] {
@@ -241,14 +242,14 @@ fn before_average(photons: u64) -> Claim {
     }
 }
 
-/// Strips of a pair of masks, centred on the central ray, m.
+/// Returns the strips of one mask of a pair, centred on the central ray, in metres.
 fn centred(pair: u32, offset: f64) -> Strips {
     let mut open = strips(pair, offset);
     open.iter_mut().flatten().for_each(|edge| *edge -= 0.5);
     open
 }
 
-/// The complement of the open strips, as opaque rectangles over ± 1 m.
+/// Returns the complement of the open strips, as opaque rectangles from −1 m to 1 m.
 fn opaque(open: &Strips) -> String {
     let mut edges = vec![-1.0];
     edges.extend(open.iter().flatten());
@@ -261,13 +262,14 @@ fn opaque(open: &Strips) -> String {
     format!("Shapes(name: \"blockers\", center: (0, 0, 1), shapes: [{shapes}])")
 }
 
-/// The maximum frequency at which bounds are compared with spectra, and the maximum frequency of
-/// the sums in the bounds, /m.
+/// The maximum frequency, per metre, at which bounds are compared with spectra, and the maximum
+/// frequency in the sums of the bounds.
 const HELD: usize = 12;
 const SUMMED: usize = 40;
 
-/// The 90 % bandwidth of |S(ρ, 0)| and that of Σ|V̂(m)||S(ρ − m, 0)|, for one mask alone; and the
-/// largest ratio of the two functions.
+/// Returns the 90 % bandwidths of |S(ρ, 0)| behind both masks and of the bound Σ|V̂(m)||S₁(ρ − m,
+/// 0)|, where S₁ is the spectrum behind one mask alone, and the largest ratio of the spectrum to
+/// the bound.
 fn bounded(slices: &[Slices], other: &[Complex]) -> [f64; 3] {
     let [one, both] = [0, 1].map(|i| line(&slices[i], 0));
     let size = |n: usize| one.get(n).map_or(0.0, |(_, s)| s.norm());
@@ -358,7 +360,7 @@ fn soft_shadows(photons: u64) -> Claim {
     let mut off = 0.0_f64;
     let numbers = [0.2, 0.5, 1.0, 2.0].map(|after| {
         let floor = 1.0 + after;
-        // The image of the grating on the floor.
+        // The frequency of the grating's image on the floor.
         let rho = frequency / floor;
         let seen = |phase: f64| {
             let blockers = format!(
@@ -374,8 +376,8 @@ fn soft_shadows(photons: u64) -> Claim {
             bench.seen(photons)
         };
         let [plus, minus] = [0.0, PI].map(seen);
-        // Gratings half a period apart. The difference of their light is the shadow, and the sum is
-        // the light without a shadow.
+        // The two gratings are half a period apart. The difference of the light behind them is the
+        // shadow, and the sum is the light without a shadow.
         let contrast = number(&[(&plus, 0), (&minus, 0)], &|slices| {
             let [a, b] = [0, 1].map(|i| at(&slices[i], 0, [rho, 0.0]));
             let all = slices[0].at_zero() + slices[1].at_zero();

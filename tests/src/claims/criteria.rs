@@ -12,7 +12,7 @@ pub(super) fn claims(photons: u64) -> Vec<Claim> {
     vec![criteria(photons), larger_curvature(photons)]
 }
 
-/// Lights of increasing size. The criterion assumes that the light contains all frequencies.
+/// Compares the criterion, which assumes light of all frequencies, with lights of increasing size.
 fn criteria(photons: u64) -> Claim {
     let lobe = 1000.0;
     let criterion = Criterion {
@@ -68,7 +68,8 @@ fn criteria(photons: u64) -> Claim {
     }
 }
 
-/// A cylinder curved in the plane of incidence, one curved across it, and a sphere.
+/// Measures a cylinder that is curved in the plane of incidence, one that is curved across it, and
+/// a sphere.
 fn larger_curvature(photons: u64) -> Claim {
     let lobe = 1000.0;
     let criterion = Criterion {

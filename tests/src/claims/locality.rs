@@ -14,7 +14,8 @@ pub(super) fn claims(photons: u64) -> Vec<Claim> {
     all
 }
 
-/// Light with and without a small square in its way, in a window that contains the whole shadow.
+/// Measures light with and without a small square in its way, in a window that contains the whole
+/// shadow.
 fn shadow(
     light: &str,
     floor: f64,
@@ -44,11 +45,11 @@ fn shadow(
 
 /// Exponents of the tails of shadows whose profiles have a discontinuous n-th derivative.
 fn tails(photons: u64) -> Claim {
-    // 1/√2: the side of a square seen along its diagonal.
+    // 1/√2, since along its diagonal a square is a convolution of two boxes of this width.
     let diagonal = std::f64::consts::FRAC_1_SQRT_2;
     let bar = "Rectangle(center: (0, 0, 0), size: (0.2, 0.002))";
-    // Light, plane, half-width of the window, azimuth, and the widths of the boxes whose
-    // convolution is the shadow.
+    // Each case has a light, a plane, the half-width of the window, an azimuth, the width of the
+    // boxes whose convolution is the shadow, and the number of frequencies.
     let cases = [
         (LIGHT, "After(\"blockers\")", 0.08, 0, 0.1, 4),
         (LIGHT, "After(\"blockers\")", 0.08, 1, 0.1 * diagonal, 4),
@@ -58,7 +59,7 @@ fn tails(photons: u64) -> Claim {
         let most = [f64::from(count) / width, 0.0625 / width];
         let seen = shadow(light, 2.0, place, half, most, photons);
         number(&[(&seen[0], 0), (&seen[1], 0)], &|slices| {
-            // |sin π w Ω| is one half-way between zeros.
+            // Half-way between its zeros, |sin π w Ω| is one.
             let points: Vec<[f64; 2]> = (0..count)
                 .map(|m| {
                     let rho = (f64::from(m) + 0.5) / width;
@@ -83,7 +84,7 @@ fn tails(photons: u64) -> Claim {
 /// Half-widths of narrowing windows, metres.
 const HALVES: [f64; 4] = [0.8, 0.4, 0.2, 0.1];
 
-/// Light behind a grating of 5 /m in narrowing windows.
+/// Measures light behind a grating of 5 /m in narrowing windows.
 fn through(modulation: f64, photons: u64) -> [SeenScene; 4] {
     let grating = format!(
         "Grating(name: \"blockers\", center: (0, 0, 1), axis: X, frequency: 5, modulation: {modulation})"
@@ -148,8 +149,8 @@ fn narrowed(photons: u64) -> [Claim; 2] {
     ]
 }
 
-/// The share of the power between 15 and 25 /m, for an array that ends at ± 2 m and is not centred
-/// on the central ray.
+/// Measures the share of the power between 15 and 25 /m behind an array that extends 2 m to either
+/// side of its centre, which is `offset` from the central ray.
 fn share(offset: f64, half: f64, photons: u64) -> super::number::ClaimNumber {
     let blockers = squares([80, 80], 0.05, "fill: 0.5")
         .replace("center: (0, 0, 1)", &format!("center: ({offset}, 0, 1)"));

@@ -1,4 +1,4 @@
-//! Statements in the paper's text, measured with photons. Each statement has a row.
+//! Statements in the paper's text, measured with photons. The table has a row for each statement.
 
 mod blockers;
 mod criteria;
@@ -20,12 +20,12 @@ const CHANCE: &str = "1 in 16,000 by chance, of some 60 numbers";
 /// A statement, with the result from photons.
 struct Claim {
     said: &'static str,
-    /// A description of the numbers.
+    /// A text that describes the numbers.
     shown: String,
     numbers: Vec<ClaimNumber>,
     /// Checks in addition to agreement of each number with its prediction.
     checks: Vec<Check>,
-    /// "holds", or the part that holds.
+    /// The conclusion: "holds", or which part of the statement holds.
     holds: &'static str,
 }
 
@@ -74,7 +74,7 @@ fn row(claim: Claim) -> Row {
     Row::new(cells, checks)
 }
 
-/// Checks that the numbers decrease, beyond noise.
+/// Checks that each number is smaller than the previous one by more than noise.
 fn decreasing(numbers: &[ClaimNumber]) -> Check {
     let falls = numbers.windows(2).all(|pair| {
         let error = pair[0].error.hypot(pair[1].error);

@@ -13,7 +13,7 @@ pub(super) struct ClaimNumber {
 }
 
 impl ClaimNumber {
-    /// Measured minus predicted, in standard errors.
+    /// Returns the measured value minus the prediction, in standard errors.
     pub(super) fn pull(&self) -> f64 {
         (self.value - self.predicted) / self.error
     }
@@ -23,7 +23,7 @@ impl ClaimNumber {
         format!("{} ({predicted})", uncertain(self.value, self.error))
     }
 
-    /// The number in another unit.
+    /// Returns the number in units of `unit`.
     pub(super) fn per(&self, unit: f64) -> Self {
         Self {
             value: self.value / unit,
@@ -32,7 +32,7 @@ impl ClaimNumber {
         }
     }
 
-    /// The ratio of two independent numbers.
+    /// Returns the ratio of two independent numbers.
     pub(super) fn over(&self, other: &Self) -> Self {
         let value = self.value / other.value;
         let share = (self.error / self.value).hypot(other.error / other.value);
@@ -44,11 +44,11 @@ impl ClaimNumber {
     }
 }
 
-/// Slices in independent batches: one list for each plane used by a number.
+/// The slices of independent batches: one list for each plane from which a number is computed.
 pub(super) type Batches = Vec<Vec<Slices>>;
 
-/// A number computed from the mean slices, and its standard error, by the delete-one jackknife. The
-/// bias of |S|², of the order of the noise power, is removed (Quenouille 1956).
+/// Returns a number computed from the mean slices, and its standard error, by the delete-one
+/// jackknife. The bias of |S|², of the order of the noise power, is removed (Quenouille 1956).
 pub(super) fn jackknife(batches: &Batches, of: &dyn Fn(&[Slices]) -> f64) -> [f64; 2] {
     let count = batches[0].len();
     let sums: Vec<Slices> = batches.iter().map(|each| sum(each)).collect();
@@ -82,7 +82,7 @@ fn sum(batches: &[Slices]) -> Slices {
     sum
 }
 
-/// The value at a frequency of the grid, ρ ≥ 0 and ν ≥ 0, in slice `k`.
+/// Returns the value at a frequency of the grid, ρ ≥ 0 and ν ≥ 0, in slice `k`.
 pub(super) fn at(slices: &Slices, k: usize, [rho, nu]: [f64; 2]) -> Complex {
     let grid = &slices.grid;
     let m = whole((rho / grid.rho.spacing).round());
@@ -130,7 +130,8 @@ mod tests {
         let values = [1.0, 3.0, 2.0, 6.0];
         let batches = vec![values.map(batch).to_vec()];
         let [power, _] = jackknife(&batches, &|s| s[0].half[[0, 0, 0]].norm_sqr());
-        // The mean over pairs of different batches: (Σ² − Σ of squares)/(R(R − 1)).
+        // The mean of the products over pairs of different batches: (Σ² − Σ of squares)/(R(R −
+        // 1)).
         assert!((power - (144.0 - 50.0) / 12.0).abs() < 1e-12); // rounding
         let [mean, error] = jackknife(&batches, &|s| s[0].at_zero());
         assert!((mean - 3.0).abs() < 1e-12 && (error - (14.0_f64 / 12.0).sqrt()).abs() < 1e-12); // rounding

@@ -10,7 +10,7 @@ use etendue_spectrum::Measurement;
 /// Light, blockers and a floor, all perpendicular to the central ray.
 pub(super) struct ClaimBench<'a> {
     pub(super) light: &'a str,
-    /// The blockers as in a scene file, 1 m from the light.
+    /// The blockers, written as in a scene file; they are 1 m from the light.
     pub(super) blockers: &'a str,
     /// Distance from the light to the floor, metres.
     pub(super) floor: f64,
@@ -39,7 +39,8 @@ impl ClaimBench<'_> {
     }
 }
 
-/// Squares, without jitter unless `rest` gives one, 1 m from the light.
+/// Returns the text of an array of squares 1 m from the light, without jitter unless `rest`
+/// specifies it.
 pub(super) fn squares(count: [u32; 2], pitch: f64, rest: &str) -> String {
     let [x, y] = count;
     format!(
@@ -47,14 +48,14 @@ pub(super) fn squares(count: [u32; 2], pitch: f64, rest: &str) -> String {
     )
 }
 
-/// A plane with its own window and frequencies.
+/// Returns a plane with its own window and frequencies.
 pub(super) fn plane(at: &str, window: &str, frequencies: &str) -> String {
     format!(
         "(name: \"plane\", at: {at}, window: ({window}), frequencies: (azimuths: 1, {frequencies})),"
     )
 }
 
-/// A scene from a text without window and run.
+/// Returns the scene of a text, with a window and settings of the run added.
 ///
 /// # Panics
 /// If the scene is invalid.
@@ -83,7 +84,7 @@ impl SeenScene {
         }
     }
 
-    /// A number computed from one plane.
+    /// Returns a number computed from one plane.
     pub(super) fn number(&self, plane: usize, of: impl Fn(&Slices) -> f64) -> ClaimNumber {
         number(&[(self, plane)], &|slices| of(&slices[0]))
     }
@@ -94,7 +95,7 @@ impl SeenScene {
     }
 }
 
-/// A number computed from several planes, possibly of different scenes, batch by batch.
+/// Computes a number from several planes, which may belong to different scenes, batch by batch.
 pub(super) fn number(planes: &[(&SeenScene, usize)], of: &dyn Fn(&[Slices]) -> f64) -> ClaimNumber {
     let each = planes.iter();
     let batches: Batches = each.clone().map(|(seen, i)| seen.batches(*i)).collect();
@@ -102,7 +103,7 @@ pub(super) fn number(planes: &[(&SeenScene, usize)], of: &dyn Fn(&[Slices]) -> f
     let said = each.map(|(seen, i)| &seen.predictions[*i]);
     let replicates: Batches = said.clone().map(|p| p.replicates.clone()).collect();
     let count = replicates[0].len();
-    // Closed forms have no replicates, so their error is 0.
+    // A closed form has no replicates, so its error is 0.
     let [predicted, error] = if count > 0 && replicates.iter().all(|r| r.len() == count) {
         jackknife(&replicates, of)
     } else {

@@ -25,8 +25,8 @@ pub(super) fn claims(photons: u64) -> Vec<Claim> {
     all
 }
 
-/// A surface at the origin with a central ray that arrives at `incidence`, radians, and leaves at
-/// `outgoing` on the other side of its normal.
+/// Returns the text of a scene with a surface at the origin. The central ray arrives at the angle
+/// `incidence` and leaves at `outgoing` on the other side of the normal, both in radians.
 pub(super) fn surface(
     light: &str,
     [incidence, outgoing]: [f64; 2],
@@ -54,8 +54,8 @@ pub(super) fn planes(at: &str, orientation: &str, window: &str, frequencies: &st
     )
 }
 
-/// Light that a glossy plane reflects from one angle to another, divided by the irradiance. It is
-/// measured in both directions; the number is their ratio.
+/// Measures the light that a glossy plane reflects from one angle to another, divided by the
+/// irradiance, and the same with the angles exchanged. The number is the ratio of the two.
 fn both_ways(brdf: &str, photons: u64) -> ClaimNumber {
     let angles = [20.0_f64, 50.0].map(f64::to_radians);
     let [there, back] = [angles, [angles[1], angles[0]]].map(|angles| {
@@ -106,7 +106,7 @@ fn fresnel(photons: u64) -> Claim {
     }
 }
 
-/// A sphere of 0.5 m in a wider beam, seen from three sides.
+/// Measures a sphere of 0.5 m in a wider beam, seen from three sides.
 fn mirror_sphere(photons: u64) -> Claim {
     let found = [0.0, 0.7, 1.4].map(|incidence| {
         let text = surface(
@@ -161,8 +161,8 @@ fn mirror_sphere(photons: u64) -> Claim {
     }
 }
 
-/// The angles between the direction towards the beam's source and, first, the normal at which a
-/// photon leaves a sphere of 0.5 m, and second, the photon's direction.
+/// Returns two angles from the direction towards the beam's source: that of the normal where a
+/// photon leaves a sphere of 0.5 m, and that of the photon's direction.
 fn angles(plane: &VirtualPlane, crossing: &Crossing) -> [f64; 2] {
     let ray = crossing.ray;
     let (s, t) = (2.0 * ray.x, 2.0 * ray.y);
@@ -171,7 +171,7 @@ fn angles(plane: &VirtualPlane, crossing: &Crossing) -> [f64; 2] {
     let ((sin, cos), (up, across)) = ((ray.u + plane.longitude).sin_cos(), ray.v.sin_cos());
     let local = plane.frame.turned_to(normal);
     let leaves = local.vector_to_world(DVec3::new(across * sin, up, across * cos));
-    // The arccosine is inaccurate at its ends.
+    // The arctangent is used because the arccosine is inaccurate near 0 and π.
     [normal, leaves].map(|d| d.x.hypot(d.y).atan2(-d.z))
 }
 
@@ -271,7 +271,8 @@ fn cosine(photons: u64) -> Claim {
             slices[0].relative_difference(&slices[1])
         })
     });
-    // Photons of one scene, weighted in two ways. There is no prediction of the difference.
+    // The two spectra are from the same photons with different weights, and their difference has
+    // no prediction.
     let numbers: Vec<ClaimNumber> = apart
         .iter()
         .map(|n| ClaimNumber {
@@ -314,7 +315,8 @@ fn lobe(photons: u64) -> Claim {
         );
         let seen = SeenScene::of(scene(&format!("{text}, {planes}"), 4 * photons));
         seen.number(0, |slices| {
-            // The spectrum of a Hann window alone has half of its peak at the first frequency.
+            // The spectrum of a Hann window alone falls to half of its peak at the first
+            // frequency.
             let [theta, phi] =
                 [0, 1].map(|k| (at(slices, k, [0.0, nu]) / slices.at_zero() - 0.5).norm());
             theta / phi
@@ -344,7 +346,7 @@ fn lobe(photons: u64) -> Claim {
     }
 }
 
-/// A diffuse sphere of curvature k, with a matching window and frequencies.
+/// Measures a diffuse sphere of curvature k, with a window and frequencies that match its size.
 fn diffuse(light: &str, (k, seed): (f64, u64), photons: u64) -> SeenScene {
     let text = surface(
         light,
@@ -359,7 +361,7 @@ fn diffuse(light: &str, (k, seed): (f64, u64), photons: u64) -> SeenScene {
         &format!("azimuths: 4, rho: (max: {}), nu: (max: 4)", 8.0 * k),
     );
     let mut scene = scene(&format!("{text}, {planes}"), photons);
-    // With one seed, photons of spheres of two sizes would be equal up to scale.
+    // With a common seed, the photons on spheres of different sizes would be equal up to scale.
     scene.run.seed = seed;
     SeenScene::of(scene)
 }

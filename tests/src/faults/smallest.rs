@@ -1,4 +1,4 @@
-//! The smallest faults of the main scene that are still rejected.
+//! Finds the smallest faults of the main scene that are still rejected.
 
 use super::{Predict, TamperedBlock, chained, each_rectangle, scale_travel, shifted, unchanged};
 use crate::progress::progress;
@@ -11,7 +11,7 @@ use etendue_scene::{Sampling, Scene};
 use etendue_spectrum::Measurement;
 use etendue_trace::Tracer;
 
-/// The largest fault size, and the number of times it is halved.
+/// The largest size of a fault, and how many times this size is halved.
 const LARGEST: f64 = 0.01;
 const HALVES: i32 = 10;
 
@@ -64,7 +64,7 @@ const FAULTS: [(&str, SizedFault); 7] = [
     ),
 ];
 
-/// The prediction for wider windows.
+/// Returns a predictor whose windows are wider by these fractions.
 fn widened(space: f64, slope: f64) -> Box<Predict> {
     Box::new(move |scene, plane| {
         let mut wide = plane.clone();
@@ -116,7 +116,7 @@ pub(crate) fn smallest(photons: u64, seed: u64) -> ReportSection {
     }
 }
 
-/// The smallest rejected size.
+/// Returns the smallest rejected size.
 fn rejected(fault: &SizedFault, scene: &Scene, sound: &Measurement) -> Option<f64> {
     let sizes = (0..=HALVES).map(|halves| LARGEST * 0.5_f64.powi(halves));
     sizes

@@ -1,4 +1,4 @@
-//! One case: the input, the commands run on it, and the faults of the outcome.
+//! One case: its input, the commands that are run on it, and the faults of their outcome.
 
 use super::child::{self, Ended, LARGEST, LONGEST};
 use super::folder::{self, Folder};
@@ -25,7 +25,7 @@ impl InputKind {
         Self::Prediction,
     ];
 
-    /// The kind of a case: half of them are scenes.
+    /// Returns the kind of a case: half of them are scenes.
     pub(crate) fn of(case: u64) -> Self {
         match case % 20 {
             0..10 => Self::Scene,
@@ -40,15 +40,15 @@ impl InputKind {
 /// An attack: the input, and the commands run on it.
 #[derive(Debug)]
 pub(crate) struct Attack {
-    /// All files before the run.
+    /// The input files, as they are before the run.
     pub(crate) files: Folder,
     pub(crate) arguments: Vec<String>,
     /// A second command, run on the input if the first accepts it.
     pub(crate) then: Option<Vec<String>>,
-    /// The files before the mutation, if running these may take long too. Slowness is not a fault
-    /// then.
+    /// The files before the mutation, if a run of these may also be slow; slowness is then not a
+    /// fault.
     pub(crate) sound: Option<Folder>,
-    /// The expected summary if the input is accepted; `None` if it may differ.
+    /// The summary that is expected if the input is accepted; `None` if the summary may differ.
     pub(crate) summary: Option<Vec<u8>>,
 }
 
@@ -64,7 +64,7 @@ pub(crate) enum HostileFault {
     /// The process wrote something outside the results, or wrote anything although its exit code is
     /// 2.
     Wrote,
-    /// There is no message, or it is long or has control characters.
+    /// The process wrote no message, or one that is long or has control characters.
     Message,
     /// The process accepted a damaged input, and its result is different.
     Changed,
@@ -90,9 +90,9 @@ pub(crate) struct CaseOutcome {
     pub(crate) log: String,
 }
 
-/// The folder of the input, within that of the case.
+/// The folder of the input, inside the folder of the case.
 const WORK: &str = "work";
-/// The only folder for results, within the input folder.
+/// The only folder for results, inside the folder of the input.
 pub(crate) const OUT: &str = "out";
 
 /// Runs a case in a fresh folder within `at`, which is then removed.
@@ -165,7 +165,7 @@ fn step(
     Ok(ended)
 }
 
-/// Whether the input without the mutation also takes much of the time limit.
+/// Whether the input before its mutation also takes much of the time limit.
 fn is_slow(program: &Path, attack: &Attack, then: &[String], at: &Path) -> io::Result<bool> {
     let Some(sound) = &attack.sound else {
         return Ok(false);
@@ -177,13 +177,13 @@ fn is_slow(program: &Path, attack: &Attack, then: &[String], at: &Path) -> io::R
     Ok(ended.seconds > LONGEST.as_secs_f64() / 3.0)
 }
 
-/// The faults of the process itself.
+/// Returns the faults of the process itself.
 fn faults(ended: &Ended) -> Vec<HostileFault> {
     let message = String::from_utf8_lossy(&ended.stderr);
     let slow = ended.hung || ended.seconds > LONGEST.as_secs_f64();
     let large = ended.peak > LARGEST;
     let panicked = message.contains("panicked");
-    // Processes that this test killed did not abort.
+    // A process that this test killed does not count as aborted.
     let aborted = ended.signal.is_some() && !slow && !large;
     let aborted = aborted || message.contains("memory allocation of");
     let known = matches!(ended.code, None | Some(0..=4));
@@ -205,8 +205,8 @@ fn faults(ended: &Ended) -> Vec<HostileFault> {
     .collect()
 }
 
-/// Names of files that were wrongly changed. Only results may change, and only if the command makes
-/// results and accepts the input.
+/// Returns the names of files that the command must not change but did. A command may change only
+/// results, and only if it makes results and accepts the input.
 fn wrote(
     attack: &Attack,
     arguments: &[String],

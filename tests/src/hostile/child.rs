@@ -10,10 +10,10 @@ use std::time::{Duration, Instant};
 /// Time after which a child counts as hung.
 pub(crate) const LONGEST: Duration = Duration::from_secs(30);
 
-/// Memory that is excessive for any of these inputs.
+/// Memory above which a child counts as using too much, for any input, bytes.
 pub(crate) const LARGEST: u64 = 1 << 30;
 
-/// Memory at which a child is killed, to protect the machine.
+/// Memory at which a child is killed to protect the machine, bytes.
 const DANGEROUS: u64 = 4 << 30;
 
 /// The time limits of a child.
@@ -31,7 +31,7 @@ pub(crate) struct Ended {
     /// The exit code; `None` if a signal ended it.
     pub(crate) code: Option<i32>,
     pub(crate) signal: Option<i32>,
-    /// Whether it was killed because it took too long.
+    /// Whether the child was killed because it took too long.
     pub(crate) hung: bool,
     pub(crate) seconds: f64,
     /// The peak memory observed, bytes.
@@ -40,7 +40,8 @@ pub(crate) struct Ended {
     pub(crate) stderr: Vec<u8>,
 }
 
-/// The program to attack: the given program, or the one in the folder of this program.
+/// Returns the path of the program to attack: the given one, or `etendue` in the folder of this
+/// program.
 pub(crate) fn program(given: Option<&Path>) -> io::Result<PathBuf> {
     let path = match given {
         Some(path) => path.to_owned(),
@@ -70,7 +71,7 @@ pub(crate) fn call(
     call_within(limit, program, folder, arguments, scratch)
 }
 
-/// Like [`call`], with another time limit.
+/// Runs a child as [`call`] does, but with this time limit.
 pub(crate) fn call_within(
     limit: Limit,
     program: &Path,
@@ -133,12 +134,12 @@ fn peak_of(status: &str) -> Option<u64> {
     Some(kilobytes * 1024)
 }
 
-/// The processor time in user and kernel mode.
+/// Returns the processor time in user and kernel mode.
 fn work_of(stat: &str) -> Option<Duration> {
     // The program name, in parentheses, may contain spaces.
     let (_, fields) = stat.rsplit_once(')')?;
     let ticks = fields.split_whitespace().skip(11).take(2);
     let ticks: u64 = ticks.filter_map(|field| field.parse::<u64>().ok()).sum();
-    // Linux uses hundredths of a second here, on any machine.
+    // On any machine, Linux states these times in hundredths of a second.
     Some(Duration::from_millis(10 * ticks))
 }

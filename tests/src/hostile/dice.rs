@@ -1,4 +1,5 @@
-//! Random choices of one case: a function of the seed, the case and the number of previous choices.
+//! Random choices of one case. Each choice is a function of the seed, the case and the number of
+//! previous choices.
 
 use etendue_transform::random::{self, Stream};
 
@@ -24,7 +25,7 @@ impl Dice {
         random::words(self.seed, Stream::Photon, self.case, self.block)
     }
 
-    /// A number in 0..`n`, or 0 if `n` is 0.
+    /// Returns a number in 0..`n`, or 0 if `n` is 0.
     pub(crate) fn below(&mut self, n: usize) -> usize {
         random::index(self.words()[0], n.max(1))
     }
@@ -34,24 +35,24 @@ impl Dice {
         self.below(n) == 0
     }
 
-    /// A random element; the list must not be empty.
+    /// Returns a random element; the list must not be empty.
     pub(crate) fn pick<'a, T>(&mut self, all: &'a [T]) -> &'a T {
         &all[self.below(all.len())]
     }
 
-    /// A length up to `most`, short and long ones with equal probability.
+    /// Returns a length up to `most`; all orders of magnitude are about equally likely.
     pub(crate) fn length(&mut self, most: usize) -> usize {
         let doublings = usize::BITS - most.leading_zeros();
         let reach = 1_usize << self.below(doublings as usize + 1).min(62);
         1 + self.below(reach.min(most))
     }
 
-    /// A random byte.
+    /// Returns a random byte.
     pub(crate) fn byte(&mut self) -> u8 {
         self.words()[0].to_le_bytes()[0]
     }
 
-    /// A random number in (0, 1).
+    /// Returns a random number in (0, 1).
     pub(crate) fn unit(&mut self) -> f64 {
         random::unit(self.words()[0])
     }

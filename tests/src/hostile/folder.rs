@@ -5,7 +5,8 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-/// Files by name relative to the folder, with `/`; folders have no bytes.
+/// The bytes of each file by its path relative to the folder, with `/`; a folder has an entry
+/// without bytes.
 pub(crate) type Folder = BTreeMap<String, Option<Vec<u8>>>;
 
 /// Writes files and their folders.
@@ -24,7 +25,7 @@ pub(crate) fn write(at: &Path, files: &Folder) -> io::Result<()> {
     Ok(())
 }
 
-/// Reads everything below a folder; empty if it does not exist.
+/// Reads everything below a folder; the result is empty if the folder does not exist.
 pub(crate) fn read(at: &Path) -> io::Result<Folder> {
     let mut found = Folder::new();
     if at.exists() {
@@ -47,7 +48,7 @@ fn read_into(at: &Path, before: &str, found: &mut Folder) -> io::Result<()> {
     Ok(())
 }
 
-/// The names of entries that are in only one of the two, or differ.
+/// Returns the names of entries that only one of two folders has, or that differ.
 pub(crate) fn differences<'a>(one: &'a Folder, other: &'a Folder) -> Vec<&'a str> {
     let names = one
         .keys()
@@ -56,7 +57,7 @@ pub(crate) fn differences<'a>(one: &'a Folder, other: &'a Folder) -> Vec<&'a str
     names.filter(differs).map(String::as_str).collect()
 }
 
-/// The files with all their parent folders.
+/// Returns the files with all their parent folders.
 pub(crate) fn with_parents(files: &Folder) -> Folder {
     let mut all = files.clone();
     for name in files.keys() {

@@ -25,11 +25,11 @@ const WORDS: [&str; 14] = [
     "'shape'",
 ];
 
-/// The file with a mutated array or archive.
+/// Returns the file with a mutated array or archive.
 pub(crate) fn mutated(npz: &[u8], dice: &mut Dice) -> io::Result<Vec<u8>> {
     if dice.one_in(4) {
         let mut new = npz.to_vec();
-        // The directory of a ZIP file is at its end.
+        // The end of a ZIP file holds its directory.
         let directory = npz.len().saturating_sub(1000)..npz.len();
         bytes::mutate_within(&mut new, &directory, dice);
         return Ok(new);
@@ -74,7 +74,7 @@ fn archive(entries: &[(String, Vec<u8>)]) -> io::Result<Vec<u8>> {
     Ok(writer.finish()?.into_inner())
 }
 
-/// The offset of an array's numbers.
+/// Returns the offset of an array's numbers.
 fn data(npy: &[u8]) -> usize {
     let length = npy
         .get(8..10)

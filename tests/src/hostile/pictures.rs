@@ -132,11 +132,11 @@ fn one_png(color: png::ColorType, depth: png::BitDepth) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// A mutated picture in a valid scene.
+/// Returns a mutated picture in a valid scene.
 pub(crate) fn attack(seeds: &[Vec<Vec<u8>>; 2], dice: &mut Dice) -> Attack {
     let format = dice.below(2);
     let mut picture = dice.pick(&seeds[format]).clone();
-    // The metadata is a better target than the pixels.
+    // Half of the mutations stay in the metadata at the start, a better target than the pixels.
     let head = 0..picture.len().min(if format == 0 { 400 } else { 60 });
     if dice.one_in(2) {
         bytes::mutate(&mut picture, dice);

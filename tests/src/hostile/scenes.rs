@@ -42,7 +42,7 @@ const WORDS: [&str; 30] = [
     "true",
 ];
 
-/// The texts of all scenes of the repository, without their comments.
+/// Returns the texts of all scenes of the repository, without their comments.
 pub(crate) fn seeds() -> io::Result<Vec<String>> {
     let mut texts = Vec::new();
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
@@ -63,7 +63,7 @@ pub(crate) fn seeds() -> io::Result<Vec<String>> {
     Ok(texts)
 }
 
-/// A mutated scene file.
+/// Returns a mutated scene file.
 pub(crate) fn attack(seeds: &[String], dice: &mut Dice) -> Attack {
     let scene: &String = dice.pick(seeds);
     let text = text::mutated(scene, &WORDS, dice);
@@ -77,8 +77,8 @@ pub(crate) fn attack(seeds: &[String], dice: &mut Dice) -> Attack {
 /// The name of a scene file.
 pub(crate) const SCENE: &str = "scene.ron";
 
-/// An attack on the scene file among these files. The scene is always checked; in one of eight
-/// cases it is also run, swept or drawn as a figure.
+/// Returns an attack on the scene file among these files. The scene is always checked; in one of
+/// eight cases it is also run, swept or drawn as a figure.
 pub(crate) fn on_scene(files: Folder, dice: &mut Dice) -> Attack {
     let words = |line: &str| line.split_whitespace().map(str::to_owned).collect();
     let run = *dice.pick(&[
@@ -87,8 +87,7 @@ pub(crate) fn on_scene(files: Folder, dice: &mut Dice) -> Attack {
         "sweep scene.ron --photons 2000 --set run.seed=1,2 --out out",
         "figure scene.ron --set run.photons=16000 --quality draft --out out",
     ]);
-    // There are few azimuths, because the test is about values of fields and not about the number
-    // of azimuths.
+    // Two azimuths suffice to test the values of fields.
     let run = format!("{run} --quiet --threads 2 --set frequencies.azimuths=2");
     Attack {
         files,

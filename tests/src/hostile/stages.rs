@@ -1,7 +1,8 @@
 //! Mutated stage folders: parts of a measurement and predictions, for `compare`.
 //!
-//! A change without matching hashes must be refused or harmless. A change with matching hashes
-//! cannot be detected, but it tests the readers that follow the hash check.
+//! The program must refuse a change whose hashes do not match, or the change must have no effect.
+//! The program cannot detect a change whose hashes match, but such a change tests the readers that
+//! follow the check of hashes.
 
 use super::case::{Attack, OUT};
 use super::child;
@@ -25,15 +26,15 @@ pub(crate) const SMALL: &str = r#"(
     run: (photons: 2000, seed: 1, batches: 32),
 )"#;
 
-/// The same scene with a mesh from a file. It has a reference instead of a prediction, and its
-/// folders contain copies of the mesh.
+/// Returns the text of a second scene, which has a mesh from a file besides. For this scene
+/// another tracer replaces theory, and the folders of its stages contain copies of the mesh.
 pub(crate) fn with_mesh() -> String {
     let mesh = r#"blockers: [Mesh(name: "tetra", center: (0.1, 0.2, 1), 
         mesh: File("meshes/tetra.obj"), scale: 0.1), "#;
     SMALL.replace("blockers: [", mesh)
 }
 
-/// The mesh of that scene.
+/// The OBJ file of the scene with a mesh.
 pub(crate) const TETRA: &str =
     "v 1 1 1\nv -1 -1 1\nv -1 1 -1\nv 1 -1 -1\nf 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n";
 
@@ -80,18 +81,18 @@ fn seed(program: &Path, at: &Path, scene: &str) -> io::Result<Seed> {
     Ok(Seed { files, summary })
 }
 
-/// A command line without quotes, split into words.
+/// Returns a command line without quotes, split into words.
 pub(crate) fn words(command: &str) -> Vec<String> {
     command.split_whitespace().map(str::to_owned).collect()
 }
 
-/// A mutated part of a measurement.
+/// Returns a mutated part of a measurement.
 pub(crate) fn part(seeds: &[Seed], dice: &mut Dice) -> io::Result<Attack> {
     let stage = *dice.pick(&["a/", "b/"]);
     attack(dice.pick(seeds), stage, "measurement.json", dice)
 }
 
-/// A mutated prediction.
+/// Returns a mutated prediction.
 pub(crate) fn prediction(seeds: &[Seed], dice: &mut Dice) -> io::Result<Attack> {
     attack(dice.pick(seeds), "p/", "prediction.json", dice)
 }
@@ -104,7 +105,7 @@ fn attack(seed: &Seed, stage: &str, index: &str, dice: &mut Dice) -> io::Result<
         3 => change_scene(&mut files, dice),
         _ => change_file(&mut files, stage, &index, dice)?,
     };
-    // A fault with changed hashes may be undetectable, and a mutation may have no effect.
+    // If the hashes match, the summary may differ, unless the mutation has changed nothing.
     let summary = (!fits || files == seed.files).then(|| seed.summary.clone());
     Ok(Attack {
         files,
@@ -147,7 +148,7 @@ fn change_scene(files: &mut Folder, dice: &mut Dice) -> bool {
     true
 }
 
-/// Changes or removes another file; returns whether its hash matches.
+/// Changes or removes a file other than the index; returns whether its hash matches.
 fn change_file(files: &mut Folder, stage: &str, index: &str, dice: &mut Dice) -> io::Result<bool> {
     let own = |(name, bytes): &(&String, &Option<Vec<u8>>)| {
         bytes.is_some() && name.starts_with(stage) && *name != index

@@ -18,11 +18,11 @@ struct CaseTally {
 #[derive(Debug, Default)]
 pub(crate) struct Tallies {
     kinds: [CaseTally; InputKind::ALL.len()],
-    /// The bad cases by number.
+    /// Descriptions of the cases with faults, by number.
     bad: BTreeMap<u64, String>,
 }
 
-/// Maximum number of bad cases that are listed.
+/// Maximum number of cases with faults that are listed.
 const MOST_TOLD: usize = 60;
 
 impl Tallies {
@@ -42,7 +42,7 @@ impl Tallies {
         tally.peak = tally.peak.max(outcome.peak);
     }
 
-    /// The table; it passes if no case has a fault.
+    /// Returns the table, which passes if no case has a fault.
     pub(crate) fn section(&self, seed: u64) -> ReportSection {
         let pairs = InputKind::ALL.iter().zip(&self.kinds);
         let rows = pairs.map(|(kind, tally)| row(*kind, tally)).collect();
@@ -90,7 +90,7 @@ fn row(kind: InputKind, tally: &CaseTally) -> Row {
         tally.cases.to_string(),
         share(reached(Reached::Syntax)),
         share(reached(Reached::Values)),
-        // Cases that were run had also been accepted.
+        // The program also accepted the cases that it ran.
         share(reached(Reached::Sound) + reached(Reached::Ran)),
         share(reached(Reached::Ran)),
     ];

@@ -47,8 +47,8 @@ const NAMES: [&str; 14] = [
     "ä€𝄞",
 ];
 
-/// The text with one to three mutations: tokens are replaced, removed, doubled or swapped, blocks
-/// are repeated, or larger changes are made. `words` are tokens of the format.
+/// Returns the text with one to three mutations: tokens are replaced, removed, doubled or swapped,
+/// blocks are repeated, or larger changes are made. `words` are tokens of the format.
 pub(crate) fn mutated(text: &str, words: &[&str], dice: &mut Dice) -> Vec<u8> {
     let mut tokens = split(text);
     let mut raw = false;
@@ -80,7 +80,7 @@ pub(crate) fn mutated(text: &str, words: &[&str], dice: &mut Dice) -> Vec<u8> {
     text
 }
 
-/// A number near the old one, or a valid number of any size.
+/// Returns a number near the old one, or a valid number of any size.
 fn another(old: &str, dice: &mut Dice) -> String {
     if let (Ok(old), true) = (old.parse::<f64>(), dice.one_in(2)) {
         return format!("{:.4}", old * (0.5 + dice.unit()));

@@ -7,7 +7,7 @@ use serde_json::Value;
 /// The state of a folder according to its index.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum IndexState {
-    /// There is no index, so the folder does not claim to hold a result.
+    /// The folder has no index, so it does not claim to hold a result.
     Absent,
     Whole,
     /// The folder claims to hold a result, but is broken.
@@ -40,7 +40,7 @@ fn whole(files: &Folder, index: &str, bytes: &[u8]) -> Result<(), String> {
     }
 }
 
-/// The names and hashes listed in an index.
+/// Returns the names and hashes listed in an index.
 pub(super) fn listed(index: &str, bytes: &[u8]) -> Option<Vec<(String, String)>> {
     let beside = index.rfind('/').map_or("", |at| &index[..=at]);
     let tree: Value = serde_json::from_slice(bytes).ok()?;
@@ -51,7 +51,7 @@ pub(super) fn listed(index: &str, bytes: &[u8]) -> Option<Vec<(String, String)>>
     pairs.map(pair).collect()
 }
 
-/// The message for a missing hash, which is counted separately.
+/// The fault of an index without a hash of its own; this fault is counted separately.
 pub(super) const NO_HASH: &str = "has no hash of its own";
 
 /// The last field of an index is the hash of all bytes before it.

@@ -14,7 +14,7 @@ pub(crate) enum FullDisk {
 }
 
 impl FullDisk {
-    /// The better of the two methods that is available here.
+    /// Returns the mount of a tmpfs if this machine allows it, else the limit of the shell.
     pub(super) fn best() -> io::Result<Self> {
         let place = tempfile::tempdir()?;
         let mounted = Mount::new(place.path(), 1 << 20);
@@ -51,7 +51,7 @@ impl Mount {
 
 impl Drop for Mount {
     fn drop(&mut self) {
-        // An error in `drop` cannot be reported.
+        // `drop` cannot report an error.
         let _ = succeeds(Command::new("umount").arg("-l").arg(&self.0));
     }
 }
@@ -66,8 +66,8 @@ fn succeeds(command: &mut Command) -> io::Result<()> {
     }
 }
 
-/// A command whose files are limited to this number of blocks. Writing more gives an error and not
-/// a signal.
+/// Returns a command whose files may have at most this number of blocks; a longer write returns an
+/// error and sends no signal.
 pub(super) fn limited(program: &Path, blocks: usize) -> Command {
     let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$@\"");
     let mut command = Command::new("sh");

@@ -1,5 +1,5 @@
-//! Kills at random moments, two writers at once, and full disks. Each must leave a complete result
-//! or no result.
+//! Kills at random moments, two writers at once, and full disks. Every disturbance must leave a
+//! complete result or no result.
 
 mod check;
 mod disk;
@@ -33,7 +33,7 @@ pub(crate) struct KillOptions {
     etendue: Option<PathBuf>,
 }
 
-/// The number of occurrences of each finding, for each command.
+/// How often each finding occurred with each command.
 type Counts = [[u64; Finding::COUNT]; Verb::ALL.len()];
 
 /// Runs all trials.
@@ -55,7 +55,8 @@ pub(crate) fn kills(options: &KillOptions) -> io::Result<ReportSection> {
     let mut counts = Counts::default();
     let mut told = Vec::new();
     let all = tasks.iter().flat_map(|task| troubles.map(|t| (task, t)));
-    // Adjacent trials have different commands and troubles, so a few trials cover all.
+    // Consecutive trials have different commands and disturbances, so a few trials cover all of
+    // them.
     let all: Vec<_> = all.collect();
     for (number, at) in (0..options.count).zip((0..all.len()).cycle()) {
         let (task, trouble) = all[at * 5 % all.len()];

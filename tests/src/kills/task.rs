@@ -1,4 +1,5 @@
-//! The commands to kill, and their folder, which contains an earlier result among the user's files.
+//! The commands to kill, and the folder of each, which contains an earlier result and files of the
+//! user.
 
 use crate::hostile::child;
 use crate::hostile::folder::{self, Folder};
@@ -8,7 +9,7 @@ use std::io;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// A command that writes.
+/// A command that writes results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Verb {
     Run,
@@ -29,7 +30,7 @@ impl Verb {
         Self::Figure,
     ];
 
-    /// The name of its index in the output folder.
+    /// Returns the name of the index that the command writes into its folder.
     pub(super) fn index(self) -> &'static str {
         match self {
             Self::Run | Self::Compare => "summary.json",
@@ -40,7 +41,7 @@ impl Verb {
         }
     }
 
-    /// The command line for a seed; another seed gives another result.
+    /// Returns the command line for a seed; another seed gives another result.
     pub(super) fn arguments(self, seed: u64) -> Vec<String> {
         let ending = format!("--out out --quiet --threads 2 --seed {seed}");
         words(&match self {
@@ -103,7 +104,7 @@ fn task(
     let out = place.join("out");
     let mut arguments = verb.arguments(EARLIER);
     if verb == Verb::Run {
-        // The earlier result contains files that the next one does not.
+        // The earlier result contains files that the next result does not contain.
         arguments.extend(words("--save photons"));
     }
     let mut takes = Duration::MAX;
@@ -134,7 +135,7 @@ fn task(
     })
 }
 
-/// The scene, in the folder of its results, and its mesh.
+/// Returns the scene, in the folder of its results, and its mesh.
 fn users() -> Folder {
     let scene = stages::with_mesh().replace("meshes/tetra.obj", "tetra.obj");
     let files = [("scene.ron", scene.as_str()), ("tetra.obj", TETRA)];

@@ -25,14 +25,14 @@ pub(super) enum KillTrouble {
 pub(super) enum Finding {
     TwoWriters,
     FullDisk,
-    /// The index is still the earlier one, is missing, or is new.
+    /// The index is still the earlier one (`Before`), missing (`Between`) or new (`After`).
     Before,
     Between,
     After,
     Whole,
     /// A writer was refused because the other one was writing.
     Refused,
-    // From here on, findings are faults.
+    // `Broken` and all later findings are faults.
     Broken,
     NoHash,
     Lost,
@@ -52,7 +52,7 @@ impl Finding {
     }
 }
 
-/// The findings of a trial, with a description of the faults.
+/// The findings of a trial, each with a text that describes it if it is a fault.
 pub(super) type Findings = Vec<(Finding, String)>;
 
 /// A folder for trials, and the tested program.

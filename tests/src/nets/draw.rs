@@ -8,23 +8,23 @@ use etendue_transform::random::{self, Stream};
 /// The elements between light and plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum BlockerKind {
-    /// A plane across the light, behind masks.
+    /// A plane perpendicular to the central ray, behind masks.
     Across,
-    /// The same with a point light.
+    /// A plane as in `Across`, with a point light.
     PointAcross,
     /// Irradiance at a receiver, with its cosine.
     Cosine,
     /// Light that a diffuse receiver reflects.
     Diffuse,
-    /// The same with a point light.
+    /// Light as in `Diffuse`, from a point light.
     PointDiffuse,
     /// Behind a mirror.
     Mirror,
-    /// Behind a refracting surface.
+    /// A plane behind a refracting surface.
     Refraction,
-    /// Behind a thin lens.
+    /// A plane behind a thin lens.
     Lens,
-    /// A projector or a beam, followed by the elements of another kind.
+    /// A projector or a beam in place of the light in a scene of another kind.
     Picture,
     /// Light that a BRDF reflects.
     Brdf,
@@ -64,7 +64,7 @@ impl BlockerKind {
         }
     }
 
-    /// Whether there are closed forms for comparison.
+    /// Whether a closed form exists with which the prediction by nets is compared.
     pub(super) fn is_chain(self) -> bool {
         matches!(
             self,
@@ -79,7 +79,7 @@ pub(super) struct SceneDice {
     next: u32,
 }
 
-/// The seed of all scenes. It was fixed in advance, and not chosen by its results.
+/// The seed of all scenes. This seed was fixed in advance, and not chosen by its results.
 const SEED: u64 = 1;
 
 impl SceneDice {
@@ -101,7 +101,7 @@ impl SceneDice {
     }
 }
 
-/// A scene of a kind, as the text of its file.
+/// Returns a scene of a kind, as the text of its file.
 pub(super) fn scene(kind: BlockerKind, dice: &mut SceneDice) -> String {
     let [x, u] = [dice.between(0.15, 0.5), dice.between(0.15, 0.45)];
     let window = match dice.of(4) {
@@ -161,8 +161,8 @@ fn light(kind: BlockerKind, dice: &mut SceneDice) -> String {
     }
 }
 
-/// Up to three masks before z = 0.9. Pictures have at least one opaque mask, because without it a
-/// quadrature rule predicts them and not nets. The same holds for point lights.
+/// Up to three masks before z = 0.9. Scenes of the kinds `Picture` and `PointAcross` have at least
+/// one opaque mask, because otherwise a quadrature rule predicts them in place of nets.
 fn blockers(kind: BlockerKind, dice: &mut SceneDice) -> String {
     if kind == BlockerKind::Sky {
         return String::new();
@@ -210,7 +210,7 @@ fn shapes(dice: &mut SceneDice, square: bool) -> String {
     shapes.join(", ")
 }
 
-/// A floor, its name, and a plane at it.
+/// Returns a floor, its name, and a plane at it.
 fn parallel(kind: BlockerKind, dice: &mut SceneDice) -> (String, &'static str, String) {
     let z = dice.between(1.1, 2.0);
     let floor = format!("Rectangle(name: \"floor\", center: (0, 0, {z}), size: (20, 20))");
@@ -227,7 +227,7 @@ fn parallel(kind: BlockerKind, dice: &mut SceneDice) -> (String, &'static str, S
     (floor, "floor", format!("(name: \"plane\", {plane})"))
 }
 
-/// A smooth surface, its name, and a plane behind it.
+/// Returns a smooth surface, its name, and a plane behind it.
 fn smooth(kind: BlockerKind, dice: &mut SceneDice) -> (String, &'static str, String) {
     let angle = dice.between(0.05, 0.7);
     let event = match kind {

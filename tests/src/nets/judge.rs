@@ -8,24 +8,25 @@ use crate::statistics::{mean, uniformity};
 
 /// Permitted deviation of fractions and means, in standard errors.
 const BORNE: f64 = 3.0;
-/// Maximum permitted L2 ratio. With a single real number, 3·10⁻⁵ of all scenes would exceed it.
+/// Maximum permitted L2 ratio. If a prediction were a single real number, 3·10⁻⁵ of all scenes
+/// would exceed it.
 const LARGEST: f64 = 5.0;
 /// The mean square of a Student's t with 31 degrees of freedom.
 const OF_ONE: f64 = 31.0 / 29.0;
-/// The fraction of Student's t with 31 degrees of freedom beyond 1, 2 and 3.
+/// The fractions of Student's t with 31 degrees of freedom whose magnitude is above 1, 2 and 3.
 const STUDENT: [f64; 3] = [0.3251, 0.0543, 0.0053];
 /// Number of scenes listed by largest ratio.
 const WORST: usize = 12;
 
-/// The expected fraction of complex numbers beyond a distance.
+/// Returns the expected fraction of complex numbers whose magnitude is above a distance.
 fn beyond(distance: f64) -> f64 {
     (1.0 + 2.0 * distance.powi(2) / 31.0).powi(-15)
 }
 
-/// The quantity of a scene's outcome that is judged.
+/// A function that selects the quantity to judge from the outcome of a scene.
 type Reading = fn(&SceneOutcome) -> &Measured;
 
-/// All tables, including those of planted faults.
+/// Returns all tables, including those of planted faults.
 pub(super) fn sections(outcomes: &[SceneOutcome], left_out: usize) -> Vec<ReportSection> {
     let sound: Reading = |outcome| &outcome.sound;
     let all = judged(outcomes, sound, 1.0);
@@ -47,7 +48,7 @@ pub(super) fn sections(outcomes: &[SceneOutcome], left_out: usize) -> Vec<Report
 /// Whether a kind of scene belongs to a group.
 type Belongs = fn(BlockerKind) -> bool;
 
-/// The fractions beyond 1, 2 and 3 standard errors, with errors scaled by a factor.
+/// Returns the fractions beyond 1, 2 and 3 standard errors, with errors scaled by a factor.
 fn judged(outcomes: &[SceneOutcome], reading: Reading, scale: f64) -> ReportSection {
     let mut rows = Vec::new();
     let groups: [(&str, Belongs); 3] = [
@@ -97,7 +98,7 @@ fn judged(outcomes: &[SceneOutcome], reading: Reading, scale: f64) -> ReportSect
     }
 }
 
-/// The fractions for a group of scenes.
+/// Returns the fractions for a group of scenes.
 fn row(name: &str, of_group: &[&Measured], scale: f64) -> Row {
     let cells = vec![name.to_owned(), of_group.len().to_string()];
     let mut row = Row::new(cells, Vec::new());
@@ -136,8 +137,8 @@ fn row(name: &str, of_group: &[&Measured], scale: f64) -> Row {
     row
 }
 
-/// The standard error of a mean square over scenes. It is estimated from the scatter over pairs of
-/// nets, because all scenes use the same nets.
+/// Returns the standard error of a mean square over scenes. This error is estimated from the
+/// scatter over pairs of nets, because all scenes use the same nets.
 fn common(of_group: &[&Measured], scale: f64) -> f64 {
     let count = of_group[0].pairs.len();
     let squares = (0..count).map(|pair| {
@@ -151,7 +152,8 @@ fn common(of_group: &[&Measured], scale: f64) -> f64 {
 /// Adds a fraction to a row, with a check against the expectation for this many numbers.
 fn put(row: &mut Row, shares: &[f64], expected: f64, numbers: f64) {
     let [share, error] = mean(shares);
-    // If few values are that far away, their scatter over the scenes is a poor estimate.
+    // If few values are beyond this distance, the error estimated from their scatter is
+    // inaccurate.
     let error = error.max((expected * (1.0 - expected) / numbers).sqrt());
     let cell = format!("{:.2} ± {:.2} %", 100.0 * share, 100.0 * error);
     row.cells.push(cell);
@@ -217,7 +219,7 @@ fn by_kind(outcomes: &[SceneOutcome], left_out: usize) -> ReportSection {
     }
 }
 
-/// The scenes with the largest ratios.
+/// Returns the scenes with the largest ratios.
 fn worst(outcomes: &[SceneOutcome]) -> ReportSection {
     let mut all: Vec<&SceneOutcome> = outcomes.iter().collect();
     all.sort_by(|a, b| b.sound.ratio.total_cmp(&a.sound.ratio));

@@ -8,7 +8,7 @@ mod scene;
 use std::fs;
 use std::process::ExitCode;
 
-/// The text of the scene with this number; the kinds alternate.
+/// Returns the text of the scene with this number; the kinds alternate.
 pub(crate) fn scene(number: u64) -> String {
     let kinds = draw::BlockerKind::ALL;
     let (kind, _) = kinds[usize::try_from(number).unwrap_or_default() % kinds.len()];

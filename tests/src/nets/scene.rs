@@ -15,11 +15,13 @@ pub(super) struct SceneOutcome {
     pub(super) number: u64,
     /// The stated ‖error‖/‖F‖.
     pub(super) stated: f64,
-    /// Error of the truth, divided by the stated error of the prediction.
+    /// Error of the truth with which the prediction is compared, divided by the stated error of
+    /// the prediction.
     pub(super) of_truth: f64,
     /// The prediction compared with the truth.
     pub(super) sound: Measured,
-    /// The same with a planted fault: a ray density 2 % too large, so that weights are too small.
+    /// The comparison with a planted fault: the density of rays is 2 % too large, so weights are
+    /// too small.
     pub(super) planted: Measured,
 }
 
@@ -27,17 +29,18 @@ pub(super) struct SceneOutcome {
 pub(super) struct Measured {
     /// ‖F − truth‖/‖truth‖, divided by the stated error.
     pub(super) ratio: f64,
-    /// The squared ratio for the means of adjacent pairs of nets. The error of such a mean is four
-    /// times that of the mean of all nets.
+    /// The squared ratios for the means of adjacent pairs of nets; the error of such a mean is
+    /// four times that of the mean of all nets.
     pub(super) pairs: Vec<f64>,
-    /// (F − truth)/(standard error) at zero frequency.
+    /// The deviation at zero frequency: (F − truth)/(standard error).
     pub(super) zero: f64,
-    /// The same at other frequencies: Hotelling's T of real and imaginary part, over √2.
+    /// The deviations at other frequencies: Hotelling's T of real and imaginary part, divided by
+    /// √2.
     pub(super) apart: Vec<f64>,
 }
 
-/// The scenes of each kind. Scenes without a theory and scenes without light are replaced by new
-/// draws.
+/// Returns the outcomes of the scenes of each kind. Scenes without a theory and scenes without
+/// light are replaced by further random scenes.
 pub(super) fn outcomes(each: impl Fn(&SceneOutcome)) -> (Vec<SceneOutcome>, usize) {
     let (mut outcomes, mut left_out, mut number) = (Vec::new(), 0, 0);
     for (kind, count) in BlockerKind::ALL {
@@ -58,7 +61,7 @@ pub(super) fn outcomes(each: impl Fn(&SceneOutcome)) -> (Vec<SceneOutcome>, usiz
     (outcomes, left_out)
 }
 
-/// The error for a scene whose truth is not known well enough.
+/// The error value for a scene whose truth is not known accurately enough.
 struct Untold;
 
 /// The result of a prediction.
@@ -74,11 +77,11 @@ const OF_STATED: f64 = 0.1;
 const HUNDREDFOLD: f64 = 128.0;
 /// The factor of the planted fault in a density.
 const PLANTED: f64 = 1.02;
-/// Larger errors mean that there is hardly any light, and that the prediction depends on a few
-/// rays.
+/// Maximum relative error of a prediction. A larger error means that hardly any light arrives and
+/// that the prediction depends on a few rays.
 const DARK: f64 = 0.3;
 
-/// The outcome; `None` if no theory applies or no light arrives.
+/// Returns the outcome, or `None` if no theory applies or no light arrives.
 fn outcome(kind: BlockerKind, number: u64) -> Result<Option<SceneOutcome>, Untold> {
     let mut dice = SceneDice::new(number);
     let text = scene(kind, &mut dice);
@@ -126,7 +129,7 @@ fn measured(found: &PredictionFound, truth: &Slices) -> Measured {
     }
 }
 
-/// The squared L2 ratio for the mean of two nets.
+/// Returns the squared L2 ratio for the mean of two nets.
 fn of_pair(pair: &[Slices], truth: &Slices, error: f64) -> f64 {
     let mut mean = pair[0].clone();
     mean.half += &pair[1].half;
@@ -150,7 +153,8 @@ impl PredictionFound {
     }
 }
 
-/// Single frequencies as indices [azimuth, ρ ≥ 0, ν]; index 4 of ν is ν = 0.
+/// The frequencies that are judged one by one, as indices [azimuth, ρ ≥ 0, ν]; index 4 of ν is ν =
+/// 0.
 const SINGLE: [[usize; 3]; 4] = [[0, 1, 4], [1, 2, 6], [0, 3, 3], [1, 5, 8]];
 
 fn theory(scene: &Scene, plane: &VirtualPlane) -> Option<Theory> {
@@ -158,7 +162,7 @@ fn theory(scene: &Scene, plane: &VirtualPlane) -> Option<Theory> {
     applicability.dark.is_none().then_some(applicability.theory)
 }
 
-/// A prediction by nets.
+/// Returns a prediction by nets.
 fn found(theory: &Theory, plane: &VirtualPlane, budget: RayBudget) -> Option<PredictionFound> {
     let picture = ProjectionGrid::new(&plane.window, 1);
     let over = (&plane.window, &plane.grid, &picture);
@@ -176,8 +180,8 @@ fn found(theory: &Theory, plane: &VirtualPlane, budget: RayBudget) -> Option<Pre
     })
 }
 
-/// The truth and its error: a closed form, or a prediction with enough rays to make the error
-/// small.
+/// Returns the truth and its error: a closed form, or a prediction with enough rays to make the
+/// error small.
 fn truth(
     theory: &Theory,
     plane: &VirtualPlane,

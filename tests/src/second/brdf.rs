@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 const NORMAL: Vector = [0.0, 0.0, 1.0];
 
-/// The BRDF between two unit vectors away from a surface whose normal is along Z, sr⁻¹
+/// Returns the BRDF between two unit vectors away from a surface whose normal is along Z, sr⁻¹
 /// (docs of `etendue_field::Brdf`).
 pub(super) fn value(brdf: &Brdf, from: Vector, to: Vector, fault: &str) -> f64 {
     if from[2] <= 0.0 || to[2] <= 0.0 {
@@ -28,7 +28,8 @@ pub(super) fn value(brdf: &Brdf, from: Vector, to: Vector, fault: &str) -> f64 {
     factors * lobe(brdf, incidence, [from, to], fault)
 }
 
-/// The value at an angle, interpolated linearly between two values of a list over 0 to 90°.
+/// Returns the value at an angle, interpolated linearly between two values of a list over 0 to
+/// 90°.
 fn by_angle(values: &[f64], angle: f64, fault: &str) -> f64 {
     let step = 90.0 / (values.len() - 1) as f64;
     let degrees = match fault {
@@ -44,7 +45,7 @@ fn by_angle(values: &[f64], angle: f64, fault: &str) -> f64 {
     })
 }
 
-/// A BRDF without the factors of its lists.
+/// Returns the value of a BRDF without the factors given by its lists.
 fn lobe(brdf: &Brdf, incidence: f64, [from, to]: [Vector; 2], fault: &str) -> f64 {
     let reflected = |angle: f64| brdf.albedo * reflected(&brdf.fresnel, angle, fault);
     match brdf.lobe {
@@ -68,7 +69,8 @@ fn lobe(brdf: &Brdf, incidence: f64, [from, to]: [Vector; 2], fault: &str) -> f6
     }
 }
 
-/// (n + 1)/2π cosⁿ of the angle to the mirror direction (Phong 1975), of unit integral.
+/// Returns the Phong lobe (n + 1)/2π cosⁿ of the angle to the mirror direction, of unit integral
+/// (Phong 1975).
 fn phong(exponent: f64, from: Vector, to: Vector, fault: &str) -> f64 {
     let mirror = turned(from, NORMAL, PI);
     let cosine = match fault {
@@ -85,7 +87,7 @@ fn phong(exponent: f64, from: Vector, to: Vector, fault: &str) -> f64 {
     unit / (2.0 * PI) * (exponent * cosine.ln()).exp()
 }
 
-/// The microfacet normal that reflects one direction into the other.
+/// Returns the microfacet normal that reflects one direction into the other.
 fn facet(from: Vector, to: Vector, fault: &str) -> Vector {
     match fault {
         "facet on the side of one direction" => unit(plus(from, 1.1, to)),
@@ -93,7 +95,8 @@ fn facet(from: Vector, to: Vector, fault: &str) -> Vector {
     }
 }
 
-/// D G F / (4 cos cos), without F (Cook and Torrance 1982; Walter et al. 2007, Eq. 20).
+/// Returns the microfacet BRDF D G F / (4 cos cos) without its Fresnel factor F (Cook and Torrance
+/// 1982; Walter et al. 2007, Eq. 20).
 fn facets(density: f64, mask: impl Fn(Vector) -> f64, [from, to]: [Vector; 2], fault: &str) -> f64 {
     let masks = match fault {
         "masked one way only" => mask(from),
@@ -114,8 +117,8 @@ fn beckmann(roughness: f64, facet: Vector, fault: &str) -> f64 {
     (-steep / squared).exp() / (PI * squared) / facet[2].powi(4)
 }
 
-/// The distribution of normals of an ellipsoid with half-axes 1, 1 and α (Trowbridge and Reitz
-/// 1975).
+/// Returns the distribution of normals of an ellipsoid with half-axes 1, 1 and α (Trowbridge and
+/// Reitz 1975).
 fn ggx(roughness: f64, facet: Vector, fault: &str) -> f64 {
     let squared = roughness * roughness;
     let [x, y, z] = facet;
@@ -129,8 +132,9 @@ fn ggx(roughness: f64, facet: Vector, fault: &str) -> f64 {
 }
 
 /// Smith's Λ (Smith 1967; Heitz 2014, *Understanding the masking-shadowing function*): ∫ (s − μ)
-/// p(s) ds / μ over s > μ. Here s is the slope of a microfacet along a direction, and μ is the
-/// cotangent of the angle of that direction. Here p = exp(−s²/α²)/(α√π), and s = α w.
+/// p(s) ds / μ over s > μ. In Smith's Λ, s is the slope of a microfacet along a direction, and μ
+/// is the cotangent of the angle between this direction and the normal. For Beckmann's
+/// distribution, p = exp(−s²/α²)/(α√π), and the integral is over w = s/α.
 fn masked_beckmann(roughness: f64, angle: f64) -> f64 {
     let from = 1.0 / (angle.tan() * roughness);
     if from > 6.0 {
@@ -140,7 +144,7 @@ fn masked_beckmann(roughness: f64, angle: f64) -> f64 {
     integral([from, from + 7.0], 600, exceeds) / from
 }
 
-/// The same Λ with p = α²/(2 (α² + s²)^(3/2)), and s = α tan ψ.
+/// Smith's Λ for GGX, with p = α²/(2 (α² + s²)^(3/2)); the integral is over ψ, where s = α tan ψ.
 fn masked_ggx(roughness: f64, angle: f64) -> f64 {
     let cotangent = 1.0 / angle.tan();
     let from = (cotangent / roughness).atan();
@@ -148,7 +152,7 @@ fn masked_ggx(roughness: f64, angle: f64) -> f64 {
     integral([from, PI / 2.0], 150, exceeds) / cotangent
 }
 
-/// An integral by Simpson's rule, with this many pairs of steps.
+/// Returns an integral by Simpson's rule, with this many pairs of steps.
 fn integral([from, to]: [f64; 2], pairs: u32, value: impl Fn(f64) -> f64) -> f64 {
     let step = (to - from) / f64::from(2 * pairs);
     let at = |i: u32| value(from + step * f64::from(i));
@@ -156,10 +160,10 @@ fn integral([from, to]: [f64; 2], pairs: u32, value: impl Fn(f64) -> f64) -> f64
     step / 3.0 * (at(0) + inner.sum::<f64>() + at(2 * pairs))
 }
 
-/// The reflectance of unpolarised light: the mean of |r|² for polarisation across (s) and along (p)
-/// the plane of incidence (Fresnel 1823; Born and Wolf 1999, 1.5.2 and 14.2). The angle of
-/// refraction follows Snell's law, and is complex if the index is complex. Swapping s and p would
-/// not change the mean, so the fault affects only one of them.
+/// Returns the reflectance of unpolarised light: the mean of |r|² for polarisation across (s) and
+/// along (p) the plane of incidence (Fresnel 1823; Born and Wolf 1999, 1.5.2 and 14.2). The angle
+/// of refraction follows Snell's law, and is complex if the index is complex. The fault affects
+/// only one polarisation, because swapping s and p would not change the mean.
 fn reflected(fresnel: &Fresnel, angle: f64, fault: &str) -> f64 {
     let index = match *fresnel {
         Fresnel::White => return 1.0,
@@ -183,7 +187,7 @@ fn reflected(fresnel: &Fresnel, angle: f64, fault: &str) -> f64 {
     }
 }
 
-/// The direction into which a microfacet reflects another direction.
+/// Returns the direction into which a microfacet reflects another direction.
 pub(super) fn mirrored(from: Vector, facet: Vector) -> Vector {
     plus(from.map(|c| -c), 2.0 * dot(from, facet), facet)
 }

@@ -9,8 +9,8 @@ use crate::report::{
     Bound::{Above, AtMost, Below},
 };
 
-/// The largest difference in a round, with the named fault planted in the second implementation, if
-/// any.
+/// A function that returns the largest difference in a round; its text names the fault planted in
+/// the second implementation, if any.
 type Difference = dyn Fn(&mut Dice, &str) -> f64;
 
 /// A comparison of two implementations.
@@ -60,7 +60,7 @@ impl SecondCheck {
     }
 }
 
-/// The difference of two numbers relative to the larger.
+/// Returns the difference of two numbers relative to the larger.
 pub(super) fn relative(a: f64, b: f64) -> f64 {
     let larger = worse(a.abs(), b.abs());
     if larger > 0.0 {

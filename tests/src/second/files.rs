@@ -1,5 +1,5 @@
-//! A surface with a picture, defined in a scene file: the picture's format, its placement on the
-//! surface, blend and texture.
+//! Pictures on surfaces as scene files define them: their formats, their placement, and their use
+//! as blend and texture.
 
 use super::check::{SecondCheck, worse};
 use super::pattern::{Levels, Pattern, Varied};
@@ -30,7 +30,7 @@ const FAULTS: &[&str] = &[
 /// The file name of the picture.
 const FILE: &str = "blend.png";
 
-/// The luminance of red, green and blue (Rec. ITU-R BT.709).
+/// Returns the luminance of red, green and blue (Rec. ITU-R BT.709).
 fn luminance([r, g, b]: [f64; 3]) -> f64 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }

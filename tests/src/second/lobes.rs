@@ -22,7 +22,7 @@ fn predicted(brdf: &Brdf, from: Vector, to: Vector) -> f64 {
     etendue_theory::scattering::brdf::value(brdf, DVec3::Z, from.into(), to.into())
 }
 
-/// The same for a sum of BRDFs.
+/// An implementation under test of a sum of BRDFs.
 type FastSum = fn(&Mixture<'_>, Vector, Vector) -> f64;
 
 fn traced_sum(mixture: &Mixture<'_>, from: Vector, to: Vector) -> f64 {
@@ -120,13 +120,13 @@ fn of_sum(name: &'static str, fast: FastSum) -> SecondCheck {
     }
 }
 
-/// The largest difference relative to the value.
+/// Returns the largest relative difference for a BRDF with this kind of lobe.
 fn difference(fast: Fast, lobe: fn(&mut Dice) -> Lobe, dice: &mut Dice, fault: &str) -> f64 {
     let brdf = Brdf::new(lobe(dice), dice.unit(), fresnel(dice));
     compared(fast, &brdf, dice, fault)
 }
 
-/// The same for a Phong lobe times lists of factors of both angles.
+/// Returns the largest relative difference for a Phong lobe times lists of factors of both angles.
 fn separable(fast: Fast, dice: &mut Dice, fault: &str) -> f64 {
     let exponent = scale(dice, 0.1, 1e3);
     let mut list = || {
@@ -144,7 +144,7 @@ fn separable(fast: Fast, dice: &mut Dice, fault: &str) -> f64 {
     compared(fast, &brdf, dice, fault)
 }
 
-/// The same for a sum of BRDFs with weights.
+/// Returns the largest relative difference for a sum of BRDFs with weights.
 fn summed(fast: FastSum, dice: &mut Dice, fault: &str) -> f64 {
     let mut term = |exponent: f64| Term {
         brdf: Brdf::new(Lobe::Phong { exponent }, dice.unit(), fresnel(dice)),
@@ -191,7 +191,7 @@ pub(super) fn fresnel(dice: &mut Dice) -> Fresnel {
     }
 }
 
-/// A direction within the lobe, occasionally below the surface.
+/// Returns a direction within the lobe, occasionally below the surface.
 fn to(dice: &mut Dice, lobe: Lobe, from: Vector) -> Vector {
     match lobe {
         Lobe::Lambertian => direction(dice),

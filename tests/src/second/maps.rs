@@ -1,5 +1,5 @@
 //! Theory's affine maps at surfaces, compared with differences of rays traced by the second
-//! implementation. Only theory uses the maps, but they depend on conventions that the tracers
+//! implementation. The maps are used only by theory, but depend on conventions that the tracers
 //! share.
 
 use super::check::{SecondCheck, worse};
@@ -15,7 +15,7 @@ use etendue_theory::rays::{self, Plane, SpecularSurface};
 use etendue_theory::{Observed, scattering};
 use std::path::Path;
 
-/// Half of the difference between two rays, in metres and radians.
+/// Half of the difference between the two rays of a finite difference, in metres and radians.
 const STEP: f64 = 1e-5;
 
 const MIRROR: &[&str] = &[
@@ -74,7 +74,7 @@ impl Met {
         }
     }
 
-    /// The frame of axes in the coordinates at the light.
+    /// Returns the frame of axes in the coordinates at the light.
     fn frame(&self, axes: &Axes) -> Frame {
         let vector = |a: Vector| self.world.light.components(a).into();
         Frame {
@@ -102,13 +102,13 @@ impl Met {
         }
     }
 
-    /// The ray (x, y, u, v) of the light.
+    /// Returns origin and direction of the ray (x, y, u, v) of the light.
     fn emitted(&self, [x, y, u, v]: [f64; 4]) -> (Vector, Vector) {
         let light = &self.world.light;
         (light.point([x, y, 0.0]), unit(light.vector([u, v, 1.0])))
     }
 
-    /// The system for reflection at the surface.
+    /// Returns theory's system for light that the surface reflects.
     fn scattering(&self, plane: Plane) -> Observed<scattering::ScatteringSystem> {
         let brdf = Brdf::new(Lobe::Lambertian, 1.0, Fresnel::White);
         let system = scattering::ScatteringSystem {
@@ -123,7 +123,7 @@ impl Met {
     }
 }
 
-/// The deviation of a map from the derivative of a function at a ray.
+/// Returns the deviation of a map from the derivative of a function at a ray.
 fn apart(map: &AffineMap<4>, at: [f64; 4], of: impl Fn([f64; 4]) -> Option<[f64; 4]>) -> f64 {
     let each = (0..4).map(|i| {
         let moved = |by: f64| {
@@ -191,7 +191,8 @@ fn onto(dice: &mut Dice, fault: &str) -> f64 {
     })
 }
 
-/// The map from (s, t, θ, φ) of light that leaves the surface to the coordinates of a plane.
+/// Checks the map from (s, t, θ, φ) of light that leaves the surface to the coordinates of a
+/// plane.
 fn off(dice: &mut Dice, fault: &str) -> f64 {
     let met = Met::new(dice);
     let leaving = *dice.pick(&PLANES[4..]);

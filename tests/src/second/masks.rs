@@ -46,13 +46,14 @@ pub(super) fn checks() -> Vec<SecondCheck> {
     ]
 }
 
-/// The center of a layer: its coordinates along X and Y, and those in the world.
+/// Returns the center of a random layer: its coordinates along X and Y, and its position in the
+/// world.
 fn layer(dice: &mut Dice, world: &World) -> ([f64; 2], Vector) {
     let [x, y] = [between(dice, -0.5, 0.5), between(dice, -0.5, 0.5)];
     ([x, y], world.light.point([x, y, 0.5]))
 }
 
-/// The transmittance of the resolved mask at points around its center, compared with its
+/// Compares the transmittance of the resolved mask, at points around its center, with its
 /// definition.
 fn against(
     dice: &mut Dice,
@@ -69,8 +70,8 @@ fn against(
     each.fold(0.0, worse)
 }
 
-/// A rectangle to the left, a disc to the right, and a half-plane beyond both, on any of the four
-/// sides.
+/// Checks a layer with a rectangle to the left, a disc to the right, and a half-plane beyond both
+/// on any of the four sides.
 fn shapes(dice: &mut Dice, fault: &str) -> f64 {
     let mut world = World::new(dice).with_wall(1.0);
     let (center, origin) = layer(dice, &world);
@@ -219,7 +220,7 @@ fn slide_of_projector(dice: &mut Dice, fault: &str) -> f64 {
     each.fold(0.0, worse)
 }
 
-/// The four profiles in docs/conventions.md, section Window.
+/// Checks windows with the profiles defined in docs/conventions.md, section Window.
 fn window(dice: &mut Dice, fault: &str) -> f64 {
     let profiles = [0; 4].map(|_| match dice.below(3) {
         0 => Profile::Hann(scale(dice, 0.1, 1.0)),

@@ -52,7 +52,7 @@ pub(super) fn checks() -> Vec<SecondCheck> {
     ]
 }
 
-/// A ray and a triangle in front of it, which some rays miss.
+/// Checks the hit of a ray with a triangle in front of it, which some rays miss.
 fn triangle(dice: &mut Dice, fault: &str) -> f64 {
     let corners = [0; 3].map(|_| plus([0.0, 0.0, 2.0], 1.0, direction(dice)));
     let normals = [0; 3].map(|_| {
@@ -142,7 +142,7 @@ impl Hill {
         }
     }
 
-    /// The slopes of the paraboloid at the hit.
+    /// Returns the slopes of the paraboloid at the hit.
     fn slopes(&self) -> [f64; 2] {
         [0, 1].map(|i| -self.curvature[i] * self.at[i])
     }
@@ -154,8 +154,9 @@ impl Hill {
         hit.map_or(1.0, |hit| distance(hit.normal.to_array(), normal))
     }
 
-    /// The curvature of the normal section along (dx, dy, p dx + q dy): the second fundamental form
-    /// divided by the first (do Carmo 1976, section 3.3). It is positive if the surface is convex.
+    /// Returns the curvature of the normal section along (dx, dy, p dx + q dy): the second
+    /// fundamental form divided by the first (do Carmo 1976, section 3.3). The curvature is
+    /// positive if the surface is convex.
     fn along(&self, [dx, dy]: [f64; 2]) -> (Vector, f64) {
         let [p, q] = self.slopes();
         let [k, l] = self.curvature;
@@ -181,8 +182,8 @@ fn curvatures(dice: &mut Dice, fault: &str) -> f64 {
         let tangent: DVec3 = hill.light.components(unit(tangent)).into();
         let [a, b] = [tangent.dot(x), tangent.dot(y)];
         let [k, l, _] = patch.curvature;
-        // The formula of Euler 1760, divided by the squared length of the tangent's projection onto
-        // the fitted plane.
+        // Euler's formula for normal curvature (1760), divided by the squared length of the
+        // tangent's projection onto the fitted plane.
         let fast = (k * a * a + l * b * b) / (a * a + b * b);
         (fast - second).abs() / largest
     });

@@ -1,11 +1,12 @@
-//! A second implementation of the code shared by theory and both tracers, and of the BRDFs of each.
+//! A second implementation of the code that theory and both tracers share, and of the BRDFs that
+//! theory and the tracers implement separately.
 //!
-//! A comparison of photons with theory cannot reveal a mistake that both make. So every shared
-//! function is implemented again here, in a slow and plain way, from its documentation:
+//! A comparison of photons with theory cannot reveal a mistake in code that both use. So this
+//! module implements every shared function again, in a slow and plain way, from its documentation:
 //! docs/scenes.md, docs/conventions.md, docs/theory.md, and the cited literature. The second
-//! implementation never calls the fast code, and shares only the plain data that describes a scene.
-//! If a function depends on how a scene file is read, a file is written and read. Faults are
-//! planted in the second implementation; each must be detected.
+//! implementation never calls the fast code, and shares only the plain data that describes a
+//! scene. If a function depends on how a scene file is read, a file is written and read. Faults
+//! are planted in the second implementation; each must be detected.
 
 mod brdf;
 mod check;
@@ -30,7 +31,7 @@ use check::SecondCheck;
 use std::io;
 use std::rc::Rc;
 
-/// The seed of all points. It was fixed in advance, and not chosen by its results.
+/// The seed of all points. This seed was fixed in advance, and not chosen by its results.
 const SEED: u64 = 1;
 
 /// Compares every shared function with its second implementation.
@@ -60,7 +61,7 @@ pub(crate) fn second() -> io::Result<ReportSection> {
 
 fn checks() -> io::Result<Vec<SecondCheck>> {
     let folder = Rc::new(tempfile::tempdir()?);
-    // Pictures use a separate case number, because the case numbers of points count up from 0.
+    // Pictures use the largest case number, because the case numbers of points count up from 0.
     let mut dice = Dice::new(SEED, u64::MAX);
     let picture = files::write_picture(folder.path(), &mut dice)?;
     let map = files::write_map(&folder.path().join(sky::FILE), &mut dice)?;
@@ -79,7 +80,7 @@ fn checks() -> io::Result<Vec<SecondCheck>> {
     Ok(all.into_iter().flatten().collect())
 }
 
-/// A row for each planted fault.
+/// Returns a row for each planted fault.
 fn rows(check: &SecondCheck) -> Vec<Row> {
     let outcome = check.run();
     let (tolerance, reason) = check.tolerance;

@@ -20,12 +20,12 @@ const FRAMES: &[&str] = &[
 
 const RECTANGLE: &[&str] = &["edges along Y", "turned over"];
 
-/// The event of the central ray at a surface.
+/// The change of direction of the central ray at a surface.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Turn {
-    /// It is reflected along a direction, on the side it came from.
+    /// A reflection along this direction, to the side from which the ray came.
     Back(Vector),
-    /// It is transmitted, along a direction.
+    /// A transmission along this direction.
     Through(Vector),
 }
 
@@ -81,7 +81,7 @@ impl Legs {
             y: cross(normal, t),
             d: times(sign, normal),
         };
-        // From N towards T.
+        // The longitude is measured from N towards T.
         let longitude = |axes: &Axes, away: Vector| {
             let theta = dot(away, axes.x).atan2(dot(away, axes.d));
             if fault == "sign of longitude" {
@@ -103,8 +103,9 @@ impl Legs {
         }
     }
 
-    /// The frame after an event. It is the frame of a mirror with X reversed, or the frame of the
-    /// arriving ray, rotated by the smallest angle to the new direction.
+    /// Returns the frame after a change of direction: after a reflection, the mirrored frame with
+    /// X reversed, otherwise the frame of the arriving ray; either is then rotated by the smallest
+    /// angle to the new direction.
     fn after(before: &Axes, normal: Vector, turn: Turn, fault: &str) -> Axes {
         let mirrored = |a: Vector| plus(a, -2.0 * dot(a, normal), normal);
         let x_sign = if fault == "X not turned round" {
@@ -134,13 +135,13 @@ impl Legs {
     }
 }
 
-/// A direction that leaves a surface on the side of the arriving light.
+/// Returns a direction that leaves a surface on the side of the arriving light.
 fn leaves(dice: &mut Dice, normal: Vector) -> Vector {
     let tilt = between(dice, 0.0, 1.3);
     super::vector::aside(dice, normal, tilt)
 }
 
-/// A random event of the central ray, and its text.
+/// Returns a random event of the central ray, and its text.
 fn turn(dice: &mut Dice, light: &Axes, facing: Vector) -> (Turn, String, String) {
     let mirror = plus(light.d, -2.0 * dot(light.d, facing), facing);
     match dice.below(3) {
@@ -189,8 +190,8 @@ fn frames(dice: &mut Dice, fault: &str) -> f64 {
     apart.fold(0.0, worse)
 }
 
-/// A rectangle's edges are along the component of X that is orthogonal to its normal, and across
-/// this component.
+/// Checks that the edges of a rectangle are along the component of X that is orthogonal to its
+/// normal, and across this component.
 fn rectangle(dice: &mut Dice, fault: &str) -> f64 {
     let mut world = World::new(dice);
     let center = world.light.point([0.0, 0.0, 2.0]);

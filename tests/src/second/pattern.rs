@@ -12,17 +12,17 @@ pub(super) struct Levels {
     pub(super) values: Vec<f64>,
 }
 
-/// A pattern in the second implementation.
+/// A pattern on a surface, as the second implementation represents it.
 #[derive(Clone, Debug)]
 pub(super) enum Pattern {
     Cosine(Grating),
     Checkerboard(f64),
-    /// A picture with its width and height, metres.
+    /// A picture: its levels, and its width and height in metres.
     Picture(Levels, [f64; 2]),
 }
 
 impl Pattern {
-    /// The value at a point given along the axes of the surface.
+    /// Returns the value at a point given along the axes of the surface.
     pub(super) fn value(&self, at: [f64; 2], fault: &str) -> f64 {
         let [s, t] = match fault {
             "axes swapped" => [at[1], at[0]],
@@ -47,8 +47,8 @@ pub(super) fn cosine(grating: &Grating, at: [f64; 2], fault: &str) -> f64 {
     0.5 + 0.5 * grating.modulation * angle.cos()
 }
 
-/// A checkerboard. Squares of half a period are counted along both axes from the vertex, and the
-/// value is 1 where the sum of the counts is even.
+/// Returns a checkerboard. Squares of half a period are counted along both axes from the vertex,
+/// and the value is 1 where the sum of the counts is even.
 fn checkerboard(period: f64, at: [f64; 2], fault: &str) -> f64 {
     let side = match fault {
         "a side is a period" => period,
@@ -68,8 +68,8 @@ impl Levels {
         self.values[row * self.width + column]
     }
 
-    /// A picture around the vertex, with its top along Y. It is bilinear between pixel centres,
-    /// constant beyond the outermost centres, and 0 beyond its edge.
+    /// Returns a picture around the vertex, with its top along Y. The picture is bilinear between
+    /// pixel centres, constant beyond the outermost centres, and 0 beyond its edge.
     fn picture(&self, [width, height]: [f64; 2], [s, t]: [f64; 2], fault: &str) -> f64 {
         if s.abs() > width / 2.0 || t.abs() > height / 2.0 {
             return 0.0;
@@ -99,8 +99,8 @@ impl Levels {
     }
 }
 
-/// The last of the ascending centres before a position, and the fraction of the way to the next
-/// centre. Positions beyond the outermost centres are clamped.
+/// Returns the last of the ascending centres before a position, and the fraction of the way to the
+/// next centre. Positions beyond the outermost centres are clamped.
 fn between(centres: &[f64], at: f64, fault: &str) -> (usize, f64) {
     let last = centres.len() - 1;
     if at <= centres[0] {
@@ -127,8 +127,8 @@ pub(super) struct Varied {
 }
 
 impl Varied {
-    /// The weight of each BRDF at a point: the blend for `brdf`, and the rest for `other`. The
-    /// texture multiplies both weights.
+    /// Returns both BRDFs with their weights at a point: `brdf` has the value of the blend, and
+    /// `other` the rest up to 1. The texture multiplies both weights.
     pub(super) fn at(&self, at: [f64; 2], fault: &str) -> [(f64, &Brdf); 2] {
         let share = self.blend.value(at, fault);
         let share = match fault {

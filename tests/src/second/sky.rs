@@ -47,7 +47,8 @@ pub(super) fn checks(folder: &Rc<TempDir>, map: &Levels) -> Vec<SecondCheck> {
     ]
 }
 
-/// The axes of a map: Y is `up`, Z is the component of `front` orthogonal to it, X = Y × Z.
+/// Returns the axes of a map: Y is `up`, Z is the component of `front` orthogonal to it, X = Y ×
+/// Z.
 fn axes(dice: &mut Dice) -> (Axes, String) {
     let up = direction(dice);
     let tilt = between(dice, 0.3, 2.8);
@@ -57,7 +58,7 @@ fn axes(dice: &mut Dice) -> (Axes, String) {
     (Axes::new([0.0; 3], up, front), text)
 }
 
-/// The components of a direction along X, up and front of the map.
+/// Returns the components of a direction along the map's axes X, up and front.
 fn seen(axes: &Axes, from: Vector, fault: &str) -> Vector {
     if fault == "axes of the world" {
         return from;
@@ -66,7 +67,7 @@ fn seen(axes: &Axes, from: Vector, fault: &str) -> Vector {
     [x, up, front]
 }
 
-/// The direction from which light that travels along a direction comes.
+/// Returns the direction from which light comes, opposite to that in which it travels.
 fn origin(along: Vector, fault: &str) -> Vector {
     match fault {
         "the way light goes" => along,
@@ -74,7 +75,7 @@ fn origin(along: Vector, fault: &str) -> Vector {
     }
 }
 
-/// The radiance of the scene's light along a direction of the world.
+/// Returns the radiance of the scene's light along a direction of the world.
 fn fast(world: &World, light: &Light, along: Vector) -> f64 {
     let Light::Environment { environment } = light else {
         return f64::NAN;
@@ -119,7 +120,7 @@ impl Levels {
             _ => latitude,
         };
         let row = |j: usize| {
-            // The adjacent columns, with the last one repeated before the first.
+            // The two adjacent columns; the last column of the map also stands before the first.
             let columns = (0..=self.width).map(|i| {
                 let right = PI * (1.0 - (2.0 * i as f64 + 1.0) / w);
                 let past = (right + TAU / w - longitude).rem_euclid(TAU) / (TAU / w);
@@ -185,7 +186,7 @@ fn lobed(dice: &mut Dice, fault: &str, folder: &Path) -> f64 {
                 radiance * (-fall / squared).exp()
             })
             .sum();
-        // Where the lobes vanish there is nothing to compare.
+        // The constants are added because there is nothing to compare where the lobes vanish.
         relative(
             fast(&world, &scene.light, along) + 1e-9,
             brightness * second + 1e-9,

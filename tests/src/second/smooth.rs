@@ -23,8 +23,8 @@ pub(super) struct Smooth {
 }
 
 impl Smooth {
-    /// A surface with its vertex on the central ray, tilted by up to `most` radians, and its text
-    /// in a scene file without the event.
+    /// Returns a surface with its vertex on the central ray, tilted by up to `most` radians, and
+    /// its text in a scene file without the event.
     pub(super) fn new(dice: &mut Dice, world: &World, most: f64) -> (Self, String) {
         let tilt = between(dice, 0.1, most);
         let facing = aside(dice, times(-1.0, world.light.d), tilt);
@@ -59,7 +59,7 @@ impl Smooth {
         (smooth, words)
     }
 
-    /// The surface with a fault.
+    /// Returns the surface with the named fault planted in it.
     pub(super) fn wrong(mut self, fault: &str) -> Self {
         let Axes { origin, x, y, d } = self.axes;
         match (fault, self.form) {
@@ -75,15 +75,15 @@ impl Smooth {
         self
     }
 
-    /// The centre of the ball, or of the bar at the vertex: behind the vertex if the surface is
-    /// convex.
+    /// Returns the centre of the ball, or the point of the bar's axis nearest to the vertex; it is
+    /// behind the vertex if the surface is convex.
     fn middle(&self, k: f64) -> Vector {
         plus(self.axes.origin, -1.0 / k, self.axes.d)
     }
 
-    /// The point over (s, t).
+    /// Returns the point of the surface with the coordinates s and t on its tangent plane.
     pub(super) fn point(&self, s: f64, t: f64) -> Vector {
-        // The sag of a circle of radius 1/k.
+        // The depth of a circle of radius 1/k below its tangent.
         let sagged = |k: f64, r2: f64| (1.0 - (1.0 - k * k * r2).sqrt()) / k;
         let below = match self.form {
             Form::Plane => 0.0,
@@ -94,7 +94,7 @@ impl Smooth {
         self.axes.point([s, t, -below])
     }
 
-    /// The normal at a point, on the side the surface faces.
+    /// Returns the normal at a point, on the side the surface faces.
     pub(super) fn normal(&self, point: Vector) -> Vector {
         match self.form {
             Form::Plane => self.axes.d,
@@ -107,12 +107,12 @@ impl Smooth {
         }
     }
 
-    /// The component of a vector across the bar, which is along Y.
+    /// Returns the component of a vector across the bar, which is along Y.
     fn round(&self, a: Vector) -> Vector {
         plus(a, -dot(a, self.axes.y), self.axes.y)
     }
 
-    /// The distances of hits along a ray with a unit direction, nearest first.
+    /// Returns the distances of hits along a ray with a unit direction, nearest first.
     pub(super) fn hits(&self, start: Vector, towards: Vector) -> Vec<f64> {
         let roots = match self.form {
             Form::Plane => {
@@ -152,8 +152,8 @@ impl Smooth {
     }
 }
 
-/// The distances at which a line enters and leaves a ball whose centre is at `to_middle` from the
-/// line's start.
+/// Returns the distances at which a line enters and leaves a ball whose centre is at `to_middle`
+/// from the line's start.
 fn chord(to_middle: Vector, towards: Vector, radius: f64) -> Vec<f64> {
     let nearest = dot(to_middle, towards);
     let off = length(plus(to_middle, -nearest, towards));

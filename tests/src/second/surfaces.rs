@@ -62,7 +62,7 @@ pub(super) fn checks() -> Vec<SecondCheck> {
     ]
 }
 
-/// A surface of a scene, and the equivalent solid.
+/// Returns a scene with a surface, the equivalent solid, and the resolved surface.
 fn surface(dice: &mut Dice) -> (World, Smooth, Patch) {
     let mut world = World::new(dice);
     let (smooth, words) = Smooth::new(dice, &world, 1.0);

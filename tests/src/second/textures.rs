@@ -67,8 +67,8 @@ fn blended(dice: &mut Dice, fault: &str) -> f64 {
     apart(&reflectance.at(at[0], at[1]), varied.at(at, fault))
 }
 
-/// The difference of the weights in two sums. The full weight of a BRDF counts if it is in only one
-/// of the sums.
+/// Returns the largest difference of the weights in two sums; if only one of the sums contains a
+/// BRDF, the full weight of this BRDF counts.
 pub(super) fn apart(mixture: &Mixture<'_>, varied: [(f64, &Brdf); 2]) -> f64 {
     let weight = |brdf: &Brdf| {
         let weights = mixture.weighted().filter(|(_, of)| *of == brdf);
@@ -82,7 +82,7 @@ fn place(dice: &mut Dice) -> [f64; 2] {
     [between(dice, -0.7, 0.7), between(dice, -0.7, 0.7)]
 }
 
-/// The same pattern in the fast implementation.
+/// Converts a pattern to the type of the fast implementation.
 fn fast(pattern: &Pattern) -> field::Pattern {
     match pattern {
         Pattern::Cosine(grating) => field::Pattern::Cosine(*grating),

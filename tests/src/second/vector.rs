@@ -41,17 +41,17 @@ pub(super) fn distance(a: Vector, b: Vector) -> f64 {
     length(plus(a, -1.0, b))
 }
 
-/// The angle between two directions, accurate for small angles.
+/// Returns the angle between two directions, accurate for small angles.
 pub(super) fn angle(a: Vector, b: Vector) -> f64 {
     length(cross(a, b)).atan2(dot(a, b))
 }
 
-/// The component of a vector orthogonal to a unit vector, normalised.
+/// Returns the component of a vector orthogonal to a unit vector, normalised.
 pub(super) fn across(a: Vector, normal: Vector) -> Vector {
     unit(plus(a, -dot(a, normal), normal))
 }
 
-/// A vector rotated about a unit vector (Rodrigues 1840).
+/// Returns a vector rotated about a unit vector (Rodrigues 1840).
 pub(super) fn turned(a: Vector, axis: Vector, by: f64) -> Vector {
     let along = times(dot(a, axis), axis);
     let aside = plus(a, -1.0, along);
@@ -59,7 +59,7 @@ pub(super) fn turned(a: Vector, axis: Vector, by: f64) -> Vector {
     plus(along, 1.0, turned)
 }
 
-/// A vector under the smallest rotation from one unit vector to another.
+/// Returns a vector after the smallest rotation that takes one unit vector to another.
 pub(super) fn turned_along(a: Vector, from: Vector, to: Vector) -> Vector {
     let axis = cross(from, to);
     if length(axis) < 1e-12 {
@@ -86,12 +86,12 @@ impl Axes {
         Self { origin, x, y, d }
     }
 
-    /// The vector with these components.
+    /// Returns the vector with these components.
     pub(super) fn vector(&self, [a, b, c]: Vector) -> Vector {
         plus(plus(times(a, self.x), b, self.y), c, self.d)
     }
 
-    /// The point with these coordinates.
+    /// Returns the point with these coordinates.
     pub(super) fn point(&self, at: Vector) -> Vector {
         plus(self.origin, 1.0, self.vector(at))
     }
@@ -107,12 +107,12 @@ impl Axes {
         }
     }
 
-    /// The components of a vector.
+    /// Returns the components of a vector.
     pub(super) fn components(&self, a: Vector) -> Vector {
         [dot(a, self.x), dot(a, self.y), dot(a, self.d)]
     }
 
-    /// The coordinates of a point.
+    /// Returns the coordinates of a point.
     pub(super) fn coordinates(&self, point: Vector) -> Vector {
         self.components(plus(point, -1.0, self.origin))
     }
@@ -122,12 +122,12 @@ pub(super) fn between(dice: &mut Dice, low: f64, high: f64) -> f64 {
     low + (high - low) * dice.unit()
 }
 
-/// A random number with uniform logarithm.
+/// Returns a random number between two bounds, with a uniformly distributed logarithm.
 pub(super) fn scale(dice: &mut Dice, low: f64, high: f64) -> f64 {
     low * (high / low).powf(dice.unit())
 }
 
-/// A random direction.
+/// Returns a random direction.
 pub(super) fn direction(dice: &mut Dice) -> Vector {
     let height = between(dice, -1.0, 1.0);
     let around = between(dice, 0.0, TAU);
@@ -135,7 +135,7 @@ pub(super) fn direction(dice: &mut Dice) -> Vector {
     [across * around.cos(), across * around.sin(), height]
 }
 
-/// A random direction at an angle to a unit vector.
+/// Returns a random direction at an angle to a unit vector.
 pub(super) fn aside(dice: &mut Dice, from: Vector, by: f64) -> Vector {
     let axis = across(direction(dice), from);
     unit(turned(from, axis, by.min(PI)))

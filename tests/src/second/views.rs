@@ -23,7 +23,8 @@ const VIEWS: &[&str] = &[
     "cosines left out",
 ];
 
-/// Planes, each with its orientation and a flag that is set for arriving light.
+/// The planes under test: the orientation in a scene file, whether light arrives there, and the
+/// expected view.
 pub(super) const PLANES: [(&str, bool, View); 7] = [
     ("Orthogonal", true, View::Across),
     ("Tangent", true, View::Tangent),
@@ -94,7 +95,7 @@ fn difference(dice: &mut Dice, fault: &str) -> f64 {
     largest
 }
 
-/// The view of a plane on the surface.
+/// A plane on the surface, with the geometry that defines its coordinates.
 pub(super) struct Looking<'a> {
     pub(super) smooth: &'a Smooth,
     pub(super) leg: Axes,
@@ -127,8 +128,8 @@ impl Looking<'_> {
         }
     }
 
-    /// The deviation of coordinates, weight and the factor of differential irradiance from those of
-    /// the ray across the leg.
+    /// Returns how far coordinates, weight and the factor of differential irradiance deviate from
+    /// those computed from the same ray at the plane across the leg.
     fn off(&self, plane: &VirtualPlane, across: &Crossing, seen: &Crossing, fault: &str) -> f64 {
         let ray = across.ray;
         let secant_squared = 1.0 + ray.u * ray.u + ray.v * ray.v;
@@ -158,7 +159,7 @@ impl Looking<'_> {
         worse(z, factors)
     }
 
-    /// The coordinates of the ray through a point along a unit vector.
+    /// Returns the coordinates of the ray through a point along a unit vector.
     pub(super) fn seen(&self, foot: Vector, along: Vector, fault: &str) -> Option<[f64; 4]> {
         if self.view == View::Across {
             let [x, y, z] = self.leg.coordinates(foot);
@@ -186,8 +187,8 @@ impl Looking<'_> {
         Some([s, t, theta - self.longitude, phi])
     }
 
-    /// The point where the line of a ray meets the plane's surface nearest to the central hit, and
-    /// the normal there.
+    /// Returns the point where the line of a ray meets the plane's surface nearest to the central
+    /// hit, and the normal there.
     fn met(&self, foot: Vector, along: Vector, fault: &str) -> Option<(Vector, Vector)> {
         let n = self.surface.d;
         let tangent = || {

@@ -12,18 +12,18 @@ use std::path::Path;
 pub(super) struct World {
     /// The frame at the light.
     pub(super) light: Axes,
-    /// X as in the file, where it need not be orthogonal to D.
+    /// The X axis in the scene file, which need not be orthogonal to D.
     x_axis: Vector,
     pub(super) lamp: String,
     pub(super) blockers: String,
     pub(super) surfaces: String,
-    /// Further fields of the path, after a comma.
+    /// Text of further fields of the path, which begins with a comma.
     pub(super) onwards: String,
     pub(super) planes: String,
 }
 
 impl World {
-    /// A point light without occluders.
+    /// Creates a scene with a point light and without occluders.
     pub(super) fn new(dice: &mut Dice) -> Self {
         let origin = direction(dice);
         let d = direction(dice);
@@ -40,7 +40,7 @@ impl World {
         }
     }
 
-    /// Rotates the central ray to another direction.
+    /// Turns the central ray at the light to the direction `d`.
     pub(super) fn turn_to(&mut self, d: Vector) {
         self.light = Axes::new(self.light.origin, d, self.x_axis);
     }
@@ -71,7 +71,8 @@ impl World {
         resolve("second", file, folder, u64::MAX).unwrap_or_else(|error| panic!("{error}: {text}"))
     }
 
-    /// A world point in the coordinates of the resolved scene, those of the frame at the light.
+    /// Returns a point of the world in the coordinates of the resolved scene, which are those of
+    /// the frame at the light.
     pub(super) fn resolved(&self, point: Vector) -> Vector {
         self.light.coordinates(point)
     }
@@ -86,7 +87,7 @@ pub(super) fn pair([a, b]: [f64; 2]) -> String {
     format!("({a:?}, {b:?})")
 }
 
-/// The difference of two frames in position and directions.
+/// Returns the difference of two frames in position and directions.
 pub(super) fn frames_apart(fast: &Frame, axes: &Axes) -> f64 {
     let pairs = [
         (fast.origin, axes.origin),

@@ -19,10 +19,10 @@ pub(super) struct Sphere<'a> {
 }
 
 impl Sphere<'_> {
-    /// The windowed spectrum at the scene's plane on the sphere, in local normals.
+    /// Returns the windowed spectrum at the scene's plane on the sphere, in local normals.
     ///
-    /// `turn` is −1 if (θ, φ) are the angles of the direction from which light comes, rotated about
-    /// the normal. It is +1 if they are not rotated.
+    /// `turn` is −1 if (θ, φ) are the angles of the direction from which light comes, rotated
+    /// about the normal. `turn` is +1 if these angles are not rotated.
     pub(super) fn slices(&self, turn: f64) -> Slices {
         let plane = &self.scene.planes[0];
         let w = &plane.window;
@@ -48,7 +48,8 @@ impl Sphere<'_> {
                 .collect();
             for k in 0..grid.azimuths {
                 let (sin, cos) = grid.azimuth(k).sin_cos();
-                // Along one azimuth, the position and the angle are one number each.
+                // A slice along one azimuth depends only on one component of the position and one
+                // of the angle.
                 let place = x * cos + y * sin;
                 for (n, nu) in grid.nu.values().into_iter().enumerate() {
                     let terms = directions.iter().zip(&values).map(|([u, v], value)| {

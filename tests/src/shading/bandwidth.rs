@@ -7,10 +7,10 @@ use etendue_theory::shading::{Criterion, PlanarLobe};
 
 /// The tolerance: six digits.
 const DIGITS: f64 = 1e-6;
-/// An image a thousand times narrower than the circle's radius.
+/// The tolerance for images, which are a thousand times narrower than the circle's radius.
 const IMAGE: f64 = 0.01;
 
-/// The scene from which the sweeps start.
+/// Returns the scene from which the sweeps start.
 pub(super) fn criterion(curvature: f64, angle: f64, distance: f64, blocker: f64) -> Criterion {
     Criterion {
         curvature,

@@ -37,14 +37,14 @@ impl Bench {
         }
     }
 
-    /// The prediction of a modified system.
+    /// Predicts the slices of a modified system.
     pub(super) fn predicted(&self, change: impl Fn(&mut ScatteringSystem)) -> Slices {
         let mut view = seen(&self.scene);
         change(&mut view.system);
         said(&view, &self.scene.planes[0])
     }
 
-    /// The photons of a modified scene, with modified crossings.
+    /// Returns the photons of a modified scene, with modified crossings.
     pub(super) fn tampered(
         &self,
         change: impl Fn(&mut Scene),
@@ -56,7 +56,7 @@ impl Bench {
         measure(&source, &scene.planes, 0..scene.run.batches, &|_| ())
     }
 
-    /// p of photons against a prediction.
+    /// Returns p of the comparison of photons with a prediction.
     ///
     /// # Panics
     /// If there is no light and no light is predicted.
@@ -65,7 +65,7 @@ impl Bench {
         p.expect("light")
     }
 
-    /// ‖a − b‖ over the norm of the sound prediction.
+    /// Returns ‖a − b‖ divided by the norm of the prediction without a fault.
     pub(super) fn apart(&self, a: &Slices, b: &Slices) -> f64 {
         let norm = |values: &mut dyn Iterator<Item = Complex>| {
             values.map(|v| v.norm_sqr()).sum::<f64>().sqrt()
@@ -75,7 +75,7 @@ impl Bench {
     }
 }
 
-/// The measured slices.
+/// Returns the measured slices.
 ///
 /// # Panics
 /// If there are too few batches.
@@ -94,10 +94,10 @@ fn said(view: &Observed<ScatteringSystem>, plane: &VirtualPlane) -> Slices {
     exact
 }
 
-/// The BRDF of a scene, for modification.
+/// Returns the BRDF of a scene, for modification.
 ///
 /// # Panics
-/// If the scene has none.
+/// If the scene has no BRDF.
 pub(super) fn reflectance(scene: &mut Scene) -> &mut etendue_field::Reflectance {
     match &mut scene.patches[0].event {
         Event::Reflects(reflectance) => reflectance,
@@ -105,8 +105,8 @@ pub(super) fn reflectance(scene: &mut Scene) -> &mut etendue_field::Reflectance 
     }
 }
 
-/// The direction at a point of a plane on a flat surface, and the direction towards a projector
-/// there: unit vectors along (T, B, N).
+/// Returns the direction at a point of a plane on a flat surface, and the direction towards a
+/// projector there: unit vectors along (T, B, N).
 pub(super) fn on_flat(scene: &Scene, crossing: &Crossing) -> [DVec3; 2] {
     let plane = &scene.planes[0];
     let ray = crossing.ray;

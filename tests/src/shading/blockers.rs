@@ -24,11 +24,11 @@ pub(super) fn statements() -> Vec<Statement> {
     all
 }
 
-/// The off-centre peaks of the spectrum of windowed light through strips.
+/// Locates the off-centre peaks in the spectrum of windowed light behind strips.
 fn replicas() -> Statement {
     let mut worst = 0.0_f64;
     for pitch in [0.2, 0.1, 0.05] {
-        // The light visible within slopes of 0.3, at x.
+        // The light that arrives at x, under a Gaussian window of width 0.3 over slopes.
         let seen = |x: f64| {
             let [low, high] =
                 [x - LIGHT, x + LIGHT].map(|edge: f64| (edge / BEFORE).clamp(-0.5, 0.5));
@@ -68,7 +68,8 @@ fn replicas() -> Statement {
     }
 }
 
-/// The 90 % bandwidth of coefficients: the smallest |n| below which 90 % of the energy lies.
+/// Returns the 90 % bandwidth of coefficients: the smallest |n| below which 90 % of the energy
+/// lies.
 fn bandwidth(coefficients: &[Complex]) -> usize {
     let middle = coefficients.len() / 2;
     let energy =
@@ -83,7 +84,7 @@ fn bandwidth(coefficients: &[Complex]) -> usize {
         .unwrap_or(middle)
 }
 
-/// Pairs of patterns in one plane: the spectrum of their product, and the estimate of this spectrum
+/// Compares, for pairs of patterns in one plane, the spectrum of their product with its estimate
 /// from magnitudes alone.
 fn combined() -> Vec<Statement> {
     let (mut largest, mut under, mut over) = (0.0_f64, 0, 0);
@@ -144,8 +145,8 @@ fn combined() -> Vec<Statement> {
 fn complementary() -> f64 {
     let [a, b] = [[0.0, 0.5], [0.5, 1.0]].map(|half| coefficients(&vec![half], SUMMED));
     let middle = a.len() / 2;
-    // Σ c_m d_(n−m), and the sum of magnitudes. Both include the tail of 1/m², with opposite phases
-    // for n = 0.
+    // The product is Σ c_m d_(n−m), and the size is the sum of magnitudes. Product and size
+    // include the tail of 1/m², whose terms are negative in the product for n = 0.
     let product: Complex = (0..a.len()).map(|m| a[m] * b[2 * middle - m]).sum();
     let size: f64 = (0..a.len())
         .map(|m| a[m].norm() * b[2 * middle - m].norm())
@@ -199,7 +200,8 @@ fn wedge() -> Vec<Statement> {
 fn irradiance(x: f64, pitch: f64, phase: f64) -> f64 {
     let distance = BEFORE + AFTER;
     let sine = |u: f64| (u - x) / (u - x).hypot(distance);
-    // The line crosses the strips' plane at y = x + (u − x) d₂/D.
+    // The line from x to the point u of the light crosses the strips' plane at y = x + (u − x)
+    // d₂/D.
     let onto = |y: f64| x + (y - x) * distance / AFTER;
     let ends = [-LIGHT, LIGHT].map(|u| x + (u - x) * AFTER / distance);
     let mut n = (ends[0] / pitch - phase).floor() - 1.0;
@@ -221,8 +223,8 @@ fn average() -> Vec<Statement> {
         let sine = |u: f64| (u - x) / (u - x).hypot(distance);
         sine(LIGHT) - sine(-LIGHT)
     };
-    // Pitches for which the light's image covers an odd number of half periods. The first harmonic
-    // is largest at these pitches.
+    // At these pitches the light's image covers an odd number of half periods, and the first
+    // harmonic is largest.
     let image = 2.0 * LIGHT * AFTER / distance;
     let pitches = [4.5, 9.5, 18.5, 36.5].map(|count| image / count);
     let ripple = |pitch: f64| {
@@ -263,15 +265,16 @@ fn average() -> Vec<Statement> {
                 spectrum[0], spectrum[1]
             ),
             number: (spectrum[0] / spectrum[1]).log2(),
-            // The tail of a Gaussian at f d₁/D − 0.7: from 1.5 to 3.7 cycles per metre, in a window
-            // of 0.4 m.
+            // The value is the tail of a Gaussian at f d₁/D − 0.7, from 1.5 to 3.7 cycles per
+            // metre in a window of 0.4 m.
             expected: [4.0, 100.0],
             holds: "holds, faster than any power: only replicas' tails arrive",
         },
     ]
 }
 
-/// ∫ light(u) B(y(u)) du, compared with the convolution of a scaled light and the blockers.
+/// Compares the integral ∫ light(u) B(y(u)) du with the convolution of a scaled light and the
+/// blockers.
 fn soft_shadow() -> Vec<Statement> {
     let distance = BEFORE + AFTER;
     let mask = |y: f64| 0.5 + 0.5 * (TAU * 6.0 * y).cos() * (-y * y).exp();
@@ -282,8 +285,7 @@ fn soft_shadow() -> Vec<Statement> {
             lit(u, v) * mask(x + AFTER * v)
         })
     };
-    // The light's image at the blockers, a box scaled by d₂/D, convolved with the blockers at x
-    // d₁/D.
+    // The convolution, at x d₁/D, of the blockers with the light's image, a box scaled by d₂/D.
     let convolved = |x: f64| {
         let size = AFTER / distance;
         let at = x * BEFORE / distance;

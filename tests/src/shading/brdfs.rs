@@ -22,19 +22,20 @@ const SCHLICK: FresnelFactor = FresnelFactor::Schlick {
     normal_reflectance: 0.04,
 };
 
-/// The theory's reflection by a sum of terms.
+/// Returns the theory's reflection by a sum of terms.
 pub(super) fn reflection(terms: Vec<SeparableTerm<'_>>) -> PlanarReflection<'_> {
     PlanarReflection {
         incidence: THETA0,
         outgoing: THETA1,
         curvature: K,
         terms,
-        // The narrowest Gaussian has a standard deviation of 0.75 cycles per radian.
+        // The lattice is wide enough for the narrowest Gaussian, whose spectrum has a standard
+        // deviation of 0.75 cycles per radian.
         lattice: Lattice::circle(12.0),
     }
 }
 
-/// The same surface in the primal domain, with a clamped cosine.
+/// Returns the surface of [`reflection`] in the primal domain, with a clamped cosine.
 pub(super) fn surface<'a>(lobe: Option<&'a dyn Fn(f64, f64) -> f64>) -> PrimalSurface<'a> {
     PrimalSurface {
         theta0: THETA0,
@@ -76,13 +77,13 @@ pub(super) fn lopsided(theta: f64) -> f64 {
     theta.cos() * (1.0 + 0.6 * theta.sin())
 }
 
-/// The Fourier transform of [`lopsided`].
+/// Returns the Fourier transform of [`lopsided`].
 pub(super) fn lopsided_hat(q: f64) -> Complex {
     let side = cosine_hat(q - 1.0 / TAU) - cosine_hat(q + 1.0 / TAU);
     Complex::new(cosine_hat(q), -0.3 * side)
 }
 
-/// Rows with a surface.
+/// Returns the comparisons that involve a whole surface.
 pub(super) fn all() -> Vec<OperatorComparison> {
     let mut rows = separable();
     rows.extend(listed());
@@ -198,7 +199,7 @@ fn separable() -> Vec<OperatorComparison> {
     ]
 }
 
-/// f and h given by lists of values over |θ|, with kinks.
+/// Compares reflections whose factors f and h are lists of values over |θ|, with kinks.
 fn listed() -> [OperatorComparison; 2] {
     let table = AngleTable {
         values: [1.0, 0.9, 0.2, 0.3, 0.8].into(),
@@ -257,7 +258,7 @@ fn listed() -> [OperatorComparison; 2] {
     ]
 }
 
-/// Two lobes with the weight ½ (1 + 0.9 cos(2π 1.5 s + 0.4)) and the complement of this weight.
+/// Compares a sum of two lobes, with the weights w = ½ (1 + 0.9 cos(2π 1.5 s + 0.4)) and 1 − w.
 fn weighted() -> OperatorComparison {
     let weight = |s: f64| 0.5 * (1.0 + 0.9 * (TAU * 1.5 * s + 0.4).cos());
     let both = |s: f64, d: f64| weight(s) * GLOSS.value(d) + (1.0 - weight(s)) * PHONG.value(d);
@@ -327,7 +328,7 @@ fn sum() -> OperatorComparison {
     }
 }
 
-/// 1 + 0.7 cos(2π 1.5 s + 0.4) after a glossy reflection.
+/// Compares the texture 1 + 0.7 cos(2π 1.5 s + 0.4) after a glossy reflection.
 fn textured() -> OperatorComparison {
     let gaussian = |_: f64, d: f64| GLOSS.value(d);
     let traced = primal(&PrimalSurface {
@@ -371,7 +372,7 @@ fn varying() -> OperatorComparison {
     let traced = primal(&surface(Some(&lobe)));
     let mirror = reflection(vec![term(Factor::Cosine, None)]);
     let lit = |w: [f64; 2]| mirror.spectrum(ReflectionStep::Mirror, w, &light_hat);
-    // Light 0.3 m wide and copies of it 8 m apart.
+    // The light is 0.3 m wide, and the lattice repeats it every 8 m.
     let lattice = Lattice {
         spacing: 0.125,
         reach: 12.0,

@@ -14,7 +14,7 @@ use etendue_spectrum::Measurement;
 use etendue_theory::geometry::AffineMap;
 use etendue_theory::scattering::{ScatteringChain, chain, defect};
 
-/// Level of the exact prediction, which is not used here.
+/// Level of the test of the exact prediction, whose result is not used here.
 const LEVEL: f64 = 0.01;
 /// Default number of photons.
 const PHOTONS: u64 = 1 << 22;
@@ -65,7 +65,7 @@ pub(super) fn chains(photons: Option<u64>) -> ReportSection {
         let sound = Prediction::new(&scene, place, &Applicability::new(&scene, place));
         let view = scattered(&scene, place).expect("a plane behind a BRDF");
         for (name, fault) in faults() {
-            // At a plane on the surface, the maps after the surface have no effect yet.
+            // At a plane on the surface, the maps after the surface have no effect.
             if plane == "texture" && name.starts_with("off") {
                 continue;
             }
@@ -123,7 +123,7 @@ pub(super) fn chains(photons: Option<u64>) -> ReportSection {
     }
 }
 
-/// The verdict with the slices predicted by a modified chain.
+/// Returns the report on the slices that a modified chain predicts.
 fn judged(
     scene: &Scene,
     measurement: &Measurement,

@@ -19,18 +19,19 @@ use etendue_theory::shading::{
 };
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Maximum error of corrected formulas. Both sides are quadratures accurate to 10⁻¹², or are traced
-/// with six digits.
+/// Maximum error of corrected formulas. The two sides of a comparison are quadratures accurate to
+/// 10⁻¹², or are traced with six digits.
 const QUADRATURE: f64 = 1e-9;
 const TRACED: f64 = 1e-6;
-/// Minimum error of a misprint whose error is not known in advance. It is far above [`QUADRATURE`].
+/// Minimum error of a misprint whose error is not known in advance. This minimum is far above
+/// [`QUADRATURE`].
 const BY_FAR: f64 = 0.02;
 
 struct Erratum {
     place: &'static str,
     printed: String,
     corrected: String,
-    /// Relative error of the printed formula, and its required minimum.
+    /// Relative error of the printed formula, and the minimum that this error must reach.
     off: f64,
     at_least: f64,
     /// Relative error of the corrected formula, and its permitted maximum.
@@ -118,7 +119,8 @@ fn irradiance() -> Vec<Erratum> {
 fn brdf() -> Vec<Erratum> {
     let lobe = PlanarLobe::Gaussian { deviation: 0.12 };
     let fixed = |_: f64, d: f64| lobe.value(d);
-    // θ_o = θ_o' + k s is the angle from the normal at the centre, not from the normal at s.
+    // Without the prime, θ_o = θ_o' + k s is the angle to the normal at the centre in place of the
+    // normal at s.
     let global = |s: f64, d: f64| lobe.value(d + K * s);
     let plain = primal(&surface(Some(&fixed)));
     let unprimed = primal(&surface(Some(&global)));
@@ -283,7 +285,7 @@ fn criteria() -> Vec<Erratum> {
     };
     let twenty_one =
         |place, c: Criterion, known| row(place, c, true, c.printed_blocker(), c.blocker(), known);
-    // Travel as in section 6.2: Ω_ρ − d a of the content (−a, Ω_ρ).
+    // Travel as printed in section 6.2 takes content at (−a, Ω_ρ) to Ω_ρ − d a.
     let towards = (2.0 * convex.lobe_cutoff - convex.environment()).abs();
     vec![
         row(

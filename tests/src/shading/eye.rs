@@ -1,4 +1,4 @@
-//! The view of a glossy circle from an eye, by tracing rays back.
+//! What an eye sees of a glossy circle, computed by tracing rays back.
 
 use etendue_theory::shading::Criterion;
 use std::f64::consts::TAU;
@@ -19,11 +19,13 @@ struct EyeHit {
 }
 
 impl EyeScene {
-    /// The hit on the circle of the ray that reaches the eye with a slope.
+    /// Returns the point at which the circle is hit by the ray that reaches the eye with this
+    /// slope.
     fn hit(&self, slope: f64) -> EyeHit {
         let c = &self.criterion;
         let (sine, cosine) = c.outgoing.sin_cos();
-        // X = cos T − sin N across the central ray, which is along D = sin T + cos N.
+        // The axis X = cos T − sin N is perpendicular to the central ray, which is along D = sin T
+        // + cos N.
         let angle = slope.atan() + c.outgoing;
         let along = [angle.sin(), angle.cos()];
         let back = -slope * c.distance;
@@ -42,15 +44,15 @@ impl EyeScene {
         }
     }
 
-    /// The origin of the light that is mirrored into a ray: its direction, and the point where it
-    /// crosses the plane of the blocker.
+    /// Returns the angle of the light that a mirror would send into an eye ray, and the point
+    /// where this light crosses the plane of the blocker.
     fn origin(&self, slope: f64) -> [f64; 2] {
         let hit = self.hit(slope);
         self.from(&hit, self.aside() - hit.local)
     }
 
-    /// The offset of the outgoing central ray from the mirror direction; the lobe does not change
-    /// it.
+    /// Returns the angle from the mirror direction to the outgoing central ray, which the lobe
+    /// does not change.
     fn aside(&self) -> f64 {
         self.criterion.incidence + self.criterion.outgoing
     }
@@ -66,9 +68,9 @@ impl EyeScene {
         [angle, across + (distance - along) * tangent]
     }
 
-    /// The rates at which the phases in the environment and at the blocker change with the slope at
-    /// the eye. They are relative to the rates of change with the local angle of the mirrored light
-    /// at one point.
+    /// Returns how fast the phases in the environment and at the blocker change with the slope at
+    /// the eye, relative to how fast they change with the local angle of mirrored light at a fixed
+    /// point.
     pub(super) fn ratios(&self) -> [f64; 2] {
         let seen = derivative(&|slope| self.origin(slope));
         let center = self.hit(0.0);
@@ -76,8 +78,8 @@ impl EyeScene {
         [0, 1].map(|i: usize| (seen[i] / there[i]).abs())
     }
 
-    /// The bandwidths at the eye: B, B', and the largest one for content in the environment and at
-    /// the blocker, cut off at Ω_ρ and Ω_e.
+    /// Returns three bandwidths at the eye: B, B', and the largest one for content both in the
+    /// environment and at the blocker, within the cutoffs Ω_ρ and Ω_e.
     pub(super) fn traced(&self) -> [f64; 3] {
         let c = &self.criterion;
         let seen = derivative(&|slope| self.origin(slope));
@@ -95,9 +97,9 @@ impl EyeScene {
         [c.lobe_cutoff * environment, c.lobe_cutoff * blocker, most]
     }
 
-    /// The frequency below which 99 % of the energy of an image lies, divided by the predicted one.
-    /// The Gaussian lobe is narrow enough for the surface to be linear. The image is that of a
-    /// distant point, or the derivative of the image of an edge.
+    /// Returns the frequency below which 99 % of the energy of an image lies, divided by the
+    /// predicted one. The Gaussian lobe is narrow enough for the surface to be linear. The image
+    /// is that of a distant point or, if `edge` is set, the derivative of the image of an edge.
     pub(super) fn image(&self, edge: bool, said: f64) -> f64 {
         const DEVIATION: f64 = 1e-4;
         const COUNT: i32 = 240;
@@ -147,7 +149,7 @@ impl EyeScene {
     }
 }
 
-/// The derivative by central differences, extrapolated.
+/// Returns the derivative by central differences, extrapolated.
 fn derivative(f: &dyn Fn(f64) -> [f64; 2]) -> [f64; 2] {
     let slope = |h: f64, i: usize| (f(h)[i] - f(-h)[i]) / (2.0 * h);
     [0, 1].map(|i| (4.0 * slope(0.5 * STEP, i) - slope(STEP, i)) / 3.0)

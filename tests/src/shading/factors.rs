@@ -12,7 +12,7 @@ use etendue_theory::shading::{
 };
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// 24 frequencies, cycles per radian.
+/// Returns the 24 frequencies at which transforms are compared, in cycles per radian.
 fn line() -> Vec<f64> {
     (0..24).map(|i| 0.26 * f64::from(i) + 0.01).collect()
 }
@@ -21,8 +21,8 @@ fn curve(f: impl Fn(f64) -> f64) -> Vec<Complex> {
     line().into_iter().map(|omega| f(omega).into()).collect()
 }
 
-/// The transform of an even function on |θ| < `end`, given for θ > 0, with panels refined towards
-/// the middle and the end.
+/// Returns the transform, by quadrature, of an even function on |θ| < `end` that is given for θ >
+/// 0; the panels are finer towards the middle and the end.
 fn plain(end: f64, inner: f64, f: &dyn Fn(f64) -> f64) -> Vec<Complex> {
     let mut cuts = vec![0.0];
     let mut at = inner;
@@ -41,7 +41,7 @@ fn plain(end: f64, inner: f64, f: &dyn Fn(f64) -> f64) -> Vec<Complex> {
     line().into_iter().map(panels).collect()
 }
 
-/// Rows without a surface.
+/// Returns the comparisons that involve no surface.
 pub(super) fn all() -> Vec<OperatorComparison> {
     let mut rows = cosines();
     rows.extend(fresnel());
@@ -167,8 +167,8 @@ fn fresnel() -> Vec<OperatorComparison> {
 }
 
 fn lobes() -> Vec<OperatorComparison> {
-    // Lobe shapes, implemented again and normalised by a separate quadrature; with their ends and
-    // scales.
+    // Each row has a shape of a lobe that is implemented again and normalised by a separate
+    // quadrature, the end of its support and its scale.
     let row = |operator,
                lobe: PlanarLobe,
                off: PlanarLobe,
@@ -248,7 +248,7 @@ fn plain_integral(end: f64, inner: f64, f: &dyn Fn(f64) -> f64) -> f64 {
     }
 }
 
-/// dE = ℓ g, in slopes: the convolution of Eq. 7.
+/// Checks dE = ℓ g in slopes, whose spectrum is the convolution of Eq. 7.
 fn differential_irradiance() -> OperatorComparison {
     let bell = &super::light::LIGHT[0];
     let omegas = [[0.0, 0.0], [0.4, 0.2], [-0.3, 0.5], [0.6, -0.9]];
@@ -266,7 +266,7 @@ fn differential_irradiance() -> OperatorComparison {
                 .sum()
         })
         .collect();
-    // g decays as 1/v³ and has no end, so copies 3000 apart add an error of 10⁻¹⁰.
+    // The factor g falls as 1/v³ without an end, so copies 3000 apart add an error of 10⁻¹⁰.
     let lattice = Lattice {
         spacing: 1.0 / 3000.0,
         reach: 6.0,
@@ -310,8 +310,8 @@ fn environments() -> Vec<OperatorComparison> {
         let omegas: Vec<[f64; 2]> = (0..12)
             .map(|i| [0.05 * f64::from(i) - 0.2, 0.3 * f64::from(i % 5) - 0.5])
             .collect();
-        // dE'_r(s, θ_r') = env(k s − θ_r') cos θ_r'. Its width over s is that of the Gaussians
-        // divided by |k|.
+        // The field is dE'_r(s, θ_r') = env(k s − θ_r') cos θ_r'. The width of the field over s is
+        // that of the Gaussians divided by |k|.
         let primal = |[x, t]: [f64; 2]| -> Complex {
             let mirrored = between([-FRAC_PI_2, FRAC_PI_2], 60).into_iter();
             mirrored

@@ -45,7 +45,7 @@ enum LobeOwner {
     Ggx(f64),
 }
 
-/// A glossy surface and an eye.
+/// A glossy surface that is lit and seen by an eye.
 #[derive(Clone, Copy, Debug)]
 struct GlossyBench {
     lit: Lit,
@@ -88,7 +88,7 @@ impl GlossyBench {
         let (sine, cosine) = self.incidence.sin_cos();
         let (light, slit, from) = match self.lit {
             Lit::Beam => {
-                // The beam starts farther away than the eye.
+                // The beam starts farther from the surface than the eye.
                 let (w, from) = (windows.beam, 1.0_f64.max(1.5 * self.distance));
                 (
                     format!(
@@ -101,8 +101,8 @@ impl GlossyBench {
             }
             Lit::Point(d) => (format!("Point(center: (0, 0, {}))", -d), String::new(), d),
             Lit::Slit(d) => {
-                // The width of 2 % of the distance is less than half of the lobe's standard
-                // deviation.
+                // The slit is 2 % of its distance wide, which is less than half of the lobe's
+                // standard deviation.
                 let (half, from) = (0.01 * d, 1.01 * d);
                 (
                     format!(
@@ -154,7 +154,7 @@ impl GlossyBench {
         resolve("glossy", file, ".".as_ref(), u64::MAX).expect("a sound scene")
     }
 
-    /// # Panics If the plane has none.
+    /// # Panics If the plane has no criterion.
     fn criterion(&self) -> Criterion {
         let scene = self.scene(&ANY, 1000, 1);
         let plane = &scene.planes[0];
@@ -162,7 +162,7 @@ impl GlossyBench {
         found.expect("across a ray that left a glossy surface")
     }
 
-    /// The bandwidth, corrected and as printed.
+    /// Returns the bandwidth by the criterion, corrected and as printed.
     fn says(&self, c: &Criterion) -> [f64; 2] {
         match self.lit {
             Lit::Beam => [c.environment(), c.printed_environment()],
@@ -170,7 +170,7 @@ impl GlossyBench {
         }
     }
 
-    /// Windows that contain the lobe, grids that contain the spectrum, and the widening by the window in u.
+    /// Returns windows that hold the lobe, grids, and how much the window in u widens a spectrum.
     fn windows(&self, c: &Criterion) -> (Windows, f64) {
         let deviation = GAUSSIAN / c.lobe_cutoff;
         let finer = self.says(c)[0] / c.lobe_cutoff;
@@ -190,8 +190,8 @@ impl GlossyBench {
             (tails * deviation + self.aside.abs() + 0.7 * along.abs() * ACROSS) / finer.max(1e-6);
         let u = wanted.min(WIDEST);
         let floor = if wanted > WIDEST { BOX / u } else { 0.0 };
-        // The slice at azimuth 0 integrates over y and v. A lobe that is not a product gets a
-        // narrow window, so that the visible light is in the plane of incidence.
+        // The slice at azimuth 0 integrates over y and v. If the lobe is no product in u and v, a
+        // narrow window keeps the visible light in the plane of incidence.
         let across = 1.0
             + self.distance
                 * (nearness / c.incidence.cos() + 2.0 * c.curvature * c.incidence.cos());
@@ -210,7 +210,7 @@ impl GlossyBench {
     }
 }
 
-/// A sweep: its name, the swept variable, and its effect on the bench.
+/// A sweep: its name, the quantity on its axis, and how a value of it changes the bench.
 struct GlossySweep {
     name: &'static str,
     quantity: AxisQuantity,
@@ -370,7 +370,7 @@ pub(crate) fn glossy(photons: Option<u64>) -> (ReportSection, Curves) {
             let [ours, theirs] = [said, printed].map(|b| range(b, floor));
             let holds =
                 |[low, high]: [f64; 2], x: f64, slack: f64| low - slack < x && x < high + slack;
-            // Whether both ranges are compatible with some measurement of this noise.
+            // Whether no measurement with this noise would be compatible with both ranges.
             let apart = ours[1] + 2.0 * noise < theirs[0] || theirs[1] + 2.0 * noise < ours[0];
             let rejected = !holds(theirs, found.value, noise);
             told += i32::from(rejected);
@@ -411,7 +411,7 @@ pub(crate) fn glossy(photons: Option<u64>) -> (ReportSection, Curves) {
             panels.push(panel(&sweep, points));
         }
     }
-    // The bound is two-sided, for normal errors.
+    // The probability is two-sided, for normally distributed errors.
     let one = libm::erfc(worst / SQRT_2);
     let all = 1.0 - (1.0 - one).powi(count);
     let section = ReportSection {
@@ -456,14 +456,14 @@ pub(crate) fn glossy(photons: Option<u64>) -> (ReportSection, Curves) {
     (section, picture)
 }
 
-/// The range of measurements that agree with a criterion's `bandwidth`, if the window widens the
-/// spectrum by at most `floor`.
+/// Returns the range of measurements that agree with the `bandwidth` of a criterion, if the window
+/// widens the spectrum by at most `floor`.
 fn range(bandwidth: f64, floor: f64) -> [f64; 2] {
     let error = ERROR * bandwidth;
     [bandwidth - error, bandwidth.hypot(floor) + error]
 }
 
-/// The measured points and the curves of the criteria.
+/// Returns the measured points and the curves of the criteria.
 fn panel(sweep: &GlossySweep, points: Vec<[f64; 3]>) -> CurvePanel {
     const COUNT: u32 = 80;
     // Four digits are enough for curves.

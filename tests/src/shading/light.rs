@@ -4,7 +4,7 @@ use super::primal::{about, between, wave};
 use etendue_field::Complex;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Standard deviations up to which a Gaussian is summed; it is 2·10⁻¹⁶ there.
+/// Standard deviations at which sums over a Gaussian end, where its value is 2·10⁻¹⁶.
 const REACH: f64 = 8.5;
 
 /// A Gaussian component of a light field, A exp(−½ (z − μ)ᵀ C⁻¹ (z − μ)), z = (x, θ).
@@ -74,13 +74,13 @@ pub(super) struct PrimalSurface<'a> {
     pub(super) theta0: f64,
     pub(super) theta1: f64,
     pub(super) k: f64,
-    /// Maximum angle of incidence in sums: π/2, or more if nothing is to be cut.
+    /// Maximum angle of incidence in sums: π/2, or more if the horizon must not cut the light.
     pub(super) horizon: f64,
     /// f(θ_i').
     pub(super) before: &'a dyn Fn(f64) -> f64,
     /// ρ(s, δ); `None` means a Dirac.
     pub(super) lobe: Option<&'a dyn Fn(f64, f64) -> f64>,
-    /// h(θ_o'), on the half-circle; `None` means 1 on the whole circle.
+    /// The factor h(θ_o') on the half-circle; `None` means 1 on the whole circle.
     pub(super) after: Option<&'a dyn Fn(f64) -> f64>,
     /// Angles at which f or h has a kink, ascending.
     pub(super) kinks: &'a [f64],
@@ -89,8 +89,8 @@ pub(super) struct PrimalSurface<'a> {
 }
 
 impl PrimalSurface<'_> {
-    /// Nodes between minus and plus an angle. Each piece between two kinks has `count` nodes on
-    /// either side of its centre.
+    /// Returns nodes from −`end` to `end`, with `count` nodes on either side of the centre of each
+    /// piece between two kinks.
     fn pieces(&self, end: f64, count: i32) -> Vec<(f64, f64)> {
         let ends = [&[-end], self.kinks, &[end]].concat();
         let pieces = ends
@@ -99,9 +99,9 @@ impl PrimalSurface<'_> {
         pieces.flatten().collect()
     }
 
-    /// The transform of the reflected light field in the outgoing light frame, with all angles and
-    /// positions linear in the incoming ones: x = −c₀ s, θ = θ_i' + k s − θ₀, θ_r' = −θ_i', x'' =
-    /// c₁ s, θ'' = θ_o' + k s − θ₁.
+    /// Returns the transform of the reflected light field in the outgoing light frame, with all
+    /// angles and positions linear in the incoming ones: x = −c₀ s, θ = θ_i' + k s − θ₀, θ_r' =
+    /// −θ_i', x'' = c₁ s, θ'' = θ_o' + k s − θ₁.
     pub(super) fn transform(&self, light: &dyn Fn([f64; 2]) -> f64, omega: [f64; 2]) -> Complex {
         let (c0, c1) = (self.theta0.cos(), self.theta1.cos());
         let incident = self.pieces(self.horizon, 120);

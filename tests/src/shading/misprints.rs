@@ -15,7 +15,7 @@ use std::f64::consts::PI;
 const ALPHA: f64 = 0.01;
 /// Default number of photons.
 const PHOTONS: u64 = 1 << 22;
-/// Curvature of the sphere in the environment, as in the file, per metre.
+/// Curvature, per metre, of the sphere in the scene file with the environment.
 pub(super) const K: f64 = 1.25;
 
 struct Misprint {
@@ -121,7 +121,7 @@ fn mirror(photons: Option<u64>) -> (Bench, Vec<Misprint>) {
     (Bench::of(scene, sound), vec![misprint])
 }
 
-/// The scene of the environment with a single plane, in the arriving light.
+/// Returns the scene with the environment and a single plane, which records the arriving light.
 pub(super) fn arriving(photons: Option<u64>) -> Scene {
     let plane = "(name: \"arriving\", at: Before(\"sphere\"), orientation: Mirrored, quantity: DifferentialIrradiance),";
     let texts = [["planes: [", &format!("planes: [{plane}")]];

@@ -31,8 +31,8 @@ pub(crate) use glossy::glossy;
 
 use crate::report::ReportSection;
 
-/// All sections. The 2D sections need no photons. The others use the number of photons of each
-/// scene file, or `photons` if it is given.
+/// Returns all sections. Sections in 2D need no photons; the others trace `photons` in each scene
+/// if this is given, else the number in the scene's file.
 pub(crate) fn shading(photons: Option<u64>) -> Vec<ReportSection> {
     let mut sections = vec![
         operators::operators(),
@@ -45,7 +45,7 @@ pub(crate) fn shading(photons: Option<u64>) -> Vec<ReportSection> {
     sections
 }
 
-/// Sections that trace photons.
+/// Returns the sections that trace photons.
 fn with_photons(photons: Option<u64>) -> Vec<ReportSection> {
     vec![
         photons::photons(photons),

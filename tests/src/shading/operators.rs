@@ -13,16 +13,16 @@ const SEEN: f64 = 1e-3;
 /// An operator compared with the primal domain.
 pub(super) struct OperatorComparison {
     pub(super) operator: &'static str,
-    /// Its row in the paper's Table 1, if there is one.
+    /// The row of the operator in the paper's Table 1, if there is one.
     pub(super) line: Option<Line>,
     pub(super) compared: String,
     /// ‖predicted − quadrature‖/‖quadrature‖.
     pub(super) off: f64,
-    /// A wrong form, and its error.
+    /// A wrong form of the operator, and the error of this form.
     pub(super) fault: (&'static str, f64),
 }
 
-/// All operators of shading in 2D.
+/// Returns the section on all operators of shading in 2D.
 pub(super) fn operators() -> ReportSection {
     let row = |found: OperatorComparison| {
         let cells = vec![

@@ -19,7 +19,7 @@ const LEDGER: f64 = 1e-12;
 struct ShadedRun {
     scene: Scene,
     planes: Vec<PlaneComparison>,
-    /// p of photons against backward rays; `None` where there are none.
+    /// For each plane, p of photons against backward rays; `None` without backward rays.
     backward: Vec<Option<f64>>,
     imbalance: f64,
 }
@@ -141,7 +141,7 @@ fn row(outcome: &ShadedRun, index: usize, level: f64) -> Row {
     Row::new(cells, checks).of(lines)
 }
 
-/// The last step before a plane, and its rows in the paper's table.
+/// Returns the last step before a plane, and the rows of this step in the paper's Table 1.
 fn operator(scene: &Scene, plane: &VirtualPlane) -> (String, Vec<Line>) {
     let (word, line) = match (plane.leg, plane.orientation, plane.quantity) {
         (0, Orientation::Tangent, _) => ("incidence", Line::Incidence),
@@ -160,7 +160,7 @@ fn operator(scene: &Scene, plane: &VirtualPlane) -> (String, Vec<Line>) {
     (word.to_owned(), vec![line])
 }
 
-/// The BRDF of the first surface.
+/// Returns the BRDF of the first surface.
 fn reflection(scene: &Scene) -> (String, Vec<Line>) {
     let hit = scene.path.legs[1].leaves.map(|hit| hit.object);
     let Some(Object::Patch(i)) = hit else {

@@ -42,7 +42,7 @@ struct Stand {
 /// Returns the section.
 pub(super) fn planted(photons: Option<u64>) -> ReportSection {
     let stands = stands();
-    // One more, for the bench in the arriving light.
+    // The bench in the arriving light counts as one more.
     let count = stands.len() + 1;
     let level = sidak(ALPHA, count);
     let mut rows = Vec::new();
@@ -90,7 +90,7 @@ pub(super) fn planted(photons: Option<u64>) -> ReportSection {
 }
 
 impl Plant {
-    /// p, and the change of the spectrum.
+    /// Returns p of the comparison with the fault, and how much the fault changes the spectrum.
     fn judged(&self, bench: &Bench) -> (f64, f64) {
         let by_prediction = |said: &Slices| {
             let p = bench.p_value(&bench.photons, said);
@@ -287,7 +287,7 @@ fn lobe(system: &mut ScatteringSystem, factor: f64) {
     }
 }
 
-/// Swaps f and h.
+/// Swaps the factors f and h of each BRDF.
 fn turned_round(reflectance: &mut Reflectance) {
     for Term { brdf, .. } in &mut reflectance.terms {
         std::mem::swap(&mut brdf.incoming, &mut brdf.outgoing);
@@ -301,7 +301,7 @@ pub(super) fn swapped(reflectance: &mut Reflectance) {
     }
 }
 
-/// Extends the range of weights down to 0.
+/// Extends the range of each varying weight down to 0.
 fn full(reflectance: &mut Reflectance) {
     for Term { weight, .. } in &mut reflectance.terms {
         if let Weight::Pattern(Pattern::Cosine(grating)) | Weight::Rest(Pattern::Cosine(grating)) =
@@ -318,8 +318,8 @@ fn texture(system: &mut ScatteringSystem, factor: f64) {
     }
 }
 
-/// Light of the environment that arrives at the sphere, times the cosine. In the two faults, the
-/// environment is rotated by a pixel.
+/// Returns the bench for light of the environment that arrives at the sphere, times the cosine,
+/// and two faults in which the environment is rotated by a pixel.
 fn turned(photons: Option<u64>) -> (Bench, [(&'static str, Slices); 2]) {
     let scene = misprints::arriving(photons);
     let Light::Environment { environment } = &scene.light else {
@@ -345,7 +345,7 @@ fn turned(photons: Option<u64>) -> (Bench, [(&'static str, Slices); 2]) {
     (Bench::of(scene, sound), turned)
 }
 
-/// A row for a fault and its place.
+/// Returns the row for a fault and the place where it is planted.
 fn row(
     [name, place]: [&str; 2],
     bench: &Bench,

@@ -3,8 +3,7 @@
 use etendue_field::Complex;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// Beyond this limit, the nodes of the double exponential rule differ from the ends by less than
-/// rounding.
+/// The limit beyond which the nodes of the double exponential rule equal the ends up to rounding.
 const LAST: f64 = 3.1;
 
 /// Nodes and weights of the double exponential rule between two ends (Takahasi and Mori 1974):
@@ -34,7 +33,7 @@ pub(super) fn wave(cycles: f64) -> Complex {
     Complex::from_polar(1.0, -TAU * cycles)
 }
 
-/// ∫ f(t) e^(−2πiΩt) dt over nodes.
+/// Returns ∫ f(t) e^(−2πiΩt) dt as a sum over nodes.
 pub(super) fn transform(
     nodes: impl IntoIterator<Item = (f64, f64)>,
     omega: f64,
@@ -44,7 +43,7 @@ pub(super) fn transform(
     terms.map(|(t, w)| wave(omega * t) * (w * f(t))).sum()
 }
 
-/// ∫ f(t) dt over nodes.
+/// Returns ∫ f(t) dt as a sum over nodes.
 pub(super) fn integral(nodes: impl IntoIterator<Item = (f64, f64)>, f: impl Fn(f64) -> f64) -> f64 {
     nodes.into_iter().map(|(t, w)| w * f(t)).sum()
 }

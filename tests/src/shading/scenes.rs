@@ -27,14 +27,14 @@ const SCENES: &[(&str, &str)] = &[
     scene!("fresnel_aluminium", "table1/fresnel_aluminium"),
     scene!("fresnel_diamond", "table1/fresnel_diamond"),
     scene!("semi_convolution", "table1/semi_convolution"),
-    // This scene is used for a misprint about mirrors; it is listed in Table 1.
+    // A misprint about mirrors is tested with this scene, which is among the scenes of Table 1.
     scene!("concave_oblique", "table1/concave_oblique"),
 ];
 
 /// The number of scenes that scatter light: all but the last.
 const SHADED: usize = 14;
 
-/// Every scattering scene, by default with the photons of its file.
+/// Returns every scattering scene, by default with the photons of its file.
 pub(super) fn all(photons: Option<u64>) -> Vec<Scene> {
     let shaded = SCENES[..SHADED].iter();
     shaded
@@ -42,7 +42,7 @@ pub(super) fn all(photons: Option<u64>) -> Vec<Scene> {
         .collect()
 }
 
-/// A scene with texts of its file replaced in order.
+/// Returns a scene in whose file each of these texts was replaced by another, in this order.
 ///
 /// # Panics
 /// If there is no such scene, a text is not in it, or it becomes invalid.
@@ -58,7 +58,7 @@ pub(super) fn changed(name: &str, photons: Option<u64>, texts: &[[&str; 2]]) -> 
     resolve(name, file, ".".as_ref(), u64::MAX).expect("a scene of shading is sound")
 }
 
-/// A scene reduced to one of its planes: all photons are aimed at its window.
+/// Returns a scene reduced to one of its planes: all photons are aimed at its window.
 ///
 /// # Panics
 /// If there is no such plane.

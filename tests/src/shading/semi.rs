@@ -58,7 +58,7 @@ fn change(weight: &mut Weight, by: fn(&mut Grating)) {
 struct Sides {
     before: Slices,
     after: Slices,
-    /// Variance of the slices after the surface, by [azimuth, ρ ≥ 0, ν].
+    /// Variance of the slices after the surface, with indices [azimuth, ρ ≥ 0, ν].
     variance: Array3<f64>,
 }
 
@@ -91,8 +91,9 @@ impl Sides {
         }
     }
 
-    /// ‖operator(before) − after‖ beyond noise, and the noise, both relative to ‖after‖. They are
-    /// computed for the slice along x, at all frequencies whose shifts stay within the grid.
+    /// Returns ‖operator(before) − after‖ without its part from noise, and the noise, both
+    /// relative to ‖after‖. The two numbers are for the slice along x, over all frequencies whose
+    /// shifts stay within the grid.
     fn apart(&self, reflectance: &Reflectance, axes: [[f64; 2]; 2]) -> [f64; 2] {
         let grid = &self.after.grid;
         let (before, after) = (self.before.full(), self.after.full());
@@ -119,7 +120,7 @@ impl Sides {
     }
 }
 
-/// The index of a frequency on an axis; `None` beyond its ends.
+/// Returns the index of a frequency on an axis, or `None` beyond its ends.
 fn index(axis: &FrequencyAxis, value: f64) -> Option<usize> {
     let values = axis.values();
     values
@@ -127,7 +128,7 @@ fn index(axis: &FrequencyAxis, value: f64) -> Option<usize> {
         .position(|v| (v - value).abs() < 0.01 * axis.spacing)
 }
 
-/// The largest frequency of a weight, cycles per metre.
+/// Returns the largest frequency of any weight, cycles per metre.
 fn shift(reflectance: &Reflectance) -> f64 {
     let patterns = reflectance.terms.iter().filter_map(|t| t.weight.pattern());
     patterns.fold(0.0, |most, pattern| match pattern {
@@ -136,7 +137,7 @@ fn shift(reflectance: &Reflectance) -> f64 {
     })
 }
 
-/// X and Y of the patch in the coordinates of the planes.
+/// Returns the axes X and Y of the smooth surface, in the coordinates of the planes.
 fn axes(scene: &Scene) -> [[f64; 2]; 2] {
     let plane = scene.path.frame.decompose(&scene.planes[1].frame);
     let patch = &scene.patches[0].patch.frame;

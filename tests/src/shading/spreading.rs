@@ -22,7 +22,7 @@ pub(super) fn statements() -> Vec<Statement> {
 
 /// cosⁿ on the half-circle has a discontinuous n-th derivative.
 fn discontinuity(n: i32) -> Statement {
-    // |sin(π²Ω)| or |cos(π²Ω)| is one at these frequencies.
+    // At these frequencies |sin(π²Ω)| or, for even n, |cos(π²Ω)| is one.
     let shift = if n % 2 == 0 { 0.5 } else { 0.0 };
     let points: Vec<[f64; 2]> = [20, 28, 40, 56, 80, 113, 160]
         .map(|m| {
@@ -44,7 +44,8 @@ fn discontinuity(n: i32) -> Statement {
     }
 }
 
-/// The reflection used in the other sections with a curvature, with or without a cosine.
+/// Returns the reflection of the other sections with another curvature, and with this factor in
+/// place of the cosine.
 fn reflection(curvature: f64, before: Factor<'static>) -> PlanarReflection<'static> {
     PlanarReflection {
         incidence: THETA0,
@@ -60,7 +61,7 @@ fn reflection(curvature: f64, before: Factor<'static>) -> PlanarReflection<'stat
     }
 }
 
-/// Root mean square of Ωθ weighted by a power.
+/// Returns the root mean square of Ωθ, weighted by a power spectrum.
 fn spread(power: impl Fn(f64) -> f64) -> f64 {
     let [mut all, mut square] = [0.0; 2];
     for (omega, w) in about(0.0, 8.0, 80) {
@@ -78,7 +79,7 @@ fn curvature() -> Vec<Statement> {
         let [low, high] = [f64::min, f64::max].map(|pick| all.into_iter().fold(all[0], pick));
         high / low - 1.0
     };
-    // For the whole light field: all positions, |L|² summed over Ωx.
+    // The width in Ωθ of the whole light field: |L|² is summed over Ωx.
     let everywhere = |step: ReflectionStep, before: Factor<'static>| {
         change(&|k| {
             let chain = reflection(k, before);
@@ -90,7 +91,7 @@ fn curvature() -> Vec<Statement> {
             })
         })
     };
-    // At a single point 1.5 m away: the projection along Ωx.
+    // The width in Ωθ at a single point 1.5 m away: L is projected along Ωx.
     let eye = change(&|k| {
         let chain = reflection(k, Factor::One);
         spread(|t| {
@@ -143,7 +144,7 @@ fn cosine() -> Vec<Statement> {
         mean: 0.3,
         deviation: 0.3,
     };
-    // The relative error of the convolution if the light also varies along the surface, as
+    // The relative error of the convolution if the light also varies along the surface by
     // `pattern`.
     let off = |pattern: &dyn Fn(f64) -> f64| {
         let pairs: Vec<[Complex; 2]> = (0..16)

@@ -1,4 +1,4 @@
-//! Transparent strips over a period of 1, and the Fourier coefficients of the openings.
+//! Masks with transparent strips over a period of 1, and their Fourier coefficients.
 
 use super::primal::wave;
 use etendue_field::Complex;
@@ -7,8 +7,8 @@ use std::f64::consts::TAU;
 /// Open intervals, [from, to].
 pub(crate) type Strips = Vec<[f64; 2]>;
 
-/// Three strips between 0 and 1 of a mask of a pair, with an offset for the second mask;
-/// reproducible (additive recurrences, Weyl).
+/// Returns three strips between 0 and 1 for a mask of a pair, where `offset` distinguishes the
+/// second mask from the first. The edges are reproducible (additive recurrences, Weyl).
 pub(crate) fn strips(pair: u32, offset: f64) -> Strips {
     let cut = |i: u32| (0.618_034 * f64::from(6 * pair + i) + offset * f64::from(i + 1)).fract();
     let mut cuts: Vec<f64> = (0..6).map(cut).collect();
@@ -16,14 +16,14 @@ pub(crate) fn strips(pair: u32, offset: f64) -> Strips {
     cuts.chunks(2).map(|cut| [cut[0], cut[1]]).collect()
 }
 
-/// The common openings of two masks in one plane.
+/// Returns the common openings of two masks in one plane.
 pub(crate) fn in_common(a: &Strips, b: &Strips) -> Strips {
     let pairs = a.iter().flat_map(|p| b.iter().map(move |q| (p, q)));
     let both = pairs.map(|(p, q)| [p[0].max(q[0]), p[1].min(q[1])]);
     both.filter(|[low, high]| high > low).collect()
 }
 
-/// Fourier coefficients −N … N.
+/// Returns the Fourier coefficients from −N to N.
 pub(crate) fn coefficients(open: &Strips, most: usize) -> Vec<Complex> {
     (0..=2 * most)
         .map(|i| {

@@ -10,14 +10,14 @@ pub(super) fn scaled(mut crossing: Crossing, factor: f64) -> Crossing {
     crossing
 }
 
-/// The cosine of the angle of incidence.
+/// Returns the cosine of the angle of incidence.
 pub(super) fn cosine(scene: &Scene, crossing: &Crossing) -> f64 {
     let [_, from] = on_flat(scene, crossing);
     from.z
 }
 
-/// Reflectances of glass of index 1.5 for s and p, over their mean (Fresnel's equations with
-/// Snell's law).
+/// Returns the reflectances of glass of index 1.5 for the polarisations s and p, divided by their
+/// mean (Fresnel's equations with Snell's law).
 pub(super) fn polarised(cosine: f64) -> [f64; 2] {
     const INDEX: f64 = 1.5;
     let inner = (1.0 - (1.0 - cosine * cosine) / (INDEX * INDEX)).sqrt();
@@ -26,8 +26,8 @@ pub(super) fn polarised(cosine: f64) -> [f64; 2] {
     [s, p].map(|share| 2.0 * share / (s + p))
 }
 
-/// The texture of `textured_glossy` at the position of the light. The factor 1/cos θ₁ gives
-/// positions along the surface.
+/// Multiplies the weight by the texture of `textured_glossy` at the position of the leaving light.
+/// The factor 1/cos θ₁ converts this position to one along the surface.
 pub(super) fn textured_here(scene: &Scene, crossing: Crossing) -> Crossing {
     const MIRROR: f64 = 0.796_083_799;
     let etendue_scene::Event::Reflects(reflectance) = &scene.patches[0].event else {
@@ -39,8 +39,8 @@ pub(super) fn textured_here(scene: &Scene, crossing: Crossing) -> Crossing {
     scaled(crossing, factor)
 }
 
-/// Rotates the leaving light so that the mirror direction becomes the normal. This preserves solid
-/// angles, but not areas in (θ, φ).
+/// Rotates the leaving light so that the mirror direction becomes the normal. The rotation
+/// preserves solid angles, but not areas in (θ, φ).
 pub(super) fn around_the_normal(scene: &Scene, mut crossing: Crossing) -> Crossing {
     let [away, from] = on_flat(scene, &crossing);
     let mirrored = DVec3::new(-from.x, -from.y, from.z);

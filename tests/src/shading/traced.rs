@@ -16,7 +16,8 @@ use std::f64::consts::TAU;
 
 /// Sizes of the neighbourhood.
 const SIZES: [f64; 4] = [0.02, 0.01, 0.005, 0.0025];
-/// The error of an exact step, which is that of the trapezoid rule up to seven standard deviations.
+/// Maximum error of an exact step, which is that of the trapezoid rule over ± 7 standard
+/// deviations.
 const ROUNDING: f64 = 1e-9;
 const REACH: f64 = 7.0;
 
@@ -28,13 +29,15 @@ struct Circle {
     lobe: Option<f64>,
 }
 
-/// Minimum error of a chain with a fault at the smallest size, relative to that of the right chain.
+/// Minimum error, at the smallest size, of a chain with a fault, relative to the error of the
+/// correct chain.
 const SEEN: f64 = 3.0;
 
 /// A change to the theory's chain.
 type ChainChange = dyn Fn(&mut PlanarReflection<'static>);
 
-/// Single faults, and their effect on the spectrum after the last step.
+/// Returns faults that are planted one at a time, whose effect on the spectrum after the last step
+/// is tested.
 fn planted() -> Vec<(&'static str, Box<ChainChange>)> {
     let twice: &'static dyn Fn(f64) -> Complex = &|q| cosine_squared_hat(q).into();
     vec![
@@ -147,7 +150,7 @@ const fn line(step: ReflectionStep) -> Line {
 }
 
 impl Circle {
-    /// The known order of the error; `None` if the step is exact.
+    /// Returns the known order of the error, or `None` if the step is exact.
     fn known(&self, step: ReflectionStep) -> Option<f64> {
         match step {
             _ if self.theta0 != 0.0 => Some(1.0),
@@ -179,7 +182,7 @@ impl Circle {
                 after: Factor::One,
                 weight: None,
             }],
-            // The light's content has standard deviation 0.18/e; shears tilt it.
+            // The light's spectrum has the standard deviation 0.18/e; shears tilt it.
             lattice: Lattice::circle(2.5 / size),
         };
         plant(&mut reflection);
@@ -197,7 +200,8 @@ impl Circle {
         apart(&said, &self.rays(step, size, &omegas))
     }
 
-    /// The map of a mirror's steps, which locates the content.
+    /// Returns the map of the steps of a mirror, which gives the frequencies where the spectrum
+    /// has content.
     fn map(&self, step: ReflectionStep) -> AffineMap<2> {
         let mut map = AffineMap::identity();
         for next in ReflectionStep::ALL {
@@ -230,7 +234,7 @@ impl Circle {
             _ => None,
         };
         for (s, ds) in about(0.0, REACH * size / self.theta0.cos(), 26) {
-            // The first step has s on the tangent, the others on the arc.
+            // In the first step s is a position on the tangent, in the others on the arc.
             let turn = if step == ReflectionStep::Incidence {
                 0.0
             } else {
@@ -241,7 +245,7 @@ impl Circle {
                 _ => [turn.sin() / self.k, (turn.cos() - 1.0) / self.k],
             };
             for (theta, dt) in about(0.0, REACH * size, 26) {
-                // The light along −ω(θ₀ + θ) through the point, in the light's frame.
+                // The radiance along −ω(θ₀ + θ) through the point, in the light's frame.
                 let radiance = bell.value([-self.across(self.theta0, point, theta), theta]);
                 let incident = self.theta0 + theta - turn;
                 let weight = radiance * ds * dt;
@@ -271,8 +275,8 @@ impl Circle {
         sums
     }
 
-    /// The position of light that leaves at arc length s in a local direction, and the ratio of its
-    /// coordinates' area to ds dθ.
+    /// Returns the coordinates of light that leaves at arc length s in a local direction, and the
+    /// ratio of their area element to ds dθ.
     fn leaves(&self, step: ReflectionStep, s: f64, local: f64) -> ([f64; 2], f64) {
         let turn = self.k * s;
         match step {
@@ -282,16 +286,15 @@ impl Circle {
                 let theta = local + turn + self.theta0;
                 let point = [turn.sin() / self.k, (turn.cos() - 1.0) / self.k];
                 let x = self.across(-self.theta0, point, theta);
-                // The position of light that leaves at arc length s in a local direction, and the
-                // ratio of its coordinates' area to ds dθ.
+                // The second value is the ratio of dx dθ to ds dθ.
                 ([x, theta], local.cos() / theta.cos())
             }
         }
     }
 
-    /// The position where two lines cross. One goes through a point at an angle θ to a central
-    /// direction. The other is perpendicular to that direction, from the origin along cos T − sin
-    /// N.
+    /// Returns the position at which a line through a point, at the angle θ to a central
+    /// direction, crosses the axis from the origin along cos T − sin N, which is perpendicular to
+    /// that direction.
     fn across(&self, central: f64, [t, n]: [f64; 2], theta: f64) -> f64 {
         let (sine, cosine) = central.sin_cos();
         t * cosine - n * sine - (t * sine + n * cosine) * theta.tan()

@@ -14,10 +14,10 @@ const BEFORE: f64 = 1.0;
 const AFTER: f64 = 0.7;
 /// Half-widths of Hann windows over position and slope.
 const WINDOW: [f64; 2] = [0.4, 0.5];
-/// Nodes on either side of the centre, between two kinks.
+/// Number of nodes on either side of the centre of each interval between two kinks.
 const NODES: i32 = 30;
 
-/// A rectangle and a half-plane as occluders.
+/// Compares the light behind a rectangle and behind a half-plane.
 pub(super) fn all() -> Vec<OperatorComparison> {
     let rectangle = Rectangle {
         center: [0.1, -0.05],
@@ -110,11 +110,12 @@ fn frequencies() -> Vec<[f64; 4]> {
         .collect()
 }
 
-/// ∫∫ of the windowed light of a strip that passes the mask within `passed`, in (x, u).
+/// Returns the transform in (x, u) of the windowed light of a strip that passes the mask within
+/// the interval `passed`.
 fn section(light: f64, passed: [f64; 2], [along_x, along_u]: [f64; 2]) -> Complex {
     let [half, steepest] = WINDOW;
     let hann = |t: f64, half: f64| 0.5 + 0.5 * (std::f64::consts::PI * t / half).cos();
-    // Bounds of x, as a + b u.
+    // Each bound of x is a + b u.
     let far = BEFORE + AFTER;
     let lows = [[-half, 0.0], [-light, far], [passed[0].max(-1e3), AFTER]];
     let highs = [[half, 0.0], [light, far], [passed[1].min(1e3), AFTER]];

@@ -11,7 +11,7 @@ pub(super) struct Statement {
     pub(super) number: f64,
     /// The expected range of the number, known in advance.
     pub(super) expected: [f64; 2],
-    /// "holds", or the part that holds.
+    /// The conclusion: "holds", or which part of the statement holds.
     pub(super) holds: &'static str,
 }
 

@@ -8,7 +8,7 @@ use etendue_compare::{FirstOrder, FirstOrderChain, FirstOrderReport, Prediction}
 use etendue_theory::geometry::{Edition, Matrix, SpectrumMap};
 use etendue_theory::{Model, Parameter, rays};
 
-/// Level of the exact prediction, which is not used here.
+/// Level of the test of the exact prediction, whose result is not used here.
 const LEVEL: f64 = 0.01;
 
 /// A scene with one mirror, and its steps.
@@ -38,7 +38,7 @@ impl<'a> MirrorBench<'a> {
         Steps::sound(self.distance, self.theta0, self.shape)
     }
 
-    /// The difference between the steps and the chain that theory derives from the scene.
+    /// Returns the difference between the steps and the chain that theory derives from the scene.
     pub(super) fn apart(&self, plane: usize) -> f64 {
         let Some(read) = rays::chain(&self.outcome.system(plane), Edition::Corrected) else {
             return f64::NAN;
@@ -54,7 +54,8 @@ impl<'a> MirrorBench<'a> {
         pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
     }
 
-    /// Compares the photons of a plane with the chain of some steps, by the first-order rule.
+    /// Compares the photons of a plane with the chain made of these steps, by the rule for
+    /// first-order chains.
     pub(super) fn judged(&self, plane: usize, steps: &Steps) -> FirstOrderReport {
         let TableRun {
             scene,

@@ -30,7 +30,8 @@ fn all() -> Vec<(&'static str, &'static str, StepMisprint)> {
     };
     let cosine = |cosine: fn(f64) -> f64, sign: f64| -> StepMisprint {
         Box::new(move |steps, theta0, shape| {
-            // Without its cosines, the shear is M alone, with the right sign.
+            // With longitude 0 the shear has no cosines and is M alone; it has the correct sign if
+            // `sign` is 1.
             let longitude = cosine(theta0);
             steps.curvature =
                 AffineMap::<4>::curvature(shape.map(|r| r.map(|m| sign * m)), longitude)
@@ -112,8 +113,8 @@ fn all() -> Vec<(&'static str, &'static str, StepMisprint)> {
     ]
 }
 
-/// A row for each misprint alone. All of them are tested on a hollow sphere, and those that concern
-/// a plane mirror also on a plane mirror.
+/// Returns a row for each single misprint. All misprints are tested on a hollow sphere, and those
+/// that concern plane mirrors also on a plane mirror.
 fn rows(outcome: &TableRun) -> Vec<Row> {
     let bench = MirrorBench::new(outcome);
     let mut rows = Vec::new();
@@ -156,7 +157,7 @@ fn rows(outcome: &TableRun) -> Vec<Row> {
     rows
 }
 
-/// The section on the errata.
+/// Returns the section on the errata.
 fn section(outcomes: &[&TableRun]) -> ReportSection {
     ReportSection {
         title: "Errata: each misprint alone".to_owned(),
@@ -182,12 +183,13 @@ fn section(outcomes: &[&TableRun]) -> ReportSection {
     }
 }
 
-/// The misprints on the hollow mirror and the plane one.
+/// Returns the section on the misprints, for the hollow and the plane mirror.
 pub(super) fn misprints(sphere: &TableRun, flat: &TableRun) -> ReportSection {
     section(&[sphere, flat])
 }
 
-/// The scene files that request the printed formulas: `--expect disagreement`.
+/// Returns the section on the scene files that request the printed formulas, which must fail as
+/// with `--expect disagreement`.
 pub(super) fn as_printed(outcomes: &[&TableRun], level: f64) -> ReportSection {
     let mut rows = Vec::new();
     let mut checks = Vec::new();

@@ -16,10 +16,10 @@ const WIDTHS: [f64; 2] = [0.1, 1e-5];
 /// Maximum deviation in standard errors.
 const MOST: f64 = 4.0;
 
-/// Sums over the crossings of a plane: weight, weight · x, weight · x², for x and y.
+/// Sums of weight, weight · x and weight · x² over the crossings of a plane, and the same for y.
 type CrossingSums = [[f64; 3]; 2];
 
-/// The positions at which the beam is narrowest in the plane of incidence and across.
+/// Distances at which the beam is narrowest in the plane of incidence and across it.
 pub(super) fn foci(outcome: &TableRun) -> ReportSection {
     let theta0: f64 = 0.7;
     let radius = 2.0;
@@ -94,7 +94,7 @@ fn with_beam(scene: &Scene, width: f64) -> Scene {
     resolve(&scene.name, file, ".".as_ref(), u64::MAX).expect("the scene was sound")
 }
 
-/// For each batch, the sums of each plane.
+/// Returns, for each batch, the sums of each plane.
 fn sums(scene: &Scene) -> Vec<Vec<CrossingSums>> {
     let tracer = Tracer::new(scene);
     let batch = |number: u32| {
@@ -116,7 +116,7 @@ fn sums(scene: &Scene) -> Vec<Vec<CrossingSums>> {
     (0..scene.run.batches).into_par_iter().map(batch).collect()
 }
 
-/// The sums over all batches, or over all but one.
+/// Returns the variances along x and y at each plane, over all batches or over all but one.
 fn total(batches: &[Vec<CrossingSums>], without: Option<usize>) -> Vec<[f64; 2]> {
     let planes = batches[0].len();
     let variance = |plane: usize| {
@@ -136,7 +136,7 @@ fn total(batches: &[Vec<CrossingSums>], without: Option<usize>) -> Vec<[f64; 2]>
     (0..planes).map(variance).collect()
 }
 
-/// The foci predicted by rays.
+/// Returns the foci predicted by rays.
 ///
 /// # Panics
 /// If no light arrives.
@@ -158,7 +158,7 @@ fn predicted(scene: &Scene, distances: &[f64]) -> [f64; 2] {
     narrowest(&variances, distances)
 }
 
-/// The minima of parabolas fitted to variances.
+/// Returns the minima of parabolas fitted to variances.
 fn narrowest(variances: &[[f64; 2]], distances: &[f64]) -> [f64; 2] {
     [0, 1].map(|axis: usize| {
         let values: Vec<f64> = variances.iter().map(|v| v[axis]).collect();
@@ -166,7 +166,7 @@ fn narrowest(variances: &[[f64; 2]], distances: &[f64]) -> [f64; 2] {
     })
 }
 
-/// The vertex of the least-squares parabola.
+/// Returns the vertex of the least-squares parabola.
 fn vertex(x: &[f64], y: &[f64]) -> f64 {
     let count = x.len() as f64;
     let mean = x.iter().sum::<f64>() / count;
@@ -175,7 +175,7 @@ fn vertex(x: &[f64], y: &[f64]) -> f64 {
         let terms = x.iter().zip(y).map(|(x, y)| (x - mean).powi(n) * y);
         terms.sum::<f64>()
     };
-    // Normal equations for a first moment of zero.
+    // The normal equations of the fit, with abscissas of mean zero.
     let [m0, m2, m3, m4] = [count, power(2), power(3), power(4)];
     let [b0, b1, b2] = [with(0), with(1), with(2)];
     // a m0 + c m2 = b0; b m2 + c m3 = b1; a m2 + b m3 + c m4 = b2.

@@ -37,7 +37,7 @@ struct TableRun {
 }
 
 impl TableRun {
-    /// The specular system before a plane.
+    /// Returns the specular system before a plane.
     ///
     /// # Panics
     /// If theory does not trace rays to the plane.
@@ -45,7 +45,7 @@ impl TableRun {
         system(&self.scene, &self.scene.planes[plane]).expect("a scene of free specular surfaces")
     }
 
-    /// The index of a plane.
+    /// Returns the index of a plane.
     ///
     /// # Panics
     /// If there is no plane of that name.
@@ -56,7 +56,7 @@ impl TableRun {
     }
 }
 
-/// All sections, with the photons of the files or with `photons` for each scene.
+/// Returns all sections, with the photons of the files or with `photons` for each scene.
 pub(crate) fn table1(photons: Option<u64>) -> Vec<ReportSection> {
     let all: Vec<Scene> = scenes::all(photons);
     let planes = all.iter().map(|scene| scene.planes.len()).sum();

@@ -13,11 +13,11 @@ use etendue_theory::geometry::Media;
 use etendue_theory::rays::SpecularSystem;
 use etendue_theory::{Model, Observed, Parameter};
 
-/// Permitted difference between two quadratures where first order is exact. Each quadrature is
-/// accurate to 10⁻⁴.
+/// Permitted difference between two predictions that are equal because the first order is exact;
+/// the quadrature of each is accurate to 10⁻⁴.
 const QUADRATURE: f64 = 2e-4;
 
-/// The 4D half of the table.
+/// Returns the section on Table 1 in 4D.
 pub(super) fn operators(outcomes: &[&TableRun], planes: usize, level: f64) -> ReportSection {
     let mut rows = Vec::new();
     for outcome in outcomes {
@@ -123,7 +123,7 @@ fn follows(fall: &Fall, known: KnownOrder) -> Check {
     Check::new("order", largest, Below(QUADRATURE), "two quadratures")
 }
 
-/// The last step before a plane, and its row in the paper's table.
+/// Returns the last step before a plane, and the row of this step in the paper's Table 1.
 fn operator(view: &Observed<SpecularSystem>) -> (&'static str, Option<Line>) {
     let Observed { system, plane } = view;
     let last = system.elements.last();
@@ -153,8 +153,8 @@ fn operator(view: &Observed<SpecularSystem>) -> (&'static str, Option<Line>) {
     }
 }
 
-/// The 2D scene in the plane of incidence, for a scene with one surface. A principal axis of the
-/// surface must lie in this plane.
+/// Returns the 2D scene in the plane of incidence of a scene with one surface, which must have a
+/// principal axis in this plane.
 fn section(view: &Observed<SpecularSystem>) -> Option<(MirrorPath, PathStage)> {
     let Observed { system, plane } = view;
     let value = |p: Parameter| view.value(p);
@@ -177,7 +177,7 @@ fn section(view: &Observed<SpecularSystem>) -> Option<(MirrorPath, PathStage)> {
         None => plane.patch,
     };
     let [k1, k2, _] = patch.map_or([0.0; 3], |patch| patch.curvature);
-    // Other principal axes do not matter if both curvatures are equal.
+    // The direction of the principal axes does not matter if both curvatures are equal.
     let across = patch.is_some_and(|p| p.frame.x.y.abs() > 1e-9);
     if across && (k1 - k2).abs() > 1e-12 {
         return None;

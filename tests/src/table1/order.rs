@@ -15,7 +15,7 @@ const SIZES: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
 /// Maximum deviation of a fitted order from the known one.
 pub(crate) const ORDER: f64 = 0.15;
 
-/// Checks an order fitted to decreasing errors.
+/// Checks that the order fitted to decreasing errors is the known one.
 pub(crate) fn check(fitted: f64, known: f64) -> Check {
     let off = (fitted - known).abs();
     Check::new("order", off, AtMost(ORDER), "a fit of four sizes")
@@ -36,7 +36,7 @@ pub(super) enum KnownOrder {
 }
 
 impl KnownOrder {
-    /// The known order for a plane.
+    /// Returns the known order for a plane.
     pub(super) fn expected(view: &Observed<SpecularSystem>) -> Self {
         let Observed { system, plane } = view;
         let across = plane.orientation == Orientation::Orthogonal;
@@ -57,7 +57,7 @@ impl KnownOrder {
         }
     }
 
-    /// The exponent; `None` where there is no error.
+    /// Returns the exponent with which the error decreases; `None` if there is no error.
     pub(super) fn exponent(self) -> Option<f64> {
         match self {
             Self::Exact => None,
@@ -74,7 +74,7 @@ pub(super) struct Fall {
     pub(super) order: f64,
 }
 
-/// ‖first order − exact‖/‖exact‖ on neighbourhoods of all sizes.
+/// Computes ‖first order − exact‖/‖exact‖ on neighbourhoods of all sizes, and fits its order.
 ///
 /// # Panics
 /// If the chain does not arrive.
@@ -99,7 +99,7 @@ pub(super) fn fall(outcome: &TableRun, index: usize) -> Fall {
     }
 }
 
-/// The slope of the least-squares line.
+/// Returns the slope of the least-squares line.
 pub(crate) fn slope(points: &[[f64; 2]]) -> f64 {
     let count = points.len() as f64;
     let mean = |axis: usize| points.iter().map(|p| p[axis]).sum::<f64>() / count;

@@ -1,4 +1,4 @@
-//! A 2D path with one surface: its operators, and its rays.
+//! A 2D path with one surface, its operators and its rays.
 
 use etendue_theory::geometry::{AffineMap, Media};
 
@@ -34,7 +34,7 @@ impl MirrorPath {
         }
     }
 
-    /// The operators up to a stage.
+    /// Returns the map of all operators up to a stage.
     pub(super) fn map(&self, stage: PathStage) -> AffineMap<2> {
         let theta1 = self.theta1();
         let event = match &self.media {
@@ -74,7 +74,8 @@ impl MirrorPath {
         if stage == Travel {
             return [x, theta];
         }
-        // Light comes from ω(θ₀), against D; in axes (T, N), X = −c₀ T + sin θ₀ N.
+        // Light comes from the direction ω(θ₀), which is −D, and X is −c₀ T + sin θ₀ N; vectors
+        // have components along (T, N).
         let (sin, cos) = self.theta0.sin_cos();
         let point = [-cos * x, sin * x];
         let along = -omega(self.theta0 + theta);
@@ -102,7 +103,8 @@ impl MirrorPath {
         if stage == Back {
             return [back, global];
         }
-        // The frame after the surface: X = c₁ T − sin θ₁ N, or that of transmitted light.
+        // After the surface X is c₁ T − sin θ₁ N for reflected light, and its opposite for
+        // transmitted light.
         let theta1 = self.theta1();
         let (sin, cos) = theta1.sin_cos();
         let sign = if self.media.is_some() { -1.0 } else { 1.0 };
@@ -122,7 +124,7 @@ impl MirrorPath {
         [x + self.travels[1] * theta.tan(), theta]
     }
 
-    /// The point where a line hits the circle near the origin.
+    /// Returns the point where a line hits the circle near the origin.
     fn hit(&self, [s, h]: [f64; 2], along: Direction) -> [f64; 2] {
         let Direction(a, b) = along;
         // k (s² + h²) + 2 h = 0.

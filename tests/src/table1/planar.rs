@@ -17,7 +17,7 @@ use std::f64::consts::TAU;
 const FIELD: Matrix<2> = [[1.0, 0.3], [0.3, 0.8]];
 /// Sizes of the neighbourhood.
 const SIZES: [f64; 4] = [0.02, 0.01, 0.005, 0.0025];
-/// Rounding of a sum of 10⁴ terms.
+/// Rounding error of a sum of 10⁴ terms.
 const ROUNDING: f64 = 1e-12;
 
 /// Metres before and after the surface.
@@ -55,7 +55,7 @@ fn paths() -> Vec<(&'static str, MirrorPath)> {
     ]
 }
 
-/// The 2D half of the table.
+/// Returns the section on Table 1 in 2D.
 pub(super) fn planar() -> ReportSection {
     let mut rows = Vec::new();
     for (name, path) in paths() {
@@ -110,7 +110,7 @@ const fn line(stage: PathStage) -> Line {
     }
 }
 
-/// The errors at a stage of a path.
+/// The errors of the operators at a stage of a path.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StageFound {
     /// Error of the operators' spectrum relative to a quadrature of the mapped field.
@@ -131,7 +131,7 @@ impl StageFound {
 }
 
 impl MirrorPath {
-    /// Both comparisons.
+    /// Returns both comparisons.
     pub(super) fn found(&self, stage: PathStage) -> StageFound {
         let traced = SIZES.map(|size| {
             let (said, frequencies, field) = self.said(stage, size);
@@ -150,8 +150,8 @@ impl MirrorPath {
         }
     }
 
-    /// The order known in advance. It is 1 at oblique incidence. It is 2 along the normal, and also
-    /// if only the tangent slopes are approximated.
+    /// Returns the order known in advance. The order is 1 at oblique incidence. The order is 2 at
+    /// normal incidence, and also if the only approximation is that of tangents by angles.
     fn known(&self, stage: PathStage) -> f64 {
         let flat_mirror = self.k == 0.0 && self.media.is_none();
         match stage {
@@ -162,13 +162,13 @@ impl MirrorPath {
         }
     }
 
-    /// The spectrum that the operators give for a field of some size, with the frequencies and the
-    /// field.
+    /// Returns the spectrum that the operators give for a field of this size, the frequencies, and
+    /// the covariance of the field.
     fn said(&self, stage: PathStage, size: f64) -> (Vec<Complex>, Vec<[f64; 2]>, Matrix<2>) {
         let map = self.map(stage);
         let field = FIELD.map(|row| row.map(|s| s * size * size));
         let content = |i: i32| {
-            // Content of the field, moved by the map.
+            // Frequencies of the original field, moved by the map.
             let radius = 0.06 * f64::from(i / 6) / size;
             let angle = TAU * f64::from(i % 6) / 6.0 + 0.2;
             map.content([radius * angle.cos(), radius * angle.sin()])

@@ -4,13 +4,14 @@ use etendue_field::Complex;
 use etendue_theory::geometry::{AffineMap, Matrix};
 use std::f64::consts::TAU;
 
-/// Half the number of nodes along each axis, for traced rays and for the mapped field.
+/// Half of the number of nodes along each axis, for traced rays (`NODES`) and for the mapped field
+/// (`FINE`).
 const NODES: i32 = 60;
 const FINE: i32 = 200;
 const REACH: f64 = 8.5;
 
-/// The transforms of a Gaussian field whose rays were mapped elsewhere, by the trapezoid rule over
-/// the original rays.
+/// Transforms a Gaussian field whose rays have been traced to new coordinates, by the trapezoid
+/// rule over the original rays.
 pub(super) fn of_rays(
     field: &Matrix<2>,
     to: &dyn Fn([f64; 2]) -> [f64; 2],
@@ -36,7 +37,7 @@ pub(super) fn of_rays(
             let weight = (-exponent).exp() * (xx * tt - xt * tx).abs() * p * q;
             let z = to([x, t]);
             if !weight.is_finite() {
-                // The ray misses a small circle.
+                // The ray misses the circle if the circle is small.
                 continue;
             }
             for (sum, w) in sums.iter_mut().zip(frequencies) {
@@ -47,7 +48,7 @@ pub(super) fn of_rays(
     sums
 }
 
-/// The transforms of a mapped Gaussian field, by the trapezoid rule over its new coordinates.
+/// Transforms a mapped Gaussian field by the trapezoid rule over its new coordinates.
 pub(super) fn of_field(
     field: &Matrix<2>,
     map: &AffineMap<2>,

@@ -38,7 +38,7 @@ const SCENES: &[(&str, &str)] = &[
     scene!("printed_sagittal"),
 ];
 
-/// Every scene of the table, by default with the photons of its file.
+/// Returns every scene of the table, by default with the photons of its file.
 ///
 /// # Panics
 /// If a scene is invalid.

@@ -3,7 +3,7 @@
 use etendue_field::{Orientation, Side, VirtualPlane};
 use etendue_theory::geometry::{AffineMap, Matrix, SpectrumMap};
 
-/// Travel to a mirror, with incidence in the plane of (X, D), and the steps at it.
+/// Travel to a mirror, with incidence in the plane of X and D, and the steps of its reflection.
 #[derive(Clone, Debug)]
 pub(super) struct Steps {
     pub(super) distance: f64,
@@ -15,7 +15,7 @@ pub(super) struct Steps {
 }
 
 impl Steps {
-    /// The steps according to ray geometry.
+    /// Returns the steps that follow from ray geometry.
     pub(super) fn sound(distance: f64, theta0: f64, shape: Matrix<2>) -> Self {
         Self {
             distance,
@@ -27,7 +27,7 @@ impl Steps {
         }
     }
 
-    /// The chain up to a plane.
+    /// Returns the chain up to a plane.
     pub(super) fn chain(&self, plane: &VirtualPlane) -> SpectrumMap<4> {
         let mut map = AffineMap::travel(match plane.leg {
             0 => plane.distance,

@@ -11,7 +11,8 @@ use glam::DVec3;
 
 /// Step of the differences, metres and direction cosines; their error is of sixth order.
 const STEP: f64 = 2e-3;
-/// The remaining error, from rounding (10⁻¹⁶ divided by the step) and from the sixth order.
+/// Maximum error of the differences, from rounding (10⁻¹⁶ divided by the step) and from terms of
+/// sixth order.
 const ROUNDING: f64 = 1e-10;
 
 /// A straight leg of a ray.
@@ -83,7 +84,7 @@ pub(super) fn volume(outcomes: &[&TableRun]) -> ReportSection {
     }
 }
 
-/// Ratio of the index at the light to that at the plane.
+/// Returns the ratio of the index of refraction at the light to that at the plane.
 fn index_ratio(system: &SpecularSystem) -> f64 {
     let mut ratio = 1.0;
     let mut ray = start([0.0; 4]);
@@ -118,7 +119,7 @@ fn bundle() -> impl Iterator<Item = [f64; 4]> {
     })
 }
 
-/// The errors of volume, of the invariant, and of the way back.
+/// Returns the errors of the phase-space volume, of the invariant, and of the rays traced back.
 fn defects(system: &SpecularSystem, plane: &Frame, at: [f64; 4], ratio: f64) -> Option<[f64; 3]> {
     let slopes = has_lens(system);
     let map = |z: [f64; 4]| -> Option<[f64; 4]> {
@@ -167,8 +168,8 @@ fn defects(system: &SpecularSystem, plane: &Frame, at: [f64; 4], ratio: f64) -> 
     ])
 }
 
-/// Whether there is an ideal lens. It changes slopes and preserves the volume of positions and
-/// slopes, unlike real lenses.
+/// Whether there is an ideal lens. An ideal lens preserves the volume of positions and slopes,
+/// unlike real lenses.
 fn has_lens(system: &SpecularSystem) -> bool {
     let events = system.elements.iter().map(|e| e.event);
     events
@@ -186,7 +187,7 @@ fn with_cosines([x, y, u, v]: [f64; 4]) -> [f64; 4] {
     [x, y, u / length, v / length]
 }
 
-/// A ray from a point of the light's plane with direction cosines.
+/// Returns a ray from a point of the light's plane with direction cosines.
 fn start([x, y, p, q]: [f64; 4]) -> VolumeRay {
     VolumeRay {
         point: DVec3::new(x, y, 0.0),
@@ -219,7 +220,7 @@ fn follow(element: &SpecularSurface, ray: &VolumeRay) -> Option<VolumeRay> {
     })
 }
 
-/// The point where a ray's line crosses a plane, and its direction cosines.
+/// Returns the point where a ray's line crosses a plane, and its direction cosines.
 fn coordinates(plane: &Frame, ray: &VolumeRay) -> Option<[f64; 4]> {
     let (at, along) = (
         plane.to_local(ray.point),

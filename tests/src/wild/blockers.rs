@@ -9,7 +9,7 @@ use std::io;
 
 /// The smallest size permitted in a scene file, metres.
 const LEAST: f64 = 1e-9;
-/// Maximum number of shape products in a prediction of acceptable duration.
+/// Maximum number of products of shapes for which a prediction takes an acceptable time.
 const MOST: f64 = 3e4;
 /// Number of rectangles that a disc counts as.
 const STRIPS: f64 = 64.0;
@@ -108,7 +108,7 @@ fn squares(draw: &mut SceneDraw, name: String, center: [f64; 3]) -> BlockersFile
     }
 }
 
-/// Shapes in the cells of a board.
+/// Draws shapes in the cells of a square grid.
 fn board(draw: &mut SceneDraw) -> Vec<ShapeFile> {
     let pitch = draw.length([0.1, 0.5], [1e-4, 20.0]);
     let count = 1 + draw.below(5);
@@ -126,7 +126,7 @@ fn board(draw: &mut SceneDraw) -> Vec<ShapeFile> {
     (0..count).map(|i| shape(draw, i)).collect()
 }
 
-/// One edge, or a slit, which is occasionally very narrow or closed.
+/// Draws one half-plane, or two that leave a slit, which is occasionally very narrow or closed.
 fn half_planes(draw: &mut SceneDraw) -> Vec<ShapeFile> {
     let axis: AxisName = axis(draw);
     let edge = draw.unit * draw.between(-0.15, 0.15);
@@ -146,7 +146,7 @@ fn half_planes(draw: &mut SceneDraw) -> Vec<ShapeFile> {
     ]
 }
 
-/// A mesh that touches neither the light nor the following objects.
+/// Draws a mesh that touches neither the light nor the objects behind it.
 fn mesh(
     draw: &mut SceneDraw,
     name: String,

@@ -9,7 +9,8 @@ use std::path::{Path, PathBuf};
 /// The choices of one scene, in order of use.
 pub(super) struct SceneDraw {
     dice: Dice,
-    /// One value in this number of values is extreme; if it is 0, none is.
+    /// On average, one of this number of values is extreme; if the number is 0, no value is
+    /// extreme.
     rarity: usize,
     /// The scale of all lengths in the scene, metres.
     pub(super) unit: f64,
@@ -17,7 +18,7 @@ pub(super) struct SceneDraw {
     pub(super) frame: Frame,
     /// The folder for pictures and meshes of the scene.
     pub(super) folder: PathBuf,
-    /// The number of these files.
+    /// The number of picture and mesh files written so far.
     pub(super) inputs: usize,
 }
 
@@ -36,7 +37,7 @@ impl SceneDraw {
             folder: folder.to_owned(),
             inputs: 0,
         };
-        // Scenes with many extreme values are mostly dark, so some scenes have none.
+        // Scenes with many extreme values are mostly dark, so some scenes have no extreme values.
         draw.rarity = *draw.pick(&[0, 20, 5, 5]);
         if draw.is_extreme() {
             draw.unit = *draw.pick(&UNITS);
@@ -53,7 +54,7 @@ impl SceneDraw {
         Frame::new(origin, d, x).unwrap_or(Frame::IDENTITY)
     }
 
-    /// A uniform direction.
+    /// Returns a uniform direction.
     pub(super) fn direction(&mut self) -> DVec3 {
         let z = self.between(-1.0, 1.0);
         let (sin, cos) = self.between(0.0, TAU).sin_cos();
@@ -81,35 +82,36 @@ impl SceneDraw {
         low + (high - low) * self.dice.unit()
     }
 
-    /// A random integer from `low` to `high`, both included.
+    /// Returns a random integer from `low` to `high`, both included.
     pub(super) fn whole(&mut self, low: u32, high: u32) -> u32 {
         let more = self.below((high - low + 1) as usize);
         low + u32::try_from(more).unwrap_or(0)
     }
 
-    /// A positive number with uniform logarithm, from the usual range or from the legal one.
+    /// Returns a positive number with uniform logarithm, from the usual range or from the legal
+    /// one.
     pub(super) fn value(&mut self, usual: [f64; 2], legal: [f64; 2]) -> f64 {
         let [low, high] = if self.is_extreme() { legal } else { usual };
         rounded(self.between(low.ln(), high.ln()).exp()).clamp(low, high)
     }
 
-    /// A length drawn like [`Self::value`], in units of the scene.
+    /// Returns a length drawn like [`Self::value`], in units of the scene.
     pub(super) fn length(&mut self, usual: [f64; 2], legal: [f64; 2]) -> f64 {
         let [low, high] = LENGTHS;
         (self.unit * self.value(usual, legal)).clamp(low, high)
     }
 
-    /// The number with a random sign.
+    /// Returns the number with a random sign.
     pub(super) fn signed(&mut self, x: f64) -> f64 {
         if self.one_in(2) { -x } else { x }
     }
 
-    /// A point in the frame at the light, in world coordinates.
+    /// Returns a point in the frame at the light, in world coordinates.
     pub(super) fn place(&self, local: DVec3) -> [f64; 3] {
         self.frame.to_world(local).to_array()
     }
 
-    /// A direction in the frame at the light, in world coordinates.
+    /// Returns a direction in the frame at the light, in world coordinates.
     pub(super) fn along(&self, local: DVec3) -> [f64; 3] {
         self.frame.vector_to_world(local).to_array()
     }

@@ -15,7 +15,7 @@ pub(super) enum SceneTrouble {
     Panic,
     Hang,
     Killed,
-    /// This plane fails, with photons or with backward rays, and again with other seeds.
+    /// The named plane fails, with photons or with backward rays, and again with other seeds.
     Wrong {
         plane: String,
         backward: bool,
@@ -32,7 +32,7 @@ pub(super) enum Culprit {
     Tracer,
     /// The verdict is wrong, because it is based on too few rays.
     Handful,
-    /// It is not determined which of these is wrong.
+    /// The comparisons do not determine whether a tracer or the prediction is wrong.
     Unknown,
 }
 
@@ -54,8 +54,8 @@ pub(super) struct JudgedScene {
     pub(super) refused: Option<String>,
     /// The verdicts of the scene.
     pub(super) verdicts: Vec<String>,
-    /// The numbers of runs with a verdict, of runs with a failed plane, and of failures that do not
-    /// repeat.
+    /// The number of runs with a verdict (`runs`), of those with a failed plane (`fails`), and of
+    /// failures that do not repeat with other seeds (`chance`).
     pub(super) runs: usize,
     pub(super) fails: usize,
     pub(super) chance: usize,
@@ -63,11 +63,11 @@ pub(super) struct JudgedScene {
     pub(super) troubles: Vec<(SceneTrouble, String)>,
 }
 
-/// Minimum number of rays in the window that makes the spread of 64 batches reliable: about ten in
-/// each batch.
+/// Minimum number of rays in the window for which the spread of 64 batches is reliable, about ten
+/// rays in each batch.
 pub(crate) const HANDFUL: u64 = 640;
 
-/// The seed of the scene for its first run, and those of two more runs.
+/// Returns the seed of the scene for its first run, and those of two more runs.
 fn seeds(file: &SceneFile) -> [u64; 3] {
     [0, 1, 2].map(|i| file.run.seed + i)
 }
@@ -102,7 +102,7 @@ pub(super) fn judge(runner: &Runner, file: &SceneFile) -> io::Result<JudgedScene
     Ok(judged)
 }
 
-/// The fault of a run that did not finish.
+/// Returns the fault of a run that did not finish.
 fn trouble(ending: &RunEnding) -> Option<(SceneTrouble, String)> {
     match ending {
         RunEnding::Panic(says) => Some((SceneTrouble::Panic, says.clone())),
@@ -224,7 +224,8 @@ struct Tracers {
     inside: [u64; 2],
 }
 
-/// Compares photons with backward rays, or with unaimed photons if backward rays find no light.
+/// Compares photons with backward rays, or with photons that are not aimed if backward rays find
+/// no light.
 fn of_tracers(file: &SceneFile, folder: &Path, name: &str) -> Option<Tracers> {
     let mut scene = resolve("scene", file.clone(), folder, u64::MAX).ok()?;
     scene.planes.retain(|plane| plane.name == name);
@@ -246,7 +247,7 @@ fn of_tracers(file: &SceneFile, folder: &Path, name: &str) -> Option<Tracers> {
     })
 }
 
-/// Whether a scene still has the same fault, and not by chance.
+/// Whether a reduced scene still has the same fault, and not only by chance.
 pub(super) fn persists(
     runner: &Runner,
     file: &SceneFile,

@@ -8,7 +8,7 @@ use etendue_scene::{
 use glam::DVec3;
 use std::io;
 
-/// A light at the origin of the scene's frame.
+/// Returns a light at the origin of the scene's frame.
 pub(super) fn light(draw: &mut SceneDraw) -> io::Result<LightFile> {
     let center = draw.place(DVec3::ZERO);
     let strength = if draw.is_extreme() {
@@ -73,12 +73,12 @@ fn image(draw: &mut SceneDraw, unit: f64) -> ImageFile {
     ImageFile { width, grating }
 }
 
-/// A random axis, X or Y.
+/// Returns a random axis, X or Y.
 pub(super) fn axis(draw: &mut SceneDraw) -> AxisName {
     *draw.pick(&[AxisName::X, AxisName::Y])
 }
 
-/// A random modulation between 0 and 1.
+/// Returns a random modulation between 0 and 1.
 pub(super) fn modulation(draw: &mut SceneDraw) -> f64 {
     if draw.is_extreme() {
         *draw.pick(&[0.0, 1.0])
@@ -113,7 +113,7 @@ fn environment(draw: &mut SceneDraw, center: [f64; 3]) -> io::Result<LightFile> 
 
 fn lobe(draw: &mut SceneDraw, plain: bool) -> SphericalGaussianFile {
     let width = draw.value([0.05, 0.6], [1e-3, 100.0]);
-    // If the axes are unknown, a lobe must be wide to reach forward.
+    // Around a random direction, a lobe must be wide to send light forward.
     let (from, width) = if plain {
         let [x, y] = [(); 2].map(|()| draw.between(-0.7, 0.7));
         (draw.along(DVec3::new(x, y, -1.0)), width)

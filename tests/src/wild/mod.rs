@@ -112,7 +112,7 @@ fn told(seed: u64, number: u64, says: &str) {
 }
 
 /// Draws a scene, runs and judges it; if it has a fault, keeps the scene and reports the fault.
-/// `None` if no scene could be drawn.
+/// Returns `None` if no scene could be drawn.
 fn one(
     options: &WildOptions,
     program: &Path,

@@ -20,7 +20,7 @@ pub(super) fn texture(draw: &mut SceneDraw) -> io::Result<String> {
     picture(draw, size, false)
 }
 
-/// Pixels from 0 to 1; if `bright`, one pixel is a thousand.
+/// Writes a picture with pixels from 0 to 1; if `bright` is set, one pixel has the value 1000.
 fn picture(draw: &mut SceneDraw, [width, height]: [usize; 2], bright: bool) -> io::Result<String> {
     let mut pixels: Vec<f32> = Vec::new();
     for _ in 0..width * height {

@@ -18,7 +18,7 @@ const BUDGET: RayBudget = RayBudget {
     nodes: 2e7,
     error: 1e-3,
 };
-/// The p below which a fault counts as detected.
+/// A fault counts as detected if p is below this value.
 const SEEN: f64 = 0.01;
 /// The name of the scene.
 const SCENE: &str = "two_glossy";
@@ -33,7 +33,7 @@ const FAULTS: [PlantedFault; 6] = [
         change_lobe(system, 0, 1.01);
     }),
     ("second lobe 1 % wider", |system| {
-        // The width is proportional to the inverse root of the exponent.
+        // The width of a Phong lobe is proportional to the inverse square root of its exponent.
         change_lobe(system, 1, 1.01_f64.powi(-2));
     }),
     ("curvature of the first left out", |system| {
@@ -109,7 +109,7 @@ pub(super) fn planted() -> ReportSection {
     }
 }
 
-/// p of the prediction for a view, with all else taken from another prediction.
+/// Returns p for the slices predicted for a view; all else is taken from another prediction.
 fn p_value(
     scene: &Scene,
     measured: &Measurement,

@@ -49,9 +49,9 @@ pub(super) struct PlaneSummary {
     pub(super) name: String,
     pub(super) class: String,
     pub(super) verdict: String,
-    /// p of the exact prediction, and of the affine chain if there is one.
+    /// The p-values of the exact prediction and, if there is one, of the affine chain.
     pub(super) p: [Option<f64>; 2],
-    /// Relative error, noise limit and error of the prediction.
+    /// Relative error, noise limit, and the stated error of the prediction.
     pub(super) errors: [Option<f64>; 3],
 }
 
@@ -76,13 +76,13 @@ impl PlaneSummary {
         self.verdict == "undecided"
     }
 
-    /// Whether the other tracer was used instead of theory.
+    /// Whether the other tracer replaced theory.
     pub(super) fn is_reference(&self) -> bool {
         self.class == "reference"
     }
 }
 
-/// A scene file as its text.
+/// Returns a scene file as its text.
 pub(crate) fn text(file: &SceneFile) -> io::Result<String> {
     let pretty = PrettyConfig::new().depth_limit(3);
     ron::Options::default()
@@ -131,7 +131,7 @@ impl Runner {
     }
 }
 
-/// The outcome of a run without a result.
+/// Returns the outcome of a run without a result.
 fn early(ended: &Ended) -> Option<RunEnding> {
     let stderr = String::from_utf8_lossy(&ended.stderr);
     if ended.hung {
@@ -153,7 +153,8 @@ fn early(ended: &Ended) -> Option<RunEnding> {
     }
 }
 
-/// The reason for a refusal, without numbers and names.
+/// Returns the reason for a refusal, without numbers and names, so that equal reasons can be
+/// counted.
 fn reason(stderr: &str) -> String {
     let lines = stderr.lines().filter(|line| {
         let line = line.trim_start();

@@ -16,7 +16,8 @@ use std::path::Path;
 /// Maximum number of attempts to place a surface on the central ray.
 const TRIES: usize = 8;
 
-/// The scene with an index, for a seed. Its pictures and meshes are written to the folder.
+/// Returns the scene with this index for this seed. The pictures and meshes of the scene are
+/// written to the folder.
 pub(crate) fn scene(seed: u64, index: u64, photons: u64, folder: &Path) -> io::Result<SceneFile> {
     let mut draw = SceneDraw::new(seed, index, folder);
     let mut file = empty(&mut draw, photons)?;
@@ -26,12 +27,13 @@ pub(crate) fn scene(seed: u64, index: u64, photons: u64, folder: &Path) -> io::R
     if draw.one_in(10) {
         file.surfaces
             .push(passed(&mut draw, "beside".into(), first));
-        // A surface on an earlier leg would have to be visited by the path.
+        // The surface is removed if it makes the path invalid: one that stands on an earlier leg
+        // would have to be visited.
         if central_ray(&file, folder).is_none() {
             file.surfaces.pop();
         }
     }
-    // A surface placed beside the path may shorten its last leg.
+    // The added surface may shorten the last leg of the path.
     let path = central_ray(&file, folder).unwrap_or(path);
     file.planes = planes(&mut draw, &file, &path);
     if draw.one_in(4) {
@@ -42,7 +44,7 @@ pub(crate) fn scene(seed: u64, index: u64, photons: u64, folder: &Path) -> io::R
     Ok(file)
 }
 
-/// A light, and a plane at it.
+/// Returns a light, and a plane at it.
 fn empty(draw: &mut SceneDraw, photons: u64) -> io::Result<SceneFile> {
     let light = light::light(draw)?;
     let window = window(draw);
@@ -126,8 +128,8 @@ fn surfaces(draw: &mut SceneDraw, file: &mut SceneFile) -> io::Result<CentralRay
     Ok(path)
 }
 
-/// The leg for the next surface. After a specular surface it is along the central ray; after
-/// another surface it is in any direction in front of that surface.
+/// Returns the leg on which the next surface is placed. After a specular surface this leg is along
+/// the central ray, after any other surface in any direction in front of it.
 fn onwards(draw: &mut SceneDraw, file: &SceneFile, path: &CentralRay) -> Frame {
     let last = &path.legs[path.legs.len() - 1];
     let specular = file.surfaces.last().is_some_and(is_specular);
@@ -153,7 +155,7 @@ fn is_specular(surface: &SurfaceFile) -> bool {
     event.is_some_and(|event| !matches!(event, EventFile::Reflects { .. } | EventFile::Sum { .. }))
 }
 
-/// The central ray of a valid scene.
+/// Returns the central ray of a valid scene.
 fn central_ray(file: &SceneFile, folder: &Path) -> Option<CentralRay> {
     let scene = resolve("wild", file.clone(), folder, u64::MAX).ok()?;
     Some(scene.path)

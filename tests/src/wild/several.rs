@@ -14,7 +14,8 @@ use std::io;
 use std::path::Path;
 use std::time::Instant;
 
-/// Cycles across the window at the highest frequencies. There are few, because few photons arrive.
+/// Cycles across the window at the highest frequencies. The number is small because few photons
+/// arrive.
 const CYCLES: f64 = 3.0;
 /// Maximum number of scattering surfaces that are counted separately.
 const MAX_SCATTERERS: usize = 3;
@@ -25,13 +26,13 @@ const WIDE: [f64; 2] = [0.02, 0.4];
 struct Tried {
     number: u64,
     scatterers: usize,
-    /// Whether it is predicted by the theory for several surfaces.
+    /// Whether the theory for several surfaces predicts the plane.
     by_paths: bool,
     ending: SmallEnding,
     seconds: f64,
 }
 
-/// Plants faults, or tests all scenes.
+/// Plants faults if this is requested, else tests all scenes.
 pub(crate) fn several(options: &SmallOptions) -> io::Result<ReportSection> {
     if options.planted {
         return Ok(planted());
@@ -66,7 +67,8 @@ pub(crate) fn several(options: &SmallOptions) -> io::Result<ReportSection> {
     Ok(section(options, &tried?))
 }
 
-/// A scene whose central ray visits two or more surfaces, with one plane and usually an occluder.
+/// Returns a scene whose central ray visits two or more surfaces, with one plane and usually an
+/// occluder.
 fn drawn(options: &SmallOptions, number: u64, folder: &Path) -> Option<Scene> {
     const TRIES: u64 = 40;
     let resolved = |file: &SceneFile| resolve("several", file.clone(), folder, u64::MAX).ok();
@@ -99,7 +101,7 @@ fn drawn(options: &SmallOptions, number: u64, folder: &Path) -> Option<Scene> {
     None
 }
 
-/// The number of scattering surfaces before the plane.
+/// Returns the number of scattering surfaces before the plane.
 fn scatterers(scene: &Scene) -> usize {
     let legs = scene.path.legs[..=scene.planes[0].leg].iter();
     let hits = legs.filter_map(|leg| leg.leaves);

@@ -39,7 +39,7 @@ const PLAIN: [(&str, &str); 6] = [
     ("form", "Plane"),
 ];
 
-/// The smallest scene found in the given time.
+/// Returns the smallest scene that was found in the given time.
 pub(super) fn shrink(
     runner: &Runner,
     file: &SceneFile,
@@ -71,7 +71,8 @@ pub(super) fn shrink(
     serde_json::from_value(best).map_err(io::Error::other)
 }
 
-/// All scenes that are one step smaller, those with the largest removals first.
+/// Returns all scenes that are one step smaller, of which those with the largest removals come
+/// first.
 fn candidates(tree: &Value) -> Vec<Value> {
     let mut found = Vec::new();
     let places = places(tree, String::new());
@@ -107,7 +108,7 @@ fn candidates(tree: &Value) -> Vec<Value> {
     found
 }
 
-/// Removes blends together with the BRDFs they blend in.
+/// Returns the scenes without a blend and without the second BRDF that this blend needs.
 fn without_blends(tree: &Value, places: &[(String, &Value)]) -> Vec<Value> {
     let blends = places
         .iter()
@@ -119,7 +120,8 @@ fn without_blends(tree: &Value, places: &[(String, &Value)]) -> Vec<Value> {
     blends.map(without).collect()
 }
 
-/// All numbers with fewer digits at once, then one at a time.
+/// Returns scenes in which all numbers have fewer digits, then scenes in which one number has
+/// fewer digits.
 fn rounder(tree: &Value, places: &[(String, &Value)]) -> Vec<Value> {
     let numbers = places
         .iter()
@@ -136,7 +138,7 @@ fn rounder(tree: &Value, places: &[(String, &Value)]) -> Vec<Value> {
     };
     let mut found: Vec<Value> = [2, 1].map(all).into_iter().filter(|t| t != tree).collect();
     for (place, x) in &numbers {
-        // Otherwise an object whose centre becomes 0 would move into the light.
+        // Centres are not rounded to 0 or 1, because an object at 0 would be in the light.
         let moved = place.contains("/center/");
         let round = [0.0, 1.0].into_iter().filter(|_| !moved);
         for y in round.chain([short(*x, 0), short(*x, 1)]) {
@@ -153,7 +155,7 @@ fn short(x: f64, digits: usize) -> f64 {
     format!("{x:.digits$e}").parse().unwrap_or(x)
 }
 
-/// The length of a number when written; 0 is the shortest, then 1.
+/// Returns the length of a number when written, where 0 counts as the shortest and 1 as the next.
 fn digits(x: f64) -> usize {
     match format!("{:e}", x.abs()).as_str() {
         "0e0" => 0,
@@ -162,7 +164,7 @@ fn digits(x: f64) -> usize {
     }
 }
 
-/// Every value of a tree, with its path.
+/// Returns every value of a tree, with its path.
 fn places(tree: &Value, at: String) -> Vec<(String, &Value)> {
     let mut found = vec![(at.clone(), tree)];
     match tree {

@@ -49,8 +49,8 @@ const LONGEST_PREDICTION: f64 = 120.0;
 /// Seeds of the first and of a second comparison. One correct plane in a hundred fails the first
 /// comparison.
 const SEEDS: [u64; 2] = [1, 2];
-/// Number of photons of the second comparison, divided by that of the first. The noise of the
-/// second prediction is independent only if the prediction sums over more rays.
+/// Number of photons in the second comparison, divided by that in the first. With more photons the
+/// second prediction sums more rays, without which its noise would be that of the first.
 pub(super) const MORE_PHOTONS: u64 = 8;
 /// Maximum number of attempts to place an object.
 const TRIES: usize = 10;
@@ -122,7 +122,7 @@ pub(super) fn keep(
     fs::write(folder.join("scene.ron"), text(&scene.file)?)
 }
 
-/// A scene with one plane and a small object of one of [`KINDS`] in its light.
+/// Returns a scene with one plane and a small object of one of [`KINDS`] in its light.
 fn drawn(options: &SmallOptions, number: u64, folder: &Path) -> Option<(Scene, usize)> {
     let mut draw = SceneDraw::new(options.seed ^ 0x5311, number, folder);
     let mut file = scene(options.seed, number, options.photons, folder).ok()?;
@@ -144,7 +144,8 @@ fn drawn(options: &SmallOptions, number: u64, folder: &Path) -> Option<(Scene, u
     None
 }
 
-/// Cycles across the window at the highest frequencies, enough for a shadow an eighth as wide.
+/// Cycles across the window at the highest frequencies, enough for a shadow with an eighth of the
+/// window's width.
 const CYCLES: f64 = 8.0;
 
 /// Gives a scene a window with sharp edges, so that a small object near the edge of the window has
@@ -165,7 +166,7 @@ pub(super) fn sharpen(file: &mut SceneFile, cycles: f64) {
     };
 }
 
-/// A plane across a leg, usually the last.
+/// Draws a plane perpendicular to a leg, usually to the last.
 pub(super) fn plane(draw: &mut SceneDraw, scene: &Scene) -> PlaneFile {
     let legs = &scene.path.legs;
     let last = legs.len() - 1;
@@ -186,7 +187,7 @@ pub(super) fn plane(draw: &mut SceneDraw, scene: &Scene) -> PlaneFile {
     }
 }
 
-/// A relative coordinate in the window: anywhere, or near its edge.
+/// Returns a relative coordinate in the window: anywhere, or near its edge.
 fn share(draw: &mut SceneDraw) -> f64 {
     if draw.one_in(2) {
         draw.between(-1.0, 1.0)
@@ -196,8 +197,8 @@ fn share(draw: &mut SceneDraw) -> f64 {
     }
 }
 
-/// A point on a ray of the window on the leg of the plane, in the frame at the light, and the width
-/// of the light there.
+/// Draws a point on the leg of the plane that a ray of the window meets, in the frame at the
+/// light; returns it with the width of the light there.
 fn place(draw: &mut SceneDraw, scene: &Scene, plane: &VirtualPlane) -> (DVec3, f64) {
     let window = &plane.window;
     let profiles = [window.x, window.y, window.u, window.v];
@@ -261,13 +262,14 @@ pub(super) fn object(
     kind
 }
 
-/// The direction from which light comes to the plane.
+/// Returns the direction from which light comes to the plane.
 fn towards_light(scene: &Scene) -> DVec3 {
     let plane = &scene.planes[0];
     -scene.path.frame.decompose(&plane.frame).d
 }
 
-/// The outcome of theory for the plane, with the verdict of photons on it.
+/// Returns the outcome for the only plane: whether a theory applies, and the verdict of photons on
+/// its prediction.
 pub(super) fn ending(scene: &Scene, classes: bool) -> SmallEnding {
     let plane = &scene.planes[0];
     let theory = Applicability::new(scene, plane);

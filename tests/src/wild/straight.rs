@@ -15,7 +15,7 @@ const DIRECTIONS: [&str; 7] = [
     "front",
 ];
 
-/// The scene in the frame at its light; `None` if it is already in it.
+/// Returns the scene in the frame at its light; `None` if it is already in this frame.
 ///
 /// Meshes are not rotated, so a run must show whether such a scene still has its fault.
 pub(super) fn straightened(tree: &Value) -> Option<Value> {

@@ -8,7 +8,7 @@ use etendue_scene::{EventFile, FormFile, MeshSource, SurfaceFile};
 use glam::DVec3;
 use std::io;
 
-/// A surface across a leg of the path, at this distance along it.
+/// Returns a surface across a leg of the path, at this distance along it.
 pub(super) fn surface(
     draw: &mut SceneDraw,
     name: String,
@@ -24,7 +24,8 @@ pub(super) fn surface(
     }
 }
 
-/// A normal that faces the arriving light, at normal or oblique, and sometimes grazing, incidence.
+/// Returns a normal that faces the arriving light, at normal or oblique, and sometimes grazing,
+/// incidence.
 fn facing(draw: &mut SceneDraw, leg: &Frame) -> DVec3 {
     if draw.one_in(3) {
         return -leg.d;
@@ -58,7 +59,7 @@ fn rectangle(
     on_axis: DVec3,
     normal: DVec3,
 ) -> SurfaceFile {
-    // Across the first leg the file may omit the facing direction.
+    // For a surface perpendicular to the first leg, the file may omit the facing direction.
     let plain = leg.d == DVec3::Z && draw.one_in(2);
     SurfaceFile::Rectangle {
         name,
@@ -178,7 +179,8 @@ fn form(draw: &mut SceneDraw) -> FormFile {
     }
 }
 
-/// A small rectangle beside the first leg: the path does not visit it, but it blocks light.
+/// Returns a small rectangle beside the first leg: the path does not visit it, but it blocks
+/// light.
 pub(super) fn passed(draw: &mut SceneDraw, name: String, first: f64) -> SurfaceFile {
     let size = [(); 2].map(|()| draw.unit * draw.between(0.05, 0.3));
     let gap = draw.unit * draw.between(0.01, 0.2);

@@ -7,7 +7,7 @@ use std::process::Command;
 /// The length of a planted function, in lines: above the threshold in clippy.toml.
 const PLANTED: usize = 70;
 
-/// Every crate uses the lints of the workspace, which require the reason.
+/// Every crate uses the lints of the workspace, which require a reason beside each long function.
 #[test]
 fn crates_take_the_lints_of_the_workspace() {
     let read = |path: &str| fs::read_to_string(root().join(path)).unwrap();
@@ -19,7 +19,7 @@ fn crates_take_the_lints_of_the_workspace() {
     }
 }
 
-/// A long function is found, unless it has a reason.
+/// clippy reports a long function, unless a reason is stated.
 #[test]
 fn a_planted_function_is_found() {
     let folder = tempfile::tempdir().unwrap();

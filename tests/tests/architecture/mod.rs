@@ -138,7 +138,7 @@ fn crates() -> Vec<String> {
     names
 }
 
-/// The workspace crates among the dependencies of a manifest, without those of tests.
+/// Returns the workspace crates among the dependencies of a manifest, without those of tests.
 fn uses(manifest: &str) -> BTreeSet<String> {
     let own = manifest
         .split("\n[dependencies]")
@@ -152,7 +152,7 @@ fn uses(manifest: &str) -> BTreeSet<String> {
         .collect()
 }
 
-/// The forbidden elements of `found`.
+/// Returns the crates in `found` that the crate `name` must not use.
 fn forbidden(name: &str, found: &BTreeSet<String>) -> Vec<String> {
     let allowed = MAY_USE.iter().find(|(known, _)| *known == name);
     let allowed = allowed.map_or(&[] as &[&str], |(_, allowed)| *allowed);
@@ -174,7 +174,7 @@ fn crates_use_those_below_them() {
         let forbidden = forbidden(&name, &found);
         assert!(forbidden.is_empty(), "{name} may not use {forbidden:?}");
     }
-    // Each row comes after the rows of the crates that it uses.
+    // The row of a crate must come after the rows of the crates that it uses.
     for (i, (name, uses)) in MAY_USE.iter().enumerate() {
         let place =
             |other: &&&str| MAY_USE.iter().position(|(known, _)| known == *other) >= Some(i);
@@ -234,7 +234,7 @@ fn a_planted_circle_is_found() {
         ]),
         1
     );
-    // Imports through re-exports of the root, and in nested groups.
+    // These imports go through re-exports of the root, and stand in nested groups.
     assert_eq!(
         of(&[
             root,
@@ -280,7 +280,7 @@ fn a_planted_circle_is_found() {
     );
 }
 
-/// The source files of the workspace with their text.
+/// Returns the source files of the workspace with their text.
 fn files() -> BTreeMap<String, String> {
     fn collect(folder: &Path, found: &mut BTreeMap<String, String>) {
         for entry in fs::read_dir(folder).unwrap() {

@@ -4,19 +4,20 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
-/// The path of names from the root of a crate to a module; empty for the root.
+/// The names on the path from the root of a crate to a module; empty for the root.
 pub(crate) type Module = Vec<String>;
 
 /// The modules of a crate with their text.
 pub(crate) type Modules = BTreeMap<Module, String>;
 
-/// The imported names of a module, each with the path it was imported by.
+/// The names that a module imports, each with the path in its `use`.
 type Imports = BTreeMap<String, Vec<String>>;
 
-/// Maximum length of a chain of re-exports; more is a cycle.
+/// Maximum length of a chain of re-exports; a longer chain is a cycle.
 const MAX_REEXPORTS: usize = 8;
 
-/// The modules below a source folder, each without comments and code compiled only for tests.
+/// Returns the modules below a source folder, each without comments and code compiled only for
+/// tests.
 pub(crate) fn modules(src: &Path) -> Modules {
     let mut found = Modules::new();
     collect(src, &Module::new(), &mut found);
@@ -44,7 +45,7 @@ fn collect(folder: &Path, parent: &Module, found: &mut Modules) {
     }
 }
 
-/// A text without tests, comments and string contents.
+/// Returns a text without tests, comments and string contents.
 pub(crate) fn code(text: &str) -> String {
     let end = text.find("\n#[cfg(test)]\n").unwrap_or(text.len());
     let lines = text[..end].lines();
@@ -54,7 +55,7 @@ pub(crate) fn code(text: &str) -> String {
     outside.collect::<Vec<_>>().join("\"\"")
 }
 
-/// The cycles of modules that use each other, each sorted by name.
+/// Returns the cycles of modules that use each other, each sorted by name.
 pub(crate) fn circles(modules: &Modules) -> Vec<BTreeSet<String>> {
     let names: Vec<&Module> = modules.keys().collect();
     let uses: BTreeMap<&Module, BTreeSet<Module>> = names
@@ -85,7 +86,7 @@ fn shown(module: &Module) -> String {
     }
 }
 
-/// All modules reachable from a module.
+/// Returns all modules reachable from a module.
 fn reached<'a>(
     uses: &'a BTreeMap<&'a Module, BTreeSet<Module>>,
     from: &Module,
@@ -100,7 +101,7 @@ fn reached<'a>(
     reached
 }
 
-/// The other modules that a module uses. Mere re-exports do not count.
+/// Returns the other modules that a module uses; a module that it only re-exports does not count.
 fn used(modules: &Modules, module: &Module) -> BTreeSet<Module> {
     let text = &modules[module];
     let (imports, body) = split(text);
@@ -114,7 +115,7 @@ fn used(modules: &Modules, module: &Module) -> BTreeSet<Module> {
     resolved.filter(|found| found != module).collect()
 }
 
-/// The imports of a text, each with a flag for re-exports, and the remaining text.
+/// Returns the imports of a text, each with a flag for re-exports, and the remaining text.
 fn split(text: &str) -> (Vec<(bool, Vec<String>)>, String) {
     let mut imports = Vec::new();
     let mut rest = String::new();
@@ -133,7 +134,7 @@ fn split(text: &str) -> (Vec<(bool, Vec<String>)>, String) {
     (imports, rest)
 }
 
-/// The position of the first `use`.
+/// Returns the position of the first `use`.
 fn find_use(text: &str) -> Option<usize> {
     let starts = text.match_indices("use ").map(|(at, _)| at);
     let is_word = |at: &usize| {
@@ -147,7 +148,8 @@ fn find_use(text: &str) -> Option<usize> {
     })
 }
 
-/// The paths of an import tree, such as `a::{b, c::d as e}`; the last part is the local name.
+/// Returns the paths of an import tree such as `a::{b, c::d as e}`; the last part of each is the
+/// local name.
 fn expanded(tree: &str) -> Vec<Vec<String>> {
     let tree = tree.trim();
     let Some(open) = tree.find('{') else {
@@ -176,7 +178,8 @@ fn expanded(tree: &str) -> Vec<Vec<String>> {
         .collect()
 }
 
-/// Paths in the code itself: those that begin at the crate, at a parent, or at a child module.
+/// Returns the paths in code other than imports that begin at the crate, a parent, or a child
+/// module.
 fn paths_of(body: &str) -> Vec<Vec<String>> {
     let is_part = |c: char| c.is_alphanumeric() || c == '_' || c == ':';
     let words = body
@@ -188,7 +191,7 @@ fn paths_of(body: &str) -> Vec<Vec<String>> {
         .collect()
 }
 
-/// The path from the root of the crate; `None` for another crate.
+/// Returns a path as counted from the root of the crate, or `None` if it leads to another crate.
 fn absolute(modules: &Modules, module: &Module, path: &[String]) -> Option<Module> {
     let mut base = module.clone();
     let mut path = path;
@@ -213,7 +216,7 @@ fn absolute(modules: &Modules, module: &Module, path: &[String]) -> Option<Modul
     Some(base)
 }
 
-/// The module in which a path ends, following re-exports.
+/// Returns the module to which a path leads through re-exports.
 fn resolve(modules: &Modules, path: &[String], depth: usize) -> Option<Module> {
     let longest = (0..=path.len()).rev();
     let known = longest

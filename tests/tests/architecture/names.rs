@@ -4,7 +4,7 @@ use super::files;
 use super::modules::code;
 use std::collections::BTreeMap;
 
-/// Names of more than one type, each with the reason.
+/// Names that more than one type may have, each with the reason.
 const SHARED_NAMES: &[(&str, &str)] = &[
     (
         "Conductor",
@@ -33,7 +33,7 @@ const SHARED_NAMES: &[(&str, &str)] = &[
 /// independent of the first, and the binding, which uses Python's names.
 const APART: [&str; 3] = ["/src/tests/", "tests/src/second/", "python/src/"];
 
-/// The types defined by a text outside its tests.
+/// Returns the types defined by a text outside its tests.
 fn types(text: &str) -> Vec<String> {
     let text = code(text);
     let names = text.lines().filter_map(|line| {
@@ -52,7 +52,7 @@ fn types(text: &str) -> Vec<String> {
     names.collect()
 }
 
-/// The names shared by several types, with the files that define them.
+/// Returns the names shared by several types, with the files that define them.
 fn shared<'a>(
     files: impl IntoIterator<Item = (&'a String, &'a String)>,
 ) -> BTreeMap<String, Vec<&'a str>> {

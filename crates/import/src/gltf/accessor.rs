@@ -52,7 +52,7 @@ impl AccessorRows {
 }
 
 impl GltfReader<'_> {
-    /// Rows of N finite numbers; `None` if a cause of refusal was reported.
+    /// Returns rows of N finite numbers, or `None` if a cause of refusal was reported.
     pub(super) fn numbers<const N: usize>(
         &mut self,
         index: Index<Accessor>,
@@ -80,7 +80,7 @@ impl GltfReader<'_> {
         Some(numbers)
     }
 
-    /// Indices; `None` if a cause of refusal was reported.
+    /// Returns indices, or `None` if a cause of refusal was reported.
     pub(super) fn indices(&mut self, index: Index<Accessor>) -> Option<Vec<u32>> {
         let rows = self.rows(index, Type::Scalar, 1)?;
         self.spend(index, rows.count * 4)?;
@@ -135,8 +135,8 @@ impl GltfReader<'_> {
         })
     }
 
-    /// The start and the number of the elements, if all elements lie within their view and the view
-    /// lies within its buffer.
+    /// Returns the offset of the first element and the number of elements, if all elements lie
+    /// within their view and the view lies within its buffer.
     fn fit(
         &self,
         accessor: &Accessor,
@@ -156,7 +156,7 @@ impl GltfReader<'_> {
         (fits && stride >= element).then_some((view_start + within, count))
     }
 
-    /// The bytes of a view; `None` if a cause of refusal was reported.
+    /// Returns the bytes of a view, or `None` if a cause of refusal was reported.
     pub(super) fn view(&mut self, number: usize) -> Option<Vec<u8>> {
         let view = self.root.buffer_views.get(number)?;
         let bytes = self.buffer(view.buffer.value())?;
@@ -171,7 +171,7 @@ impl GltfReader<'_> {
         found.map(<[u8]>::to_vec)
     }
 
-    /// The bytes of a buffer; `None` if a cause of refusal was reported.
+    /// Returns the bytes of a buffer, or `None` if a cause of refusal was reported.
     fn buffer(&mut self, number: usize) -> Option<Arc<[u8]>> {
         if let Some(known) = self.buffers.get(&number) {
             return known.clone();
@@ -199,7 +199,7 @@ impl GltfReader<'_> {
             .ok_or_else(|| format!("has {found} bytes; byteLength is {said}"))
     }
 
-    /// The bytes that a URI refers to.
+    /// Returns the bytes that a URI refers to.
     pub(super) fn bytes_of(&self, uri: &str) -> Result<Vec<u8>, String> {
         match source(uri, self.files.left())? {
             BufferSource::Data(bytes) => {

@@ -6,14 +6,14 @@ use png::{BitDepth, ColorType, Decoder, Transformations};
 use std::io::Cursor;
 use std::path::Path;
 
-/// Converts the alpha of each pixel to a number; alpha is 1 in pictures without an alpha channel.
+/// Reads the alpha of each pixel as a number; in pictures without an alpha channel, alpha is 1.
 pub(super) fn read(
     extension: &str,
     bytes: &[u8],
     number: impl Fn(f64) -> f64,
 ) -> Result<Raster, String> {
     let file = Path::new("image").with_extension(extension);
-    // Decoding checks the size before anything is allocated.
+    // The decoder checks the size before it allocates memory.
     let colours = pictures::decode(&file, bytes)?;
     let (width, height) = (colours.width, colours.height);
     drop(colours);
@@ -28,7 +28,8 @@ pub(super) fn read(
     Raster::new(width, height, values).ok_or_else(|| "has no pixels".to_owned())
 }
 
-/// The alpha values of a PNG picture whose size was checked; `None` if the picture has no alpha.
+/// Returns the alpha values of a PNG picture whose size was checked, or `None` if the picture has
+/// no alpha.
 fn alphas(bytes: &[u8]) -> Result<Option<Vec<f64>>, String> {
     let damaged = |error: png::DecodingError| format!("is damaged ({error})");
     let mut decoder = Decoder::new(Cursor::new(bytes));

@@ -10,7 +10,8 @@ use std::f64::consts::PI;
 /// Width of pictures in pixels; files do not state a resolution.
 const ACROSS: usize = 512;
 
-/// Range of aspect ratios that give at least one pixel and at most the allowed number.
+/// Range of aspect ratios for which the height is at least one pixel and at most the allowed
+/// number.
 const ASPECTS: [f64; 2] = [1.0 / 32.0, 512.0];
 
 impl<'a> GltfReader<'a> {
@@ -45,7 +46,7 @@ impl<'a> GltfReader<'a> {
         self.note_once("cameras have no resolution: pictures are 512 pixels wide, and their aspect ratio determines the height");
     }
 
-    /// The projection, its scale, the aspect ratio of the picture, and the clip planes.
+    /// Returns the projection, its scale, the aspect ratio of the picture, and the clip planes.
     fn perspective(
         &mut self,
         of: &Perspective,
@@ -111,7 +112,7 @@ fn size(aspect: f64) -> [usize; 2] {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "aspects are within bounds"
+        reason = "the aspect ratio was checked"
     )]
     let down = (ACROSS as f64 / aspect).round() as usize;
     [ACROSS, down.max(1)]

@@ -43,7 +43,7 @@ pub(super) fn read(bytes: &[u8], place: &SourcePlace, report: &Report) -> Option
     })
 }
 
-/// The JSON and the buffer of a binary file.
+/// Returns the JSON and the buffer of a binary file.
 fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
     let word = |at: usize| {
         let four = bytes.get(at..at.checked_add(4)?)?;
@@ -80,7 +80,8 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
     }
 }
 
-/// Whether all indices are within range and all keywords are known; reports causes otherwise.
+/// Whether all indices are within range and all keywords are known; if not, adds causes of
+/// refusal.
 fn check(root: &Root, place: &SourcePlace, report: &Report) -> bool {
     let version = &root.asset.version;
     if version.split('.').next() != Some("2") {
@@ -93,14 +94,16 @@ fn check(root: &Root, place: &SourcePlace, report: &Report) -> bool {
             report.cause(place, message);
         }
     }
-    // The gltf crate accesses the accessors of positions before it checks that they exist.
+    // This is checked first because the gltf crate uses the accessors of positions before it
+    // checks that they exist.
     if !has_positions(root, place, report) {
         return false;
     }
     root.validate(root, Path::new, &mut |path, error| {
         let path = path();
         let path = path.as_str();
-        // Bounds are not needed here, and extensions were checked above.
+        // These errors are ignored: minima and maxima are not needed here, and extensions were
+        // checked above.
         let is_bound = path.ends_with(".min") || path.ends_with(".max");
         if error == Error::Unsupported || (error == Error::Missing && is_bound) {
             return;

@@ -1,4 +1,4 @@
-//! `KHR_materials_transmission`, as transmitting interfaces.
+//! Converts materials with `KHR_materials_transmission` to transmitting interfaces.
 
 use super::metallic::roughness;
 use super::reader::GltfReader;
@@ -6,8 +6,8 @@ use super::surface::Draft;
 use etendue_world::{Dielectric, Material, Texture};
 
 impl GltfReader<'_> {
-    /// A material that transmits a share of the light and otherwise behaves like `opaque`. `None`
-    /// if a cause of refusal was reported.
+    /// Returns a material that transmits a share of the light and otherwise behaves like `opaque`,
+    /// or `None` if a cause of refusal was reported.
     pub(super) fn with_glass(
         &mut self,
         draft: &mut Draft<'_>,

@@ -9,7 +9,7 @@ use etendue_scene::Channels;
 use std::path::Path;
 use std::sync::Arc;
 
-/// The file extension that matches the first bytes of an image.
+/// Returns the file extension of the format that the first bytes of an image indicate.
 fn extension(bytes: &[u8]) -> Option<&'static str> {
     match bytes {
         [0x89, b'P', b'N', b'G', ..] => Some("png"),
@@ -19,7 +19,8 @@ fn extension(bytes: &[u8]) -> Option<&'static str> {
 }
 
 impl GltfReader<'_> {
-    /// The pixels of an image as one number each; `None` if a cause of refusal was reported.
+    /// Returns the pixels of an image as one number each, or `None` if a cause of refusal was
+    /// reported.
     pub(super) fn raster(&mut self, image: usize, level: TextureChannel) -> Option<Arc<Raster>> {
         let key = RasterKey::new(image, level);
         if let Some(known) = self.rasters.get(&key) {
@@ -62,8 +63,8 @@ impl GltfReader<'_> {
         let color = self.color;
         let is_grey = channels.count == 1;
         let raster = channels.raster(|rgb| match level {
-            // Three equal numbers are not converted: rounding would make their luminance differ
-            // from them.
+            // Three equal numbers are used as they are, because rounding would make their
+            // luminance differ from them.
             TextureChannel::Color(factor) if is_grey => pictures::linear(rgb[0]) * color.of(factor),
             TextureChannel::Color(factor) => {
                 let linear = rgb.map(pictures::linear);

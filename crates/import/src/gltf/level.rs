@@ -3,17 +3,17 @@
 /// The texture channel that is read from a pixel.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum TextureChannel {
-    /// A linearised sRGB colour, times these factors.
+    /// The three colour channels, linearised from sRGB, times these factors.
     Color([f64; 3]),
-    /// The square of the second channel times a factor.
+    /// The square of the product of the second channel and a factor.
     GreenSquared(f64),
     /// The third channel times a factor.
     Blue(f64),
-    /// Alpha times a factor; with a cutoff, the value is 0 or 1.
+    /// Alpha times a factor; if there is a cutoff, 0 below it and 1 from it on.
     Alpha { factor: f64, cutoff: Option<f64> },
 }
 
-/// Alpha, or 0 or 1 depending on the cutoff.
+/// Returns alpha without a cutoff, else 0 below the cutoff and 1 from it on.
 pub(super) fn cut(alpha: f64, cutoff: Option<f64>) -> f64 {
     match cutoff {
         Some(cutoff) if alpha >= cutoff => 1.0,

@@ -65,10 +65,10 @@ impl<'a> GltfReader<'a> {
         }
     }
 
-    /// The half-angles of both cones.
+    /// Returns the half-angles of the inner and the outer cone.
     fn cone(&self, spot: &Spot, path: &str) -> Option<[f64; 2]> {
         let [inner, outer] = [spot.inner_cone_angle, spot.outer_cone_angle].map(f64::from);
-        // π/2 rounded to 32 bits is slightly larger.
+        // The tolerance is needed because π/2 rounded to 32 bits is slightly larger.
         let fits = 0.0 <= inner && inner < outer && outer <= FRAC_PI_2 + 1e-6;
         if !fits {
             let message =

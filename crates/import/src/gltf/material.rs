@@ -12,8 +12,8 @@ use etendue_world::{Material, Texture};
 use std::collections::BTreeSet;
 
 impl<'a> GltfReader<'a> {
-    /// A material by its number in the file; without a number, the default material of the
-    /// specification. `None` if a cause of refusal was reported.
+    /// Returns the material with this number in the file or, without a number, the default
+    /// material of the specification. Returns `None` if a cause of refusal was reported.
     pub(super) fn material(&mut self, number: Option<usize>) -> Option<GltfSurface> {
         if let Some(known) = self.materials.get(&number) {
             return known.clone();
@@ -65,7 +65,7 @@ impl<'a> GltfReader<'a> {
         })
     }
 
-    /// The scattering of a material, on one side or both.
+    /// Returns what a material scatters, on one side or on both.
     fn scatter(&mut self, draft: &mut Draft<'_>) -> Option<Material> {
         let metallic_roughness = self.metallic_roughness(draft)?;
         let opaque = match draft.source.double_sided {
@@ -83,7 +83,8 @@ impl<'a> GltfReader<'a> {
         self.with_glass(draft, opaque)
     }
 
-    /// The emission of the front. The outer `None` means that a cause of refusal was reported.
+    /// Returns the emission of the front. The outer `None` means that a cause of refusal was
+    /// reported.
     #[expect(
         clippy::option_option,
         reason = "the outer `None` means a reported cause"
@@ -112,8 +113,8 @@ impl<'a> GltfReader<'a> {
         }
     }
 
-    /// The opacity; the inner `None` means opaque. The outer `None` means that a cause of refusal
-    /// was reported.
+    /// Returns the opacity. The inner `None` means opaque, and the outer one that a cause of
+    /// refusal was reported.
     #[expect(
         clippy::option_option,
         reason = "the outer `None` means a reported cause"

@@ -8,7 +8,7 @@ use ::gltf::json::{Accessor, Index};
 use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
 
-/// Maximum number of corners, because indices have 32 bits.
+/// Maximum number of corners, for which 32-bit indices suffice.
 const MAX_CORNERS: usize = u32::MAX as usize;
 
 fn attribute(primitive: &Primitive, of: Semantic) -> Option<Index<Accessor>> {
@@ -16,8 +16,8 @@ fn attribute(primitive: &Primitive, of: Semantic) -> Option<Index<Accessor>> {
 }
 
 impl GltfReader<'_> {
-    /// The triangles of a primitive, with the texture coordinates that its material uses; `None` if
-    /// there are none, or if a cause of refusal was reported.
+    /// Returns the triangles of a primitive, with the texture coordinates that its material uses,
+    /// or `None` if there are none, or if a cause of refusal was reported.
     pub(super) fn parts(
         &mut self,
         primitive: &Primitive,
@@ -64,7 +64,7 @@ impl GltfReader<'_> {
         Some(parts)
     }
 
-    /// Corners of a primitive without indices: all vertices in order.
+    /// Returns the corners of a primitive without indices, which are all vertices in order.
     fn all(&self, count: usize, path: &str) -> Option<Vec<u32>> {
         let count = u32::try_from(count.min(MAX_CORNERS)).ok()?;
         let spent = self.files.spend(u64::from(count) * 4);
@@ -81,7 +81,7 @@ impl GltfReader<'_> {
         self.numbers(index)
     }
 
-    /// Drops empty triangles, and turns normals to the front.
+    /// Removes triangles without area, and turns normals to the front.
     fn finish(&self, parts: &mut MeshParts, path: &str) -> Option<()> {
         let spent = self.files.spend(parts.bytes());
         spent.map_err(|error| self.cause(path, error)).ok()?;
@@ -123,7 +123,7 @@ impl GltfReader<'_> {
     }
 }
 
-/// Triangles of a list, a strip or a fan; every second triangle of a strip is flipped.
+/// Returns the triangles of a list, a strip or a fan; every second triangle of a strip is flipped.
 fn corners(listed: &[u32], mode: Mode) -> Vec<[u32; 3]> {
     match mode {
         Mode::Triangles => listed.as_chunks().0.to_vec(),
@@ -142,7 +142,7 @@ fn corners(listed: &[u32], mode: Mode) -> Vec<[u32; 3]> {
     }
 }
 
-/// The same triangles flipped, `gap` behind the originals. Corners at the same position move
+/// Returns the triangles flipped and moved back by `gap`; corners at the same position stay
 /// together.
 pub(super) fn back_of(parts: &etendue_world::Triangles, gap: f64) -> MeshParts {
     let bits = |v: DVec3| v.to_array().map(|x| (x + 0.0).to_bits());

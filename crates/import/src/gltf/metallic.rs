@@ -8,7 +8,7 @@ use etendue_world::{Conductor, Material, MicrofacetDistribution, Plastic, Roughn
 /// Default index of refraction.
 const INDEX: f64 = 1.5;
 
-/// The JSON field that holds the picture of base colour, and that of metallic and roughness.
+/// The JSON field that contains the pictures of the base colour and of metallic and roughness.
 const PBR: &str = "pbrMetallicRoughness";
 
 /// The reflection at the surface of a dielectric.
@@ -18,8 +18,8 @@ struct DielectricCoat {
 }
 
 impl GltfReader<'_> {
-    /// The scattering at the front of an opaque material; `None` if a cause of refusal was
-    /// reported.
+    /// Returns the scattering at the front of an opaque material, or `None` if a cause of refusal
+    /// was reported.
     pub(super) fn metallic_roughness(&mut self, draft: &mut Draft<'_>) -> Option<Material> {
         let color = self.base_color(draft);
         let metallic = self.share(draft, "metallicFactor");
@@ -50,13 +50,13 @@ impl GltfReader<'_> {
         }
     }
 
-    /// `metallicFactor`, times its picture.
+    /// Returns `metallicFactor` times the channel of its picture.
     fn share(&mut self, draft: &mut Draft<'_>, name: &str) -> Option<Texture> {
         let pbr = &draft.source.pbr_metallic_roughness;
         let path = format!("{}.{PBR}.{name}", draft.path);
         let factor = self.within(&path, pbr.metallic_factor.0, [0.0, 1.0])?;
         match &pbr.metallic_roughness_texture {
-            // With factor 0 the picture has no effect.
+            // If the factor is 0, the picture has no effect.
             Some(info) if factor > 0.0 => {
                 let field = format!("{PBR}.metallicRoughnessTexture");
                 self.bitmap(draft, info, &field, TextureChannel::Blue(factor))
@@ -65,7 +65,7 @@ impl GltfReader<'_> {
         }
     }
 
-    /// α: the square of roughness.
+    /// Returns α, which is the square of the roughness.
     pub(super) fn alpha(&mut self, draft: &mut Draft<'_>) -> Option<Texture> {
         let pbr = &draft.source.pbr_metallic_roughness;
         let path = format!("{}.{PBR}.roughnessFactor", draft.path);
@@ -79,7 +79,7 @@ impl GltfReader<'_> {
         }
     }
 
-    /// The base colour is the reflectance at all angles.
+    /// Returns a metal whose reflectance is the base colour at all angles.
     fn metal(&self, draft: &Draft<'_>, reflectance: Texture, alpha: Texture) -> Material {
         let is_white = matches!(reflectance, Texture::Constant(v) if (v - 1.0).abs() < 1e-9);
         if !is_white {
@@ -128,7 +128,7 @@ impl GltfReader<'_> {
         }))
     }
 
-    /// The index of refraction; `None` if a cause of refusal was reported.
+    /// Returns the index of refraction, or `None` if a cause of refusal was reported.
     pub(super) fn index(&self, draft: &Draft<'_>) -> Option<f64> {
         let ior = draft
             .source
@@ -174,7 +174,7 @@ impl GltfReader<'_> {
     }
 }
 
-/// Isotropic microfacet roughness α; `None` for a smooth surface.
+/// Returns the isotropic microfacet roughness α, or `None` for a smooth surface.
 pub(super) fn roughness(alpha: Texture) -> Option<Roughness> {
     match alpha {
         Texture::Constant(..=0.0) => None,

@@ -48,7 +48,8 @@ impl<'a> GltfReader<'a> {
         self.tell_unmet(&met);
     }
 
-    /// The root nodes of the default scene; without scenes, the nodes without a parent.
+    /// Returns the root nodes of the default scene or, in a file without scenes, the nodes without
+    /// a parent.
     fn tops(&self) -> Vec<usize> {
         let chosen = self.root.scene.map_or(0, |scene| scene.value());
         let Some(scene) = self.root.scenes.get(chosen) else {
@@ -69,8 +70,8 @@ impl<'a> GltfReader<'a> {
         scene.nodes.iter().map(|node| node.value()).collect()
     }
 
-    /// Notes nodes that are not visited. In a file without scenes, only nodes in cycles are not
-    /// visited.
+    /// Adds a note on the nodes that were not visited; in a file without scenes, these are nodes
+    /// in cycles.
     fn tell_unmet(&self, met: &[bool]) {
         let unmet = met.iter().filter(|met| !**met).count();
         match (met.iter().position(|met| !met), self.root.scenes.is_empty()) {
@@ -116,7 +117,7 @@ impl<'a> GltfReader<'a> {
         }
     }
 
-    /// The local transform of a node; `None` if a cause of refusal was reported.
+    /// Returns the local transform of a node, or `None` if a cause of refusal was reported.
     fn own(&self, node: &Node, path: &str) -> Option<DAffine3> {
         let is_split =
             node.translation.is_some() || node.rotation.is_some() || node.scale.is_some();
@@ -130,7 +131,7 @@ impl<'a> GltfReader<'a> {
         }
     }
 
-    /// A matrix from sixteen numbers in column-major order.
+    /// Returns a matrix from sixteen numbers in column-major order.
     fn matrix(&self, matrix: [f32; 16], path: &str) -> Option<DAffine3> {
         let m = matrix.map(f64::from);
         let is_affine = [m[3], m[7], m[11], m[15] - 1.0]
@@ -145,7 +146,7 @@ impl<'a> GltfReader<'a> {
         Some(DAffine3::from_mat3_translation(linear, column(3)))
     }
 
-    /// A transform from scale, rotation and translation, applied in this order.
+    /// Returns a transform from scale, rotation and translation, applied in this order.
     fn split(&self, node: &Node, path: &str) -> Option<DAffine3> {
         let three = |v: Option<[f32; 3]>, or| v.map_or(or, |v| DVec3::from(v.map(f64::from)));
         let turn = match &node.rotation {
@@ -173,8 +174,8 @@ impl<'a> GltfReader<'a> {
 }
 
 impl PlacedNode<'_> {
-    /// The position and orientation of a camera or light. It looks along −Z with Y up in glTF, and
-    /// along Z in a world. Scales and mirrors are left out.
+    /// Returns the position and orientation of a camera or light, without scales and mirrors. A
+    /// camera or light points along −Z with Y up in glTF, and along Z in a world.
     pub(super) fn looking(&self) -> Option<DAffine3> {
         let linear = self.to_world.matrix3;
         let ahead = (-linear.z_axis).try_normalize()?;

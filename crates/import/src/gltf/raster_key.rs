@@ -1,8 +1,8 @@
-//! Keys of rasters that are made once.
+//! Keys of rasters, by which each raster is made only once.
 
 use super::level::TextureChannel;
 
-/// An image, and the channel read from it.
+/// An image, and the channel that is read from it.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) struct RasterKey {
     image: usize,

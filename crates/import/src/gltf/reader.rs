@@ -31,13 +31,13 @@ pub(super) struct GltfReader<'a> {
     /// Meshes by mesh and primitive number; `None` if there are no triangles, or if a cause of
     /// refusal was reported.
     pub(super) meshes: HashMap<(usize, usize), Option<Arc<Triangles>>>,
-    /// The same meshes flipped and moved back.
+    /// The meshes of back sides, which are flipped and moved back.
     pub(super) backs: HashMap<(usize, usize), Option<Arc<Triangles>>>,
     /// Materials by number; `None` if a cause of refusal was reported. The default material has no
     /// number.
     pub(super) materials: HashMap<Option<usize>, Option<GltfSurface>>,
     pub(super) rasters: HashMap<RasterKey, Result<Arc<Raster>, String>>,
-    /// Notes that are given only once.
+    /// Notes that were given and are not repeated.
     pub(super) told: HashSet<&'static str>,
 }
 

@@ -24,7 +24,8 @@ impl<'a> GltfReader<'a> {
         let Some(mesh) = self.root.meshes.get(number) else {
             return;
         };
-        // The determinant of a product in f64 may not round to exactly 0.
+        // The determinant is compared with a small limit, because rounding may keep it from being
+        // exactly 0.
         let linear = placed.to_world.matrix3;
         let lengths = [linear.x_axis, linear.y_axis, linear.z_axis].map(DVec3::length);
         let size: f64 = lengths.iter().product();
@@ -35,7 +36,7 @@ impl<'a> GltfReader<'a> {
         }
         let own = || mesh.name.clone();
         let name = placed.node.name.clone().or_else(own).unwrap_or_default();
-        // Many nodes may use one mesh.
+        // The name is shortened because many nodes may use one mesh.
         let name: String = name.chars().take(LONGEST).collect();
         for (i, primitive) in mesh.primitives.iter().enumerate() {
             self.primitive(placed, [number, i], primitive, &name);
@@ -110,8 +111,8 @@ impl<'a> GltfReader<'a> {
         });
     }
 
-    /// Adds the second of the two surfaces that represent a surface with emission on both sides.
-    /// Each emits on its front.
+    /// Adds the second of the two surfaces that represent a surface with emission on both sides;
+    /// each of them emits on its front.
     fn add_back(
         &mut self,
         key: (usize, usize),
@@ -143,7 +144,7 @@ impl<'a> GltfReader<'a> {
     }
 }
 
-/// The diagonal of the bounding box of a mesh.
+/// Returns the diagonal of the bounding box of a mesh.
 fn extent(mesh: &Triangles) -> f64 {
     let nothing = [DVec3::INFINITY, DVec3::NEG_INFINITY];
     let grow = |[low, high]: [DVec3; 2], v: &DVec3| [low.min(*v), high.max(*v)];

@@ -11,14 +11,14 @@ pub(super) struct GltfSurface {
     pub(super) material: usize,
     pub(super) emission: Option<EmittedRadiance>,
     pub(super) is_double_sided: bool,
-    /// The texture coordinate set that the pictures use.
+    /// The number of the set of texture coordinates that the pictures use.
     pub(super) set: Option<u32>,
 }
 
-/// A material in progress.
+/// A material that is being converted.
 pub(super) struct Draft<'a> {
     pub(super) source: &'a BufferSource,
     pub(super) path: String,
-    /// Texture coordinate sets that pictures use.
+    /// The sets of texture coordinates that the pictures converted so far use.
     pub(super) sets: BTreeSet<u32>,
 }

@@ -11,7 +11,7 @@ use etendue_world::{Bitmap, Filter, Texture, Wrap};
 use glam::{DAffine2, DMat2, DVec2};
 
 impl GltfReader<'_> {
-    /// The value of a white, opaque pixel.
+    /// Returns the value for a white, opaque pixel, as a constant texture.
     pub(super) fn constant(&self, level: &TextureChannel) -> Texture {
         Texture::Constant(match *level {
             TextureChannel::Color(factor) => self.color.of(factor),
@@ -21,7 +21,7 @@ impl GltfReader<'_> {
         })
     }
 
-    /// A picture of a material; `None` if a cause of refusal was reported.
+    /// Returns a picture of a material, or `None` if a cause of refusal was reported.
     pub(super) fn bitmap(
         &mut self,
         draft: &mut Draft<'_>,
@@ -42,7 +42,7 @@ impl GltfReader<'_> {
         let sampler = texture.sampler.and_then(|sampler| self.root.get(sampler));
         let (wrap, filter) = self.sampler(sampler, &path);
         let filter = match level {
-            // Binary alpha is not interpolated between pixels.
+            // Alpha with a cutoff is 0 or 1, and is not interpolated between pixels.
             TextureChannel::Alpha {
                 cutoff: Some(_), ..
             } => Filter::Nearest,
@@ -79,8 +79,8 @@ impl GltfReader<'_> {
         (across, filter)
     }
 
-    /// The texture transform: scale first, then rotation, then translation. Rotations follow the
-    /// Khronos viewer and three.js: u' = u cos r + v sin r.
+    /// Returns the map of a texture transform, which scales, then rotates, then translates.
+    /// Rotations follow the Khronos viewer and three.js: u' = u cos r + v sin r.
     fn to_uv(&self, of: &TextureTransform, path: &str) -> Option<DAffine2> {
         let [scale, offset] = [of.scale.0, of.offset.0].map(|v| DVec2::from(v.map(f64::from)));
         let (sine, cosine) = libm::sincos(f64::from(of.rotation.0));

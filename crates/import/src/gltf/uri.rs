@@ -10,7 +10,7 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
     GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
 );
 
-/// The location of the bytes.
+/// The place where the bytes are.
 pub(super) enum BufferSource {
     /// Embedded data.
     Data(Vec<u8>),

@@ -7,8 +7,8 @@ use crate::report::quoted;
 use glam::{DAffine3, DVec3};
 
 impl<'a> MitsubaReader<'a> {
-    /// The property of this name. If several objects have the name, the last one counts, as in
-    /// Mitsuba.
+    /// Returns the property of this name; if several nested objects have the name, the last one
+    /// counts, as in Mitsuba.
     pub(super) fn property(
         &self,
         object: &'a MitsubaObject,
@@ -24,8 +24,8 @@ impl<'a> MitsubaReader<'a> {
         object.properties.iter().any(|p| p.name == name)
     }
 
-    /// The value of a property, as converted by `read`; `None` if it is missing, or if a cause of
-    /// refusal was reported.
+    /// Returns the value of a property, as converted by `read`, or `None` if it is missing, or if
+    /// a cause of refusal was reported.
     fn ask<T>(
         &self,
         object: &'a MitsubaObject,
@@ -51,7 +51,7 @@ impl<'a> MitsubaReader<'a> {
         })
     }
 
-    /// A number in a range. A number out of range is a cause of refusal, whose message states the
+    /// Reads a number in a range; a number outside is a cause of refusal, whose message states the
     /// range.
     pub(super) fn number_within(
         &self,
@@ -106,7 +106,7 @@ impl<'a> MitsubaReader<'a> {
         })
     }
 
-    /// The place of a property, or else of its object.
+    /// Returns the place of a property or, if it is missing, that of the object.
     pub(super) fn place_of(
         &self,
         object: &'a MitsubaObject,
@@ -129,13 +129,13 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// The object that a property holds or refers to.
+    /// Returns the object that a property contains or refers to.
     pub(super) fn object_of(&self, property: &'a ObjectProperty) -> Option<&'a MitsubaObject> {
         let at = match &property.value {
             Value::Object(at) => *at,
             Value::Reference(id) => match self.ids.get(id) {
                 Some(at) => *at,
-                // A cause was already added.
+                // The cause of refusal was already added.
                 None => return None,
             },
             _ => return None,
@@ -143,7 +143,8 @@ impl<'a> MitsubaReader<'a> {
         self.objects.get(at)
     }
 
-    /// All objects of a kind within an object, with their properties, in the order of the file.
+    /// Returns all objects of a kind within an object, with the properties that hold them, in the
+    /// order of the file.
     pub(super) fn children(
         &self,
         object: &'a MitsubaObject,
@@ -162,7 +163,7 @@ impl<'a> MitsubaReader<'a> {
         found
     }
 
-    /// The only child of a kind, if there is one; more than one is a cause of refusal.
+    /// Returns the only child of a kind, if there is one; a second one is a cause of refusal.
     pub(super) fn child(
         &self,
         object: &'a MitsubaObject,

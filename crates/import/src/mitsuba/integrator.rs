@@ -1,14 +1,14 @@
-//! The integrator, which sets the path depth.
+//! The integrator of a scene, which limits the depth of paths.
 
 use super::object::{MitsubaObject, ObjectKind};
 use super::reader::MitsubaReader;
 use crate::report::quoted;
 
-/// Maximum nesting depth of integrators, such as moment and aov.
+/// Maximum nesting depth of integrators; `moment` and `aov` contain others.
 const MAX_DEPTH: usize = 8;
 
 impl<'a> MitsubaReader<'a> {
-    /// Reads the depth from the integrator; its other settings affect only how Mitsuba computes,
+    /// Reads the depth from the integrator, whose other settings affect only how Mitsuba computes,
     /// not the result.
     pub(super) fn integrator(&mut self, scene: &'a MitsubaObject) {
         let Some(mut object) = self.child(scene, ObjectKind::Integrator) else {
@@ -46,12 +46,12 @@ impl<'a> MitsubaReader<'a> {
         self.report.note(&object.place, message);
     }
 
-    /// The depth. Mitsuba counts the edges of a path: depth 1 shows only sources, and depth 2 adds
-    /// direct light.
+    /// Returns the depth. Mitsuba counts the edges of a path, so depth 1 shows only sources, and
+    /// depth 2 adds direct light.
     fn depth(&self, object: &'a MitsubaObject) -> Option<u32> {
         match self.whole(object, "max_depth")? {
             -1 => None,
-            // Depth 0 shows nothing, and a world has no such depth.
+            // Depth 0 shows nothing, which the depth of a world cannot express.
             0 => {
                 self.report.cause(
                     self.place_of(object, "max_depth"),

@@ -64,8 +64,8 @@ impl<'a> MitsubaReader<'a> {
         })
     }
 
-    /// A vector, given directly or by a transform, but not both. The outer `None` means that a
-    /// cause of refusal was reported.
+    /// Returns a vector, which is given either directly or by a transform. The outer `None` means
+    /// that a cause of refusal was reported.
     #[expect(
         clippy::option_option,
         reason = "the inner `None` means neither; the outer one, a reported cause"
@@ -158,7 +158,8 @@ impl<'a> MitsubaReader<'a> {
         }))
     }
 
-    /// `to_world`, which must keep lengths and angles. `None` if a cause of refusal was reported.
+    /// Returns `to_world`, which must preserve lengths and angles, or `None` if a cause of refusal
+    /// was reported.
     pub(super) fn rigid(&self, object: &'a MitsubaObject) -> Option<DAffine3> {
         if !self.has(object, "to_world") {
             return Some(DAffine3::IDENTITY);

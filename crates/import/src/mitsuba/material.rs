@@ -21,7 +21,7 @@ const MAX_MATERIALS: usize = 1 << 20;
 const ALLOWED: &str = "diffuse, conductor, roughconductor, dielectric, thindielectric, roughdielectric, plastic, roughplastic, phong, twosided, mask, blendbsdf, null";
 
 impl<'a> MitsubaReader<'a> {
-    /// The index of a material; `None` if a cause of refusal was reported.
+    /// Returns the index of a material, or `None` if a cause of refusal was reported.
     pub(super) fn material(&mut self, object: &'a MitsubaObject) -> Option<usize> {
         let at = object.number;
         if let Some(known) = self.materials.get(&at) {
@@ -33,7 +33,7 @@ impl<'a> MitsubaReader<'a> {
         number
     }
 
-    /// The material of shapes that specify none: diffuse, or black for emitters.
+    /// Returns the material of shapes that specify none, which is diffuse, or black for emitters.
     pub(super) fn default_material(&mut self, shines: bool) -> usize {
         if let Some(known) = self.defaults[usize::from(shines)] {
             return known;
@@ -57,7 +57,7 @@ impl<'a> MitsubaReader<'a> {
         object.is_used.set(true);
         self.made_materials += 1;
         if self.made_materials > MAX_MATERIALS {
-            // References may duplicate nested materials.
+            // The number is limited because references may duplicate nested materials.
             if self.made_materials == MAX_MATERIALS + 1 {
                 let message = format!("more than {MAX_MATERIALS} bsdfs, counting repetitions");
                 self.report.cause(&object.place, message);
@@ -107,8 +107,8 @@ impl<'a> MitsubaReader<'a> {
         }))
     }
 
-    /// n and k, or `None` for a perfect reflector. The outer `None` means that a cause of refusal
-    /// was reported.
+    /// Returns n and k, or an inner `None` for a perfect reflector. The outer `None` means that a
+    /// cause of refusal was reported.
     fn metal(&mut self, object: &'a MitsubaObject) -> Option<Option<[f64; 2]>> {
         let name = match self.has(object, "material") {
             true => self.text(object, "material")?,
@@ -138,7 +138,7 @@ impl<'a> MitsubaReader<'a> {
         Some(Some([n?, k?]))
     }
 
-    /// A number that may be written as a spectrum.
+    /// Reads a number that may also be written as a spectrum.
     fn one_number(&mut self, object: &'a MitsubaObject, name: &str, default: f64) -> Option<f64> {
         match self.texture_or(object, name, Role::Number, default)? {
             Texture::Constant(value) if value >= 0.0 => Some(value),
@@ -184,7 +184,7 @@ impl<'a> MitsubaReader<'a> {
         }))
     }
 
-    /// A plugin of Mitsuba 0.6; Mitsuba 3 has none.
+    /// Reads `phong`, a plugin of Mitsuba 0.6 that Mitsuba 3 does not have.
     fn phong(&mut self, object: &'a MitsubaObject) -> Option<Material> {
         let diffuse = self.reflectance(object, "diffuse_reflectance", 0.5);
         let specular = self.reflectance(object, "specular_reflectance", 0.2);

@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// The mesh of a shape.
 pub(super) struct MitsubaMesh {
     pub(super) triangles: Arc<Triangles>,
-    /// Whether the front is on the side opposite to the normals.
+    /// Whether the front of the mesh is opposite to its normals.
     pub(super) is_flipped: bool,
 }
 
@@ -61,8 +61,8 @@ impl<'a> MitsubaReader<'a> {
                 return None;
             }
         };
-        // Mitsuba computes normals from the placed triangles, so a mirror flips them. It transforms
-        // normals of the file as normals.
+        // Mitsuba computes missing normals from the placed triangles, so a mirror flips them, but
+        // it transforms the normals of a file.
         let is_mirrored = to_world.matrix3.determinant() < 0.0;
         Some(MitsubaMesh {
             triangles,
@@ -99,7 +99,7 @@ impl<'a> MitsubaReader<'a> {
         Some(path)
     }
 
-    /// The triangles of a mesh, and whether their normals were computed.
+    /// Returns the triangles of a mesh, and whether their normals were computed.
     fn triangles(
         &mut self,
         object: &'a MitsubaObject,
@@ -107,7 +107,7 @@ impl<'a> MitsubaReader<'a> {
         to_world: DAffine3,
         is_new: bool,
     ) -> (Result<Arc<Triangles>, String>, bool) {
-        // All placements can share a mesh that has its own normals.
+        // A mesh that has its own normals can be shared by all its placements.
         let everywhere = MitsubaMeshKey {
             linear: None,
             is_flat: false,
@@ -159,7 +159,8 @@ impl<'a> MitsubaReader<'a> {
         key: &MitsubaMeshKey,
         linear: DMat3,
     ) -> Result<Arc<Triangles>, String> {
-        // Shapes that share a file may have different meshes.
+        // The memory is counted for each mesh, because shapes that share a file may have different
+        // meshes.
         self.files.spend(parts.bytes())?;
         parts.drop_empty();
         if key.is_flipped {
@@ -185,11 +186,11 @@ impl<'a> MitsubaReader<'a> {
 }
 
 fn bits(linear: DMat3) -> [u64; 9] {
-    // Turns −0 into 0.
+    // The sum with 0 turns −0 into 0.
     linear.to_cols_array().map(|v| (v + 0.0).to_bits())
 }
 
-/// The direction to which a map takes Z; `None` for a singular map.
+/// Returns the direction to which a map takes Z, or `None` for a singular map.
 pub(super) fn z_of(map: DAffine3) -> Option<DVec3> {
     map.matrix3.z_axis.try_normalize()
 }

@@ -1,8 +1,8 @@
-//! Keys of meshes that are read once.
+//! Keys of meshes, by which each mesh is read only once.
 
 use std::path::PathBuf;
 
-/// The source and options of a mesh, so that shapes may share it.
+/// The source and the options of a mesh; shapes with equal keys share the mesh.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) struct MitsubaMeshKey {
     pub(super) path: PathBuf,

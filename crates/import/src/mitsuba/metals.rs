@@ -1,18 +1,19 @@
 //! Complex indices of refraction of named conductors, as colours in linear sRGB.
 //!
-//! Mitsuba 3.9.1 converted them from its tables of n and k by wavelength (from luxpop.com, Palik
-//! and others), by the rule stated at [`Color`](crate::Color). Negative components are set to 0.
+//! Mitsuba 3.9.1 converted these indices from its tables of n and k by wavelength (from
+//! luxpop.com, Palik and others), by the rule stated at [`Color`](crate::Color). Negative
+//! components are set to 0.
 
 /// Red, green and blue.
 type MetalRgb = [f64; 3];
 
-/// n and k of a conductor; `None` for an unknown name.
+/// Returns n and k of a conductor, or `None` for an unknown name.
 pub(super) fn index(name: &str) -> Option<[MetalRgb; 2]> {
     let found = NAMED.iter().find(|(known, ..)| *known == name)?;
     Some([found.1, found.2])
 }
 
-/// Names, with n and k.
+/// Each conductor with its n and k.
 #[rustfmt::skip]
 const NAMED: &[(&str, MetalRgb, MetalRgb)] = &[
     ("Ag", [0.1552762, 0.116728, 0.1383876], [4.828354, 3.122222, 2.146901]),

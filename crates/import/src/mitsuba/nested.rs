@@ -53,10 +53,10 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// All nested bsdfs; `None` if a cause of refusal was reported.
+    /// Returns all nested bsdfs, or `None` if a cause of refusal was reported.
     fn nested(&mut self, object: &'a MitsubaObject, depth: usize) -> Option<Vec<Material>> {
         let within = self.children(object, ObjectKind::Bsdf);
-        // All bsdfs are read, to find all causes.
+        // All bsdfs are read even after a failure, to find all causes of refusal.
         let all: Vec<Option<Material>> = within
             .into_iter()
             .take(3)

@@ -6,11 +6,11 @@ use std::cell::Cell;
 use std::path::PathBuf;
 use std::rc::Rc;
 
-/// An object of the scene, which is a plugin in Mitsuba.
+/// An object of the scene, which Mitsuba creates by a plugin.
 #[derive(Debug)]
 pub(super) struct MitsubaObject {
     pub(super) kind: ObjectKind,
-    /// Its index among all objects.
+    /// The index of the object among all objects.
     pub(super) number: usize,
     /// The name of the plugin.
     pub(super) plugin: String,
@@ -26,7 +26,7 @@ pub(super) struct MitsubaObject {
     pub(super) is_used: Cell<bool>,
 }
 
-/// A value or object within another object.
+/// A property of an object: a value, or another object.
 #[derive(Debug)]
 pub(super) struct ObjectProperty {
     /// The name; empty for objects without one.
@@ -51,9 +51,9 @@ pub(super) enum Value {
     /// Pairs of a wavelength, nm, and a value.
     Spectrum(Rc<[[f64; 2]]>),
     Transform(DAffine3),
-    /// An object defined here, by index.
+    /// The index of an object that is defined in this place.
     Object(usize),
-    /// An object defined elsewhere, by id.
+    /// The id of an object that is defined elsewhere.
     Reference(String),
     /// An invalid value, for which a cause was added.
     Broken,
@@ -78,7 +78,8 @@ pub(super) enum ObjectKind {
 }
 
 impl ObjectKind {
-    /// The kind for an element name. A spectrum with a type is a texture.
+    /// Returns the kind of object that an element of this name defines; a spectrum with a type is
+    /// a texture.
     pub(super) fn of(name: &str, has_type: bool) -> Option<Self> {
         Some(match name {
             "scene" => Self::Scene,
@@ -99,7 +100,7 @@ impl ObjectKind {
         })
     }
 
-    /// The element name.
+    /// Returns the element name.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Scene => "scene",
@@ -120,7 +121,7 @@ impl ObjectKind {
 }
 
 impl Value {
-    /// A noun for messages.
+    /// Returns a noun for the kind of value, for messages.
     pub(super) fn noun(&self) -> &'static str {
         match self {
             Self::Number(_) => "a number",

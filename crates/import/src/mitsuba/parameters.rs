@@ -17,7 +17,7 @@ pub(super) struct Parameters {
 #[derive(Debug)]
 struct MitsubaParameter {
     value: String,
-    /// Whether the caller set the parameter; the file must then use it.
+    /// Whether the caller has set the parameter, which the file must then use.
     is_set: bool,
     is_used: bool,
 }
@@ -39,7 +39,7 @@ impl Parameters {
         }
     }
 
-    /// Sets a value if there is none yet.
+    /// Sets the value of a parameter that has none yet.
     pub(super) fn default(&mut self, name: &str, value: &str) {
         self.values
             .entry(name.to_owned())
@@ -50,15 +50,15 @@ impl Parameters {
             });
     }
 
-    /// Names set by the caller that the file does not use.
+    /// Returns the names that the caller has set but the file does not use.
     pub(super) fn unused(&self) -> impl Iterator<Item = &str> {
         let all = self.values.iter();
         all.filter(|(_, p)| p.is_set && !p.is_used)
             .map(|(name, _)| name.as_str())
     }
 
-    /// The text with values substituted. `\$` is a dollar sign. If several names match, the longest
-    /// is used.
+    /// Returns the text with the values of parameters substituted. `\$` stands for a dollar sign;
+    /// if several names match, the longest is used.
     pub(super) fn substitute(&mut self, text: &str) -> Result<String, String> {
         let mut made = String::new();
         let mut rest = text;

@@ -11,7 +11,7 @@ use glam::DAffine3;
 use roxmltree::Node;
 
 impl Tree<'_> {
-    /// The value of a property.
+    /// Returns the value of a property.
     pub(super) fn value(
         &mut self,
         node: Node<'_, '_>,

@@ -23,14 +23,15 @@ pub(super) struct MitsubaReader<'a> {
     pub(super) color: Color,
     pub(super) world: World,
     pub(super) pictures: Pictures,
-    /// Bytes of mesh files that hold several meshes.
+    /// The contents of mesh files that may hold several meshes.
     pub(super) packed: HashMap<PathBuf, Result<Arc<[u8]>, String>>,
     pub(super) meshes: HashMap<MitsubaMeshKey, Result<Arc<Triangles>, String>>,
     /// The material of each bsdf; `None` if it is invalid.
     pub(super) materials: HashMap<usize, Option<usize>>,
-    /// Number of materials, including nested ones.
+    /// Number of materials made so far, including nested ones.
     pub(super) made_materials: usize,
-    /// The indices of the two default materials: of surfaces and of emitters.
+    /// The indices of the default material of surfaces and of that of emitters, if they are in
+    /// use.
     pub(super) defaults: [Option<usize>; 2],
 }
 
@@ -58,7 +59,7 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// The world of the scene, which is the first object.
+    /// Returns the world of the scene, which is the first object.
     pub(super) fn world(mut self) -> World {
         let scene = &self.objects[0];
         scene.is_used.set(true);
@@ -80,7 +81,8 @@ impl<'a> MitsubaReader<'a> {
         self.world
     }
 
-    /// Marks materials, textures and similar definitions, which are read where they are used.
+    /// Marks definitions at the top level, such as materials and textures, which are read where
+    /// they are used.
     fn definitions(&self, scene: &'a MitsubaObject) {
         for property in &scene.properties {
             if let Some(object) = self.object_of(property)
@@ -97,7 +99,7 @@ impl<'a> MitsubaReader<'a> {
     /// Refuses media, because a world has no volumetric scattering.
     fn refuse_media(&self) {
         for object in self.objects {
-            // Only the outermost medium is reported.
+            // A medium within another medium is not reported again.
             let is_outermost = self.objects[object.parent].kind != ObjectKind::Medium;
             if matches!(object.kind, ObjectKind::Medium | ObjectKind::Volume) && is_outermost {
                 let (kind, plugin) = (object.kind.name(), quoted(&object.plugin));
@@ -108,7 +110,7 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// Skips the object and its contents after a message.
+    /// Marks the object and its contents as read, after a message that covers them.
     pub(super) fn drop_all(&self, object: &'a MitsubaObject) {
         object.is_used.set(true);
         for property in &object.properties {

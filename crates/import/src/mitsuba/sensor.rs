@@ -49,7 +49,7 @@ impl<'a> MitsubaReader<'a> {
         let (to_world, projection, clip) = match object.plugin.as_str() {
             "orthographic" => {
                 let (to_world, stretch) = self.orthographic(object)?;
-                // Mitsuba scales the origins of rays, but not their lengths.
+                // A scale moves the origins of Mitsuba's rays, but does not change their lengths.
                 let [near, far] = clip?;
                 let clip = [near * stretch, near * stretch + far - near];
                 (to_world, Projection::Orthographic, clip)
@@ -91,7 +91,8 @@ impl<'a> MitsubaReader<'a> {
             if is_lens || !self.has(object, name) {
                 return 0.0;
             }
-            // Mitsuba shifts the lookup position, not the picture.
+            // The sign is reversed because Mitsuba shifts the position in the picture and not the
+            // picture.
             -self.number(object, name).unwrap_or_default()
         });
         let lens = if is_lens {
@@ -117,7 +118,7 @@ impl<'a> MitsubaReader<'a> {
         })
     }
 
-    /// Half the width of the picture at distance 1.
+    /// Returns half of the width of the picture at distance 1.
     fn half_width(&self, object: &'a MitsubaObject, [width, height]: [usize; 2]) -> Option<f64> {
         let aspect = width as f64 / height as f64;
         let diagonal = |tangent: f64| tangent / (1.0 + 1.0 / (aspect * aspect)).sqrt();
@@ -152,7 +153,7 @@ impl<'a> MitsubaReader<'a> {
         })
     }
 
-    /// The focal length in millimetres, for 35 mm film.
+    /// Returns the focal length in millimetres, for 35 mm film.
     fn focal_length(&self, object: &'a MitsubaObject) -> Option<f64> {
         if !self.has(object, "focal_length") {
             return Some(50.0);
@@ -170,7 +171,7 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// The placement with Z normalised, and the former length of Z.
+    /// Returns the placement with Z normalised, and the original length of Z.
     fn orthographic(&self, object: &'a MitsubaObject) -> Option<(DAffine3, f64)> {
         if !self.has(object, "to_world") {
             return Some((DAffine3::IDENTITY, 1.0));
@@ -244,7 +245,7 @@ impl<'a> MitsubaReader<'a> {
         None
     }
 
-    /// Marks the sampler, which is not needed here.
+    /// Adds a note on the sampler, which is not needed here, and marks it as read.
     fn sampler(&self, object: &'a MitsubaObject) {
         let samplers: Vec<(&ObjectProperty, &MitsubaObject)> =
             self.children(object, ObjectKind::Sampler);

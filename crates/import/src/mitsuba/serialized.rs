@@ -12,7 +12,7 @@ const HAS_NORMALS: u32 = 0x1;
 const HAS_UVS: u32 = 0x2;
 const HAS_COLORS: u32 = 0x8;
 const IS_DOUBLE: u32 = 0x2000;
-/// Maximum number of bytes of a name, which is skipped.
+/// Maximum length of a mesh's name, which is skipped, bytes.
 const LONGEST_NAME: u64 = 1 << 16;
 /// Maximum ratio of unpacked to packed bytes: zlib reaches 1032 for zeros, and less than 20 for
 /// meshes.
@@ -38,7 +38,7 @@ pub(super) fn read(bytes: &[u8], number: u32, files: &Files) -> Result<MeshParts
     Ok(parts)
 }
 
-/// The version of the file, and the offset of the packed mesh.
+/// Returns the version of the file, and the offset of the packed mesh.
 fn find(bytes: &[u8], number: u32) -> Result<(u16, usize), String> {
     let version = head(bytes, 0)?;
     if number == 0 {
@@ -64,7 +64,7 @@ fn find(bytes: &[u8], number: u32) -> Result<(u16, usize), String> {
     Ok((version, offset.saturating_add(4)))
 }
 
-/// The version stored at the start of a mesh.
+/// Returns the version that is stored at the start of a mesh.
 fn head(bytes: &[u8], at: usize) -> Result<u16, String> {
     let Some([a, b, c, d]) = bytes.get(at..).and_then(|rest| rest.first_chunk::<4>()) else {
         return Err("ends before a mesh".to_owned());
@@ -125,7 +125,8 @@ impl<R: Read> UnpackedStream<R> {
         Err(format!("has a name of more than {LONGEST_NAME} bytes"))
     }
 
-    /// Reads a number of vertices or triangles, each of which takes more than a byte.
+    /// Reads the number of vertices or triangles, and checks it: each of them takes more than a
+    /// byte.
     fn count(&mut self) -> Result<u64, String> {
         let count = u64::from_le_bytes(self.some()?);
         if count <= self.most && u32::try_from(count).is_ok() {
@@ -137,8 +138,8 @@ impl<R: Read> UnpackedStream<R> {
         }
     }
 
-    /// Reads rows of numbers. Memory is allocated as the rows are read, since the stated count may
-    /// be wrong.
+    /// Reads rows of numbers. Memory is allocated only as rows are read, because the stated count
+    /// may be wrong.
     fn rows<const N: usize>(
         &mut self,
         count: u64,

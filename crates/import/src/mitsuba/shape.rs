@@ -17,7 +17,7 @@ impl<'a> MitsubaReader<'a> {
     /// Adds a top-level shape of the scene.
     pub(super) fn top_shape(&mut self, object: &'a MitsubaObject) {
         match object.plugin.as_str() {
-            // Groups are shown by instances only.
+            // A group is shown only where an instance refers to it.
             "shapegroup" => {}
             "instance" => self.instance(object),
             _ => self.shape(object, DAffine3::IDENTITY, false),
@@ -87,7 +87,7 @@ impl<'a> MitsubaReader<'a> {
         found.unwrap_or(DAffine3::IDENTITY)
     }
 
-    /// The geometry, its placement, and whether its front is flipped.
+    /// Returns the geometry of a shape, its placement, and whether its front is flipped.
     fn geometry(
         &mut self,
         object: &'a MitsubaObject,
@@ -159,7 +159,7 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// Whether a shape can be placed like this; adds a cause otherwise.
+    /// Whether a shape can have this placement; if not, adds a cause of refusal.
     fn is_sound(&self, object: &'a MitsubaObject, geometry: &Geometry, to_world: DAffine3) -> bool {
         let Some(fault) = fault(geometry, to_world) else {
             return true;

@@ -33,7 +33,7 @@ impl LineCursor {
     }
 
     pub(super) fn place(&mut self, offset: usize, file: &Rc<str>) -> SourcePlace {
-        // Elements are visited in the order of the text, so the text is counted once.
+        // Elements are visited in the order of the text, so each line is counted once.
         if let Some(passed) = self.text.get(self.offset..offset) {
             for c in passed.chars() {
                 if c == '\n' {

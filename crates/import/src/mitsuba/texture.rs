@@ -13,8 +13,8 @@ use glam::{DAffine2, DAffine3, DMat2, DVec2};
 const ALLOWED: &str = "bitmap, checkerboard, uniform, srgb, rawconstant, d65";
 
 impl<'a> MitsubaReader<'a> {
-    /// The texture of a property, or a constant if it is missing. `None` if a cause of refusal was
-    /// reported.
+    /// Returns the texture of a property, or a constant if the property is missing, or `None` if a
+    /// cause of refusal was reported.
     pub(super) fn texture_or(
         &mut self,
         object: &'a MitsubaObject,
@@ -28,7 +28,8 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// Like [`Self::texture_or`], for reflectances: 0 to 1.
+    /// Reads a property like [`Self::texture_or`], but for reflectances, which must be from 0 to
+    /// 1.
     pub(super) fn reflectance(
         &mut self,
         object: &'a MitsubaObject,
@@ -46,7 +47,7 @@ impl<'a> MitsubaReader<'a> {
         None
     }
 
-    /// The strength of a light, a single number.
+    /// Reads the strength of a light, which must be a single number.
     pub(super) fn strength(&mut self, object: &'a MitsubaObject, name: &str) -> Option<f64> {
         let texture = self.emission(object, name)?;
         match texture {
@@ -59,7 +60,7 @@ impl<'a> MitsubaReader<'a> {
         }
     }
 
-    /// The emission of a surface.
+    /// Reads the emission of a surface.
     pub(super) fn emission(&mut self, object: &'a MitsubaObject, name: &str) -> Option<Texture> {
         let texture = self.texture_or(object, name, Role::Emission, 1.0)?;
         self.not_negative(object, name, texture)
@@ -112,7 +113,7 @@ impl<'a> MitsubaReader<'a> {
         Some(Texture::Constant(constant))
     }
 
-    /// A spectrum of one number.
+    /// Returns the value for a spectrum that is given by one number.
     fn uniform(&self, value: f64, role: Role) -> f64 {
         match (self.color, role) {
             (Color::Luminance, _) | (_, Role::Reflectance | Role::Number) => value,
@@ -213,7 +214,7 @@ impl<'a> MitsubaReader<'a> {
         }))
     }
 
-    /// The picture given by `filename`.
+    /// Returns the picture given by `filename`.
     pub(super) fn picture(
         &mut self,
         object: &'a MitsubaObject,
@@ -225,7 +226,7 @@ impl<'a> MitsubaReader<'a> {
         read.map_err(|error| self.unread(object, name, &error)).ok()
     }
 
-    /// The file name property of an object.
+    /// Reads the property `filename` of an object.
     pub(super) fn file_name(&self, object: &'a MitsubaObject) -> Option<&'a str> {
         if !self.has(object, "filename") {
             let message = format!("{} without filename", quoted(&object.plugin));
@@ -241,8 +242,8 @@ impl<'a> MitsubaReader<'a> {
             .cause(self.place_of(object, "filename"), message);
     }
 
-    /// One of several keywords; the first is the default. `None` if a cause of refusal was
-    /// reported.
+    /// Reads one of several keywords, of which the first is the default; returns `None` if a cause
+    /// of refusal was reported.
     pub(super) fn choice<T: Copy>(
         &self,
         object: &'a MitsubaObject,
@@ -272,8 +273,8 @@ impl<'a> MitsubaReader<'a> {
     }
 }
 
-/// A texture used as a number and not as a colour. Mitsuba 3.9.1 then swaps the values of a
-/// checkerboard.
+/// Returns a texture for use as a number and not as a colour; Mitsuba 3.9.1 then swaps the values
+/// of a checkerboard.
 pub(super) fn as_number(texture: Texture) -> Texture {
     match texture {
         Texture::Checkerboard { to_uv, values } => Texture::Checkerboard {

@@ -1,4 +1,4 @@
-//! The elements of a transform. Each element is applied after those before it.
+//! The elements of a transform. Each element is applied after those that precede it.
 
 use super::value;
 use glam::{DAffine3, DMat3, DMat4, DVec3, DVec4};
@@ -6,13 +6,13 @@ use glam::{DAffine3, DMat3, DMat4, DVec3, DVec4};
 /// The attributes of an element, after substitution.
 pub(super) type Attributes = Vec<(String, String)>;
 
-/// Maximum deviation of the length of an axis from 1; the components in a file are rounded.
+/// Maximum deviation of the length of an axis from 1, due to rounded components in a file.
 const UNIT: f64 = 1e-3;
 
 /// Maximum deviation of a transform from a rigid one; a transform is a product of rounded numbers.
 const RIGID: f64 = 1e-3;
 
-/// The map of one element; `Err` is the fault.
+/// Returns the map of one element; `Err` describes a fault.
 pub(super) fn step(name: &str, attributes: &Attributes) -> Result<DAffine3, String> {
     match name {
         "translate" => {
@@ -51,7 +51,7 @@ pub(super) fn step(name: &str, attributes: &Attributes) -> Result<DAffine3, Stri
     }
 }
 
-/// The map from coordinates with Z towards `target` and Y up.
+/// Returns the map from coordinates in which Z points to `target` and Y upwards.
 fn look_at(origin: DVec3, target: DVec3, up: DVec3) -> Option<DAffine3> {
     let along = (target - origin).try_normalize()?;
     let up = match up {
@@ -63,7 +63,7 @@ fn look_at(origin: DVec3, target: DVec3, up: DVec3) -> Option<DAffine3> {
     Some(DAffine3::from_mat3_translation(linear, origin))
 }
 
-/// The frame around a unit vector, as in Mitsuba (Duff et al. 2017).
+/// Returns the frame around a unit vector, as in Mitsuba (Duff et al. 2017).
 pub(super) fn frame(z: DVec3) -> DMat3 {
     let sign = 1.0_f64.copysign(z.z);
     let a = -1.0 / (sign + z.z);
@@ -73,7 +73,7 @@ pub(super) fn frame(z: DVec3) -> DMat3 {
     DMat3::from_cols(s, t, z)
 }
 
-/// The rotation about a unit axis (Rodrigues).
+/// Returns the rotation about a unit axis (Rodrigues).
 fn rotation(axis: DVec3, angle: f64) -> DAffine3 {
     let (sin, cos) = libm::sincos(angle);
     let column =
@@ -91,7 +91,7 @@ pub(super) fn is_rigid(map: DAffine3) -> bool {
     gram.abs_diff_eq(DMat3::IDENTITY, RIGID)
 }
 
-/// A map from 16 numbers, or the 9 of the linear part, row by row.
+/// Returns the map given by 16 numbers, or by the 9 of the linear part, row by row.
 fn matrix(numbers: &[f64]) -> Result<DAffine3, String> {
     let matrix = if let Ok(all) = <[f64; 16]>::try_from(numbers) {
         DMat4::from_cols_array(&all).transpose()
@@ -128,7 +128,7 @@ pub(super) fn required<'a>(attributes: &'a Attributes, name: &str) -> Result<&'a
     find(attributes, name).ok_or_else(|| format!("no attribute {name}"))
 }
 
-/// Refuses attributes other than these.
+/// Returns an error if there are attributes other than these.
 pub(super) fn allow(attributes: &Attributes, names: &[&str]) -> Result<(), String> {
     let mut all = attributes.iter();
     match all.find(|(name, _)| !names.contains(&name.as_str())) {

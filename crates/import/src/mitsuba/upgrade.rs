@@ -3,7 +3,7 @@
 use super::object::{MitsubaObject, ObjectProperty, Value};
 use glam::{DAffine3, DVec3};
 
-/// Converts names: `toWorld` → `to_world`, `intIOR` → `int_ior`.
+/// Converts names: Converts names such as `toWorld` to `to_world`, and `intIOR` to `int_ior`.
 pub(super) fn underscored(name: &str) -> String {
     let mut made = String::with_capacity(name.len() + 4);
     let mut before: Option<char> = None;
@@ -24,8 +24,8 @@ pub(super) fn underscored(name: &str) -> String {
     made
 }
 
-/// Applies the changes that concern more than spelling: the reflectance of diffuse surfaces, and
-/// scales of texture coordinates.
+/// Applies those changes that are more than another spelling: of the reflectance of diffuse
+/// surfaces, and of scales of texture coordinates.
 pub(super) fn upgrade(object: &mut MitsubaObject) {
     if object.plugin == "diffuse" {
         for property in &mut object.properties {

@@ -6,7 +6,7 @@ use crate::report::quoted;
 use glam::DVec3;
 use std::rc::Rc;
 
-/// A number in range. `Err` is the fault.
+/// Parses a number in the allowed range; `Err` describes a fault.
 pub(super) fn number(text: &str) -> Result<f64, String> {
     let parsed: Option<f64> = text.trim().parse().ok();
     match parsed {
@@ -15,7 +15,7 @@ pub(super) fn number(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Numbers separated by commas and white space.
+/// Parses numbers that are separated by commas and white space.
 pub(super) fn numbers(text: &str) -> Result<Vec<f64>, String> {
     words(text).map(number).collect()
 }
@@ -38,7 +38,7 @@ pub(super) fn truth(text: &str) -> Result<bool, String> {
     }
 }
 
-/// Three numbers.
+/// Parses three numbers.
 pub(super) fn vector(text: &str) -> Result<DVec3, String> {
     match numbers(text)?[..] {
         [x, y, z] => Ok(DVec3::new(x, y, z)),
@@ -46,7 +46,7 @@ pub(super) fn vector(text: &str) -> Result<DVec3, String> {
     }
 }
 
-/// Three numbers, or one used for all three.
+/// Parses three numbers, or one number that is used for all three.
 pub(super) fn triple(text: &str) -> Result<[f64; 3], String> {
     match numbers(text)?[..] {
         [value] => Ok([value; 3]),
@@ -55,7 +55,7 @@ pub(super) fn triple(text: &str) -> Result<[f64; 3], String> {
     }
 }
 
-/// One number, or pairs such as `400:0.3`.
+/// Parses a spectrum: one number, or pairs such as `400:0.3`.
 pub(super) fn spectrum(text: &str) -> Result<Value, String> {
     let all: Vec<&str> = words(text).collect();
     if let [single] = all[..]

@@ -61,7 +61,7 @@ impl<'a> Tree<'a> {
         }
     }
 
-    /// Reads a file, either the scene or one included in an object, at a depth.
+    /// Reads a file: the scene, or a file that is included in an object at this depth.
     pub(super) fn file(
         &mut self,
         text: &str,
@@ -71,7 +71,8 @@ impl<'a> Tree<'a> {
     ) {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let name: Rc<str> = name.into();
-        // The XML parser takes quadratic time in the number of attributes.
+        // The number of attributes is checked first, because the time of the XML parser grows with
+        // its square.
         if let Some(offset) = crowded(text) {
             let mut cursor = LineCursor::new(text);
             let place = cursor.place(offset, &name);
@@ -130,7 +131,7 @@ impl<'a> Tree<'a> {
         }
     }
 
-    /// One element within the object `parent`.
+    /// Reads one element within the object `parent`.
     fn element(
         &mut self,
         node: Node<'_, '_>,
@@ -141,7 +142,7 @@ impl<'a> Tree<'a> {
         let place = source.cursor.place(node.range().start, &source.name);
         self.elements += 1;
         if self.elements > MOST_ELEMENTS || depth > MAX_DEPTH {
-            // The cause is added once, not for each further element.
+            // Only the first element beyond the limit adds a cause.
             if self.elements <= MOST_ELEMENTS || self.elements == MOST_ELEMENTS + 1 {
                 let most =
                     format!("at most {MOST_ELEMENTS} elements, nested at most {MAX_DEPTH} deep");
@@ -154,7 +155,7 @@ impl<'a> Tree<'a> {
             let name = node.tag_name().name();
             match ObjectKind::of(name, find(&attributes, "type").is_some()) {
                 Some(kind) => {
-                    // The root of an included file.
+                    // The element is the root of an included file if it has no parent.
                     let is_root = node.parent_element().is_none();
                     let version: &[&str] = if is_root { &["version"] } else { &[] };
                     allow(&attributes, &[&["type", "id", "name"], version].concat())?;
@@ -179,7 +180,7 @@ impl<'a> Tree<'a> {
         }
     }
 
-    /// The attributes with parameters substituted.
+    /// Returns the attributes with parameters substituted.
     pub(super) fn attributes(&mut self, node: Node<'_, '_>) -> Result<Attributes, String> {
         let mut made = Vec::new();
         for attribute in node.attributes() {
@@ -308,7 +309,7 @@ impl<'a> Tree<'a> {
                 required(attributes, "name")?;
                 let value = self.value(node, element, attributes, source);
                 let name = find(attributes, "name").unwrap_or_default().to_owned();
-                // An invalid value still defines the property: one cause is enough.
+                // An invalid value still defines the property, so that it has only one cause.
                 let (value, fault) = match value {
                     Ok(value) => (value, None),
                     Err(fault) => (Value::Broken, Some(fault)),
@@ -320,7 +321,7 @@ impl<'a> Tree<'a> {
     }
 }
 
-/// The offset of an element with too many attributes.
+/// Returns the offset of an element with too many attributes, if any.
 fn crowded(text: &str) -> Option<usize> {
     let mut at = 0;
     while let Some(start) = text[at..].find('<').map(|i| at + i) {
@@ -355,7 +356,7 @@ pub(super) fn unknown(id: &str) -> String {
     format!("no object has id {}", quoted(id))
 }
 
-/// The first number of a version such as 3.0.0.
+/// Returns the first number of a version such as 3.0.0.
 fn version(text: &str) -> Option<u32> {
     text.trim().split('.').next()?.parse().ok()
 }

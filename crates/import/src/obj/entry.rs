@@ -6,7 +6,7 @@ use crate::report::SourcePlace;
 /// A material of an MTL file, as written.
 #[derive(Clone, Debug)]
 pub(super) struct MtlEntry {
-    /// The place where it begins.
+    /// The place where the material begins.
     pub(super) place: SourcePlace,
     /// Diffuse reflectance.
     pub(super) kd: Option<[f64; 3]>,

@@ -11,9 +11,9 @@ use std::path::PathBuf;
 pub(super) struct MtlMap {
     pub(super) place: SourcePlace,
     pub(super) file: String,
-    /// The folder in which it is searched for.
+    /// The folder in which the picture is searched for.
     pub(super) folder: PathBuf,
-    /// The map from a world's (u, v), v down, to the picture's.
+    /// The map from (u, v) of a world, with v downwards, to (u, v) of the picture.
     pub(super) to_uv: DAffine2,
     pub(super) wrap: Wrap,
 }
@@ -48,7 +48,7 @@ impl MtlMap {
         while rest.starts_with('-') {
             let (word, after) = cut(rest);
             let Some((option, most)) = OPTIONS.iter().find(|(known, _)| *known == word) else {
-                // A file name may look like an option.
+                // A word that is no known option is a file name that begins with a hyphen.
                 break;
             };
             let (values, after) = arguments(after, *most, option);
@@ -70,7 +70,8 @@ impl MtlMap {
             report.cause(&place, message);
             return None;
         }
-        // With v upwards, v' = s v + o; with v downwards, this is 1 − v' = s (1 − v) + 1 − s − o.
+        // In the file v points upwards and v' = s v + o, which becomes 1 − v' = s (1 − v) + 1 − s
+        // − o with v downwards.
         let moved = DVec2::new(offset.x, 1.0 - scale.y - offset.y);
         Some(Self {
             place,
@@ -81,13 +82,13 @@ impl MtlMap {
         })
     }
 
-    /// The keyword, for messages.
+    /// Returns the name of the file, quoted for messages.
     pub(super) fn name(&self) -> String {
         quoted(&self.file)
     }
 }
 
-/// The first word, and the rest.
+/// Splits a text into the first word and the rest.
 fn cut(text: &str) -> (&str, &str) {
     let end = text.find(char::is_whitespace).unwrap_or(text.len());
     (&text[..end], text[end..].trim_start())
@@ -101,7 +102,7 @@ fn arguments<'a>(mut rest: &'a str, most: usize, option: &str) -> (Vec<&'a str>,
     while values.len() < most {
         let (word, after) = cut(rest);
         let is_value = takes_words || word.parse::<f64>().is_ok();
-        // The last word is the file.
+        // The last word is the name of the file and not a value.
         if !is_value || after.is_empty() || option.is_empty() {
             break;
         }

@@ -15,7 +15,7 @@ use std::sync::Arc;
 const INDEX: f64 = 1.5;
 
 impl ObjReader<'_> {
-    /// The surface of parts without a material.
+    /// Adds the surface of parts without a material.
     pub(super) fn default_surface(&mut self) -> ObjSurface {
         self.world.materials.push(diffuse());
         ObjSurface {
@@ -25,7 +25,7 @@ impl ObjReader<'_> {
         }
     }
 
-    /// The surface of a material; `None` if a cause of refusal was reported.
+    /// Returns the surface of a material, or `None` if a cause of refusal was reported.
     pub(super) fn surface(&mut self, entry: &MtlEntry) -> Option<ObjSurface> {
         let scatter = self.scatter(entry);
         let emission = self.emission(entry);
@@ -77,7 +77,7 @@ impl ObjReader<'_> {
         Some(Material::TwoSided(Box::new([side.clone(), side])))
     }
 
-    /// `Kd` times its picture.
+    /// Returns `Kd` times its picture.
     fn diffuse(&mut self, entry: &MtlEntry) -> Option<Texture> {
         match &entry.map_kd {
             Some(map) => {
@@ -138,7 +138,7 @@ impl ObjReader<'_> {
         })
     }
 
-    /// The transparency. The outer `None` means that a cause of refusal was reported.
+    /// Returns the transparency. The outer `None` means that a cause of refusal was reported.
     #[expect(
         clippy::option_option,
         reason = "the outer `None` means a reported cause"
@@ -153,8 +153,8 @@ impl ObjReader<'_> {
         Some((factor > 0.0).then_some(Texture::Constant(factor)))
     }
 
-    /// A picture times factors. Its levels are sRGB unless `raw` is set. `None` if a cause of
-    /// refusal was reported.
+    /// Returns a picture times factors, or `None` if a cause of refusal was reported. The levels
+    /// of the picture are sRGB unless `raw` is set.
     fn bitmap(&mut self, map: &MtlMap, factor: [f64; 3], raw: bool) -> Option<Texture> {
         let read = self.pixels(map, factor, raw);
         let refuse = |error: String| {

@@ -63,7 +63,7 @@ pub(super) fn read(
     }
 }
 
-/// A message that a statement is left out, with its number of occurrences.
+/// Returns a message that a statement is left out, with the number of its occurrences.
 pub(super) fn left_out(word: &str, count: usize) -> String {
     match count {
         1 => format!("{word} left out"),
@@ -120,7 +120,7 @@ impl MtlStatement<'_> {
                 }
                 entry.illum = whole.or(entry.illum);
             }
-            // Pictures that change normals or displace the surface.
+            // These pictures would change normals or displace the surface.
             "bump" | "map_bump" | "norm" | "disp" => {
                 let message = format!("{} is not supported: surfaces are smooth", self.word);
                 self.report.cause(&self.place, message);
@@ -169,7 +169,7 @@ impl MtlStatement<'_> {
         found
     }
 
-    /// A colour: one number for all channels, three numbers, or `xyz` and three CIE values.
+    /// Parses a colour: one number for all channels, three numbers, or `xyz` and three CIE values.
     fn color(&self, most: f64) -> Option<[f64; 3]> {
         let is_xyz = self.rest.starts_with("xyz");
         let text = self.rest.strip_prefix("xyz").unwrap_or(self.rest);

@@ -46,7 +46,7 @@ pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused
     report.finish(world)
 }
 
-/// The default material.
+/// Returns the default material.
 pub(super) fn diffuse() -> Material {
     let reflectance = Texture::Constant(0.5);
     let side = Material::Diffuse { reflectance };

@@ -153,7 +153,8 @@ impl<'a> ObjReader<'a> {
         made
     }
 
-    /// The triangles of a part with their own vertices; texture v points downwards.
+    /// Returns the triangles of a part with their own vertices, and with texture coordinates whose
+    /// v points downwards.
     fn parts(&self, mesh: &DetailedMesh, part: &MaterialPart) -> Option<MeshParts> {
         let mut known: HashMap<u32, u32> = HashMap::new();
         let mut order: Vec<usize> = Vec::new();
@@ -185,7 +186,7 @@ impl<'a> ObjReader<'a> {
     }
 }
 
-/// Vertex attributes, unless no vertex has any.
+/// Returns an attribute of the vertices, or `None` if it is missing or zero at every vertex.
 fn some<T: Copy + Default + PartialEq>(all: &Option<Vec<T>>, order: &[usize]) -> Option<Vec<T>> {
     let found: Vec<T> = order
         .iter()
@@ -194,7 +195,7 @@ fn some<T: Copy + Default + PartialEq>(all: &Option<Vec<T>>, order: &[usize]) ->
     found.iter().any(|v| *v != T::default()).then_some(found)
 }
 
-/// All triangles of one material.
+/// The part of a mesh with one material.
 struct MaterialPart {
     material: Option<String>,
     line: usize,

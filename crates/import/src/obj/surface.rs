@@ -7,6 +7,6 @@ use etendue_world::Texture;
 pub(super) struct ObjSurface {
     pub(super) material: usize,
     pub(super) emission: Option<Texture>,
-    /// Whether it has a picture that needs texture coordinates.
+    /// Whether the surface has a picture, which needs texture coordinates.
     pub(super) has_picture: bool,
 }

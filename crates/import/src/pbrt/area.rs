@@ -11,7 +11,7 @@ use etendue_world::{Bitmap, EmittedRadiance, Filter, Texture, Wrap};
 use std::f64::consts::PI;
 
 impl PbrtReader<'_> {
-    /// The emission of a shape, before it is scaled to a required power.
+    /// Returns the emission of a shape before it is scaled to a required power.
     pub(super) fn shape_emission(
         &mut self,
         shape: &PbrtShape,
@@ -44,7 +44,7 @@ impl PbrtReader<'_> {
         }
     }
 
-    /// An emitting picture.
+    /// Returns an emitting picture.
     fn shown(&mut self, area: &Entity, uv: Uv) -> Read<EmittedRadiance> {
         for name in ["L", "power"] {
             if area.has(name) {
@@ -70,8 +70,8 @@ impl PbrtReader<'_> {
         }))
     }
 
-    /// The emission scaled to the required power. pbrt uses the area of a shape before its
-    /// transform is applied, but the area of a triangle after that.
+    /// Returns the emission scaled to the required power. As in pbrt, the area is that of the
+    /// shape before its transform, except for triangles, whose transformed area is used.
     pub(super) fn powered(
         &self,
         area: Option<&Entity>,

@@ -17,11 +17,11 @@ pub(super) const DEEPEST_FILES: usize = 64;
 /// Maximum number of included files, counting repeats.
 pub(super) const MOST_FILES: usize = 1 << 14;
 
-/// Maximum number of `Attribute` parameters in effect at one place. It is needed because each
-/// parameter is checked for each shape.
+/// Maximum number of `Attribute` parameters in effect at one place. The limit is needed because
+/// each of these parameters is checked for each shape.
 const MOST_DEFAULTS: usize = 256;
 
-/// The targets of `Attribute`.
+/// The kinds of entity whose parameters `Attribute` may set.
 const TARGETS: [&str; 5] = ["shape", "light", "material", "medium", "texture"];
 
 /// Directives allowed only before `WorldBegin`.
@@ -39,12 +39,12 @@ pub(super) struct Builder<'a> {
     pub(super) report: &'a Report,
     pub(super) scene: PbrtScene,
     pub(super) state: GraphicsState,
-    /// Saved states, with `a` for attributes and `o` for objects, and the places where they were
-    /// saved.
+    /// Saved graphics states, each with a letter (`a` for an attribute block, `o` for an object)
+    /// and the place where it was saved.
     pub(super) stack: Vec<(GraphicsState, char, SourcePlace)>,
     systems: BTreeMap<String, DAffine3>,
     pub(super) is_world: bool,
-    /// The object that shapes are added to.
+    /// The name of the object to which shapes are added, inside its definition.
     pub(super) object: Option<String>,
     /// The folder of the scene.
     pub(super) folder: PathBuf,
@@ -88,7 +88,7 @@ impl<'a> Builder<'a> {
     pub(super) fn go_to_system(&mut self, name: &str, place: &SourcePlace) -> Result<(), String> {
         match self.systems.get(name) {
             Some(map) => self.state.to_world = *map,
-            // pbrt too only warns here.
+            // This is only a note because pbrt only warns, too.
             None => {
                 let message = format!("coordinate system {} is not known", quoted(name));
                 self.report.note(place, format!("{message}: left out"));

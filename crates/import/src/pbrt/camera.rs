@@ -83,7 +83,8 @@ impl PbrtReader<'_> {
         })
     }
 
-    /// The visible range as minimum and maximum x, then y; the shorter side goes from −1 to 1.
+    /// Returns the visible range: minimum and maximum x, then minimum and maximum y. The shorter
+    /// side is from −1 to 1.
     fn window(&self, entity: &Entity, [w, h]: [usize; 2]) -> Read<[f64; 4]> {
         let report = self.report;
         let above: (_, fn(f64) -> bool) = ("above 0", |a| a > 0.0);
@@ -107,7 +108,7 @@ impl PbrtReader<'_> {
         Err(CauseGiven)
     }
 
-    /// A perspective camera; `fov` spans the shorter side, from −1 to 1.
+    /// Returns a perspective projection, where `fov` spans the shorter side, from −1 to 1.
     fn perspective(&self, entity: &Entity, scale: f64, window: [f64; 4]) -> Read<Projection> {
         let report = self.report;
         let angle: (_, fn(f64) -> bool) = ("between 0 and 180 degrees", |a| 0.0 < a && a < 180.0);
@@ -130,7 +131,8 @@ impl PbrtReader<'_> {
         })
     }
 
-    /// The placement of an orthographic camera, whose width scales X and Y.
+    /// Returns the placement of an orthographic camera, in which X and Y are scaled by the width
+    /// of the picture.
     fn flat(
         &self,
         entity: &Entity,
@@ -148,7 +150,7 @@ impl PbrtReader<'_> {
         Ok(rigid * DAffine3::from_translation(middle) * wide)
     }
 
-    /// The factor that pbrt applies to the sum of all light.
+    /// Adds a note if pbrt multiplies the radiance by a factor for the exposure.
     fn exposure(&self, entity: &Entity) -> Read<()> {
         let open = entity.float_or(self.report, "shutteropen", 0.0)?;
         let close = entity.float_or(self.report, "shutterclose", 1.0)?;
@@ -203,7 +205,8 @@ impl PbrtReader<'_> {
         Ok([w, h])
     }
 
-    /// Marks settings that only affect how pbrt computes.
+    /// Adds notes on filters, samplers and accelerators that are approximated or left out, and
+    /// marks their parameters as read.
     pub(super) fn settings(&self) {
         for (kind, entity) in &self.scene.settings {
             let plugin = quoted(&entity.plugin);
@@ -255,7 +258,7 @@ impl PbrtReader<'_> {
     }
 }
 
-/// Whether a window is smaller than the whole.
+/// Whether a window is smaller than the whole picture.
 fn is_part(window: [f64; 4], whole: [f64; 4]) -> bool {
     let inward = [1.0, -1.0, 1.0, -1.0];
     (0..4).any(|i| (window[i] - whole[i]) * inward[i] > 0.0)

@@ -1,4 +1,4 @@
-//! Entities made by directives, and reading of their parameters, which marks them as read.
+//! Entities that directives define. When a parameter of an entity is read, it is marked as read.
 
 use super::parameter::{ParameterKind, ParameterValues, PbrtParameter};
 use crate::report::{Report, SourcePlace, quoted};
@@ -6,14 +6,14 @@ use glam::{DVec2, DVec3};
 use std::cell::Cell;
 use std::rc::Rc;
 
-/// An error for which a cause was already added.
+/// The error of a function that has already added a cause of refusal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct CauseGiven;
 
-/// The value read, or an error if a cause of refusal was reported.
+/// A value that was read, or an error if a cause of refusal was reported.
 pub(super) type Read<T> = Result<T, CauseGiven>;
 
-/// An entity that is a plugin in pbrt.
+/// A camera, light, shape or other entity that pbrt implements by a plugin.
 #[derive(Clone, Debug)]
 pub(super) struct Entity {
     /// The name of the directive.
@@ -23,7 +23,7 @@ pub(super) struct Entity {
     pub(super) place: SourcePlace,
     /// Its own parameters.
     pub(super) own: Vec<Rc<PbrtParameter>>,
-    /// The parameters of preceding `Attribute` directives.
+    /// Default parameters from preceding `Attribute` directives.
     pub(super) defaults: Rc<Vec<Rc<PbrtParameter>>>,
     /// Whether the world uses the entity.
     pub(super) is_used: Cell<bool>,
@@ -42,7 +42,8 @@ impl Entity {
         }
     }
 
-    /// The last parameter of this name; own parameters come before defaults.
+    /// Returns the last parameter of this name among those of the entity, or else among the
+    /// defaults.
     pub(super) fn find(&self, name: &str) -> Option<&PbrtParameter> {
         let all = self.own.iter().rev().chain(self.defaults.iter().rev());
         let found = all.map(|p| &**p).find(|p| p.name == name)?;
@@ -54,7 +55,7 @@ impl Entity {
         self.find(name).is_some()
     }
 
-    /// The place of a parameter, or else of the directive.
+    /// Returns the place of a parameter or, if it is missing, that of the directive.
     pub(super) fn place_of(&self, name: &str) -> &SourcePlace {
         self.find(name).map_or(&self.place, |p| &p.place)
     }
@@ -77,7 +78,7 @@ impl Entity {
         CauseGiven
     }
 
-    /// Marks all parameters as read after a message.
+    /// Marks all parameters as read, after a message that covers them.
     pub(super) fn drop_all(&self) {
         self.is_used.set(true);
         for parameter in &self.own {
@@ -85,7 +86,7 @@ impl Entity {
         }
     }
 
-    /// The values of a parameter of one of these types; `None` if it is missing.
+    /// Returns the values of a parameter of one of these types, or `None` if it is missing.
     fn values(
         &self,
         report: &Report,
@@ -107,7 +108,7 @@ impl Entity {
         Err(self.fault(report, name, message))
     }
 
-    /// All numbers of a parameter.
+    /// Reads all numbers of a parameter.
     pub(super) fn numbers(
         &self,
         report: &Report,
@@ -120,7 +121,7 @@ impl Entity {
         }
     }
 
-    /// `N` numbers, if the parameter exists.
+    /// Reads the `N` numbers of a parameter, if it exists.
     pub(super) fn exactly<const N: usize>(
         &self,
         report: &Report,
@@ -149,7 +150,7 @@ impl Entity {
         Ok(self.float(report, name)?.unwrap_or(default))
     }
 
-    /// A number in a range. A number out of range is a cause of refusal, whose message states the
+    /// Reads a number in a range; a number outside is a cause of refusal, whose message states the
     /// range.
     pub(super) fn float_within(
         &self,
@@ -168,7 +169,7 @@ impl Entity {
         }
     }
 
-    #[expect(clippy::cast_possible_truncation, reason = "32 bits were checked")]
+    #[expect(clippy::cast_possible_truncation, reason = "integers fit 32 bits")]
     pub(super) fn integer_or(&self, report: &Report, name: &str, default: i64) -> Read<i64> {
         let one = self.exactly::<1>(report, name, ParameterKind::Integer)?;
         Ok(one.map_or(default, |[value]| value as i64))
@@ -182,7 +183,7 @@ impl Entity {
         }
     }
 
-    /// All strings of a parameter.
+    /// Reads all strings of a parameter.
     pub(super) fn texts(&self, report: &Report, name: &str) -> Read<&[String]> {
         match self.values(report, name, &[ParameterKind::Text])? {
             Some(ParameterValues::Texts(all)) => Ok(all),
@@ -190,7 +191,7 @@ impl Entity {
         }
     }
 
-    /// The texture name in a parameter of type texture.
+    /// Reads the name of the texture in a parameter of type texture.
     pub(super) fn texture_name(&self, report: &Report, name: &str) -> Read<&str> {
         match self.values(report, name, &[ParameterKind::Texture])? {
             Some(ParameterValues::Texts(all)) if all.len() == 1 => Ok(&all[0]),
@@ -198,7 +199,7 @@ impl Entity {
         }
     }
 
-    /// One string, if the parameter exists.
+    /// Reads the only string of a parameter, if it exists.
     pub(super) fn text(&self, report: &Report, name: &str) -> Read<Option<&str>> {
         match self.texts(report, name)? {
             [] if !self.has(name) => Ok(None),
@@ -207,7 +208,7 @@ impl Entity {
         }
     }
 
-    /// One of several keywords; the first is the default.
+    /// Reads one of several keywords, of which the first is the default.
     pub(super) fn choice<T: Copy>(
         &self,
         report: &Report,

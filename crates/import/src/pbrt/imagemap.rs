@@ -83,7 +83,7 @@ impl PbrtReader<'_> {
         self.picture(entity, curve)
     }
 
-    /// The picture given by `filename`.
+    /// Returns the picture given by `filename`.
     pub(super) fn picture(&mut self, entity: &Entity, curve: TransferCurve) -> Read<Arc<Raster>> {
         let name = self.file_name(entity)?;
         let found = self.find(name);
@@ -93,7 +93,8 @@ impl PbrtReader<'_> {
     }
 }
 
-/// pbrt's v points up in a picture, a world's v points down.
+/// Returns the map that flips v, which points upwards in pbrt's pictures and downwards in those of
+/// a world.
 pub(super) fn upside_down() -> DAffine2 {
     let linear = DMat2::from_diagonal(DVec2::new(1.0, -1.0));
     DAffine2::from_mat2_translation(linear, DVec2::Y)

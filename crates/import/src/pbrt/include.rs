@@ -9,8 +9,8 @@ use std::io::Read;
 use std::path::Path;
 
 impl Builder<'_> {
-    /// `Include` reads a file as if its text stood here; after `Import`, the graphics state is
-    /// restored and only new objects are kept.
+    /// Reads a file. `Include` reads it as if its text stood here; after `Import`, the graphics
+    /// state is restored, and only the objects that the file has defined are kept.
     pub(super) fn include(
         &mut self,
         word: &str,
@@ -29,7 +29,7 @@ impl Builder<'_> {
         if self.included > MOST_FILES {
             return match self.included == MOST_FILES + 1 {
                 true => Err(format!("more than {MOST_FILES} files are included")),
-                // A cause was already added.
+                // The cause of refusal was already added.
                 false => Ok(()),
             };
         }
@@ -55,12 +55,12 @@ impl Builder<'_> {
     }
 }
 
-/// The text of a file, unpacked if its name ends in .gz.
+/// Returns the text of a file, unpacked if its name ends in .gz.
 pub(super) fn read(files: &Files, path: &Path) -> Result<String, String> {
     text(bytes(files, path)?)
 }
 
-/// The bytes of a file, unpacked if its name ends in .gz.
+/// Returns the bytes of a file, unpacked if its name ends in .gz.
 pub(super) fn bytes(files: &Files, path: &Path) -> Result<Vec<u8>, String> {
     let packed = files.read(path)?;
     if path

@@ -1,8 +1,8 @@
-//! Keys of meshes and textures that are made once.
+//! Keys of meshes and textures, by which each is made only once.
 
 use std::path::PathBuf;
 
-/// The relation between (u, v) of a surface in a world and in pbrt.
+/// How (u, v) of a surface in pbrt follow from its (u, v) in a world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Uv {
     /// Both are equal.
@@ -13,8 +13,8 @@ pub(super) enum Uv {
     Disc,
 }
 
-/// The file of a mesh, and whether its texture coordinates are needed.
+/// The key of a mesh: its file, and whether its texture coordinates are needed.
 pub(super) type PbrtMeshKey = (PathBuf, bool);
 
-/// The key of a texture: its name, and the type and coordinates it is read for.
+/// The key of a texture: its name, and for which type and which coordinates it is read.
 pub(super) type TextureKey = (bool, String, u8, Uv);

@@ -27,7 +27,7 @@ impl PbrtReader<'_> {
         }
     }
 
-    /// The colour of a light times its scale.
+    /// Returns the colour of a light times its scale.
     pub(super) fn strength(&self, entity: &Entity, name: &str) -> Read<f64> {
         let color = self.number_of(entity, name, Role::Emission);
         let scale = self.scale_of(entity)?;
@@ -39,8 +39,8 @@ impl PbrtReader<'_> {
         entity.float_within(self.report, "scale", 1.0, allowed)
     }
 
-    /// The factor that gives a light its required power or illuminance. pbrt ignores values that
-    /// are not above 0.
+    /// Returns the factor that gives a light its required power or illuminance; as in pbrt, values
+    /// of 0 or less are ignored.
     pub(super) fn wanted(&self, entity: &Entity, name: &str, now: f64) -> Read<f64> {
         let wanted = entity.float(self.report, name)?;
         let factor = wanted.filter(|w| *w > 0.0).map_or(1.0, |w| w / now);
@@ -72,7 +72,7 @@ impl PbrtReader<'_> {
         Err(CauseGiven)
     }
 
-    /// The vector from `from` to `to` in world coordinates.
+    /// Returns the vector from the point `from` to the point `to`, in world coordinates.
     fn way(&self, entity: &Entity, to_world: DAffine3) -> Read<DVec3> {
         let from = entity.point_or(self.report, "from", DVec3::ZERO);
         let to = entity.point_or(self.report, "to", DVec3::Z);
@@ -112,8 +112,8 @@ impl PbrtReader<'_> {
         }
         let [cutoff, beam] = [cutoff, cutoff - delta].map(f64::to_radians);
         let [end, start] = [cutoff, beam].map(libm::cos);
-        // pbrt's convention: between the two cones, the mean of the falloff over the cosine is a
-        // half.
+        // As in pbrt, the mean of the falloff between the two cones is taken as a half, averaged
+        // over the cosine.
         let solid = 2.0 * PI * ((1.0 - start) + (start - end) / 2.0);
         let factor = self.wanted(entity, "power", solid)?;
         let along = way?;

@@ -17,7 +17,7 @@ const MAX_DEPTH: usize = 8;
 /// Maximum number of materials, including nested ones.
 const MAX_MATERIALS: usize = 1 << 20;
 
-/// pbrt treats a surface of smaller roughness as smooth.
+/// The roughness below which pbrt treats a surface as smooth.
 const SMOOTH: f64 = 1e-3;
 
 /// Plugins supported as materials.
@@ -30,7 +30,7 @@ const DEFAULT: usize = usize::MAX;
 const ALBEDO: Ask = Ask::Spectrum(Role::Reflectance);
 
 impl PbrtReader<'_> {
-    /// The index of a material; `None` if there is no surface at all.
+    /// Returns the index of a material, or `None` if there is no surface at all.
     pub(super) fn material(&mut self, of: &MaterialOf, uv: Uv) -> Read<Option<usize>> {
         let number = match of {
             MaterialOf::Default => DEFAULT,
@@ -88,7 +88,7 @@ impl PbrtReader<'_> {
                 return Err(entity.fault(self.report, name, message));
             }
         }
-        // Named materials have their type as a parameter.
+        // A named material has its type in a parameter.
         let plugin = match entity.plugin.as_str() {
             "" => entity.text(self.report, "type")?.unwrap_or_default(),
             plugin => plugin,
@@ -125,7 +125,8 @@ impl PbrtReader<'_> {
         })
     }
 
-    /// n and k. A given reflectance is that of a metal with n = 1 at normal incidence.
+    /// n and k. If a reflectance is given instead, it is that of a metal with n = 1 at normal
+    /// incidence.
     fn metal(&mut self, entity: &Entity) -> Read<[f64; 2]> {
         let number = Ask::Spectrum(Role::Number);
         if entity.has("reflectance") {
@@ -183,7 +184,8 @@ impl PbrtReader<'_> {
         })
     }
 
-    /// The ratio of the index behind the normal to that in front of it.
+    /// Returns the ratio of the index of refraction behind the surface to that on the side of the
+    /// normal.
     fn index(&mut self, entity: &Entity) -> Read<f64> {
         let is_float =
             |p: &super::parameter::PbrtParameter| p.kind == super::parameter::ParameterKind::Float;
@@ -237,7 +239,7 @@ impl PbrtReader<'_> {
         })
     }
 
-    /// The roughness; `None` for a smooth surface.
+    /// Returns the roughness, or `None` for a smooth surface.
     fn roughness(&mut self, entity: &Entity, uv: Uv) -> Read<Option<Roughness>> {
         let remaps = entity.truth(self.report, "remaproughness", true);
         let names = ["uroughness", "vroughness"];
@@ -275,12 +277,13 @@ fn both_sides(material: Material) -> Material {
     Material::TwoSided(Box::new([material.clone(), material]))
 }
 
-/// Whether a material depends on texture coordinates: it varies, or is anisotropic along u and v.
+/// Whether a material depends on texture coordinates, because it varies or is anisotropic along u
+/// and v.
 pub(super) fn reads_uv(material: &Material) -> bool {
     let varies = |texture: &Texture| !matches!(texture, Texture::Constant(_));
     let rough = |roughness: &Option<Roughness>| {
         roughness.as_ref().is_some_and(|r| match &r.alpha {
-            #[expect(clippy::float_cmp, reason = "checks for the same number")]
+            #[expect(clippy::float_cmp, reason = "only identical numbers are isotropic")]
             [Texture::Constant(u), Texture::Constant(v)] => u != v,
             _ => true,
         })

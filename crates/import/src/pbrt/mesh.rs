@@ -22,7 +22,8 @@ const TRIANGLE: [DVec2; 3] = [DVec2::ZERO, DVec2::X, DVec2::ONE];
 /// Default (u, v) at the corners of patches.
 const PATCH: [DVec2; 4] = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE];
 
-/// Triangles, with their area in the world if they form one triangle or one patch.
+/// The triangles of a mesh, with their area in the world if they form a single triangle or a
+/// single patch.
 pub(super) struct PbrtMesh {
     pub(super) triangles: Arc<Triangles>,
     pub(super) area: Option<f64>,
@@ -60,7 +61,8 @@ impl PbrtReader<'_> {
         made.map_err(|_| CauseGiven)
     }
 
-    /// The cause is added once, and the failure is cached.
+    /// Adds a cause for a file that cannot be used, and returns the error to be cached, so that
+    /// the cause is added once.
     fn unread_once(&self, entity: &Entity, name: &str, error: String) -> String {
         self.unread(entity, name, &error);
         error
@@ -115,7 +117,7 @@ impl PbrtReader<'_> {
         for patch in patches {
             let at = patch.map(|i| i as usize);
             self.check_patch(entity, at.map(|i| vertices[i]), needs_uv)?;
-            // There are fewer than 2³² vertices, since there is one for each index of the file.
+            // The number of vertices is below 2³², since each index of the file gives one vertex.
             let first = u32::try_from(parts.vertices.len()).map_err(|_| CauseGiven)?;
             parts.vertices.extend(at.map(|i| vertices[i]));
             if let (Some(to), Some(of)) = (&mut parts.normals, &normals) {
@@ -134,8 +136,9 @@ impl PbrtReader<'_> {
         self.made(entity, parts, needs_uv)
     }
 
-    /// Checks a patch. A patch that is not planar is a cause of refusal. A patch that is not a
-    /// parallelogram has other texture coordinates inside, which gives a note.
+    /// Checks a bilinear patch, which becomes two triangles. A patch that is not planar is a cause
+    /// of refusal; one that is not a parallelogram gets a note, because its texture coordinates
+    /// differ inside.
     fn check_patch(&self, entity: &Entity, [a, b, c, d]: [DVec3; 4], needs_uv: bool) -> Read<()> {
         let (along, across, diagonal) = (b - a, c - a, d - a);
         let size = along.length().max(across.length()).max(diagonal.length());
@@ -151,7 +154,7 @@ impl PbrtReader<'_> {
         Ok(())
     }
 
-    /// Vertex positions, and the indices of each face of `N` corners.
+    /// Reads the positions of the vertices, and the indices of each face of `N` corners.
     fn indexed<const N: usize>(&self, entity: &Entity) -> Read<(Vec<DVec3>, Vec<[u32; N]>)> {
         let report = self.report;
         let vertices = entity.points(report, "P", ParameterKind::Point3)?;
@@ -174,13 +177,14 @@ impl PbrtReader<'_> {
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
-            reason = "among the vertices, in 32 bits"
+            reason = "each number is the index of a vertex"
         )]
         let face = |face: &[f64]| std::array::from_fn(|k| face[k] as u32);
         Ok((vertices, indices.chunks_exact(N).map(face).collect()))
     }
 
-    /// A vertex attribute. If it has a wrong number of values, it is left out, as in pbrt.
+    /// Reads an attribute of the vertices; as in pbrt, it is left out if it has a wrong number of
+    /// values.
     fn beside<T>(
         &self,
         entity: &Entity,
@@ -224,7 +228,7 @@ impl PbrtReader<'_> {
     }
 }
 
-/// Triangles without shared vertices, with pbrt's default texture coordinates.
+/// Returns the triangles without shared vertices, and with pbrt's default texture coordinates.
 fn apart(parts: MeshParts) -> Result<MeshParts, String> {
     let count = u32::try_from(parts.corners.len()).ok();
     let count = count.filter(|count| count.checked_mul(3).is_some());

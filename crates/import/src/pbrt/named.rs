@@ -1,11 +1,11 @@
 //! Named spectra of pbrt-v4, as colours in linear sRGB.
 //!
-//! They are pbrt's tables of n and k by wavelength, converted by the rule stated at
+//! The colours are pbrt's tables of n and k by wavelength, converted by the rule stated at
 //! [`Color`](crate::Color) and weighted with D65. Metals differ from those of Mitsuba for two
 //! reasons: Mitsuba weights its tables with the equal-energy white, and the numbers in pbrt's
 //! tables differ.
 
-/// Red, green and blue of the spectrum of a glass or metal; `None` for an unknown name.
+/// Returns red, green and blue of the spectrum of a glass or metal, or `None` for an unknown name.
 pub(super) fn index(name: &str) -> Option<[f64; 3]> {
     let found = NAMED.iter().find(|(known, _)| *known == name)?;
     Some(found.1)

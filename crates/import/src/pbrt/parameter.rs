@@ -64,7 +64,7 @@ const KINDS: [(&str, ParameterKind); 13] = [
 ];
 
 impl ParameterKind {
-    /// The number of numbers per value.
+    /// Returns how many numbers one value of the type has.
     fn arity(self) -> usize {
         match self {
             Self::Point2 | Self::Vector2 => 2,
@@ -73,14 +73,15 @@ impl ParameterKind {
         }
     }
 
-    /// The name of the type in the file.
+    /// Returns the name of the type in files.
     pub(super) fn name(self) -> &'static str {
         let found = KINDS.iter().find(|(_, kind)| *kind == self);
         found.map_or("", |(name, _)| name)
     }
 }
 
-/// Parses all parameters that follow. Faulty ones are included, as [`ParameterValues::Broken`].
+/// Parses all parameters that follow. Faulty parameters are included, as
+/// [`ParameterValues::Broken`].
 pub(super) fn parameters(tokens: &mut Tokens<'_>, report: &Report) -> Vec<Rc<PbrtParameter>> {
     let mut all = Vec::new();
     while let Some((Token::Text(declared), at)) = tokens.peek().cloned() {
@@ -110,7 +111,7 @@ pub(super) fn parameters(tokens: &mut Tokens<'_>, report: &Report) -> Vec<Rc<Pbr
     all
 }
 
-/// One value, or a list of them in brackets.
+/// Parses one value, or a list of values in brackets.
 fn values(tokens: &mut Tokens<'_>, place: &SourcePlace, report: &Report) -> ParameterValues {
     let mut list = List::default();
     match tokens.peek().cloned() {
@@ -194,7 +195,7 @@ impl List {
     }
 }
 
-/// The values if they match the type; adds a cause otherwise.
+/// Returns the values if they match the type; otherwise adds a cause of refusal.
 fn checked(
     values: ParameterValues,
     kind: ParameterKind,

@@ -28,12 +28,12 @@ pub(super) struct PbrtReader<'a> {
     pub(super) pictures: Pictures,
     pub(super) meshes: HashMap<PbrtMeshKey, Result<Arc<Triangles>, String>>,
     pub(super) textures: BTreeMap<TextureKey, Read<Texture>>,
-    /// Finished materials, by index in the scene and texture coordinates; `None` for no surface at
-    /// all.
+    /// The materials made so far, by index in the scene and kind of texture coordinates; `None`
+    /// stands for no surface at all.
     pub(super) materials: BTreeMap<(usize, Uv), Read<Option<usize>>>,
-    /// Number of materials, including nested ones.
+    /// Number of materials made so far, including nested ones.
     pub(super) made_materials: usize,
-    /// Current nesting depth of textures or materials.
+    /// The current nesting depth of textures or materials.
     pub(super) depth: usize,
     noted: RefCell<BTreeSet<(usize, usize, String)>>,
 }
@@ -87,26 +87,26 @@ impl<'a> PbrtReader<'a> {
         self.world
     }
 
-    /// Adds a note once, however often its object is used.
+    /// Adds a note only once, even if its object is used several times.
     pub(super) fn note_once(&self, place: &SourcePlace, message: &str) {
         if self.is_first(place, message) {
             self.report.note(place, message);
         }
     }
 
-    /// Whether this message is new.
+    /// Whether this message was not given before.
     pub(super) fn is_first(&self, place: &SourcePlace, message: &str) -> bool {
         let (line, column) = (place.line, place.column);
         let key = (line, column, format!("{}: {message}", place.file));
         self.noted.borrow_mut().insert(key)
     }
 
-    /// The path of a file; names are relative to the folder of the scene.
+    /// Returns the path of a file; names are relative to the folder of the scene.
     pub(super) fn find(&self, name: &str) -> Result<PathBuf, String> {
         self.files.find(std::slice::from_ref(&self.folder), name)
     }
 
-    /// The file name parameter of an entity.
+    /// Returns the file name parameter of an entity.
     pub(super) fn file_name<'b>(&self, entity: &'b Entity) -> Read<&'b str> {
         let name = entity.text(self.report, "filename")?;
         name.ok_or_else(|| {

@@ -1,5 +1,5 @@
-//! A scene as described by its files: the entity of each directive, with its transform and
-//! material.
+//! A scene as its files describe it: the entity that each directive defines, with its transform
+//! and material.
 
 use super::entity::Entity;
 use super::parameter::PbrtParameter;
@@ -13,12 +13,13 @@ use std::rc::Rc;
 pub(super) struct PbrtScene {
     /// The camera, and the map from world to camera coordinates.
     pub(super) camera: Option<(Entity, DAffine3)>,
-    /// The last Film, Sampler, Integrator, PixelFilter and Accelerator.
+    /// The last entity of each of the directives Film, Sampler, Integrator, PixelFilter and
+    /// Accelerator.
     pub(super) settings: BTreeMap<&'static str, Entity>,
     pub(super) materials: Vec<Entity>,
     /// Named materials, by index.
     pub(super) named: BTreeMap<String, usize>,
-    /// Textures by name; `true` for spectrum textures.
+    /// Textures by name; the flag is `true` for spectrum textures.
     pub(super) textures: BTreeMap<(bool, String), Entity>,
     pub(super) areas: Vec<Entity>,
     pub(super) lights: Vec<(Entity, DAffine3)>,
@@ -29,7 +30,7 @@ pub(super) struct PbrtScene {
     pub(super) defaults: Vec<Rc<PbrtParameter>>,
 }
 
-/// A shape with its graphics state.
+/// A shape with the graphics state in which it was defined.
 #[derive(Debug)]
 pub(super) struct PbrtShape {
     pub(super) entity: Entity,
@@ -37,7 +38,7 @@ pub(super) struct PbrtShape {
     /// `ReverseOrientation`
     pub(super) is_reversed: bool,
     pub(super) material: MaterialOf,
-    /// The index of its area light.
+    /// The index of the shape's area light.
     pub(super) area: Option<usize>,
 }
 

@@ -17,12 +17,12 @@ use std::f64::consts::PI;
 /// Plugins supported as shapes.
 const ALLOWED: &str = "sphere, disk, cylinder, trianglemesh, plymesh, bilinearmesh";
 
-/// A surface without its material.
+/// The geometry of a surface and its placement, without material.
 pub(super) struct PbrtSurface {
     pub(super) geometry: Geometry,
     /// The map from the geometry's coordinates to those of the shape.
     pub(super) placement: DAffine3,
-    /// The area by which pbrt divides a given power; `None` for a shape of many surfaces.
+    /// The area by which pbrt divides a given power; `None` for a shape of several surfaces.
     pub(super) area: Option<f64>,
 }
 
@@ -77,8 +77,8 @@ impl PbrtReader<'_> {
         true
     }
 
-    /// A shape placed by its own transform; `None` if a cause of refusal was reported, or if there
-    /// is no surface.
+    /// Returns a shape placed by its own transform, or `None` if a cause of refusal was reported,
+    /// or if there is no surface.
     fn shape(&mut self, shape: &PbrtShape, is_in_object: bool) -> Option<etendue_world::Shape> {
         let entity = &shape.entity;
         entity.is_used.set(true);
@@ -130,11 +130,11 @@ impl PbrtReader<'_> {
         self.add_material(Material::Mask { opacity, of })
     }
 
-    /// Whether the front is opposite to that of the world's geometry.
+    /// Whether the front of a shape is opposite to that of its geometry in a world.
     ///
-    /// pbrt computes normals of meshes after placement, so a mirror keeps their front; but a mirror
-    /// flips the normals of other shapes. If such a shape emits, pbrt shows it on one side and
-    /// emits from the other: the emitting side is used.
+    /// pbrt computes normals of meshes after placement, so a mirror keeps their front; but a
+    /// mirror flips the normals of other shapes. If a mirrored shape emits, pbrt shows the light
+    /// on one side and emits it from the other; the emitting side is used here.
     fn is_flipped(&self, shape: &PbrtShape, geometry: &Geometry, shines: bool) -> bool {
         let is_mirrored = shape.to_world.matrix3.determinant() < 0.0;
         let turns = is_mirrored && !matches!(geometry, Geometry::Mesh(_));

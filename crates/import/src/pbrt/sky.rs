@@ -14,8 +14,8 @@ use std::sync::Arc;
 /// Maximum number of pixels along a side: the converted map has eight times as many pixels.
 const MAX_PIXELS: usize = 2048;
 
-/// Samples along each side of a pixel in a map of one pixel. Larger maps use fewer samples per
-/// pixel, to bound the time.
+/// Number of samples along a side of a map, before the samples of a pixel are limited to between 3
+/// and 16 along a side. Larger maps use fewer samples per pixel, to bound the time.
 const WITHIN: usize = 4096;
 
 impl PbrtReader<'_> {
@@ -63,7 +63,7 @@ impl PbrtReader<'_> {
     }
 }
 
-/// The illuminance from above, on a surface with normal Z.
+/// Returns the illuminance of a surface with normal Z.
 fn illuminance(square: &Raster) -> f64 {
     let side = square.width();
     let pixel = 4.0 * PI / (side * side) as f64;
@@ -74,7 +74,8 @@ fn illuminance(square: &Raster) -> f64 {
     (0..side * side).map(at).sum::<f64>() * pixel
 }
 
-/// The picture in longitude and latitude, from pole to pole; each pixel is the mean over its area.
+/// Returns the picture in longitude and latitude, from pole to pole, in which each pixel is the
+/// mean over its area.
 fn longitudes(square: &Raster, scale: f64) -> Option<Raster> {
     let side = square.width();
     let (w, h) = (4 * side, 2 * side + 1);
@@ -83,7 +84,7 @@ fn longitudes(square: &Raster, scale: f64) -> Option<Raster> {
     let pixel = |i: usize| {
         let (column, row) = ((i % w) as f64 + 0.5, (i / w) as f64);
         let places = (0..count * count).map(|k| {
-            // There is no area beyond the poles.
+            // The angle is limited because there is no area beyond the poles.
             let polar = ((row + within(k / count)) * PI / (h - 1) as f64).clamp(0.0, PI);
             let (sin, cos) = libm::sincos(polar);
             let (x, z) = libm::sincos((column + within(k % count)) * TAU / w as f64);
@@ -94,23 +95,23 @@ fn longitudes(square: &Raster, scale: f64) -> Option<Raster> {
     Raster::new(w, h, (0..w * h).map(pixel).collect())
 }
 
-/// The pixel that a direction falls into.
+/// Returns the pixel that a direction falls into.
 fn nearest(square: &Raster, toward: DVec3) -> f64 {
     let side = square.width();
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "0 to 1 times the side"
+        reason = "the number is from 0 to the side"
     )]
     let [x, y] = place(toward).map(|v| ((v.clamp(0.0, 1.0) * side as f64) as usize).min(side - 1));
     square.values()[y * side + x].max(0.0)
 }
 
-/// The position in the unit square for a direction.
+/// Returns the position of a direction in the unit square.
 fn place(toward: DVec3) -> [f64; 2] {
     let [x, y, z] = toward.abs().to_array();
     let r = (1.0 - z).max(0.0).sqrt();
-    // The azimuth, from 0 to 1 over a quarter turn.
+    // Returns the azimuth as a share of a quarter turn, from 0 to 1.
     let turn = FRAC_2_PI * libm::atan2(y, x);
     let (u, v) = (r * (1.0 - turn), r * turn);
     let (u, v) = if toward.z < 0.0 {
@@ -121,7 +122,7 @@ fn place(toward: DVec3) -> [f64; 2] {
     [u.copysign(toward.x), v.copysign(toward.y)].map(|v| (v + 1.0) / 2.0)
 }
 
-/// The direction for a position in the unit square.
+/// Returns the direction for a position in the unit square.
 fn direction(place: [f64; 2]) -> DVec3 {
     let [u, v] = place.map(|v| 2.0 * v - 1.0);
     let signed = 1.0 - (u.abs() + v.abs());
@@ -149,7 +150,7 @@ mod tests {
         for i in 0..64 {
             let at = [f64::from(i % 8) / 8.0 + 0.07, f64::from(i / 8) / 8.0 + 0.03];
             let back = place(direction(at));
-            // The difference is only rounding.
+            // The tolerance is the rounding error.
             assert!(
                 (back[0] - at[0]).abs() + (back[1] - at[1]).abs() < 1e-12,
                 "{at:?}"

@@ -27,7 +27,7 @@ enum PbrtSpectrum {
 }
 
 impl PbrtReader<'_> {
-    /// The number for a colour or spectrum; `None` if it is missing.
+    /// Returns the number for a colour or spectrum, or `None` if it is missing.
     pub(super) fn number_of(&self, entity: &Entity, name: &str, role: Role) -> Read<Option<f64>> {
         let Some(spectrum) = self.spectrum(entity, name)? else {
             return Ok(None);
@@ -57,8 +57,8 @@ impl PbrtReader<'_> {
         Ok(Some(self.color.of(color)))
     }
 
-    /// Spectra of lights are normalised to luminance 1; colours keep the luminance of their
-    /// numbers.
+    /// Returns the colour of a light. A spectrum is normalised to luminance 1, and a colour keeps
+    /// the luminance of its numbers.
     fn light_color(
         &self,
         spectrum: PbrtSpectrum,
@@ -72,7 +72,7 @@ impl PbrtReader<'_> {
             PbrtSpectrum::Named(name) => match name.as_str() {
                 "stdillum-D65" => return Ok([1.0; 3]),
                 "stdillum-A" => blackbody(TUNGSTEN),
-                // Only the luminance is needed.
+                // Only the luminance is needed, which is 1.
                 _ if named::is_illuminant(&name) && self.color == Color::Luminance => {
                     return Ok([1.0; 3]);
                 }
@@ -127,7 +127,7 @@ impl PbrtReader<'_> {
         Ok(Some(found))
     }
 
-    /// A spectrum known to pbrt by name, or a file of pairs.
+    /// Returns a spectrum that pbrt knows by name, or reads it from a file of pairs.
     fn named_spectrum(&self, name: &str) -> Result<PbrtSpectrum, String> {
         if named::index(name).is_some() || named::is_illuminant(name) {
             return Ok(PbrtSpectrum::Named(name.to_owned()));
@@ -156,7 +156,7 @@ fn sampled(numbers: &[f64]) -> Result<Vec<[f64; 2]>, String> {
     }
 }
 
-/// Planck's law, normalised to a maximum of 1.
+/// Returns the spectrum of Planck's law, normalised to a maximum of 1.
 fn blackbody(kelvin: f64) -> Vec<[f64; 2]> {
     // The logarithms are taken relative to 560 nm, to avoid overflow in the ratio.
     let log = |nm: f64| {

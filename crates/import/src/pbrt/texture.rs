@@ -26,7 +26,7 @@ pub(super) enum Ask {
 }
 
 impl PbrtReader<'_> {
-    /// The texture of a parameter, or a constant if it is missing.
+    /// Returns the texture of a parameter, or a constant if it is missing.
     pub(super) fn texture_or(
         &mut self,
         entity: &Entity,
@@ -53,7 +53,7 @@ impl PbrtReader<'_> {
         }
     }
 
-    /// Like [`Self::texture_or`], for an albedo from 0 to 1.
+    /// Reads a texture like [`Self::texture_or`], but for an albedo, which must be from 0 to 1.
     pub(super) fn albedo_or(
         &mut self,
         entity: &Entity,
@@ -136,8 +136,8 @@ impl PbrtReader<'_> {
         }
     }
 
-    /// A checkerboard with squares of one unit: the first value applies where the coordinates,
-    /// rounded down, are both even or both odd.
+    /// Returns a checkerboard with squares of one unit: the first value applies where the
+    /// coordinates, rounded down, are both even or both odd.
     fn checkerboard(&mut self, entity: &Entity, ask: Ask, uv: Uv) -> Read<Texture> {
         if entity.integer_or(self.report, "dimension", 2)? != 2 {
             let message = "a checkerboard of dimension 3; allowed: 2".to_owned();
@@ -147,7 +147,7 @@ impl PbrtReader<'_> {
         let second = self.constant_or(entity, "tex2", ask, 0.0);
         let to_uv = self.mapping(entity, uv)?;
         Ok(Texture::Checkerboard {
-            // In a world, squares are half a unit wide.
+            // The scale is one half because in a world the squares are half a unit wide.
             to_uv: DAffine2::from_scale(DVec2::splat(0.5)) * to_uv,
             values: [first?, second?],
         })
@@ -178,7 +178,7 @@ impl PbrtReader<'_> {
         ))
     }
 
-    /// The map from (u, v) of a surface in a world to (u, v) of the texture.
+    /// Returns the map from (u, v) of a surface in a world to (u, v) of the texture.
     pub(super) fn mapping(&self, entity: &Entity, uv: Uv) -> Read<DAffine2> {
         let report = self.report;
         entity.choice(report, "mapping", &[("uv", ())])?;
@@ -188,7 +188,7 @@ impl PbrtReader<'_> {
         Ok(DAffine2::from_mat2_translation(DMat2::from_diagonal(scale), delta) * uv.to_pbrt())
     }
 
-    /// A texture with a function applied to its values.
+    /// Returns a texture whose values are those of a parameter's texture with a function applied.
     pub(super) fn mapped(
         &self,
         entity: &Entity,

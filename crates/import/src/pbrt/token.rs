@@ -7,7 +7,7 @@ use std::rc::Rc;
 /// A token.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Token<'a> {
-    /// A directive, a number or a truth value.
+    /// A word without quotes: a directive, a number or a truth value.
     Word(&'a str),
     /// A quoted string.
     Text(Cow<'a, str>),
@@ -45,7 +45,7 @@ impl<'a> Tokens<'a> {
         }
     }
 
-    /// A place in this file.
+    /// Returns a place in this file.
     pub(super) fn place(&self, at: LineColumn) -> SourcePlace {
         SourcePlace {
             file: Rc::clone(&self.file),
@@ -54,7 +54,7 @@ impl<'a> Tokens<'a> {
         }
     }
 
-    /// The current position.
+    /// Returns the current position.
     pub(super) fn here(&self) -> SourcePlace {
         self.place(self.at)
     }
@@ -168,7 +168,7 @@ fn escape(c: char) -> Option<char> {
     })
 }
 
-/// A finite number; `Err` is the fault. The range of integers is checked elsewhere.
+/// Parses a finite number; `Err` describes a fault. The range of integers is checked elsewhere.
 pub(super) fn number(word: &str) -> Result<f64, String> {
     let parsed: Option<f64> = word.parse().ok();
     let finite = parsed.filter(|value| value.is_finite());

@@ -1,5 +1,5 @@
-//! Transforms in pbrt's notation. Each transform is applied before those that precede it in the
-//! file.
+//! Transforms in pbrt's notation. Coordinates pass through the transforms of a file in reverse
+//! order, the last one first.
 
 use glam::{DAffine3, DMat3, DMat4, DVec3, DVec4};
 
@@ -7,7 +7,7 @@ use glam::{DAffine3, DMat3, DMat4, DVec3, DVec4};
 /// of rounded numbers, so they deviate slightly.
 const ALIKE: f64 = 1e-3;
 
-/// A rotation by degrees about an axis of any length.
+/// Returns a rotation by degrees about an axis of any length.
 pub(super) fn rotation([angle, x, y, z]: [f64; 4]) -> Result<DAffine3, String> {
     let axis = DVec3::new(x, y, z).try_normalize();
     let axis = axis.ok_or("an axis of length 0")?;
@@ -20,8 +20,8 @@ pub(super) fn rotation([angle, x, y, z]: [f64; 4]) -> Result<DAffine3, String> {
     )))
 }
 
-/// The map to camera coordinates with Z forward, Y up and X to the right; pbrt's world is
-/// left-handed.
+/// Returns the map to camera coordinates with Z forward, Y up and X to the right, which are
+/// left-handed, as all of pbrt's coordinates.
 pub(super) fn look_at(numbers: [f64; 9]) -> Result<DAffine3, String> {
     let [eye, at, up] = [0, 3, 6].map(|i| DVec3::from_slice(&numbers[i..]));
     let along = (at - eye).try_normalize().ok_or("no viewing direction")?;
@@ -31,7 +31,7 @@ pub(super) fn look_at(numbers: [f64; 9]) -> Result<DAffine3, String> {
     Ok(DAffine3::from_mat3_translation(linear, eye).inverse())
 }
 
-/// A matrix from 16 numbers, column by column.
+/// Returns the map of a matrix that is given by 16 numbers, column by column.
 pub(super) fn matrix(numbers: &[f64; 16]) -> Result<DAffine3, String> {
     let matrix = DMat4::from_cols_array(numbers);
     if matrix.row(3) != DVec4::W {
@@ -40,7 +40,8 @@ pub(super) fn matrix(numbers: &[f64; 16]) -> Result<DAffine3, String> {
     Ok(DAffine3::from_mat4(matrix))
 }
 
-/// A map without its scale, and the scale; `None` if it shears or scales axes unequally.
+/// Returns a map without its scale, and the scale, or `None` if it shears or scales axes
+/// unequally.
 pub(super) fn without_scale(map: DAffine3) -> Option<(DAffine3, f64)> {
     let scale = libm::cbrt(map.matrix3.determinant().abs());
     let linear = map.matrix3 * (1.0 / scale);

@@ -1,7 +1,7 @@
 //! Limits on the size of pictures.
 
-/// Maximum number of values per byte of a file. In any JPEG file with visible content, a block of
-/// 64 values takes more than half a bit.
+/// Maximum number of values per byte of a file. A JPEG file uses more than half a bit for each
+/// block of 64 values, if the picture has visible content.
 const MOST_PER_BYTE: usize = 1032;
 /// Maximum number of values in a picture, as in the scene crate.
 const MAX_NUMBERS: usize = 1 << 27;

@@ -11,7 +11,7 @@ use etendue_world::World;
 use std::fs;
 use std::path::Path;
 
-/// A scene of version 3 with this content, which begins at line 2.
+/// Returns a scene of version 3 with this content, which begins on line 2.
 pub(crate) fn scene(inside: &str) -> String {
     format!("<scene version=\"3.0.0\">\n{inside}\n</scene>")
 }
@@ -26,28 +26,28 @@ pub(crate) fn read_in(inside: &str, folder: &Path, color: Color) -> Result<Impor
     read.map_err(|refused| refused.causes.iter().map(ToString::to_string).collect())
 }
 
-/// The world of a scene without files.
+/// Returns the world of a scene without files.
 pub(crate) fn world(inside: &str) -> World {
     let folder = tempfile::tempdir().unwrap();
     let read = read_in(inside, folder.path(), Color::Luminance);
     read.unwrap_or_else(|causes| panic!("{causes:#?}")).world
 }
 
-/// All causes to refuse a scene without files.
+/// Returns all causes to refuse a scene without files.
 pub(crate) fn causes(inside: &str) -> Vec<String> {
     let folder = tempfile::tempdir().unwrap();
     let read = read_in(inside, folder.path(), Color::Luminance);
     read.map(|read| read.world).unwrap_err()
 }
 
-/// All notes on a scene without files.
+/// Returns all notes on a scene without files.
 pub(crate) fn notes(inside: &str) -> Vec<String> {
     let folder = tempfile::tempdir().unwrap();
     let read = read_in(inside, folder.path(), Color::Luminance).unwrap();
     read.notes.iter().map(ToString::to_string).collect()
 }
 
-/// A folder with files.
+/// Returns a folder with files.
 pub(crate) fn folder(files: &[(&str, &[u8])]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     for (name, bytes) in files {
@@ -58,7 +58,7 @@ pub(crate) fn folder(files: &[(&str, &[u8])]) -> tempfile::TempDir {
     folder
 }
 
-/// Requires numbers to agree within `digits`, the precision of the printed reference.
+/// Asserts that numbers agree within `digits`, the precision of the printed reference.
 pub(crate) fn assert_close(found: &[f64], expected: &[f64], digits: f64) {
     assert_eq!(found.len(), expected.len());
     for (a, b) in found.iter().zip(expected) {

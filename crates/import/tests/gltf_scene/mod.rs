@@ -16,12 +16,12 @@ use etendue_world::World;
 pub(crate) const BASE: &str =
     r#","textures":[{"source":0}],"images":[{"uri":"data:image/png;base64,PICTURE"}]"#;
 
-/// A file with these nodes and other members.
+/// Returns the text of a file with these nodes and other members.
 pub(crate) fn with(nodes: &str, more: &str) -> String {
     format!(r#"{{"asset":{{"version":"2.0"}},"nodes":[{nodes}],{more}}}"#)
 }
 
-/// A triangle with X to the right and Y up, and texture coordinates.
+/// Returns a triangle with X to the right and Y up, and texture coordinates.
 fn buffer() -> Vec<u8> {
     let places = [[0.0_f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     let uvs = [[0.0_f32, 1.0], [1.0, 1.0], [0.0, 0.0]];
@@ -43,7 +43,7 @@ fn picture() -> Vec<u8> {
     bytes
 }
 
-/// A file with a triangle as mesh 0, of one material.
+/// Returns a file with a triangle as mesh 0, of one material.
 pub(crate) fn mesh(nodes: &str, material: &str, more: &str) -> String {
     let material = if material.is_empty() { "{}" } else { material };
     let data = STANDARD.encode(buffer());
@@ -61,7 +61,7 @@ pub(crate) fn mesh(nodes: &str, material: &str, more: &str) -> String {
     )
 }
 
-/// The same as a binary file.
+/// Returns the text of a file, with its embedded buffer, as a binary file.
 pub(crate) fn binary(text: &str) -> Vec<u8> {
     let uri = format!(
         r#","uri":"data:application/octet-stream;base64,{}""#,

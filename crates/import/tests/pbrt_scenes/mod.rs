@@ -10,7 +10,7 @@ use etendue_import::{Color, Imported, Options, import_pbrt};
 use etendue_world::{Light, Material, Shape, World};
 use std::path::Path;
 
-/// A scene with `before` before `WorldBegin` and `inside` after it, in line 3.
+/// Returns a scene with the text `before` ahead of `WorldBegin`, and `inside` after it, on line 3.
 pub(crate) fn scene(before: &str, inside: &str) -> String {
     format!("PixelFilter \"box\" {before}\nWorldBegin\n{inside}\n")
 }
@@ -30,31 +30,31 @@ fn read(text: &str) -> Result<Imported, Vec<String>> {
     read_in(text, folder.path(), Color::Luminance)
 }
 
-/// The world of a scene without files.
+/// Returns the world of a scene without files.
 pub(crate) fn world(inside: &str) -> World {
     read(&scene("", inside))
         .unwrap_or_else(|causes| panic!("{causes:#?}"))
         .world
 }
 
-/// The world of a scene with settings only.
+/// Returns the world of a scene with settings only.
 pub(crate) fn set_up(before: &str) -> World {
     read(&scene(before, ""))
         .unwrap_or_else(|causes| panic!("{causes:#?}"))
         .world
 }
 
-/// All causes to refuse a scene without files.
+/// Returns all causes to refuse a scene without files.
 pub(crate) fn causes(inside: &str) -> Vec<String> {
     read(&scene("", inside)).map(|read| read.world).unwrap_err()
 }
 
-/// All causes to refuse settings.
+/// Returns all causes to refuse settings.
 pub(crate) fn unsettled(before: &str) -> Vec<String> {
     read(&scene(before, "")).map(|read| read.world).unwrap_err()
 }
 
-/// All notes on a scene without files.
+/// Returns all notes on a scene without files.
 pub(crate) fn notes(inside: &str) -> Vec<String> {
     let read = read(&scene("", inside)).unwrap();
     read.notes.iter().map(ToString::to_string).collect()
@@ -68,7 +68,7 @@ pub(crate) fn light(inside: &str) -> Light {
     world(inside).lights.remove(0)
 }
 
-/// The material of a sphere; if both sides are equal, one of them.
+/// Returns the material of a sphere or, if it has two equal sides, that of one side.
 pub(crate) fn material(declared: &str) -> Material {
     let mut world = world(&format!("{declared}\nShape \"sphere\""));
     match world.materials.remove(world.shapes[0].material) {

@@ -26,8 +26,8 @@ impl ShiningSphere {
         }
     }
 
-    /// The cone that the sphere subtends; `None` for a point inside, where the sphere does not
-    /// emit.
+    /// Returns the cone that the sphere subtends, or `None` for a point inside, where the sphere
+    /// does not emit.
     fn cone(&self, at: DVec3) -> Option<Cone> {
         Cone::around_sphere(self.center - at, self.radius)
     }
@@ -55,8 +55,8 @@ impl ShiningSphere {
         })
     }
 
-    /// A point sampled uniformly by area, its normal, and the radiance there divided by the
-    /// density.
+    /// Returns a point sampled uniformly by area, its normal, and the radiance there divided by
+    /// the density.
     pub(super) fn emit(&self, geometry: &SceneGeometry, [a, b]: [f64; 2]) -> (DVec3, DVec3, f64) {
         let (place, normal, uv) = geometry.placed(self.shape).sample(0, [a, b]);
         let area = 4.0 * PI * self.radius * self.radius;
@@ -65,7 +65,7 @@ impl ShiningSphere {
 
     pub(super) fn of_hit(&self, from: DVec3, along: DVec3, hit: &Hit) -> (f64, f64) {
         let radiance = emitted(&self.emission, hit.uv, hit.normal, -along);
-        // A hit is within the cone, despite rounding errors at its edge.
+        // A hit counts as within the cone, even if rounding errors place it outside the edge.
         let density = self.cone(from).map(|cone| 1.0 / cone.solid_angle());
         (radiance, density.unwrap_or(0.0))
     }

@@ -36,7 +36,8 @@ pub(crate) struct EmissionTarget {
 /// Random numbers and targets for photon directions.
 struct Draw<'a> {
     targets: &'a [EmissionTarget],
-    /// Random numbers for the direction, and for the choice of its distribution.
+    /// Two random numbers for the direction, and one for the choice between natural and aimed
+    /// emission.
     random: [f64; 3],
 }
 
@@ -100,7 +101,7 @@ impl Draw<'_> {
         mixed(plain, self.targets, aimed)
     }
 
-    /// A photon from a surface point: cosine-distributed, or aimed.
+    /// Emits a photon from a surface point in a cosine-distributed or an aimed direction.
     fn flashed(&self, (position, normal, shine): (DVec3, DVec3, f64)) -> Emitted {
         let [a, b, _] = self.random;
         let along = match self.target() {
@@ -123,7 +124,7 @@ impl Draw<'_> {
         }
     }
 
-    /// A photon from a point: within a cone, or aimed.
+    /// Emits a photon from a point in a direction that is uniform in a cone, or aimed.
     fn away(&self, from: DVec3, cone: &Cone, intensity: &dyn Fn(DVec3) -> f64) -> Emitted {
         let [a, b, _] = self.random;
         let along = match self.target() {
@@ -138,13 +139,14 @@ impl Draw<'_> {
         }
     }
 
-    /// A photon of a distant light, sent through a disc that covers all surfaces or through a
+    /// Emits a photon of a distant light through a disc that covers all surfaces, or through a
     /// target.
     fn afar(&self, geometry: &SceneGeometry, toward: DVec3, irradiance: f64) -> Emitted {
         let [a, b, _] = self.random;
         let whole = EmissionTarget {
             center: geometry.center,
-            // The disc is slightly wider, for surfaces that touch the sphere.
+            // The disc is slightly wider than the sphere around all surfaces, because a surface
+            // may touch this sphere.
             radius: 1.001 * geometry.radius,
         };
         let aimed = self.target().unwrap_or(&whole);
@@ -184,8 +186,8 @@ pub(crate) fn chosen(targets: &[EmissionTarget], by: f64) -> Option<&EmissionTar
     found.and_then(|number| targets.get(number))
 }
 
-/// The density of a mixture: half of the samples are drawn by `plain`, and the others by `aimed` in
-/// equal parts for each target.
+/// Returns the density of a mixture in which half of the samples have the density `plain`, and the
+/// others are aimed at the targets in equal parts.
 pub(crate) fn mixed(
     plain: f64,
     targets: &[EmissionTarget],
@@ -199,7 +201,8 @@ pub(crate) fn mixed(
 }
 
 impl EmissionTarget {
-    /// The cone that the sphere subtends; for a point inside, all directions.
+    /// Returns the cone that the sphere subtends at a point, or all directions if the point is
+    /// inside the sphere.
     fn cone(&self, from: DVec3) -> Cone {
         Cone::around_sphere(self.center - from, self.radius).unwrap_or(Cone::SPHERE)
     }

@@ -8,22 +8,24 @@ use glam::{DVec2, DVec3};
 pub(crate) struct Incoming {
     /// The direction towards the light, of unit length.
     pub(crate) toward: DVec3,
-    /// The distance that must be free of occluders; beyond everything for distant light.
+    /// The distance along the direction that must be free of occluders; for distant light, it is
+    /// beyond all surfaces.
     pub(crate) distance: f64,
-    /// Radiance divided by the density; without a density, irradiance across `toward`.
+    /// Radiance divided by the density or, without a density, the irradiance of a surface
+    /// perpendicular to `toward`.
     pub(crate) weight: f64,
     /// Density per solid angle; `None` if only this direction is possible.
     pub(crate) density: Option<f64>,
 }
 
-/// The direction and distance from one point to another.
+/// Returns the direction and the distance from one point to another.
 pub(super) fn way(from: DVec3, to: DVec3) -> (DVec3, f64) {
     let between = to - from;
     let distance = between.length();
     (between / distance, distance)
 }
 
-/// The emission of a shape at texture coordinates in a direction: uniform over the front.
+/// Returns the emission of a shape at texture coordinates in a direction: uniform over the front.
 pub(super) fn emitted(emission: &Texture, uv: DVec2, normal: DVec3, away: DVec3) -> f64 {
     if normal.dot(away) > 0.0 {
         emission.value(uv)

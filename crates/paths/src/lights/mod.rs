@@ -22,7 +22,7 @@ use sky::SampledSky;
 #[derive(Debug)]
 pub(crate) struct LightSampler {
     lights: Vec<SampledLight>,
-    /// The light of each emitting shape.
+    /// For each shape, the index of its light if it emits.
     of_shape: Vec<Option<usize>>,
 }
 
@@ -78,16 +78,16 @@ impl LightSampler {
         })
     }
 
-    /// Picks a light uniformly by a random number, and returns with it a remaining number in (0, 1)
-    /// for further use.
+    /// Picks a light by a random number, each with equal probability; returns it with a random
+    /// number in (0, 1) that remains for further use.
     fn pick(&self, r: f64) -> Option<(&SampledLight, f64)> {
         let place = r * self.lights.len() as f64;
         let light = self.lights.get(whole(place))?;
         Some((light, place.fract()))
     }
 
-    /// The emission of a shape hit by a ray along `along`, and the density with which
-    /// [`Self::sample`] draws that direction.
+    /// Returns the emission of a shape that a ray along `along` hits, and the density with which
+    /// [`Self::sample`] draws this direction.
     pub(crate) fn of_hit(&self, from: DVec3, along: DVec3, hit: &Hit) -> (f64, f64) {
         let Some(light) = self.of_shape[hit.shape].map(|light| &self.lights[light]) else {
             return (0.0, 0.0);
@@ -100,8 +100,8 @@ impl LightSampler {
         (radiance, density / self.lights.len() as f64)
     }
 
-    /// The distant radiance along a direction, and the density with which [`Self::sample`] draws
-    /// it: a sum over lights.
+    /// Returns, for each distant light, its radiance from a direction, and the density with which
+    /// [`Self::sample`] draws this direction.
     pub(crate) fn of_sky(&self, toward: DVec3) -> impl Iterator<Item = (f64, f64)> {
         let count = self.lights.len() as f64;
         let skies = self.lights.iter().filter_map(move |light| match light {
@@ -209,7 +209,7 @@ impl SampledLight {
 }
 
 impl SampledLight {
-    /// The intensity of a spot along a direction in its own coordinates, W sr⁻¹.
+    /// Returns the intensity of a spot along a direction in its own coordinates, W sr⁻¹.
     fn intensity(&self, local: DVec3) -> f64 {
         let Self::Spot {
             intensity,

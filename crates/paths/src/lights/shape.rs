@@ -11,7 +11,7 @@ use glam::{DVec2, DVec3};
 pub(super) struct ShiningShape {
     shape: usize,
     emission: Texture,
-    /// The distribution of its pieces by area.
+    /// The distribution that draws pieces of the shape in proportion to their area.
     pieces: DiscreteDistribution,
 }
 
@@ -46,7 +46,7 @@ impl ShiningShape {
         })
     }
 
-    /// A point sampled uniformly by area, its normal and texture coordinates.
+    /// Returns a point sampled uniformly by area, its normal and texture coordinates.
     fn place(
         &self,
         geometry: &SceneGeometry,
@@ -56,7 +56,7 @@ impl ShiningShape {
         (self.area() > 0.0).then(|| placed.sample(self.pieces.sample(c), [a, b]))
     }
 
-    /// A point, its normal, and the radiance there divided by the density.
+    /// Returns a point, its normal, and the radiance there divided by the density.
     pub(super) fn emit(
         &self,
         geometry: &SceneGeometry,

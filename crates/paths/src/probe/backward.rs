@@ -30,7 +30,7 @@ impl<'a> BackwardProbe<'a> {
         }
     }
 
-    /// Restricts the same rays to one plane.
+    /// Restricts these rays to one plane.
     #[must_use]
     pub fn at_plane(self, index: usize) -> Self {
         Self {
@@ -39,7 +39,8 @@ impl<'a> BackwardProbe<'a> {
         }
     }
 
-    /// One ray of a plane: the one with this number of all rays, and a point of a net.
+    /// Traces the ray with this number through a plane; a point of a net gives its first random
+    /// numbers.
     fn crossing(&self, plane: &VirtualPlane, number: u64, (net, point): (&Net, u32)) -> Crossing {
         let Probe { paths, legs, .. } = self.probe;
         let mut numbers = PathNumbers::new(self.budget.seed, number).of_net(net, point);
@@ -56,7 +57,8 @@ impl<'a> BackwardProbe<'a> {
         let line = legs[plane.leg].line(&paths.geometry, &plane.frame, &ray);
         let before = u32::try_from(plane.leg).unwrap_or(u32::MAX);
         let radiance = paths.radiance(line, [0.0, f64::INFINITY], before, &mut numbers);
-        // The last factor is the window's volume; the mean over rays divides by their number.
+        // The last factor is the volume of the window; the division by the number of rays is done
+        // by their mean.
         let weight = radiance * half.iter().map(|half| 2.0 * half).product::<f64>();
         Crossing { ray, weight }
     }
@@ -99,7 +101,7 @@ impl PhotonSource for BackwardProbe<'_> {
 fn point_of(ray: u64) -> u32 {
     #[expect(
         clippy::cast_possible_truncation,
-        reason = "only the lower bits count beyond all points"
+        reason = "rays beyond the last point reuse points from the first on"
     )]
     let point = ray as u32;
     point

@@ -11,8 +11,8 @@ pub(super) struct SurfaceLeg {
     pub(super) frame: Frame,
     /// The shape at the end of the leg; `None` at the camera.
     pub(super) shape: Option<usize>,
-    /// The maximum distance from the plane at the end of the leg at which lines are searched for
-    /// hits of the shape.
+    /// The maximum distance from the plane at the end of the leg within which a line may hit the
+    /// shape there.
     pub(super) reach: f64,
     /// Half-width of the windows in slope.
     pub(super) slope: f64,
@@ -25,8 +25,8 @@ impl SurfaceLeg {
         0.25 * self.reach + self.slope * distance
     }
 
-    /// Returns the line with the coordinates `seen` in a plane of this leg. It is traced back from
-    /// the end of the leg, which is the camera or a surface.
+    /// Returns the line with the coordinates `seen` in a plane of this leg. The line starts at the
+    /// end of the leg, the camera or a surface, and runs back towards the light.
     pub(super) fn line(&self, geometry: &SceneGeometry, plane: &Frame, seen: &TwoPlane) -> Ray {
         let point = plane.to_world(DVec3::new(seen.x, seen.y, 0.0));
         let along = plane
@@ -35,7 +35,7 @@ impl SurfaceLeg {
         self.through(geometry, point, along)
     }
 
-    /// The line through a point along the direction of light.
+    /// Returns the line through a point along the direction of light.
     pub(super) fn through(&self, geometry: &SceneGeometry, point: DVec3, along: DVec3) -> Ray {
         let end = &self.frame;
         let left = (end.origin - point).dot(end.d) / along.dot(end.d);
@@ -55,7 +55,7 @@ impl SurfaceLeg {
     }
 }
 
-/// A line in the coordinates of a plane.
+/// Returns a line in the coordinates of a plane.
 pub(super) fn seen_by(plane: &Frame, point: DVec3, along: DVec3) -> TwoPlane {
     let (from, way) = (plane.to_local(point), plane.vector_to_local(along));
     let (u, v) = (way.x / way.z, way.y / way.z);

@@ -52,18 +52,20 @@ pub struct Probe<'a> {
 /// Maximum slope of a window.
 const WIDEST: f64 = 1.0;
 
-/// Half-width of the window of a picture along x and y, in half-widths of that of the camera's
-/// plane.
+/// Half-width along x and y of the window for the spectrum of a picture, as a fraction of the
+/// half-width at the camera's plane.
 const POINT: f64 = 1e-9;
-/// Number of frequencies of a picture on either side of zero: 6 cycles for a half-width of 1.
+/// Number of frequencies on either side of zero in the spectrum of a picture, up to 6 cycles per
+/// half-width of the window.
 const PICTURE_FREQUENCIES: usize = 24;
-/// Number of azimuths of the spectrum of a picture: at the highest frequency they are half a cycle
-/// of the half-width apart, less than the width of the window's main lobe.
+/// Number of azimuths of the spectrum of a picture. At the highest frequency adjacent azimuths are
+/// half a cycle per half-width apart, less than the width of the main lobe of the window's
+/// spectrum.
 const PICTURE_AZIMUTHS: usize = 40;
 
 impl<'a> Probe<'a> {
-    /// The light field behind a pixel of a camera. `None` if the camera is orthographic, or the ray
-    /// hits nothing.
+    /// Returns the light field behind a pixel of a camera. Returns `None` if the camera is
+    /// orthographic, or the ray hits nothing.
     #[must_use]
     pub fn new(paths: &'a Paths, camera: &Camera, question: &Question) -> Option<Self> {
         let Projection::Perspective { half_width, .. } = camera.projection else {
@@ -121,9 +123,8 @@ impl<'a> Probe<'a> {
     /// Replaces the planes by one: the light that arrives at the middle of the camera's lens, as a
     /// function of direction alone. X points to the right of the picture, Y up.
     ///
-    /// The width of the window is that of the question, and frequencies are a quarter of a cycle of
-    /// its half-width apart. Its spectrum is measured along as many azimuths as are needed to meet
-    /// each frequency.
+    /// The window has the requested width, frequencies are a quarter of a cycle per half-width
+    /// apart, and there are enough azimuths to reach all directions of the picture's spectrum.
     #[must_use]
     pub fn picture(mut self, camera: &Camera) -> Option<Self> {
         let right = camera.to_world.transform_vector3(-DVec3::X);
@@ -150,7 +151,7 @@ impl<'a> Probe<'a> {
         Some(self)
     }
 
-    /// Adds a leg given by the frame at its end, whose light goes towards the camera.
+    /// Adds a leg, given by the frame at its end, along which light travels towards the camera.
     fn add_leg(&mut self, frame: Frame, shape: Option<usize>, [wide, slope]: [f64; 2]) {
         self.legs.push(SurfaceLeg {
             frame,

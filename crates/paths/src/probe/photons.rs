@@ -12,9 +12,9 @@ use glam::DVec3;
 
 /// Photons of a [`Probe`], the independent check of [`BackwardProbe`](super::BackwardProbe).
 ///
-/// They leave the lights. Wherever a photon hits or leaves a surface, a direction through the
-/// windows is drawn for it. They miss light that a mirror or smooth glass sends into a window, and
-/// the sky itself: [`PhotonProbe::misses`] reports where.
+/// These photons leave the lights. Wherever a photon hits or leaves a surface, a direction through
+/// the windows is drawn for it. Photons cannot find light that a mirror or smooth glass sends into
+/// a window, or the sky itself; [`PhotonProbe::misses`] reports where this matters.
 #[derive(Debug)]
 pub struct PhotonProbe<'a> {
     probe: &'a Probe<'a>,
@@ -25,7 +25,7 @@ pub struct PhotonProbe<'a> {
 
 /// Number of photons between two progress reports.
 const BLOCK: u64 = 4096;
-/// Number of lines that determine what is seen through a window.
+/// Number of lines through a window that are traced to find out what is seen through it.
 const LINES: u64 = 4096;
 
 /// A surface point that light leaves, with its directional intensity.
@@ -54,7 +54,8 @@ impl<'a> PhotonProbe<'a> {
         }
     }
 
-    /// The reason why photons miss light of a plane, found from what is seen through its window.
+    /// Returns the reason why photons miss light of a plane, found from what is seen through its
+    /// window.
     #[must_use]
     pub fn misses(&self, plane: usize) -> Option<&'static str> {
         let Probe {
@@ -85,7 +86,7 @@ impl<'a> PhotonProbe<'a> {
 
     #[expect(
         clippy::too_many_lines,
-        reason = "one photon from surface to surface, in the order of events"
+        reason = "it follows one photon from surface to surface"
     )]
     fn photon(&self, number: u64, record: &mut dyn FnMut(usize, Crossing)) {
         let paths = self.probe.paths;
@@ -118,7 +119,7 @@ impl<'a> PhotonProbe<'a> {
                 record,
             );
         }
-        // A photon without flux ends, but its emission point may still light a window.
+        // A photon without flux ends here, but its emission point has already lit the windows.
         let first = flux;
         if first <= 0.0 {
             return;
@@ -163,8 +164,9 @@ impl<'a> PhotonProbe<'a> {
         }
     }
 
-    /// The continuation of a photon from a hit, and its share of flux. Half of the photons follow
-    /// the material; the other half are aimed at the regions that the windows see.
+    /// Returns the direction in which a photon continues from a hit, and the share of its flux.
+    /// Half of the photons follow the material; the other half are aimed at the regions that the
+    /// windows see.
     fn onward(
         &self,
         hit: &Hit,
@@ -184,8 +186,9 @@ impl<'a> PhotonProbe<'a> {
                 let bounce = scatter.sample(hit.uv, wi, numbers.draw())?;
                 let along = (hit.frame * bounce.wi).normalize();
                 if bounce.density.is_none() {
-                    // For mirrors and smooth glass, power is not divided by squared indices. Aimed
-                    // photons never take this path.
+                    // For mirrors and smooth glass, the factor undoes the division by squared
+                    // indices, which applies to radiance and not to power. Only photons that are
+                    // not aimed come here.
                     let half = if scatter.is_smooth() { 1.0 } else { 2.0 };
                     let share = half * bounce.weight * scatter.squared_index(wi, bounce.wi);
                     return Some((along, share));
@@ -254,15 +257,14 @@ impl<'a> PhotonProbe<'a> {
     fn is_seen(&self, leg: usize, position: DVec3, along: DVec3) -> bool {
         let Probe { paths, legs, .. } = self.probe;
         let line = legs[leg].through(&paths.geometry, position, along);
-        // The line may begin at the point itself; light then leaves on the other side of the
-        // surface.
+        // If the line begins at the point itself, light leaves on the other side of the surface.
         let is_before = (position - line.from).dot(line.along) > 1e-6 * legs[leg].reach;
         is_before && paths.geometry.is_clear(line.from, position)
     }
 }
 
-/// Returns the factor that converts the BSDF times the cosine to the shading normal into flux, for
-/// which both cosines refer to the geometric normal.
+/// Returns the factor on the BSDF times the cosine to the shading normal that gives flux, for
+/// which both cosines are to the geometric normal.
 fn tilt(hit: &Hit, arriving: DVec3, leaving: DVec3) -> f64 {
     (leaving.dot(hit.normal) / arriving.dot(hit.normal)).abs()
 }

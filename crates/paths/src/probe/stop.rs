@@ -9,16 +9,15 @@ use glam::DVec3;
 /// A surface on the central ray of a pixel.
 #[derive(Clone, Debug)]
 pub struct Stop {
-    /// The index of its shape.
+    /// The index of the shape of the surface.
     pub shape: usize,
     /// The hit point of the ray.
     pub position: DVec3,
     /// The shading normal, on the visible side.
     pub normal: DVec3,
-    /// The direction, of unit length, in which light leaves towards the camera.
+    /// The unit direction in which light leaves towards the camera.
     pub leaving: DVec3,
-    /// The direction, of unit length, in which light arrives that a mirror here would send to the
-    /// camera.
+    /// The unit direction of arriving light that a mirror at this place would send to the camera.
     pub arriving: DVec3,
     /// The distance to the camera, or to the previous surface.
     pub distance: f64,
@@ -30,7 +29,7 @@ pub struct Stop {
 }
 
 impl Stop {
-    /// The cosine of the angle of the leaving light.
+    /// Returns the cosine of the angle between the normal and the leaving light.
     #[must_use]
     pub fn cosine(&self) -> f64 {
         self.normal.dot(self.leaving)
@@ -48,8 +47,8 @@ impl Stop {
     }
 }
 
-/// The surfaces along a camera ray, which continues by mirror reflection. `half` is half of the
-/// window's angle.
+/// Returns the surfaces along a camera ray that continues by mirror reflection; `half` is half of
+/// the angle of the window.
 pub(super) fn followed(paths: &Paths, look: &Look, most: usize, half: f64) -> Vec<Stop> {
     let mut stops: Vec<Stop> = Vec::new();
     let mut ray = Ray {
@@ -110,8 +109,8 @@ fn curvature(
     })
 }
 
-/// The curvature between points of a shape one step to either side; `None` if one of them misses
-/// the shape.
+/// Returns the curvature between points of a shape one step to either side, or `None` if one of
+/// them misses the shape.
 fn between(geometry: &SceneGeometry, hit: &Hit, normal: DVec3, step: DVec3) -> Option<f64> {
     let height = 4.0 * step.length();
     let at = |side: f64| {

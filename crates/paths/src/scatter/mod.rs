@@ -2,8 +2,8 @@
 //! incident direction `wi`.
 //!
 //! Directions are unit vectors away from the surface, in a frame with its normal along Z. Values
-//! are BSDFs times |cos| of wi, for radiance. Light that passes an interface is the radiance on the
-//! other side divided by the squared index.
+//! are BSDFs for radiance, times |cos| of wi. Radiance is divided by the squared index of its
+//! medium, so it does not change where light is refracted.
 
 mod place;
 mod reflects;
@@ -18,7 +18,7 @@ use place::{
 };
 pub use reflects::Reflects;
 
-/// A material, ready to scatter.
+/// A material that is prepared for scattering.
 #[derive(Clone, Debug)]
 pub(crate) enum Scatter {
     Diffuse(Texture),
@@ -52,7 +52,7 @@ impl From<&Material> for Scatter {
 }
 
 impl Scatter {
-    /// The BSDF times |cos| of wi, without delta components such as mirrors.
+    /// Returns the BSDF times |cos| of wi, without delta components such as mirrors.
     pub(crate) fn value(&self, uv: DVec2, wi: DVec3, wo: DVec3) -> f64 {
         let is_front = wi.z > 0.0 && wo.z > 0.0;
         match self {
@@ -80,7 +80,7 @@ impl Scatter {
         }
     }
 
-    /// The density of [`Self::sample`] per solid angle, without delta components.
+    /// Returns the density of [`Self::sample`] per solid angle, without delta components.
     pub(crate) fn density(&self, uv: DVec2, wi: DVec3, wo: DVec3) -> f64 {
         let is_front = wi.z > 0.0 && wo.z > 0.0;
         match self {
@@ -167,7 +167,8 @@ impl Scatter {
         }
     }
 
-    /// Samples one of two materials by weight; the density is that of the mixture.
+    /// Samples one of two materials, chosen by weight; the returned density is that of the
+    /// mixture.
     fn blended(
         &self,
         share: f64,
@@ -193,8 +194,8 @@ impl Scatter {
         })
     }
 
-    /// Returns the squared index on the side of `to` divided by that on the side of `from`. It is 1
-    /// unless light is refracted.
+    /// Returns the squared index on the side of `to` divided by that on the side of `from`. The
+    /// result is 1 unless light is refracted.
     pub(crate) fn squared_index(&self, from: DVec3, to: DVec3) -> f64 {
         match self {
             Self::Dielectric(of) if !of.is_thin && from.z * to.z < 0.0 => {
@@ -205,19 +206,20 @@ impl Scatter {
                 };
                 index * index
             }
-            // Light that goes straight on is not scattered.
+            // Light that continues in a straight line is not scattered.
             Self::Mask(_, of) if (from + to).length_squared() > 1e-24 => of.squared_index(from, to),
             Self::Blend(_, of) => of.iter().map(|of| of.squared_index(from, to)).product(),
             _ => 1.0,
         }
     }
 
-    /// The kind of reflection on the side of `wo`; for a mixture, that of its larger part.
+    /// Returns the kind of reflection on the side of `wo`; for a mixture, that of the part with
+    /// more weight.
     pub(crate) fn kind(&self, uv: DVec2, wo: DVec3) -> Reflects {
         let rough = |roughness: Option<&Roughness>| {
             roughness.map_or(Reflects::Mirror, |of| {
                 let [a, b] = [0, 1].map(|axis: usize| of.alpha[axis].value(uv));
-                // The roughness with the same ellipse area.
+                // The isotropic roughness whose circle has the area of the ellipse.
                 let roughness = (a * b).sqrt();
                 Reflects::Lobe(of.distribution.lobe(roughness))
             })
@@ -239,8 +241,8 @@ impl Scatter {
         }
     }
 
-    /// The texture factors of both parts: of the base, and of the lobe or mirror above it. A
-    /// material with one part has only a base.
+    /// Returns the texture factors of both parts of a material: of the base, and of the lobe or
+    /// mirror above it. A material with a single part has only a base.
     pub(crate) fn factors(&self, uv: DVec2, wo: DVec3) -> [f64; 2] {
         match self {
             Self::TwoSided(sides) => {
@@ -255,7 +257,7 @@ impl Scatter {
         }
     }
 
-    /// The share of the base in light scattered from `wi` to `wo`.
+    /// Returns the share of the base in the light scattered from `wi` to `wo`.
     pub(crate) fn base_share(&self, uv: DVec2, wi: DVec3, wo: DVec3) -> f64 {
         match self {
             Self::TwoSided(sides) => {
@@ -293,10 +295,10 @@ impl Scatter {
     }
 }
 
-/// A flip of directions that puts a side in front.
+/// A function that flips directions, so that a chosen side is in front.
 type Turn = fn(DVec3) -> DVec3;
 
-/// The flip that puts `wo` in front.
+/// Returns the flip that puts `wo` in front.
 fn to_front(wo: DVec3) -> Turn {
     if wo.z > 0.0 {
         |v| v
@@ -305,7 +307,8 @@ fn to_front(wo: DVec3) -> Turn {
     }
 }
 
-/// The side of a two-sided material that faces a direction, and the flip to its frame.
+/// Returns the material on the side that faces a direction, and the flip to the frame of this
+/// side.
 fn side_of(sides: &[Scatter; 2], wo: DVec3) -> (&Scatter, Turn) {
     (&sides[usize::from(wo.z <= 0.0)], to_front(wo))
 }

@@ -8,16 +8,16 @@ use etendue_scatter::{
 use etendue_world::{self as world, Roughness, Texture};
 use glam::{DVec2, DVec3};
 
-/// The microfacet distribution at a point; `None` for a smooth surface.
+/// Returns the microfacet distribution at a point, or `None` for a smooth surface.
 pub(super) fn facets(roughness: Option<&Roughness>, uv: DVec2) -> Option<Microfacets> {
     roughness.map(|of| Microfacets {
         distribution: of.distribution,
-        // The minimum is the smallest roughness that directions in f64 resolve.
+        // Directions in f64 do not resolve a roughness below this minimum.
         alpha: [0, 1].map(|axis: usize| of.alpha[axis].value(uv).max(1e-4)),
     })
 }
 
-/// A rough metal at a point; `None` for a mirror.
+/// Returns a rough metal at a point, or `None` for a mirror.
 pub(super) fn conductor(of: &world::Conductor, uv: DVec2) -> Option<Conductor> {
     facets(of.roughness.as_ref(), uv).map(|facets| Conductor {
         facets,
@@ -25,13 +25,13 @@ pub(super) fn conductor(of: &world::Conductor, uv: DVec2) -> Option<Conductor> {
     })
 }
 
-/// The Fresnel reflectance of a metal.
+/// Returns the Fresnel reflectance of a metal.
 pub(super) fn fresnel(of: &world::Conductor) -> Fresnel {
     of.index
         .map_or(Fresnel::White, |[n, k]| Fresnel::Conductor { n, k })
 }
 
-/// The modified Phong BRDF at a point.
+/// Returns the modified Phong BRDF at a point.
 pub(super) fn phong([diffuse, specular, exponent]: &[Texture; 3], uv: DVec2) -> ModifiedPhong {
     ModifiedPhong {
         diffuse: diffuse.value(uv),
@@ -42,8 +42,8 @@ pub(super) fn phong([diffuse, specular, exponent]: &[Texture; 3], uv: DVec2) -> 
     }
 }
 
-/// The ratio of the index on the far side of an interface to that on the side of `wo`. A thin sheet
-/// has the same medium on both sides.
+/// Returns the ratio of the index on the far side of an interface to that on the side of `wo`. A
+/// thin sheet has the same medium on both sides.
 fn index(of: &world::Dielectric, wo: DVec3) -> f64 {
     if of.is_thin || wo.z > 0.0 {
         of.index
@@ -52,7 +52,7 @@ fn index(of: &world::Dielectric, wo: DVec3) -> f64 {
     }
 }
 
-/// A rough interface as `wo` sees it; `None` for a smooth one.
+/// Returns a rough interface as `wo` sees it, or `None` for a smooth one.
 pub(super) fn rough_dielectric(
     of: &world::Dielectric,
     uv: DVec2,
@@ -63,7 +63,7 @@ pub(super) fn rough_dielectric(
     Some(RoughDielectric { facets, index })
 }
 
-/// A smooth interface as `wo` sees it.
+/// Returns a smooth interface as `wo` sees it.
 pub(super) fn smooth_dielectric(of: &world::Dielectric, wo: DVec3) -> SmoothDielectric {
     SmoothDielectric {
         index: index(of, wo),
@@ -71,7 +71,7 @@ pub(super) fn smooth_dielectric(of: &world::Dielectric, wo: DVec3) -> SmoothDiel
     }
 }
 
-/// The factor on reflected or transmitted light, with wo in front.
+/// Returns the factor on light that is reflected (wi in front, as wo) or transmitted.
 pub(super) fn factor(of: &world::Dielectric, uv: DVec2, wi: DVec3) -> f64 {
     if wi.z > 0.0 {
         of.reflectance.value(uv)
@@ -91,7 +91,7 @@ pub(crate) struct Coated {
 
 impl Coated {
     pub(super) fn new(plastic: &world::Plastic) -> Self {
-        // A table is made for the coat, whose roughness is constant.
+        // The table of the coat needs only one roughness, because it is constant.
         let facets = facets(plastic.roughness.as_ref(), DVec2::ZERO);
         Self {
             coat: Coat::new(plastic.index, facets),
@@ -101,7 +101,7 @@ impl Coated {
         }
     }
 
-    /// The plastic at a point.
+    /// Returns the plastic at a point.
     pub(super) fn at(&self, uv: DVec2) -> Plastic<'_> {
         Plastic {
             coat: &self.coat,
@@ -111,8 +111,8 @@ impl Coated {
         }
     }
 
-    /// The share of the base in scattered light; it is 0 in the mirror direction of a smooth coat,
-    /// which is a delta component.
+    /// Returns the share of the base in scattered light. The share is 0 in the mirror direction of
+    /// a smooth coat, whose reflection is a delta component.
     pub(super) fn base_share(&self, uv: DVec2, wi: DVec3, wo: DVec3) -> f64 {
         let is_mirrored = (wi + wo).truncate().length_squared() < 1e-24;
         if self.coat.facets().is_none() && is_mirrored {
@@ -123,7 +123,7 @@ impl Coated {
     }
 }
 
-/// A part of a value, as a fraction of it.
+/// Returns the ratio of a part to the whole value, or 0 if the value is 0.
 pub(super) fn share(part: f64, value: f64) -> f64 {
     if value > 0.0 { part / value } else { 0.0 }
 }

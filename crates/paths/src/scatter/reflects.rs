@@ -5,7 +5,7 @@ use etendue_field::Lobe;
 /// The kind of reflection of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reflects {
-    /// Black on this side.
+    /// The surface is black on this side.
     Nothing,
     /// Diffuse.
     Diffuse,

@@ -84,7 +84,7 @@ fn materials() -> Vec<(&'static str, Material)> {
                 of: Box::new([diffuse(), glass(1.5, rough(Ggx, [0.4, 0.4]))]),
             },
         ),
-        // Directions sampled by the black material carry light of the other one.
+        // Directions that the black material samples carry light of the other material.
         (
             "half black",
             Material::Blend {
@@ -112,7 +112,7 @@ fn directions() -> [DVec3; 3] {
         .map(|(x, y, z)| DVec3::new(x, y, z).normalize())
 }
 
-/// A uniform direction over the whole sphere.
+/// Returns a uniform direction over the whole sphere.
 fn anywhere([a, b, _]: [f64; 3]) -> DVec3 {
     let (z, (sin, cos)) = (2.0 * a - 1.0, libm::sincos(2.0 * PI * b));
     let radius = (1.0 - z * z).sqrt();
@@ -147,7 +147,7 @@ fn samples_follow_value_and_density() {
             let [sampled, plain, density, shining] =
                 [sampled, plain, density, shining].map(|x| x / count);
             assert!(squares / count < 30.0, "{name}: weights are bounded");
-            // The tolerance for 4·10⁵ random numbers.
+            // The tolerance covers the noise of 4·10⁵ random numbers.
             assert!(
                 (sampled - plain).abs() < 0.015 * (1.0 + plain),
                 "{name} {wo}: {sampled} {plain}"

@@ -18,7 +18,7 @@ pub(crate) enum Form {
 }
 
 impl Form {
-    /// Corners of its bounding box.
+    /// Returns the eight corners of the bounding box of the geometry.
     pub(crate) fn corners(&self) -> impl Iterator<Item = DVec3> + use<> {
         let [low, high] = match self {
             Self::Rectangle | Self::Disc => {
@@ -38,7 +38,8 @@ impl Form {
         (0..8).map(move |i| DVec3::new(pick(i, 0), pick(i, 1), pick(i, 2)))
     }
 
-    /// The first hit on a ray, strictly within bounds. `along` has unit length.
+    /// Returns the first hit on a ray at distances strictly within bounds. `along` has unit
+    /// length.
     pub(crate) fn first(
         &self,
         start: DVec3,
@@ -72,7 +73,8 @@ impl Form {
         }
     }
 
-    /// Whether a ray hits the geometry, strictly within bounds. `along` has unit length.
+    /// Whether a ray hits the geometry at a distance strictly within bounds. `along` has unit
+    /// length.
     pub(crate) fn is_met(&self, start: DVec3, along: DVec3, within: [f64; 2]) -> bool {
         match self {
             Self::Mesh(mesh) => mesh.is_met(start, along, within),
@@ -97,8 +99,8 @@ impl Form {
         }
     }
 
-    /// The areas of its pieces in the world: triangles, or the whole geometry. Spheres and
-    /// cylinders are scaled as described at [`etendue_world::Shape`].
+    /// Returns the areas, in the world, of the pieces of the geometry: its triangles, or the
+    /// whole. Spheres and cylinders are scaled as described at [`etendue_world::Shape`].
     pub(crate) fn areas(&self, to_world: &DAffine3) -> Vec<f64> {
         let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| to_world.transform_vector3(axis));
         let whole = match self {
@@ -111,7 +113,7 @@ impl Form {
         vec![whole]
     }
 
-    /// A point sampled uniformly by area on a piece.
+    /// Returns a point sampled uniformly by area on a piece.
     pub(crate) fn sample(&self, piece: usize, [a, b]: [f64; 2]) -> (DVec3, Local) {
         match self {
             Self::Rectangle => {
@@ -136,11 +138,12 @@ impl Form {
     }
 }
 
-/// The ray parameters at which the weighted squares of coordinates add up to 1.
+/// Returns the parameters of the two points of a ray at which the weighted squares of the
+/// coordinates add up to 1.
 fn roots(start: DVec3, along: DVec3, weights: DVec3) -> Option<[f64; 2]> {
     let a = (weights * along).dot(along);
-    // Positions on the line are measured from its point nearest to the axis or centre, to keep
-    // precision far away.
+    // Distances on the line are measured from its point nearest to the axis or centre, so that far
+    // points keep their precision.
     let middle = -(weights * start).dot(along) / a;
     let nearest = start + middle * along;
     let left = 1.0 - (weights * nearest).dot(nearest);
@@ -149,7 +152,7 @@ fn roots(start: DVec3, along: DVec3, weights: DVec3) -> Option<[f64; 2]> {
     (half.is_finite() && left >= 0.0).then_some([middle - half, middle + half])
 }
 
-/// The azimuth over 2π, 0 to 1.
+/// Returns the azimuth divided by 2π, from 0 to 1.
 fn turn(place: DVec2) -> f64 {
     let turn = libm::atan2(place.y, place.x) / TAU;
     if turn < 0.0 { turn + 1.0 } else { turn }

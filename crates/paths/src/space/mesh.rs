@@ -29,7 +29,8 @@ impl WorldMesh {
             .map(bounds)
             .reduce(|[a, b], [low, high]| [a.min(low), b.max(high)]);
         let all = all.unwrap_or_default();
-        // Rays begin at a distance from the mesh, which the padding takes into account.
+        // Rays may begin far from the mesh, so the boxes are padded for rounding errors at this
+        // distance.
         let origins = 10.0 * (all[1] - all[0]).length();
         let hierarchy = WideHierarchy::over_triangles(corners.len(), origins, |i| {
             places(&triangles, corners[i])
@@ -59,8 +60,8 @@ impl WorldMesh {
         self.hierarchy.along(start, along, [from, until], |i| {
             if let Some((at, place)) = sight.meets(places(&self.triangles, self.ordered[i]))
                 && at > from
-                // Hits at the same distance are ordered by index, so the result does not depend on
-                // the traversal order.
+                // Of hits at the same distance, the one with the lower index counts, so the result
+                // does not depend on the traversal order.
                 && (at < end || first.is_some_and(|(first, j, _)| (at, i) < (first, j)))
             {
                 first = Some((at, i, place));
@@ -71,7 +72,7 @@ impl WorldMesh {
         first.map(|(at, i, place)| (at, self.local(self.ordered[i], place)))
     }
 
-    /// Whether a ray hits the mesh, strictly within bounds.
+    /// Whether a ray hits the mesh at a distance strictly within bounds.
     pub(super) fn is_met(&self, start: DVec3, along: DVec3, [from, until]: [f64; 2]) -> bool {
         let sight = TriangleRay::new(start, along);
         let mut is_met = false;
@@ -86,7 +87,7 @@ impl WorldMesh {
         is_met
     }
 
-    /// The point at barycentric coordinates of the second and the third corner.
+    /// Returns the point with these barycentric coordinates of the second and the third corner.
     fn local(&self, corners: [u32; 3], place: DVec2) -> Local {
         let [a, b, c] = places(&self.triangles, corners);
         let normal = (b - a).cross(c - a);
@@ -116,7 +117,7 @@ impl WorldMesh {
         }
     }
 
-    /// The area of each triangle in the world.
+    /// Returns the area of each triangle in the world.
     pub(super) fn areas(&self, to_world: &DAffine3) -> impl Iterator<Item = f64> {
         self.triangles.corners().iter().map(|corners| {
             let [a, b, c] = places(&self.triangles, *corners);
@@ -125,7 +126,7 @@ impl WorldMesh {
         })
     }
 
-    /// A point sampled uniformly on a triangle.
+    /// Returns a point sampled uniformly on a triangle.
     pub(super) fn sample(&self, number: usize, random: [f64; 2]) -> (DVec3, Local) {
         let place = triangle(random);
         let corners = self.triangles.corners()[number];

@@ -37,10 +37,10 @@ pub struct Hit {
     pub position: DVec3,
     /// The index of the shape.
     pub shape: usize,
-    /// The surface normal on the front.
+    /// The geometric normal, on the front of the surface.
     pub normal: DVec3,
-    /// The shading frame, from its coordinates to those of the world. Its Z is the normal,
-    /// interpolated on smooth meshes; X is along u.
+    /// The shading frame, as a map to world coordinates. Z is the normal, interpolated on smooth
+    /// meshes, and X is along u.
     pub frame: DMat3,
     /// Texture coordinates.
     pub uv: DVec2,
@@ -51,7 +51,7 @@ pub struct Hit {
 pub struct SceneGeometry {
     placed: Vec<Placed>,
     hierarchy: WideHierarchy,
-    /// Minimum hit distance: a nearer hit is on the surface at the ray's origin.
+    /// Minimum distance of a hit; a nearer hit is on the surface from which the ray starts.
     nearest: f64,
     /// Centre of a sphere around all surfaces.
     pub(crate) center: DVec3,
@@ -64,7 +64,7 @@ pub(crate) struct Placed {
     pub(crate) form: Form,
     pub(crate) to_world: DAffine3,
     to_local: DAffine3,
-    /// −1 if the front is flipped.
+    /// −1 if the front of the surface is flipped, otherwise 1.
     side: f64,
 }
 
@@ -106,7 +106,7 @@ impl SceneGeometry {
         &self.placed[shape]
     }
 
-    /// The first hit of a ray, at distances within bounds.
+    /// Returns the first hit of a ray, at distances within bounds.
     #[must_use]
     pub fn first(&self, ray: &Ray, [from, until]: [f64; 2]) -> Option<Hit> {
         let from = from.max(self.nearest);
@@ -124,7 +124,7 @@ impl SceneGeometry {
         Some(self.placed[shape].hit(ray, distance, shape, &local))
     }
 
-    /// The first hit of a ray with one shape, ignoring all others.
+    /// Returns the first hit of a ray with one shape, ignoring all others.
     pub(crate) fn meets(&self, shape: usize, ray: &Ray, within: [f64; 2]) -> Option<Hit> {
         let (distance, local) = self.placed[shape].first(ray, within)?;
         Some(self.placed[shape].hit(ray, distance, shape, &local))
@@ -200,7 +200,8 @@ impl Placed {
         self.form.is_met(start, along, within.map(|at| at * scale))
     }
 
-    /// The origin and direction of a ray in local coordinates, and the scale of distances there.
+    /// Returns origin and direction of a ray in local coordinates, and the scale of distances
+    /// there.
     fn seen(&self, ray: &Ray) -> (DVec3, DVec3, f64) {
         let start = self.to_local.transform_point3(ray.from);
         let along = self.to_local.transform_vector3(ray.along);
@@ -222,21 +223,21 @@ impl Placed {
         }
     }
 
-    /// A point sampled uniformly by area on a piece of the surface, with its normal and texture
-    /// coordinates.
+    /// Returns a point sampled uniformly by area on a piece of the surface, with its normal and
+    /// texture coordinates.
     pub(crate) fn sample(&self, piece: usize, random: [f64; 2]) -> (DVec3, DVec3, DVec2) {
         let (place, local) = self.form.sample(piece, random);
         let normal = self.side * (self.to_local.matrix3.transpose() * local.normal).normalize();
         (self.to_world.transform_point3(place), normal, local.uv)
     }
 
-    /// The areas of its pieces in the world: triangles, or the whole surface.
+    /// Returns the areas, in the world, of the pieces of the surface: its triangles, or the whole.
     pub(crate) fn areas(&self) -> Vec<f64> {
         self.form.areas(&self.to_world)
     }
 }
 
-/// A frame around a normal, with X along the component of a direction across it.
+/// Returns a frame around a normal, with X along the component of a direction across it.
 fn frame(normal: DVec3, along: DVec3) -> DMat3 {
     let across = along - along.dot(normal) * normal;
     let x = across

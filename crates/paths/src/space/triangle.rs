@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 /// y, 1).
 pub(super) struct TriangleRay {
     start: DVec3,
-    /// The largest component of the direction, used as last axis.
+    /// The axis along which the direction is largest; it becomes the last axis.
     last: usize,
     slopes: DVec2,
     /// The ratio of distances along the ray to depths along the last axis.
@@ -25,17 +25,17 @@ impl TriangleRay {
         }
     }
 
-    /// The distance, and barycentric coordinates of the second and the third corner (Woop, Benthin
-    /// and Wald 2013, *Watertight ray/triangle intersection*). A shared edge gives both triangles
-    /// the same number with opposite sign, so no ray passes between them.
+    /// Returns the distance of the hit, and the barycentric coordinates of the second and the
+    /// third corner there (Woop, Benthin and Wald 2013, *Watertight ray/triangle intersection*). A
+    /// shared edge gives both triangles the same number with opposite sign, so no ray passes
+    /// between them.
     #[inline]
     pub(super) fn meets(&self, corners: [DVec3; 3]) -> Option<(f64, DVec2)> {
         let seen = corners.map(|corner| turned(corner, self.last) - self.start);
         let [a, b, c] = seen.map(|p| p.truncate() - p.z * self.slopes);
         let sides = DVec3::new(b.perp_dot(c), c.perp_dot(a), a.perp_dot(b));
         let volume = sides.element_sum();
-        // There is no hit with a triangle of zero area, parallel to the ray, or with NaN
-        // coordinates.
+        // A triangle that has no area, is parallel to the ray or has NaN coordinates is not hit.
         let is_met = (sides.min_element() >= 0.0 || sides.max_element() <= 0.0) && volume != 0.0;
         let weights = sides / volume;
         let depths = DVec3::new(seen[0].z, seen[1].z, seen[2].z);
@@ -77,7 +77,7 @@ mod tests {
             let place = a.lerp(b, 0.1 + 0.4 * (1.0 + numbers(index, 4).x));
             let (start, aside) = (4.0 * start, aside.cross(b - a));
             let sight = TriangleRay::new(start, (place - start).normalize());
-            // Both triangles have the same edge, traversed in opposite directions.
+            // The two triangles have a common edge, which they traverse in opposite directions.
             let [one, other] = [[a, b, place + aside], [b, a, place - aside]];
             let met = [sight.meets(one), sight.meets(other)];
             assert!(met.iter().any(Option::is_some), "{start} to {a}, {b}");

@@ -12,20 +12,20 @@ use etendue_theory::covariance::{SpectralCovariance, window};
 use etendue_theory::geometry::AffineMap;
 use serde_json::{Value, json as tree_of};
 
-/// The number of frequencies on either side of zero over which covariances are taken: the noise of
-/// a second moment grows as the fourth power of its band, and half of the plane's own band holds
-/// the spectra of its windows.
+/// The number of frequencies on either side of zero over which covariances are computed. This is
+/// half of the number at the plane, because the noise of a second moment grows as the fourth power
+/// of the band, and half of the band contains the spectra of the windows.
 const BAND: usize = FREQUENCIES / 2;
 
 /// The covariance of the spectrum of a plane.
 #[derive(Clone, Debug)]
 pub(super) struct FoundCovariance {
-    /// The largest frequency along each axis.
+    /// The largest frequency of the covariance along each axis.
     band: [f64; 4],
     pub(super) measured: Option<MatrixEstimate>,
     growth: Option<[f64; 4]>,
-    /// At the camera: the covariance that covariance tracing propagates from light that leaves the
-    /// first surface.
+    /// Only at the camera: the covariance that covariance tracing computes there from light that
+    /// leaves the first surface.
     pub(super) propagated: Option<MatrixEstimate>,
 }
 
@@ -53,8 +53,8 @@ impl FoundCovariance {
     }
 }
 
-/// The covariances of all planes, by backward rays: the camera first, then light that leaves the
-/// first surface.
+/// Measures the covariances of all planes with backward rays. The first plane is at the camera,
+/// and the second records light that leaves the first surface.
 pub(super) fn measured(
     probe: &Probe<'_>,
     budget: Budget,
@@ -86,9 +86,9 @@ pub(super) fn measured(
     Ok(found)
 }
 
-/// The covariance at the camera, propagated from light that leaves the first surface: the
-/// covariance added by the window there is subtracted, travel is applied, and the window of the
-/// camera is included.
+/// Propagates the covariance of light that leaves the first surface to the camera: the covariance
+/// due to the window there is subtracted, travel is applied, and that due to the window at the
+/// camera is added.
 fn propagated(probe: &Probe<'_>, leaving: &FieldCovariance) -> Option<MatrixEstimate> {
     let [camera, surface] = [0, 1].map(|i: usize| window(&probe.planes[i].window));
     let less = surface.map(|row| row.map(|entry| -entry));

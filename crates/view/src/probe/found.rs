@@ -18,8 +18,8 @@ pub(super) struct Found {
     pub(super) covariance: Option<FoundCovariance>,
 }
 
-/// Where photons do not find all light, there is no test. Where neither rays nor photons find
-/// light, they agree.
+/// Returns the verdict on a plane: undecided if photons do not find all light, and pass if neither
+/// rays nor photons find light.
 pub(super) fn verdict(found: &Found) -> Verdict {
     match found.misses {
         Some(_) => Verdict::Undecided,

@@ -19,16 +19,16 @@ use std::path::PathBuf;
 
 const FILES: [&str; 5] = ["map.exr", "map.npz", "map.png", "map.svg", "map.csv"];
 
-/// The results for a pixel; NaN where there is no light, or too much noise.
+/// The results for a pixel; numbers are NaN where there is no light, or too much noise.
 #[derive(Clone, Copy, Debug)]
 struct MapPoint {
-    /// The largest bandwidth over directions of the picture less its mean, cycles per slope, with
-    /// its standard error.
+    /// The bandwidth of the picture less its mean along the direction where it is largest, cycles
+    /// per slope, with its standard error.
     measured: f64,
     error: f64,
     /// The direction of the largest bandwidth, radians from the right, counter-clockwise.
     azimuth: f64,
-    /// The bandwidth across that direction.
+    /// The bandwidth perpendicular to the direction of the largest one.
     across: f64,
     /// The bandwidth by Eq. 20, corrected.
     criterion: f64,
@@ -53,7 +53,7 @@ impl MapPoint {
     };
 }
 
-/// A quantity of each pixel.
+/// A function that selects one quantity of a pixel.
 type MapLayer = fn(&MapPoint) -> f64;
 
 /// The result of a map of bandwidths.
@@ -92,7 +92,7 @@ pub fn map_bandwidths(
     Ok(BandwidthMap { folder, words })
 }
 
-/// The bandwidths behind one pixel of the lattice.
+/// Returns the bandwidths behind one pixel of the lattice.
 fn point(case: &ProbedScene<'_>, at: [usize; 2], lattice: [usize; 2]) -> Result<MapPoint, Failure> {
     let pixel = [0, 1].map(|i| (2 * at[i] + 1) * case.camera.size[i] / (2 * lattice[i]));
     let number = (at[1] * lattice[0] + at[0]) as u64;
@@ -159,7 +159,7 @@ fn drawn(
     case: &ProbedScene<'_>,
     map: &Array2<MapPoint>,
 ) -> Result<etendue_figures::Figure, Failure> {
-    // In pictures y points upwards.
+    // In figures the second axis points upwards, so the order of rows is reversed.
     let of = |value: MapLayer| {
         let mut rows = map.map(value);
         rows.invert_axis(ArrayAxis(0));
@@ -178,7 +178,8 @@ fn drawn(
         ),
         x: Axis::edges("column", "pixels", [0.0, w]),
         y: Axis::edges("row", "pixels", [0.0, h]).reversed(),
-        // On a linear scale a few pixels at the edges of curved objects would take the whole range.
+        // The scale is logarithmic because a few pixels at the edges of curved objects have much
+        // larger values.
         quantity: AxisQuantity::new("log_{10} *B*", "cycles/slope"),
         scale: Scale::Linear,
         sides: ["measured", "criterion"],
@@ -190,7 +191,8 @@ fn drawn(
     .map_err(Failure::cannot_run)
 }
 
-/// The expected measurement: the bandwidth of the criterion, or of the window where that is larger.
+/// Returns the expected measurement: the bandwidth of the criterion, or of the window where that
+/// is larger.
 fn expected(point: &MapPoint) -> f64 {
     // NaN is kept.
     if point.criterion < point.window {
@@ -200,7 +202,7 @@ fn expected(point: &MapPoint) -> f64 {
     }
 }
 
-/// A comparison of measured and predicted bandwidths.
+/// Returns a comparison of measured and predicted bandwidths.
 fn words(map: &Array2<MapPoint>) -> String {
     let seen = map
         .iter()

@@ -12,36 +12,37 @@ use std::f64::consts::FRAC_PI_2;
 
 /// The smallest window that is tried, pixels.
 const NARROWEST: f64 = 16.0;
-/// The ratio of a bandwidth to that of the window from which the window shows it.
+/// The ratio of a measured bandwidth to the bandwidth of the window above which the window is wide
+/// enough.
 const CLEAR: f64 = 3.0;
-/// The ratio up to which a bandwidth may be due to the window: light that is linear across it has
-/// 1.49 times the bandwidth of the window, and quadratic light 1.89.
+/// The ratio up to which a bandwidth may be due to the window: light that is linear across the
+/// window has 1.49 times its bandwidth, and quadratic light 1.89 times.
 const SMOOTH: f64 = 1.9;
-/// A variation is found if its power exceeds this many standard errors.
+/// A picture is found to vary if the power of its variation exceeds this many standard errors.
 const FOUND: f64 = 5.0;
-/// Largest power of noise, relative to that of the variation. A bandwidth leaves a twentieth of the
-/// power out. The noise has some 450 independent frequencies, so this share of it fluctuates by a
-/// 150th of the power.
+/// Largest power of noise, relative to that of the variation. Beyond a bandwidth lies a twentieth
+/// of the power. The noise has some 450 independent frequencies, so noise with this share
+/// fluctuates by a 150th of the power.
 const MAX_NOISE: f64 = 0.1;
 /// A bandwidth with a larger relative standard error is not reported, because with few rays its
 /// jackknife is unreliable.
 const MAX_ERROR: f64 = 0.1;
-/// The most rays that choose the window.
+/// The largest number of rays that are traced to choose the window.
 const RAYS_OF_TRIAL: u64 = 1 << 17;
 
-/// The bandwidth of the picture around a pixel: of light that arrives at the middle of the lens, as
-/// a function of direction.
+/// The bandwidth of the picture around a pixel, which is that of light at the middle of the lens
+/// as a function of direction.
 #[derive(Clone, Debug)]
 pub(super) struct PictureBandwidth {
     /// Width of the window, pixels.
     pub(super) pixels: f64,
-    /// Of the picture less its mean; `None` if noise hides it.
+    /// The bandwidth of the picture less its mean; `None` if noise hides it.
     pub(super) variation: Option<DirectionalBandwidth>,
     /// Whether the picture varies by more than noise.
     pub(super) varies: bool,
     /// The spectra of the picture, one for each batch of rays.
     pictures: Vec<Slices>,
-    /// Of the window alone.
+    /// The bandwidth of the window alone.
     pub(super) window: DirectionalBandwidth,
     /// The slope difference between adjacent pixels.
     pixel_slope: f64,
@@ -51,8 +52,8 @@ pub(super) struct PictureBandwidth {
 
 impl PictureBandwidth {
     /// Measures the picture around a pixel, in the requested window, or in the narrowest in which
-    /// the bandwidth is well above that of the window. `None` if the ray through the pixel meets
-    /// nothing.
+    /// the bandwidth is well above that of the window. Returns `None` if the ray through the pixel
+    /// meets nothing.
     ///
     /// `progress` is called with the number of rays as they are traced.
     pub(super) fn new(
@@ -73,14 +74,16 @@ impl PictureBandwidth {
         measured(scene, (pixel, pixels), (rays, seed), progress)
     }
 
-    /// Returns the largest bandwidth over directions, if it is above what the window limits.
+    /// Returns the largest bandwidth over directions, if it is above the limit that the window
+    /// sets.
     pub(super) fn widest(&self) -> Option<Widest<Uncertain>> {
         let widest = self.variation.as_ref()?.widest;
         let is_above = widest.value.value > SMOOTH * self.window.at(widest.azimuth);
         is_above.then_some(widest)
     }
 
-    /// Returns the bandwidth across the direction of the largest one, likewise.
+    /// Returns the bandwidth perpendicular to the direction of the largest one, if it is above the
+    /// limit that the window sets.
     pub(super) fn across(&self) -> Option<Uncertain> {
         let widest = self.widest()?;
         let across = self.variation.as_ref()?.across;
@@ -93,14 +96,15 @@ impl PictureBandwidth {
         self.window.widest.value.value
     }
 
-    /// Returns the bandwidth below which a picture in this window cannot be told from a smooth one.
+    /// Returns the bandwidth below which this window does not distinguish a picture from a smooth
+    /// one.
     pub(super) fn limit(&self) -> f64 {
         SMOOTH * self.of_window()
     }
 
-    /// Returns an estimate of the largest bandwidth without the blur of the window: variances of
-    /// spectra add. For a Gaussian it is exact, and for a single frequency too high by at most 0.84
-    /// bandwidths of the window.
+    /// Returns an estimate of the largest bandwidth without the blur of the window, by subtraction
+    /// of variances. The estimate is exact for a Gaussian, and for a single frequency it is too
+    /// high by at most 0.84 bandwidths of the window.
     pub(super) fn unblurred(&self) -> Option<f64> {
         let Widest { azimuth, value } = self.widest()?;
         let own = self.window.at(azimuth);

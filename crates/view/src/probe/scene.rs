@@ -13,10 +13,11 @@ use std::path::{Path, PathBuf};
 pub(super) const BATCHES: u32 = 64;
 /// The level of the test over all planes together.
 pub(super) const ALPHA: f64 = 0.01;
-/// A plane passes when its noise, as a share of its spectrum, does not exceed this.
+/// The largest noise, as a share of the spectrum, with which a plane can pass.
 pub(super) const RESOLUTION: f64 = 0.1;
 
-/// Number of frequencies on either side of zero, half a cycle per window apart.
+/// Number of frequencies on either side of zero; adjacent frequencies differ by half a cycle per
+/// width of the window.
 pub(super) const FREQUENCIES: usize = 12;
 
 /// A request for a probe, with its scene.
@@ -57,7 +58,7 @@ impl ProbeRequest {
     /// Default seed.
     pub const SEED: u64 = 1;
 
-    /// A probe of the light seen by the first camera of a scene.
+    /// Returns a probe of the light seen by the first camera of a scene.
     #[must_use]
     pub fn new(source: WorldSource) -> Self {
         Self {
@@ -102,7 +103,7 @@ impl<'a> ProbedScene<'a> {
         name.to_string_lossy().into_owned()
     }
 
-    /// The settings that results are made from.
+    /// Returns the settings that a result depends on, for its index.
     pub(super) fn made_from(&self) -> Value {
         let name = self.request.source.path.file_name();
         tree_of!({
@@ -124,7 +125,7 @@ impl<'a> ProbedScene<'a> {
         }
     }
 
-    /// Claims the requested folder, or one of this name.
+    /// Claims the requested folder or, by default, a folder of this name below `out`.
     pub(super) fn claim(
         &self,
         name: String,

@@ -15,16 +15,16 @@ use etendue_theory::shading::Criterion;
 use etendue_world::World;
 use serde_json::{Value, json as tree_of};
 
-/// The noise, as a share of a spectrum, above which it is underestimated.
+/// The share of noise in a spectrum above which the noise is underestimated.
 const NOISY: f64 = 0.3;
 
-/// The angle of the central ray to the normal of a surface, radians.
+/// Returns the angle of the central ray to the normal of a surface, radians.
 fn angle(stop: &Stop) -> f64 {
     libm::acos(stop.cosine().clamp(-1.0, 1.0))
 }
 
-/// The paper's criterion for light that leaves a surface, in cycles per radian at the camera
-/// (Durand et al. 2005, Eq. 20, corrected); `None` where the surface has no lobe.
+/// Returns the paper's criterion for light that leaves a surface, in cycles per radian at the
+/// camera (Durand et al. 2005, Eq. 20, corrected); `None` where the surface has no lobe.
 pub(super) fn criterion(stop: &Stop) -> Option<f64> {
     let Reflects::Lobe(lobe) = stop.reflects else {
         return None;
@@ -85,7 +85,7 @@ fn word(reflects: Reflects) -> String {
     }
 }
 
-/// The surfaces, the planes, and the sampling density that the picture needs.
+/// Returns lines on the surfaces, the planes, and the sampling density that the picture needs.
 pub(super) fn lines(
     request: &ProbeRequest,
     world: &World,
@@ -100,12 +100,12 @@ pub(super) fn lines(
     let open = found.iter().filter(|found| verdict(found) != Verdict::Pass);
     lines.extend(open.filter_map(|found| {
         let report = &found.comparison.report;
-        // The comparison counts rays as photons, and both may be too few.
+        // The reason of the comparison names only photons, but rays may be too few as well.
         let why = report.undecided.as_ref()?.split("; needs").next()?;
         let [rays, photons] = ["rays", "photons"].map(|name| arguments.name(name));
         let times = report.photons_needed.map(|n| n / request.rays as f64);
         let more = match times {
-            // A noise that is most of its spectrum is measured too small.
+            // The noise is underestimated if it is a large part of the spectrum.
             Some(times) => format!(
                 "{} {} times as many {rays} and {photons} are needed",
                 if report.noise_limit > Some(NOISY) {
@@ -128,7 +128,7 @@ pub(super) fn lines(
     lines
 }
 
-/// A table with a header.
+/// Returns a table with a header.
 fn table(head: [&str; 6], rows: impl Iterator<Item = [String; 6]>) -> Vec<String> {
     let head = head.map(str::to_owned);
     aligned(std::iter::once(head).chain(rows).map(Vec::from).collect())
@@ -257,7 +257,8 @@ fn bandwidths(picture: &PictureBandwidth, arguments: ArgumentStyle) -> Vec<Strin
     lines
 }
 
-/// The entries along x, which lies in the plane of incidence, at each plane, and at the camera as propagated.
+/// Returns, for each plane, the entries of the covariance along x, which lies in the plane of
+/// incidence; the camera also has a row with the propagated covariance.
 fn covariances(found: &[&Found]) -> Vec<String> {
     let head = ["covariance", "ρx ρx", "ρx νu", "νu νu"].map(str::to_owned);
     let row = |name: String, of: &MatrixEstimate| {
