@@ -140,8 +140,8 @@ impl Factors {
 mod tests {
     use super::*;
 
-    /// An object with a hundredth of the squared errors has a hundredth of the factor, and an
-    /// object without samples has the factor of all.
+    /// The factor of an object is proportional to its squared errors. An object without samples has
+    /// the common factor of all objects.
     #[test]
     fn factors_are_those_of_the_objects() {
         let mut factors = Factors::default();

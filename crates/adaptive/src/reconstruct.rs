@@ -212,11 +212,10 @@ impl<'a> Band<'a> {
     }
 }
 
-/// A bell-shaped weight at a squared distance in standard deviations: close to exp(−square/2) up to
-/// 2 standard deviations, and faster.
+/// Returns a bell-shaped weight at a squared distance, in squared standard deviations. It is close
+/// to exp(−square/2) up to 2 standard deviations, and faster to compute.
 pub(crate) fn bell(square: f64) -> f64 {
-    let root = 1.0 + square / 16.0;
-    (root * root * root * root).powi(-2)
+    (1.0 + square / 16.0).powi(-8)
 }
 
 /// Returns how much two points of a shape differ in normal and elevation, in squared standard

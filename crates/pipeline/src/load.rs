@@ -111,8 +111,8 @@ pub fn inputs(source: &SceneSource, scene: &Scene) -> Vec<PathBuf> {
     named.chain(file).collect()
 }
 
-/// Claims the folder of a stage that will write these files. Copies the meshes and pictures of the
-/// scene there, because the next stage looks for them beside the index.
+/// Claims the folder of a stage that will write these files. Copies the scene's meshes and
+/// pictures to this folder, because the next stage looks for them beside the index.
 pub fn stage(
     out: &Path,
     index: &'static str,

@@ -139,7 +139,7 @@ impl Wave {
     }
 }
 
-/// Returns the waves of a plane's frequencies along x and y.
+/// Returns the plane waves at the spatial frequencies of a virtual plane.
 fn waves(plane: &VirtualPlane) -> Vec<Wave> {
     let axis = &plane.grid.rho;
     let orders = 0..=axis.half.min(WAVES);

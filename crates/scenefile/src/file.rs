@@ -159,7 +159,7 @@ impl BlockersFile {
     }
 }
 
-/// A shape in the plane of its blockers.
+/// An opaque shape in the plane of a group of blockers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Shape", deny_unknown_fields)]
 #[schemars(transform = told("a shape", "Rectangle(center: (0, 0), size: (0.1, 0.1))"))]

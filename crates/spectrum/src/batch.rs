@@ -5,8 +5,8 @@ use etendue_field::{Ledger, PlaneTally, Projection, Slices};
 
 /// The measurement of one batch of photons at one plane.
 ///
-/// Slices and projection are means per emitted photon of the batch: each is an unbiased estimate by
-/// itself.
+/// Slices and projection are sums over the batch divided by its number of emitted photons, so each
+/// batch is an unbiased estimate by itself.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlaneBatch {
     /// Number of photons that crossed the plane, inside and outside its window.

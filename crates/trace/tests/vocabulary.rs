@@ -71,7 +71,7 @@ fn all_ways_agree() {
                     for (a, b) in a.iter().zip(b) {
                         let z = (a[0] - b[0]) / a[1].hypot(b[1]);
                         tests += 1;
-                        // Some 400 tests: 4.5 standard errors are exceeded in one run of 400.
+                        // With some 400 tests, one run in 400 exceeds 4.5 standard errors by chance.
                         assert!(
                             z.abs() < 4.5,
                             "{of}: {way} at plane {plane}: {a:?} and {b:?}"

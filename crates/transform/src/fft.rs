@@ -127,7 +127,7 @@ impl RealFft4 {
         assert_eq!(
             reals.len(),
             self.shape.iter().product::<usize>(),
-            "reals of an array of {:?}",
+            "number of real values for an array of shape {:?}",
             self.shape
         );
         let pair = |i: usize| {

@@ -126,7 +126,8 @@ fn difference(fast: Fast, lobe: fn(&mut Dice) -> Lobe, dice: &mut Dice, fault: &
     compared(fast, &brdf, dice, fault)
 }
 
-/// Returns the largest relative difference for a Phong lobe times lists of factors of both angles.
+/// Returns the largest relative difference between both implementations of a Phong lobe that is
+/// multiplied by tables of factors, one over the incoming angle and one over the outgoing angle.
 fn separable(fast: Fast, dice: &mut Dice, fault: &str) -> f64 {
     let exponent = scale(dice, 0.1, 1e3);
     let mut list = || {

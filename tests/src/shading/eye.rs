@@ -78,8 +78,8 @@ impl EyeScene {
         [0, 1].map(|i: usize| (seen[i] / there[i]).abs())
     }
 
-    /// Returns three bandwidths at the eye: B, B', and the largest one for content both in the
-    /// environment and at the blocker, within the cutoffs Ω_ρ and Ω_e.
+    /// Returns three bandwidths at the eye: B, B', and the largest bandwidth if the environment has
+    /// frequencies up to Ω_e and the blocker those that keep the sum on the surface below Ω_ρ.
     pub(super) fn traced(&self) -> [f64; 3] {
         let c = &self.criterion;
         let seen = derivative(&|slope| self.origin(slope));

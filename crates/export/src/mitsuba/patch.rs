@@ -7,8 +7,8 @@ use std::f64::consts::TAU;
 
 /// Minimum and maximum number of rings of triangles.
 const RINGS: [usize; 2] = [16, 256];
-/// Maximum distance of the triangles from the surface, relative to the aperture. Patches for which
-/// this would require more than the maximum number of rings have a larger distance.
+/// Maximum distance of the triangles from the surface, relative to the aperture. The distance is
+/// larger for patches that already have the maximum number of rings.
 const NEAR: f64 = 1e-5;
 /// The number of corners of ring i, divided by i. With 6 corners, triangles at the edge are about
 /// as long as wide, because 2π/6 ≈ 1.

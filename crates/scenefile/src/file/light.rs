@@ -89,8 +89,8 @@ pub enum LightFile {
         /// The picture, in metres along X and along Y.
         image: ImageFile,
     },
-    /// Light from an environment. It starts in the plane through the centre that is orthogonal to
-    /// `path.direction`, and goes forward only.
+    /// Light from an environment. It starts in a plane that contains the centre and is orthogonal to
+    /// `path.direction`, and it only travels forward from there.
     Environment {
         /// Start of the central ray, in world coordinates.
         #[schemars(transform = place)]

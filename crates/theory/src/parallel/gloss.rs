@@ -29,7 +29,7 @@ const SEEN_TAIL: f64 = 1e-4;
 const APART: f64 = 1.05;
 /// Lobes that reach farther than this, in radians, count as cut off at a right angle.
 const BROAD: f64 = 1.5;
-/// The most frequencies on each side for a narrow lobe.
+/// Maximum number of frequencies on each side of zero. Narrow lobes reach it.
 const MAX_FREQUENCIES: usize = 512;
 
 /// Returns the slice at azimuth 0 of the chain's field after a lobe, under a window.

@@ -131,8 +131,8 @@ impl PlanarReflection<'_> {
     /// frame.
     ///
     /// It holds to first order in the size of the neighbourhood, like the [maps](crate::geometry);
-    /// cosine, lobe and factors are exact. At steps between the cosine and the BRDF, the spectrum
-    /// for several terms is the sum of their differential irradiances.
+    /// cosine, lobe and factors are exact. If the BRDF has several terms, the spectrum
+    /// between the cosine and the BRDF is the sum of the differential irradiances of all terms.
     ///
     /// L_o(Ω) = ρ̂'(Ωθ) ∫ L_i(Ωx + k Ωθ − k q, q) f̂(−Ωθ − q) dq after step 6 for one term without
     /// h (docs/theory.md (36)). The sign of −Ωθ matters for an asymmetric f. Table 1 of Durand et

@@ -38,7 +38,7 @@ impl Receiver<'_> {
             bytes: 3.0 * 8.0 * places,
             bytes_each: 0.0,
             drivers: format!(
-                "{tables} tables of {nodes} x {nodes} places x {place:.0} steps to compute the light at each place, for shapes and for nodes that resolve fringes"
+                "{tables} tables of {nodes} x {nodes} places, {place:.0} steps for each place; places are as dense as the fringes of the spectrum require"
             ),
         };
         let cells = (picture.bins * picture.bins) as f64;
