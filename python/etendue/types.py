@@ -289,7 +289,7 @@ class LightDiscFields(TypedDict):
 
 
 class LightEnvironment(TypedDict):
-    """Light from an environment. It starts in the plane through the centre that is orthogonal to `path.direction`, and goes forward only."""
+    """Light from an environment. It starts in a plane that contains the centre and is orthogonal to `path.direction`, and it only travels forward from there."""
 
     Environment: "LightEnvironmentFields"
 
@@ -551,7 +551,7 @@ class ProfileGaussianFields(TypedDict):
     cut: float
     """Half-width of the support. 1e-9 to 1e9"""
     width: float
-    """The width: the full integral of the Gaussian before truncation. 1e-9 to 1e9"""
+    """The width, which is the integral of the Gaussian before truncation. 1e-9 to 1e9"""
 
 
 class ProfileHann(TypedDict):
@@ -785,7 +785,7 @@ Sampling = Union[Literal["Net"], Literal["Random"]]
 """The random numbers from which photons are drawn."""
 
 Shape = Union["ShapeRectangle", "ShapeDisc", "ShapeHalfPlane"]
-"""A shape in the plane of its blockers."""
+"""An opaque shape in the plane of a group of blockers."""
 
 Surface = Union["SurfaceRectangle", "SurfaceMesh", "SurfaceSmooth"]
 """A surface that light falls on."""

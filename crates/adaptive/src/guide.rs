@@ -29,16 +29,16 @@ const SHARP: Filter = Filter {
 
 /// The filter of soft shadows.
 const SOFT: Filter = Filter {
-    radius: 3,
+    radius: 2,
     step: 1,
-    width: 1.5,
+    width: 1.2,
 };
 
 /// The filter that is applied to the result of [`SOFT`], where light changes slowly.
 const SLOW: Filter = Filter {
-    radius: 3,
+    radius: 2,
     step: 3,
-    width: 1.5,
+    width: 1.2,
 };
 
 /// Direct light at all points of a picture, without texture factors.

@@ -205,10 +205,15 @@ impl ComparedSides<'_> {
             })
         } else if inside == 0 {
             Some(format!("none of {emitted} photons reached the window"))
-        } else if self.is_sparse() {
+        } else if self.has_dark_batch() {
             let batches = self.measurement.batches().len();
             Some(format!(
-                "too few photons in the window, {inside} in {batches} batches, or too few rays of the prediction: at least one batch has none{needs}"
+                "too few photons in the window, {inside} in {batches} batches: at least one batch has none{needs}"
+            ))
+        } else if self.has_dark_replicate() {
+            let replicates = self.prediction.replicates.len();
+            Some(format!(
+                "too few rays of the prediction: at least one of its {replicates} independent estimates found no light{needs}"
             ))
         } else if let Some(each) = self.uneven(agrees) {
             Some(format!(
@@ -267,7 +272,7 @@ impl ComparedSides<'_> {
         let (inside, emitted) = (self.inside(), self.measurement.emitted());
         if self.predicted.is_dark() || inside == 0 {
             None
-        } else if self.is_sparse() {
+        } else if self.has_dark_batch() || self.has_dark_replicate() {
             let batches = self.measurement.batches().len() as f64;
             // Of n replicates with m rays each on average, n e⁻ᵐ are empty.
             let all = self.prediction.replicates.len() as f64;
@@ -307,12 +312,16 @@ impl ComparedSides<'_> {
         self.measurement.tally(self.index).inside
     }
 
-    /// Checks whether a batch of photons, or a replicate of the prediction, found no light: with so
-    /// few rays, errors are not symmetric and allow no conclusion.
-    fn is_sparse(&self) -> bool {
+    /// Checks whether a batch of photons found no light: with so few photons, errors are not
+    /// symmetric and allow no conclusion.
+    fn has_dark_batch(&self) -> bool {
         let mut batches = self.measurement.at_plane(self.index);
-        let mut replicates = self.prediction.replicates.iter();
-        batches.any(|batch| batch.tally.inside == 0) || replicates.any(Slices::is_dark)
+        batches.any(|batch| batch.tally.inside == 0)
+    }
+
+    /// Checks the same for the replicates of the prediction.
+    fn has_dark_replicate(&self) -> bool {
+        self.prediction.replicates.iter().any(Slices::is_dark)
     }
 
     fn report(&self, judged: &Judgement) -> Result<PlaneReport, TooFewBatches> {

@@ -305,3 +305,47 @@ fn lenses_focus() {
     assert!((through([0.6, -0.7]) - middle).length() < 1e-12);
     assert!(middle.truncate().length() > 0.1);
 }
+
+/// Direct light at a point is the light of paths that end at the first surface; a wall beside the
+/// floor adds indirect light, which it leaves out.
+#[test]
+fn direct_light_is_that_of_the_shortest_paths() {
+    let turned = DQuat::from_rotation_y(-0.5 * PI);
+    let wall = DAffine3::from_scale_rotation_translation(
+        DVec3::splat(2.0),
+        turned,
+        DVec3::new(0.5, 0.0, 0.0),
+    );
+    let lamp = DAffine3::from_scale_rotation_translation(
+        DVec3::splat(0.3),
+        DQuat::from_rotation_x(PI),
+        DVec3::new(0.0, 0.0, 1.0),
+    );
+    let world = floor(
+        vec![
+            shape(Geometry::Rectangle, wall, 0, None),
+            shape(Geometry::Rectangle, lamp, 1, Some(5.0)),
+        ],
+        Vec::new(),
+    );
+    let of = |depth: Option<u32>| {
+        let world = World {
+            depth,
+            ..world.clone()
+        };
+        let paths = Paths::new(&world);
+        let look = camera(DVec3::new(0.2, 0.0, 0.5), DVec3::ZERO).look([0.5; 2], [0.0; 2]);
+        let seen = paths.view(&look).surface.unwrap();
+        let points = 0..4096;
+        let direct = points.clone().map(|i| paths.direct(&seen, 1, 0, i)[0]);
+        let direct = direct.sum::<f64>() / points.len() as f64;
+        (direct, paths.shade(&seen, 4096, 1, 0).0[0])
+    };
+    let [(direct, all), (_, shortest)] = [None, Some(1)].map(of);
+    // Nets of 4,096 points are even to some 10⁻³.
+    assert!(
+        (direct / shortest - 1.0).abs() < 5e-3,
+        "{direct} {shortest}"
+    );
+    assert!(all > 1.05 * direct, "{all} {direct}");
+}
