@@ -152,7 +152,7 @@ fn the_guide_shows_where_shadows_end() {
         off.sum::<f64>().sqrt()
     };
     let [auto, even] = [SampleMethod::Auto, SampleMethod::Uniform].map(error);
-    assert!(auto < 0.5 * even, "{auto} {even}"); // 0.2 with the guide
+    assert!(auto < 0.5 * even, "{auto} {even}"); // 0.38 with the guide, 1 without
 }
 
 #[test]
