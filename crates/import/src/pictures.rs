@@ -1,5 +1,6 @@
 //! Pictures of any scene format: one number for each pixel.
 
+mod bmp;
 mod hdr;
 mod jpeg;
 mod size;
@@ -102,11 +103,12 @@ fn read(files: &Files, path: &Path, color: Color, curve: TransferCurve) -> Resul
 pub(crate) fn decode(path: &Path, bytes: &[u8]) -> Result<Channels, String> {
     let extension = path.extension().unwrap_or_default().to_string_lossy();
     match extension.to_ascii_lowercase().as_str() {
+        "bmp" => bmp::read(bytes),
         "jpg" | "jpeg" => jpeg::read(bytes),
         "hdr" | "rgbe" => hdr::read(bytes),
         "png" | "exr" => read_channels(path, bytes).map_err(|fault| fault.to_string()),
         other => Err(format!(
-            "has extension {other:?}; allowed: exr, hdr, jpg, png"
+            "has extension {other:?}; allowed: bmp, exr, hdr, jpg, png"
         )),
     }
 }

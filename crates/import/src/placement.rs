@@ -2,24 +2,24 @@
 
 use crate::range::{MAX_NUMBER, holds};
 use etendue_world::Geometry;
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 
 /// Maximum relative difference between the axes of a sphere. Transforms are products of rounded
 /// numbers, so the axes differ slightly.
 const ALIKE: f64 = 1e-4;
 
-/// Returns the reason why a geometry cannot have this placement, if there is one.
-pub(crate) fn fault(geometry: &Geometry, to_world: DAffine3) -> Option<&'static str> {
-    let [x, y, z] = [0, 1, 2].map(|i| to_world.matrix3.col(i));
-    let alike = |a: DVec3, b: DVec3| (a.length() - b.length()).abs() <= ALIKE * a.length();
-    let across = |a: DVec3, b: DVec3| a.dot(b).abs() <= ALIKE * a.length() * b.length();
-    let is_square = across(x, y) && across(y, z) && across(z, x);
+/// Returns the reason why a geometry cannot have this placement, if there is one. `shines` tells
+/// whether it emits: points of a light are drawn uniformly by area.
+pub(crate) fn fault(geometry: &Geometry, to_world: DAffine3, shines: bool) -> Option<&'static str> {
     let fits = match geometry {
-        Geometry::Sphere => alike(x, y) && alike(y, z) && is_square,
-        Geometry::Cylinder => alike(x, y) && is_square,
+        Geometry::Sphere => !shines || is_similarity(to_world.matrix3),
+        Geometry::Cylinder => {
+            let [x, y, _] = axes(to_world.matrix3);
+            alike(x, y) && is_orthogonal(to_world.matrix3)
+        }
         _ => true,
     };
-    let lengths = [x, y, z].map(DVec3::length);
+    let lengths = axes(to_world.matrix3).map(DVec3::length);
     let is_regular = holds(to_world)
         && lengths.iter().all(|length| *length >= 1.0 / MAX_NUMBER)
         && to_world.matrix3.determinant().abs() > 0.0;
@@ -27,7 +27,40 @@ pub(crate) fn fault(geometry: &Geometry, to_world: DAffine3) -> Option<&'static 
         (false, _) => Some(
             "that is placed out of range, or scaled to size 0; allowed: coordinates up to 1e9, and scales from 1e-9 to 1e9",
         ),
+        (true, false) if matches!(geometry, Geometry::Sphere) => {
+            Some("that emits, with shear or with different scales along its axes")
+        }
         (true, false) => Some("with shear, or with different scales along its axes"),
         (true, true) => None,
     }
+}
+
+/// Whether a map keeps angles, so that it maps spheres to spheres.
+pub(crate) fn is_similarity(map: DMat3) -> bool {
+    let [x, y, z] = axes(map);
+    alike(x, y) && alike(y, z) && is_orthogonal(map)
+}
+
+/// Returns the similarity that has the X axis of a regular map, and otherwise only turns and
+/// mirrors as the map does.
+pub(crate) fn similar(map: DMat3) -> DMat3 {
+    let [x, y, z] = axes(map);
+    let along = x.normalize();
+    let aside = y.reject_from_normalized(along).normalize();
+    let up = along.cross(aside);
+    x.length() * DMat3::from_cols(along, aside, up * up.dot(z).signum())
+}
+
+fn axes(map: DMat3) -> [DVec3; 3] {
+    [0, 1, 2].map(|i| map.col(i))
+}
+
+fn alike(a: DVec3, b: DVec3) -> bool {
+    (a.length() - b.length()).abs() <= ALIKE * a.length()
+}
+
+fn is_orthogonal(map: DMat3) -> bool {
+    let [x, y, z] = axes(map);
+    let across = |a: DVec3, b: DVec3| a.dot(b).abs() <= ALIKE * a.length() * b.length();
+    across(x, y) && across(y, z) && across(z, x)
 }

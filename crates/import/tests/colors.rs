@@ -204,3 +204,44 @@ fn jpeg_and_radiance_pictures_are_read() {
         assert_close(&found[1..], &levels, 1.01);
     }
 }
+
+/// Two BMP files of 2 × 2 pixels, with three bytes a pixel and with a palette. Rows are stored from
+/// below, and colours as blue, green, red; as in Mitsuba, v increases downwards.
+#[test]
+fn bmp_pictures_are_read() {
+    let header = |offset: u32, bits: u16, colors: u32| {
+        let mut bytes = b"BM".to_vec();
+        for word in [offset + 16, 0, offset, 40, 2, 2] {
+            bytes.extend(word.to_le_bytes());
+        }
+        bytes.extend(1_u16.to_le_bytes());
+        bytes.extend(bits.to_le_bytes());
+        for word in [0, 16, 0, 0, colors, 0] {
+            bytes.extend(word.to_le_bytes());
+        }
+        bytes
+    };
+    // Each row is filled up to four bytes.
+    let lower = [50, 100, 200, 90, 60, 30, 0, 0];
+    let upper = [0, 0, 255, 255, 0, 0, 0, 0];
+    let colors = [header(54, 24, 0), lower.to_vec(), upper.to_vec()].concat();
+    let palette = [50, 100, 200, 0, 90, 60, 30, 0, 0, 0, 255, 0, 255, 0, 0, 0];
+    let indices = [0, 1, 0, 0, 2, 3, 0, 0];
+    let indexed = [header(70, 8, 4), palette.to_vec(), indices.to_vec()].concat();
+    let files = folder(&[("a.bmp", &colors), ("b.bmp", &indexed)]);
+    let raw = "<boolean name=\"raw\" value=\"true\"/>";
+    for file in ["a.bmp", "b.bmp"] {
+        for (u, v, levels) in [
+            (0.25, 0.75, [200.0, 100.0, 50.0]),
+            (0.75, 0.75, [30.0, 60.0, 90.0]),
+            (0.25, 0.25, [255.0, 0.0, 0.0]),
+            (0.75, 0.25, [0.0, 0.0, 255.0]),
+        ] {
+            let found = ALL.map(|c| {
+                let texture = reflectance(&bitmap(file, raw), files.path(), c);
+                texture.value(DVec2::new(u, v)) * 255.0
+            });
+            assert_close(&found[1..], &levels, 1e-9);
+        }
+    }
+}

@@ -118,6 +118,9 @@ fn quadrics_have_sizes() {
         &[0.0, 3.0, 0.0],
         0.0,
     );
+    // A sphere that does not emit may be an ellipsoid.
+    let ellipsoid = "Scale 1 2 1 Shape \"sphere\" \"float radius\" 3";
+    assert_close(&at(ellipsoid, DVec3::Y), &[0.0, 6.0, 0.0], 0.0);
     let disk = "Shape \"disk\" \"float radius\" 3 \"float height\" 2";
     assert_close(&at(disk, DVec3::Y), &[0.0, 3.0, 2.0], 0.0);
     let cylinder = "Shape \"cylinder\" \"float radius\" 3 \"float zmin\" 4 \"float zmax\" 2";
@@ -134,8 +137,8 @@ fn quadrics_have_sizes() {
             "innerradius is 0.5",
         ),
         (
-            "Scale 1 2 1 Shape \"sphere\"",
-            "different scales along its axes",
+            "Scale 1 2 1 AreaLightSource \"diffuse\" Shape \"sphere\"",
+            "that emits, with shear or with different scales along its axes",
         ),
         ("Scale 1 0 1 Shape \"disk\"", "scaled to size 0"),
         ("Shape \"curve\"", "shape `curve` is not supported"),

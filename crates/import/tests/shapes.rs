@@ -108,7 +108,6 @@ fn spheres_and_cylinders_are_placed() {
     ];
     assert_close(&map.matrix3.to_cols_array(), &expected, 1e-7);
     for (shape, inside) in [
-        ("sphere", "<scale x=\"2\"/>"),
         ("cylinder", "<scale x=\"2\"/>"),
         ("rectangle", "<scale x=\"0\"/>"),
     ] {
@@ -120,6 +119,41 @@ fn spheres_and_cylinders_are_placed() {
     world(
         "<shape type=\"cylinder\"><transform name=\"to_world\"><scale value=\"2 2 5\"/></transform></shape>",
     );
+}
+
+/// Mitsuba 3.9 makes a sphere of the length of the X axis, as its bounding boxes show.
+#[test]
+fn uneven_spheres_are_those_of_mitsuba() {
+    for (scales, radius) in [
+        ("<scale x=\"2\"/>", 2.0),
+        ("<scale y=\"2\"/>", 1.0),
+        (
+            "<rotate z=\"1\" angle=\"30\"/><scale y=\"2\"/>",
+            1.75_f64.sqrt(),
+        ),
+        ("<scale x=\"-3\"/>", 3.0),
+    ] {
+        let inside = format!(
+            "<shape type=\"sphere\"><transform name=\"to_world\">{scales}</transform></shape>"
+        );
+        let map = world(&inside).shapes[0].to_world.matrix3;
+        for axis in [map.x_axis, map.y_axis, map.z_axis] {
+            assert!((axis.length() - radius).abs() < 1e-12, "{scales}: {axis}");
+        }
+        assert!(
+            common::notes(&inside)[0].contains("as in Mitsuba"),
+            "{scales}"
+        );
+    }
+    // An instance makes a true ellipsoid, which may not emit.
+    let group = |inside: &str| {
+        format!(
+            "<shape type=\"shapegroup\" id=\"g\"><shape type=\"sphere\">{inside}</shape></shape>\
+             <shape type=\"instance\"><ref id=\"g\"/><transform name=\"to_world\"><scale x=\"2\"/></transform></shape>"
+        )
+    };
+    let map = world(&group("")).shapes[0].to_world.matrix3;
+    assert_close(&map.to_cols_array()[..5], &[2.0, 0.0, 0.0, 0.0, 1.0], 1e-12);
 }
 
 #[test]

@@ -349,3 +349,36 @@ fn direct_light_is_that_of_the_shortest_paths() {
     );
     assert!(all > 1.05 * direct, "{all} {direct}");
 }
+
+/// An ellipsoid under a distant light: its highest point has the brightness of a plane, and its
+/// silhouette has its own half-axes.
+#[test]
+fn ellipsoids_have_their_own_normals() {
+    let axes = DVec3::new(2.0, 0.5, 1.0);
+    let ellipsoid = Shape {
+        to_world: DAffine3::from_scale(axes),
+        ..shape(Geometry::Sphere, DAffine3::IDENTITY, 0, None)
+    };
+    let world = World {
+        shapes: vec![ellipsoid],
+        materials: vec![diffuse(0.5)],
+        lights: vec![Light::Directional {
+            direction: DVec3::NEG_Z,
+            irradiance: 2.0,
+        }],
+        ..World::default()
+    };
+    // The normal at a point is along p/axes².
+    for (x, y) in [(0.0, 0.0), (0.5, 0.1), (-0.8, 0.2)] {
+        let flat = DVec3::new(x, y, 0.0) / axes;
+        let z = (1.0 - flat.length_squared()).sqrt();
+        let normal = (DVec3::new(x, y, z) / (axes * axes)).normalize();
+        let (mean, _) = seen(&world, DVec3::new(x, y, 5.0), DVec3::new(x, y, 0.0), 16);
+        let expected = 2.0 * normal.z * 0.5 / PI;
+        assert!((mean / expected - 1.0).abs() < 1e-5, "{mean} {expected}"); // the pixel's width
+    }
+    for (x, y, is_hit) in [(1.99, 0.0, true), (2.01, 0.0, false), (0.0, 0.51, false)] {
+        let (mean, _) = seen(&world, DVec3::new(x, y, 5.0), DVec3::new(x, y, 0.0), 16);
+        assert_eq!(mean > 0.0, is_hit, "{x} {y}");
+    }
+}

@@ -12,8 +12,8 @@ pub struct Shape {
     /// The geometry in local coordinates.
     pub geometry: Geometry,
     /// The map from local to world coordinates. Normals are mapped by the inverse transpose: a
-    /// mirror keeps the front. Spheres are scaled uniformly; cylinders too, except that they may
-    /// have another factor along Z.
+    /// mirror keeps the front. Spheres that emit are scaled uniformly; cylinders too, except that
+    /// they may have another factor along Z.
     pub to_world: DAffine3,
     /// Whether the front of the surface is opposite to that of [`Geometry`].
     pub is_flipped: bool,

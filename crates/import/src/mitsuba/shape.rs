@@ -4,7 +4,7 @@ use super::mesh::MitsubaMesh;
 use super::object::{MitsubaObject, ObjectKind};
 use super::reader::{MOST_SHAPES, MitsubaReader};
 use super::transform::frame;
-use crate::placement::fault;
+use crate::placement::{fault, is_similarity, similar};
 use crate::report::quoted;
 use etendue_world::{Geometry, Shape};
 use glam::{DAffine3, DMat3, DVec3};
@@ -69,7 +69,7 @@ impl<'a> MitsubaReader<'a> {
             return self.lost(object);
         };
         let to_world = outer * placement;
-        if !self.is_sound(object, &geometry, to_world) {
+        if !self.is_sound(object, &geometry, to_world, emission.is_some()) {
             return;
         }
         self.world.shapes.push(Shape {
@@ -123,7 +123,18 @@ impl<'a> MitsubaReader<'a> {
             own * DAffine3::from_translation(center?) * DAffine3::from_scale(DVec3::splat(radius));
         // In Mitsuba, a mirror turns the normals of spheres inwards, but not those of cylinders.
         let is_mirrored = own.matrix3.determinant() < 0.0;
-        Some((Geometry::Sphere, placed, self.flips(object) != is_mirrored))
+        let is_flipped = self.flips(object) != is_mirrored;
+        if is_similarity(placed.matrix3) || placed.matrix3.determinant().abs() <= 0.0 {
+            return Some((Geometry::Sphere, placed, is_flipped));
+        }
+        let like = similar(placed.matrix3);
+        let radius = like.x_axis.length();
+        let message = format!(
+            "as in Mitsuba, a sphere with different scales along its axes has the scale along its X axis, and so the radius {radius:.6}"
+        );
+        self.report.note(&object.place, message);
+        let placed = DAffine3::from_mat3_translation(like, placed.translation);
+        Some((Geometry::Sphere, placed, is_flipped))
     }
 
     fn cylinder(
@@ -160,8 +171,14 @@ impl<'a> MitsubaReader<'a> {
     }
 
     /// Whether a shape can have this placement; if not, adds a cause of refusal.
-    fn is_sound(&self, object: &'a MitsubaObject, geometry: &Geometry, to_world: DAffine3) -> bool {
-        let Some(fault) = fault(geometry, to_world) else {
+    fn is_sound(
+        &self,
+        object: &'a MitsubaObject,
+        geometry: &Geometry,
+        to_world: DAffine3,
+        shines: bool,
+    ) -> bool {
+        let Some(fault) = fault(geometry, to_world, shines) else {
             return true;
         };
         let message = format!("a {} {fault}", object.plugin);

@@ -70,7 +70,7 @@ impl PbrtReader<'_> {
             }
             return false;
         }
-        match fault(&shape.geometry, shape.to_world) {
+        match fault(&shape.geometry, shape.to_world, shape.emission.is_some()) {
             Some(message) => self.report.cause(place, format!("a shape {message}")),
             None => self.world.shapes.push(shape),
         }

@@ -1,0 +1,31 @@
+//! BMP pictures.
+
+use super::size::check_size;
+use etendue_scene::Channels;
+use zune_bmp::BmpDecoder;
+use zune_core::bytestream::ZCursor;
+use zune_core::options::DecoderOptions;
+
+/// Reads a picture. Transparency is ignored, because sources of BMP files rarely fill it.
+pub(super) fn read(bytes: &[u8]) -> Result<Channels, String> {
+    let damaged = |error: zune_bmp::BmpDecoderErrors| format!("is damaged ({error:?})");
+    let mut decoder = BmpDecoder::new_with_options(ZCursor::new(bytes), DecoderOptions::default());
+    decoder.decode_headers().map_err(damaged)?;
+    let (width, height) = decoder.dimensions().ok_or("has no size")?;
+    check_size(width, height, bytes.len())?;
+    let space = decoder.colorspace().ok_or("has no colours")?;
+    let each = space.num_components();
+    let levels = decoder.decode().map_err(damaged)?;
+    if levels.len() != each * width * height || !matches!(each, 1 | 3 | 4) {
+        return Err("does not have the number of pixels that its header states".to_owned());
+    }
+    let count = if each == 1 { 1 } else { 3 };
+    let colors = levels.chunks_exact(each).flat_map(|pixel| &pixel[..count]);
+    Ok(Channels {
+        width,
+        height,
+        values: colors.map(|level| f64::from(*level) / 255.0).collect(),
+        count,
+        are_levels: true,
+    })
+}
