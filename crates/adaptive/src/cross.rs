@@ -3,7 +3,7 @@
 
 use crate::criterion::shaded;
 use crate::method::pixel_at;
-use crate::reconstruct::{SampleFit, ShadedSample, reconstruct};
+use crate::reconstruct::{SampleFit, ShadedSample, reconstruct_where};
 use crate::visible::Visible;
 
 /// Errors use neighbours up to this many times farther away than those of the reconstruction.
@@ -31,14 +31,23 @@ pub(crate) fn cross_errors(visible: &Visible, samples: &[ShadedSample]) -> Vec<C
                 ..*sample
             })
             .collect();
-        let values = reconstruct(visible, &sparse, SampleFit::Plane);
-        for (index, sample) in of(1 - half) {
+        // The first point of a sample's pixel that is on its object stands for the sample.
+        let point = |sample: &ShadedSample| {
             let mut near = visible.range(pixel_at(sample.at, visible.size));
-            let is_same = |i: &usize| {
+            near.find(|i| {
                 let surface = shaded(&visible.places[*i]);
                 surface.is_some_and(|surface| surface.shape == sample.surface.shape)
-            };
-            if let Some(fitted) = near.find(is_same).and_then(|i| values[i]) {
+            })
+        };
+        let points: Vec<Option<usize>> = of(1 - half).map(|(_, sample)| point(sample)).collect();
+        let mut is_wanted = vec![false; visible.places.len()];
+        for point in points.iter().flatten() {
+            is_wanted[*point] = true;
+        }
+        let wanted = |i: usize| is_wanted[i];
+        let values = reconstruct_where(visible, &sparse, SampleFit::Plane, &wanted);
+        for ((index, sample), point) in of(1 - half).zip(&points) {
+            if let Some(fitted) = point.and_then(|i| values[i]) {
                 let off = [0, 1].map(|part: usize| fitted[part] - sample.value[part]);
                 found.push(CrossError { index, off });
             }

@@ -63,8 +63,18 @@ pub(crate) fn reconstruct(
     samples: &[ShadedSample],
     fit: SampleFit,
 ) -> Vec<Option<[f64; 2]>> {
+    reconstruct_where(visible, samples, fit, &|_| true)
+}
+
+/// Does the same as [`reconstruct()`], but only at points whose index is wanted.
+pub(crate) fn reconstruct_where(
+    visible: &Visible,
+    samples: &[ShadedSample],
+    fit: SampleFit,
+    is_wanted: &(dyn Fn(usize) -> bool + Sync),
+) -> Vec<Option<[f64; 2]>> {
     let bands = visible.size[1].div_ceil(BAND);
-    let of = |band: usize| Band::new(visible, band).filled(samples, fit);
+    let of = |band: usize| Band::new(visible, band).filled(samples, fit, is_wanted);
     (0..bands).into_par_iter().flat_map_iter(of).collect()
 }
 
@@ -157,7 +167,12 @@ impl<'a> Band<'a> {
         }
     }
 
-    fn filled(mut self, samples: &[ShadedSample], fit: SampleFit) -> Vec<Option<[f64; 2]>> {
+    fn filled(
+        mut self,
+        samples: &[ShadedSample],
+        fit: SampleFit,
+        is_wanted: &(dyn Fn(usize) -> bool + Sync),
+    ) -> Vec<Option<[f64; 2]>> {
         let first = self.visible.range([0, self.first_row]).start;
         let places = &self.visible.places[first..][..self.sums.len()];
         for reach in REACHES {
@@ -165,7 +180,10 @@ impl<'a> Band<'a> {
             let missing: Vec<bool> = places
                 .iter()
                 .zip(&self.sums)
-                .map(|(place, sums)| shaded(place).is_some() && is_empty(sums))
+                .enumerate()
+                .map(|(i, (place, sums))| {
+                    shaded(place).is_some() && is_empty(sums) && is_wanted(first + i)
+                })
                 .collect();
             if !missing.contains(&true) {
                 break;
