@@ -256,7 +256,7 @@ fn faults_of_ply_files_are_told() {
         ("element face 1", "element face 0", "faces is 0; allowed: at least 1"),
         ("end_header", "element odd 1000000000000\nend_header", "number of properties of element odd is 0; allowed: at least 1"),
         ("end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "", "end_header is missing, as the file ends; allowed: a complete header"),
-        ("0 1 0\n3 0 1 2\n", "0 1 0\n", "number of bytes after the header is 18; allowed: at least 19, for 3 vertex, 1 face"),
+        ("0 1 0\n3 0 1 2\n", "0 1 0\n", "number of bytes after the header is 18; allowed: at least 19, because the header announces 3 vertex, 1 face"),
         ("0 1 0\n3 0 1 2\n", "0000 1 0\n", "line 13, face 0, vertex_indices is missing, as the file ends; allowed: 1 rows of element face"),
         ("1 0 0\n0 1 0\n3 0 1 2\n", "1.00000000000 0.0", "line 11, vertex 1, z is missing, as the file ends; allowed: 3 rows of element vertex"),
         ("1 0 0\n", "1 0\n", "line 11, vertex 1, z is missing, as the line ends; allowed: a value for each property"),
