@@ -4,7 +4,7 @@
 
 use crate::common::{assert_close, causes, folder, read_in, world};
 use etendue_import::Color;
-use etendue_world::Light;
+use etendue_world::{Light, Texture};
 
 fn light(plugin: &str, inside: &str) -> Light {
     world(&format!("<emitter type=\"{plugin}\">{inside}</emitter>"))
@@ -62,9 +62,11 @@ fn spots_have_two_angles() {
     );
     let wide = "<emitter type=\"spot\"><float name=\"beam_width\" value=\"20\"/></emitter>";
     assert!(causes(wide)[0].contains("beam_width is 20"));
-    let texture =
-        "<emitter type=\"spot\"><texture name=\"texture\" type=\"checkerboard\"/></emitter>";
-    assert!(causes(texture)[0].contains("texture of a spot"));
+    let textured = "<texture name=\"texture\" type=\"checkerboard\"/>";
+    let Light::Spot { picture, .. } = light("spot", textured) else {
+        panic!("not a spot");
+    };
+    assert!(matches!(picture, Some(Texture::Checkerboard { .. })));
 }
 
 #[test]

@@ -98,6 +98,7 @@ fn spots_fall_with_the_cosine() {
             beam,
             cutoff,
             falloff,
+            ..
         } => {
             assert_close(&to_world.translation.to_array(), &[-1.0, 0.0, 0.0], 0.0);
             assert_close(&to_world.matrix3.z_axis.to_array(), &[-1.0, 0.0, 0.0], 0.0);

@@ -6,7 +6,7 @@ use etendue_world::{
     Camera, Dielectric, Falloff, Geometry, Lens, Light, Material, Projection, Shape, SkyMap,
     Texture, Triangles, World,
 };
-use glam::{DAffine3, DMat3, DQuat, DVec3};
+use glam::{DAffine2, DAffine3, DMat3, DQuat, DVec3};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -159,6 +159,7 @@ fn lights_shine_by_their_units() {
             beam: 0.3,
             cutoff: 0.5,
             falloff,
+            picture: None,
         };
         let there = DVec3::new(angle.tan(), 0.0, 0.0);
         assert_seen(
@@ -380,5 +381,37 @@ fn ellipsoids_have_their_own_normals() {
     for (x, y, is_hit) in [(1.99, 0.0, true), (2.01, 0.0, false), (0.0, 0.51, false)] {
         let (mean, _) = seen(&world, DVec3::new(x, y, 5.0), DVec3::new(x, y, 0.0), 16);
         assert_eq!(mean > 0.0, is_hit, "{x} {y}");
+    }
+}
+
+/// The picture of a spot has the first value where both texture coordinates are below or above ½:
+/// towards X and −Y of the floor, which are X and Y of the spot, or opposite to both.
+#[test]
+fn spots_may_have_pictures() {
+    let picture = Texture::Checkerboard {
+        to_uv: DAffine2::IDENTITY,
+        values: [0.2, 0.8],
+    };
+    for (x, y, value) in [
+        (0.1, -0.1, 0.2),
+        (0.1, 0.1, 0.8),
+        (-0.2, 0.1, 0.2),
+        (-0.1, -0.1, 0.8),
+    ] {
+        let spot = Light::Spot {
+            to_world: DAffine3::from_mat3_translation(
+                DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0)),
+                DVec3::new(0.0, 0.0, 1.0),
+            ),
+            intensity: 4.0,
+            beam: 0.3,
+            cutoff: 0.5,
+            falloff: Falloff::Angle,
+            picture: Some(picture.clone()),
+        };
+        let there = DVec3::new(x, y, 0.0);
+        let cosine = (1.0 + there.length_squared()).sqrt().recip();
+        let expected = 0.5 / PI * 4.0 * value * cosine.powi(3);
+        assert_seen(&floor(vec![], vec![spot]), ASIDE, there, expected);
     }
 }

@@ -60,6 +60,7 @@ impl<'a> GltfReader<'a> {
                     beam,
                     cutoff,
                     falloff: Falloff::SquaredCosine,
+                    picture: None,
                 })
             }
         }

@@ -96,10 +96,10 @@ impl<'a> MitsubaReader<'a> {
     }
 
     fn spot(&mut self, object: &'a MitsubaObject) -> Option<Light> {
-        if self.property(object, "texture").is_some() {
-            let message = "the texture of a spot is not supported";
-            self.report.cause(self.place_of(object, "texture"), message);
-        }
+        let picture = match self.property(object, "texture") {
+            Some(_) => self.reflectance(object, "texture", 1.0).map(Some),
+            None => Some(None),
+        };
         let intensity = self.strength(object, "intensity");
         let angle = |name| {
             self.number_within(object, name, "0 to 90 degrees", |a| {
@@ -130,6 +130,7 @@ impl<'a> MitsubaReader<'a> {
             beam: beam.to_radians(),
             cutoff: cutoff.to_radians(),
             falloff: Falloff::Angle,
+            picture: picture?,
         })
     }
 

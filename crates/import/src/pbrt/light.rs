@@ -126,6 +126,7 @@ impl PbrtReader<'_> {
             beam,
             cutoff,
             falloff: Falloff::SmoothCosine,
+            picture: None,
         })
     }
 

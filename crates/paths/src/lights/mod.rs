@@ -40,6 +40,7 @@ enum SampledLight {
         beam: f64,
         cutoff: f64,
         falloff: Falloff,
+        picture: Option<Texture>,
     },
     Directional {
         toward: DVec3,
@@ -139,12 +140,14 @@ impl From<&Light> for SampledLight {
                 beam,
                 cutoff,
                 falloff,
+                picture,
             } => Self::Spot {
                 to_local: to_world.inverse(),
                 intensity: *intensity,
                 beam: *beam,
                 cutoff: *cutoff,
                 falloff: *falloff,
+                picture: picture.clone(),
             },
             Light::Directional {
                 direction,
@@ -216,12 +219,20 @@ impl SampledLight {
             beam,
             cutoff,
             falloff,
+            picture,
             ..
         } = self
         else {
             return 0.0;
         };
         let angle = libm::atan2(local.truncate().length(), local.z);
-        intensity * falloff.share(angle, *beam, *cutoff)
+        let plain = intensity * falloff.share(angle, *beam, *cutoff);
+        match picture {
+            Some(picture) if plain > 0.0 => {
+                let at = local.truncate() / (local.z * libm::tan(*cutoff));
+                plain * picture.value(0.5 + 0.5 * at)
+            }
+            _ => plain,
+        }
     }
 }
