@@ -12,7 +12,7 @@ use crate::criterion::shaded;
 use crate::cross::{cross_errors, squared};
 use crate::density::{scaled, to_power};
 use crate::guide::{Guide, SampleGuide};
-use crate::method::{AdaptiveRun, POWER, by_error, pixel_of, sums, values};
+use crate::method::{AdaptiveRun, POWER, by_error, sums, values};
 use crate::metric::Metric;
 use crate::reconstruct::ShadedSample;
 use std::collections::BTreeMap;
@@ -80,7 +80,7 @@ impl AdaptiveRun<'_> {
     ) -> Factors {
         let mut factors = Factors::default();
         for sample in missed {
-            let pixel = pixel_of(sample.at, self.visible.size);
+            let pixel = self.visible.pixel_index(sample.at);
             let density = |of: &[Option<Metric>]| Some(of[pixel]?.determinant());
             if let Some((n, by_criterion)) = density(first).zip(density(criterion)) {
                 factors.add(sample.surface.shape, [sample.value[0] * n, by_criterion]);

@@ -2,7 +2,6 @@
 //! samples are compared with the other half.
 
 use crate::criterion::shaded;
-use crate::method::pixel_at;
 use crate::reconstruct::{SampleFit, ShadedSample, reconstruct_where};
 use crate::visible::Visible;
 
@@ -33,7 +32,7 @@ pub(crate) fn cross_errors(visible: &Visible, samples: &[ShadedSample]) -> Vec<C
             .collect();
         // The first point of a sample's pixel that is on its object stands for the sample.
         let point = |sample: &ShadedSample| {
-            let mut near = visible.range(pixel_at(sample.at, visible.size));
+            let mut near = visible.range(visible.pixel_at(sample.at));
             near.find(|i| {
                 let surface = shaded(&visible.places[*i]);
                 surface.is_some_and(|surface| surface.shape == sample.surface.shape)

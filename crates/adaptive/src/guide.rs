@@ -9,10 +9,9 @@
 
 use crate::criterion::shaded;
 use crate::cross::{CrossError, dark};
-use crate::method::pixel_at;
 use crate::reconstruct::{ShadedSample, bell, unlike};
 use crate::shading::Shader;
-use crate::smooth::{Filter, PlaceValues, detailed};
+use crate::smooth::{EdgeFilter, PlaceValues, detailed};
 use crate::visible::{FOUR, SeenSurface, Visible, at};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -21,21 +20,21 @@ use std::collections::BTreeMap;
 const TILE: usize = 4;
 
 /// The filter of sharp shadows.
-const SHARP: Filter = Filter {
+const SHARP: EdgeFilter = EdgeFilter {
     radius: 1,
     step: 1,
     width: 0.6,
 };
 
 /// The filter of soft shadows.
-const SOFT: Filter = Filter {
+const SOFT: EdgeFilter = EdgeFilter {
     radius: 2,
     step: 1,
     width: 1.2,
 };
 
 /// The filter that is applied to the result of [`SOFT`], where light changes slowly.
-const SLOW: Filter = Filter {
+const SLOW: EdgeFilter = EdgeFilter {
     radius: 2,
     step: 3,
     width: 1.2,
@@ -45,7 +44,7 @@ const SLOW: Filter = Filter {
 #[derive(Debug)]
 pub(crate) struct Guide {
     values: PlaceValues,
-    shares: Shares,
+    shares: GuideShares,
 }
 
 /// The guide of a sample, for base and lobe.
@@ -65,13 +64,13 @@ impl Guide {
         let sharp = SHARP.smoothed(visible, &rough);
         Self {
             values: detailed(visible, &sharp, &smooth),
-            shares: Shares::default(),
+            shares: GuideShares::default(),
         }
     }
 
     /// The whole guide at a sample.
     pub(crate) fn at(&self, visible: &Visible, sample: &ShadedSample) -> SampleGuide {
-        let pixel = pixel_at(sample.at, visible.size);
+        let pixel = visible.pixel_at(sample.at);
         let near = |(i, index): (usize, usize)| {
             let seen = shaded(&visible.places[index])?;
             let place = at(pixel, i);
@@ -182,13 +181,13 @@ type Products = [[f64; 3]; 2];
 
 /// The shares of the guide that objects use.
 #[derive(Debug, Default)]
-struct Shares {
+struct GuideShares {
     count: f64,
     all: Products,
     objects: BTreeMap<usize, Products>,
 }
 
-impl Shares {
+impl GuideShares {
     fn add(&mut self, shape: usize, products: Products) {
         self.count += 1.0;
         let own = self.objects.entry(shape).or_default();
@@ -225,7 +224,7 @@ mod tests {
     /// errors, or with much noise, is not used.
     #[test]
     fn shares_follow_errors() {
-        let mut shares = Shares::default();
+        let mut shares = GuideShares::default();
         for i in 0..1000 {
             let sign = if i % 2 == 0 { 1.0 } else { -1.0 };
             shares.add(0, [[1.0, 1.0, 0.0]; 2]);

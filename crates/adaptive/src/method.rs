@@ -228,7 +228,7 @@ impl AdaptiveRun<'_> {
         self.told(&both);
         let all = pilot.into_iter().chain(later);
         all.map(|(sample, _)| ShadedSample {
-            metric: both[pixel_of(sample.at, self.visible.size)].unwrap_or(sample.metric),
+            metric: both[self.visible.pixel_index(sample.at)].unwrap_or(sample.metric),
             ..sample
         })
         .collect()
@@ -361,7 +361,7 @@ impl AdaptiveRun<'_> {
             .pixels(|pixel| edges::radiance(self.visible, &self.shader, &values, pixel));
         let mut counts = vec![0.0; w * h];
         for sample in &samples {
-            counts[pixel_of(sample.at, self.visible.size)] += 1.0;
+            counts[self.visible.pixel_index(sample.at)] += 1.0;
         }
         self.layers.samples = counts;
         Rendered {
@@ -434,21 +434,6 @@ const RECENT: usize = 256;
 
 /// Minimum contrast, because the first quarter of the samples may have missed the contrast.
 const MIN_CONTRAST: f64 = 0.02;
-
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "the number of a pixel, clamped to the picture"
-)]
-pub(crate) fn pixel_at(at: [f64; 2], size: [usize; 2]) -> [usize; 2] {
-    [0, 1].map(|k: usize| (at[k].max(0.0) as usize).min(size[k] - 1))
-}
-
-/// Returns the index of the pixel at a position.
-pub(crate) fn pixel_of(at: [f64; 2], size: [usize; 2]) -> usize {
-    let [column, row] = pixel_at(at, size);
-    row * size[0] + column
-}
 
 /// Samples without the variance of their light.
 pub(crate) fn values(samples: &[(ShadedSample, f64)]) -> Vec<ShadedSample> {

@@ -11,7 +11,7 @@ pub(crate) type PlaceValues = Vec<[f64; 2]>;
 
 /// A filter whose weights fall with distance, and across edges.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Filter {
+pub(crate) struct EdgeFilter {
     /// Number of neighbours to each side.
     pub(crate) radius: usize,
     /// Pixels from one neighbour to the next.
@@ -20,7 +20,7 @@ pub(crate) struct Filter {
     pub(crate) width: f64,
 }
 
-impl Filter {
+impl EdgeFilter {
     /// Smooths values. Each of the points of a pixel uses only those points of other pixels that
     /// have its number, so the errors of the points of a pixel are independent.
     pub(crate) fn smoothed(&self, visible: &Visible, values: &[[f64; 2]]) -> PlaceValues {

@@ -132,6 +132,22 @@ impl Visible {
         [pixel % self.size[0], pixel / self.size[0]]
     }
 
+    /// Returns the pixel at a position of the picture.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "the number of a pixel is clamped to the picture"
+    )]
+    pub(crate) fn pixel_at(&self, at: [f64; 2]) -> [usize; 2] {
+        [0, 1].map(|k: usize| (at[k].max(0.0) as usize).min(self.size[k] - 1))
+    }
+
+    /// Returns the index of the pixel at a position, in rows from the top.
+    pub(crate) fn pixel_index(&self, at: [f64; 2]) -> usize {
+        let [column, row] = self.pixel_at(at);
+        row * self.size[0] + column
+    }
+
     /// Computes a value for each pixel.
     pub(crate) fn pixels<T: Send>(&self, of: impl Fn([usize; 2]) -> T + Sync) -> Vec<T> {
         let [w, h] = self.size;
