@@ -11,7 +11,7 @@
 use crate::criterion::shaded;
 use crate::cross::{cross_errors, squared};
 use crate::density::{scaled, to_power};
-use crate::guide::{Guide, SampleGuide};
+use crate::guide::{LightGuide, SampleGuide};
 use crate::method::{AdaptiveRun, POWER, by_error, sums, values};
 use crate::metric::Metric;
 use crate::reconstruct::ShadedSample;
@@ -58,7 +58,7 @@ impl AdaptiveRun<'_> {
     fn guided(&mut self, pilot: &[(ShadedSample, f64)]) -> Vec<ShadedSample> {
         let visible = self.visible;
         let samples = values(pilot);
-        let mut guide = Guide::new(visible, &self.shader);
+        let mut guide = LightGuide::new(visible, &self.shader);
         let guides: Vec<SampleGuide> = samples.iter().map(|at| guide.at(visible, at)).collect();
         let of_guide = samples.iter().zip(&guides).map(|(sample, guide)| {
             let value = guide.value;

@@ -42,7 +42,7 @@ const SLOW: EdgeFilter = EdgeFilter {
 
 /// Direct light at all points of a picture, without texture factors.
 #[derive(Debug)]
-pub(crate) struct Guide {
+pub(crate) struct LightGuide {
     values: PlaceValues,
     shares: GuideShares,
 }
@@ -54,7 +54,7 @@ pub(crate) struct SampleGuide {
     variance: [f64; 2],
 }
 
-impl Guide {
+impl LightGuide {
     /// Traces a path from each point.
     pub(crate) fn new(visible: &Visible, shader: &Shader<'_>) -> Self {
         let rough = direct(visible, shader);

@@ -7,7 +7,7 @@ use crate::cross::{WIDER, cross_errors, squared};
 use crate::cutoffs::Cutoffs;
 use crate::density::{scaled, to_power, wanted};
 use crate::edges;
-use crate::guide::Guide;
+use crate::guide::LightGuide;
 use crate::metric::Metric;
 use crate::reconstruct::{SampleFit, ShadedSample, reconstruct};
 use crate::shading::Shader;
@@ -158,7 +158,7 @@ pub(crate) struct AdaptiveRun<'a> {
     progress: &'a (dyn Fn(u64) + Sync),
     layers: Layers,
     /// The guide of the reconstruction, if the method uses one.
-    pub(crate) guide: Option<Guide>,
+    pub(crate) guide: Option<LightGuide>,
 }
 
 impl AdaptiveRun<'_> {
