@@ -152,8 +152,8 @@ impl Observed<SpecularSystem> {
 }
 
 impl SpecularSystem {
-    /// Returns the system with a light `factor` times as large: the picture's widths over slopes or
-    /// positions, or the shape about the central ray.
+    /// Returns the system with a light `factor` times as large. The factor scales the widths of
+    /// the light's picture in slopes or positions, or the light's shape about the central ray.
     ///
     /// If the light and the windows are scaled by a factor and the frequencies by its reciprocal,
     /// the error of first-order maps falls with the factor (docs/theory.md, section 7).

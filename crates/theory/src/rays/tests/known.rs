@@ -91,7 +91,8 @@ fn beam_over_a_distance() {
     let expected = slices_of(&grid, |[x, y, ..]| {
         Complex::from(a * b * libm::exp(-PI * (a * a * x * x + b * b * y * y)))
     });
-    // The image is cut at 0.7, where its relative value is exp(−π (0.49/0.16 + 0.49/0.09)).
+    // The window is cut at 0.7, where the product of window and image is exp(−π (0.49/0.16 +
+    // 0.49/0.09)) of its peak.
     let off = got.slices.relative_difference(&expected);
     assert!(off < 1e-9, "{off:e}");
 }
