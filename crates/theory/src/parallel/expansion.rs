@@ -30,8 +30,8 @@ pub(crate) struct AxisSection {
     /// plane.
     pub(crate) directions: Vec<[f64; 2]>,
     pub(crate) polygons: Vec<Polygon>,
-    /// Whether the chain contains discs. Rectangles of discs have edges along few directions, so
-    /// [`Polygon::transform_by_sides`] is used for their parallelograms.
+    /// Whether the chain contains discs. If it does, its many parallelograms are transformed by
+    /// [`Polygon::transform_by_sides`] wherever the contributions of corners cancel.
     pub(crate) has_discs: bool,
     /// Cache of polygons that were clipped to strips: the index of the clipped polygon for each
     /// (polygon, direction, bounds), or `None` if the clipped polygon is empty.

@@ -374,7 +374,8 @@ mod tests {
         let window = window(Profile::Hann(0.5), Profile::Hann(0.3));
         let grid = ProjectionGrid::new(&window, 16);
         let projection = projection(&chain, &window, &grid);
-        // Whether a ray (x, u) comes from the light.
+        // `lit` is 1 if a ray (x, u) comes from the light, and `met` is 1 if the ray meets the
+        // strip of the blocker.
         let lit = |x: f64, u: f64| f64::from(u8::from((x - 2.0 * u).abs() < 0.2));
         let met = |x: f64, u: f64| f64::from(u8::from((x - u).abs() < 0.15));
         let weight = |x: f64, u: f64| lit(x, u) * window.x.value(x) * window.u.value(u);
