@@ -1,18 +1,18 @@
-//! A mask prepared for many queries: the share of a ray's radiance that passes, and the shapes near
-//! a ray.
+//! Masks prepared for many queries about the fraction of a ray's radiance that passes and about
+//! the shapes near a ray.
 
 use etendue_field::{HalfPlane, Mask, Shape};
 
 /// The lowest and highest coordinate of a rectangle along each of two axes.
 pub(crate) type Bounds = [[f64; 2]; 2];
 
-/// A mask prepared for many queries.
+/// A mask that is prepared for many queries.
 #[derive(Debug)]
 pub(crate) struct Barrier<'a> {
-    /// The distance of the mask, metres. The owner of the barrier measures it from the light or
-    /// back from a receiver.
+    /// The distance of the mask in metres, either from the light or backward from a receiver, as
+    /// the caller chooses.
     pub(crate) distance: f64,
-    /// The region that half-planes leave open.
+    /// The region that the mask's half-planes do not block.
     pub(crate) open: Bounds,
     pub(crate) shapes: Bins<'a>,
     pub(crate) mask: &'a Mask,
@@ -44,7 +44,7 @@ impl<'a> Barrier<'a> {
         }
     }
 
-    /// Returns the share of radiance that passes at (x, y).
+    /// Returns the fraction of radiance that passes the mask at (x, y).
     pub(crate) fn transmittance(&self, x: f64, y: f64) -> f64 {
         if !matches!(self.mask, Mask::Opaque { .. }) {
             return self.mask.transmittance(x, y);
@@ -58,12 +58,12 @@ impl<'a> Barrier<'a> {
     }
 }
 
-/// Shapes, in a grid with about as many cells as shapes.
+/// Shapes that are indexed by a grid with about as many cells as shapes.
 #[derive(Debug)]
 pub(crate) struct Bins<'a> {
     shapes: &'a [Shape],
     low: [f64; 2],
-    /// Cells per metre.
+    /// Number of cells per metre along each axis.
     per_length: [f64; 2],
     /// Number of cells along each axis.
     side: usize,
@@ -95,7 +95,7 @@ impl<'a> Bins<'a> {
         bins
     }
 
-    /// Returns the narrowest width of a shape; `None` if there are no shapes.
+    /// Returns the smallest width among all shapes, or `None` if there are no shapes.
     pub(crate) fn narrowest(&self) -> Option<f64> {
         let widths = self.shapes.iter().map(|shape| {
             let [w, h] = shape.bounds().size;
@@ -104,8 +104,8 @@ impl<'a> Bins<'a> {
         widths.min_by(f64::total_cmp)
     }
 
-    /// Returns the cells that an interval along an axis touches; the outermost cells also cover
-    /// everything beyond them.
+    /// Returns the range of cells that an interval along an axis overlaps; the outermost cells
+    /// extend to infinity.
     fn touched(&self, axis: usize, [low, high]: [f64; 2]) -> std::ops::RangeInclusive<usize> {
         self.cell(axis, low)..=self.cell(axis, high)
     }
@@ -120,8 +120,8 @@ impl<'a> Bins<'a> {
         cell.clamp(0.0, (self.side - 1) as f64) as usize
     }
 
-    /// Calls `each` once for every shape whose bounds meet a rectangle, in an order that depends on
-    /// the rectangle alone.
+    /// Calls `each` once for every shape whose bounds overlap the rectangle `sides`; the order of
+    /// calls depends only on the rectangle.
     pub(crate) fn meeting(&self, sides: Bounds, mut each: impl FnMut(&'a Shape)) {
         if self.shapes.is_empty() {
             return;
@@ -132,7 +132,8 @@ impl<'a> Bins<'a> {
                 for &number in &self.cells[i * self.side + j] {
                     let shape = &self.shapes[number];
                     let extents = [0, 1].map(|axis| shape.bounds().extent(axis));
-                    // A shape in several of the cells is visited in the first of them.
+                    // A shape that overlaps several of these cells is visited only in the first
+                    // such cell.
                     let first = [(0, *x.start()), (1, *y.start())]
                         .map(|(axis, start)| self.cell(axis, extents[axis][0]).max(start));
                     let meets = |axis: usize| {

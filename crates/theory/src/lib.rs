@@ -4,26 +4,27 @@
 //! from specular surfaces ([`rays`]) or from a surface with a BRDF ([`scattering`]).
 //!
 //! The input is a [`Chain`]: a light, travel, opaque shapes, half-planes and cosine gratings in
-//! planes, and the cosine and diffuse reflection of a receiver. The output is the values a
+//! planes, and the cosine and diffuse reflection of a receiver. The output is the values that a
 //! measurement would have without noise: the [`slices`] of the windowed spectrum, an estimate of
-//! their error ([`quadrature_error`]), their [`derivative`] with respect to any number of the
+//! their error ([`quadrature_error`]), their [`derivative`] with respect to any parameter of the
 //! chain, and the [`projection`] on (x, u).
 //!
-//! Travel is a shear of (position, slope), so every edge stays a straight line. Every field is then
-//! a signed sum of products of two convex polygons, one in (x, u) and one in (y, v); windows and
-//! gratings are sums of cosines. The transform of such a polygon is known in closed form: no
-//! quadrature, no grid, no aliasing. A disc is a weighted sum of rectangles, and a factor of slope
-//! is a sum of products of cosine series; both sums converge exponentially.
+//! Travel is a shear of (position, slope), so every edge stays a straight line. Every field is
+//! then a signed sum of products of two convex polygons, one in (x, u) and one in (y, v); windows
+//! and gratings are sums of cosines. The transform of such a polygon has a closed form, which
+//! requires no quadrature and no grid and has no aliasing. A disc is a weighted sum of rectangles,
+//! and a factor of slope is a sum of products of cosine series; both sums converge exponentially.
 //!
-//! [`geometry`] has the steps of a light path that bend it (incidence, curvature, mirrors,
+//! [`geometry`] contains the steps that bend a light path (incidence, curvature, mirrors,
 //! refraction, lenses) as affine maps of rays, with their effect on spectra and covariances; a
-//! chain does not use them. [`rays`] predicts light behind mirrors, refracting surfaces and lenses
-//! in two ways: exactly, by following rays; and to first order, by a chain of those maps derived
-//! from the same surfaces. [`covariance`] follows second moments of spectra along the same paths.
-//! [`shading`] has cosines, BRDF lobes, Fresnel factors, textures and environments, in 2D.
+//! [`Chain`] does not use these maps. [`rays`] predicts light behind mirrors, refracting surfaces
+//! and lenses in two ways: exactly, by following rays; and to first order, by a chain of those
+//! maps derived from the same surfaces. [`covariance`] follows second moments of spectra along the
+//! same paths. [`shading`] has cosines, BRDF lobes, Fresnel factors, textures and environments, in
+//! 2D.
 //!
-//! This crate has no access to scenes, photons or measured spectra; otherwise its agreement with a
-//! measurement would be no evidence.
+//! This crate has no access to scenes, photons or measured spectra, so agreement between a
+//! prediction and a measurement is evidence for both.
 //!
 //! ```
 //! use etendue_field::{FrequencyAxis, Light, Mask, Profile, Rectangle, Shape, SliceGrid, Window};

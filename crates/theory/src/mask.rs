@@ -13,7 +13,7 @@ pub(crate) struct Masks<'a> {
 }
 
 impl<'a> Masks<'a> {
-    /// Takes masks with their distances from the light, metres.
+    /// Prepares masks, given with their distances from the light in metres, and obstacles.
     pub(crate) fn new(layers: &'a [(f64, Mask)], obstacles: &'a [Obstacle]) -> Self {
         let barriers = layers.iter();
         Self {
@@ -22,7 +22,7 @@ impl<'a> Masks<'a> {
         }
     }
 
-    /// Returns the share of radiance that passes the masks of the first leg along the ray with
+    /// Returns the fraction of radiance that passes the masks of the first leg, for the ray with
     /// slopes (u, v) through a point.
     pub(crate) fn transmittance(&self, point: DVec3, [u, v]: [f64; 2]) -> f64 {
         let mut passes = 1.0;

@@ -1,4 +1,4 @@
-//! The interface that all models of theory share.
+//! The trait that all models for predictions implement.
 
 use crate::nets::{RayBudget, RayNets};
 use crate::parameter::{New, Parameter};
@@ -15,11 +15,11 @@ pub trait Model: Clone {
     /// Returns the light source.
     fn light(&self) -> &Light;
 
-    /// Returns the parameters that can be estimated from a measurement, in the order light meets
-    /// them.
+    /// Returns the parameters that can be estimated from a measurement, in the order of
+    /// propagation.
     fn parameters(&self) -> Vec<Parameter>;
 
-    /// Returns the name of a parameter in words, e.g. "travel light to blockers".
+    /// Returns the readable name of a parameter, e.g. "travel light to blockers".
     fn name(&self, parameter: Parameter) -> String;
 
     /// Replaces the value of a parameter by `new(value)`. Returns `None` if the model does not have
@@ -30,14 +30,14 @@ pub trait Model: Clone {
     /// given parameters.
     fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: RayBudget) -> Predicted;
 
-    /// Calls `then` with the light field as nets of rays, drawn as [`predict`](Self::predict) draws
-    /// them. Does not call `then` if no ray arrives.
+    /// Calls `then` with the light field as nets of rays, which are sampled in the same way as in
+    /// [`predict`](Self::predict). Does not call `then` if no ray arrives.
     fn with_rays(&self, over: Over<'_>, budget: RayBudget, then: &mut dyn FnMut(&dyn RayNets));
 
     /// Estimates the work of a prediction.
     fn work(&self, over: Over<'_>, budget: RayBudget) -> PredictionWork;
 
-    /// Returns the unit of a parameter; empty for a pure number.
+    /// Returns the unit of a parameter, or an empty string for a dimensionless parameter.
     fn unit(&self, parameter: Parameter) -> &'static str {
         parameter.unit(self.light())
     }
@@ -65,7 +65,7 @@ pub trait Model: Clone {
 /// A system of surfaces, and the plane at which its light is observed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Observed<S> {
-    /// The light, and the surfaces it meets.
+    /// The light and the surfaces on its path.
     pub system: S,
     /// The plane at which the light is observed.
     pub plane: Plane,
@@ -74,13 +74,14 @@ pub struct Observed<S> {
 /// A model with a parameter slightly increased and slightly decreased.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ShiftedModels<M> {
-    /// The increased minus the decreased value of the parameter, in its unit.
+    /// The difference between the increased and the decreased value of the parameter, in the
+    /// parameter's unit.
     pub(crate) apart: f64,
-    /// The models with the larger and with the smaller value.
+    /// The models with the increased and with the decreased value of the parameter.
     pub(crate) sides: [M; 2],
 }
 
-/// The step of a derivative, as a share of the parameter's scale.
+/// The step of a finite-difference derivative, as a fraction of the parameter's scale.
 const STEP: f64 = 1e-3;
 
 impl<M: Model> ShiftedModels<M> {
@@ -92,7 +93,8 @@ impl<M: Model> ShiftedModels<M> {
 }
 
 impl<M> ShiftedModels<M> {
-    /// Increases and decreases a parameter by a step, and converts both models by `into`.
+    /// Builds the models with a parameter increased and decreased by a step, and converts both
+    /// models by `into`.
     pub(crate) fn new<A: Model>(
         model: &A,
         parameter: Parameter,

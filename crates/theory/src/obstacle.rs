@@ -10,24 +10,25 @@ use glam::DVec3;
 pub struct Obstacle {
     /// Name, for messages.
     pub name: String,
-    /// The form of the obstacle.
+    /// The shape of the obstacle and its position.
     pub form: ObstacleForm,
 }
 
-/// The form of an obstacle.
+/// The shape and position of an obstacle.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ObstacleForm {
-    /// A mask across the first leg that stops light on all legs from a given one on. If that leg
-    /// is not the first, the mask is among the masks of the first leg too.
+    /// A mask across the first leg that stops light on leg `from` and all later legs. If `from` is
+    /// not the first leg, the mask is also among the masks of the first leg.
     Mask {
-        /// The index of the first leg on which the mask counts.
+        /// The index of the first leg on which this obstacle blocks light.
         from: usize,
         /// Distance of the mask's plane from the light, metres.
         distance: f64,
         /// The mask, as a function of x and y.
         mask: Mask,
     },
-    /// An opaque rectangle centred on the origin of a frame, perpendicular to D.
+    /// An opaque rectangle that is centred on the origin of a frame and perpendicular to the
+    /// frame's D.
     Rectangle {
         /// The frame of the rectangle.
         frame: Frame,
@@ -57,7 +58,7 @@ enum Ready<'a> {
     },
 }
 
-/// Relative error of a distance that may come from rounding.
+/// Maximum relative rounding error of a distance.
 pub(crate) const ROUNDING: f64 = 1e-9;
 
 impl<'a> PreparedObstacles<'a> {
@@ -75,8 +76,8 @@ impl<'a> PreparedObstacles<'a> {
         Self(ready.collect())
     }
 
-    /// Returns the share of a ray's radiance that passes over the first `length` metres of this
-    /// leg.
+    /// Returns the fraction of a ray's radiance that passes the obstacles over the first `length`
+    /// metres of the leg with index `leg`.
     pub(crate) fn passes(&self, leg: usize, ray: &LegRay, length: f64) -> f64 {
         let start = ROUNDING * ray.point.length();
         let is_between = |t: f64| start < t && t < length;
@@ -147,7 +148,8 @@ fn on_rectangle(frame: &Frame, size: [f64; 2], ray: &LegRay) -> Option<f64> {
     is_inside.then_some(t)
 }
 
-/// Returns both intersections of a ray with the quadric, where they lie on the patch.
+/// Returns the distances to both intersections of a ray with the patch's quadric, or `None` for an
+/// intersection that is not on the patch.
 pub(crate) fn on_patch(patch: &Patch, ray: &LegRay) -> [Option<f64>; 2] {
     let point = patch.frame.to_local(ray.point);
     let direction = patch.frame.vector_to_local(ray.direction);
@@ -209,8 +211,8 @@ mod tests {
         assert!(stops(&from(0), 0, &RAY, 0.6) && !stops(&from(1), 1, &RAY, 0.4));
     }
 
-    /// Tests a square, a bowl with its vertex on the square, and two triangles that cover the
-    /// square.
+    /// Tests which rays are stopped by a square, by a bowl with its vertex on the square, and by
+    /// two triangles that cover the square.
     #[test]
     fn what_is_in_the_way_stops_rays() {
         let frame = Frame::new(DVec3::new(0.0, 0.0, 0.5), DVec3::Z, DVec3::X).unwrap();

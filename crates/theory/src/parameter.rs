@@ -6,36 +6,37 @@ use etendue_field::{Light, Patch, Shape};
 /// the elements of a system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parameter {
-    /// The side of a rectangular light along X (the other side keeps the proportion), or the radius
-    /// of a disc.
+    /// The side along X of a rectangular light, whose aspect ratio is constant, or the radius of a
+    /// disc.
     SourceSize,
     /// The exponent n of a spot's cosⁿθ.
     SpotExponent,
-    /// The first width of a picture; the second keeps the proportion.
+    /// The first width of a light's picture; the ratio of the two widths is constant.
     ImageWidth,
     /// The distance of a step of travel. In a system, the length of the central ray from an
-    /// element, or from the light (0), to the next element or the plane. Everything after it moves
-    /// along D.
+    /// element, or from the light (0), to the next element or the plane. All elements and the
+    /// plane after this distance move along D.
     Travel(usize),
     /// The side along X, or the radius, of the first shape of an opaque mask. All shapes of the
-    /// mask scale by the same factor; their centres stay.
+    /// mask scale by the same factor about their centres.
     BlockerSide(usize),
-    /// The edge of the first half-plane of an opaque mask; nothing else moves.
+    /// The edge of the first half-plane of an opaque mask; the mask's other edges do not move.
     HalfPlaneEdge(usize),
     /// The frequency of a grating.
     GratingFrequency(usize),
     /// The phase of a grating.
     GratingPhase(usize),
-    /// The angle of incidence θ₀ of the central ray: the patch alone turns about B.
+    /// The angle of incidence θ₀ of the central ray on a patch; a change turns only this patch
+    /// about B.
     Incidence(usize),
-    /// A curvature of a patch, k₁ (0) or k₂ (1). All curvatures equal to this one change with it,
-    /// and so does k₃. The vertex stays.
+    /// A curvature of a patch, k₁ (0) or k₂ (1). All curvatures of the patch that are equal to
+    /// this curvature change with it, and so does k₃. The patch's vertex does not move.
     Curvature(usize, usize),
     /// The index of refraction of the denser side of a surface.
     Index(usize),
     /// The focal length of a lens.
     FocalLength(usize),
-    /// The albedo, or factor, of a BRDF.
+    /// The albedo of a BRDF, which is a factor of its value.
     Albedo,
     /// The exponent or the roughness of the BRDF's lobe.
     Lobe,
@@ -54,7 +55,7 @@ impl Parameter {
         }
     }
 
-    /// Returns the unit of the parameter; empty for a pure number.
+    /// Returns the unit of the parameter, or an empty string for a dimensionless parameter.
     pub(crate) fn unit(self, light: &Light) -> &'static str {
         match self {
             Self::ImageWidth if matches!(light, Light::Projector { .. }) => "",
@@ -82,7 +83,7 @@ impl Parameter {
         }
     }
 
-    /// Returns the name in words of a light's parameter, for a light with a name.
+    /// Returns the readable name of a light's parameter; `name` is the name of the light.
     pub(crate) fn name_of_light(self, light: &Light, name: &str) -> Option<String> {
         match (self, light) {
             (Self::SourceSize, Light::Area { shape, .. }) => {
@@ -112,14 +113,15 @@ impl Parameter {
     }
 }
 
-/// Returns the curvatures of a patch that are parameters, as axes; equal curvatures are one
-/// parameter.
+/// Returns the axes of the curvatures of a patch that are parameters; equal curvatures are a
+/// single parameter.
 pub(crate) fn curvatures(patch: &Patch) -> Vec<usize> {
     let [k1, k2, _] = patch.curvature;
     if same(k1, k2) { vec![0] } else { vec![0, 1] }
 }
 
-/// Changes the curvature of a patch along an axis, and all curvatures equal to it.
+/// Changes the curvature of a patch along an axis, and all curvatures of the patch that are equal
+/// to it.
 pub(crate) fn change_curvature(patch: &mut Patch, axis: usize, new: New<'_>) -> Option<()> {
     let old = *patch.curvature.get(axis)?;
     let value = new(old);
@@ -139,7 +141,7 @@ fn same(a: f64, b: f64) -> bool {
 /// The new value of a parameter as a function of the old one.
 pub(crate) type New<'a> = &'a mut dyn FnMut(f64) -> f64;
 
-/// Returns the word for the size of a shape.
+/// Returns the word for the size of a shape in parameter names.
 pub(crate) fn size_word(shape: &Shape) -> &'static str {
     match shape {
         Shape::Rectangle(_) => "side",

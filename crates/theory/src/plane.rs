@@ -2,7 +2,7 @@
 
 use etendue_field::{Frame, Orientation, Patch, Quantity};
 
-/// The plane at which the light field is observed, after everything that light meets.
+/// The plane at which the light field is observed, behind all surfaces that light meets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
     /// The plane's frame, in coordinates of the frame at the light: O on the central ray, D along
@@ -16,16 +16,17 @@ pub struct Plane {
     pub longitude: f64,
     /// The surface, for local normals; without it all normals are along D.
     pub patch: Option<Patch>,
-    /// Whether the plane observes light arriving at a surface; directions are then reversed. The
-    /// surface of arriving light is not among the elements; a surface that light leaves is the
-    /// last of them.
+    /// Whether the plane observes light that arrives at a surface, for which directions are
+    /// reversed. If light arrives at the plane's surface, this surface is not among the system's
+    /// elements. If light leaves the plane's surface, this surface is the last element.
     pub arriving: bool,
     /// The quantity recorded. Differential irradiance on a surface is radiance times cos θ cos² φ.
     pub quantity: Quantity,
 }
 
 impl Plane {
-    /// Observes radiance across the central ray of a frame, not on a surface.
+    /// Returns a plane perpendicular to the D of a frame that records radiance and is not on a
+    /// surface.
     #[must_use]
     pub fn orthogonal(frame: Frame) -> Self {
         Self {

@@ -13,10 +13,10 @@ pub struct Predicted {
     /// quadrature rules.
     pub replicates: Vec<Slices>,
     /// The relative error ‖error‖/‖F‖: the standard error of the mean of the replicates, or the
-    /// change under finer quadrature rules. Is `None` for a closed form; infinite if no ray
-    /// arrives.
+    /// change under finer quadrature rules. The error is `None` for a closed form, and infinite if
+    /// no ray arrives.
     pub error: Option<f64>,
-    /// ∫ L W without occluders: the scale with which the slices of a closed form are compared; zero
+    /// ∫ L W of the light without occluders, which is the scale for errors of a closed form; zero
     /// for nets.
     pub unblocked: f64,
     /// The windowed light field integrated over y and v, as means over cells of (x, u).
@@ -27,7 +27,7 @@ pub struct Predicted {
     /// The derivatives of the slices with respect to each of the requested parameters, per unit of
     /// the parameter.
     pub derivatives: Vec<Slices>,
-    /// The prediction of the first-order chain of a reflection minus the slices, over the same
-    /// rays.
+    /// The prediction of the first-order chain of a reflection minus `slices`, computed with the
+    /// same rays.
     pub to_first_order: Option<Slices>,
 }

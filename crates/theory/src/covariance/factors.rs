@@ -1,7 +1,8 @@
 //! Covariances of the factors and lobes that a light field is multiplied by or convolved with.
 //!
-//! The covariance of a factor f is its second moment of power, ∫ f'²/(4π² ∫ f²), where that exists.
-//! A factor with edges has no such moment; it is replaced by the Gaussian of the same variance.
+//! The covariance of a factor f is the second moment of its power spectrum, ∫ f'²/(4π² ∫ f²), if
+//! this moment exists. A factor with edges has no such moment, so a Gaussian with the variance of
+//! the factor replaces it.
 
 use crate::geometry::{Matrix, diagonal};
 use etendue_field::{Grating, Lobe, Mask, Profile, Shape, Window};
@@ -12,15 +13,15 @@ fn gaussian(variance: f64) -> f64 {
     1.0 / (8.0 * PI * PI * variance)
 }
 
-/// Returns the covariance of the Gaussian that replaces an opening of half-width r and has its
-/// variance, r²/3.
+/// Returns the covariance of the Gaussian with the variance r²/3 that replaces an opening of
+/// half-width r.
 fn opening(half_width: f64) -> f64 {
     gaussian(half_width * half_width / 3.0)
 }
 
-/// Returns the covariance of one profile of a window, in cycles per unit, squared. It is 1/12h²
-/// for Hann, and 1/4πw² for exp(−πt²/w²), ignoring its truncation. A box has edges, so a Gaussian
-/// of the same variance replaces it.
+/// Returns the covariance of one profile of a window, in cycles per unit, squared. The covariance
+/// is 1/12h² for a Hann profile of half-width h, and 1/4πw² for a Gaussian exp(−πt²/w²) without
+/// truncation. A box profile has edges, so a Gaussian of the same variance replaces the box.
 #[must_use]
 pub fn profile(profile: &Profile) -> f64 {
     match *profile {
@@ -38,8 +39,9 @@ pub fn window(window: &Window) -> Matrix<4> {
 }
 
 /// Returns the covariance of a cosine grating ½(1 + m cos(2πft + p)), in cycles per unit, squared:
-/// the variance f² m²/(2 + m²) of its three lines, weighted by their power. It adds to the
-/// variance of the light where replicas of the spectrum do not overlap.
+/// the variance f² m²/(2 + m²) of the grating's three spectral lines, weighted by their power. If
+/// the replicas of the light's spectrum do not overlap, the covariance adds to the covariance of
+/// the light.
 #[must_use]
 pub fn grating(grating: &Grating) -> f64 {
     let square = grating.modulation * grating.modulation;
@@ -47,9 +49,10 @@ pub fn grating(grating: &Grating) -> f64 {
 }
 
 /// Returns the covariance of a mask, in the coordinates of its own plane. An opaque mask is
-/// treated as an opening about the central ray. The opening is the largest disc that is free of
-/// shapes, narrowed along an axis by half-planes. (The course notes of Belcour 2016 take the
-/// largest unoccluded disc.) Returns `None` if the central ray is blocked, or touches an edge.
+/// treated as an opening about the central ray. The opening is the largest disc about the central
+/// ray that contains no shape; half-planes narrow the opening along their axis. (The course notes
+/// of Belcour 2016 use the largest unoccluded disc.) Returns `None` if the mask blocks the central
+/// ray or has an edge on it.
 #[must_use]
 pub fn mask(mask: &Mask) -> Option<Matrix<4>> {
     let mut factor = [[0.0; 4]; 4];
@@ -75,8 +78,8 @@ pub fn mask(mask: &Mask) -> Option<Matrix<4>> {
     Some(factor)
 }
 
-/// Returns the distance from the central ray to the nearest point of a shape that does not contain
-/// it.
+/// Returns the distance from the central ray to the nearest point of a shape; the ray must not
+/// pass through the shape.
 fn distance(shape: &Shape) -> f64 {
     match shape {
         Shape::Rectangle(rectangle) => {
@@ -87,15 +90,16 @@ fn distance(shape: &Shape) -> f64 {
     }
 }
 
-/// Returns the covariance of the cosine on a surface, cos⁺θ cos²φ over longitude and latitude:
-/// 1/4π² and 1/3π² cycles².
+/// Returns the covariance of the cosine factor cos⁺θ cos²φ on a surface: 1/4π² cycles² along the
+/// longitude θ and 1/3π² cycles² along the latitude φ.
 #[must_use]
 pub fn cosine() -> Matrix<4> {
     let square = PI * PI;
     diagonal([0.0, 0.0, 0.25 / square, 1.0 / (3.0 * square)])
 }
 
-/// Returns the covariance of the factor G = (1 + u² + v²)⁻² over slopes: 0.3/π² cycles² along both.
+/// Returns the covariance of the factor G = (1 + u² + v²)⁻² over slopes: 0.3/π² cycles² along each
+/// of u and v.
 #[must_use]
 pub fn slope_cosine() -> Matrix<4> {
     let along = 0.3 / (PI * PI);
@@ -106,10 +110,11 @@ pub fn slope_cosine() -> Matrix<4> {
 /// angle θ₀ to the normal. Returns `None` for Lambert's lobe, which is uniform over all
 /// directions.
 ///
-/// Phong's cosⁿ is a Gaussian of variance 1/n, to first order in 1/n. Microfacets that tilt by τ
-/// turn light by 2τ in the plane of incidence, and by 2τ cos θ₀ out of it, so Beckmann's variances
-/// are 2α² and 2α² cos² θ₀. GGX has no variance; the variance of its power spectrum gives 5α²/3.
-/// Shadowing, the Fresnel factor and the factor 1/(4 cos θi cos θo) are left out.
+/// Phong's cosⁿ is a Gaussian of variance 1/n, to first order in 1/n. A microfacet that is tilted
+/// by τ turns light by 2τ in the plane of incidence, and by 2τ cos θ₀ perpendicular to this plane,
+/// so the variances of a Beckmann lobe are 2α² and 2α² cos² θ₀. A GGX lobe has no variance, so
+/// 5α²/3 is used, which corresponds to the variance of its power spectrum. Shadowing, the Fresnel
+/// factor and the factor 1/(4 cos θi cos θo) are omitted.
 #[must_use]
 pub fn lobe(lobe: &Lobe, theta0: f64) -> Option<Matrix<4>> {
     let microfacets = |variance: f64| {

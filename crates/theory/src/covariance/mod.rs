@@ -14,9 +14,10 @@
 //! | lobe of a BRDF | [`convolved`](SpectralCovariance::convolved) | (C⁻¹ + B⁻¹)⁻¹ |
 //! | diffuse reflection | [`diffused`](SpectralCovariance::diffused) | the same with B = 0 along both angles |
 //!
-//! [`window`], [`mask`], [`grating`], [`cosine`] and [`lobe`] give W and B of the elements of a
-//! scene; [`Traced`] follows a whole chain. A field with edges has no moments, but covariance
-//! tracing treats it as a Gaussian. docs/covariance.md shows where this holds.
+//! [`window`], [`mask`], [`grating`], [`cosine`] and [`lobe`] return W and B of the elements of a
+//! scene, and [`Traced`] follows a complete chain. The spectrum of a field with edges has no
+//! second moments, but covariance tracing treats such a field as a Gaussian. docs/covariance.md
+//! shows for which scenes this approximation holds.
 
 mod factors;
 mod pair;

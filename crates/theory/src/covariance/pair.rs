@@ -5,15 +5,16 @@ use crate::geometry::{
 };
 use std::f64::consts::PI;
 
-/// The factor in S⁻¹ = 8π² C, where C is the covariance of |L|²; for that of |L| it would be 4π².
+/// The factor 8π² in S⁻¹ = 8π² C, where C is the covariance of |L|². (If C were the covariance
+/// of |L|, the factor would be 4π².)
 const POWER: f64 = 8.0 * PI * PI;
 
 /// The covariance C of the power spectrum of a Gaussian light field over [ρx, ρy, νu, νv], in
 /// cycles² per squared unit of the coordinates.
 ///
-/// C is stored as P Q⁻¹. If light is unbounded along a coordinate, P is rank-deficient; if light
-/// comes from a point or in one direction, Q is. Operators handle both cases like any other
-/// matrix, without thresholds for small or large numbers.
+/// C is stored as P Q⁻¹. If light is unbounded along a coordinate, P is rank-deficient. If light
+/// comes from a point or has a single direction, Q is rank-deficient. Operators handle
+/// rank-deficient matrices without special cases or thresholds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpectralCovariance {
     p: Matrix<4>,
@@ -21,9 +22,9 @@ pub struct SpectralCovariance {
 }
 
 impl SpectralCovariance {
-    /// Returns the covariance of light with the variances S of a Gaussian over (x, y, u, v), in
-    /// squares of metres and slopes. A variance of zero stands for a point or a single direction,
-    /// an infinite one for unbounded light.
+    /// Returns the spectral covariance of light that is a Gaussian over (x, y, u, v) with the
+    /// given variances, in squares of metres and slopes. A variance of zero represents a point or
+    /// a single direction, and an infinite variance represents unbounded light.
     #[must_use]
     pub fn new(variance: [f64; 4]) -> Self {
         let is_flat = |s: f64| s == f64::INFINITY;
@@ -64,8 +65,8 @@ impl SpectralCovariance {
     }
 
     /// Returns the covariance after a convolution with a Gaussian of covariance s in the light
-    /// field, in squares of metres and radians: C⁻¹ grows by 8π² s. A covariance of zero, as for a
-    /// mirror, changes nothing.
+    /// field, in squares of metres and radians: C⁻¹ increases by 8π² s. If the covariance s is
+    /// zero, as for a mirror, C does not change.
     #[must_use]
     pub fn convolved(&self, kernel: &Matrix<4>) -> Self {
         let grown = product(kernel, &self.p).map(|row| row.map(|entry| POWER * entry));
@@ -75,13 +76,13 @@ impl SpectralCovariance {
         }
     }
 
-    /// Returns the covariance after light is integrated over all directions and spread uniformly
-    /// over them again, so that only the spectrum at ν = 0 remains. C⁻¹ keeps its block for
-    /// positions and becomes infinite along both angles.
+    /// Returns the covariance after diffuse reflection, which integrates light over all directions
+    /// and spreads it uniformly over directions, so that only the spectrum at ν = 0 remains. The
+    /// block of C⁻¹ for positions does not change, and C⁻¹ becomes infinite along both angles.
     #[must_use]
     pub fn diffused(&self) -> Self {
-        // Corresponding columns of P and Q are pairs (C w, w). Pairs without angular frequency
-        // stay as they are.
+        // The columns of P and Q form pairs (C w, w). Pairs without angular frequency do not
+        // change.
         let mut columns = [0, 1, 2, 3].map(|j| [&self.q, &self.p].map(|m| m.map(|row| row[j])));
         let mut goes = [false; 4];
         for row in [2, 3] {
@@ -91,7 +92,7 @@ impl SpectralCovariance {
                 break;
             };
             if size(pivot) <= 0.0 {
-                // The light is uniform along this angle already.
+                // The light is already uniform along this angle, so nothing changes.
                 continue;
             }
             goes[pivot] = true;

@@ -1,4 +1,4 @@
-//! Covariance tracing along the chains of this crate, step by step in the order light meets them.
+//! Covariance tracing along the chains of this crate, step by step in the order of propagation.
 
 use super::factors;
 use super::pair::SpectralCovariance;
@@ -15,10 +15,11 @@ use std::fmt::{self, Display};
 /// The reason why covariance cannot be traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Untraced {
-    /// A mask stops the central ray or has an edge on it, so the mask is not a window about the
-    /// ray.
+    /// A mask blocks the central ray or has an edge on it, so the mask cannot be treated as a
+    /// window about the ray.
     Blocked,
-    /// An obstacle stands around the path, so the obstacle is not a window about the ray.
+    /// An obstacle stands near the path, and an obstacle cannot be treated as a window about the
+    /// central ray.
     Obstacles,
     /// The light is a map or several lobes, which no Gaussian represents.
     Light,
@@ -138,7 +139,7 @@ fn of_light(light: &Light) -> Result<SpectralCovariance, Untraced> {
         Light::Environment { environment } => {
             light_of([endless; 2], [sky_variance(environment)?; 2])
         }
-        // The rays of a file are no Gaussian light field: each ray is infinitely narrow.
+        // A list of rays is not a Gaussian light field, because each ray is infinitely narrow.
         Light::Rays { .. } => return Err(Untraced::Light),
     })
 }
@@ -151,8 +152,8 @@ fn variances(shape: &Shape) -> [f64; 2] {
     }
 }
 
-/// Multiplies light by the grating of a picture over positions or slopes; `first` is the index of
-/// the first position or slope coordinate.
+/// Returns light after multiplication by the grating of a light's picture; `first` is the index of
+/// the first coordinate (position or slope) of the picture.
 fn lined(light: &SpectralCovariance, image: &Image, first: usize) -> SpectralCovariance {
     image.grating.map_or(*light, |lines| {
         let mut factor = [[0.0; 4]; 4];
@@ -170,7 +171,8 @@ fn sky_variance(environment: &Environment) -> Result<f64, Untraced> {
     }
 }
 
-/// Returns the light after the masks of the first leg, and the distance it has travelled.
+/// Returns the covariance of light after the masks of the first leg, and the distance from the
+/// light to the last mask.
 fn past_masks(
     light: &Light,
     layers: &[(f64, Mask)],
@@ -193,7 +195,8 @@ fn moved(light: &SpectralCovariance, map: &AffineMap<4>) -> Result<SpectralCovar
     light.mapped(map).ok_or(Untraced::Lost)
 }
 
-/// Multiplies by the cosine if the plane records differential irradiance.
+/// Returns the covariance after multiplication by the cosine if the plane records differential
+/// irradiance, and an unchanged covariance otherwise.
 fn counted(
     light: &SpectralCovariance,
     quantity: Quantity,
@@ -208,7 +211,7 @@ fn counted(
     }
 }
 
-/// Returns the covariance whose only variance is along the direction (a, b) of positions.
+/// Returns a covariance matrix that is non-zero only along the direction (a, b) of positions.
 fn along_line([a, b]: [f64; 2], variance: f64) -> Matrix<4> {
     let entry = |p: f64, q: f64| p * q * variance;
     let none = [0.0; 4];

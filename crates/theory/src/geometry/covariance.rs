@@ -1,7 +1,7 @@
 //! Covariances of Gaussian light fields, for chains along which only second moments are followed.
 //!
-//! A field exp(−½ zᵀ S⁻¹ z) has the covariance S, and every step keeps it Gaussian. S changes by
-//! [`covariance`](super::AffineMap::covariance) under an [`AffineMap`](super::AffineMap), by
+//! A field exp(−½ zᵀ S⁻¹ z) has the covariance S, and remains Gaussian under every step. S changes
+//! by [`covariance`](super::AffineMap::covariance) under an [`AffineMap`](super::AffineMap), by
 //! [`gaussian_window`] under a product, and by [`gaussian_lobe`] under a convolution over angle.
 
 use super::matrix::{self, Matrix, congruent, diagonal, dot, product, sum, times};
@@ -13,7 +13,7 @@ use std::f64::consts::{PI, TAU};
 /// effect.
 ///
 /// The result is computed as S (1 + diag(1/std²) S)⁻¹, which allows a singular S, such as light
-/// from a point. Returns `None` if that inverse does not exist, which does not occur for any
+/// from a point. Returns `None` if 1 + diag(1/std²) S has no inverse, which cannot occur if S is a
 /// covariance.
 #[must_use]
 pub fn gaussian_window<const N: usize>(before: &Matrix<N>, std: [f64; N]) -> Option<Matrix<N>> {
@@ -22,9 +22,9 @@ pub fn gaussian_window<const N: usize>(before: &Matrix<N>, std: [f64; N]) -> Opt
     Some(product(before, &kept))
 }
 
-/// Returns the covariance after a convolution over directions with a Gaussian of standard deviation
-/// `std`, in radians, the same along both angles in 4D: S_θθ and S_φφ grow by std². This is a
-/// glossy lobe of unit integral (Durand et al. 2005, Eq. 16).
+/// Returns the covariance after a convolution over angles with a Gaussian of standard deviation
+/// `std`, in radians: S_θθ and, in 4D, S_φφ increase by std². The Gaussian represents a glossy
+/// lobe of unit integral (Durand et al. 2005, Eq. 16).
 #[must_use]
 pub fn gaussian_lobe<const N: usize>(before: &Matrix<N>, std: f64) -> Matrix<N> {
     let blur = array::from_fn(|i| if i < N / 2 { 0.0 } else { std * std });

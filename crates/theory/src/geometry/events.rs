@@ -1,4 +1,5 @@
-//! Complete events at a surface, from light frame to light frame, composed of the single steps.
+//! Complete reflections and refractions at a surface, composed of single steps, from the frame of
+//! the arriving central ray to the frame of the leaving central ray.
 
 use super::{AffineMap, Matrix, Media};
 
@@ -59,8 +60,8 @@ impl AffineMap<4> {
             .then(&Self::outgoing(-theta0))
     }
 
-    /// Refraction at a surface with the shape operator M, met at the angle θ₀. It is composed as in
-    /// 2D; the step back uses the cosine of θ₂.
+    /// Refraction at a surface with the shape operator M, met at the angle θ₀. The event is
+    /// composed of the same steps as in 2D; the step back uses the cosine of θ₂.
     #[must_use]
     pub fn refracting_surface(theta0: f64, shape: Matrix<2>, media: &Media) -> Option<Self> {
         let theta2 = media.refracted(theta0)?;

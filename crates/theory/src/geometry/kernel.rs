@@ -3,11 +3,11 @@
 use crate::numerics::sinc::sinc;
 use std::f64::consts::{PI, TAU};
 
-/// The step of the trapezoid rule in ln t. Twice this step gives the same values up to rounding
-/// error, for frequencies from 10⁻¹² to 160.
+/// The step of the trapezoid rule in ln t. For frequencies from 10⁻¹² to 160, a rule with twice
+/// this step gives the same values up to rounding error.
 const STEP: f64 = 1.0 / 32.0;
-/// Frequencies beyond this are not evaluated: the recurrence takes one step for each third of a
-/// cycle per radian.
+/// Maximum frequency at which the kernel is evaluated; the recurrence takes a step for each third
+/// of a cycle per radian.
 const MAX_FREQUENCY: f64 = 1e5;
 
 /// The kernel K(Ωv, Ωθ) = ∫ e^(2πi(Ωv tan t − Ωθ t)) dt over |t| < π/2 of the change from slopes to
@@ -49,17 +49,19 @@ fn scaled(a: f64, b: f64) -> f64 {
     }
 }
 
-/// Integrates f(t) over t > 0, for integrands that fall as e^(−t) or faster and vary on no other
-/// scale than ln t.
+/// Integrates f(t) over t > 0, for integrands that fall as e^(−t) or faster and are smooth
+/// functions of ln t.
 fn integral(f: impl Fn(f64) -> f64) -> f64 {
-    // The integral runs from e^−40 to e^4.2 = 67; the rest is less than 1e-17.
+    // The integral is truncated to t from e^−40 to e^4.2 = 67; the omitted part is less than
+    // 1e-17.
     let nodes = (-1280..=134).map(|i| libm::exp(f64::from(i) * STEP));
     nodes.map(|t| t * f(t)).sum::<f64>() * STEP
 }
 
 /// Returns K for b ≥ 1 from its values at two smaller b. With m = b/2, (m + 1) K(m + 1) = 2(a − m)
 /// K(m) − (m − 1) K(m − 1), which is the recurrence of Tricomi's U (DLMF 13.3.7). Both solutions
-/// of this recurrence oscillate where b > a, and K is the one that grows where b < a.
+/// of this recurrence oscillate if b > a. If b < a, K is the solution that grows, so the
+/// recurrence is stable.
 fn climbed(a: f64, b: f64) -> f64 {
     const HUGE: f64 = 1e100;
     let steps = (0.5 * (b + 1.0)).floor();

@@ -20,14 +20,14 @@ pub struct AffineMap<const N: usize> {
 const STEP: f64 = 1e-5;
 
 impl<const N: usize> AffineMap<N> {
-    /// Returns the affine map tangent to another map of rays at zero, by differences of fourth
-    /// order: accurate to some 10⁻¹⁰ per metre and radian. Returns `None` if a ray near zero does
-    /// not arrive.
+    /// Returns the affine map that is tangent at the ray z = 0 to another map of rays, by
+    /// differences of fourth order, accurate to about 10⁻¹⁰ per metre and radian. Returns `None`
+    /// if a ray near z = 0 does not arrive.
     pub(crate) fn touching(map: impl Fn([f64; N]) -> Option<[f64; N]>) -> Option<Self> {
         Self::touching_by(STEP, map)
     }
 
-    /// Returns the tangent map by differences of this step.
+    /// Returns the tangent map by differences with the given step.
     fn touching_by(step: f64, map: impl Fn([f64; N]) -> Option<[f64; N]>) -> Option<Self> {
         let offset = map([0.0; N])?;
         let mut matrix: Matrix<N> = [[0.0; N]; N];
@@ -46,9 +46,10 @@ impl<const N: usize> AffineMap<N> {
         Some(Self { matrix, offset })
     }
 
-    /// Returns the distance of this map from the tangent at zero to another map of rays, measured
-    /// as by [`apart`](Self::apart). The error of the finite differences is subtracted, because it
-    /// matters where the other map is strongly curved.
+    /// Returns the distance, as defined by [`apart`](Self::apart), between this map and the
+    /// tangent at the ray z = 0 to another map of rays. The estimated error of the finite
+    /// differences is subtracted from the distance, because this error is noticeable if the other
+    /// map is strongly curved.
     pub(crate) fn off_touching(
         &self,
         map: impl Fn([f64; N]) -> Option<[f64; N]>,
@@ -59,9 +60,9 @@ impl<const N: usize> AffineMap<N> {
         Some((self.apart(&fine, half) - open).max(0.0))
     }
 
-    /// Returns the distance of this map from another, in half-widths of a window. It is the largest
-    /// difference between the two images of a ray, over all rays that either map keeps within the
-    /// window.
+    /// Returns the distance between this map and another map, in half-widths of a window. The
+    /// distance is the largest difference between the images of a ray under the two maps, over all
+    /// rays that either map takes into the window.
     pub(crate) fn apart(&self, other: &Self, half: &[f64; N]) -> f64 {
         let mut most = 0.0_f64;
         for (row, half) in half.iter().enumerate() {
@@ -93,8 +94,7 @@ impl<const N: usize> AffineMap<N> {
         Self::linear(diagonal([1.0; N]))
     }
 
-    /// Returns this map followed by `next`: steps are written in the order in which light meets
-    /// them.
+    /// Returns the map that applies this map first and then `next`.
     #[must_use]
     pub fn then(&self, next: &Self) -> Self {
         Self {
@@ -114,8 +114,8 @@ impl<const N: usize> AffineMap<N> {
         })
     }
 
-    /// Returns det A, the factor by which volumes of ray space grow. It is negative where
-    /// orientation flips, as on the path onto a surface.
+    /// Returns det A, the factor by which volumes of ray space grow. The determinant is negative
+    /// if the map reverses orientation, such as the step onto a surface.
     #[must_use]
     pub fn det(&self) -> f64 {
         matrix::determinant(&self.matrix)
@@ -133,8 +133,8 @@ impl<const N: usize> AffineMap<N> {
         times(&transpose(&self.matrix), &omega)
     }
 
-    /// Returns the frequency that spectral content at Ω moves to: A⁻ᵀ Ω, the inverse of
-    /// [`transpose_apply`](Self::transpose_apply). Returns `None` as for
+    /// Returns A⁻ᵀ Ω, the frequency to which the map moves spectral power at Ω. This is the
+    /// inverse of [`transpose_apply`](Self::transpose_apply). Returns `None` as for
     /// [`inverse`](Self::inverse).
     #[must_use]
     pub fn content(&self, omega: [f64; N]) -> Option<[f64; N]> {
@@ -167,22 +167,22 @@ impl<const N: usize> AffineMap<N> {
         congruent(&self.matrix, before)
     }
 
-    /// Returns the covariance of |L| or |L|² after the map, A⁻ᵀ S A⁻¹, for S before it. Returns
-    /// `None` as for [`inverse`](Self::inverse).
+    /// Returns the covariance of |L| or |L|² after the map, A⁻ᵀ S A⁻¹, where S is this covariance
+    /// before the map. Returns `None` as for [`inverse`](Self::inverse).
     #[must_use]
     pub fn spectral_covariance(&self, before: &Matrix<N>) -> Option<Matrix<N>> {
         let inverse = matrix::inverse(&self.matrix)?;
         Some(congruent(&transpose(&inverse), before))
     }
 
-    /// Returns how far the map is from conserving étendue: the largest entry of |Aᵀ J A − r J|. J
+    /// Returns the largest entry of |Aᵀ J A − r J|, which is zero if the map conserves étendue. J
     /// is [[0, 1], [−1, 0]] in blocks, and r is the index of refraction before the map divided by
-    /// that after it.
+    /// the index after the map.
     ///
     /// The result is zero between two planes perpendicular to the light, whatever is between them.
-    /// In 2D, n dx du is conserved, and the result is |det A − r|; in 4D, the Lagrange invariant
-    /// of every pair of rays is conserved. Maps onto or off a surface have one cosine too many or
-    /// too few, so their result is not zero.
+    /// In 2D the conserved quantity is n dx du, and the result is |det A − r|. In 4D the conserved
+    /// quantity is the Lagrange invariant of every pair of rays. Maps onto or off a surface have
+    /// one cosine too many or too few, so their result is not zero.
     #[must_use]
     pub fn symplectic_defect(&self, index_ratio: f64) -> f64 {
         let half = N / 2;
@@ -199,8 +199,9 @@ impl<const N: usize> AffineMap<N> {
 }
 
 impl AffineMap<2> {
-    /// Returns the distance after which rays that were parallel before the map meet, −A₀₀/A₁₀
-    /// metres; negative if behind. Returns `None` if they stay parallel.
+    /// Returns the distance behind the map's end, −A₀₀/A₁₀ metres, at which rays that were
+    /// parallel before the map meet; the distance is negative for a virtual focus. Returns `None`
+    /// if the rays stay parallel.
     #[must_use]
     pub fn focus(&self) -> Option<f64> {
         let [[x, _], [slope, _]] = self.matrix;

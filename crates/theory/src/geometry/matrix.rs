@@ -30,7 +30,7 @@ pub(crate) fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
     (0..N).map(|i| a[i] * b[i]).sum()
 }
 
-/// Returns A z.
+/// Returns the product A z of a matrix and a vector.
 pub(crate) fn times<const N: usize>(a: &Matrix<N>, z: &[f64; N]) -> [f64; N] {
     a.map(|row| dot(&row, z))
 }
@@ -39,13 +39,13 @@ pub(crate) fn plus<const N: usize>(a: &[f64; N], b: &[f64; N]) -> [f64; N] {
     array::from_fn(|i| a[i] + b[i])
 }
 
-/// Returns A S Aᵀ.
+/// Returns the matrix A S Aᵀ.
 pub(crate) fn congruent<const N: usize>(a: &Matrix<N>, s: &Matrix<N>) -> Matrix<N> {
     product(&product(a, s), &transpose(a))
 }
 
-/// Returns the block-diagonal matrix that applies one matrix to the coordinates (0, 2) and the
-/// other to (1, 3).
+/// Returns the matrix that applies the matrix `x` to the coordinates (0, 2) and the matrix `y` to
+/// the coordinates (1, 3).
 pub(crate) fn sections(x: &Matrix<2>, y: &Matrix<2>) -> Matrix<4> {
     let parts = [x, y];
     from_fn(|i, j| {
@@ -62,13 +62,13 @@ pub(crate) fn determinant<const N: usize>(a: &Matrix<N>) -> f64 {
     eliminate(*a).map_or_else(|zero| zero, |(determinant, _)| determinant)
 }
 
-/// Returns the inverse; `None` if a pivot is zero or not finite.
+/// Returns the inverse of a matrix, or `None` if a pivot of the elimination is zero or not finite.
 pub(crate) fn inverse<const N: usize>(a: &Matrix<N>) -> Option<Matrix<N>> {
     eliminate(*a).ok().map(|(_, inverse)| inverse)
 }
 
-/// Returns determinant and inverse, by elimination with row pivoting; the determinant alone if
-/// there is no inverse.
+/// Returns the determinant and the inverse of a matrix by elimination with row pivoting; if there
+/// is no inverse, returns the determinant as an error.
 fn eliminate<const N: usize>(mut a: Matrix<N>) -> Result<(f64, Matrix<N>), f64> {
     let mut inverse = diagonal([1.0; N]);
     let mut determinant = 1.0;
@@ -111,7 +111,8 @@ mod tests {
             [0.0, 1.0, 0.0, -1.0],
             [2.0, 0.0, -1.0, 0.5],
         ];
-        // The rows were swapped by hand: det = 21 from the blocks (0, 2) and (1, 3).
+        // The determinant 21 is the product of the determinants of the blocks (0, 2) and (1, 3),
+        // computed by hand.
         assert!((determinant(&a) - 21.0).abs() < 1e-13); // rounding of 21
         let unit = product(&a, &inverse(&a).unwrap());
         let one = diagonal([1.0; 4]);

@@ -2,9 +2,9 @@
 //!
 //! A ray is a point z of 2 or 4 coordinates, positions first: (x, u) or (x, y, u, v). A step maps
 //! it to z' = A z + t and preserves its radiance, and so maps the spectrum L to L'(Ω) = |det A|
-//! e^(−2πi Ω·t) L(Aᵀ Ω) (docs/theory.md (1)). An [`AffineMap`] is such a step; everything else here
-//! constructs one, or gives its effect on rays, spectra and covariances. Steps are chained by
-//! [`AffineMap::then`] in the order in which light meets them:
+//! e^(−2πi Ω·t) L(Aᵀ Ω) (docs/theory.md (1)). An [`AffineMap`] is such a step; the functions of
+//! this module construct maps, or return their effect on rays, spectra and covariances. Steps are
+//! chained by [`AffineMap::then`] in the order of propagation:
 //!
 //! | step | constructor | in Durand et al. 2005 |
 //! |---|---|---|
@@ -31,11 +31,11 @@
 //! longitude θ, latitude φ.
 //!
 //! **Order.** Travel, mirror and a thin lens are exact. A step between a light frame and a surface
-//! holds to first order in the size e of the neighbourhood: its relative error falls as e, and as
-//! e² at normal incidence.
+//! holds to first order in the size e of the neighbourhood: the relative error of the step falls
+//! as e, and at normal incidence as e².
 //!
-//! **The printed equations.** Some equations in the paper differ from these; [`Edition`] has both
-//! versions.
+//! **The printed equations.** Some equations of Durand et al. 2005 differ from the maps of this
+//! module; [`Edition`] contains both versions.
 //!
 //! ```
 //! use etendue_theory::geometry::AffineMap;

@@ -1,14 +1,15 @@
 //! The exact conversion between two-plane and plane-sphere coordinates, slopes and angles.
 //!
-//! Positions stay. In 2D the slope is v = tan θ. In 4D the direction is D + u X + v Y. With
-//! longitude θ and latitude φ the direction is cos φ (cos θ D + sin θ X) + sin φ Y, so u = tan θ
-//! and v = tan φ / cos θ (Durand et al. 2005, section 5.2, whose "co-latitude" φ is a latitude).
-//! The radiance keeps its value; a density must also be multiplied by the Jacobian. Angles are in
-//! radians, within ± π/2.
+//! The conversion does not change positions. In 2D the slope is v = tan θ. In 4D the direction is
+//! D + u X + v Y. With longitude θ and latitude φ the direction is cos φ (cos θ D + sin θ X) + sin
+//! φ Y, so u = tan θ and v = tan φ / cos θ (Durand et al. 2005, section 5.2, whose "co-latitude" φ
+//! is a latitude). Radiance does not change under the conversion; a density must be multiplied by
+//! the Jacobian. Angles are in radians, within ± π/2.
 //!
-//! The effect on a spectrum is not an affine map; in 2D it is the kernel
-//! [`plane_sphere_kernel`](super::plane_sphere_kernel). Treating slopes as angles is right to
-//! second order: frequencies are stretched by 1 + v² at the slope v.
+//! The effect of the conversion on a spectrum is not an affine map; in 2D the effect is an
+//! integral with the kernel [`plane_sphere_kernel`](super::plane_sphere_kernel). If slopes are
+//! treated as angles, the error is of second order: frequencies are stretched by 1 + v² at the
+//! slope v.
 
 /// Converts (x, v) to (x, θ).
 #[must_use]

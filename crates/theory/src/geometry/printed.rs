@@ -1,21 +1,22 @@
-//! The geometric operators as the paper prints them.
+//! The geometric operators as Durand et al. 2005 print them.
 
 use super::{AffineMap, Matrix, SpectrumMap};
 use std::f64::consts::TAU;
 
 /// The version of the geometric operators (docs/theory.md, section 7).
 ///
-/// The steps onto and off a surface, as Durand et al. 2005 print them, differ from ray geometry,
-/// and differ between text and table. Mirror and travel are printed correctly.
+/// The steps onto and off a surface in Durand et al. 2005 differ from ray geometry, and the
+/// paper's equations differ from its Table 1. The paper prints the mirror and travel steps
+/// correctly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edition {
-    /// The formulas that follow from ray geometry: the maps of this module.
+    /// The formulas that follow from ray geometry, which are the maps of [`geometry`](super).
     Corrected,
     /// The paper's numbered Eqs. 9, 11 and 10, and for a surface in 3D the shear by M in the text
     /// after Eq. 19.
     Equations,
     /// The paper's Table 1, with its light incidence, curvature and outgoing angle. The table has
-    /// no row for 3D; there the shear by M has the sign of the table's curvature.
+    /// no row for 3D, so the shear by M is given the sign of the table's curvature.
     Table,
 }
 
@@ -75,7 +76,7 @@ impl Edition {
     }
 
     /// Light incidence in 4D, where (x, θ) change as in 2D. The paper does not mention that the
-    /// latitude flips; both versions here include it.
+    /// latitude changes its sign; this function includes the change of sign for every edition.
     #[must_use]
     pub fn incidence_4d(self, theta0: f64) -> SpectrumMap<4> {
         SpectrumMap::sections(&self.incidence(theta0), &AffineMap::mirror().spectrum_map())
@@ -113,8 +114,8 @@ impl Edition {
             .then(&self.outgoing_4d(-theta0))
     }
 
-    /// Returns the sign of the shear by curvature, relative to ray geometry; Eq. 11 has the
-    /// opposite sign.
+    /// Returns the sign of the shear by curvature relative to the sign from ray geometry: −1 for
+    /// Eq. 11, which has the opposite sign, and 1 otherwise.
     fn sign(self) -> f64 {
         match self {
             Self::Corrected | Self::Table => 1.0,
@@ -126,8 +127,8 @@ impl Edition {
         shape.map(|row| row.map(|entry| self.sign() * entry))
     }
 
-    /// Returns the longitude whose cosine multiplies M. The text after Eq. 19 leaves the cosine
-    /// out, as if the longitude were 0.
+    /// Returns the longitude whose cosine multiplies M. The text after Eq. 19 omits the cosine, so
+    /// its longitude is 0.
     fn longitude(self, theta: f64) -> f64 {
         match self {
             Self::Corrected => theta,

@@ -7,19 +7,19 @@ use super::AffineMap;
 pub struct Media {
     /// Index n₁ of the medium in which light arrives.
     pub before: f64,
-    /// Index n₂ of the medium into which it continues.
+    /// Index n₂ of the medium into which the light continues.
     pub after: f64,
 }
 
 impl Media {
-    /// Returns n₁/n₂: the ratio that [`AffineMap::symplectic_defect`] takes, and the change of
-    /// étendue in (x, u) along each axis.
+    /// Returns n₁/n₂, the argument of [`AffineMap::symplectic_defect`]; this ratio is also the
+    /// factor by which dx du changes along each axis.
     #[must_use]
     pub fn index_ratio(&self) -> f64 {
         self.before / self.after
     }
 
-    /// Returns the same interface met from the other side.
+    /// Returns the indices of the same interface for light from the other side.
     #[must_use]
     pub fn reversed(&self) -> Self {
         Self {
@@ -31,7 +31,7 @@ impl Media {
     /// Returns the angle θ₂ of the refracted ray, n₁ sin θ₁ = n₂ sin θ₂ (Snell's law). Returns
     /// `None` under total internal reflection.
     ///
-    /// Like every angle on a surface, it is the direction from which light seems to come: the
+    /// Like every angle on a surface, θ₂ is the direction from which light seems to come: the
     /// refracted central ray runs along −(sin θ₂ T + cos θ₂ N).
     #[must_use]
     pub fn refracted(&self, theta1: f64) -> Option<f64> {

@@ -7,8 +7,9 @@ use std::f64::consts::TAU;
 
 /// The effect of a step on spectra: L'(Ω) = factor · e^(−2πi Ω·phase) L(matrix · Ω).
 ///
-/// Every [`AffineMap`] has one, with factor |det A|, matrix Aᵀ and phase t. It has a type of its
-/// own because a misprinted step need not correspond to any map of rays.
+/// Every [`AffineMap`] has a spectrum map with the factor |det A|, the matrix Aᵀ and the phase t.
+/// The spectrum map is a separate type because a misprinted step may not correspond to any map of
+/// rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpectrumMap<const N: usize> {
     /// The factor that multiplies the spectrum.
@@ -48,7 +49,7 @@ impl<const N: usize> SpectrumMap<N> {
 }
 
 impl SpectrumMap<4> {
-    /// Returns the step that applies one step to (Ωx, Ωu) and another to (Ωy, Ωv).
+    /// Returns the 4D step that applies the step `x` to (Ωx, Ωu) and the step `y` to (Ωy, Ωv).
     #[must_use]
     pub fn sections(x: &SpectrumMap<2>, y: &SpectrumMap<2>) -> Self {
         let [[x0, u0], [y0, v0]] = [x.phase, y.phase];

@@ -1,15 +1,15 @@
 //! Steps between the frame of the central ray, the surface it hits, and the frames of the surface's
 //! local normals.
 //!
-//! Angles of incidence θ₀ and outgoing angles θ₁ lie within ± π/2; at grazing incidence a scale is
+//! Angles of incidence θ₀ and outgoing angles θ₁ lie within ± π/2; at ± π/2 the scale 1/cos θ₀ is
 //! infinite. Signs follow the [module](super): with N up, positive angles lie to the right, and a
 //! mirror has θ₁ = −θ₀.
 
 use super::AffineMap;
 
 impl AffineMap<2> {
-    /// Light incidence: s = −x/cos θ₀, θᵢ = θ + θ₀. Light comes from the direction θ₀ and its
-    /// directions are flipped.
+    /// Light incidence: s = −x/cos θ₀, θᵢ = θ + θ₀. Light comes from the direction θ₀, and
+    /// directions of light are flipped.
     ///
     /// L'(Ωx, Ωθ) = e^(−2πi Ωθ θ₀)/cos θ₀ · L(−Ωx/cos θ₀, Ωθ). Eq. 9 of Durand et al. 2005 has cos
     /// θ₀ instead of 1/cos θ₀, in the factor and in the argument; Table 1 has cos θ₀ in the

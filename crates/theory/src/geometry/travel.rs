@@ -22,8 +22,8 @@ impl<const N: usize> AffineMap<N> {
 
     /// A thin lens of focal length f, in metres: u' = u − x/f, v' = v − y/f. Positive f converges.
     ///
-    /// This is the ideal lens: it images planes onto planes exactly in slopes (docs/theory.md
-    /// (24)). The paper has no lens.
+    /// The map describes an ideal lens, which images planes onto planes exactly if directions are
+    /// slopes (docs/theory.md (24)). Durand et al. 2005 have no lens.
     #[must_use]
     pub fn thin_lens(focal_length: f64) -> Self {
         let (one, half) = (diagonal::<N>([1.0; N]), N / 2);

@@ -1,11 +1,11 @@
-//! A density of one coordinate, sampled by its quantiles.
+//! A probability density of one coordinate that is sampled through its quantile function.
 
 use etendue_field::Profile;
 
-/// Number of cells in which the density is linear.
+/// Number of equal cells of the interval; the density is linear in each cell.
 const CELLS: usize = 512;
-/// Number of lookup shares for each cell. With more shares, the first cell that is tried is more
-/// often the right one.
+/// Number of lookup-table entries for each cell. With more entries, the first cell that a search
+/// tries contains the quantile more often.
 const SHARES: usize = 4;
 
 /// A density on an interval, linear between values at equal steps.
@@ -17,13 +17,13 @@ pub(crate) struct LinearDensity {
     values: Vec<f64>,
     /// The cumulative density at the ends of the cells, from 0 to 1.
     below: Vec<f64>,
-    /// For each of many equal shares, the cell in which it begins; the search starts there.
+    /// Lookup table of cells: a search for a quantile starts at the table's cell for it.
     first: Vec<usize>,
 }
 
 impl LinearDensity {
-    /// Returns the density proportional to a non-negative function; `None` if the function
-    /// vanishes.
+    /// Returns the density that is proportional to a non-negative function, or `None` if the
+    /// function is zero everywhere.
     pub(crate) fn new([low, high]: [f64; 2], function: impl Fn(f64) -> f64) -> Option<Self> {
         let step = (high - low) / CELLS as f64;
         let mut values: Vec<f64> = (0..=CELLS)
@@ -61,8 +61,8 @@ impl LinearDensity {
         }
     }
 
-    /// Returns the density of a window's profile. Next to the border the density is slightly larger
-    /// than the profile, which bounds the weight of rays there.
+    /// Returns the density for a window's profile. Next to the window's border the density is
+    /// slightly larger than the profile, so the weights of rays near the border are bounded.
     pub(crate) fn of(profile: &Profile) -> Self {
         let half = profile.half_width();
         let inside = |t: f64| profile.value(t * (1.0 - 1e-9)) + 1e-3;
@@ -70,12 +70,13 @@ impl LinearDensity {
         Self::new([-half, half], inside).unwrap_or_else(even)
     }
 
-    /// Returns the coordinate below which a share of the density lies.
+    /// Returns the quantile: the coordinate at which the cumulative density equals `share`.
     pub(crate) fn quantile(&self, share: f64) -> f64 {
         self.draw(share)[0]
     }
 
-    /// Returns the coordinate below which a share of the density lies, and the density there.
+    /// Returns the quantile at which the cumulative density equals `share`, and the density at
+    /// this quantile.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -88,7 +89,7 @@ impl LinearDensity {
             cell += 1;
         }
         let [a, b] = [self.values[cell], self.values[cell + 1]];
-        // Solves a t + (b − a) t²/2 = remaining share / step.
+        // Solves a t + (b − a) t²/2 = (remaining cumulative density) / step.
         let left = (share - self.below[cell]) / self.step;
         let root = (a * a + 2.0 * (b - a) * left).max(0.0).sqrt();
         let t = if a + root > 0.0 {
@@ -128,9 +129,9 @@ pub(crate) struct Target {
     half: f64,
 }
 
-/// The share of rays that are aimed without regard to the window.
+/// Fraction of rays that are aimed at points anywhere on the plane, independently of the window.
 const ANYWHERE_SHARE: f64 = 0.04;
-/// The width of the density of the other rays, relative to the window.
+/// Width of the density for rays aimed near the window, divided by the window's width.
 const WIDER: f64 = 1.2;
 
 impl Target {
@@ -147,8 +148,8 @@ impl Target {
         }
     }
 
-    /// Returns the coordinate below which a share of the density lies; small shares give points
-    /// anywhere, and larger shares give points near the window.
+    /// Returns a target coordinate for a uniform random number `share`: small numbers give points
+    /// anywhere on the plane, and larger numbers give points near the window.
     pub(crate) fn quantile(&self, share: f64) -> f64 {
         if share >= ANYWHERE_SHARE {
             return self
@@ -170,7 +171,8 @@ impl Target {
 mod tests {
     use super::*;
 
-    /// The mean of f/density over quantiles is the integral of f, wherever f lies.
+    /// The mean of f/density over quantiles is the integral of f, wherever the function f is
+    /// centred.
     #[test]
     fn targets_reach_everywhere() {
         let target = Target::new(&Profile::Hann(0.5));
@@ -183,7 +185,8 @@ mod tests {
                     libm::exp(-std::f64::consts::PI * apart * apart) / target.value(t)
                 })
                 .sum();
-            // The nodes are midpoints in quantiles; a step in the density causes an error of 1/n.
+            // The nodes are the quantiles of n midpoints of (0, 1); a step in the density causes
+            // an error of 1/n.
             assert!((sum / f64::from(n) - 1.0).abs() < 1e-4, "{center}");
         }
     }
@@ -200,7 +203,7 @@ mod tests {
                 profile.value(t) * (1.0 + t).powi(2) / density.value(t)
             })
             .sum();
-        // ∫ cos² (1 + t)² over |t| < ½: ½ (1 + 1/12 − 1/(2π²)).
+        // The integral of cos²(πt) (1 + t)² over |t| < ½ is ½ (1 + 1/12 − 1/(2π²)).
         let pi = std::f64::consts::PI;
         let expected = 0.5 * (1.0 + 1.0 / 12.0 - 0.5 / (pi * pi));
         assert!(

@@ -25,35 +25,39 @@ use rayon::prelude::*;
 
 /// Number of independent nets of a prediction.
 pub const REPLICATES: usize = 32;
-/// Number of independent nets of a derivative, for which only the mean is needed.
+/// Number of independent nets for derivatives, which need no error estimate.
 const OF_DERIVATIVES: usize = 8;
 /// Number of independent nets for choosing a sampling strategy.
 const OF_TRIALS: usize = 16;
-/// The fewest and the most nodes in each net of a derivative.
+/// Minimum and maximum number of nodes in each net for derivatives.
 const DERIVATIVE_NODES: [u32; 2] = [1 << 12, 1 << 15];
-/// The relative error ‖error‖/‖D‖ at which a derivative is accurate enough. It changes a measured
-/// parameter by about its square times the parameter's distance from the scene's value.
+/// The relative error ‖error‖/‖D‖ at which a derivative is accurate enough. An error of this size
+/// changes a measured parameter by about its square times the difference between the measured
+/// value and the scene's value.
 const DERIVATIVE_ERROR: f64 = 0.03;
 /// Number of nodes of a net at which its error is first estimated.
 const FIRST_NODES: u32 = 1 << 11;
 
-/// The fewest nodes of a net before a prediction may stop because its error is small. Nets that
-/// have not yet sampled their heavy rays differ too little.
+/// Minimum number of nodes of a net before a prediction may stop because its estimated error is
+/// small. If nets have not yet sampled any ray of large weight, the spread between nets
+/// underestimates the error.
 const MIN_NODES: u32 = 1 << 14;
 
 /// Criterion for when to stop adding nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayBudget {
-    /// The most nodes in total; if the budget ends the prediction, at least half of them are used.
+    /// Maximum number of nodes of all nets together. If this budget ends the prediction, at least
+    /// half of these nodes have been used.
     pub nodes: f64,
-    /// The relative error ‖error‖/‖F‖ that is small enough.
+    /// The relative error ‖error‖/‖F‖ below which no more nodes are added.
     pub error: f64,
 }
 
 /// A ray at a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct RayNode {
-    /// The ray's coordinates: (x, y, u, v), or the corresponding ones on a surface.
+    /// The ray's coordinates at the plane: positions and slopes (x, y, u, v), or positions and
+    /// angles on a surface.
     pub(crate) z: [f64; 4],
     /// The ray's contribution to the windowed radiance space, divided by the density with which the
     /// ray was sampled.
@@ -81,13 +85,13 @@ pub(crate) trait Integrand: Sync {
     fn rays(&self) -> usize {
         1
     }
-    /// Computes the rays of each field at a point, field by field. All rays are dark before the
-    /// call.
+    /// Computes the rays of each field for a point of the unit cube, and writes them to `nodes`
+    /// field by field. Before the call, all entries of `nodes` are rays without a contribution.
     fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [RayNode]);
 }
 
 impl Predicted {
-    /// The prediction if no ray in any net carries light.
+    /// Returns the prediction of zero, for the case in which no ray in any net carries light.
     pub(crate) fn dark(grid: &SliceGrid, picture: &ProjectionGrid) -> Self {
         Self {
             slices: Slices::zeros(*grid),
@@ -130,9 +134,9 @@ pub(crate) fn sums(
 }
 
 /// Returns ‖error‖/‖F‖ of a small number of rays, for choosing a sampling strategy. With even
-/// fewer rays, the choice would fall on strategies that are best only for few rays. The nets
-/// differ from those of predictions; otherwise the chosen strategy would often be one whose heavy
-/// rays the nets of the prediction happen to miss.
+/// fewer rays, the chosen strategy would be one that is best only for few rays. The nets of a
+/// trial differ from the nets of predictions. If they were the same, the chosen strategy would
+/// often be one whose rays of large weight happen to be absent from the prediction's nets.
 pub(crate) fn trial(
     integrand: &(impl Integrand + ?Sized),
     (window, grid): (&Window, &SliceGrid),
@@ -145,7 +149,8 @@ pub(crate) fn trial(
     doubled(integrand, (window, grid), nets, TRIED).1
 }
 
-/// Doubles nets until the budget is reached; returns them with the error of their mean.
+/// Doubles the number of nodes of all nets until the budget is reached, and returns the nets with
+/// the error of their mean.
 fn doubled(
     integrand: &(impl Integrand + ?Sized),
     (window, grid): (&Window, &SliceGrid),
@@ -179,11 +184,11 @@ fn doubled(
     }
 }
 
-/// Returns the mean of each field, to a relative error of [`DERIVATIVE_ERROR`] or over the most
-/// nodes.
+/// Returns the mean of each field over nets, to a relative error of [`DERIVATIVE_ERROR`] or with
+/// the maximum number of nodes in [`DERIVATIVE_NODES`].
 ///
-/// The nets differ from those of [`sums`]: a derivative that shares its noise with the prediction
-/// biases every measured parameter.
+/// The nets differ from the nets of [`sums`], because a derivative that has the same noise as the
+/// prediction biases every measured parameter.
 pub(crate) fn means(
     integrand: &(impl Integrand + ?Sized),
     window: &Window,
@@ -216,16 +221,17 @@ pub(crate) fn means(
     }
 }
 
-/// Steps to follow a ray, and to spread it over an azimuth.
+/// Estimated number of computing steps to follow a ray and to spread it onto the grid of an
+/// azimuth.
 const RAY: f64 = 400.0;
 const SPREAD: f64 = 15.0;
-/// Approximate number of fields in one pass over derivatives.
+/// Approximate number of fields that are summed in one pass over all derivatives.
 const FIELDS: f64 = 12.0;
-/// Number of steps of a transform per frequency.
+/// Estimated number of computing steps of a transform per frequency.
 const TRANSFORM: f64 = 300.0;
 
-/// Estimates the work of a prediction by nets that uses all of its budget: rays, and the transforms
-/// of all nets.
+/// Estimates the work of a prediction by nets that uses all of its budget, both for following rays
+/// and for the transforms of all nets.
 #[must_use]
 pub(crate) fn work_of_nets(grid: &SliceGrid, budget: RayBudget) -> PredictionWork {
     let cells: f64 = grid.half_shape().iter().map(|n| *n as f64).product();
@@ -233,15 +239,15 @@ pub(crate) fn work_of_nets(grid: &SliceGrid, budget: RayBudget) -> PredictionWor
     let replicates = REPLICATES as f64;
     let rounds = libm::log2(budget.nodes / (replicates * f64::from(FIRST_NODES))).max(1.0);
     let derivatives = OF_DERIVATIVES as f64 * FIELDS;
-    // Each field of a derivative has rays of its own.
+    // Each field of a derivative has its own rays, so its work adds to the prediction's.
     let rays = budget.nodes + derivatives * f64::from(DERIVATIVE_NODES[1]);
     let rays = rays * (RAY + SPREAD * azimuths);
     let transforms = TRANSFORM * cells * (rounds * replicates + derivatives);
     let slice = 16.0 * cells;
     PredictionWork {
         steps: rays + transforms,
-        // Memory holds the sums of all nets, the means of finished nets, and the fine grids of
-        // each thread.
+        // Memory contains the sums of all nets, the means of finished nets, and the oversampled
+        // grids of each thread.
         bytes: slice * (2.0 * replicates).max(derivatives),
         bytes_each: SliceTransform::new(grid).bytes() * FIELDS,
         drivers: format!(
@@ -346,7 +352,8 @@ pub(crate) fn mean<'a>(slices: impl ExactSizeIterator<Item = &'a Slices>) -> Sli
     sum
 }
 
-/// Returns ‖σ‖/‖F‖, σ being the standard error of the mean (docs/theory.md (12)).
+/// Returns ‖σ‖/‖F‖, where F is the mean over nets and σ is its standard error (docs/theory.md
+/// (12)).
 fn relative_error<'a>(slices: impl ExactSizeIterator<Item = &'a Slices> + Clone) -> f64 {
     let r = slices.len() as f64;
     let mean = mean(slices.clone());
@@ -363,7 +370,7 @@ fn relative_error<'a>(slices: impl ExactSizeIterator<Item = &'a Slices> + Clone)
     }
 }
 
-/// Weighted sums of 1, z and z zᵀ.
+/// Sums over rays z of weight times 1, z and z zᵀ.
 #[derive(Clone, Copy, Debug, Default)]
 struct WeightedMoments {
     total: f64,
@@ -459,7 +466,8 @@ mod tests {
         }
     }
 
-    /// Noise that derivatives share with the prediction biases the parameters measured with them.
+    /// Tests that derivatives use other nets than the prediction; common noise would bias the
+    /// parameters that are measured with these derivatives.
     #[test]
     fn derivatives_have_nets_of_their_own() {
         let (window, grid) = (window(Profile::Box(0.5), Profile::Box(0.5)), grid());

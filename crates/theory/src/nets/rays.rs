@@ -1,9 +1,10 @@
-//! Access to the rays of nets one by one, for sums other than slices.
+//! Access to the individual rays of nets, for sums over rays that are not slices of a spectrum.
 
 use super::{DIMENSIONS, Integrand, NetPoints, REPLICATES, RayBudget, RayNode};
 use etendue_field::TwoPlane;
 
-/// A light field at a plane as weighted rays, in independent nets that each represent all of it.
+/// A light field at a plane as weighted rays in independent nets. Each net represents the complete
+/// light field.
 pub trait RayNets: Sync {
     /// Returns the number of nets. A single net has no statistical error.
     fn count(&self) -> usize;
@@ -12,18 +13,18 @@ pub trait RayNets: Sync {
     fn emit(&self, net: usize, each: &mut dyn FnMut(&TwoPlane, f64));
 }
 
-/// The nets over which [`sums`](super::sums) sums the first field, all with the same number of
-/// nodes.
+/// The nets over which [`sums`](super::sums) sums the first field; all nets have the same number
+/// of nodes.
 pub(crate) struct SampledNets<'a, I> {
     integrand: &'a I,
     nodes: u32,
 }
 
-/// Most nodes of a net.
+/// Maximum number of nodes of a net.
 const MAX_NODES: f64 = (1_u32 << 29) as f64;
 
 impl<'a, I: Integrand> SampledNets<'a, I> {
-    /// Returns the largest power of two of nodes that a budget allows.
+    /// Returns the number of nodes per net: the largest power of two that a budget allows.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,

@@ -23,7 +23,7 @@ static DIRECTIONS: [[u32; 32]; DIMENSIONS] = {
     all
 };
 
-/// The points of a scrambled net, one after the other.
+/// A generator of the points of a scrambled net, in order of their index.
 #[derive(Clone, Debug)]
 pub(crate) struct NetPoints {
     keys: [u32; DIMENSIONS],
@@ -33,8 +33,8 @@ pub(crate) struct NetPoints {
 }
 
 impl NetPoints {
-    /// Returns the net scrambled with key `replicate`. Points have the given number of coordinates;
-    /// all others are 0.
+    /// Returns the net scrambled with key `replicate`. The given number of coordinates of each
+    /// point are computed; the remaining coordinates are 0.
     pub(crate) fn new(replicate: u32, dimensions: usize) -> Self {
         let key = |dimension: u32| {
             let mixed = replicate.wrapping_mul(0x9E37_79B9) ^ dimension.wrapping_mul(0x85EB_CA6B);
@@ -48,13 +48,14 @@ impl NetPoints {
         }
     }
 
-    /// Returns the next point. Any 2ᵐ points that start at a multiple of 2ᵐ are a net.
+    /// Returns the next point. Any 2ᵐ consecutive points form a net if the index of the first is a
+    /// multiple of 2ᵐ.
     pub(crate) fn point(&mut self) -> [f64; DIMENSIONS] {
         let mut point = [0.0; DIMENSIONS];
         for (k, x) in point[..self.dimensions].iter_mut().enumerate() {
             *x = unit(scrambled(self.unscrambled[k], self.keys[k]));
         }
-        // In Gray-code order one bit changes at a time.
+        // In Gray-code order, consecutive indices differ in one bit.
         self.next = self.next.wrapping_add(1);
         let bit = self.next.trailing_zeros() as usize & 31;
         for (value, directions) in self.unscrambled.iter_mut().zip(&DIRECTIONS) {
@@ -87,12 +88,13 @@ fn mixed_bits(mut x: u32) -> u32 {
 mod tests {
     use super::*;
 
-    /// Returns which of n cells a number in (0, 1) lies in.
+    /// Returns the index of the cell that contains `x` if (0, 1) is divided into n equal cells.
     fn cell(x: f64, n: usize) -> usize {
         (1..n).take_while(|i| *i as f64 <= x * n as f64).count()
     }
 
-    /// Each box of volume 2⁻ᵐ that comes from halving pairs of sides holds one of 2ᵐ points.
+    /// Tests that each box of volume 2⁻ᵐ formed by repeatedly halving two sides of the unit cube
+    /// contains exactly one of 2ᵐ points.
     #[test]
     fn pairs_of_first_coordinates_are_nets() {
         for replicate in 0..3 {
@@ -118,7 +120,8 @@ mod tests {
         }
     }
 
-    /// The error of a smooth mean over all coordinates falls much faster than with random points.
+    /// Tests that the error of a mean of a smooth function of all coordinates is much smaller with
+    /// nets than with random points.
     #[test]
     fn nets_beat_random_points() {
         let f = |p: &[f64; DIMENSIONS]| p.iter().map(|x| 1.0 + 0.5 * (x - 0.5)).product::<f64>();
@@ -133,8 +136,8 @@ mod tests {
         let variance = (1.0_f64 + 0.25 / 12.0).powi(10) - 1.0;
         let random = variance / f64::from(n);
         assert!(power < 1e-3 * random, "{:e}", power / random); // Sobol' at 2¹² of 10: 10⁻⁴
-        // The nets are unbiased: the mean of 32 independent nets is within four of its standard
-        // errors.
+        // The nets are unbiased: the mean error of 32 independent nets is within four standard
+        // errors of zero.
         let mean = errors.iter().sum::<f64>() / 32.0;
         assert!(mean.abs() < 4.0 * (power / 32.0).sqrt());
     }

@@ -3,7 +3,7 @@
 /// sin(πt)/(πt), 1 at zero: the transform of the unit box.
 pub(crate) fn sinc(t: f64) -> f64 {
     let angle = std::f64::consts::PI * t;
-    // The next term, angle²/6, is below rounding error.
+    // The next term of the power series, angle²/6, is below rounding error.
     if angle.abs() < 1e-8 {
         1.0
     } else {

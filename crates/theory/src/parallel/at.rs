@@ -8,11 +8,12 @@ use etendue_field::{Complex, Window};
 
 /// The spectrum ℓ̂(Ωx, Ωy, Ωu, Ωv) of the windowed light field at one frequency.
 ///
-/// Computes brightness · Σ terms ± F(Ωx, Ωu) F(Ωy, Ωv), where the factors are transforms of convex
-/// polygons, evaluated one by one. The result is exact for uniform rectangles, half-planes and
-/// gratings, and accurate to 10⁻⁸ for factors of slope. For discs (see
-/// [`quadrature_error`](crate::quadrature_error)) and for diffuse reflection it is a quadrature. It
-/// is the reference for [`slices`](crate::slices). Unit: W m⁻² sr⁻¹ · m².
+/// Computes brightness · Σ terms ± F(Ωx, Ωu) F(Ωy, Ωv), where each factor F is the transform of a
+/// convex polygon, and evaluates each factor separately. The result is exact for uniform
+/// rectangles, half-planes and gratings, and accurate to 10⁻⁸ for factors of slope. For discs (see
+/// [`quadrature_error`](crate::quadrature_error)) and for diffuse reflection the result has the
+/// error of a quadrature. This function is the reference for [`slices`](crate::slices). Unit: W
+/// m⁻² sr⁻¹ · m².
 #[must_use]
 pub fn at(chain: &Chain, window: &Window, frequency: [f64; 4]) -> Complex {
     let path = chain.path();
@@ -43,7 +44,8 @@ impl Expansion {
             .sum()
     }
 
-    /// Returns brightness · Σ terms, from the factors of all polygons of section `axis`.
+    /// Returns brightness · Σ terms; `factors` returns the factors of all polygons of the section
+    /// with the given axis.
     fn sum(&self, factors: impl Fn(usize) -> Vec<Complex>) -> Complex {
         let [x, y] = [factors(0), factors(1)];
         let terms = self.terms.iter();

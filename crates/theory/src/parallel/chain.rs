@@ -5,9 +5,9 @@ use etendue_field::{Light, Mask, Shape};
 /// The light, in a plane perpendicular to the central ray.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Source {
-    /// Name, for messages.
+    /// Name of the light, for messages.
     pub name: String,
-    /// The light; coordinates are relative to the central ray.
+    /// The light, with coordinates relative to the central ray.
     pub light: Light,
 }
 
@@ -16,22 +16,23 @@ pub struct Source {
 pub enum Operator {
     /// Free travel (docs/theory.md (2)): ℓ'(x, u) = ℓ(x − d u, u), ℓ̂'(Ωx, Ωu) = ℓ̂(Ωx, Ωu + d Ωx)
     /// (Durand et al. 2005, Eq. 3). [`AffineMap::travel`](crate::geometry::AffineMap::travel) is
-    /// the same step as a map; here distances are added, and polygons are sheared.
+    /// the same step as a map. In a chain the distances of consecutive steps are added, and
+    /// polygons are sheared by the sum.
     Travel {
-        /// Name of the plane where the light comes from.
+        /// Name of the plane from which the light travels.
         from: String,
-        /// Name of the plane where it arrives.
+        /// Name of the plane at which the light arrives.
         to: String,
         /// The distance d, in metres.
         distance: f64,
     },
-    /// A mask in the plane that the light has reached. Radiance is multiplied by 1 minus the sum
-    /// of shapes and half-planes, which must not overlap each other, or by a cosine grating
-    /// (Durand et al. 2005, Eq. 4).
+    /// A mask in the plane that the light has reached. An opaque mask multiplies radiance by 1
+    /// minus the sum of its shapes and half-planes, which must not overlap each other; a grating
+    /// multiplies radiance by a cosine pattern (Durand et al. 2005, Eq. 4).
     Visibility {
         /// Name of the mask.
         name: String,
-        /// What the mask lets through; coordinates are relative to the central ray.
+        /// The mask's transmission as a function of position relative to the central ray.
         mask: Mask,
     },
     /// A product with G = (1 + u² + v²)⁻² (docs/theory.md (7)): radiance becomes differential
@@ -42,10 +43,10 @@ pub enum Operator {
     },
     /// Diffuse reflection: the integral over both slopes, times albedo/π. The result is exitant
     /// radiance, constant in slope (Durand et al. 2005, section 5.1). The factor G is a separate
-    /// [`Cosine`](Self::Cosine) before it.
+    /// [`Cosine`](Self::Cosine) operator before the reflection.
     ///
-    /// The frame turns round: the central ray returns along −D, x' = −x, y' = y. Only travel may
-    /// follow.
+    /// After the reflection the central ray returns along −D, with x' = −x and y' = y. The only
+    /// operator allowed after a diffuse reflection is travel.
     Diffuse {
         /// Name of the surface.
         name: String,
@@ -54,23 +55,23 @@ pub enum Operator {
     },
 }
 
-/// A light path: the source and the operators in the order the light meets them.
+/// A light path: the source and the operators on its light field in the order of propagation.
 ///
-/// The predicted light field is the radiance at the end of the last operator, in two-plane
-/// coordinates (if the last operator is a cosine: the differential irradiance).
+/// The predicted light field is the radiance after the last operator, in two-plane coordinates. If
+/// the last operator is a cosine, the predicted field is the differential irradiance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chain {
     /// The light.
     pub source: Source,
-    /// The operators on the light field, in order. At most one is a diffuse reflection, after which
-    /// only travel is allowed.
+    /// The operators on the light field, in the order of propagation. At most one operator is a
+    /// diffuse reflection, after which only travel is allowed.
     pub operators: Vec<Operator>,
 }
 
 /// A plane with a mask, relative to the end of a [`ChainSegment`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MaskLayer<'a> {
-    /// The distance that light has travelled since the mask, in metres: the ray (x, u) crossed the
+    /// The distance from the mask to the end of the segment, in metres: the ray (x, u) crossed the
     /// mask at x − distance · u.
     pub(crate) distance: f64,
     pub(crate) mask: &'a Mask,
@@ -80,7 +81,7 @@ pub(crate) struct MaskLayer<'a> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DiffuseReflection {
     pub(crate) albedo: f64,
-    /// Distance that the light travels afterwards, in metres.
+    /// Distance that the light travels after the reflection, in metres.
     pub(crate) after: f64,
 }
 
@@ -91,8 +92,8 @@ pub(crate) struct ParallelEmitter {
     pub(crate) shape: Option<Shape>,
     /// Radiance or intensity along the central ray.
     pub(crate) brightness: f64,
-    /// The power p of the factor (1 + u² + v²)^p on radiance: −n/2 for a spot's cosⁿθ; ½ for a
-    /// point, whose distance to (x, y) is D √(1 + u² + v²).
+    /// The power p of the factor (1 + u² + v²)^p on radiance. For a spot's cosⁿθ, p = −n/2. For a
+    /// point light, whose distance to (x, y) is D √(1 + u² + v²), p = ½.
     pub(crate) power: f64,
 }
 
@@ -116,15 +117,16 @@ impl ParallelEmitter {
     }
 }
 
-/// A chain up to its end, or up to its diffuse surface; quantities are relative to that end.
+/// A chain up to its diffuse surface or, if it has none, up to its end; distances are relative to
+/// the end of this segment.
 #[derive(Clone, Debug)]
 pub(crate) struct ChainSegment<'a> {
     pub(crate) light: ParallelEmitter,
-    /// Distance from the light, in metres.
+    /// Distance from the light to the end of the segment, in metres.
     pub(crate) distance: f64,
-    /// The masks along the path, in the order light meets them.
+    /// The masks along the path, in the order of propagation.
     pub(crate) layers: Vec<MaskLayer<'a>>,
-    /// Number of factors G.
+    /// Number of factors G along the segment.
     pub(crate) cosines: u32,
     pub(crate) reflection: Option<DiffuseReflection>,
 }
@@ -132,8 +134,7 @@ pub(crate) struct ChainSegment<'a> {
 impl Chain {
     /// Returns the chain relative to its end.
     ///
-    /// # Panics
-    /// Panics if anything but travel follows a diffuse reflection.
+    /// # Panics Panics if an operator other than travel follows a diffuse reflection.
     pub(crate) fn path(&self) -> ChainSegment<'_> {
         let mut path = ChainSegment {
             light: ParallelEmitter::new(&self.source.light),
@@ -168,19 +169,19 @@ impl Chain {
 }
 
 impl ChainSegment<'_> {
-    /// Returns the shapes of the light: one, or none for a point.
+    /// Returns the shapes of the light: a single shape, or an empty slice for a point light.
     pub(crate) fn light_shapes(&self) -> &[Shape] {
         self.light.shape.as_slice()
     }
 
-    /// Returns the power p of the factor (1 + u² + v²)^p: the power of the light, minus 2 for each
-    /// cosine.
+    /// Returns the total power p of the factor (1 + u² + v²)^p: the power of the light, minus 2
+    /// for each cosine operator.
     pub(crate) fn slope_power(&self) -> f64 {
         self.light.power - 2.0 * f64::from(self.cosines)
     }
 
-    /// Returns the shapes of each plane that has edges: those of the light, then those of opaque
-    /// masks.
+    /// Returns the shapes in each plane that has edges: first the shapes of the light, then the
+    /// shapes of each opaque mask.
     pub(crate) fn planes(&self) -> Vec<&[Shape]> {
         let of_masks = self.layers.iter().filter_map(|layer| match layer.mask {
             Mask::Opaque { shapes, .. } => Some(&shapes[..]),
@@ -191,7 +192,7 @@ impl ChainSegment<'_> {
             .collect()
     }
 
-    /// Checks whether any light or mask has a disc.
+    /// Checks whether the light or any mask contains a disc.
     pub(crate) fn has_discs(&self) -> bool {
         let planes = self.planes();
         let mut all = planes.into_iter().flatten();

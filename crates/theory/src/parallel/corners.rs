@@ -1,12 +1,12 @@
-//! The transforms of many polygons along a row of frequencies, without one exponential per polygon
-//! and frequency (docs/theory.md, section 3).
+//! The transforms of many polygons along a row of frequencies, computed from sums over corners
+//! instead of one exponential per polygon and frequency (docs/theory.md, section 3).
 //!
 //! With the field k exp(−2πi k·p), formula (5) of docs/theory.md becomes a sum over the corners p,
 //! at which edges of directions d and e meet:
 //!
 //! F(k) = 1/(4π²) Σ (d × e) / ((k·d)(k·e)) · exp(−2πi k·p)
 //!
-//! The quotient depends only on the pair of directions, and a chain has few such pairs. The
+//! The quotient depends only on the pair (d, e) of directions, and a chain has few such pairs. The
 //! exponential is the product of one exponential in the position and one in the slope. Each
 //! exponential of the window shifts k by ± s, so with θ = 2π s·p and the quotients c± at k ± s, a
 //! corner needs
@@ -25,45 +25,50 @@ use crate::parallel::wave::SectionWave;
 use etendue_field::Complex;
 use std::f64::consts::{PI, TAU};
 
-/// The smallest |k·edge|, for the longest edge of a direction, at which corners are used. Two such
-/// edges in one quotient amplify rounding errors by 1/CANCELLATION² = 1000.
+/// The smallest |k·d|, where d is the longest possible edge along a direction, at which sums over
+/// corners are used. Two such edges in one quotient amplify rounding errors by 1/CANCELLATION² =
+/// 1000.
 const CANCELLATION: f64 = 0.03;
-/// Number of waves processed at a time, chosen to keep their quotients in the cache.
+/// Number of waves that are processed together; it is small enough for the quotients of these
+/// waves to fit into the cache.
 const WAVES_AT_A_TIME: usize = 32;
 
-/// A corner, prepared for summation.
+/// A corner of a polygon, prepared for summation.
 #[derive(Debug)]
 struct Corner {
     at: [f64; 2],
     /// Index of the corner's pair of directions.
     pair: usize,
-    /// The sign given by the order of the two directions; ±i for the ends of a segment.
+    /// The sign of the corner's term, which depends on the order of its two directions; ±i for the
+    /// ends of a segment.
     sign: Complex,
     /// Index of the corner's polygon.
     polygon: usize,
 }
 
-/// The corners of all polygons of a section, under a sum of waves.
+/// The corners of all polygons of a section, for a field that is multiplied by a sum of waves.
 #[derive(Debug)]
 pub(crate) struct Corners<'a> {
     section: &'a AxisSection,
     waves: &'a [SectionWave],
     corners: Vec<Corner>,
-    /// (cos θ, sin θ) of each corner and wave, [corner, wave].
+    /// The values (cos θ, sin θ) for each corner and wave, as [corner, wave].
     phases: Vec<[f64; 2]>,
-    /// Pairs of directions that meet at a corner, the lower index first; the indices are equal at
-    /// the end of a segment.
+    /// Pairs of directions of the two edges that meet at a corner, with the lower index first. For
+    /// the end of a segment the two indices are equal.
     pairs: Vec<[usize; 2]>,
-    /// Directions of edges, each with the largest |k·d| at which k·d is considered nearly zero.
+    /// Indices of the directions of edges, each with the |k·d| below which k·d is treated as
+    /// nearly zero.
     edges: Vec<(usize, f64)>,
 }
 
-/// The quotients of some waves along a row.
+/// The quotients of a group of waves along a row of frequencies.
 struct Quotients {
-    /// The products weight · (c₊ + c₋) and weight · (c₋ − c₊), [pair, wave, n]. The first is
-    /// stored in `re`, the second in `im`.
+    /// The products weight · (c₊ + c₋), stored in `re`, and weight · (c₋ − c₊), stored in `im`, as
+    /// [pair, wave, n].
     values: ComplexRow,
-    /// Cells that need the plain transform: n, the shifted frequency, the weight.
+    /// Frequencies at which [`Polygon::transform`] is used: index n along the row, shifted
+    /// frequency, and weight.
     left: Vec<(usize, [f64; 2], Complex)>,
 }
 
@@ -148,15 +153,15 @@ impl<'a> Corners<'a> {
         quotients
     }
 
-    /// Checks whether an edge is nearly orthogonal to k.
+    /// Checks whether the direction of any edge is nearly orthogonal to k.
     fn cancels(&self, k: [f64; 2]) -> bool {
         let directions = &self.section.directions;
         let mut edges = self.edges.iter();
         edges.any(|&(d, smallest)| dot(k, directions[d]).abs() < smallest)
     }
 
-    /// Returns (d × e) / (4π² (k·d)(k·e)) for each pair of directions; 1/(2π k·d) for a direction
-    /// with itself.
+    /// Returns (d × e) / (4π² (k·d)(k·e)) for each pair (d, e) of different directions, and 1/(2π
+    /// k·d) for each pair of equal directions.
     fn pair_quotients(&self, k: [f64; 2]) -> impl Iterator<Item = f64> {
         self.pairs.iter().map(move |pair| {
             let [d, e] = pair.map(|i| self.section.directions[i]);
@@ -167,7 +172,7 @@ impl<'a> Corners<'a> {
         })
     }
 
-    /// Adds the contributions of the corners, for the waves of `chunk`.
+    /// Adds the contributions of all corners for the waves of `chunk`.
     fn add(
         &self,
         row: &FrequencyRow,
@@ -198,15 +203,15 @@ impl<'a> Corners<'a> {
 }
 
 impl SectionWave {
-    /// Returns (cos θ, sin θ), θ = 2π s·p + phase.
+    /// Returns (cos θ, sin θ) of the wave's phase at p, θ = 2π s·p + phase.
     fn phase(&self, p: [f64; 2]) -> [f64; 2] {
         let (sin, cos) = libm::sincos(self.angle(p));
         [cos, sin]
     }
 }
 
-/// Returns the longest edge along a direction that fits in the square, as a multiple of the
-/// direction.
+/// Returns the length, in units of |direction|, of the longest edge along a direction that fits
+/// into the square |p| < 1.
 fn longest(direction: [f64; 2]) -> f64 {
     2.0 / direction[0].abs().max(direction[1].abs())
 }
@@ -221,7 +226,7 @@ fn prepared(polygon: &Polygon, index: usize, pairs: &mut Vec<[usize; 2]>) -> Vec
     let mut result = Vec::with_capacity(corners.len());
     for (corner, before) in corners.iter().zip(before) {
         let (enter, leave) = (before.edge, corner.edge);
-        // Two collinear edges have no corner.
+        // Two consecutive collinear edges do not form a corner.
         if enter == leave {
             continue;
         }
@@ -236,7 +241,8 @@ fn prepared(polygon: &Polygon, index: usize, pairs: &mut Vec<[usize; 2]>) -> Vec
     result
 }
 
-/// Prepares the ends of a segment: (exp(−2πi k·a) − exp(−2πi k·b)) / (2πi k·d).
+/// Prepares the two ends a and b of a segment, whose transform is (exp(−2πi k·a) − exp(−2πi k·b))
+/// / (2πi k·d).
 fn ends(corners: &[polygon::Vertex], index: usize, pairs: &mut Vec<[usize; 2]>) -> Vec<Corner> {
     let signs = [-1.0, 1.0].into_iter();
     corners
@@ -251,7 +257,8 @@ fn ends(corners: &[polygon::Vertex], index: usize, pairs: &mut Vec<[usize; 2]>) 
         .collect()
 }
 
-/// Returns the index of a pair in the list, appending it if it is new.
+/// Returns the index of a pair in the list `pairs`, and appends the pair if the list does not
+/// contain it.
 fn listed(pair: [usize; 2], pairs: &mut Vec<[usize; 2]>) -> usize {
     let known = pairs.iter().position(|p| *p == pair);
     known.unwrap_or_else(|| {

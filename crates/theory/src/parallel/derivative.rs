@@ -5,21 +5,20 @@ use crate::parallel::slices::{fineness, slices_at_fineness};
 use crate::{Chain, Parameter};
 use etendue_field::{SliceGrid, Slices, Window};
 
-/// The step of the forward difference, relative to the value of the parameter.
+/// The step of the forward difference divided by the value of the parameter.
 ///
 /// The error of the difference is half the second derivative times the step. Since a parameter
 /// changes phases by at most some tens of radians, this error is about 10⁻³ of the derivative.
 /// Rounding errors add 10⁻¹²/10⁻⁴ = 10⁻⁸ of the spectrum.
 const RELATIVE_STEP: f64 = 1e-4;
 
-/// Returns the derivative of the slices with respect to a parameter, per unit of the parameter. It
-/// is the forward difference with a step of 10⁻⁴ of the parameter's value (or of its unit, if the
-/// value is zero).
+/// Returns the derivative of the slices with respect to a parameter, per unit of the parameter.
+/// The derivative is a forward difference with a step of 10⁻⁴ of the parameter's value. If the
+/// value is zero, the step is 10⁻⁴ of the parameter's unit.
 ///
 /// `prediction` must be the slices of the chain itself, on the same window and grid.
 ///
-/// # Panics
-/// Panics if the parameter belongs to another chain.
+/// # Panics Panics if the chain has no such parameter.
 #[must_use]
 pub fn derivative(
     chain: &Chain,
@@ -30,7 +29,8 @@ pub fn derivative(
 ) -> Slices {
     let value = chain.value(parameter).expect("a parameter of the chain");
     let moved = value + RELATIVE_STEP * parameter.scale(value);
-    // Discs are split as in `prediction`, so the quadrature errors cancel.
+    // Discs are split into the same rectangles as in `prediction`, so the quadrature errors cancel
+    // in the difference.
     let fineness = fineness(&chain.path(), window, grid);
     let moved_chain = chain.with(parameter, moved).expect("the same");
     let path = moved_chain.path();
@@ -91,8 +91,8 @@ mod tests {
                     worst = f64::max(worst, (derivative - central).norm());
                     largest = f64::max(largest, central.norm());
                 }
-                // The error is half a second derivative times the forward step of 1e-4; phases here
-                // stay below 20.
+                // The error of the forward difference is half a second derivative times the step
+                // of 1e-4, and phases in this test stay below 20.
                 let close = 2e-3 * largest;
                 assert!(worst < close, "{parameter:?}: {}", worst / largest);
             }

@@ -1,11 +1,11 @@
-//! Descriptions of chains in words.
+//! Textual descriptions of chains.
 
 use crate::words::{self, formula};
 use crate::{Chain, Operator, Source};
 use etendue_field::{Disc, Image, Light, Rectangle, Shape, tidy};
 
 impl Chain {
-    /// Describes the chain in words: one line for each step.
+    /// Describes the chain as text, with one line for each step.
     #[must_use]
     pub fn describe(&self) -> Vec<String> {
         let steps = self.operators.iter().map(Operator::describe);

@@ -1,4 +1,5 @@
-//! Discs as weighted sums of rectangles, which can be multiplied out like all other shapes.
+//! Discs as weighted sums of rectangles, so that products of discs with other shapes can be
+//! multiplied out.
 
 use crate::parallel::weighted_rectangle::WeightedRectangle;
 use etendue_field::{Disc, Shape};
@@ -7,10 +8,10 @@ use std::f64::consts::FRAC_PI_2;
 /// The method for splitting a disc into rectangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Discs {
-    /// n × n rectangles about the disc's centre, with weights; used for spectra.
+    /// A sum of n × n weighted rectangles about the disc's centre, for spectra.
     Rule(usize),
-    /// n strips of constant x, each with the area of its slice of the disc; used for the light
-    /// field itself.
+    /// A sum of n strips along y, for the light field itself. Each strip has the same area as the
+    /// disc between the strip's two values of x.
     Strips(usize),
 }
 
@@ -40,11 +41,11 @@ pub(crate) fn patches_of(shape: &Shape, discs: Discs) -> Vec<WeightedRectangle> 
 /// Returns the rectangles of Σ w_jk 1[|x| < R cos t_j] 1[|y| < R sin t_k], t_j = π (2j + 1)/4n
 /// (docs/theory.md (5b)).
 ///
-/// Under an integral with a smooth function, the sum replaces the disc. The integral of such a
-/// function over the disc is ∫ A(R cos t) dB(R sin t), where A and B are the integrals along the
-/// two sides of a rectangle. A and B are odd, so they are expanded in the cosines and sines of odd
-/// multiples of t. The sum over multiples m < 2n has a closed form, π/n² Σ m cos(m t_j) sin(m t_k)
-/// = π/2n (c(k + j + 1) + c(k − j)), with c(i) = −(−1)^i / sin(π i/2n) and c(0) = 0.
+/// In an integral with a smooth function, this sum replaces the disc. The integral of the function
+/// over the disc is ∫ A(R cos t) dB(R sin t), where A and B are the integrals along the two sides
+/// of a rectangle. The functions A and B are odd, so they are expanded in the cosines and sines of
+/// odd multiples of t. The sum over multiples m < 2n has a closed form, π/n² Σ m cos(m t_j) sin(m
+/// t_k) = π/2n (c(k + j + 1) + c(k − j)), with c(i) = −(−1)^i / sin(π i/2n) and c(0) = 0.
 fn rule(disc: &Disc, n: usize) -> Vec<WeightedRectangle> {
     let angle = FRAC_PI_2 / n as f64;
     let node = |j: usize| angle * (j as f64 + 0.5);
@@ -66,11 +67,11 @@ fn rule(disc: &Disc, n: usize) -> Vec<WeightedRectangle> {
         .collect()
 }
 
-/// Returns strips between x = R sin t at n + 1 evenly spaced t. The error is of second order in
-/// 1/n.
+/// Returns n strips that are bounded by x = R sin t for n + 1 evenly spaced values of t. The error
+/// of the strips is of second order in 1/n.
 fn strips(disc: &Disc, n: usize) -> Vec<WeightedRectangle> {
     let angle = |i: usize| FRAC_PI_2 * (2.0 * i as f64 / n as f64 - 1.0);
-    // The area of the unit disc below sin t.
+    // The area of the part of the unit disc with x < sin t, up to a constant.
     let area = |t: f64| t + 0.5 * libm::sin(2.0 * t);
     (0..n)
         .map(|i| {
@@ -111,7 +112,8 @@ mod tests {
     fn transform(patches: &[WeightedRectangle], omega: f64, azimuth: f64) -> f64 {
         let k = [libm::cos(azimuth), libm::sin(azimuth)].map(|c| c * omega);
         let side = |p: &WeightedRectangle, i: usize| p.extent[i][1] - p.extent[i][0];
-        // Because of symmetry, only the even part remains.
+        // The disc is symmetric, so only the even part of each rectangle's transform remains in
+        // the sum.
         let middle = |p: &WeightedRectangle, i: usize| 0.5 * (p.extent[i][1] + p.extent[i][0]);
         let value = |p: &WeightedRectangle| {
             let phase = TAU * (k[0] * middle(p, 0) + k[1] * middle(p, 1));
@@ -137,7 +139,8 @@ mod tests {
 
     #[test]
     fn the_rule_has_the_transform_of_a_disc() {
-        // At the last frequency π R Ω is 15.1; from 15 nodes on, the error falls with every node.
+        // At the highest frequency π R Ω is 15.1, so the error falls with every node beyond 15
+        // nodes.
         let errors = [16, 20, 24].map(|n| worst(Discs::Rule(n)));
         assert!(errors[0] < 1e-8, "{errors:?}");
         assert!(errors[1] < 1e-12, "{errors:?}");
@@ -161,10 +164,11 @@ mod tests {
     #[test]
     fn strips_are_of_second_order() {
         let [coarse, fine] = [64, 128].map(|n| worst(Discs::Strips(n)));
-        // Twice as many strips reduce the error by a factor of 4, as the next order is small.
+        // Twice as many strips reduce the error by a factor of 4, because the error term of the
+        // next order is small.
         assert!((coarse / fine - 4.0).abs() < 0.2, "{}", coarse / fine);
-        // Relative to what remains of the transform at such frequencies, the error is (π Ω R)² /
-        // 128² = 0.014.
+        // Relative to the transform at the highest frequencies, the error is (π Ω R)² / 128² =
+        // 0.014.
         assert!(fine < 1e-4, "{fine}");
     }
 }

@@ -1,4 +1,4 @@
-//! How finely the discs of a chain are split into rectangles.
+//! The number of rectangles into which the discs of a chain are split.
 
 use crate::parallel::chain::ChainSegment;
 use crate::parallel::disc::Discs;
@@ -7,22 +7,23 @@ use crate::parallel::slope::Slope;
 use etendue_field::{Mask, Profile, Shape, Window, whole};
 use std::f64::consts::PI;
 
-/// Number of nodes of the rule for discs beyond π R Ω.
+/// Number of nodes of the rule for discs in addition to π R Ω.
 const SPARE_NODES: f64 = 6.0;
-/// The most nodes: a disc becomes 72² rectangles.
+/// Maximum number of nodes of the rule for discs, with which a disc becomes 72² rectangles.
 const MOST_NODES: f64 = 72.0;
-/// The largest frequency up to which edges in other planes are considered, in multiples of the
-/// largest frequency of the spectra.
+/// Limit on the bandwidth due to edges in other planes, as a multiple of the largest frequency of
+/// the spectra.
 const MAX_FREQUENCIES: f64 = 4.0;
-/// The share of the bandwidth due to edges in other planes that is resolved; the rest lies in the
-/// corners of the grid of frequencies, where there is little content.
+/// Fraction of the bandwidth due to edges in other planes that is resolved. The remaining
+/// bandwidth is reached only in the corners of the grid of frequencies, where spectra are small.
 const FAR_SHARE: f64 = 0.7;
-/// The most terms of an expansion that discs may cause.
+/// Maximum number of terms of an expansion that results from splitting discs.
 const MOST_TERMS: f64 = 3e5;
-/// The largest number of strips of a disc.
+/// Maximum number of strips into which a disc is split.
 const MOST_STRIPS: f64 = 64.0;
 
-/// How the discs of a chain are split: those of the light, then those of each opaque mask.
+/// The methods for splitting the discs of a chain: first for the discs of the light, then for the
+/// discs of each opaque mask.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct DiscResolution(pub(crate) Vec<Discs>);
 
@@ -43,8 +44,8 @@ impl DiscResolution {
     }
 
     /// Checks whether the affordable resolution of discs is approximately fine enough for spectra
-    /// up to `frequency`. It is too coarse for a wide disc behind a narrow window; a comparison
-    /// with finer rules then does not estimate the error.
+    /// up to `frequency`. For a wide disc behind a narrow window this resolution is too coarse,
+    /// and a comparison with finer rules does not reveal the error.
     pub(crate) fn is_enough(path: &ChainSegment<'_>, window: &Window, frequency: [f64; 2]) -> bool {
         if !path.has_discs() {
             return true;
@@ -75,7 +76,8 @@ impl DiscResolution {
         Self(vec![Discs::Rule(1); path.planes().len()])
     }
 
-    /// Reduces the number of nodes if discs in several planes would make too many terms.
+    /// Reduces the number of nodes if discs in several planes would result in more than
+    /// [`MOST_TERMS`] terms.
     fn affordable(self, path: &ChainSegment<'_>, window: &Window) -> Self {
         let slope = Slope::new([&window.u, &window.v], 0.0);
         let single = Self::single(path);
@@ -109,8 +111,8 @@ impl DiscResolution {
         })
     }
 
-    /// Splits the discs of each plane as `discs` chooses, given the largest radius in the plane
-    /// and the plane's index.
+    /// Builds a resolution from the function `discs`, which chooses the method for each plane from
+    /// the largest radius of discs in the plane and the plane's index.
     fn of(path: &ChainSegment<'_>, discs: impl Fn(f64, usize) -> Discs) -> Self {
         let planes = path.planes().into_iter().enumerate();
         Self(
@@ -120,7 +122,7 @@ impl DiscResolution {
         )
     }
 
-    /// Returns a resolution finer by a quarter.
+    /// Returns a resolution that splits discs into a quarter more nodes or strips.
     pub(crate) fn finer(&self) -> Self {
         let more = |n: usize| n + n.div_ceil(4);
         Self(
@@ -135,14 +137,16 @@ impl DiscResolution {
     }
 }
 
-/// A bound on the bandwidth, in c, of integrals over the lines x − h u = c. Their spectrum at γ is
-/// that of the other factors of the field at the frequencies (Ωx − γ, Ωu + h γ).
+/// A bound on the bandwidth of integrals along the lines x − h u = c, as functions of c. The
+/// spectrum of these integrals at frequency γ is the spectrum of the other factors of the field at
+/// (Ωx − γ, Ωu + h γ).
 struct EdgeBandwidth {
     /// The largest |Ωx| and |Ωu|, shifted by gratings.
     frequency: [f64; 2],
-    /// The blur that the window adds to these frequencies.
+    /// The half-width of the window's spectrum, by which the window blurs |Ωx| and |Ωu|.
     blur: [f64; 2],
-    /// Distances of planes with edges: the light's, then those of opaque masks.
+    /// Distances of the planes that have edges: first of the light's plane, then of each opaque
+    /// mask.
     planes: Vec<f64>,
 }
 
@@ -168,24 +172,25 @@ impl EdgeBandwidth {
         rates
     }
 
-    /// With the window alone the spectrum is concentrated near zero, so γ is both near Ωx and near
-    /// −Ωu/h. Edges in a plane at distance g spread the spectrum along Ωu = −g Ωx. The frequencies
-    /// (Ωx − γ, Ωu + h γ) meet this line at γ = (Ωu + g Ωx)/(g − h); the spectrum has little
-    /// content at large frequencies.
+    /// Returns the bandwidth for the edges in a plane. If the window is the only other factor, its
+    /// spectrum is concentrated near zero, so γ is near both Ωx and −Ωu/h. Edges in a plane at
+    /// distance g spread the spectrum along Ωu = −g Ωx. The frequencies (Ωx − γ, Ωu + h γ) meet
+    /// this line at γ = (Ωu + g Ωx)/(g − h). Large γ are limited, because the spectrum is small at
+    /// large frequencies.
     fn at(&self, plane: usize) -> f64 {
         let h = self.planes[plane];
         let [x, u] = self.frequency;
         let widest = x + self.blur[0];
         let own = widest.min((u + self.blur[1]) / h.abs());
         let others = self.planes.iter().enumerate().filter(|(j, _)| *j != plane);
-        // The quotient is infinite for a plane at the same distance.
+        // For another plane at the same distance the quotient is infinite.
         let meets = others.map(|(_, g)| (u + g.abs() * x) / (g - h).abs());
         let farthest = meets.fold(0.0, f64::max).min(MAX_FREQUENCIES * widest);
         own.max(FAR_SHARE * farthest)
     }
 }
 
-/// Returns the largest radius of a disc; 0 if there is none.
+/// Returns the largest radius of the discs among shapes, or 0 if no shape is a disc.
 fn largest(shapes: &[Shape]) -> f64 {
     let radii = shapes.iter().map(|shape| match shape {
         Shape::Disc(disc) => disc.radius,

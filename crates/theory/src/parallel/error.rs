@@ -5,18 +5,18 @@ use crate::parallel::slices::{fineness, slices_at_fineness};
 use crate::parallel::slope::Slope;
 use etendue_field::{SliceGrid, Slices, Window};
 
-/// The lowest order of convergence for discs.
+/// The lowest order at which the quadrature for discs converges.
 const ORDER: i32 = 4;
 
 /// Estimates the error of `slices`, the prediction of the same chain: ‖error‖/‖F‖ over the grid.
 /// Returns `None` if the prediction is a closed form.
 ///
-/// * Discs: the difference from a prediction that splits them a quarter finer, divided by 1 −
-///   0.8⁴. Where masks and windows have corners within a disc the error falls as n⁻⁴, elsewhere
-///   faster than exponentially (docs/theory.md, section 3). So the difference of the two
-///   predictions is nearly the whole error.
-/// * Diffuse reflection: a third of the difference from a prediction with half as many nodes, since
-///   the rule is of second order.
+/// * Discs: the difference between `slices` and a prediction that splits discs with a quarter more
+///   nodes, divided by 1 − 0.8⁴. If masks or windows have corners within a disc the error falls as
+///   n⁻⁴, otherwise faster than exponentially (docs/theory.md, section 3). So the difference
+///   between the two predictions is nearly equal to the error.
+/// * Diffuse reflection: a third of the difference between `slices` and a prediction with half as
+///   many nodes, because the rule is of second order.
 /// * Spots, points and cosines: the residual of the series of (1 + u² + v²)^p over the window,
 ///   about 10⁻⁹.
 #[must_use]
@@ -66,8 +66,8 @@ mod tests {
         quadrature_error(chain, window, &grid(), &slices)
     }
 
-    /// Returns the errors for a disc as a light, and as a blocker before a square light, with
-    /// travel before and after.
+    /// Returns the errors for a light that is a disc, and for a disc that blocks a square light;
+    /// `distances` are the travel before and after the blocker.
     fn errors(profile: fn(f64) -> Profile, radius: f64, distances: [f64; 2]) -> [f64; 2] {
         let round = disc([0.02, 0.01], radius);
         let light = chain_of(spot(round, 0.0), distances.map(|d| (d, None)));
@@ -85,10 +85,10 @@ mod tests {
                 let smooth = errors(Profile::Hann, radius, distances);
                 let hard = errors(Profile::Box, radius, distances);
                 let said = format!("{radius} {distances:?}: {smooth:?} {hard:?}");
-                // Convergence is exponential beyond π R Ω nodes.
+                // The rule converges exponentially if it has more than π R Ω nodes.
                 assert!(smooth.iter().all(|e| *e < 1e-7), "{said}");
-                // A box window has corners, with which the error falls as n⁻⁴. The largest disc
-                // lets 1/500 of the light pass.
+                // A box window has corners, so the error falls as n⁻⁴. The largest disc transmits
+                // 1/500 of the light.
                 assert!(hard.iter().all(|e| *e < 5e-5), "{said}");
             }
         }
@@ -104,8 +104,8 @@ mod tests {
         let coarse = slices_at_fineness(&path, &window, &grid(), &coarse);
         let said = quadrature_error(&chain, &window, &grid(), &coarse).unwrap();
         let true_error = coarse.relative_difference(&slices(&chain, &window, &grid()));
-        // The coarse rule is far worse than the finer ones, so the estimate exceeds the error by
-        // 1/(1 − 0.8⁴), the factor for a lower order.
+        // The error of the coarse rule is much larger than that of the finer rule, so the estimate
+        // exceeds the error by the factor 1/(1 − 0.8⁴), which is meant for a rule of order 4.
         let most = 1.0 / (1.0 - 0.8_f64.powi(ORDER));
         assert!((said / true_error / most - 1.0).abs() < 1e-3);
         assert!(said > 1e-5, "{said}"); // π R Ω = 15 > 12

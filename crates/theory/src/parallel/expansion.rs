@@ -9,76 +9,76 @@ use crate::parallel::weighted_rectangle::WeightedRectangle;
 use etendue_field::{Complex, Mask, Profile, Window};
 use std::collections::HashMap;
 
-/// Polygons with a measure below this, in units of the window's half-widths, are dropped, because
-/// they are below rounding error.
+/// Polygons with an area below this threshold, in units of the window's half-widths, are dropped,
+/// because their contribution is below rounding error.
 const SMALLEST_MEASURE: f64 = 1e-15;
-/// Number of pairs of a term and a patch that may be tested, for each term that is allowed.
+/// Maximum number of pairs of a term and a rectangle that are tested, divided by the maximum
+/// number of terms.
 const PAIRS_PER_TERM: usize = 8;
-/// A range without bounds.
+/// An interval without lower or upper bound.
 const EVERYWHERE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
-/// The (position, slope) plane of one axis, and the polygons in it that light fills, in units of
-/// the half-widths of the window.
+/// The (position, slope) plane of one axis with the polygons that light fills in this plane.
+/// Coordinates are in units of the window's half-widths.
 #[derive(Debug)]
 pub(crate) struct AxisSection {
     /// Half-widths of the window in position (metres) and slope.
     pub(crate) half: [f64; 2],
     /// Unit of the polygons' measure: metre · slope, or slope for the segments of a point light.
     pub(crate) unit: f64,
-    /// Directions of edges, as vectors: (1, 0), (0, 1), then (shear, 1) for each distance.
+    /// Directions of edges as vectors: (1, 0), (0, 1), and (shear, 1) for each distance of a
+    /// plane.
     pub(crate) directions: Vec<[f64; 2]>,
     pub(crate) polygons: Vec<Polygon>,
-    /// Whether there are discs; they make so many directions that parallelograms have their own
-    /// formula.
+    /// Whether the chain contains discs. If it does, its many parallelograms are transformed by
+    /// [`Polygon::transform_by_sides`] wherever the contributions of corners cancel.
     pub(crate) has_discs: bool,
-    /// Cache of strips that were cut: the index of the part for a (polygon, direction, bounds), or
-    /// `None` if the part is empty.
+    /// Cache of polygons that were clipped to strips: the index of the clipped polygon for each
+    /// (polygon, direction, bounds), or `None` if the clipped polygon is empty.
     known: HashMap<(usize, usize, [u64; 2]), Option<usize>>,
 }
 
 /// A term weight · 1_P(x, u) · 1_Q(y, v), where P and Q are polygons of the two sections.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PolygonTerm {
-    /// The weight: ±1, times the weights of the rectangles of discs.
+    /// The weight: ±1 times the weights of the rectangles that represent discs.
     pub(crate) weight: f64,
     /// Indices of P and Q.
     pub(crate) polygons: [usize; 2],
-    /// The index of the term from which this term was cut, and an index of that term's Q and the
-    /// extent along x of the patch that cut it. Terms for which both indices are equal have the
-    /// same P.
+    /// Two indices: of the term from which this term was clipped, and of the extent along x to
+    /// which it was clipped. Terms for which both indices are equal have the same P.
     column: [usize; 2],
 }
 
-/// Weights and indices of the summands.
+/// Weights and indices of the summands of a weighted sum.
 pub(crate) type Sum = Vec<(f64, usize)>;
 
-/// Terms summed along y first: Σ 1_P(x, u) · a sum of sums of polygons of (y, v).
+/// Terms that are summed along y first, as Σ 1_P(x, u) times a sum of sums of polygons of (y, v).
 #[derive(Debug)]
 pub(crate) struct SectionColumns {
     /// Sums of polygons of (y, v).
     pub(crate) sums: Vec<Sum>,
-    /// Sums of the sums of polygons of (y, v), one for each polygon of (x, u).
+    /// For each polygon of (x, u), a weighted sum of entries of `sums`.
     pub(crate) beside: Vec<Sum>,
 }
 
-/// The light field of a path inside a window, multiplied out: brightness · Σ products · Σ terms
+/// The light field of a path inside a window, expanded as brightness · Σ products · Σ terms
 /// (docs/theory.md (4) and (5d)).
 ///
 /// A rectangle in a plane at distance h is a strip x − h u ∈ [low, high] times a strip in (y, v),
 /// so the product source · Π_layers (1 − Σ blockers) is a signed sum of products of convex
-/// polygons. All other factors are products of waves, with an outer sum over them if the two
-/// sections do not separate.
+/// polygons. All other factors are sums of products of a wave of (x, u) and a wave of (y, v).
 #[derive(Debug)]
 pub(crate) struct Expansion {
     /// The sections (x, u) and (y, v).
     pub(crate) sections: [AxisSection; 2],
     pub(crate) terms: Vec<PolygonTerm>,
-    /// The summands of the window and gratings: products of the waves of both sections. A factor
-    /// of slope has several such products.
+    /// The expansion of the window, the gratings and the factor of slope: a sum of products of
+    /// waves of both sections. A factor of slope has several such products.
     pub(crate) products: Vec<[Vec<SectionWave>; 2]>,
-    /// The radiance, or the intensity of a point light.
+    /// The radiance of the light, or the intensity of a point light.
     pub(crate) brightness: f64,
-    /// Number of columns of terms so far.
+    /// Number of column indices that have been assigned to terms so far.
     columns: usize,
 }
 
@@ -102,12 +102,14 @@ impl AxisSection {
         self.unit = self.half[1];
     }
 
-    /// Returns a distance in units of the half-widths.
+    /// Returns the shear of a distance in units of the window's half-widths: the change of
+    /// position per slope.
     fn shear(&self, distance: f64) -> f64 {
         distance * self.half[1] / self.half[0]
     }
 
-    /// Returns the index of direction (shear, 1); equal directions share one index.
+    /// Returns the index of the direction (shear, 1), and appends this direction if the list does
+    /// not contain it.
     fn direction(&mut self, shear: f64) -> usize {
         let same = |d: &[f64; 2]| d[1] > 0.0 && d[0] - shear == 0.0;
         self.directions.iter().position(same).unwrap_or_else(|| {
@@ -116,8 +118,8 @@ impl AxisSection {
         })
     }
 
-    /// Returns the part of a polygon whose rays were at positions in `extent` (metres), a
-    /// `distance` before; `None` if it is empty.
+    /// Returns the part of a polygon whose rays were at positions in `extent` (metres) at the
+    /// given `distance` upstream, or `None` if this part is empty.
     fn strip(&mut self, polygon: usize, distance: f64, extent: [f64; 2]) -> Option<usize> {
         if extent.map(f64::to_bits) == EVERYWHERE.map(f64::to_bits) {
             return Some(polygon);
@@ -137,9 +139,9 @@ impl AxisSection {
         index
     }
 
-    /// Returns ∫∫ Σ waves exp(−2πi k·(position, slope)) over a polygon, k in cycles per metre and
-    /// per unit slope: one polygon transform for each exponential. Unit: metre · slope; slope for
-    /// segments.
+    /// Returns ∫∫ Σ waves exp(−2πi k·(position, slope)) over a polygon, where k is in cycles per
+    /// metre and per unit slope. Uses one polygon transform for each complex exponential of the
+    /// waves. The unit is metre · slope, or slope for segments.
     pub(crate) fn value(&self, waves: &[SectionWave], polygon: &Polygon, k: [f64; 2]) -> Complex {
         let k = self.reduced(k);
         let shifts = waves.iter().flat_map(SectionWave::shifts);
@@ -149,7 +151,8 @@ impl AxisSection {
         sum * self.unit
     }
 
-    /// Returns a frequency in cycles per half-width.
+    /// Converts a frequency from cycles per metre and per unit slope to cycles per half-width of
+    /// the window.
     pub(crate) fn reduced(&self, k: [f64; 2]) -> [f64; 2] {
         [k[0] * self.half[0], k[1] * self.half[1]]
     }
@@ -168,7 +171,8 @@ impl Expansion {
         expansion
     }
 
-    /// Returns the polygons and terms alone; `None` if either number exceeds `most`.
+    /// Returns an expansion with polygons and terms but without waves, or `None` if the number of
+    /// polygons or of terms exceeds `most`.
     pub(crate) fn within(
         path: &ChainSegment<'_>,
         window: &Window,
@@ -199,8 +203,8 @@ impl Expansion {
         }
     }
 
-    /// Multiplies out the light and the opaque masks; stops and returns `false` if there are more
-    /// terms or polygons than `most`.
+    /// Expands the product of the light and the opaque masks; stops and returns `false` if there
+    /// are more than `most` terms or polygons.
     fn multiply_out(&mut self, path: &ChainSegment<'_>, fineness: &[Discs], most: usize) -> bool {
         for section in &mut self.sections {
             section.has_discs = path.has_discs();
@@ -210,7 +214,7 @@ impl Expansion {
         let opaque = layers.filter(|layer| matches!(layer.mask, Mask::Opaque { .. }));
         for (layer, &discs) in opaque.zip(&fineness[1..]) {
             let patches = patches(layer.mask, discs);
-            // Every pair is tested, though few may overlap.
+            // Every pair of a term and a rectangle is tested, although only few pairs may overlap.
             if self.terms.len().saturating_mul(patches.len()) > most.saturating_mul(PAIRS_PER_TERM)
             {
                 return false;
@@ -234,7 +238,7 @@ impl Expansion {
         Self::new(&path, window, &slope, &fineness)
     }
 
-    /// Adds the light itself.
+    /// Replaces the terms of the window by the terms of the light's shape.
     fn shine(&mut self, path: &ChainSegment<'_>, discs: Discs) {
         self.brightness = path.light.brightness;
         if let Some(shape) = &path.light.shape {
@@ -246,7 +250,7 @@ impl Expansion {
         }
     }
 
-    /// Multiplies by 1 − Σ patches.
+    /// Multiplies the terms by 1 − Σ patches, where the patches are the rectangles of a mask.
     fn block(&mut self, patches: &[WeightedRectangle], distance: f64) {
         let blocked = self.inside(patches, distance);
         self.terms
@@ -256,7 +260,8 @@ impl Expansion {
             }));
     }
 
-    /// Returns the terms times Σ patches in a plane, without empty terms.
+    /// Returns the product of the terms and the sum of the patches in a plane, without empty
+    /// terms.
     fn inside(&mut self, patches: &[WeightedRectangle], distance: f64) -> Vec<PolygonTerm> {
         let mut parts = Vec::new();
         let polygons = self.sections[1].polygons.len();
@@ -285,9 +290,10 @@ impl Expansion {
         parts
     }
 
-    /// Returns the terms with sums along y taken first. n × n patches of a disc behind n × n
-    /// others make n⁴ terms. The sum along y over n² of these terms is the same for all n polygons
-    /// of (x, u) that a patch's extent along x cuts. So n³ terms with n³ summands are enough.
+    /// Returns the terms with sums along y taken first. The n × n rectangles of a disc behind
+    /// another disc of n × n rectangles result in n⁴ terms. The sum along y over n² of these terms
+    /// is the same for all n polygons of (x, u) that are clipped to one extent along x. So n³
+    /// terms with n³ summands are sufficient.
     pub(crate) fn columns(&self) -> SectionColumns {
         let mut known = HashMap::new();
         let mut sums: Vec<Sum> = Vec::new();
@@ -308,7 +314,7 @@ impl Expansion {
         SectionColumns { sums, beside }
     }
 
-    /// Keeps only the polygons that terms use, in the order of the terms.
+    /// Removes the polygons that no term uses, and sorts the others in the order of the terms.
     fn drop_unused(&mut self) {
         for (axis, section) in self.sections.iter_mut().enumerate() {
             let all = std::mem::take(&mut section.polygons);
@@ -325,7 +331,8 @@ impl Expansion {
     }
 }
 
-/// Returns the window, including factors of slope, times the gratings along the path.
+/// Returns the product of the window, the factors of slope and the gratings along the path, as
+/// waves.
 fn products(
     path: &ChainSegment<'_>,
     window: &Window,
@@ -351,7 +358,7 @@ fn products(
     slope.parts.iter().map(product).collect()
 }
 
-/// Returns an opaque mask as patches.
+/// Returns the rectangles of an opaque mask, whose discs are split by the given method.
 fn patches(mask: &Mask, discs: Discs) -> Vec<WeightedRectangle> {
     let Mask::Opaque {
         shapes,

@@ -7,10 +7,11 @@
 //! S(ρ, ν) = ∫ Ŵ(ν − q) ρ̂'(q) I(ρ, q) dq,
 //!
 //! where I is the spectrum under a window that contains all slopes whose lobes reach the plane's
-//! window. The integral is a sum over q. The field under this window is bounded, so the sum is
-//! exact up to the lobe's tail once the spacing separates the copies of the field. Along y, the
-//! lobe blurs slopes too, which moves a share of all light out of the window. This is exact if the
-//! field is the product of a function of (x, u) and a function of (y, v), as behind slats along y.
+//! window. The integral is a sum over q. The field under this window is bounded. If the spacing of
+//! the sum is small enough to separate the copies of the field, the sum is exact up to the lobe's
+//! tail. The lobe also blurs slopes along y, which moves a fraction of the light out of the
+//! window. Multiplication by the remaining fraction is exact if the field is the product of a
+//! function of (x, u) and a function of (y, v), as behind slats along y.
 
 use super::{projection, slices};
 use crate::Chain;
@@ -22,12 +23,13 @@ use etendue_field::{
 use ndarray::Array2;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// The relative tail of a lobe that is neglected in spectra and in pictures.
+/// The value of a lobe, relative to its peak, below which its tail is neglected in spectra and in
+/// pictures.
 const TAIL: f64 = 1e-10;
 const SEEN_TAIL: f64 = 1e-4;
-/// Distance between the copies of the field, in field widths.
+/// Distance between the periodic copies of the field, in widths of the field.
 const APART: f64 = 1.05;
-/// Lobes that reach farther than this, in radians, count as cut off at a right angle.
+/// Lobes whose reach exceeds this angle, in radians, are treated as cut off at a right angle.
 const BROAD: f64 = 1.5;
 /// Maximum number of frequencies on each side of zero. Narrow lobes reach it.
 const MAX_FREQUENCIES: usize = 512;
@@ -71,14 +73,14 @@ pub fn blurred_slices(
     blurred
 }
 
-/// Returns the share of light that remains in the window when slopes along y are blurred.
+/// Returns the fraction of light that remains in the window after the lobe blurs slopes along y.
 fn share(chain: &Chain, lobe: &PlanarLobe, window: &Window) -> f64 {
     let blur = Blur::new(lobe, &window.v);
     let none = FrequencyAxis {
         half: 0,
         spacing: 1.0,
     };
-    // The second of two azimuths is along y.
+    // A grid of two azimuths, of which the second is along y.
     let grid = SliceGrid {
         azimuths: 2,
         rho: none,
@@ -106,12 +108,13 @@ fn share(chain: &Chain, lobe: &PlanarLobe, window: &Window) -> f64 {
     if before > 0.0 { after / before } else { 1.0 }
 }
 
-/// A lobe over one slope, as a sum over frequencies.
+/// A lobe as a function of one slope, represented by a sum over frequencies.
 struct Blur {
     /// A profile that contains all slopes whose lobes reach the window.
     wide: Profile,
     lattice: FrequencyAxis,
-    /// The values of ρ̂' at the frequencies, times the frequencies' spacing.
+    /// The values of ρ̂' at the frequencies of the sum, multiplied by the spacing of these
+    /// frequencies.
     hats: Vec<f64>,
     window: Profile,
 }
@@ -137,7 +140,8 @@ impl Blur {
         }
     }
 
-    /// Returns the weights with which the frequencies before the lobe contribute to ν after it.
+    /// Returns the weights with which the spectrum's frequencies q before the lobe contribute to
+    /// the frequency ν after the lobe.
     fn weights(&self, nu: f64) -> Vec<f64> {
         let frequencies = self.lattice.values().into_iter().zip(&self.hats);
         frequencies
@@ -146,8 +150,9 @@ impl Blur {
     }
 }
 
-/// Returns the picture of the chain's field after a lobe, like [`projection`] without a lobe. It is
-/// accurate to a fraction of a cell, over which the lobe is taken as constant.
+/// Returns the picture of the chain's field after a lobe, like [`projection`] without a lobe. The
+/// lobe is treated as constant over a fraction of a cell, so the picture is accurate to this
+/// fraction of a cell.
 #[must_use]
 pub fn blurred_projection(
     chain: &Chain,
@@ -172,7 +177,7 @@ pub fn blurred_projection(
     }
 }
 
-/// Returns the angle beyond which a lobe is below a share of its peak.
+/// Returns the angle beyond which a lobe is below the fraction `share` of its peak.
 fn reach(lobe: &PlanarLobe, share: f64) -> f64 {
     let least = share * lobe.value(0.0);
     let (mut inside, mut outside) = (0.0, FRAC_PI_2);
@@ -187,16 +192,16 @@ fn reach(lobe: &PlanarLobe, share: f64) -> f64 {
     outside
 }
 
-/// Returns a frequency beyond which the spectrum of a lobe is negligible. It is the frequency for a
+/// Returns a frequency beyond which the spectrum of a lobe is negligible: the frequency for a
 /// Gaussian with the same reach. For lobes that end at a right angle, whose transforms have tails,
-/// it is three times as high.
+/// the returned frequency is three times as high.
 fn highest(reach: f64) -> f64 {
     let deviations = (-2.0 * libm::log(TAIL)).sqrt();
     let tail = if reach < BROAD { 1.0 } else { 3.0 };
     tail * deviations * deviations / (TAU * reach)
 }
 
-/// Returns the transform of a profile.
+/// Returns the Fourier transform of a profile at a frequency.
 fn transform(profile: &Profile, frequency: f64) -> f64 {
     let half = profile.half_width();
     let terms = profile.cosine_terms().into_iter();
@@ -262,7 +267,7 @@ mod tests {
         let plain = slices(&chain, &window, &grid).at_zero();
         let left = blurred_slices(&chain, &lobe, &window, &grid).at_zero() / plain;
         let along_y = share(&chain, &lobe, &window);
-        // The limit is the rounding error of about a hundred terms.
+        // The tolerance is the rounding error of about a hundred terms.
         assert!(along_y < 0.9 && (left / along_y.powi(2) - 1.0).abs() < 1e-12);
     }
 
@@ -285,8 +290,8 @@ mod tests {
                     })
                     .sum();
                 let off = (sum * cells.cell_area() - spectrum.half[[0, m, n]]).norm();
-                // The tolerance covers cells of 1/128 of the half-width, and the neglected tail of
-                // pictures.
+                // The tolerance covers the error of cells of 1/128 of the half-width, and the
+                // lobe's tail that is neglected in pictures.
                 assert!(
                     off < 1e-3 * spectrum.at_zero(),
                     "{exponent} {m} {n}: {off:e}"

@@ -11,18 +11,18 @@ use crate::parallel::slope::Slope;
 use etendue_field::{Assignment, Complex, FieldGrid, Window};
 use rayon::prelude::*;
 
-/// The spectrum of a chain on a 4D grid of frequencies: multiples of a spacing along each axis.
+/// The spectrum of a chain at the multiples of a frequency spacing along each of the four axes.
 ///
 /// The spectrum is a sum of products of two factors, one over (Ωx, Ωu) and one over (Ωy, Ωv). So
 /// only tables of the factors are stored, and frequencies are computed from the tables on demand.
 #[derive(Debug)]
 pub struct Harmonics {
     expansion: Expansion,
-    /// The tables of both sections, for each product of waves.
+    /// For each product of waves, the tables of the sections (x, u) and (y, v).
     tables: Vec<[HarmonicTable; 2]>,
 }
 
-/// The factors of all polygons of a section, [position, slope, polygon].
+/// The factors of all polygons of a section, as [position frequency, slope frequency, polygon].
 #[derive(Debug)]
 struct HarmonicTable {
     /// Number of harmonics on either side of zero, along position and slope.
@@ -31,15 +31,15 @@ struct HarmonicTable {
     values: Vec<Complex>,
 }
 
-/// The most numbers stored: 1.6 GB.
+/// Maximum number of complex numbers that are stored, which occupy 1.6 GB.
 const MAX_NUMBERS: usize = 100_000_000;
 
 impl Harmonics {
     /// Builds tables for frequencies (Ωx, Ωy, Ωu, Ωv) of up to `half` multiples of `spacing` along
     /// each axis.
     ///
-    /// Returns `None` after a diffuse reflection, which is not such a product, and if the tables
-    /// would be larger than 1.6 GB.
+    /// Returns `None` if the chain has a diffuse reflection, whose spectrum is not a sum of such
+    /// products, or if the tables would be larger than 1.6 GB.
     #[must_use]
     pub fn new(
         chain: &Chain,
@@ -51,8 +51,8 @@ impl Harmonics {
     }
 
     /// Builds the tables of the expected spectrum of rays that are splatted onto the cells of a
-    /// grid, after division by the assignment spline. It is the spectrum of the chain, plus aliases
-    /// from beyond Nyquist.
+    /// grid, after division by the assignment spline. The expected spectrum is the spectrum of the
+    /// chain plus aliases from beyond the Nyquist frequency.
     ///
     /// Σₙ ℓ̂(Ω + n/Δ) Πᵢ ((−1)^nᵢ fᵢ/(fᵢ + nᵢ))^p, where f = ΔΩ is in cycles per cell and p is the
     /// order of the spline (docs/theory.md (44); Hockney and Eastwood 1981, chapter 5). The sum
@@ -80,7 +80,8 @@ impl Harmonics {
         if path.receiver().is_some() {
             return None;
         }
-        // An order 3 spline reduces content beyond twice Nyquist to less than 1/27.
+        // A spline of order 3 reduces aliases from beyond twice the Nyquist frequency to less than
+        // 1/27.
         let reach = if folded.is_some() { 2.0 } else { 1.0 };
         let max = |axis: usize| reach * spacing[axis] * half[axis] as f64;
         let highest = [max(0).max(max(1)), max(2).max(max(3))];
@@ -117,8 +118,8 @@ impl Harmonics {
         self.expansion.terms.len() * self.tables.len()
     }
 
-    /// Returns ℓ̂ at the harmonics (i, j, k, l) of the spacings; equal to [`at`](crate::at) there.
-    /// Unit: W m⁻² sr⁻¹ · m².
+    /// Returns ℓ̂ at the harmonics (i, j, k, l) of the spacings, which equals [`at`](crate::at) at
+    /// these frequencies. Unit: W m⁻² sr⁻¹ · m².
     ///
     /// # Panics
     /// Panics if a harmonic is beyond the range of the tables.
@@ -162,7 +163,7 @@ impl HarmonicTable {
                         step,
                         half,
                     });
-                    // Transposes [polygon, slope] to [slope, polygon].
+                    // Transposes an array [polygon, slope] to [slope, polygon].
                     for (n, sum) in sum.chunks_exact_mut(polygons).enumerate() {
                         for (at, share_of_slope) in along[1].indices(n) {
                             for (p, sum) in sum.iter_mut().enumerate() {
@@ -181,7 +182,7 @@ impl HarmonicTable {
         }
     }
 
-    /// Returns the factors of all polygons at a harmonic.
+    /// Returns the factors of all polygons at the given harmonics of position and slope.
     fn at(&self, harmonic: [isize; 2]) -> &[Complex] {
         let [i, n] = [0, 1].map(|axis| {
             let index = self.half[axis].checked_add_signed(harmonic[axis]);
@@ -195,19 +196,21 @@ impl HarmonicTable {
     }
 }
 
-/// Number of aliases on either side that are folded onto a grid.
+/// Number of aliases on either side of a frequency that are added to it.
 const FOLDS: u32 = 4;
 
 /// The frequencies along an axis of a table, with the aliases that coincide on its grid.
 #[derive(Clone, Copy)]
 struct Folds {
-    /// Number of harmonics on either side of zero; half a period of the spectrum on the grid.
+    /// Number of harmonics on either side of zero, which is half a period of the spectrum of
+    /// gridded rays.
     half: usize,
     folded: Option<Assignment>,
 }
 
 impl Folds {
-    /// Returns the number of harmonics on either side of zero that contribute.
+    /// Returns the number of harmonics on either side of zero that contribute to the table,
+    /// including aliases.
     fn reach(self) -> usize {
         match self.folded {
             Some(_) => self.half * (2 * FOLDS as usize + 1),
@@ -215,7 +218,7 @@ impl Folds {
         }
     }
 
-    /// Returns the harmonics that alias to the one at `index`, and their shares.
+    /// Returns the harmonics that alias to the harmonic at `index`, each with its factor.
     fn of(self, index: usize) -> impl Iterator<Item = (f64, f64)> {
         let (half, folds) = (self.half as f64, f64::from(FOLDS));
         let own = index as f64 - half;
@@ -233,7 +236,7 @@ impl Folds {
         })
     }
 
-    /// Returns the same harmonics as `of`, as indices among all harmonics within
+    /// Returns the same harmonics as [`of`](Self::of), as indices among all harmonics within
     /// [`reach`](Self::reach).
     #[expect(
         clippy::cast_possible_truncation,

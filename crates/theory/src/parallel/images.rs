@@ -3,20 +3,20 @@
 use crate::{Chain, Operator, Source};
 use etendue_field::{Disc, Grating, HalfPlane, Light, Mask, Rectangle, Shape};
 
-/// The smallest distance of a plane from the focal plane, relative to the plane's distance. The
-/// image of the focal plane is at infinity, so positions on the image of a plane near the focal
-/// plane lose digits.
+/// The smallest allowed distance between a plane and the focal plane, divided by the distance
+/// between the plane and the mirror or lens. The image of the focal plane is at infinity. If a
+/// plane is near the focal plane, positions on its image have large rounding errors.
 const NEAREST: f64 = 1e-6;
 
 impl Chain {
     /// Returns the chain whose final light field is that of this chain after the map u' = u +
-    /// `power` x. A thin lens of focal length −1/power has this effect, and to first order a
-    /// curved mirror at normal incidence.
+    /// `power` x. A thin lens of focal length −1/power applies this map, and a curved mirror at
+    /// normal incidence applies it to first order.
     ///
     /// A ray that arrives at (x, u') was at x − h u = m (x − h/m u') in a plane at distance h,
-    /// with m = 1 + power · h. So the plane is seen at the distance h/m, and 1/m times as large.
-    /// Returns `None` if light varies with slope or leaves a surface, because no image exists
-    /// then.
+    /// with m = 1 + power · h. So the image of the plane is at the distance h/m, and is 1/m times
+    /// as large. Returns `None` if light varies with slope or leaves a surface, because such
+    /// chains have no image.
     #[must_use]
     pub fn imaged(&self, power: f64) -> Option<Self> {
         let Light::Area {
@@ -60,7 +60,7 @@ impl Chain {
     }
 }
 
-/// Returns travel between images, in either direction along the axis.
+/// Returns the operator for travel between two images; `distance` may be negative.
 fn travel(distance: f64) -> Operator {
     Operator::Travel {
         from: "image".to_owned(),
@@ -134,7 +134,7 @@ mod tests {
     use crate::testing::*;
     use etendue_field::{Profile, Window};
 
-    /// Returns a window that contains all slopes of the chain and some of its positions.
+    /// Returns a window that contains all slopes of the chain and part of its positions.
     fn open(half: f64) -> Window {
         Window {
             u: Profile::Box(3.0),
@@ -158,7 +158,8 @@ mod tests {
             let window = open(0.3);
             let sheared = AffineMap::<2>::back(power);
             for [rho, nu] in [[0.0, 0.0], [1.3, 0.8], [2.0, -1.7]] {
-                // The shear is applied in both sections, as an image is formed in both.
+                // The shear is applied in both sections, because the mirror or lens has power
+                // along both axes.
                 let [x, u] = sheared.transpose_apply([rho, nu]);
                 let before = at(&chain, &window, [x, 0.5 * x, u, 0.5 * u]);
                 let after = at(&imaged, &window, [rho, 0.5 * rho, nu, 0.5 * nu]);

@@ -1,9 +1,9 @@
 //! The closed form of light between parallel planes (docs/theory.md, sections 1 to 4).
 //!
-//! A [`Chain`] lists the steps of light: travel (Eq. 3 of Durand et al. 2005), masks (their Eq. 4),
-//! the cosine and diffuse reflection of a receiver (their Eqs. 6 and 7). Travel is a shear of
-//! (position, slope), so every edge stays a straight line and every field is a signed sum of
-//! products of convex polygons.
+//! A [`Chain`] lists the operators on a light field as in Durand et al. 2005: travel (Eq. 3),
+//! masks (Eq. 4), and the cosine and diffuse reflection of a receiver (Eqs. 6 and 7). Travel is a
+//! shear of (position, slope), so every edge stays a straight line and every field is a signed sum
+//! of products of convex polygons.
 //!
 //! | what | where |
 //! |---|---|

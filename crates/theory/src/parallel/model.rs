@@ -16,12 +16,14 @@ impl Model for Chain {
     }
 
     fn parameters(&self) -> Vec<Parameter> {
-        // With finitely many rays, the light that passes an edge has no derivative.
+        // For a light of finitely many rays, the light that passes an edge has no derivative with
+        // respect to the edge's position.
         if self.given().is_some() {
             return Vec::new();
         }
         let mut all = Parameter::of_light(&self.source.light);
-        // Closed forms do not cover lights with pictures.
+        // The width of a light's picture is not a parameter, because closed forms do not cover
+        // lights with pictures.
         all.retain(|parameter| *parameter != Parameter::ImageWidth);
         for (i, operator) in self.operators.iter().enumerate() {
             match operator {
@@ -33,8 +35,7 @@ impl Model for Chain {
         all
     }
 
-    /// # Panics
-    /// Panics if the parameter belongs to another chain.
+    /// # Panics Panics if the chain has no such parameter.
     fn name(&self, parameter: Parameter) -> String {
         let Source { name, light } = &self.source;
         let operator = parameter.operator().and_then(|i| self.operators.get(i));
@@ -84,7 +85,8 @@ impl Model for Chain {
     }
 
     /// Predicts by closed forms, or by nets of rays if closed forms take too long or do not
-    /// resolve the scene. The rays of a file are summed one by one.
+    /// resolve the scene. For a light that is a list of rays, the prediction is a sum over these
+    /// rays.
     fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: RayBudget) -> Predicted {
         if let Some(rays) = self.given() {
             return ray_list::predicted(self, rays, over);
@@ -127,20 +129,23 @@ impl Model for Chain {
     }
 }
 
-/// The most steps of a closed form or a quadrature: about ten seconds of one core. Nets of rays of
-/// the same cost have more noise than the photons, so a closed form is worth some time.
+/// Maximum number of computing steps of a closed form or a quadrature, which take about ten
+/// seconds on one core. At the same cost, nets of rays would have more noise than the photons, so
+/// a closed form is preferred up to this limit.
 const MAX_STEPS: f64 = 1e10;
-/// The most steps for each ray of the budget: about the time to trace four photons, the number of
-/// photons per ray.
+/// Maximum number of computing steps of a closed form for each ray of the budget. They take about
+/// as long as tracing four photons, and a run has about four photons for each ray of the budget.
 const MAX_STEPS_PER_RAY: f64 = 2e3;
-/// The most steps of a closed form or a quadrature if nets do not fit into memory.
+/// Maximum number of computing steps of a closed form or a quadrature if nets of rays do not fit
+/// into memory.
 const MAX_STEPS_WITHOUT_NETS: f64 = 1e11;
-/// The most bytes of a prediction on one core.
+/// Maximum number of bytes that a prediction may allocate on one core.
 const MAX_BYTES: f64 = 1e9;
 
 impl Chain {
-    /// Checks whether nets of rays replace the chain's closed form or quadrature. They do if it
-    /// takes longer than the photons or does not resolve a pattern.
+    /// Checks whether nets of rays replace the chain's closed form or quadrature. Nets are used if
+    /// the closed form or quadrature takes longer than tracing the photons, or does not resolve a
+    /// pattern.
     #[must_use]
     pub fn is_sampled(&self, (window, grid, picture): Over<'_>, budget: RayBudget) -> bool {
         if self.given().is_some() {
@@ -166,7 +171,7 @@ impl Chain {
         }
     }
 
-    /// Returns ∫ L W without occluders.
+    /// Returns ∫ L W, the light in the window if all occluders are removed.
     fn unblocked(&self, window: &Window) -> f64 {
         let mut open = self.clone();
         let is_mask = |operator: &Operator| matches!(operator, Operator::Visibility { .. });
@@ -176,7 +181,8 @@ impl Chain {
 }
 
 impl Parameter {
-    /// Returns the index of the parameter's operator; `None` for parameters of the source.
+    /// Returns the index of the operator to which the parameter belongs, or `None` for parameters
+    /// of the source.
     fn operator(self) -> Option<usize> {
         match self {
             Self::Travel(i)
@@ -229,8 +235,8 @@ mod tests {
         );
     }
 
-    /// For a wide disc behind a narrow window, a rule that is a quarter finer does not reveal the
-    /// error.
+    /// Tests that a chain with a wide disc behind a narrow window is predicted by nets, because a
+    /// rule with a quarter more nodes does not reveal its quadrature error.
     #[test]
     fn wide_discs_behind_narrow_windows_are_sampled() {
         let sampled = |radius: f64| {
@@ -253,7 +259,8 @@ mod tests {
         assert!(sampled(20.0));
     }
 
-    /// A narrow spot has a long series of cosines, multiplied by each blocker.
+    /// Tests that nets replace a slow closed form: a narrow spot has a long series of cosines,
+    /// which is multiplied by the terms of each blocker.
     #[test]
     fn closed_forms_that_take_longer_than_photons_are_sampled() {
         let window = window(Profile::Hann(0.5), Profile::Hann(0.5));

@@ -1,16 +1,17 @@
 //! Convex polygons in the (position, slope) plane of one axis, and their exact Fourier transforms
 //! (docs/theory.md (5)).
 //!
-//! Lengths are in units of the half-widths of the window, so everything is of size 1.
+//! Coordinates are in units of the window's half-widths, so they are of order 1.
 
 use crate::numerics::sinc::sinc;
 use etendue_field::{Complex, cis};
 use std::f64::consts::TAU;
 
-/// The largest phase, in radians, for which the series is used; above it the edge form keeps 14
-/// digits.
+/// The largest phase, in radians, for which the power series is used; above this phase the sum
+/// over edges is accurate to 14 digits.
 const SERIES_PHASE: f64 = 0.2;
-/// Number of terms of the series: the next term is SERIES_PHASE¹¹ · 12/13! = 4e-17 of the area.
+/// Number of terms of the power series; the next term is SERIES_PHASE¹¹ · 12/13! = 4e-17 of the
+/// area.
 const SERIES_TERMS: u32 = 11;
 
 /// A corner of a polygon.
@@ -18,13 +19,13 @@ const SERIES_TERMS: u32 = 11;
 pub(crate) struct Vertex {
     /// The coordinates (position, slope).
     pub(crate) at: [f64; 2],
-    /// The direction of the edge that leaves the corner: an index into a list shared by many
-    /// polygons.
+    /// The direction of the edge from this corner to the next, as an index into a list that many
+    /// polygons share.
     pub(crate) edge: usize,
 }
 
-/// A convex polygon with corners counter-clockwise; or a segment, which has two corners, the lower
-/// slope first.
+/// A convex polygon with corners in counter-clockwise order, or a segment, whose two corners are
+/// in order of increasing slope.
 ///
 /// A segment along (shear, 1) represents δ(position − shear · slope): its integrals are over the
 /// slope.
@@ -44,8 +45,8 @@ fn minus(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
 }
 
 impl Polygon {
-    /// Returns the square |position| < 1, |slope| < 1; `edges` are the directions of its sides of
-    /// constant slope and of constant position.
+    /// Returns the square |position| < 1, |slope| < 1. `edges` are the indices of two directions:
+    /// of the sides of constant slope and of the sides of constant position.
     pub(crate) fn square(edges: [usize; 2]) -> Self {
         let corner = |x, u, side: usize| Vertex {
             at: [x, u],
@@ -59,8 +60,8 @@ impl Polygon {
         ])
     }
 
-    /// Returns the segment position = `shear` · slope inside the square; `edge` is the direction
-    /// (shear, 1).
+    /// Returns the segment position = `shear` · slope inside the square; `edge` is the index of
+    /// the direction (shear, 1).
     pub(crate) fn segment(shear: f64, edge: usize) -> Self {
         let end = 1.0 / shear.abs().max(1.0);
         let corner = |u: f64| Vertex {
@@ -84,8 +85,8 @@ impl Polygon {
         self.0.iter().copied().zip(next.copied())
     }
 
-    /// Returns the part where `normal`·p ≤ `bound`; `edge` is the direction of the cut (Sutherland
-    /// and Hodgman 1974).
+    /// Returns the part of the polygon where `normal`·p ≤ `bound`; `edge` is the index of the
+    /// direction of the cut (Sutherland and Hodgman 1974).
     pub(crate) fn clipped(&self, normal: [f64; 2], bound: f64, edge: usize) -> Self {
         if self.is_segment() {
             return self.shortened(normal, bound);
@@ -134,14 +135,15 @@ impl Polygon {
         })
     }
 
-    /// Returns the part where `low` ≤ position − `shear` · slope ≤ `high`; `edge` is the direction
-    /// (shear, 1).
+    /// Returns the part of the polygon where `low` ≤ position − `shear` · slope ≤ `high`; `edge`
+    /// is the index of the direction (shear, 1).
     pub(crate) fn strip(&self, shear: f64, [low, high]: [f64; 2], edge: usize) -> Self {
         self.clipped([1.0, -shear], high, edge)
             .clipped([-1.0, shear], -low, edge)
     }
 
-    /// Returns the triangles (first corner, b, c) of the polygon, as the vectors to b and c.
+    /// Returns the triangles (a, b, c) that divide the polygon, where a is its first corner, as
+    /// the vectors from a to b and from a to c.
     pub(crate) fn triangles(&self) -> impl Iterator<Item = [[f64; 2]; 2]> {
         self.0
             .windows(2)
@@ -149,7 +151,7 @@ impl Polygon {
             .map(|pair| [pair[0], pair[1]].map(|corner| minus(corner.at, self.0[0].at)))
     }
 
-    /// Returns the area; for a segment, the range of slopes.
+    /// Returns the area of a polygon, or the range of slopes of a segment.
     pub(crate) fn measure(&self) -> f64 {
         if self.is_segment() {
             return minus(self.0[1].at, self.0[0].at)[1];
@@ -157,8 +159,8 @@ impl Polygon {
         self.triangles().map(|[b, c]| 0.5 * cross(b, c)).sum()
     }
 
-    /// Returns F(k) = ∫∫ exp(−2πi k·p) over the polygon; F(0) is the measure. The result is exact
-    /// to about 1e-14.
+    /// Returns the Fourier transform F(k) = ∫∫ exp(−2πi k·p) over the polygon, accurate to about
+    /// 1e-14; F(0) is the polygon's measure.
     pub(crate) fn transform(&self, k: [f64; 2]) -> Complex {
         let Some(first) = self.0.first() else {
             return Complex::ZERO;
@@ -174,9 +176,9 @@ impl Polygon {
         }
     }
 
-    /// Returns the transform of a polygon whose opposite sides are parallel, from half as many
-    /// exponentials: exp(−2πi k·c) sinc(k·a) sinc(k·b) times the area, for sides a and b about a
-    /// centre c.
+    /// Returns the transform of a polygon. For a parallelogram with sides a and b and centre c,
+    /// half as many exponentials suffice: the transform is exp(−2πi k·c) sinc(k·a) sinc(k·b) times
+    /// the area.
     pub(crate) fn transform_by_sides(&self, k: [f64; 2]) -> Complex {
         let [p, q, r, s] = &self.0[..] else {
             return self.transform(k);
@@ -190,7 +192,8 @@ impl Polygon {
         cis(-TAU * dot(k, center)) * size
     }
 
-    /// Returns exp(−2πi k·c) sinc(k·e) times the range of slopes, for a segment e with midpoint c.
+    /// Returns the transform of a segment e with midpoint c: exp(−2πi k·c) sinc(k·e) times the
+    /// range of slopes.
     fn segment_transform(&self, k: [f64; 2]) -> Complex {
         let [a, b] = [self.0[0].at, self.0[1].at];
         let e = minus(b, a);
@@ -293,8 +296,8 @@ mod tests {
         let strip = Polygon::square([0, 1]).strip(shear, [-0.5 * width, 0.5 * width], 2);
         let cuts = |p: Polygon| p.clipped(cut[0], 0.3, 3).clipped(cut[1], 0.2, 4);
         let (strip, segment) = (cuts(strip), cuts(Polygon::segment(shear, 2)));
-        // The ends of the strip are slanted, which causes an error of second order in the width,
-        // about 1e-10; rounding causes an error of 1e-16/width.
+        // The slanted ends of the strip cause an error of second order in its width, about 1e-10,
+        // and rounding causes an error of 1e-16/width.
         assert!((strip.measure() / width - segment.measure()).abs() < 1e-9);
         for k in FREQUENCIES {
             let difference = strip.transform(k) / width - segment.transform(k);

@@ -1,4 +1,4 @@
-//! The light field of a chain in cells of x and u.
+//! The light field of a chain as means over cells of x and u.
 
 use super::expansion::Expansion;
 use crate::Chain;
@@ -13,21 +13,22 @@ use ndarray::Array2;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Number of nodes along each direction of a triangle. The window is smooth inside a cell: with
-/// Hann profiles the error is below 1e-11 for 8 bins and below rounding error for 32. Each cycle of
-/// a grating in a cell adds nodes.
+/// Number of nodes of the Gauss rule along each direction of a triangle. The window is smooth
+/// inside a cell, so with Hann profiles the error is below 1e-11 for 8 bins and below rounding
+/// error for 32 bins. For gratings, nodes are added in proportion to the cycles in a cell.
 const NODES: usize = 5;
-/// Number of nodes for each cycle.
+/// Number of nodes that are added for each cycle of a grating in a cell.
 const NODES_PER_CYCLE: f64 = 5.0;
-/// The most nodes; gratings so fine that a cell of a picture holds dozens of periods are
-/// undersampled.
+/// Maximum number of nodes along each direction of a triangle; if a cell contains dozens of
+/// periods of a grating, the grating is undersampled.
 const MOST_NODES: f64 = 200.0;
 
 /// Returns the windowed light field, integrated over y and v, as means over cells of (x, u).
 ///
-/// The integral over y and v is exact: it is the factor of (y, v) at frequency zero. Each polygon
-/// is clipped to each cell, where the window is integrated by a Gauss rule, so edges cause no
-/// aliasing. Discs are split into strips of a twentieth of a cell or wider. Unit: W m⁻² sr⁻¹ · m.
+/// The integral over y and v is exact, because it is the (y, v) factor of the spectrum at
+/// frequency zero. Each polygon is clipped to each cell, where the window is integrated by a Gauss
+/// rule, so edges cause no aliasing. Discs are split into strips of a twentieth of a cell or
+/// wider. Unit: W m⁻² sr⁻¹ · m.
 #[must_use]
 pub fn projection(chain: &Chain, window: &Window, grid: &ProjectionGrid) -> Projection {
     let path = chain.path();
@@ -55,9 +56,9 @@ pub fn projection(chain: &Chain, window: &Window, grid: &ProjectionGrid) -> Proj
 /// The factor that multiplies a polygon of (x, u) after integration over y and v.
 #[derive(Clone, Debug)]
 enum CellDensity {
-    /// A constant, times the slope profile of the window.
+    /// A constant factor; the slope profile of the window is applied separately.
     Uniform(f64),
-    /// Amplitudes of a cosine series in u, which includes the slope profile of the window.
+    /// Amplitudes of a cosine series in u; the series includes the slope profile of the window.
     Series(Vec<f64>),
 }
 
@@ -85,8 +86,8 @@ fn densities(expansion: &Expansion, slope: &Slope) -> Vec<CellDensity> {
         .collect()
 }
 
-/// Returns the factor of each polygon of (x, u) from the integral over y and v, under some waves in
-/// (y, v).
+/// Returns the factor of each polygon of (x, u): the integral over y and v of the terms with this
+/// polygon, multiplied by the given waves in (y, v).
 fn weights(expansion: &Expansion, waves: &[SectionWave]) -> Vec<f64> {
     let [x, y] = &expansion.sections;
     let polygons = y.polygons.iter();
@@ -102,19 +103,19 @@ fn weights(expansion: &Expansion, waves: &[SectionWave]) -> Vec<f64> {
 /// Cells of (x, u) in units of the half-widths of the window.
 struct Cells<'a> {
     window: &'a Window,
-    /// Gratings along x, with their distances.
+    /// The gratings along x, each with its distance upstream of the plane.
     gratings: Vec<(&'a Grating, f64)>,
     /// The lowest frequency of the series in u, cycles per unit slope.
     series: f64,
     bins: usize,
-    /// Half-widths of the grid in units of the window's half-widths: 1 if the grid covers the
-    /// support.
+    /// Half-widths of the grid in units of the window's half-widths; they are 1 if the grid covers
+    /// exactly the window.
     half: [f64; 2],
-    /// Gauss rule on (0, 1).
+    /// Nodes and weights of a Gauss rule on (0, 1).
     nodes: Vec<(f64, f64)>,
 }
 
-/// Returns the gratings along x, with their distances.
+/// Returns the gratings along x of a path, each with its distance upstream of the plane.
 fn gratings<'a>(path: &ChainSegment<'a>) -> Vec<(&'a Grating, f64)> {
     let layers = path.layers.iter();
     let along_x = layers.filter_map(|layer| match layer.mask {
@@ -124,7 +125,7 @@ fn gratings<'a>(path: &ChainSegment<'a>) -> Vec<(&'a Grating, f64)> {
     along_x.collect()
 }
 
-/// Returns the number of nodes along each direction of a piece of a cell.
+/// Returns the number of nodes along each direction of a triangle within a cell.
 fn nodes(gratings: &[(&Grating, f64)], grid: &ProjectionGrid) -> usize {
     let cell = [grid.half_x, grid.half_u].map(|half| 2.0 * half / grid.bins as f64);
     let cycles = gratings
@@ -160,12 +161,13 @@ impl<'a> Cells<'a> {
         }
     }
 
-    /// Returns the lower edge of cell `i` along an axis.
+    /// Returns the lower edge of the cells with index `i` along an axis.
     fn edge(&self, i: usize, axis: usize) -> f64 {
         (2.0 * i as f64 / self.bins as f64 - 1.0) * self.half[axis]
     }
 
-    /// Returns Σ ∫∫ density · W over the cells of slope bin `j`, for each position bin.
+    /// Returns, for each position bin, the integral of density · W over its cell in slope bin `j`,
+    /// summed over polygons.
     fn column(&self, j: usize, polygons: &[(&Polygon, CellDensity)]) -> Vec<f64> {
         let mut sums = vec![0.0; self.bins];
         let [low, high] = [self.edge(j, 1), self.edge(j + 1, 1)];
@@ -186,7 +188,7 @@ impl<'a> Cells<'a> {
         sums
     }
 
-    /// Returns the position bins that a polygon overlaps.
+    /// Returns the range of position bins that a polygon overlaps.
     fn touched(&self, polygon: &Polygon) -> std::ops::Range<usize> {
         let n = self.bins as f64;
         if polygon.corners().is_empty() {
@@ -203,7 +205,8 @@ impl<'a> Cells<'a> {
         first..whole(high.ceil()).max((first + 1).min(self.bins))
     }
 
-    /// Returns ∫∫ W over a polygon smaller than a cell; `slope` is the factor of W in u.
+    /// Returns ∫∫ W over a polygon that lies within a cell; `slope` is the factor of W that
+    /// depends on u.
     fn integral(&self, polygon: &Polygon, slope: impl Fn(f64) -> f64) -> f64 {
         let Some(first) = polygon.corners().first() else {
             return 0.0;
@@ -229,8 +232,8 @@ impl<'a> Cells<'a> {
             .sum()
     }
 
-    /// Returns ∫∫ s W(p + s((1 − t) b + t c)) ds dt over the unit square: the mean over a triangle
-    /// with the vertex p.
+    /// Returns ∫∫ s W(p + s((1 − t) b + t c)) ds dt over the unit square: half the mean of W over
+    /// the triangle with the vertices p, p + b and p + c.
     fn mean(&self, p: [f64; 2], b: [f64; 2], c: [f64; 2], slope: impl Fn(f64) -> f64) -> f64 {
         let mut sum = 0.0;
         for &(t, weight) in &self.nodes {
@@ -253,7 +256,7 @@ impl<'a> Cells<'a> {
         along.value(x) * slope(u) * seen.product::<f64>()
     }
 
-    /// Returns Σ terms cos(2π n f u), by Clenshaw's recurrence.
+    /// Returns the cosine series Σ termsₙ cos(2π n f u) at u, by Clenshaw's recurrence.
     fn sum(&self, terms: &[f64], u: f64) -> f64 {
         let cos = libm::cos(TAU * self.series * u);
         let (mut next, mut last) = (0.0, 0.0);
@@ -341,7 +344,7 @@ mod tests {
             let center = [0, 1].map(|k| grid.center(index[k], [grid.half_x, grid.half_u][k]));
             let half = [grid.half_x, grid.half_u].map(|half| half / 16.0);
             let expected = mean(100, center, half, |x, u| {
-                // cos⁶θ, integrated over v; the whole light is within the window.
+                // The lobe cos⁶θ integrated over v; all light along v is within the window.
                 let lobe = integrate(40, [-0.3, 0.3], |v| {
                     window.v.value(v) * (1.0 + u * u + v * v).powi(-3)
                 });
@@ -354,7 +357,7 @@ mod tests {
         }
     }
 
-    /// Returns the mean of f over n × n points in the box around a center.
+    /// Returns the mean of f over n × n points in the box with the given centre and half-widths.
     fn mean(n: u32, center: [f64; 2], half: [f64; 2], f: impl Fn(f64, f64) -> f64) -> f64 {
         let place = |i: u32, k: usize| {
             center[k] + half[k] * ((f64::from(i) + 0.5) / f64::from(n) * 2.0 - 1.0)
@@ -371,7 +374,8 @@ mod tests {
         let window = window(Profile::Hann(0.5), Profile::Hann(0.3));
         let grid = ProjectionGrid::new(&window, 16);
         let projection = projection(&chain, &window, &grid);
-        // Tests whether a ray comes from the light, and whether it meets the strip of the blocker.
+        // `lit` is 1 if a ray (x, u) comes from the light, and `met` is 1 if the ray meets the
+        // strip of the blocker.
         let lit = |x: f64, u: f64| f64::from(u8::from((x - 2.0 * u).abs() < 0.2));
         let met = |x: f64, u: f64| f64::from(u8::from((x - u).abs() < 0.15));
         let weight = |x: f64, u: f64| lit(x, u) * window.x.value(x) * window.u.value(u);
@@ -385,11 +389,11 @@ mod tests {
             let expected = mean(200, center, cell, |x, u| {
                 weight(x, u) * (all - met(x, u) * behind)
             });
-            // An edge that crosses a square of n × n points causes an error of less than 1/n of the
+            // An edge across a grid of n × n points causes an error of less than 1/n of the
             // integral.
             assert!((projection.values[index] - expected).abs() < all / 200.0);
         }
-        // The cells above are partly lit and partly blocked, and blocking changes their values by
+        // The tested cells are partly lit and partly blocked, and blocking changes their values by
         // far more than this tolerance.
         assert!(behind > 0.1 * all);
     }

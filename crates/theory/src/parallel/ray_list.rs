@@ -1,9 +1,10 @@
-//! Lights that are finite lists of rays: their windowed spectrum is a sum over the rays
-//! (docs/theory.md, section 2).
+//! Predictions for lights that are finite lists of rays, whose windowed spectrum is a sum over the
+//! rays (docs/theory.md, section 2).
 //!
-//! Each ray is followed through the chain separately: travel moves it, masks attenuate it, the
-//! window weights it. So the only error of the prediction is that of the transform. The prediction
-//! shares neither random numbers nor the tracer's code for intersections with the photons.
+//! Each ray is followed through the chain: travel changes the ray's position, masks attenuate the
+//! ray, and the window multiplies its weight. So the only error of the prediction is that of the
+//! transform. The prediction and the tracer share neither random numbers nor code for
+//! intersections.
 
 use crate::barrier::Barrier;
 use crate::model::Over;
@@ -68,7 +69,7 @@ pub(super) fn predicted(
     }
 }
 
-/// The rays of a file at the end of a chain, as a single net.
+/// The rays of a list at the end of a chain, as a single net.
 pub(super) struct GivenRays<'a> {
     rays: &'a RayLight,
     steps: Vec<RayStep<'a>>,
@@ -122,8 +123,8 @@ fn step(operator: &Operator) -> RayStep<'_> {
     }
 }
 
-/// Returns a ray at the end of a chain with its contribution to the windowed light field; `None` if
-/// the contribution is zero.
+/// Returns a ray at the end of a chain and the ray's contribution to the windowed light field, or
+/// `None` if this contribution is zero.
 fn arrives(
     FluxRay { ray, flux }: &FluxRay,
     steps: &[RayStep<'_>],
@@ -177,8 +178,8 @@ mod tests {
     use std::f64::consts::TAU;
     use std::sync::Arc;
 
-    /// Rays that fill a square of a Lambertian light evenly approximate its field: the sum
-    /// converges to the closed form, by a midpoint rule.
+    /// Tests that the sum over rays on a regular grid of positions and slopes of a square
+    /// Lambertian light converges to the light's closed form.
     #[test]
     fn many_rays_of_a_square_light_are_its_closed_form() {
         let n = 24;
@@ -218,14 +219,14 @@ mod tests {
             let worst = pairs.map(|(a, b)| (a - b).norm_sqr().sqrt());
             worst.fold(0.0, f64::max) / expected.at_zero()
         };
-        // A midpoint rule of 24 cells at an edge of light has an error of order 1/24², the square
-        // of a cell.
+        // A midpoint rule of 24 cells that ends at the edge of the light has an error of order
+        // 1/24², the square of the cell size.
         assert!(off(&found.slices) < 4e-3, "{}", off(&found.slices));
-        // The test detects a planted fault, in which travel is left out.
+        // A deliberately wrong prediction without travel fails the comparison.
         let mut wrong = given;
         wrong.operators.remove(0);
         assert!(off(&predicted(&wrong, &rays, over).slices) > 0.1);
-        // The result is compared with the plain sum at one frequency.
+        // The slices are compared with the plain sum over rays at one frequency.
         let (rho, nu) = (1.5, -1.0);
         let mut plain = Complex::ZERO;
         for FluxRay { ray, flux } in rays.rays() {

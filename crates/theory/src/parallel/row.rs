@@ -6,15 +6,15 @@ use std::f64::consts::TAU;
 /// A row of frequencies with a common position frequency, in cycles per half-width.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FrequencyRow {
-    /// Frequency along the position.
+    /// Frequency of position, which is the same for the complete row.
     pub(crate) position: f64,
-    /// Spacing along the slope; the slope frequencies are (n − half) · step, 0 ≤ n ≤ 2 half.
+    /// Spacing of the slope frequencies (n − half) · step, 0 ≤ n ≤ 2 half.
     pub(crate) step: f64,
     pub(crate) half: usize,
 }
 
-/// A row of complex numbers with real and imaginary parts stored separately, which lets loops over
-/// a row be vectorised.
+/// A row of complex numbers whose real and imaginary parts are stored separately, so that loops
+/// over a row can be vectorised.
 #[derive(Clone, Debug)]
 pub(crate) struct ComplexRow {
     pub(crate) re: Vec<f64>,
@@ -39,7 +39,8 @@ impl FrequencyRow {
         [self.position, (n as f64 - self.half as f64) * self.step]
     }
 
-    /// Returns scale · exp(−2πi k·p) along the row, by powers outwards from the middle.
+    /// Writes scale · exp(−2πi k·p) along the row to `to`, by powers of a constant factor from the
+    /// middle outward.
     pub(crate) fn exponentials(&self, p: [f64; 2], scale: impl Into<Complex>, to: &mut ComplexRow) {
         let middle = cis(-TAU * self.position * p[0]) * scale.into();
         let up = cis(-TAU * self.step * p[1]);
@@ -60,7 +61,7 @@ pub(crate) fn add_scaled(to: &mut [f64], values: &[f64], factor: f64) {
     }
 }
 
-/// Adds a · b to a range: to[range] += a · b.
+/// Adds the elementwise product a · b to a range of a row: to[range] += a · b.
 pub(crate) fn add_product(
     to: &mut ComplexRow,
     range: std::ops::Range<usize>,

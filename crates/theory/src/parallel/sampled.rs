@@ -9,7 +9,7 @@ use crate::{Chain, Parameter, rays, scattering};
 use etendue_field::{Brdf, Frame, Fresnel, Lobe, Patch, Quantity, Reflectance, Window};
 use glam::DVec3;
 
-/// The system of rays over which nets sum.
+/// The system whose rays are summed over nets.
 enum NetDomain {
     Rays(Box<Observed<rays::SpecularSystem>>),
     Scattering(Box<Observed<scattering::ScatteringSystem>>),
@@ -44,7 +44,7 @@ impl Chain {
         }
     }
 
-    /// Calls a function with the rays that [`sampled`](Self::sampled) sums.
+    /// Calls a function with the nets of rays that [`sampled`](Self::sampled) sums.
     pub(super) fn with_sampled(
         &self,
         over: Over<'_>,
@@ -57,16 +57,17 @@ impl Chain {
         }
     }
 
-    /// Returns the systems with each parameter slightly increased and slightly decreased.
+    /// Returns, for each parameter, the system with this parameter slightly increased and slightly
+    /// decreased.
     fn moved<V>(
         &self,
         parameters: &[Parameter],
         over: Over<'_>,
         into: impl Fn(Self) -> V,
     ) -> Vec<ShiftedModels<V>> {
-        // Step for parameters of masks, whose shadows move. It is large enough for some rays to
-        // cross the shadow's edge, and small enough for phases to turn by at most a third of a
-        // radian.
+        // Relative step for parameters of masks, which move shadows. This step is large enough for
+        // some rays to cross the shadow's edge, and small enough to change phases by at most a
+        // third of a radian.
         const STEP: f64 = 1e-2;
         const PHASE: f64 = 0.05;
         let moved = |parameter: &Parameter| {
@@ -126,7 +127,8 @@ impl Chain {
     }
 }
 
-/// Returns a width on the receiver larger than the part that a window sees from this distance.
+/// Returns a width that is larger than the part of the receiver seen through a window at the given
+/// distance.
 fn seen(window: &Window, distance: f64) -> f64 {
     let [x, y, u, v] = [window.x, window.y, window.u, window.v].map(|p| p.half_width());
     2.0 * libm::hypot(x + distance * u, y + distance * v)

@@ -11,23 +11,23 @@ use crate::parallel::wave::SectionWave;
 use etendue_field::{Complex, SliceGrid, Slices, Window};
 use rayon::prelude::*;
 
-/// Below this, the cosine or sine of an azimuth is treated as exactly zero (azimuths of π/2 and 0
-/// up to rounding error).
+/// If the absolute cosine or sine of an azimuth is below this threshold, it is treated as exactly
+/// zero (azimuths of π/2 and 0 up to rounding error).
 const ORTHOGONAL: f64 = 1e-15;
 
-/// Returns the slices of the spectrum on a grid: the values of [`at`](crate::at), from sums over
-/// corners.
+/// Returns the slices of the spectrum on a grid.
 ///
-/// Rows of constant (azimuth, ρ) are computed in parallel, each by one thread, so the result is the
-/// same for any number of threads. The slices differ from [`at`](crate::at) by less than 1e-10 of
-/// the largest value (with discs, by the error of their quadrature). Unit: W m⁻² sr⁻¹ · m².
+/// Rows of constant (azimuth, ρ) are computed in parallel, but each row by a single thread, so the
+/// result is the same for any number of threads. The slices differ from [`at`](crate::at) by less
+/// than 1e-10 of the largest value or, if the chain has discs, by the quadrature error of discs.
+/// Unit: W m⁻² sr⁻¹ · m².
 #[must_use]
 pub fn slices(chain: &Chain, window: &Window, grid: &SliceGrid) -> Slices {
     let path = chain.path();
     slices_at_fineness(&path, window, grid, &fineness(&path, window, grid))
 }
 
-/// Returns how finely discs are split for a grid.
+/// Returns the resolution to which discs are split for spectra on a grid.
 pub(crate) fn fineness(
     path: &ChainSegment<'_>,
     window: &Window,
@@ -36,7 +36,7 @@ pub(crate) fn fineness(
     DiscResolution::for_spectrum(path, window, [grid.rho.max(), grid.nu.max()])
 }
 
-/// Returns the slices with discs split at a given fineness.
+/// Returns the slices of a chain whose discs are split at the given resolution.
 pub(crate) fn slices_at_fineness(
     path: &ChainSegment<'_>,
     window: &Window,
@@ -79,7 +79,7 @@ pub(crate) fn slices_at_fineness(
     slices
 }
 
-/// The polygons of both sections under one product of waves.
+/// The polygons of both sections, with one product of waves that multiplies the terms.
 struct Product<'a> {
     expansion: &'a Expansion,
     waves: &'a [Vec<SectionWave>; 2],
@@ -100,7 +100,7 @@ impl<'a> Product<'a> {
     fn factors(&self, axis: usize, rho: f64, along: f64, grid: &SliceGrid) -> Vec<Complex> {
         let section = &self.expansion.sections[axis];
         if along.abs() < ORTHOGONAL {
-            // All frequencies of the row are zero in this section.
+            // The frequencies in this section are zero along the complete row.
             let value = |p| section.value(&self.waves[axis], p, [0.0, 0.0]);
             let polygons = section.polygons.iter();
             return polygons
@@ -117,7 +117,8 @@ impl<'a> Product<'a> {
 }
 
 impl Expansion {
-    /// Adds brightness · Σ terms along a row, from the factors [polygon, n] of both sections.
+    /// Adds brightness · Σ terms to a row of the spectrum; `x` and `y` are the factors [polygon,
+    /// n] of the two sections.
     fn add_terms(&self, x: &[Complex], y: &[Complex], row: &mut [Complex]) {
         let count = row.len();
         for term in &self.terms {
@@ -131,7 +132,8 @@ impl Expansion {
 }
 
 impl SectionColumns {
-    /// Adds brightness · Σ terms along a row, for terms summed along y first.
+    /// Adds brightness · Σ terms to a row of the spectrum, for terms that are summed along y
+    /// first.
     fn add(&self, brightness: f64, x: &[Complex], y: &[Complex], row: &mut [Complex]) {
         let along_y = added(&self.sums, y, row.len());
         let beside = added(&self.beside, &along_y, row.len());
@@ -144,7 +146,8 @@ impl SectionColumns {
     }
 }
 
-/// Returns weighted sums of factors, [sum, n], from factors [index, n] of `count` frequencies.
+/// Returns weighted sums of factors as [sum, n], from the factors [index, n] at `count`
+/// frequencies.
 fn added(sums: &[Sum], factors: &[Complex], count: usize) -> Vec<Complex> {
     let mut added = vec![Complex::ZERO; sums.len() * count];
     for (to, sum) in added.chunks_exact_mut(count).zip(sums) {
@@ -164,8 +167,8 @@ mod tests {
     use crate::testing::*;
     use etendue_field::{FrequencyAxis, Light, Profile, Rectangle};
 
-    /// Returns a grid whose frequencies fall on the shifts of Hann profiles of half-width 1/2 and
-    /// on the lines k·d = 0 of distances 1 and 2, where the corners cancel.
+    /// Returns a grid that contains the frequency shifts of Hann profiles of half-width 1/2, and
+    /// the lines k·d = 0 for distances 1 and 2, on which the contributions of corners cancel.
     fn singular_grid(azimuths: usize, half: usize) -> SliceGrid {
         let axis = FrequencyAxis { half, spacing: 0.5 };
         SliceGrid {
@@ -175,7 +178,7 @@ mod tests {
         }
     }
 
-    /// Chains with lights, paths and blockers of several kinds.
+    /// Builds chains with several kinds of lights, paths and blockers.
     fn chains() -> Vec<Chain> {
         let mut off_center = chain(0.3, &[(1.0, blockers(3, 0.2, 0.1)), (1.0, vec![])]);
         off_center.source.light = lambertian(Rectangle {
@@ -216,7 +219,7 @@ mod tests {
         ]
     }
 
-    /// Returns the largest difference between the two methods, relative to the largest value.
+    /// Returns the largest difference between `slices` and `at`, divided by the largest value.
     fn difference(chain: &Chain, window: &Window, grid: &SliceGrid) -> f64 {
         let path = chain.path();
         let fast = slices(chain, window, grid);
@@ -244,8 +247,8 @@ mod tests {
         for chain in chains() {
             for window in [window(hann, hann), window(Profile::Box(half), hann), mixed] {
                 let worst = difference(&chain, &window, &singular_grid(4, 6));
-                // The tolerance is a thousand rounding errors, from two directions that nearly
-                // cancel, divided by a lit part of about 1/20.
+                // The tolerance is a thousand rounding errors, for two directions in which corners
+                // nearly cancel, divided by 1/20, the fraction of the window that is lit.
                 assert!(worst < 1e-12, "{worst:e} {:?}", chain.describe());
             }
         }
@@ -277,7 +280,8 @@ mod tests {
             },
         };
         let worst = difference(&chain, &window, &grid);
-        // Positions of 20 m in a window of 1 mm lose digits in both methods.
+        // Positions of 20 m in a window of 1 mm have large rounding errors in both `slices` and
+        // `at`.
         assert!(worst < 1e-11, "{worst:e}");
     }
 
@@ -303,7 +307,8 @@ mod tests {
         let slices = slices(&chain, &window, &singular_grid(5, 3));
         for slice in slices.half.outer_iter() {
             let difference = slice[[0, 3]] - slices.at_zero();
-            // The rounding error of one sum in two different orders.
+            // The tolerance is the rounding error of a sum that is computed in two different
+            // orders.
             assert!(difference.norm() < 1e-13 * slices.at_zero());
         }
     }

@@ -1,36 +1,38 @@
-//! Factors that depend on slope alone: (1 + u² + v²)^p times the slope profiles of a window, as a
-//! short sum of products of cosine series (docs/theory.md (5d)).
+//! The factor (1 + u² + v²)^p times the slope profiles of a window, as a short sum of products of
+//! cosine series (docs/theory.md (5d)).
 //!
 //! The function is decomposed by elimination with complete pivoting, one product a(u) b(v) at a
 //! time (Townsend and Trefethen 2013). Each factor is smooth in the window and is fitted there by
 //! cosines whose period is longer than the window (a Fourier extension, Huybrechs 2010). The
-//! decomposition and the fits each stop at a measured residual.
+//! decomposition and each fit stop when their measured residual is below a threshold.
 
 use crate::numerics::quadrature::gauss_legendre;
 use etendue_field::{CosineTerm, Profile};
 use std::f64::consts::{PI, TAU};
 
-/// Residual of the elimination, relative to the largest value.
+/// Residual at which the elimination stops, relative to the largest value of the function.
 const RANK_RESIDUAL: f64 = 6e-9;
-/// Residual of the fits of a(u) and of b(v), relative to the largest value.
+/// Residual at which the fits of a(u) and of b(v) stop, relative to the largest value.
 const FIT_RESIDUAL: f64 = 2e-9;
-/// Number of nodes along half of a window.
+/// Number of nodes along half of a window's width.
 const NODES: usize = 192;
-/// The most terms of a series.
+/// Maximum number of terms of a cosine series.
 const MOST_TERMS: usize = 120;
-/// Half periods to try, in half-widths: longer ones need fewer terms if the factor is wide.
+/// Half periods of the cosine series that are tried, in half-widths of the window; if the factor
+/// varies slowly, longer periods need fewer terms.
 const EXTENSIONS: [f64; 3] = [2.0, 1.5, 1.15];
-/// The largest coefficient allowed in a series; larger ones would lose more digits by
-/// cancellation.
+/// The largest coefficient allowed in a cosine series; larger coefficients would cause larger
+/// rounding errors by cancellation.
 const LARGEST_COEFFICIENT: f64 = 30.0;
 
 /// The function W(u) W(v) (1 + u² + v²)^p inside a window.
 #[derive(Clone, Debug)]
 pub(crate) struct Slope {
-    /// The sum of products: cosine terms along u and along v, frequencies in cycles per unit slope.
+    /// The summands: each is a product of a cosine series along u and a cosine series along v,
+    /// with frequencies in cycles per unit slope.
     pub(crate) parts: Vec<[Vec<CosineTerm>; 2]>,
-    /// Root mean square error over the window, relative to that of the function itself; 0 for p =
-    /// 0.
+    /// Root mean square error over the window, divided by the root mean square of the function; 0
+    /// for p = 0.
     pub(crate) residual: f64,
     /// Whether the power p is 0.
     pub(crate) is_profile: bool,
@@ -65,7 +67,7 @@ impl Slope {
     }
 }
 
-/// Returns the sum of cosine terms at `t`, inside their window.
+/// Returns the sum of cosine terms at `t`, which must be inside the window.
 fn sum(terms: &[CosineTerm], t: f64) -> f64 {
     let values = terms
         .iter()
@@ -79,7 +81,7 @@ fn nodes(half: f64) -> Vec<f64> {
     rule.map(|(x, _)| 0.5 * half * (x + 1.0)).collect()
 }
 
-/// Decomposes the function at nodes as Σ a b.
+/// Decomposes the function `value` at nodes into a sum of products a(u) b(v).
 fn eliminate(nodes: &[Vec<f64>; 2], value: impl Fn(f64, f64) -> f64) -> Vec<[Vec<f64>; 2]> {
     let [u, v] = nodes;
     let mut rest: Vec<Vec<f64>> = u
@@ -110,7 +112,8 @@ fn eliminate(nodes: &[Vec<f64>; 2], value: impl Fn(f64, f64) -> f64) -> Vec<[Vec
     }
 }
 
-/// Returns row, column and absolute value of the largest element.
+/// Returns the row, the column and the absolute value of the element of a matrix with the largest
+/// absolute value.
 fn pivot(matrix: &[Vec<f64>]) -> (usize, usize, f64) {
     let mut best = (0, 0, 0.0);
     for (i, row) in matrix.iter().enumerate() {
@@ -123,8 +126,8 @@ fn pivot(matrix: &[Vec<f64>]) -> (usize, usize, f64) {
     best
 }
 
-/// Fits cosine series to functions of one variable, given at nodes, and returns the shortest over a
-/// few periods.
+/// Fits cosine series to functions of one variable that are given at nodes. Tries several periods
+/// and returns the series with the fewest terms.
 fn fit(half: f64, nodes: &[f64], functions: &[Vec<f64>]) -> Vec<Vec<CosineTerm>> {
     let mut best: Option<CosineFit> = None;
     for extension in EXTENSIONS {
@@ -140,13 +143,13 @@ fn fit(half: f64, nodes: &[f64], functions: &[Vec<f64>]) -> Vec<Vec<CosineTerm>>
     best.map(|fit| fit.series()).unwrap_or_default()
 }
 
-/// A least-squares fit by cosines, by modified Gram–Schmidt with the functions as further columns
-/// (Björck 1967).
+/// A least-squares fit by cosines, computed by modified Gram–Schmidt orthogonalisation with the
+/// functions as additional columns (Björck 1967).
 struct CosineFit {
     half_period: f64,
-    /// Coefficients, [function][term].
+    /// Coefficients of the cosines, as [function][term].
     coefficients: Vec<Vec<f64>>,
-    /// Largest residual.
+    /// Largest residual of the fitted functions.
     residual: f64,
 }
 
@@ -222,14 +225,15 @@ impl CosineFit {
     }
 }
 
-/// Removes the component along the unit vector `q` from `column`; returns its length.
+/// Removes the component of `column` along the unit vector `q`, and returns the length of this
+/// component.
 fn remove(q: &[f64], column: &mut [f64]) -> f64 {
     let along = dot(q, column);
     column.iter_mut().zip(q).for_each(|(c, q)| *c -= along * q);
     along
 }
 
-/// Returns the solution of an upper triangular system, given by columns.
+/// Returns the solution of an upper triangular system whose matrix is given by columns.
 fn solve(triangle: &[Vec<f64>], mut right: Vec<f64>) -> Vec<f64> {
     for n in (0..right.len()).rev() {
         right[n] /= triangle[n][n];
@@ -245,12 +249,13 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Returns the largest absolute value.
+/// Returns the largest absolute value of a slice of numbers.
 fn peak(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |m, v| m.max(v.abs()))
 }
 
-/// Returns the root mean square of the function minus the sum of parts, relative to the function.
+/// Returns the root mean square of the difference between the function and the sum of `parts`,
+/// divided by the root mean square of the function.
 fn residual(
     nodes: &[Vec<f64>; 2],
     value: impl Fn(f64, f64) -> f64,
@@ -275,7 +280,8 @@ fn residual(
 mod tests {
     use super::*;
 
-    /// Returns the largest error between the nodes, and the number of products and of terms.
+    /// Returns the largest error at points between the nodes, the number of products, and the
+    /// number of terms.
     fn check(profiles: [Profile; 2], power: f64) -> (f64, usize, usize) {
         let slope = Slope::new([&profiles[0], &profiles[1]], power);
         let mut worst = 0.0;

@@ -1,23 +1,24 @@
-//! Cosine terms over a section of the light field.
+//! Cosine factors of a section of the light field.
 
 use etendue_field::{Complex, CosineTerm, Grating, cis};
 
-/// One term amplitude · cos(2π s·p + phase) of a factor of a section inside its box, where p =
-/// (position, slope) is in units of the half-widths.
+/// A term amplitude · cos(2π s·p + phase) of a factor of a section, where p = (position, slope) is
+/// in units of the window's half-widths.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SectionWave {
-    /// The frequency s, cycles per half-width.
+    /// The frequency s, in cycles per half-width of the window.
     pub(crate) frequency: [f64; 2],
     pub(crate) amplitude: f64,
     /// The phase in radians; zero if the frequency is zero.
     pub(crate) phase: f64,
 }
 
-/// One complex exponential of a [`SectionWave`]: in the transform, F(k) becomes weight · F(k + s).
+/// One complex exponential of a [`SectionWave`]. Multiplication by this exponential changes a
+/// transform F(k) to weight · F(k + s).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shift {
     pub(crate) frequency: [f64; 2],
-    /// The weight without the phase of the wave.
+    /// The weight without the factor for the phase of the wave.
     pub(crate) amplitude: f64,
     /// +1 or −1: this exponential is exp(−i sign (2π s·p + phase)), where s is the frequency of its
     /// wave.
@@ -41,8 +42,8 @@ impl SectionWave {
         }
     }
 
-    /// Returns the product of cosine terms along the position and along the slope, with frequencies
-    /// in cycles per unit.
+    /// Returns the product of a cosine series in position and a cosine series in slope, whose
+    /// frequencies are in cycles per metre and per unit slope.
     pub(crate) fn of_terms(terms: [&[CosineTerm]; 2], half: [f64; 2]) -> Vec<Self> {
         let along = |axis: usize| -> Vec<Self> {
             let waves = terms[axis].iter().map(|term| {
@@ -55,8 +56,8 @@ impl SectionWave {
         Self::products(&along(0), &along(1))
     }
 
-    /// Returns ½ (1 + m cos(2π f t + p)), t = x − `distance` · u: a grating in coordinates of the
-    /// plane (docs/theory.md (5c)).
+    /// Returns a grating ½ (1 + m cos(2π f t + p)), t = x − `distance` · u, in the coordinates of
+    /// the plane (docs/theory.md (5c)).
     pub(crate) fn of_grating(grating: &Grating, distance: f64, half: [f64; 2]) -> [Self; 2] {
         let f = grating.frequency;
         let frequency = [f * half[0], -f * distance * half[1]];
@@ -72,7 +73,8 @@ impl SectionWave {
         pairs.flat_map(|(a, b)| a.times(b)).collect()
     }
 
-    /// cos a cos b = ½ cos(a + b) + ½ cos(a − b); a constant only scales.
+    /// Returns the product of two waves by cos a cos b = ½ cos(a + b) + ½ cos(a − b). If one of
+    /// the waves is a constant, the product is a single wave.
     fn times(&self, other: &Self) -> Vec<Self> {
         let amplitude = self.amplitude * other.amplitude;
         if self.is_constant() || other.is_constant() {
@@ -90,7 +92,8 @@ impl SectionWave {
         is_zero(self.frequency)
     }
 
-    /// A cosine is half the sum of two exponentials; a constant is a single exponential.
+    /// Returns the complex exponentials of the wave: two for a cosine, and a single one for a
+    /// constant.
     pub(crate) fn shifts(&self) -> impl Iterator<Item = Shift> {
         let (signs, amplitude) = if self.is_constant() {
             (&[1.0][..], self.amplitude)
@@ -105,7 +108,7 @@ impl SectionWave {
         })
     }
 
-    /// Returns the argument of the cosine at p.
+    /// Returns the argument 2π s·p + phase of the cosine at p.
     pub(crate) fn angle(&self, p: [f64; 2]) -> f64 {
         std::f64::consts::TAU * crate::parallel::polygon::dot(self.frequency, p) + self.phase
     }
@@ -145,7 +148,7 @@ mod tests {
             modulation: 0.8,
             phase,
         };
-        // Two equal gratings in one plane leave a constant with a phase.
+        // The product of two equal gratings in one plane contains a constant wave with a phase.
         let gratings = [
             (grating(2.0, 0.3), 0.0),
             (grating(3.0, -0.9), 1.3),

@@ -2,11 +2,11 @@
 
 use etendue_field::{HalfPlane, Rectangle};
 
-/// The function weight · 1[x in extent 0] · 1[y in extent 1]: a light or a blocker, or a part of
-/// one. Metres.
+/// The function weight · 1[x in `extent[0]`] · 1[y in `extent[1]`]. It represents a light or a
+/// blocker, or a summand of one that is a disc.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct WeightedRectangle {
-    /// Lowest and highest coordinate along X and along Y; may be infinite.
+    /// Lowest and highest coordinate along X and along Y, in metres; coordinates may be infinite.
     pub(crate) extent: [[f64; 2]; 2],
     pub(crate) weight: f64,
 }

@@ -1,8 +1,8 @@
 //! Estimates of the work of a prediction before it is made.
 //!
-//! The estimate counts what the prediction itself uses: corners, nodes, shapes, frequencies. A
-//! scene that would run for days can then be refused at once. Each kind of prediction has its own
-//! estimate; this file has that of the closed form.
+//! The estimate counts the corners, nodes, shapes and frequencies that the prediction uses. With
+//! the estimate, a scene whose prediction would take days can be refused immediately. Each kind of
+//! prediction has its own estimate; this file contains the estimate for the closed form.
 
 use crate::Chain;
 use crate::Model;
@@ -15,8 +15,8 @@ use crate::parallel::slope::Slope;
 use crate::work::PredictionWork;
 use etendue_field::{CosineTerm, Mask, Profile, ProjectionGrid, SliceGrid, Window};
 
-/// The most products of shapes in different planes that are counted; with more the prediction would
-/// take far too long.
+/// Maximum number of products of shapes in different planes that are counted; with more products
+/// the prediction would take far too long.
 pub(crate) const MOST_PARTS: usize = 500_000;
 
 /// Estimates the work of the slices, their derivatives and the projection of a chain.
@@ -31,7 +31,7 @@ pub(crate) fn work(
     if let Some(receiver) = path.receiver() {
         return receiver.work(window, grid, picture, derivatives);
     }
-    // The series of slopes are short, but their products with gratings may not be.
+    // The cosine series of slopes are short, but their products with gratings may be long.
     let slope = Slope::new([&window.u, &window.v], path.slope_power());
     let of = |fineness: &DiscResolution| Expansion::within(&path, window, &fineness.0, MOST_PARTS);
     let Some(single) = of(&DiscResolution::single(&path)) else {
@@ -47,7 +47,7 @@ pub(crate) fn work(
         Some(None) => return too_many(),
     };
     let waves = [0, 1].map(|axis| waves(&path, window, &slope, axis));
-    // A finer rule over discs has (5/4)⁴ as many terms.
+    // The finer rule over discs, for the error estimate, has (5/4)⁴ times as many terms.
     let finer = if path.has_discs() { 2.5 } else { 0.0 };
     of_slices(slices, waves, slope.parts.len() as f64, grid)
         .times(1.0 + derivatives + finer)
@@ -60,7 +60,7 @@ fn too_many() -> PredictionWork {
     ))
 }
 
-/// Returns the number of waves that multiply the polygons of a section, in one product.
+/// Returns the number of waves that multiply the polygons of a section in one product of waves.
 fn waves(path: &ChainSegment<'_>, window: &Window, slope: &Slope, axis: usize) -> f64 {
     let position: &Profile = [&window.x, &window.y][axis];
     let position = position.cosine_terms().len() as f64;
@@ -70,13 +70,13 @@ fn waves(path: &ChainSegment<'_>, window: &Window, slope: &Slope, axis: usize) -
         .layers
         .iter()
         .filter(|layer| matches!(layer.mask, Mask::Grating(grating) if grating.axis == axis));
-    // The product of two cosines has two waves; a grating is a constant and a cosine.
+    // The product of two cosines has two waves, and a grating has a constant wave and a cosine.
     2.0 * position * slopes * 3.0_f64.powi(i32::try_from(gratings.count()).unwrap_or(i32::MAX))
 }
 
-/// Numbers of steps at a frequency: for a wave and two directions of edges; for a wave and a
-/// polygon, whose corners cancel at some frequencies; for a wave at a corner; for a corner; for a
-/// product of shapes.
+/// Estimated computing steps at a frequency for each of the following: a wave and a pair of
+/// directions (`WAVE`), a wave and a polygon whose corners may cancel (`CANCELLED`), a wave and a
+/// corner (`AT_CORNER`), a corner (`CORNER`), and a product of shapes (`TERM`).
 const WAVE: f64 = 13.0;
 const CANCELLED: f64 = 2.3;
 const AT_CORNER: f64 = 0.4;
@@ -121,7 +121,7 @@ fn of_slices(
         bytes: products * (16.0 * phases + 64.0 * (waves[0] + waves[1]))
             + 48.0 * expansion.terms.len() as f64
             + 400.0 * (p + q),
-        // A thread holds the factors of all polygons, and the quotients of several waves at a time.
+        // Each thread stores the factors of all polygons and the quotients of a group of waves.
         bytes_each: count * (64.0 * (p + q) + 16.0 * 32.0 * pairs[0].max(pairs[1])),
         drivers: format!(
             "{azimuths} x {rows} x {count} frequencies x ({terms} products of shapes + {} corners of polygons x {} waves x {products} products of series)",
@@ -131,7 +131,7 @@ fn of_slices(
     }
 }
 
-/// Steps to evaluate the window at a node.
+/// Estimated number of computing steps to evaluate the window at a node.
 const NODE: f64 = 12.0;
 
 fn of_projection(
@@ -161,7 +161,7 @@ fn of_projection(
     };
     let polygons = &expansion.sections[0].polygons;
     let touched: f64 = polygons.iter().map(touched).sum();
-    // A cell has two or a few triangles.
+    // A polygon within a cell has two or a few triangles; three are assumed.
     let each = 3.0 * nodes * nodes * (NODE + 2.0 * series + 10.0 * gratings);
     PredictionWork {
         steps: touched * each + expansion.terms.len() as f64 * 20.0 * slope.parts.len() as f64,

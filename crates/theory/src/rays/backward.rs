@@ -1,4 +1,4 @@
-//! Exact backward rays: rays of a plane are followed back to the light through the geometry.
+//! Exact backward rays: a ray at a plane is followed back to the light through the real geometry.
 
 use super::trace::LegRay;
 use super::{AT_LIGHT, Plane, SpecularSurface, SpecularSystem};
@@ -20,10 +20,11 @@ impl Back {
         }
     }
 
-    /// Returns the ray (x, y, u, v) of the light's plane that arrives at z, and |∂z/∂ray|. Returns
-    /// `None` if there is no such ray.
+    /// Returns the ray (x, y, u, v) at the light's plane that arrives at the coordinates z of the
+    /// recording plane, and |∂z/∂ray|. Returns `None` if there is no such ray.
     ///
-    /// Surfaces conserve n² dx dy du dv / (1 + u² + v²)² of rays (docs/theory.md (29)).
+    /// Reflection and refraction of a ray conserve n² dx dy du dv / (1 + u² + v²)² (docs/theory.md
+    /// (29)).
     pub(super) fn ray(&self, z: [f64; 4]) -> Option<([f64; 4], f64)> {
         let (last, etendue) = self.plane.ray(z)?;
         let mut after = last.direction;
@@ -43,7 +44,7 @@ impl Back {
             ..last
         });
         let travel = -ray.point.z / ray.direction.z;
-        // Light begins in the plane z = 0 and travels forward.
+        // Light starts in the plane z = 0 and travels towards positive z.
         if travel < -AT_LIGHT || ray.direction.z >= 0.0 {
             return None;
         }
@@ -54,10 +55,10 @@ impl Back {
         Some(([at.x, at.y, u, v], spread / width))
     }
 
-    /// Returns the backward ray from the last surface for the last leg. The leg starts beyond all
-    /// its possible intersections with that surface, because half of a plane at an oblique surface
-    /// lies behind the surface. If the plane is on that surface, the point where the ray leaves it
-    /// is known.
+    /// Returns the backward ray that leaves the last surface, for the ray `last` of the last leg.
+    /// The line of `last` starts beyond all its possible intersections with the last surface,
+    /// because half of a plane at an oblique surface lies behind the surface. If the plane is on
+    /// the last surface, the point where the ray leaves this surface is already known.
     fn off_last(&self, element: &SpecularSurface, last: &LegRay) -> Option<LegRay> {
         let SpecularSurface { patch, .. } = element;
         let back = -last.direction;
@@ -71,8 +72,9 @@ impl Back {
 }
 
 impl SpecularSurface {
-    /// Returns the factor by which dx dy du dv / (1 + u² + v²)² grows on the way back through the
-    /// surface, where light that returns along `before` has left along `after`.
+    /// Returns the factor by which dx dy du dv / (1 + u² + v²)² increases when a ray is followed
+    /// backward through the surface; `before` is the ray on the light's side and `after` is the
+    /// direction on the plane's side.
     fn spread(&self, before: &LegRay, after: DVec3) -> f64 {
         let frame = &self.patch.frame;
         match self.event {
@@ -87,7 +89,7 @@ impl SpecularSurface {
                 };
                 ratio * ratio
             }
-            // A lens conserves dx dy du dv, with slopes in its own frame.
+            // A thin lens conserves dx dy du dv if slopes are relative to the lens's frame.
             Specular::ThinLens { .. } => {
                 (after.dot(frame.d) / before.direction.dot(frame.d)).powi(4)
             }

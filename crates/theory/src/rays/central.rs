@@ -6,8 +6,8 @@ use crate::geometry::{Matrix, Media};
 use etendue_field::{Frame, Patch, Specular};
 use glam::DVec3;
 
-/// If the sine of the angle of incidence is below this, light counts as arriving along the normal,
-/// and any plane through the normal is a plane of incidence.
+/// If the sine of the angle of incidence is below this threshold, light is treated as arriving
+/// along the normal, and any plane through the normal is a plane of incidence.
 const NORMAL: f64 = 1e-9;
 
 /// The incidence of the central ray on a surface (docs/theory.md, section 7).
@@ -18,16 +18,17 @@ pub(crate) struct Incidence {
     pub(crate) t: DVec3,
     pub(crate) b: DVec3,
     pub(crate) theta0: f64,
-    /// The angle, within ± π/2, by which the leg's frame is turned about D to bring X into the
-    /// plane of incidence.
+    /// The angle, between −π/2 and π/2, by which the leg's frame is turned about its D so that its
+    /// X lies in the plane of incidence.
     pub(super) turn: f64,
 }
 
 impl Incidence {
-    /// `frame` is the frame of the leg; `normal` may be on either side.
+    /// Returns the incidence for the frame of the arriving leg; `normal` may be on either side of
+    /// the surface.
     pub(crate) fn new(frame: &Frame, normal: DVec3) -> Self {
         let n = normal * -normal.dot(frame.d).signum();
-        // In the turned axes, Y is B and N + c₀ D is sin θ₀ X.
+        // In the turned frame, Y = B and N + c₀ D = sin θ₀ X.
         let across = n + frame.d * -n.dot(frame.d);
         let (x, theta0) = if across.length() < NORMAL {
             (frame.x, 0.0)
@@ -48,8 +49,8 @@ impl Incidence {
         }
     }
 
-    /// Returns the shape operator of a patch at a point: the derivative of the normal along (T, B),
-    /// per metre, convex positive as seen along N.
+    /// Returns the shape operator of a patch at a point: the derivative of the normal along (T,
+    /// B), per metre; it is positive for a surface that is convex on the side of N.
     pub(crate) fn shape(&self, patch: &Patch, point: DVec3) -> Matrix<2> {
         let gradient = patch.gradient(patch.frame.to_local(point));
         let side = patch.frame.vector_to_world(gradient).dot(self.n).signum();
@@ -62,11 +63,11 @@ impl Incidence {
 /// The central ray at an element.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CentralHit {
-    /// The frame of the previous leg, at the point hit.
+    /// The frame of the leg that arrives at the element, with its origin at the hit point.
     pub(super) arriving: Frame,
-    /// The frame of the next leg.
+    /// The frame of the leg that leaves the element.
     pub(super) leaving: Frame,
-    /// Length of the previous leg, metres.
+    /// Length of the leg that arrives at the element, in metres.
     pub(super) distance: f64,
     pub(super) incidence: Incidence,
 }
@@ -98,8 +99,8 @@ impl SpecularSystem {
 }
 
 impl SpecularSurface {
-    /// Returns the frame of the next leg. At a mirror the frame is mirrored, (−X, Y, D); otherwise
-    /// it is turned to the new direction by the smallest angle.
+    /// Returns the frame of the next leg. At a mirror the frame is mirrored, (−X, Y, D); at other
+    /// elements the frame is turned to the new direction by the smallest angle.
     fn leaving(&self, arriving: &Frame, normal: DVec3, direction: DVec3) -> Frame {
         if !matches!(self.event, Specular::Mirror) {
             return arriving.turned_to(direction);
@@ -114,7 +115,8 @@ impl SpecularSurface {
         }
     }
 
-    /// Returns the indices before and after a refraction, for light along D of a frame.
+    /// Returns the refractive indices before and after a refraction, for light along the D of the
+    /// incidence's frame.
     pub(super) fn media(&self, incidence: &Incidence) -> Option<Media> {
         let Specular::Refraction { front, back } = self.event else {
             return None;

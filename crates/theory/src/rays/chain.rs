@@ -1,4 +1,4 @@
-//! The first-order chain of a system.
+//! The first-order chain of a specular system: the affine maps along its central ray.
 
 use super::central::{CentralHit, Incidence};
 use super::{Plane, SpecularSurface, SpecularSystem};
@@ -11,26 +11,27 @@ use glam::DVec3;
 /// The chain of first-order maps from the light to a plane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AffineChain {
-    /// The effect of the chain on spectra of radiance. Its factor is the product of |det A| of its
-    /// maps and of (n₂/n₁)² for each refraction, which is the factor by which radiance grows there.
+    /// The effect of the chain on spectra of radiance. Its factor is the product of |det A| over
+    /// all maps and of (n₂/n₁)² over all refractions; radiance grows by (n₂/n₁)² at a refraction.
     pub map: SpectrumMap<4>,
-    /// The maps of the chain, in the order light meets them.
+    /// The maps of the chain, in the order of propagation from the light.
     pub maps: Vec<SpectrumMap<4>>,
-    /// The steps in words, in the order light meets them, without the steps inside the light or
-    /// inside the surface of the plane.
+    /// Descriptions of the steps in the order of propagation. Steps inside the light and inside
+    /// the surface of the plane are omitted.
     pub steps: Vec<String>,
-    /// Distances on the last leg at which rays that left the light parallel meet, in metres from
-    /// the last surface; ascending, and negative if behind it. There are at most two: one in the
-    /// plane of incidence and one across it, if these are the principal planes.
+    /// Distances from the last surface, in metres and in ascending order, at which rays that left
+    /// the light parallel to each other meet; a distance is negative for a virtual focus behind
+    /// the surface. There are at most two distances. If the plane of incidence is a principal
+    /// plane, one distance is for rays in this plane and the other for rays across it.
     pub foci: Vec<f64>,
 }
 
-/// Derives the chain from the geometry: distances, angles and curvatures along the central ray.
-/// Returns `None` if the ray misses an element or is totally reflected. Returns `None` also for a
-/// plane on a lens itself, which has no side from which to count angles.
+/// Derives the chain from the distances, angles and curvatures of the geometry along the central
+/// ray. Returns `None` if the ray misses an element or is totally reflected. Returns `None` also
+/// for a plane on a lens itself, which has no side from which to count angles.
 ///
-/// The printed versions differ in incidence, curvature and outgoing angle; the paper has no
-/// refraction and no lens.
+/// The editions of the paper differ in the steps for incidence, curvature and outgoing angle; the
+/// paper has no refraction and no lens.
 #[must_use]
 pub fn chain(view: &Observed<SpecularSystem>, print: Edition) -> Option<AffineChain> {
     let Observed { system, plane } = view;
@@ -101,7 +102,8 @@ struct Walk {
     print: Edition,
     maps: Vec<SpectrumMap<4>>,
     steps: Vec<String>,
-    /// The frame of the leg, at its start or at the current position.
+    /// The frame of the current leg; its origin is the start of the leg or the current position
+    /// along it.
     frame: Frame,
     /// Name of the element that light left last.
     at: String,
@@ -136,7 +138,7 @@ impl Walk {
         }
     }
 
-    /// Appends the steps up to the light frame after a surface.
+    /// Appends the steps from a surface to the frame of the leg that leaves it.
     fn after(mut self, element: &SpecularSurface, hit: &CentralHit) -> Option<Self> {
         if let Specular::ThinLens { focal_length } = element.event {
             let map = lens(&element.patch.frame, hit, focal_length)?;
@@ -174,8 +176,8 @@ impl Walk {
     }
 
     /// Appends the steps onto a surface and into its local normals, and the step of the event at
-    /// the surface. Returns the shape operator, and the longitude of the central ray afterwards
-    /// (directions of refracted light stay flipped).
+    /// the surface. Returns the surface's shape operator, and the longitude of the central ray
+    /// after the event (for refracted light, directions remain flipped).
     fn event(&mut self, element: &SpecularSurface, hit: &CentralHit) -> Option<(Matrix<2>, f64)> {
         let incidence = &hit.incidence;
         let theta0 = incidence.theta0;
@@ -185,7 +187,8 @@ impl Walk {
         self.curvature(shape, theta0);
         if let Some(media) = element.media(incidence) {
             let mut map = AffineMap::<4>::refraction(theta0, &media)?.spectrum_map();
-            // Étendue conserves flux; radiance grows as the square of the index (Nicodemus 1963).
+            // Flux is conserved, and radiance is proportional to the square of the refractive
+            // index (Nicodemus 1963).
             map.factor /= media.index_ratio().powi(2);
             let theta2 = media.refracted(theta0)?;
             let (before, after) = (number(media.before), number(media.after));
@@ -240,8 +243,8 @@ impl Walk {
             ..hit.arriving
         };
         if plane.frame.d.dot(n) < 0.0 {
-            // The axes are those seen from the other side, −T, B and −N, and directions are no
-            // longer flipped.
+            // The axes are seen from the other side of the surface as −T, B and −N, and directions
+            // are no longer flipped.
             (at.x, at.d) = (-t, -n);
             let other = crate::geometry::diagonal([-1.0, 1.0, 1.0, -1.0]);
             self.step(
@@ -252,8 +255,8 @@ impl Walk {
         let beside = plane.frame.to_local(at.origin).abs().max_element();
         let lean = plane.frame.vector_to_local(at.d).truncate().length();
         if plane.orientation == Orientation::Tangent && beside.max(lean) > 1e-9 {
-            // For a mesh, the plane touches it, and the smooth patch that replaces the mesh is
-            // slightly off the plane.
+            // If the surface is a mesh, the plane is tangent to the mesh, and the smooth patch
+            // that replaces the mesh deviates slightly from the plane.
             let map = onto_leaning(plane, &at, theta1);
             self.step(&map.spectrum_map(), "map  frame of the plane".into());
         } else {
@@ -285,8 +288,8 @@ impl Walk {
         self.onto_surface(incidence.t, incidence.b, plane);
     }
 
-    /// Appends the steps from axes (T, B) to those of the plane, with angles counted from its
-    /// longitude.
+    /// Appends the steps from the axes (T, B) to the axes of the plane, with angles measured from
+    /// the plane's longitude.
     fn onto_surface(&mut self, t: DVec3, b: DVec3, plane: &Plane) {
         let axis = plane.frame.x;
         let turn = libm::atan2(axis.dot(b), axis.dot(t));
@@ -299,9 +302,10 @@ impl Walk {
         }
     }
 
-    /// Appends the steps from the leg's frame to the frame of a plane across it, which may be
-    /// rotated about D and displaced. Behind a mesh the plane is slightly tilted: interpolated
-    /// normals between vertices differ from those of the smooth patch that replaces the mesh.
+    /// Appends the steps from the leg's frame to the frame of a plane perpendicular to the leg;
+    /// the plane may be rotated about D and displaced. Behind a mesh the plane is slightly tilted:
+    /// interpolated normals between vertices differ from those of the smooth patch that replaces
+    /// the mesh.
     fn reach_frame(&mut self, plane: &Frame) {
         let towards = plane.vector_to_local(self.frame.d);
         if libm::hypot(towards.x, towards.y) > 1e-9 {
@@ -322,8 +326,8 @@ impl Walk {
         }
     }
 
-    /// Returns the distances d with det(P + d Q) = 0, where x = P x₀ and u = Q x₀ are the rays of
-    /// a bundle that is parallel at the light.
+    /// Returns the distances d at which det(P + d Q) = 0. Here x = P x₀ and u = Q x₀ are the
+    /// positions and slopes of rays that leave position x₀ of the light parallel to each other.
     fn foci(&self) -> Vec<f64> {
         let map = self.map();
         let at = |i: usize, j: usize| map.matrix[j][i];
@@ -349,8 +353,9 @@ impl Walk {
 /// Returns the map of a thin lens, from the frame of one leg to that of the next. It holds to first
 /// order about a central ray, which may cross the lens at any point and slope.
 ///
-/// In the lens's own frame positions stay, and slopes decrease by the position divided by the focal
-/// length. At the centre and along the axis this is [`AffineMap::thin_lens`].
+/// In the lens's own frame positions do not change, and slopes decrease by the position divided by
+/// the focal length. If the central ray passes through the lens's centre along its axis, the map
+/// is [`AffineMap::thin_lens`].
 fn lens(frame: &Frame, hit: &CentralHit, focal_length: f64) -> Option<AffineMap<4>> {
     let [before, after] = [&hit.arriving, &hit.leaving].map(|leg| seen_across(frame, leg));
     let power = AffineMap::<4>::thin_lens(focal_length);
@@ -358,8 +363,8 @@ fn lens(frame: &Frame, hit: &CentralHit, focal_length: f64) -> Option<AffineMap<
     Some(map.then(&AffineMap::linear(after).inverse()?))
 }
 
-/// Returns the derivative of positions and slopes in a plane with respect to those in the frame of
-/// a leg that meets the plane obliquely.
+/// Returns the derivative of positions and slopes in a plane with respect to positions and slopes
+/// in the frame of a leg that meets the plane obliquely.
 fn seen_across(plane: &Frame, leg: &Frame) -> Matrix<4> {
     let towards = plane.vector_to_local(leg.d);
     let axes = [leg.x, leg.y].map(|axis| plane.vector_to_local(axis));
@@ -367,7 +372,8 @@ fn seen_across(plane: &Frame, leg: &Frame) -> Matrix<4> {
     let mut matrix = [[0.0; 4]; 4];
     for (column, axis) in axes.iter().enumerate() {
         for (row, (across, slope)) in [axis.x, axis.y].into_iter().zip(slopes).enumerate() {
-            // The point moves along the ray to the plane; the slopes are those of D + u X.
+            // The ray's position moves along the ray to the plane; the slopes are the plane's
+            // slopes of the direction D + u X.
             let moved = across - slope * axis.z;
             matrix[row][column] = moved;
             matrix[row + 2][column + 2] = moved / towards.z.abs();
@@ -376,15 +382,16 @@ fn seen_across(plane: &Frame, leg: &Frame) -> Matrix<4> {
     matrix
 }
 
-/// Returns the map from positions and angles in the plane of a frame to those of a plane on a
-/// surface that is tilted or displaced relative to that frame; `theta` is the longitude of the
-/// central ray.
+/// Returns the map from positions and angles in the plane (X, Y) of a frame to positions and
+/// angles at a plane on a surface. The plane may be tilted or displaced relative to the frame;
+/// `theta` is the longitude of the central ray.
 fn onto_leaning(plane: &Plane, at: &Frame, theta: f64) -> AffineMap<4> {
     let local = |v: DVec3| plane.frame.vector_to_local(v);
     let (sin, cos) = libm::sincos(theta);
     let start = plane.frame.to_local(at.origin);
     let away = local(sin * at.x + cos * at.d);
-    // The derivatives of the direction are with respect to longitude and latitude.
+    // The components are the derivatives of a ray's direction with respect to longitude and
+    // latitude.
     let turned = [cos * at.x - sin * at.d, at.y].map(local);
     let slope = [away.x, away.y].map(|w| w / away.z);
     let (flat, up) = (

@@ -7,8 +7,8 @@ use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
 impl Plane {
-    /// Returns the coordinates of a ray on its last leg, and the factor from its flux to the
-    /// quantity in ray space. Returns `None` if the ray misses.
+    /// Returns the coordinates at the plane of a ray on its last leg, and the factor that converts
+    /// the ray's flux to the recorded quantity in ray space. Returns `None` if the ray misses.
     pub(crate) fn coordinates(&self, ray: &LegRay) -> Option<([f64; 4], f64)> {
         match self.orientation {
             Orientation::Orthogonal => self.across(ray),
@@ -24,8 +24,9 @@ impl Plane {
         }
     }
 
-    /// Returns the distance along a ray of the last leg to the plane, or to the surface it is on;
-    /// zero for a plane on a surface that light leaves. Returns `None` if the ray misses it.
+    /// Returns the distance along a ray of the last leg to the plane, or to the plane's surface if
+    /// it has one. The distance is zero for a plane on a surface that light leaves. Returns `None`
+    /// if the ray misses the plane or its surface.
     pub(crate) fn along(&self, ray: &LegRay) -> Option<f64> {
         if self.orientation != Orientation::Orthogonal && !self.arriving {
             return Some(0.0);
@@ -38,7 +39,7 @@ impl Plane {
     }
 
     /// Returns the ray, in the direction of light, that has the given coordinates on the plane or
-    /// on its surface, and étendue divided by dx dy du dv there. This is the inverse of
+    /// on the plane's surface, and the étendue per dx dy du dv at this ray. This is the inverse of
     /// [`Self::coordinates`]. Returns `None` if there is no such ray.
     pub(crate) fn ray(&self, [x, y, u, v]: [f64; 4]) -> Option<(LegRay, f64)> {
         let foot = self.frame.to_world(DVec3::new(x, y, 0.0));
@@ -54,14 +55,13 @@ impl Plane {
         let away = self.away([u, v])?;
         let towards = self.frame.turned_to(normal).vector_to_world(away);
         let direction = if self.arriving { -towards } else { towards };
-        // On a curved surface, dx dy is the area projected onto the tangent plane.
+        // On a curved surface, dx dy is the surface area projected onto the tangent plane.
         let etendue = away.z * libm::cos(v) / normal.dot(self.frame.d);
         Some((LegRay { point, direction }, etendue))
     }
 
-    /// Returns the point with two given coordinates on the plane, or on the surface the plane is
-    /// on; and the normal at this point, on the side of D. Returns `None` if the surface has no
-    /// such point.
+    /// Returns the point with two given coordinates on the plane or on the plane's surface, and
+    /// the normal at this point on the side of D. Returns `None` if the surface has no such point.
     pub(crate) fn point(&self, [x, y]: [f64; 2]) -> Option<(DVec3, DVec3)> {
         let foot = self.frame.to_world(DVec3::new(x, y, 0.0));
         match &self.patch {
@@ -70,9 +70,9 @@ impl Plane {
         }
     }
 
-    /// Returns the direction with two angles of a plane on a surface, relative to the normal.
-    /// Returns `None` beyond a right angle, where the same direction would have two sets of
-    /// coordinates.
+    /// Returns the direction, relative to the normal, that has two given angles at a plane on a
+    /// surface. Returns `None` if an angle exceeds a right angle, where the same direction would
+    /// have two pairs of angles.
     pub(crate) fn away(&self, [u, v]: [f64; 2]) -> Option<DVec3> {
         let turned = if self.orientation == Orientation::Mirrored {
             -1.0
@@ -95,8 +95,8 @@ impl Plane {
         Some((down.point - distance * d, normal * side))
     }
 
-    /// Returns the factor from radiance to the recorded quantity at a ray in the plane's
-    /// coordinates.
+    /// Returns the factor that converts radiance to the plane's recorded quantity, for a ray in
+    /// the plane's coordinates.
     pub(crate) fn factor(&self, [.., u, v]: [f64; 4]) -> f64 {
         match (self.orientation, self.quantity) {
             (_, Quantity::Radiance) => 1.0,
@@ -116,8 +116,9 @@ impl Plane {
         Some((z, secant_squared * secant_squared * self.factor(z)))
     }
 
-    /// Returns the point where light leaves the surface that it met last, or where it meets the
-    /// plane's surface. Also returns the unit normal at this point, on the side of the plane's D.
+    /// Returns the point where a ray leaves the surface that it met last, or where the ray meets
+    /// the plane's surface. Also returns the unit normal at this point, on the side of the plane's
+    /// D.
     fn hit(&self, ray: &LegRay) -> Option<(DVec3, DVec3)> {
         let Some(patch) = &self.patch else {
             let (s, t) = crossing(&self.frame, ray)?;
@@ -141,7 +142,8 @@ impl Plane {
         ray.met_from(patch, patch.frame.d.dot(self.frame.d).signum())
     }
 
-    /// Returns the angles to the D of `local`; `None` if the direction points into the surface.
+    /// Returns a direction's two angles relative to the D of `local`, or `None` if the direction
+    /// points into the surface.
     fn on_surface(
         &self,
         [s, t]: [f64; 2],
@@ -161,8 +163,8 @@ impl Plane {
 }
 
 impl LegRay {
-    /// Returns the ray's position and slopes across the D of a frame; `None` if it does not go
-    /// forward.
+    /// Returns the ray's position and slopes in the plane (X, Y) of a frame, or `None` if the
+    /// ray's direction has no positive component along D.
     pub(super) fn across(&self, frame: &Frame) -> Option<[f64; 4]> {
         let (x, y) = crossing(frame, self)?;
         let towards = frame.vector_to_local(self.direction);
@@ -171,7 +173,8 @@ impl LegRay {
     }
 }
 
-/// Returns the point where the line of a ray crosses the plane (X, Y) of a frame.
+/// Returns the coordinates of the point where a ray, extended to a line, crosses the plane (X, Y)
+/// of a frame.
 fn crossing(frame: &Frame, ray: &LegRay) -> Option<(f64, f64)> {
     let (at, towards) = (
         frame.to_local(ray.point),

@@ -8,10 +8,10 @@ use etendue_field::Window;
 /// Returns the error of a chain of affine maps, such as that of [`chain`](super::chain()), in the
 /// limit of a small neighbourhood of the central ray.
 ///
-/// The maps of a chain must be the derivatives of the paths of rays through the real geometry. Then
-/// the chain's error falls with the size of the neighbourhood, or with its square, and this limit
-/// is zero up to 10⁻⁹ from differences and rounding errors. With a wrong sign, cosine or factor in
-/// any map, the error converges to the number returned instead: the error of rays, in half-widths
+/// The maps of a chain must be the derivatives of rays through the real geometry. If they are, the
+/// chain's error falls linearly or quadratically with the size of the neighbourhood, and the limit
+/// is zero except for 10⁻⁹ from finite differences and rounding errors. If any map has a wrong
+/// sign, cosine or factor, the returned limit is not zero: it is the error of rays in half-widths
 /// of the window, or the relative error of radiance.
 ///
 /// Returns `None` if the central ray does not arrive.
@@ -28,13 +28,13 @@ pub fn defect(
     Some(off.max(radiance_defect(view, map)?.abs()))
 }
 
-/// Returns the part of [`defect`] due to the factor of the chain: the radiance that the chain gives
-/// the central ray, divided by the ray's actual radiance, minus 1.
+/// Returns the contribution of the chain's factor to [`defect`]: the ratio of the central ray's
+/// radiance according to the chain to its actual radiance, minus 1.
 #[must_use]
 pub fn radiance_defect(view: &Observed<SpecularSystem>, map: &SpectrumMap<4>) -> Option<f64> {
     let Observed { system, plane } = view;
-    // Per unit of ray space, the central ray carries a flux equal to its radiance at the light, so
-    // `per_flux` is the change of radiance.
+    // Per unit of ray space at the light, the central ray carries a flux equal to its radiance, so
+    // `per_flux` is the ratio of radiance at the plane to radiance at the light.
     let (center, per_flux) = plane.coordinates(&system.follow([0.0; 4])?)?;
     Some(map.factor * plane.factor(center) / per_flux - 1.0)
 }

@@ -1,11 +1,11 @@
-//! Sampling of the light's rays, by the light or by target points at the plane.
+//! Sampling of the light's rays, either by the light's emission or by target points at the plane.
 //!
 //! To first order a ray of the light lands where the linearisation about the central ray maps it.
-//! So a target position or slope in the window determines which ray of the light to follow. The ray
-//! is then followed to its actual landing point. The sampling density is known exactly, whatever
-//! the rays do. If the window is narrow compared with the error of the first order, few of these
-//! rays meet it. In that case all four coordinates of rays are sampled in the window, and the rays
-//! are followed back through the exact geometry.
+//! So a target position or slope in the window determines which ray of the light to follow. The
+//! ray is then followed to its actual landing point. The sampling density of rays is known
+//! exactly, wherever the rays land. If the window is narrower than the error of the linearisation,
+//! few rays sampled by targets land in the window. In that case all four coordinates of rays are
+//! sampled in the window, and the rays are followed back through the exact geometry.
 
 use super::backward::Back;
 use super::emission::{EmissionMeasure, point_of};
@@ -16,14 +16,14 @@ use crate::sky::SkyDensity;
 use etendue_field::{Environment, Light, Shape, Window};
 use glam::DVec3;
 
-/// The strategy for sampling rays. No strategy is best for every scene, so all of them are tried on
-/// the scene.
+/// The strategy for sampling rays. No strategy is best for every scene, so all strategies are
+/// tried on each scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RayStrategy {
     /// Rays are sampled by the picture of the light.
     Picture,
-    /// Rays are sampled by positions at the plane. For an area light they are also sampled by
-    /// points of the light, and for an environment by directions.
+    /// Rays are sampled by positions at the plane. The rays of an area light are also sampled by
+    /// points of the light, and the rays of an environment by directions.
     Positions,
     /// Rays are sampled by slopes at the plane and, as for [`Self::Positions`], by points of an
     /// area light or by directions of an environment.
@@ -44,11 +44,11 @@ pub(super) struct RaySampler<'a> {
     by: By,
 }
 
-/// The sampling of the other two coordinates of a light with extent, which do not parametrise its
-/// emission.
+/// Sampling of the two ray coordinates that a light with extent has in addition to the two inner
+/// coordinates of its emission.
 #[derive(Clone, Debug)]
 enum Outer<'a> {
-    /// The two coordinates are not sampled: all rays have the same values.
+    /// The two additional coordinates are not sampled: all rays have the same values of them.
     Center,
     /// Positions on an area light.
     Shape(Shape),
@@ -67,20 +67,22 @@ enum By {
     /// Two target coordinates at the plane.
     Aim {
         targets: [Target; 2],
-        /// The target coordinates at which the central ray lands.
+        /// The two target coordinates of the point where the central ray lands.
         center: [f64; 2],
-        /// Derivatives of the target coordinates with respect to those that the light samples, and
-        /// to the other two.
+        /// Derivatives of the target coordinates with respect to the outer coordinates, which the
+        /// light samples.
         outer: Matrix<2>,
         inverse: Matrix<2>,
         determinant: f64,
     },
-    /// All four coordinates are sampled, by exact backward rays.
+    /// All four coordinates of the target ray at the plane are sampled, and the target is followed
+    /// back exactly.
     Back {
         window: Box<[LinearDensity; 4]>,
         back: Back,
     },
-    /// All four coordinates are sampled, to first order.
+    /// All four coordinates of the target ray at the plane are sampled, and the target is mapped
+    /// back to first order.
     Map {
         targets: Box<[Target; 4]>,
         map: AffineMap<4>,
@@ -89,7 +91,8 @@ enum By {
 }
 
 impl<'a> Outer<'a> {
-    /// Returns `None` if nothing emits light.
+    /// Returns the density of directions towards an environment, or `None` if no part of the
+    /// environment emits light.
     fn new(system: &'a SpecularSystem, plane: Option<&Plane>) -> Option<Self> {
         Some(match &system.light {
             Light::Area { shape, .. } => Self::Shape(*shape),
@@ -102,7 +105,8 @@ impl<'a> Outer<'a> {
         })
     }
 
-    /// Returns two coordinates and their density; `None` for light that does not go forward.
+    /// Returns the two outer coordinates of a ray and their density, or `None` if the ray does not
+    /// leave the light's plane towards positive z.
     fn draw(&self, at: [f64; 2]) -> Option<([f64; 2], f64)> {
         match self {
             Self::Center => Some(([0.0; 2], 1.0)),
@@ -120,9 +124,10 @@ impl<'a> Outer<'a> {
 }
 
 impl<'a> RaySampler<'a> {
-    /// `center` is where the central ray lands, and `jacobian` is the derivative of the landing
-    /// point with respect to the ray. Returns `None` if they do not determine the ray. Without a
-    /// plane, all rays are taken to land as targeted.
+    /// Returns the sampler of a strategy: `center` is the point where the central ray lands, and
+    /// `jacobian` is the derivative of the landing point with respect to the ray. Returns `None`
+    /// if `jacobian` does not determine the ray for a target. If no plane is given, all rays are
+    /// assumed to land at their targets.
     #[expect(
         clippy::too_many_lines,
         reason = "the coordinates by which each kind of light is aimed, side by side"
@@ -199,8 +204,8 @@ impl<'a> RaySampler<'a> {
         })
     }
 
-    /// Returns a ray and its density in the emission's coordinates; `None` for a ray that the light
-    /// does not emit.
+    /// Returns a ray and its sampling density in the emission's coordinates, or `None` if the
+    /// light does not emit the ray.
     pub(super) fn draw(&self, at: &[f64; DIMENSIONS]) -> Option<([f64; 4], f64)> {
         let [a, b, c, d, ..] = *at;
         let placed = |outer: [f64; 2], inner: [f64; 2]| {
@@ -222,11 +227,12 @@ impl<'a> RaySampler<'a> {
                 let (point, normal) = plane.point([x, y])?;
                 let along = DVec3::new(slopes[0], slopes[1], 1.0);
                 let start = point - point.z * along;
-                // This is dx dy of the light divided by dx dy of the plane, from the area of the
-                // surface.
+                // `spread` is dx dy at the light divided by dx dy at the plane; both are
+                // projections of the same surface area.
                 let spread = (normal.dot(along) / normal.dot(plane.frame.d)).abs();
                 let density = of_x * of_y * of_light / spread;
-                // Light from behind meets the front of the surface at another point first.
+                // A ray that meets the surface from behind has met the front of the surface at
+                // another point before.
                 let is_hidden = plane.arriving && normal.dot(along) >= 0.0;
                 let arrives = point.z > -AT_LIGHT && !is_hidden;
                 arrives.then(|| (placed(slopes, [start.x, start.y]), density))
@@ -266,7 +272,7 @@ impl<'a> RaySampler<'a> {
         }
     }
 
-    /// Checks whether a ray begins in the light.
+    /// Checks whether a ray starts at a point that belongs to the light.
     fn emits(&self, [x, y, ..]: &[f64; 4]) -> bool {
         match &self.outer {
             Outer::Shape(shape) => shape.contains(*x, *y),
@@ -275,8 +281,8 @@ impl<'a> RaySampler<'a> {
     }
 }
 
-/// Checks whether a map is well conditioned: at a focus it is not, because it maps some direction
-/// of rays nearly to zero.
+/// Checks whether a map is well conditioned. At a focus the map is ill-conditioned, because it
+/// takes some direction in ray space nearly to zero.
 fn tells_apart<const N: usize>(map: &AffineMap<N>) -> bool {
     let size = |row: &[f64; N]| row.iter().map(|x| x * x).sum::<f64>().sqrt();
     let most: f64 = map.matrix.iter().map(size).product();

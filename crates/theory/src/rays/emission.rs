@@ -6,25 +6,26 @@ use etendue_field::{Light, Shape};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// The parameters of a light's rays: two of the coordinates x, y, u, v, and for a light with extent
-/// the other two as well.
+/// The ray coordinates that parametrise a light's emission: two of x, y, u and v, and for a light
+/// with extent the other two as well.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct EmissionMeasure {
-    /// Indices, among x, y, u and v, of the two coordinates.
+    /// Indices, among x, y, u and v, of the two inner coordinates.
     pub(super) inner: [usize; 2],
-    /// The range within which rays are sought, in the two coordinates.
+    /// The largest absolute value of each inner coordinate at which rays are sought.
     pub(super) reach: [f64; 2],
-    /// Cycles of the light's picture per unit of the two coordinates.
+    /// Number of cycles of the light's picture per unit of each inner coordinate.
     pub(super) cycles: [f64; 2],
 }
 
-/// Half-width of a Gaussian picture, in units of its width: exp(−π 3.6²) = 2·10⁻¹⁸.
+/// Half-width outside which a Gaussian picture is treated as dark, in units of its width: exp(−π
+/// 3.6²) = 2·10⁻¹⁸.
 const GAUSSIAN: f64 = 3.6;
 /// The largest slope for which rays are sought, if the light has no picture.
 const STEEPEST: f64 = 30.0;
 
 impl EmissionMeasure {
-    /// Returns the indices of the other two coordinates.
+    /// Returns the indices, among x, y, u and v, of the two coordinates that are not inner ones.
     pub(super) fn outer(&self) -> [usize; 2] {
         self.inner.map(|inner| (inner + 2) % 4)
     }
@@ -59,8 +60,8 @@ impl SpecularSystem {
         }
     }
 
-    /// Returns the densities of the two coordinates of a picture, proportional to the picture;
-    /// `None` if there is none.
+    /// Returns the densities of the two inner coordinates in proportion to the light's picture, or
+    /// `None` if the light has no picture.
     pub(super) fn picture_densities(&self) -> Option<[LinearDensity; 2]> {
         let image = self.light.image()?;
         let along = |axis: usize| {
@@ -70,8 +71,8 @@ impl SpecularSystem {
             LinearDensity::new([-reach, reach], |t| {
                 let [a, b] = if axis == 0 { [t, 0.0] } else { [0.0, t] };
                 let passes = grating.map_or(1.0, |g| g.transmittance(a, b));
-                // The constant ensures that no part of a grating is missed between the values of
-                // the table.
+                // The constant 0.1 ensures that no line of a grating is missed between the
+                // tabulated values of the density.
                 libm::exp(-PI * (t / width).powi(2)) * (passes + 0.1)
             })
         };
@@ -106,7 +107,8 @@ pub(crate) fn emitted(light: &Light, ray: [f64; 4]) -> f64 {
     }
 }
 
-/// Returns the point of a shape at (a, b) of the unit square; the mapping preserves relative area.
+/// Maps a point (a, b) of the unit square to a point of a shape, so that uniform points of the
+/// square are uniform on the shape.
 pub(crate) fn point_of(shape: &Shape, [a, b]: [f64; 2]) -> [f64; 2] {
     match shape {
         Shape::Rectangle(rectangle) => {

@@ -3,19 +3,22 @@
 //! The inputs are a [`SpecularSystem`] and a [`Plane`]. The system has a light, masks across its
 //! first leg, obstacles on any leg, and the mirrors, refracting surfaces and lenses that the
 //! central ray visits. Together they are an [`Observed`](crate::Observed), which is a
-//! [`Model`](crate::Model). It follows rays through the real geometry and sums them, by a
-//! quadrature rule if the rule converges and over scrambled nets otherwise. In addition there are
-//! the [`chain`](chain()) of first-order maps ([`geometry`](crate::geometry)) derived from the
-//! same system, and the [`linear()`] prediction of that chain. So a measured difference from the
-//! first-order chain splits into noise, linearisation and faults.
+//! [`Model`](crate::Model). The model follows rays through the real geometry and sums them, by a
+//! quadrature rule if the rule converges and over scrambled nets otherwise. The function
+//! [`chain`](chain()) derives the chain of first-order maps ([`geometry`](crate::geometry)) from
+//! the same system, and [`linear()`] returns the prediction of such a chain. With both
+//! predictions, a difference between a measurement and the first-order chain splits into noise,
+//! the error of linearisation, and faults.
 //!
-//! All coordinates are in the frame at the light: the central ray starts at the origin along Z, and
-//! (x, y) are along X and Y. A ray carries flux; `emission.rs` has the flux of each light. Flux is
-//! conserved at every surface. A ray that misses a patch, is totally reflected, or would have to go
-//! back is lost. Flux Φ corresponds to Φ (1 + u² + v²)² in radiance space at a plane across the
-//! central ray, and to Φ/(cos θ cos² φ) on a surface: docs/theory.md, section 8.
+//! All coordinates are in the frame at the light: the central ray starts at the origin along Z,
+//! and (x, y) are along X and Y. A ray carries flux; `emission.rs` defines the flux of the rays of
+//! each light. Flux is conserved at every surface. A ray is lost if it misses a patch, is totally
+//! reflected, or would have to travel backward. Flux Φ corresponds to Φ (1 + u² + v²)² in radiance
+//! space at a plane perpendicular to the central ray, and to Φ/(cos θ cos² φ) on a surface
+//! (docs/theory.md, section 8).
 //!
-//! On a surface itself (`LocalNormals`) the integral is over the surface's area.
+//! For a plane on a surface itself (`LocalNormals`), the integral over positions is over the
+//! surface's area.
 //!
 //! This module shares neither intersection code nor sampling code with the tracers.
 //!
@@ -86,9 +89,9 @@ pub(crate) use trace::{LegRay, bent};
 use crate::obstacle::Obstacle;
 use etendue_field::{Light, Mask, Patch, Specular};
 
-/// A point of a plane that seems to be behind the plane of the light by at most this distance, in
-/// metres, can still be lit. It covers the rounding errors of a tilted plane at the light itself.
-/// No object is this close to the light.
+/// Maximum distance, in metres, by which a point of a recording plane may be behind the light's
+/// plane and still be lit. This tolerance covers the rounding errors of a tilted recording plane
+/// at the light itself. No object is closer to the light than this tolerance.
 pub(crate) const AT_LIGHT: f64 = 1e-9;
 
 /// A light and the specular surfaces that its central ray visits, in the frame at the light.
@@ -96,12 +99,12 @@ pub(crate) const AT_LIGHT: f64 = 1e-9;
 pub struct SpecularSystem {
     /// The light, which emits from the plane z = 0, along Z.
     pub light: Light,
-    /// Masks across the first leg and their distances from the light, metres. If a mask is opaque,
-    /// rays are summed over nets and not by a rule.
+    /// Masks across the first leg and their distances from the light, metres. If a mask has opaque
+    /// parts, rays are summed over nets instead of by a quadrature rule.
     pub layers: Vec<(f64, Mask)>,
-    /// Other occluders, on any leg.
+    /// Occluders other than the masks, on any leg.
     pub obstacles: Vec<Obstacle>,
-    /// The surfaces, in the order light meets them.
+    /// The surfaces in the order in which light from the source meets them.
     pub elements: Vec<SpecularSurface>,
 }
 
@@ -112,8 +115,8 @@ pub struct SpecularSurface {
     pub name: String,
     /// The geometry of the surface.
     pub patch: Patch,
-    /// The event at the surface. Refraction goes from the side of the incident ray to the other
-    /// side. A thin lens is flat; its slopes are relative to the patch's frame (X, Y and the
-    /// normal on the side to which light goes).
+    /// The event at the surface. A refracted ray goes from the side of the incident ray to the
+    /// other side of the surface. A thin lens is flat, and slopes at a lens are relative to the
+    /// patch's frame (X, Y and the normal on the side to which light goes).
     pub event: Specular,
 }

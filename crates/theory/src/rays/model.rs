@@ -19,9 +19,9 @@ impl Model for Observed<SpecularSystem> {
         &self.system.light
     }
 
-    /// Distances that are zero are not parameters: a plane on its surface has no travel to it. The
-    /// distance of a plane under an unobstructed environment is not a parameter either, because
-    /// light is the same everywhere.
+    /// Distances of zero are not parameters: for example, light does not travel from a surface to
+    /// a plane on this surface. If an environment is unobstructed, the distance to the plane is
+    /// not a parameter either, because its light is the same everywhere.
     fn parameters(&self) -> Vec<Parameter> {
         let Self { system, plane } = self;
         let mut all = Parameter::of_light(&system.light);
@@ -119,7 +119,7 @@ impl Model for Observed<SpecularSystem> {
 }
 
 impl Observed<SpecularSystem> {
-    /// Changes the length of a leg and moves everything after it.
+    /// Changes the length of a leg, and moves the plane and all surfaces after the leg.
     fn travel(&mut self, leg: usize, new: New<'_>) -> Option<()> {
         let (from, along) = self.system.leg(leg)?;
         let to = match self.system.hits()?.get(leg) {
@@ -138,7 +138,7 @@ impl Observed<SpecularSystem> {
         Some(())
     }
 
-    /// Changes a curvature of a patch.
+    /// Changes one curvature of the patch of surface `i`.
     fn curve(&mut self, i: usize, axis: usize, new: New<'_>) -> Option<()> {
         let is_last = i + 1 == self.system.elements.len();
         let patch = &mut self.system.elements.get_mut(i)?.patch;
@@ -152,11 +152,11 @@ impl Observed<SpecularSystem> {
 }
 
 impl SpecularSystem {
-    /// Returns the system with a light `factor` times as large: the picture's widths over slopes or
-    /// positions, or the shape about the central ray.
+    /// Returns the system with a light `factor` times as large. The factor scales the widths of
+    /// the light's picture in slopes or positions, or the light's shape about the central ray.
     ///
-    /// If windows become narrower and frequencies higher by the same factor, the error of
-    /// first-order maps falls with the factor (docs/theory.md, section 7).
+    /// If the light and the windows are scaled by a factor and the frequencies by its reciprocal,
+    /// the error of first-order maps falls with the factor (docs/theory.md, section 7).
     #[must_use]
     pub fn shrunk(&self, factor: f64) -> Self {
         Self {
@@ -165,13 +165,13 @@ impl SpecularSystem {
         }
     }
 
-    /// Checks whether light is the same at all distances from its source.
+    /// Checks whether the light field is the same at all distances from the light.
     fn is_alike_everywhere(&self) -> bool {
         let is_environment = matches!(self.light, Light::Environment { .. });
         is_environment && self.layers.is_empty() && self.obstacles.is_empty()
     }
 
-    /// Returns the start and direction of a leg.
+    /// Returns the start and the direction of the central ray's leg with the given index.
     fn leg(&self, leg: usize) -> Option<(DVec3, DVec3)> {
         if leg == 0 {
             return Some((DVec3::ZERO, DVec3::Z));
@@ -202,7 +202,8 @@ pub(crate) fn shrunk_light(light: &Light, factor: f64) -> Light {
     light
 }
 
-/// Returns a patch's frame, turned about B at the central hit by an increase `by` of θ₀.
+/// Returns a patch's frame turned about B at the central ray's hit point, such that the angle of
+/// incidence θ₀ increases by `by`.
 fn tilted(frame: &Frame, hit: &CentralHit, by: f64) -> Frame {
     let turn = DQuat::from_axis_angle(hit.incidence.b, -by);
     let center = hit.arriving.origin;

@@ -13,24 +13,25 @@ use crate::predicted::Predicted;
 use etendue_field::{Frame, FrequencyAxis, Light, Mask, SliceGrid, Slices, TwoPlane, Window};
 use glam::DVec3;
 
-/// The budget of the nets if neither a picture nor moments are needed.
+/// The budget of rays in nets if neither a projection picture nor moments are requested.
 const NO_PICTURES: RayBudget = RayBudget {
     nodes: 0.0,
     error: f64::INFINITY,
 };
-/// The budget of the nets for a picture and moments, if slices are computed by a rule.
+/// The budget of rays in nets for a projection picture and moments, if slices are computed by a
+/// quadrature rule.
 const FOR_PICTURES: RayBudget = RayBudget {
     nodes: 1e6,
     error: 0.0,
 };
 
-/// Returns the prediction from rays followed through the exact geometry, with the derivatives with
+/// Returns the prediction from rays followed through the exact geometry, and its derivatives with
 /// respect to given parameters.
 ///
-/// For a projector, point or beam this uses a midpoint rule if no sharp edge cuts the light and the
-/// rule converges; otherwise it uses nets of rays. Derivatives are central differences whose two
-/// sides sample the same rays, so they are accurate to about a per cent. The result is bitwise
-/// identical on any number of threads.
+/// For a projector, point or beam this function uses a midpoint rule if no sharp edge cuts the
+/// light and the rule converges; otherwise it uses nets of rays. Derivatives are central
+/// differences between two predictions from the same sampled rays, so the derivatives are accurate
+/// to about a per cent. The result is bitwise identical on any number of threads.
 pub(crate) fn predict(
     view: &Observed<SpecularSystem>,
     moved: &[ShiftedModels<Observed<SpecularSystem>>],
@@ -79,10 +80,10 @@ pub(crate) fn with_rays(
 /// the same rays.
 ///
 /// The map moves the radiance of ray z at the light to A z + t, where A is the transpose of the
-/// map's matrix and t its phase. It multiplies the spectrum by the map's factor: F = factor · ∫
-/// ℓ(z) W(A z + t) e^(−2πi Ω·(A z + t)) dz. Masks of the first leg are exact; obstacles are tested
-/// with the first-order rays of each leg. On a surface lit by an environment, z has angles instead
-/// of slopes.
+/// map's matrix and t is the map's phase. The map also multiplies the spectrum by its factor: F =
+/// factor · ∫ ℓ(z) W(A z + t) e^(−2πi Ω·(A z + t)) dz. Masks of the first leg are exact; obstacles
+/// are tested with the first-order rays of each leg. For a plane on a surface that is lit by an
+/// environment, z contains angles instead of slopes.
 #[must_use]
 pub fn linear(
     view: &Observed<SpecularSystem>,
@@ -91,7 +92,7 @@ pub fn linear(
     budget: RayBudget,
 ) -> Predicted {
     let system = &view.system;
-    // In the chain, rays land where the map takes them.
+    // In the first-order chain, a ray lands at the point to which the map takes it.
     let mapped = (system, None);
     let masks = Masks::new(&system.layers, &system.obstacles);
     let rays = map.rays();
@@ -138,8 +139,9 @@ fn derivatives(
 
 fn exact_field<'a>(view: &'a Observed<SpecularSystem>, masks: &'a Masks<'a>) -> impl RayField + 'a {
     let Observed { system, plane } = view;
-    // Light begins in the plane z = 0: parts of a surface behind this plane are dark. The point
-    // where a ray meets a curved surface is always ahead of the ray.
+    // Light starts in the plane z = 0, so parts of a surface behind this plane are dark. On a
+    // curved surface no check is needed, because the point where a ray meets the surface is always
+    // ahead of the ray's start.
     let on_first_leg = plane.arriving && system.elements.is_empty() && plane.patch.is_none();
     move |ray| {
         let flux = flux(system, masks, ray);
@@ -187,9 +189,10 @@ fn linear_field<'a>(
     }
 }
 
-/// Converts a ray to angles: when light of an environment arrives on a surface, it is a function of
-/// angles, and slopes are not small there. Travel over a distance moves the ray to its landing
-/// point. Also returns dθ dφ divided by du dv.
+/// Converts a ray's slopes to angles, and shifts its position such that travel by these angles
+/// over `distance` leads to the ray's real landing point. Angles are used for an environment's
+/// light arriving on a surface, because its slopes are not small. Also returns dθ dφ divided by du
+/// dv.
 fn angles([x, y, u, v]: [f64; 4], distance: f64) -> ([f64; 4], f64) {
     let across = (1.0 + u * u).sqrt();
     let (longitude, latitude) = (libm::atan(u), libm::atan(v / across));
@@ -197,22 +200,24 @@ fn angles([x, y, u, v]: [f64; 4], distance: f64) -> ([f64; 4], f64) {
         x + distance * (u - longitude),
         y + distance * (v - latitude),
     ];
-    // dω = cos φ dθ dφ = du dv cos³, and cos φ is `across` times the cosine.
+    // With the cosine c = (1 + u² + v²)^(−1/2), dω = cos φ dθ dφ = du dv c³ and cos φ = c ·
+    // `across`.
     let per_slope = 1.0 / (across * (1.0 + u * u + v * v));
     ([start[0], start[1], longitude, latitude], per_slope)
 }
 
-/// The positions of the light's rays on a leg, to first order about the central ray.
+/// The first-order map about the central ray from the light's rays to positions on a leg.
 struct AffineLeg {
-    /// The map from (x, y, u, v) at the light to the coordinates across the leg at its start.
+    /// The map from (x, y, u, v) at the light to the coordinates in the leg's frame at the start
+    /// of the leg.
     map: AffineMap<4>,
     frame: Frame,
-    /// Length along the central ray, metres.
+    /// Length of the leg along the central ray, in metres.
     length: f64,
 }
 
 impl AffineLeg {
-    /// Returns the legs on which obstacles may stand; none if there are no obstacles.
+    /// Returns the legs on which obstacles may stand, or no legs if there are no obstacles.
     fn all(view: &Observed<SpecularSystem>) -> Vec<Self> {
         let Observed { system, plane } = view;
         let Some(hits) = system.hits().filter(|_| !system.obstacles.is_empty()) else {
@@ -241,7 +246,8 @@ impl AffineLeg {
         starts.enumerate().filter_map(leg).collect()
     }
 
-    /// Returns the share of a ray's light that passes obstacles on this leg, given by its index.
+    /// Returns the fraction of a ray's light that passes the obstacles on this leg; `number` is
+    /// the index of the leg.
     fn passes(&self, obstacles: &PreparedObstacles<'_>, number: usize, ray: [f64; 4]) -> f64 {
         let [x, y, u, v] = self.map.apply(ray);
         let along = DVec3::new(u, v, 1.0);
@@ -259,7 +265,8 @@ fn flux(system: &SpecularSystem, masks: &Masks<'_>, ray: [f64; 4]) -> f64 {
     emitted(&system.light, ray) * masks.transmittance(DVec3::new(x, y, 0.0), [u, v])
 }
 
-/// If slices are computed by a rule, nets provide only pictures and moments.
+/// The grid for nets that compute only projection pictures and moments, because slices are
+/// computed by a quadrature rule.
 const NO_FREQUENCIES: SliceGrid = SliceGrid {
     azimuths: 1,
     rho: NO_FREQUENCY,
@@ -301,7 +308,7 @@ fn summed(
     let by_rule = is_smooth
         .then(|| finder.slices(grid, nets::work_of_nets(grid, of_slices).steps))
         .flatten();
-    // A rule that finds no light does not prove that there is none.
+    // If a quadrature rule finds no light, the window may still contain light, so nets are used.
     let by_rule = by_rule.filter(|(slices, _)| !slices.is_dark());
     let by_nets = |grid, budget| nets::sums(&drawn, (window, grid), picture.bins, budget);
     match by_rule {
@@ -315,7 +322,7 @@ fn summed(
     }
 }
 
-/// Returns the sampling strategy with the least error.
+/// Returns the sampling strategy that has the smallest error in a trial.
 fn best(
     field: &impl RayField,
     observed: (&SpecularSystem, Option<&Plane>),
@@ -335,7 +342,7 @@ fn best(
     best.map(|(_, strategy)| strategy)
 }
 
-/// A light field with the sampling strategy for its rays.
+/// A light field together with the strategy by which its rays are sampled.
 struct SampledField<'a> {
     field: Box<dyn RayField + 'a>,
     draw: &'a RaySampler<'a>,
@@ -367,7 +374,7 @@ impl Integrand for SampledField<'_> {
 
 /// Derivatives by finite differences: light fields with each parameter increased and decreased.
 struct Differences<'a> {
-    /// The difference between the two values of each parameter.
+    /// For each parameter, the difference between its increased and its decreased value.
     apart: Vec<f64>,
     /// The fields with each parameter increased and decreased.
     sides: Vec<SampledField<'a>>,

@@ -1,10 +1,11 @@
 //! A midpoint rule over the rays of a light that has two coordinates: a projector, a point or a
 //! beam.
 //!
-//! If no light reaches the border of the region that lands in the window, the only error is
-//! aliasing. Aliasing vanishes once there are more nodes than cycles. An edge of a window or a
-//! surface that cuts light is misplaced by up to half the spacing of nodes. Light with such an
-//! edge is left to nets, because two rules may agree on it by chance.
+//! Rays of a region of the emission land in the window. If no light reaches the border of this
+//! region, the only error is aliasing, which vanishes if the rule has more nodes than the
+//! integrand has cycles. If an edge of a window or of a surface cuts light, the rule misplaces
+//! this edge by up to half the spacing of nodes. Light with such an edge is summed over nets,
+//! because two rules may agree on the light by chance.
 
 use super::region::{Finder, RayField};
 use super::sums::sums;
@@ -12,27 +13,29 @@ use crate::nets::RayNode;
 use etendue_field::{SliceGrid, Slices};
 use rayon::prelude::*;
 
-/// The most nodes along each coordinate of an acceptable rule.
+/// Maximum number of nodes of an acceptable rule along each coordinate.
 const MAX_NODES: usize = 1500;
-/// The fewest nodes along a coordinate.
+/// Minimum number of nodes of a rule along each coordinate.
 const MIN_NODES: f64 = 16.0;
-/// The largest relative error of an acceptable rule.
+/// Maximum relative error of an acceptable rule.
 const MAX_ERROR: f64 = 1e-4;
-/// Steps to follow a ray, and to add its contribution to the sum at a frequency.
+/// Estimated number of computing steps to follow a ray and to add its contribution to the sum at a
+/// frequency.
 const RAY: f64 = 300.0;
 const FREQUENCY: f64 = 0.5;
-/// The relative error at which a rule is not refined further. It is below the error of the
-/// transform of photons, 2·10⁻⁷, and so is invisible for any number of photons.
+/// The relative error at which a rule is not refined further. This error is below the error 2·10⁻⁷
+/// of the transform of photons, so it cannot be detected with any number of photons.
 const TARGET_ERROR: f64 = 1e-7;
-/// The error of the finer of two rules, divided by their difference. With a Hann window the error
-/// falls as n⁻³ beyond the window's frequencies, and (5/4)³ is about 2.
+/// Bound on the error of the finer of two rules, divided by the difference between the two rules.
+/// With a Hann window the error falls as n⁻³ beyond the window's frequencies, and (5/4)³ is about
+/// 2.
 const FINER_ERROR: f64 = 1.0;
 
 impl<F: RayField> Finder<'_, F> {
     /// Returns the slices and ‖error‖/‖F‖. The error includes the change of two slices at right
-    /// angles by the last refinement, and the possible error from edges. Rules are refined to
-    /// 10⁻⁷, or until the next takes more than `max_steps`. Returns `None` if the error stays
-    /// above 10⁻⁴.
+    /// angles by the last refinement, and a bound on the error from edges. The rule is refined
+    /// until its error is below 10⁻⁷ or the next rule would take more than `max_steps`. Returns
+    /// `None` if the error stays above 10⁻⁴.
     pub(super) fn slices(&self, grid: &SliceGrid, max_steps: f64) -> Option<(Slices, f64)> {
         let trial = SliceGrid {
             azimuths: grid.azimuths.min(2),
@@ -63,7 +66,8 @@ impl<F: RayField> Finder<'_, F> {
         }
     }
 
-    /// Returns all rays that land in the window, always in the same order.
+    /// Returns all rays of the rule that land in the window, in an order that does not depend on
+    /// the number of threads.
     pub(super) fn nodes(&self, count: usize) -> Vec<RayNode> {
         let Some([a, b]) = self.region() else {
             return Vec::new();
@@ -88,8 +92,8 @@ impl<F: RayField> Finder<'_, F> {
     fn count(&self, grid: &SliceGrid) -> usize {
         let [rho, nu] = [grid.rho.max(), grid.nu.max()];
         let window = [self.window.x, self.window.y, self.window.u, self.window.v];
-        // The number of cycles per unit of a coordinate at the light, from phases and from the
-        // window.
+        // The number of cycles per unit of an emission coordinate `k`, from the phases of the
+        // spectrum and from the window.
         let cycles = |k: usize| {
             let column = self.neighbourhood.1.map(|row| row[k]);
             let phase =

@@ -1,4 +1,4 @@
-//! The region of the emission's inner coordinates whose rays land in a window.
+//! Search for the region of the emission's inner coordinates whose rays land in a window.
 
 use super::emission::EmissionMeasure;
 use super::{Plane, SpecularSystem};
@@ -9,19 +9,19 @@ use etendue_field::{TwoPlane, Window};
 /// A box in two coordinates: the lowest and highest value along each.
 pub(super) type Region = [[f64; 2]; 2];
 
-/// A light field as a function of rays. It takes a ray (x, y, u, v) at the light to the ray's
-/// coordinates at the plane, and to its contribution to ray space there, per unit of the
-/// emission's coordinates. It returns `None` if the ray does not arrive.
+/// A light field as a function of rays. The function takes a ray (x, y, u, v) at the light, and
+/// returns the ray's coordinates at the plane and its contribution to ray space at the plane per
+/// unit of the emission's coordinates. The function returns `None` if the ray does not arrive.
 pub(super) trait RayField: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync {}
 impl<F: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync> RayField for F {}
 
 /// Number of cells along each side of the box in which rays are sought.
 const CELLS: usize = 32;
-/// Rays below this share of the strongest are ignored.
+/// Rays with less than this fraction of the strongest ray's contribution are ignored.
 const MIN_SHARE: f64 = 1e-13;
-/// Number of bisections of a cell that locate an edge up to rounding error.
+/// Number of bisections of a cell after which an edge is located up to rounding error.
 const HALVINGS: usize = 40;
-/// Number of boxes tried before the last is taken.
+/// Maximum number of boxes that the search tries; it then returns the last box.
 const ROUNDS: usize = 24;
 /// Width of the first box relative to the window.
 const MARGIN: f64 = 1.5;
@@ -34,12 +34,13 @@ pub(super) struct Finder<'a, F> {
     pub(super) neighbourhood: Neighbourhood,
 }
 
-/// The point where the central ray lands, and the derivative of a landing point with respect to
-/// the ray, [at plane, at light].
+/// The landing point of the central ray, and the derivative of a ray's landing point with respect
+/// to the ray at the light. Rows are coordinates at the plane, and columns are coordinates at the
+/// light.
 pub(super) type Neighbourhood = ([f64; 4], Matrix<4>);
 
-/// Returns the neighbourhood for exact rays, ignoring masks; `None` if the central ray, or a
-/// neighbour, does not arrive.
+/// Returns the neighbourhood from exact rays without masks, or `None` if the central ray or one of
+/// its neighbours does not arrive.
 pub(super) fn neighbourhood(system: &SpecularSystem, plane: &Plane) -> Option<Neighbourhood> {
     const STEP: f64 = 1e-6;
     let lands = |ray| Some(plane.coordinates(&system.follow(ray)?)?.0);
@@ -67,7 +68,8 @@ impl<F: RayField> Finder<'_, F> {
         ray
     }
 
-    /// Returns a ray at the plane, weighted by the window and by its share of emission coordinates.
+    /// Returns a ray at the plane. Its weight includes the window and `share`, the area of
+    /// emission coordinates that the ray represents.
     pub(super) fn node(&self, ray: [f64; 4], share: f64) -> RayNode {
         let (z, weight) = (self.field)(ray).unwrap_or(([0.0; 4], 0.0));
         let [x, y, u, v] = z;
@@ -76,8 +78,9 @@ impl<F: RayField> Finder<'_, F> {
     }
 
     /// Returns the region of rays that land in the window. The search starts from the bounding box
-    /// of the parallelogram that a linear map gives; the box is moved, widened and narrowed until
-    /// it contains all arriving light. Returns `None` if nothing arrives.
+    /// of the parallelogram that the linear map takes into the window. The search then moves,
+    /// widens and narrows the box until the box contains all arriving light. Returns `None` if
+    /// nothing arrives.
     pub(super) fn region(&self) -> Option<Region> {
         let mut region = self.linear_region()?;
         let reach = self.emission.reach;
@@ -116,15 +119,15 @@ impl<F: RayField> Finder<'_, F> {
         Some(region)
     }
 
-    /// Returns the amount of light that a ray at coordinates of the emission brings into the
-    /// window.
+    /// Returns the absolute contribution to the windowed ray space of the ray at inner coordinates
+    /// of the emission.
     fn strength(&self, inner: [f64; 2]) -> f64 {
         self.node(self.ray(inner), 1.0).weight.abs()
     }
 
-    /// Returns the strength of light next to edges that cut it, relative to all light in a row of
-    /// cells. This strength, divided by the number of nodes along a coordinate, bounds the error
-    /// of a rule.
+    /// Returns the strength of light next to edges that cut the light, divided by the strength of
+    /// all light in a row of cells. This ratio, divided by the number of nodes along a coordinate,
+    /// bounds the error of a rule.
     pub(super) fn edges(&self) -> f64 {
         let Some(region) = self.region() else {
             return 0.0;
@@ -146,7 +149,8 @@ impl<F: RayField> Finder<'_, F> {
         next_to_edges / strengths.iter().sum::<f64>() * CELLS as f64
     }
 
-    /// Returns the strength of light at the edge between a lit and a dark point.
+    /// Returns the strength of light at the lit side of the edge between a lit point and a dark
+    /// point.
     fn last_lit(&self, mut lit: [f64; 2], mut unlit: [f64; 2], dark: f64) -> f64 {
         for _ in 0..HALVINGS {
             let between = [0, 1].map(|axis| 0.5 * (lit[axis] + unlit[axis]));
@@ -159,7 +163,7 @@ impl<F: RayField> Finder<'_, F> {
         self.strength(lit)
     }
 
-    /// Returns the first and last lit cell along each axis.
+    /// Returns the indices of the first and the last lit cell of a region along each axis.
     fn lit(&self, region: &Region) -> Option<[[usize; 2]; 2]> {
         let strengths: Vec<f64> = cells()
             .map(|cell| self.strength(middle(region, cell)))
@@ -199,12 +203,12 @@ impl<F: RayField> Finder<'_, F> {
     }
 }
 
-/// Iterates over the cells of a region, row by row.
+/// Iterates over the indices of the cells of a region, row by row.
 fn cells() -> impl Iterator<Item = (usize, usize)> {
     (0..CELLS * CELLS).map(|i| (i / CELLS, i % CELLS))
 }
 
-/// Returns the centre of a cell.
+/// Returns the centre of the cell (i, j) of a region.
 fn middle(region: &Region, (i, j): (usize, usize)) -> [f64; 2] {
     let at = |axis: usize, i: usize| {
         let [low, high] = region[axis];
@@ -231,7 +235,8 @@ fn clipped(corners: &[[f64; 2]], n: [f64; 2], c: f64) -> Vec<[f64; 2]> {
     kept
 }
 
-/// Returns a region with its sides moved out by shares of the box's width, within reach.
+/// Returns a region whose sides are moved outward by the given fractions of its width, but not
+/// beyond `reach`.
 fn widened(region: &Region, growth: [[f64; 2]; 2], reach: [f64; 2]) -> Region {
     std::array::from_fn(|axis| {
         let [low, high] = region[axis];
@@ -243,7 +248,7 @@ fn widened(region: &Region, growth: [[f64; 2]; 2], reach: [f64; 2]) -> Region {
     })
 }
 
-/// Returns the lit cells with a margin of one cell.
+/// Returns the region of the lit cells with a margin of one cell on each side.
 fn narrowed(region: &Region, lit: &[[usize; 2]; 2]) -> Region {
     std::array::from_fn(|axis| {
         let [low, high] = region[axis];

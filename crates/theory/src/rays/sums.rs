@@ -1,8 +1,8 @@
 //! Σ w e^(−2πi Ω·z) over rays, at all frequencies of a grid of slices.
 //!
-//! On one azimuth a ray is a point (a, b), and its exponential at (m Δρ, n Δν) is the product of
-//! one factor along ρ and one along ν. The sum over rays is a matrix product of the real and
-//! imaginary parts of the factors; each product serves both + ν and − ν.
+//! On the slice of one azimuth a ray is a point (a, b), and its exponential at (m Δρ, n Δν) is the
+//! product of a factor for ρ and a factor for ν. The sum over rays is a matrix product of the real
+//! and imaginary parts of the factors. One product gives the sums for + ν and for − ν.
 
 use crate::nets::RayNode;
 use etendue_field::{Complex, SliceGrid, Slices, cis};
@@ -11,19 +11,20 @@ use ndarray::{Array2, Axis};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Number of rays of one matrix product.
+/// Number of rays that are summed by one matrix product.
 const BLOCK: usize = 256;
-/// The most partial sums over rays, computed in parallel and added in order.
+/// Maximum number of partial sums over rays; partial sums are computed in parallel and added in
+/// order.
 const PARTS: usize = 16;
-/// Number of powers that are computed by repeated multiplication from one exact power. Each
-/// multiplication adds a rounding error.
+/// Number of powers of a phase factor that are computed by repeated multiplication from one exact
+/// power. Each multiplication adds a rounding error.
 const POWERS: usize = 32;
-/// Number of powers computed side by side. Each is the power `LANES` steps before, multiplied by
-/// e^(i angle) to the power `LANES`.
+/// Number of powers of e^(i angle) that are computed in parallel. The power n + `LANES` is the
+/// power n multiplied by e^(i `LANES` angle).
 const LANES: usize = 8;
 
-/// Returns the sums on all slices. They are bitwise identical on any number of threads; the
-/// rounding error is below 10⁻¹² of Σ |w|.
+/// Returns the sums at all frequencies of all slices. The sums are bitwise identical on any number
+/// of threads, and their rounding error is below 10⁻¹² of Σ |w|.
 pub(super) fn sums(nodes: &[RayNode], grid: &SliceGrid) -> Slices {
     let part = nodes.len().div_ceil(PARTS).max(BLOCK);
     let parts: Vec<_> = nodes.chunks(part).collect();
@@ -50,8 +51,8 @@ pub(super) fn sums(nodes: &[RayNode], grid: &SliceGrid) -> Slices {
     slices
 }
 
-/// Returns sums of the products of the parts of both factors over some rays, [2m + part, 2n +
-/// part].
+/// Returns sums over rays of the products of the factors for ρ and ν. Entry [2m + i, 2n + j] has
+/// the real (0) or imaginary (1) part i of the factor for ρ and part j of the factor for ν.
 fn product(nodes: &[RayNode], grid: &SliceGrid, azimuth: usize) -> Array2<f64> {
     let (sin, cos) = libm::sincos(grid.azimuth(azimuth));
     let [along_rho, along_nu] = [grid.rho.half, grid.nu.half].map(|half| 2 * (half + 1));
@@ -80,7 +81,8 @@ fn powers(angle: f64, scale: f64, row: Option<&mut [f64]>) {
     let stride = squared * squared * squared * squared;
     let parts = row.into_iter().flat_map(|row| row.chunks_mut(2 * POWERS));
     for (part, to) in parts.enumerate() {
-        // Adjacent lanes do not depend on each other.
+        // The powers in different lanes do not depend on each other, so the compiler can vectorise
+        // the loop.
         let mut lanes = [cis(angle * (part * POWERS) as f64) * scale; LANES];
         for i in 1..LANES {
             lanes[i] = lanes[i - 1] * step;

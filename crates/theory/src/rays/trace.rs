@@ -1,4 +1,4 @@
-//! Follows one ray through the system.
+//! Tracing of a single ray through a specular system.
 
 use super::{SpecularSurface, SpecularSystem};
 use crate::obstacle::PreparedObstacles;
@@ -8,14 +8,14 @@ use glam::DVec3;
 /// A straight leg of a ray.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LegRay {
-    /// The start of the leg.
+    /// The point at which the leg starts.
     pub(crate) point: DVec3,
-    /// The direction, a unit vector.
+    /// The direction of the leg, a unit vector.
     pub(crate) direction: DVec3,
 }
 
 impl LegRay {
-    /// Returns the ray (x, y, u, v) of the light's plane.
+    /// Returns the ray with position (x, y) and slopes (u, v) at the light's plane.
     pub(crate) fn new([x, y, u, v]: [f64; 4]) -> Self {
         Self {
             point: DVec3::new(x, y, 0.0),
@@ -33,20 +33,23 @@ impl LegRay {
         }
     }
 
-    /// Returns the distance to a patch, and the unit normal there on the side of the patch's D.
-    /// Returns `None` if the patch is missed or behind.
+    /// Returns the distance along the ray to a patch, and the patch's unit normal at the hit point
+    /// on the side of the patch's D. Returns `None` if the ray misses the patch or the patch is
+    /// behind the ray's start.
     ///
-    /// Uses Newton's method from the tangent plane at the vertex. Along a ray the quadric is a
-    /// polynomial of degree two, so it has at most one root on either side of its extremum; the
-    /// root nearer to the tangent plane is found.
+    /// Solves for the distance by Newton's method, starting at the tangent plane at the patch's
+    /// vertex. Along a ray the quadric is a polynomial of degree two, so it has at most one root
+    /// on either side of its extremum. The method converges to the root nearer to the tangent
+    /// plane.
     pub(crate) fn met(&self, patch: &Patch) -> Option<(f64, DVec3)> {
         self.met_facing(patch, None)
     }
 
-    /// Returns the intersection at which the ray meets a patch from one side, even if another one
-    /// is nearer. The side is that of D, or the opposite one for −1.
+    /// Returns the intersection at which the ray meets a patch from the given side, even if
+    /// another intersection is nearer. `side` is 1 for the side of the patch's D and −1 for the
+    /// opposite side.
     ///
-    /// A ray meets a quadric once from either side, so there is at most one such point.
+    /// A ray meets a quadric at most once from either side, so the intersection is unique.
     pub(crate) fn met_from(&self, patch: &Patch, side: f64) -> Option<(f64, DVec3)> {
         self.met_facing(patch, Some(side))
     }
@@ -59,19 +62,21 @@ impl LegRay {
         } else {
             -point.dot(direction)
         };
-        // Along the ray, counted from a point near it, the patch's function is a s² + 2 b s + c.
+        // At distance s along the ray from a point `near` the patch, the patch's implicit function
+        // is a s² + 2 b s + c.
         let near = point + direction * t;
         let a = (DVec3::from(patch.curvature) * direction).dot(direction);
         let b = patch.gradient(near).dot(direction);
         let c = patch.value(near);
-        // The mirror image of one root about the extremum is an equally good start for the root on
-        // the other side.
+        // The mirror image of one root about the extremum is a good first estimate of the root on
+        // the other side of the extremum.
         let leaves = side.is_some_and(|side| side * b > 0.0);
         let mut s = if leaves { -2.0 * b / a } else { 0.0 };
         for _ in 0..MOST_STEPS {
             let step = ((a * s + 2.0 * b) * s + c) / (2.0 * (a * s + b));
             s -= step;
-            // Each step squares the error, so the next step would be below rounding error.
+            // Each Newton step squares the relative error, so the next step would be below
+            // rounding error.
             if step.abs() <= 1e-8 * ((t + s).abs() + point.length()) {
                 t += s;
                 let here = point + direction * t;
@@ -84,27 +89,29 @@ impl LegRay {
     }
 }
 
-/// Newton steps before a ray counts as a miss. Rays that narrowly miss a surface do not converge.
+/// Maximum number of Newton steps before a ray is treated as a miss. For rays that narrowly miss a
+/// surface, the method does not converge.
 const MOST_STEPS: u32 = 40;
 
 impl SpecularSurface {
-    /// Returns the continued ray.
+    /// Returns the ray that continues an arriving ray after the surface, or `None` if the ray is
+    /// lost.
     pub(super) fn follow(&self, ray: &LegRay) -> Option<LegRay> {
         let (distance, normal) = ray.met(&self.patch)?;
         let point = ray.point + ray.direction * distance;
         self.turned(ray.direction, point, normal)
     }
 
-    /// Returns the continuation of a ray along `direction` that hits `point`; `normal` is on the
-    /// side of the patch's D.
+    /// Returns the ray that leaves `point` after a ray along `direction` has hit the surface at
+    /// this point; `normal` is on the side of the patch's D.
     pub(super) fn turned(&self, direction: DVec3, point: DVec3, normal: DVec3) -> Option<LegRay> {
         let direction = bent(self.event, &self.patch.frame, [direction, point, normal])?;
         Some(LegRay { point, direction })
     }
 }
 
-/// Returns the direction after an event on a patch with this frame, for light along `direction`
-/// that hits `point`; `normal` is on the side of the patch's D.
+/// Returns the direction of light after an event on a patch with the given frame, if light along
+/// `direction` hits `point`; `normal` is on the side of the patch's D.
 pub(crate) fn bent(
     event: Specular,
     frame: &Frame,
@@ -114,7 +121,7 @@ pub(crate) fn bent(
         Specular::Mirror => Some(direction - normal * (2.0 * direction.dot(normal))),
         Specular::Refraction { front, back } => {
             let cos = -direction.dot(normal);
-            // Index ratio and normal are those seen from the incident side.
+            // The index ratio and the normal are relative to the side of the incident light.
             let (normal, cos, ratio) = if cos > 0.0 {
                 (normal, cos, front / back)
             } else {
@@ -138,8 +145,8 @@ pub(crate) fn bent(
 }
 
 impl SpecularSystem {
-    /// Returns the last leg of the same ray, and the share of it that passes obstacles before that
-    /// leg.
+    /// Returns the last leg of a ray from the light, and the fraction of the ray's light that
+    /// passes the obstacles on the legs before the last.
     pub(super) fn follow_past(
         &self,
         obstacles: &PreparedObstacles<'_>,
@@ -156,7 +163,8 @@ impl SpecularSystem {
         Some((ray, passes))
     }
 
-    /// Returns the last leg of the ray (x, y, u, v) of the light's plane, ignoring masks.
+    /// Returns the last leg of the ray that starts with (x, y, u, v) at the light's plane, without
+    /// masks or obstacles.
     pub(super) fn follow(&self, emission: [f64; 4]) -> Option<LegRay> {
         let start = LegRay::new(emission);
         self.elements

@@ -5,8 +5,9 @@ use etendue_field::{AngleTable, Brdf, Complex, Fresnel, Lobe, Mixture};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Returns the sum of BRDFs for light from `from` to `to`, unit vectors away from the surface with
-/// this unit normal; sr⁻¹.
+/// Returns the weighted sum of BRDFs in sr⁻¹, for light that arrives from `from` and leaves
+/// towards `to`; both are unit vectors away from the surface, and `normal` is the surface's unit
+/// normal.
 #[must_use]
 pub fn sum(mixture: &Mixture<'_>, normal: DVec3, from: DVec3, to: DVec3) -> f64 {
     let each = mixture.weighted();
@@ -14,7 +15,7 @@ pub fn sum(mixture: &Mixture<'_>, normal: DVec3, from: DVec3, to: DVec3) -> f64 
         .sum()
 }
 
-/// Returns one BRDF, with the arguments of [`sum`].
+/// Returns the value of a single BRDF; the other arguments are those of [`sum`].
 #[must_use]
 pub fn value(brdf: &Brdf, normal: DVec3, from: DVec3, to: DVec3) -> f64 {
     factors(brdf, normal.dot(from), normal.dot(to)) * lobe(brdf, normal, from, to)
@@ -28,8 +29,8 @@ pub(super) fn factors(brdf: &Brdf, cos_from: f64, cos_to: f64) -> f64 {
     factor(&brdf.incoming, cos_from) * factor(&brdf.outgoing, cos_to)
 }
 
-/// Returns the value of a table at an angle with this cosine, as a sum of hat functions about its
-/// nodes.
+/// Interpolates a table linearly at the angle with the given cosine, as a sum of hat functions
+/// about the table's nodes.
 fn between(table: &AngleTable, cos: f64) -> f64 {
     let steps = (table.values.len() - 1) as f64;
     let at = libm::acos(cos.clamp(0.0, 1.0)) * steps / FRAC_PI_2;
@@ -89,13 +90,13 @@ pub(super) fn lobe(brdf: &Brdf, normal: DVec3, from: DVec3, to: DVec3) -> f64 {
     brdf.albedo * lobe
 }
 
-/// Returns the smallest [`angular_width`] of several lobes, among those that have one.
+/// Returns the smallest [`angular_width`] of several BRDFs, or `None` if none of them has a width.
 pub(crate) fn narrowest<'a>(brdfs: impl Iterator<Item = &'a Brdf>) -> Option<f64> {
     brdfs.filter_map(angular_width).min_by(f64::total_cmp)
 }
 
-/// Returns the angle in radians from the mirror direction within which most of a lobe lies; `None`
-/// if it covers all directions.
+/// Returns the angle from the mirror direction, in radians, within which most of a lobe lies, or
+/// `None` if the lobe covers all directions.
 fn angular_width(brdf: &Brdf) -> Option<f64> {
     match brdf.lobe {
         Lobe::Lambertian => None,
@@ -104,15 +105,16 @@ fn angular_width(brdf: &Brdf) -> Option<f64> {
     }
 }
 
-/// Returns tan² of the tilt of the microfacet that reflects one direction into the other, and the
-/// cosine of incidence on it.
+/// Returns tan² of the tilt of the microfacets that reflect `from` into `to`, and the cosine of
+/// the angle of incidence on these microfacets.
 fn half_way(normal: DVec3, from: DVec3, to: DVec3) -> [f64; 2] {
     let half = (from + to).normalize();
     let cos = half.dot(normal);
     [(1.0 - cos * cos).max(0.0) / (cos * cos), half.dot(from)]
 }
 
-/// Returns D G F / (4 cos θi cos θo), with D from the density of slopes, P(tan² tilt) = D cos⁴.
+/// Returns the microfacet BRDF D G F / (4 cos θi cos θo), where D follows from the density of
+/// slopes P(tan² tilt) = D cos⁴.
 fn microfacets(
     brdf: &Brdf,
     slopes: f64,
@@ -138,7 +140,8 @@ fn beckmann_shadow(cos: f64, roughness: f64) -> f64 {
     2.0 / (1.0 + libm::erf(a) + libm::exp(-a * a) / (a * PI.sqrt()))
 }
 
-/// Returns the share of unpolarised light reflected at an angle with this cosine.
+/// Returns the fraction of unpolarised light that is reflected at the angle of incidence with the
+/// given cosine.
 pub(super) fn reflectance(fresnel: Fresnel, cos: f64) -> f64 {
     let index = match fresnel {
         Fresnel::White => return 1.0,
@@ -192,7 +195,7 @@ mod tests {
             Lobe::Ggx { roughness: 0.02 },
         ] {
             let albedo = total(lobe, true);
-            // Almost no light is shadowed on smooth microfacets at normal incidence.
+            // At normal incidence, smooth microfacets shadow almost no light.
             assert!((0.99..=1.0 + 1e-9).contains(&albedo), "{lobe:?} {albedo}");
         }
     }

@@ -10,38 +10,39 @@ use etendue_field::{
 };
 use glam::DVec3;
 
-/// The path of the central ray, and its neighbourhood to first order.
+/// The path of the central ray, and the first-order maps of neighbouring rays.
 ///
 /// Local coordinates are (s, t, θ, φ): positions along T and B, angles to the local normals. T lies
 /// in the plane of incidence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScatteringChain {
-    /// The map from (x, y, u, v) at the light to local coordinates of the direction of incidence:
-    /// travel, incidence, curvature.
+    /// The map from (x, y, u, v) at the light to local coordinates of the direction of incidence.
+    /// It consists of the steps travel, incidence and curvature.
     pub onto: AffineMap<4>,
-    /// The map from local coordinates of the outgoing direction to those of the plane: back,
-    /// outgoing angle, travel.
+    /// The map from local coordinates of the outgoing direction to coordinates of the plane. It
+    /// consists of the steps back, outgoing angle and travel.
     pub off: AffineMap<4>,
-    /// Longitude θ₀ of the direction the central ray comes from.
+    /// Longitude θ₀ of the direction from which the central ray arrives.
     pub incidence: f64,
-    /// Longitude θ₁ and latitude of the direction the central ray leaves in.
+    /// Longitude θ₁ and latitude of the direction in which the central ray leaves.
     pub outgoing: [f64; 2],
-    /// The shape operator at the central hit along (T, B), per metre, convex positive.
+    /// The surface's shape operator along (T, B) where the central ray hits, per metre; positive
+    /// for convex surfaces.
     pub curvature: Matrix<2>,
     /// Distance of the surface from the light, metres.
     pub distance: f64,
-    /// The axes (T, B, N) at the central hit.
+    /// The axes (T, B, N) at the point where the central ray hits the surface.
     pub frame: Frame,
-    /// The steps in words, in the order light meets them.
+    /// Descriptions of the steps, in the order of propagation.
     pub steps: Vec<String>,
 }
 
-/// Returns the chain of a system up to a plane on its surface or beyond; `None` if the central ray
-/// does not arrive there.
+/// Returns the chain of a system up to a plane on or beyond its surface, or `None` if the central
+/// ray does not arrive at the plane.
 ///
-/// Its maps are the derivatives of the exact rays. Apart from turns of the axes, they are the
-/// corrected maps of Durand et al. 2005, Eqs. 9–11 and 19 (docs/theory.md, section 7), as the
-/// tests verify.
+/// The chain's maps are the derivatives of the exact rays. Apart from rotations of the axes, the
+/// maps equal the corrected maps of Durand et al. 2005, Eqs. 9–11 and 19 (docs/theory.md, section
+/// 7), as the tests verify.
 #[must_use]
 pub fn chain(view: &Observed<ScatteringSystem>) -> Option<ScatteringChain> {
     let Observed { system, plane } = view;
@@ -98,8 +99,8 @@ pub fn chain(view: &Observed<ScatteringSystem>) -> Option<ScatteringChain> {
     })
 }
 
-/// Returns how far the maps of a chain are from those of the exact rays, in metres or radians, or
-/// as a ratio of these: zero for the chain of [`chain`].
+/// Returns the largest difference between the maps of the chain `tried` and the derivatives of the
+/// exact rays. The difference is zero for the chain that [`chain`] returns.
 #[must_use]
 pub fn defect(view: &Observed<ScatteringSystem>, tried: &ScatteringChain) -> Option<f64> {
     let traced = chain(view)?;
@@ -108,14 +109,16 @@ pub fn defect(view: &Observed<ScatteringSystem>, tried: &ScatteringChain) -> Opt
 }
 
 impl ScatteringChain {
-    /// Returns A of the rays from the light to the plane in the mirror direction, z' = A z.
+    /// Returns the map z' = A z from the light to the plane, for rays that the surface reflects in
+    /// the mirror direction.
     #[must_use]
     pub fn rays(&self) -> AffineMap<4> {
         self.onto.then(&AffineMap::<4>::mirror()).then(&self.off)
     }
 }
 
-/// Returns the local coordinates, at a point of the surface, of a direction away from it.
+/// Returns the local coordinates of a point of the surface and of a direction away from the
+/// surface.
 pub(crate) fn local(frame: &Frame, point: DVec3, normal: DVec3, away: DVec3) -> [f64; 4] {
     let at = frame.to_local(point);
     let away = frame.turned_to(normal).vector_to_local(away);
@@ -180,7 +183,8 @@ fn steps(
     steps
 }
 
-/// Describes the BRDFs in words: a line for each step of a single BRDF, or for each term of a sum.
+/// Describes the BRDFs as text, with a line for each step of a single BRDF or for each term of a
+/// sum of BRDFs.
 pub(crate) fn reflection(reflectance: &Reflectance) -> Vec<String> {
     let terms = &reflectance.terms;
     let sum = terms.iter().enumerate().map(|(i, term)| {
@@ -202,8 +206,8 @@ pub(crate) fn reflection(reflectance: &Reflectance) -> Vec<String> {
     words
 }
 
-/// Describes the factors of angles before and after a lobe, with the lobe between them; each
-/// description begins with a verb.
+/// Describes a term as text: the factor of the angle of incidence, the lobe, and the factor of the
+/// outgoing angle. Each description begins with a verb.
 fn term_in_words(term: &Term) -> impl Iterator<Item = [String; 2]> {
     let brdf = &term.brdf;
     let lobe = match brdf.lobe {

@@ -1,9 +1,9 @@
 //! Importance sampling of rays at a plane, and of the light that shines on their starting points.
 //!
 //! Any density that is non-zero wherever there is light gives the same integral. These densities
-//! follow the window, the lobe of the BRDF and the light. If two of them compete, half of the rays
-//! are sampled from each, and all rays are weighted by the mixture (the balance heuristic, Veach
-//! and Guibas 1995).
+//! follow the window, the lobe of the BRDF and the light. If two densities are suitable, half of
+//! the rays are sampled from each, and all rays are weighted by the mixture of both densities (the
+//! balance heuristic, Veach and Guibas 1995).
 
 use super::brdf::narrowest;
 use super::exact::Leaving;
@@ -17,12 +17,13 @@ use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// A sampling strategy. No strategy is best for every scene, so all of them are tried on the scene.
+/// A strategy for sampling rays and parts of the light. No strategy is best for every scene, so
+/// several strategies are tried on each scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct LightStrategy {
-    /// Whether half of the slopes are sampled about the mirrored light.
+    /// Whether half of the slopes at the plane are sampled about the mirror image of the light.
     pub(super) mirrored: bool,
-    /// Whether half of the parts of the light are sampled by the lobe.
+    /// Whether half of the parts of the light are sampled in proportion to the BRDF's lobe.
     pub(super) by_lobe: bool,
     /// Whether four parts of the light are sampled for each point of the surface.
     pub(super) quarters: bool,
@@ -59,8 +60,8 @@ impl LightStrategy {
         }
     }
 
-    /// Returns the approximate time of a ray, relative to a ray that is sampled by the window with
-    /// one part of the light.
+    /// Returns the approximate computing time of a ray with this strategy, relative to a ray that
+    /// is sampled by the window with a single part of the light.
     pub(super) fn time(self) -> f64 {
         if self.quarters { 1.7 } else { 1.0 }
     }
@@ -75,16 +76,18 @@ pub(super) struct PlaneRaySampler {
     mirrored: Option<Mirrored>,
 }
 
-/// Slopes near those of the mirrored light, which depend affinely on the position.
+/// A density of slopes about the slopes of the light's mirror image, which depend affinely on the
+/// position.
 #[derive(Clone, Copy, Debug)]
 struct Mirrored {
-    /// Angles between a ray and the mirror direction: first + at (x, y) + by (u, v).
+    /// Constant part of the angles between a ray and the mirror direction, which are first + at
+    /// (x, y) + by (u, v).
     first: [f64; 2],
     at: Matrix<2>,
     by: Matrix<2>,
     inverse: Matrix<2>,
     determinant: f64,
-    /// Width about the mirror direction, radians.
+    /// Width of the density about the mirror direction, in radians.
     width: f64,
 }
 
@@ -106,7 +109,7 @@ impl PlaneRaySampler {
         }
     }
 
-    /// Returns a ray (x, y, u, v) and its density.
+    /// Returns a ray (x, y, u, v) at the plane and the density with which it was sampled.
     pub(super) fn draw(&self, [a, b, c, d]: [f64; 4]) -> ([f64; 4], f64) {
         let [along_x, along_y, along_u, along_v] = &self.window;
         let [[x, of_x], [y, of_y]] = [along_x.draw(a), along_y.draw(b)];
@@ -127,14 +130,15 @@ impl PlaneRaySampler {
 }
 
 impl Mirrored {
-    /// Returns `None` if light comes from all directions, or if slopes do not determine the angles.
+    /// Returns `None` if light comes from all directions, or if the slopes at the plane do not
+    /// determine the angles on the surface.
     fn new(system: &ScatteringSystem, chain: &ScatteringChain) -> Option<Self> {
         let off = chain.off.inverse()?;
         let block = |map: &AffineMap<4>, row: usize, column: usize| -> Matrix<2> {
             crate::geometry::from_fn(|i, j| map.matrix[row + i][column + j])
         };
-        // This is the first of two coordinates that vary among rays of the light's central point
-        // or, for a beam, among rays along its axis.
+        // `free` is the index of the first of two coordinates that vary among rays from the
+        // light's central point or, for a beam, among rays along the beam's axis.
         let free = match system.light {
             Light::Environment { .. } => return None,
             Light::Beam { .. } => 0,
@@ -142,12 +146,13 @@ impl Mirrored {
         };
         let onto = &chain.onto;
         let (places, _) = inverted(&block(onto, 0, free))?;
-        // This is the change of the angles of incidence per position on the surface.
+        // `per_place` is the change of the angles of incidence per change of position on the
+        // surface.
         let per_place = product(&block(onto, 2, free), &places);
         let [s, t, theta, phi] = onto.offset;
         let arrives = times(&per_place, &[s, t]);
-        // The sum of the outgoing and the incident angles gives the angles from the mirror
-        // direction.
+        // The angles from the mirror direction are the sum of the outgoing and the incident
+        // angles.
         let by = |column: usize| {
             let angles = block(&off, 2, column);
             let through = product(&per_place, &block(&off, 0, column));
@@ -193,12 +198,13 @@ pub(super) struct Lights<'a> {
     sky: Option<Arc<SkyDensity<'a>>>,
     /// Whether half of the sampled parts of the light follow the lobe.
     by_lobe: bool,
-    /// The number of cells along each side of the square; one sample is drawn in each cell.
+    /// The number of cells along each side of the unit square; one part of the light is sampled in
+    /// each cell.
     side: usize,
 }
 
 impl<'a> Lights<'a> {
-    /// Builds the sampler for a surface with this normal at the central hit.
+    /// Builds the sampler for a surface with the given normal where the central ray hits.
     pub(super) fn new(
         system: &'a ScatteringSystem,
         normal: DVec3,
@@ -236,13 +242,15 @@ impl<'a> Lights<'a> {
         }
     }
 
-    /// Checks whether parts depend on where a ray leaves the surface.
+    /// Checks whether the density of sampled parts depends on the point where a ray leaves the
+    /// surface.
     pub(super) fn is_by_lobe(&self) -> bool {
         self.by_lobe
     }
 
-    /// Returns the sampled parts of the light for a point of the surface: one part, or one in each
-    /// quarter of the unit square. Each part's density is divided by the part's share of the mean.
+    /// Returns the sampled parts of the light for a point of the surface: a single part, or a part
+    /// in each quarter of the unit square. Each part's density is multiplied by the number of
+    /// parts, so that the parts' contributions add up to a mean.
     pub(super) fn each<'b>(
         &'b self,
         leaving: &'b Leaving,
@@ -257,7 +265,7 @@ impl<'a> Lights<'a> {
         })
     }
 
-    /// Returns a part of the light, and its density in the part's measure.
+    /// Returns a sampled part of the light, and the sampling density in the part's measure.
     pub(super) fn draw(&self, leaving: &Leaving, [a, b]: [f64; 2]) -> Option<(LightPart, f64)> {
         let light = &self.system.light;
         if !light.has_extent() {
@@ -276,7 +284,7 @@ impl<'a> Lights<'a> {
         Some((part, 0.5 * (by_light + by_lobe)))
     }
 
-    /// Returns a part, and its density under sampling by the light alone.
+    /// Returns a part of the light that is sampled independently of the surface, and its density.
     fn by_light(&self, at: [f64; 2]) -> Option<(LightPart, f64)> {
         match &self.system.light {
             Light::Area { shape, .. } => {
@@ -291,8 +299,8 @@ impl<'a> Lights<'a> {
         }
     }
 
-    /// Returns the part of an environment from which light travels along `along`, with its density;
-    /// `from` is the direction it comes from, in the axes of the map.
+    /// Returns the part of an environment from which light travels along `along`, and its density;
+    /// `from` is the direction from which this light comes, in the axes of the map.
     fn of_sky(&self, along: DVec3, from: DVec3) -> Option<(LightPart, f64)> {
         let (Light::Environment { environment }, Some(sky)) = (&self.system.light, &self.sky)
         else {
@@ -304,8 +312,8 @@ impl<'a> Lights<'a> {
         Some((LightPart::Sky { slopes, radiance }, density))
     }
 
-    /// Returns the part of the light in a direction away from the surface, and its density under
-    /// sampling by the light alone.
+    /// Returns the part of the light that is seen in a direction `wi` from the surface, and its
+    /// density if parts are sampled independently of the surface.
     fn towards(&self, leaving: &Leaving, wi: DVec3) -> Option<(LightPart, f64)> {
         match &self.system.light {
             Light::Area { shape, .. } => {
@@ -329,7 +337,7 @@ impl<'a> Lights<'a> {
         }
     }
 
-    /// Returns steradians per unit of the part's measure.
+    /// Returns the solid angle in steradians per unit of the part's measure.
     fn steradians(&self, leaving: &Leaving, part: LightPart) -> f64 {
         let DVec3 { x, y, z } = leaving.point;
         match part {
@@ -339,17 +347,18 @@ impl<'a> Lights<'a> {
     }
 }
 
-/// Returns the slopes of light along a direction, if it goes forward.
+/// Returns the slopes of light along a direction, or `None` if the direction does not point
+/// towards positive z.
 fn forward(along: DVec3) -> Option<[f64; 2]> {
     (along.z > 0.0).then(|| [along.x / along.z, along.y / along.z])
 }
 
-/// Samples incident directions given the outgoing one: normals of microfacets about the surface
-/// normal.
+/// Samples incident directions for a given outgoing direction, by sampling normals of microfacets
+/// about the surface normal.
 struct LobeDensity {
     local: Frame,
     wo: DVec3,
-    /// Width of the slopes of the normals.
+    /// Width of the density of slopes of the microfacet normals.
     width: f64,
 }
 
@@ -376,25 +385,25 @@ impl LobeDensity {
     fn density(&self, wi: DVec3) -> f64 {
         let wi = self.local.vector_to_local(wi);
         let half = (wi + self.wo).normalize();
-        // Opposite directions have no half vector.
+        // Incident and outgoing directions that are opposite have no half vector.
         if half.z <= 0.0 || half.is_nan() {
             return 0.0;
         }
         let slopes = [half.x / half.z, half.y / half.z];
-        // The density is per steradian of normals; four times their cosine converts it to incident
-        // directions.
+        // The density per steradian of normals is divided by four times the cosine between normal
+        // and direction, which gives the density of incident directions.
         let per_normal = bell_density(self.width, slopes) / half.z.powi(3);
         per_normal / (4.0 * half.dot(self.wo).abs())
     }
 }
 
 /// Returns the width of the narrowest lobe of a surface. Light that wider lobes scatter beyond
-/// this width is sampled by the window or the light.
+/// this width is sampled by the densities of the window and the light.
 fn narrowest_of(system: &ScatteringSystem) -> Option<f64> {
     narrowest(system.reflectance.terms.iter().map(|term| &term.brdf))
 }
 
-/// Returns the distance of a shape's farthest point from the axis.
+/// Returns the distance from the light's axis to the farthest point of a shape.
 fn radius(shape: &Shape) -> f64 {
     let [x, y] = [0, 1].map(|axis| {
         let [low, high] = shape.bounds().extent(axis);
@@ -403,20 +412,22 @@ fn radius(shape: &Shape) -> f64 {
     libm::hypot(x, y)
 }
 
-/// Returns a point of the plane with the density of `bell_density`.
+/// Samples a point (p, q) with the density [`bell_density`].
 pub(crate) fn bell(width: f64, [a, b]: [f64; 2]) -> [f64; 2] {
     let r = width * (a / (1.0 - a)).sqrt();
     let (sin, cos) = libm::sincos(TAU * b);
     [r * cos, r * sin]
 }
 
-/// Returns 1/(π w² (1 + r²/w²)²): as wide as a lobe, with tails longer than those of any lobe.
+/// Returns the density 1/(π w² (1 + r²/w²)²), r² = p² + q², which is as wide as a lobe and has
+/// longer tails than any lobe.
 pub(crate) fn bell_density(width: f64, [p, q]: [f64; 2]) -> f64 {
     let squared = width * width;
     1.0 / (PI * squared * (1.0 + (p * p + q * q) / squared).powi(2))
 }
 
-/// Returns the inverse and the determinant; `None` for a matrix that is nearly singular.
+/// Returns the inverse and the determinant of a matrix, or `None` if the matrix is nearly
+/// singular.
 fn inverted([[a, b], [c, d]]: &Matrix<2>) -> Option<(Matrix<2>, f64)> {
     let determinant = a * d - b * c;
     let scale = (a * a + b * b + c * c + d * d) * 1e-9;

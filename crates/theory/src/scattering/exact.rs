@@ -14,13 +14,13 @@ pub(super) struct Leaving {
     pub(super) point: DVec3,
     /// The normal on the side that the surface faces.
     pub(super) normal: DVec3,
-    /// The direction, a unit vector.
+    /// The direction in which the ray leaves, a unit vector.
     pub(super) direction: DVec3,
 }
 
 impl ScatteringSystem {
-    /// Returns the point of the surface that the ray at (x, y, u, v) of a plane leaves; `None` if
-    /// it does not come from the surface.
+    /// Returns the point of the surface from which the ray (x, y, u, v) of a plane comes, or
+    /// `None` if the ray does not come from the surface.
     pub(super) fn leaving(&self, plane: &Plane, [x, y, u, v]: [f64; 4]) -> Option<Leaving> {
         let frame = &plane.frame;
         let foot = frame.to_world(DVec3::new(x, y, 0.0));
@@ -45,15 +45,16 @@ impl ScatteringSystem {
         })
     }
 
-    /// Returns the point where a line exits through the surface, the normal there, and the
-    /// direction of the line.
+    /// Returns the point where a line leaves through the front of the surface, the normal at this
+    /// point, and the direction of the line.
     fn on_line(&self, at: DVec3, direction: DVec3) -> Option<(DVec3, DVec3, DVec3)> {
         let ray = LegRay::back(&self.patch, at, direction);
         let (distance, normal) = ray.met(&self.patch)?;
         Some((ray.point - direction * distance, normal, direction))
     }
 
-    /// Returns the radiance that leaves due to a part of the light, per unit of the part's measure.
+    /// Returns the radiance that leaves the surface due to a part of the light, per unit of the
+    /// part's measure.
     pub(super) fn radiance(&self, masks: &Masks<'_>, leaving: &Leaving, part: LightPart) -> f64 {
         let Leaving {
             point,

@@ -1,4 +1,4 @@
-//! Light incident on a point from one part of the light.
+//! The light that is incident on a point of a surface from one part of a light.
 
 use crate::mask::Masks;
 use crate::rays::{LegRay, emitted};
@@ -8,16 +8,16 @@ use glam::DVec3;
 /// A sampled part of the light.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum LightPart {
-    /// All of the light, if a point of the surface sees it from one direction alone.
+    /// The complete light, if its light arrives at a point of the surface from a single direction.
     Whole,
     /// A point of an area light. Densities of such points are per square metre.
     Point([f64; 2]),
-    /// A direction of an environment, as the slopes of its rays, and the radiance from there.
-    /// Densities of such directions are per steradian.
+    /// A direction of an environment, as the slopes of the rays from this direction, and its
+    /// radiance. Densities of such directions are per steradian.
     Sky {
-        /// Forward slopes.
+        /// Slopes of rays from the environment, in the direction of light.
         slopes: [f64; 2],
-        /// Radiance, W m⁻² sr⁻¹.
+        /// Radiance of the environment in this direction, W m⁻² sr⁻¹.
         radiance: f64,
     },
 }
@@ -26,13 +26,14 @@ pub(super) enum LightPart {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct IncomingLight {
     pub(super) slopes: [f64; 2],
-    /// Radiance times du dv, per unit of the part's measure; if the part is all of the light, the
-    /// product of radiance and du dv.
+    /// Radiance times du dv per unit of the part's measure. If the part is [`LightPart::Whole`],
+    /// the weight is the product of radiance and du dv.
     pub(super) weight: f64,
 }
 
 impl Masks<'_> {
-    /// Returns the light that a point receives from a part of a light, in the frame at the light.
+    /// Returns the light that a point receives from a part of a light; the point is in the frame
+    /// at the light.
     pub(super) fn incoming(&self, light: &Light, point: DVec3, part: LightPart) -> IncomingLight {
         let DVec3 { x, y, z } = point;
         // The point where the ray leaves the light's plane, and its slopes.
@@ -50,7 +51,7 @@ impl Masks<'_> {
             // Flux per du dv is converted to radiance, with du dv = dx dy / z².
             _ => emitted(light, [a, b, u, v]) * secant(slopes).powi(4) / (z * z),
         };
-        // Light begins in the plane of its source; so does light from an environment.
+        // All light starts in the plane z = 0, including light from an environment.
         let passes = if weight > 0.0 && z > 0.0 {
             self.transmittance(point, slopes) * self.past_obstacles(point, slopes)
         } else {
@@ -64,7 +65,8 @@ impl Masks<'_> {
 }
 
 impl Masks<'_> {
-    /// Returns the share of light with these slopes that passes obstacles before a point.
+    /// Returns the fraction of the light with slopes (u, v) that passes obstacles before it
+    /// arrives at a point.
     fn past_obstacles(&self, point: DVec3, [u, v]: [f64; 2]) -> f64 {
         let along = DVec3::new(u, v, 1.0);
         let ray = LegRay {
@@ -76,11 +78,11 @@ impl Masks<'_> {
     }
 }
 
-/// Relative error of a distance due to rounding, within which an occluder at the point itself is
-/// ignored.
+/// Relative rounding error of a distance; an occluder whose distance from the point is within this
+/// error is ignored.
 const ROUNDING: f64 = 1e-9;
 
-/// Returns 1/cos of the angle to the central ray.
+/// Returns 1/cos of the angle between the central ray and a ray with slopes (u, v).
 pub(super) fn secant([u, v]: [f64; 2]) -> f64 {
     (1.0 + u * u + v * v).sqrt()
 }

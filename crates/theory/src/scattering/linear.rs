@@ -10,15 +10,15 @@ use etendue_field::{Brdf, Frame, Lobe};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// The chain, prepared for evaluation.
+/// The first-order chain, prepared for the evaluation of radiance.
 #[derive(Clone, Debug)]
 pub(super) struct Linear<'a> {
     pub(super) system: &'a ScatteringSystem,
     chain: &'a ScatteringChain,
     /// The map from the plane to local coordinates of the outgoing direction.
     off: AffineMap<4>,
-    /// The matrix from positions on the surface to those across the light's axis, at the distance
-    /// of the surface.
+    /// The matrix from positions on the surface to positions perpendicular to the light's axis at
+    /// the distance of the surface.
     across: [[f64; 2]; 2],
     /// The matrix from angles to the light's axis to angles on the surface, at a point of the
     /// surface.
@@ -33,8 +33,8 @@ impl<'a> Linear<'a> {
         let [[a, b], [c, d]] = [[m[0][0], m[0][1]], [m[1][0], m[1][1]]];
         let det = a * d - b * c;
         let across = [[d / det, -b / det], [-c / det, a / det]];
-        // At a fixed position across the axis, u also changes the position at the light, which
-        // moves back by u times the distance.
+        // At a fixed position on the surface, a change of the slope u changes the position at the
+        // light by −u times the distance.
         let slope =
             |row: usize, column: usize| m[row][2 + column] - chain.distance * m[row][column];
         Some(Self {
@@ -47,7 +47,8 @@ impl<'a> Linear<'a> {
         })
     }
 
-    /// Returns the point across the light's axis that represents a position (s, t).
+    /// Returns the point, in the plane perpendicular to the light's axis, that represents a
+    /// position (s, t) on the surface.
     fn point(&self, [s, t, ..]: [f64; 4]) -> DVec3 {
         let [offset_s, offset_t, ..] = self.chain.onto.offset;
         let (s, t) = (s - offset_s, t - offset_t);
@@ -55,9 +56,9 @@ impl<'a> Linear<'a> {
         DVec3::new(a * s + b * t, c * s + d * t, self.chain.distance)
     }
 
-    /// Returns the radiance that leaves along the ray at z of the plane due to a part of the light,
-    /// per unit of the part's measure: ℓ cos⁺ θ cos² φ ρ(θo − θr, φo − φr), where r is the mirror
-    /// direction about the normal (docs/theory.md (41)).
+    /// Returns the radiance along the ray with coordinates z at the plane that is due to a part of
+    /// the light, per unit of the part's measure: ℓ cos⁺ θ cos² φ ρ(θo − θr, φo − φr), where r is
+    /// the mirror direction about the normal (docs/theory.md (41)).
     pub(super) fn radiance(&self, masks: &Masks<'_>, z: [f64; 4], part: LightPart) -> f64 {
         let local = self.off.apply(z);
         let point = self.point(local);
@@ -66,12 +67,13 @@ impl<'a> Linear<'a> {
             return 0.0;
         }
         let [u, v] = slopes;
-        // The exact conversion from slopes to angles: dω = cos φ dθ dφ = du dv cos³, and tan φ = v
+        // Slopes are converted exactly to angles by dω = cos φ dθ dφ = du dv cos³ and tan φ = v
         // cos θ.
         let across = (1.0 + u * u).sqrt();
         let (longitude, latitude) = (libm::atan(u), libm::atan(v / across));
         let per_angle = 1.0 / ((1.0 + u * u + v * v) * across);
-        // These are the angles of the ray that runs along the axis through the position.
+        // These are the local angles of a ray that is parallel to the light's axis and hits the
+        // surface at this position.
         let [_, _, theta, phi] = self.chain.onto.apply([point.x, point.y, 0.0, 0.0]);
         let [[a, b], [c, d]] = self.angles;
         let (theta, phi) = (
@@ -91,10 +93,10 @@ impl<'a> Linear<'a> {
     }
 }
 
-/// Returns the BRDF that the chain uses, for light from and to a longitude and a latitude. It is
-/// that at the central ray, which arrives at the angle `incidence`, as a function of the angles
-/// from the mirror direction. Factors of the angles of incidence and departure are still functions
-/// of those angles.
+/// Returns the BRDF that the chain uses, for light that arrives from one pair of longitude and
+/// latitude and leaves towards another. The lobe is the BRDF's lobe for the central ray, which
+/// arrives at the angle `incidence`, as a function of the angles from the mirror direction. The
+/// factors f and h depend on the actual angles of incidence and departure.
 pub(crate) fn kernel(
     brdf: &Brdf,
     incidence: f64,
@@ -107,7 +109,7 @@ pub(crate) fn kernel(
     let reflected = || brdf.albedo * brdf::reflectance(brdf.fresnel, libm::cos(from_theta));
     let lobe = match brdf.lobe {
         Lobe::Lambertian => reflected() / PI,
-        // The cosine is that of the angle from the mirror direction, for every direction.
+        // A Phong lobe depends only on the cosine of the angle from the mirror direction.
         Lobe::Phong { exponent } => {
             let cos = (libm::cos(theta) * libm::cos(phi)).max(0.0);
             reflected() * (exponent + 1.0) / TAU * libm::pow(cos, exponent)
@@ -120,7 +122,7 @@ pub(crate) fn kernel(
     factors * lobe
 }
 
-/// Returns the direction at a longitude and a latitude, relative to the normal.
+/// Returns the unit direction with a longitude and a latitude relative to the normal.
 fn away(theta: f64, phi: f64) -> DVec3 {
     let ((sin, cos), (up, across)) = (libm::sincos(theta), libm::sincos(phi));
     DVec3::new(across * sin, up, across * cos)

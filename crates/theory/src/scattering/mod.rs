@@ -2,20 +2,20 @@
 //!
 //! The inputs are a [`ScatteringSystem`] and a [`Plane`](crate::rays::Plane). The system has a
 //! light, masks across its path, obstacles, and a curved surface with a BRDF that may vary over
-//! it. The plane is on the surface and records light that leaves it, or is across the path of that
-//! light. Together they are an [`Observed`](crate::Observed), a [`Model`](crate::Model) that sums
-//! rays of the plane over scrambled nets, and for each ray a part of the light that shines on its
-//! starting point,
+//! the surface. The plane is on the surface or perpendicular to the path of light that leaves the
+//! surface. Together they are an [`Observed`](crate::Observed), which is a
+//! [`Model`](crate::Model). The model sums rays of the plane over scrambled nets, and for each ray
+//! a part of the light that shines on the ray's starting point,
 //!
 //! L(p, ωo) = ∫ L(p, ωi) f(p, ωi, ωo) cos θi dωi.
 //!
-//! In addition there is the chain of first-order operators (Durand et al. 2005, section 4): affine
-//! maps onto the surface and off it, a product with the clamped cosine, and a convolution with the
-//! lobe of the BRDF at the central ray. The error of the chain, and the derivatives, are sums over
-//! the same rays.
+//! The function [`chain`](chain()) returns the chain of first-order operators (Durand et al. 2005,
+//! section 4). This chain consists of affine maps onto the surface and off the surface, a product
+//! with the clamped cosine, and a convolution with the lobe of the BRDF at the central ray. The
+//! error of the chain, and the derivatives, are sums over the same rays.
 //!
-//! This module shares no intersection, BRDF evaluation or sampling code with the tracers; only the
-//! variation of a BRDF over a surface is shared, in `etendue_field`.
+//! This module and the tracers share no code for intersection, BRDF evaluation or sampling. They
+//! share only the variation of a BRDF over a surface, in `etendue_field`.
 
 pub mod brdf;
 mod chain;
@@ -42,18 +42,18 @@ pub(crate) use predict::{predict, with_rays};
 use crate::obstacle::Obstacle;
 use etendue_field::{Light, Mask, Patch, Reflectance};
 
-/// A light and the surface its central ray meets, in the frame at the light.
+/// A light and the surface that its central ray meets, in the frame at the light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScatteringSystem {
     /// The light, which emits from the plane z = 0, along Z.
     pub light: Light,
     /// Masks between the light and the surface, with their distances from the light, metres.
     pub layers: Vec<(f64, Mask)>,
-    /// Other occluders, before and behind the surface.
+    /// Occluders other than the masks, on the paths before and after the surface.
     pub obstacles: Vec<Obstacle>,
     /// Name of the surface, for messages.
     pub name: String,
-    /// The surface; it faces along D of its frame, and is black on the other side.
+    /// The shape of the surface, which faces along D of its frame and is black on the other side.
     pub patch: Patch,
     /// The reflectance of the surface.
     pub reflectance: Reflectance,

@@ -49,7 +49,7 @@ impl Model for Observed<ScatteringSystem> {
         }
     }
 
-    /// For a sum of BRDFs, the albedo and the lobe are those of the first one.
+    /// For a sum of BRDFs, the parameters albedo and lobe are those of the first BRDF.
     fn change(&mut self, parameter: Parameter, new: New<'_>) -> Option<()> {
         let ScatteringSystem {
             light,
@@ -72,8 +72,9 @@ impl Model for Observed<ScatteringSystem> {
         Some(())
     }
 
-    /// Includes the difference of the first-order chain from the prediction. All light is
-    /// proportional to the albedo of a BRDF if no other BRDF is added.
+    /// Returns a prediction that includes the difference between the first-order chain and the
+    /// exact slices. If the reflectance is a single BRDF, all light is proportional to the albedo,
+    /// so the derivative with respect to the albedo is exact.
     fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: RayBudget) -> Predicted {
         let only = self.system.reflectance.only().map(|brdf| brdf.albedo);
         let factor = only.filter(|albedo| *albedo > 0.0);

@@ -5,15 +5,15 @@ use etendue_field::{Brdf, Complex, Fresnel, Lobe, Pattern, Reflectance, Weight};
 use std::f64::consts::TAU;
 
 /// Returns the spectrum at Ω = (Ωx, Ωy, Ωθ, Ωφ) of the light that leaves a surface, in the frames
-/// of its local normals. `before` is the spectrum of the differential irradiance, rotated about the
-/// normals. Each BRDF multiplies `before` by the transform of its lobe over (Ωθ, Ωφ); the product
-/// is convolved over (Ωx, Ωy) alone with the transform of the BRDF's weight (Durand et al. 2005,
-/// section 4.5, the "semi-convolution" in 4D).
+/// of its local normals. `before` is the spectrum of the differential irradiance, rotated about
+/// the normals. For each BRDF, `before` is multiplied by the transform of the BRDF's lobe over
+/// (Ωθ, Ωφ), and the product is convolved over (Ωx, Ωy) with the transform of the BRDF's weight
+/// (Durand et al. 2005, section 4.5, the "semi-convolution" in 4D).
 ///
-/// The result holds to first order, like the chain; it includes all angles, and any window over
-/// positions is in `before`. `axes` are X and Y of the surface's patch in the coordinates (x, y).
-/// Returns `None` if a lobe is not Phong's or has a factor of an angle of its own, or if a weight
-/// or a texture is not a cosine.
+/// The result holds to first order, like the chain. It includes light at all angles; a window over
+/// positions must be included in `before`. `axes` are the axes X and Y of the surface's patch in
+/// the coordinates (x, y). Returns `None` if a lobe is not Phong's or has a factor of an angle of
+/// its own, or if a weight or a texture is not a cosine.
 #[must_use]
 pub fn semi_convolution(
     reflectance: &Reflectance,
@@ -40,7 +40,7 @@ pub fn semi_convolution(
     Some(sum)
 }
 
-/// A wave A e^(2πi (f s + g t)) of a weight.
+/// A wave A e^(2πi (f s + g t)) in the Fourier series of a BRDF's weight over a surface.
 #[derive(Clone, Copy)]
 struct WeightWave {
     frequency: [f64; 2],
@@ -89,8 +89,8 @@ fn cosine_waves(pattern: &Pattern) -> Option<Vec<WeightWave>> {
     Some(vec![mean, side(1.0), side(-1.0)])
 }
 
-/// Returns the transform of albedo (n + 1)/2π (cos θ cos φ)ⁿ over both angles from the mirror
-/// direction.
+/// Returns the transform of the Phong lobe albedo (n + 1)/2π (cos θ cos φ)ⁿ over both angles from
+/// the mirror direction.
 fn lobe_hat(brdf: &Brdf, [theta, phi]: [f64; 2]) -> Option<Complex> {
     let is_plain =
         brdf.fresnel == Fresnel::White && brdf.incoming.is_none() && brdf.outgoing.is_none();

@@ -13,18 +13,20 @@ use crate::rays::{LegRay, Plane};
 use etendue_field::{EnvironmentMap, Light, SliceGrid, TwoPlane, Window};
 use glam::DVec3;
 
-/// Returns the windowed spectrum of the light that a surface scatters, with the derivatives with
+/// Returns the windowed spectrum of the light that a surface scatters, and its derivatives with
 /// respect to given parameters.
 ///
 /// Rays are sampled at the plane. For each ray, one or four parts of the light that shines on its
-/// starting point are sampled (docs/theory.md (40)). `chain` is that of [`chain`](super::chain());
-/// it guides the sampling. The result is bitwise identical on any number of threads.
+/// starting point are sampled (docs/theory.md (40)). `chain` is the chain returned by
+/// [`chain`](super::chain()), which guides the sampling. The result is bitwise identical on any
+/// number of threads.
 ///
-/// The chain's difference from the exact prediction, and the derivatives, are sums of differences
-/// in radiance of the same rays. They are accurate to about a per cent of their values. Parts of
-/// the light move with the light, so the edges of the light cause no edges in a difference. They
-/// do not move with the shadows of masks: points that are lit on only one side of a difference add
-/// noise, which is lower for a larger step.
+/// The difference between the chain and the exact prediction, and the derivatives, are sums over
+/// rays of differences between two radiances of the same ray. These sums are accurate to about a
+/// per cent of their values. Sampled parts of the light move with the light, so the edges of the
+/// light cause no edges in a difference. Sampled parts do not move with the shadows of masks, so
+/// points that are lit in only one of the two radiances add noise, which decreases with the step
+/// of the difference.
 pub(crate) fn predict(
     view: &Observed<ScatteringSystem>,
     chain: Option<&ScatteringChain>,
@@ -60,7 +62,7 @@ pub(crate) fn with_rays(
     ));
 }
 
-/// Returns the strategy that has the least error for the same time.
+/// Returns the strategy that has the smallest error for the same computing time.
 fn fastest(
     view: &Observed<ScatteringSystem>,
     chain: Option<&ScatteringChain>,
@@ -72,8 +74,8 @@ fn fastest(
     })
 }
 
-/// Returns the number of nodes that take as long as the whole budget would take in an environment
-/// of few lobes.
+/// Returns a reduced budget that takes as much time for this system as `budget` takes for an
+/// environment of few lobes.
 fn affordable(system: &ScatteringSystem, budget: RayBudget) -> RayBudget {
     RayBudget {
         nodes: budget.nodes / cost(system),
@@ -81,8 +83,8 @@ fn affordable(system: &ScatteringSystem, budget: RayBudget) -> RayBudget {
     }
 }
 
-/// Returns the prediction of a chain, which may differ from that of [`chain`](super::chain()): the
-/// exact field of the surface, and the difference between it and the chain.
+/// Returns the exact prediction together with the difference between a given chain and this
+/// prediction; the chain may differ from the result of [`chain`](super::chain()).
 #[must_use]
 pub fn beside(
     view: &Observed<ScatteringSystem>,
@@ -93,7 +95,7 @@ pub fn beside(
     predict(view, Some(chain), &[], over, budget)
 }
 
-/// Returns the time that a ray takes, relative to a ray in an environment of few lobes.
+/// Returns the computing time of a ray, relative to a ray in an environment of few lobes.
 fn cost(system: &ScatteringSystem) -> f64 {
     const FEW_LOBES: f64 = 16.0;
     match &system.light {
@@ -105,7 +107,8 @@ fn cost(system: &ScatteringSystem) -> f64 {
     }
 }
 
-/// Returns the strategy with the least cost, trying each choice once.
+/// Returns the strategy with the smallest cost in a greedy search that tries each of the choices
+/// once.
 fn best(system: &ScatteringSystem, cost: impl Fn(LightStrategy) -> f64) -> LightStrategy {
     let mut best = LightStrategy::default();
     let mut least = cost(best);
@@ -122,7 +125,7 @@ fn best(system: &ScatteringSystem, cost: impl Fn(LightStrategy) -> f64) -> Light
     best
 }
 
-/// The exact light field.
+/// The exact light field of a scattering surface, with the densities that sample it.
 struct ScatteredField<'a> {
     view: &'a Observed<ScatteringSystem>,
     window: &'a Window,
@@ -149,7 +152,8 @@ impl<'a> ScatteredField<'a> {
         }
     }
 
-    /// Returns a ray, the factor of its radiance, and the point where it leaves the surface.
+    /// Returns a ray at the plane, the factor that multiplies its radiance, and the point where
+    /// the ray leaves the surface.
     fn draw(&self, [a, b, c, d, ..]: &[f64; DIMENSIONS]) -> Option<([f64; 4], f64, Leaving)> {
         let (z, density) = self.rays.draw([*a, *b, *c, *d]);
         let [x, y, u, v] = z;
@@ -167,7 +171,7 @@ impl<'a> ScatteredField<'a> {
     }
 }
 
-/// Returns the contribution of a ray divided by its sampling density; 0/0 counts as 0.
+/// Returns a ray's radiance divided by its sampling density, where 0/0 counts as 0.
 fn over(radiance: f64, density: f64) -> f64 {
     if radiance == 0.0 {
         0.0
@@ -192,15 +196,16 @@ fn radiance(
         0.0
     };
     if plane.orientation.is_local() {
-        // On the surface itself the integral is over the surface's area, which is larger than that
-        // of the tangent plane.
+        // For a plane on the surface itself, the integral is over the surface's area, which is
+        // larger than the area on the tangent plane.
         radiance / leaving.normal.dot(plane.frame.d).abs()
     } else {
         radiance
     }
 }
 
-/// Returns the share of a ray that passes obstacles between the surface and the plane.
+/// Returns the fraction of a ray's radiance that passes obstacles between the surface and the
+/// plane.
 fn past_obstacles(plane: &Plane, masks: &Masks<'_>, leaving: &Leaving) -> f64 {
     let ray = LegRay {
         point: leaving.point,
@@ -228,12 +233,13 @@ impl Integrand for ScatteredField<'_> {
     }
 }
 
-/// A part of the light, if there is one, and the density with which it was sampled.
+/// A sampled part of the light and the density with which it was sampled, or `None` if no part was
+/// sampled.
 type DrawnPart = Option<(LightPart, f64)>;
 
 /// A light field with a parameter changed.
 ///
-/// If the change does not affect a ray or the light, the values are taken from the original light
+/// If the change does not affect rays or the light, their values are taken from the original light
 /// field.
 struct VariedField<'a> {
     view: &'a Observed<ScatteringSystem>,
@@ -261,8 +267,9 @@ impl<'a> VariedField<'a> {
         }
     }
 
-    /// Returns the radiance of a ray divided by the density with which a part of the light was
-    /// sampled. `own` has the values of the original light field.
+    /// Returns the radiance of a ray due to a part of the light, divided by the density with which
+    /// this part was sampled. `own` contains the ray's starting point and part of the light in the
+    /// original light field.
     fn radiance(&self, z: [f64; 4], at: [f64; 2], own: &(Leaving, DrawnPart)) -> Option<f64> {
         let Observed { system, plane } = self.view;
         let (mut leaving, mut drawn) = *own;
@@ -278,7 +285,7 @@ impl<'a> VariedField<'a> {
     }
 }
 
-/// Variants of a light field: to first order, and with parameters changed.
+/// Variants of a light field: the first-order chain's field, and fields with a parameter changed.
 struct VariedFields<'a> {
     field: &'a ScatteredField<'a>,
     linear: Option<Linear<'a>>,
@@ -330,7 +337,7 @@ impl Integrand for VariedFields<'_> {
         if let Some(linear) = linear {
             put(own.1.map_or(0.0, |(part, density)| {
                 let exact = field.radiance(&leaving, part);
-                // The chain is exact across a straight leg.
+                // The chain treats obstacles between the surface and the plane exactly.
                 let passes = past_obstacles(&field.view.plane, &field.masks, &leaving);
                 let first_order = passes * linear.radiance(&field.masks, z, part);
                 over(first_order - exact, density)

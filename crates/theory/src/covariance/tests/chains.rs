@@ -31,7 +31,7 @@ fn lamp() -> Light {
 /// The variances S of the light in these tests, along x, y, u and v.
 const LAMP: [f64; 4] = [0.01, 0.01, 1.0 / 30.0, 1.0 / 30.0];
 
-/// Returns the standard deviations of the Gaussian window that replaces an opening of this
+/// Returns the standard deviations of the Gaussian window that replaces an opening of the given
 /// half-width.
 fn open(half: f64) -> [f64; 4] {
     let endless = f64::INFINITY;
@@ -85,7 +85,8 @@ fn a_receiver_leaves_the_irradiance_even_over_slopes() {
     assert_eq!([c[2], c[3]], [[0.0; 4]; 2]);
 }
 
-/// A surface 1 m away, met at 0.4 rad, with principal axes turned about its normal.
+/// Builds a surface 1 m from the light that the central ray meets at 0.4 rad, with principal axes
+/// turned about the surface's normal.
 fn patch() -> Patch {
     let leg = Frame::IDENTITY.travelled(1.0);
     let (sin, cos) = libm::sincos(0.4);
@@ -97,7 +98,7 @@ fn patch() -> Patch {
     }
 }
 
-/// Returns a plane across the mirrored central ray, 0.7 m after the surface.
+/// Returns a plane perpendicular to the mirrored central ray, 0.7 m behind the surface.
 fn beyond() -> Plane {
     let leg = Frame::IDENTITY.travelled(1.0);
     let normal = patch().frame.d;
@@ -173,7 +174,8 @@ fn behind_a_textured_lobe() {
     let expected = windowed(&chain.off.covariance(&left));
     let plain = of(&view(None));
     assert!(apart(&plain, &expected) < 1e-10); // rounding; maps are of differences, alike in both
-    // The lines of the grating add their variance along the patch's own axis.
+    // The spectral lines of the grating add their variance along the axis of the patch along which
+    // the grating varies.
     let textured = of(&view(Some(Pattern::Cosine(lines))));
     let mut along = [[0.0; 4]; 4];
     let axis = [chain.frame.x, chain.frame.y].map(|t| t.dot(patch().frame.x));

@@ -18,7 +18,8 @@ fn moment(f: impl Fn(f64) -> f64, half: f64) -> f64 {
     slopes / (4.0 * PI * PI * squares)
 }
 
-/// The midpoint rule on 2·10⁵ cells errs by less than 10⁻⁸ on these functions.
+/// Asserts equality up to the error of the midpoint rule on 2·10⁵ cells, which is below 10⁻⁸ for
+/// the tested functions.
 fn is(got: f64, expected: f64) {
     assert!((got / expected - 1.0).abs() < 1e-7, "{got} {expected}");
 }
@@ -41,8 +42,8 @@ fn cosines_have_the_moment_of_their_power() {
     let quarter = 0.5 * PI;
     is(cosine()[2][2], moment(libm::cos, quarter));
     is(cosine()[3][3], moment(|t| libm::cos(t).powi(2), quarter));
-    // The moment of G over both slopes, by rings: ∫ (∂G/∂u)² is half of the integral of the squared
-    // radial slope.
+    // The moment of G is computed as an integral over rings: ∫ (∂G/∂u)² is half of the integral of
+    // the squared radial derivative.
     let ring = |r: f64| (1.0 + r * r).powi(-2);
     let [mut slopes, mut squares] = [0.0; 2];
     for i in 0..400_000 {
@@ -62,8 +63,8 @@ fn lobes_have_the_moment_of_their_power() {
     let phong = lobe(&Lobe::Phong { exponent: 400.0 }, 0.3).unwrap();
     let traced = variance(moment(|t| libm::pow(libm::cos(t), 400.0), 1.0));
     assert!((phong[2][2] / traced - 1.0).abs() < 2.0 / 400.0);
-    // Distributions of normals are given over slopes and integrated over rings; light turns by
-    // twice the tilt of a normal.
+    // Distributions of normals are functions of slopes and are integrated over rings; a normal
+    // that is tilted by an angle turns light by twice this angle.
     let of_rings = |f: &dyn Fn(f64) -> f64| {
         let [mut slopes, mut squares] = [0.0; 2];
         let step = 1e-5;
@@ -86,7 +87,7 @@ fn lobes_have_the_moment_of_their_power() {
         ggx[2][2],
         of_rings(&|r| (1.0 + r * r / (4.0 * a * a)).powi(-2)),
     );
-    // Out of the plane of incidence, light turns by a smaller angle.
+    // Perpendicular to the plane of incidence, a tilted normal turns light by a smaller angle.
     let oblique = lobe(&Lobe::Beckmann { roughness: a }, 1.0).unwrap();
     is(oblique[3][3] / oblique[2][2], libm::cos(1.0_f64).powi(2));
     assert!(lobe(&Lobe::Lambertian, 0.0).is_none());
@@ -123,11 +124,12 @@ fn blockers_are_openings_about_the_central_ray() {
         })
     };
     let of = |half: f64| 3.0 / (8.0 * PI * PI * half * half);
-    // The first shape begins at 0.4 along x; the second at (0.2, 0.3), which is nearer.
+    // The nearest point of the first shape is at 0.4 along x, and the nearest point of the second
+    // is at (0.2, 0.3), which is nearer to the central ray.
     let beside = opaque(vec![wall(-0.5, 0.1), wall(0.3, 0.5)], vec![]).unwrap();
     is(beside[0][0], of(0.13_f64.sqrt()));
     is(beside[1][1], of(0.13_f64.sqrt()));
-    // A half-plane narrows the opening along its own axis alone.
+    // A half-plane narrows the opening only along the half-plane's axis.
     let half = HalfPlane {
         axis: 1,
         edge: -0.3,
@@ -143,7 +145,7 @@ fn blockers_are_openings_about_the_central_ray() {
         radius: 0.2,
     });
     is(opaque(vec![disc], vec![]).unwrap()[0][0], of(0.3));
-    // The first mask is on the central ray, and the second has an edge on it.
+    // The first mask blocks the central ray, and the second mask has an edge on the central ray.
     assert!(opaque(vec![wall(0.0, 0.1)], vec![]).is_none());
     assert!(opaque(vec![wall(0.1, 0.0)], vec![]).is_none());
 }

@@ -9,7 +9,8 @@ use std::f64::consts::PI;
 const LIGHT: [f64; 4] = [0.02, 0.03, 0.05, 0.04];
 const WINDOW: [f64; 4] = [0.2, 0.3, 0.25, 0.15];
 
-/// Returns the covariance of a Gaussian window of these standard deviations.
+/// Returns the spectral covariance of a Gaussian window with the standard deviations of these
+/// tests.
 fn window() -> Matrix<4> {
     diagonal(WINDOW.map(|s: f64| 1.0 / (8.0 * PI * PI * s * s)))
 }
@@ -18,8 +19,8 @@ fn lobe() -> Matrix<4> {
     diagonal([0.0, 0.0, 0.01, 0.006])
 }
 
-/// Returns C of a Gaussian light field, computed from its S, which is mapped, windowed and
-/// blurred.
+/// Returns C of a Gaussian light field, computed by mapping, windowing and blurring the field's
+/// covariance S.
 fn followed() -> Matrix<4> {
     let travelled = AffineMap::<4>::travel(1.3).covariance(&diagonal(LIGHT));
     let blocked = gaussian_window(
@@ -91,12 +92,13 @@ fn the_definition_gives_what_is_traced() {
         .multiplied(&window())
         .matrix()
         .unwrap();
-    // The finite differences err by half² over the width squared, 1e-8/0.01; the sum errs by far
-    // less.
+    // The relative error of the finite differences is half² divided by the width squared,
+    // 1e-8/0.01; the error of the sum is much smaller.
     for (got, expected) in [(c[0][0], xx), (c[0][2], xu), (c[2][2], uu)] {
         assert!((got / expected - 1.0).abs() < 3e-6, "{got} {expected}");
     }
-    // Travel by d moves content at ρ to ν = −d ρ, so their covariance is negative.
+    // Travel over d moves spectral power at ρ to ν = −d ρ, so the covariance of ρ and ν is
+    // negative.
     assert!(c[0][2] < 0.0);
 }
 
@@ -109,7 +111,8 @@ fn light_without_end_is_what_its_window_is() {
     assert!(apart(&seen.matrix().unwrap(), &window()) < 1e-14); // rounding
 }
 
-/// Light from a point has an unbounded spectrum, however it is windowed, until a lobe blurs it.
+/// Tests that the spectrum of light from a point is unbounded under any window, and bounded after
+/// a convolution with a lobe.
 #[test]
 fn light_of_a_point_is_finite_behind_a_lobe() {
     let variance = [0.0, 0.0, 0.05, 0.04];
@@ -127,8 +130,8 @@ fn a_lobe_without_width_changes_nothing() {
     assert_eq!(still, traced());
 }
 
-/// Diffuse reflection is the widest lobe: the variance of the irradiance stays, and slopes become
-/// uniform.
+/// Tests that diffuse reflection is the limit of wide lobes: the variance of the irradiance does
+/// not change, and light becomes uniform in slope.
 #[test]
 fn diffuse_reflection_is_the_limit_of_lobes() {
     let wide = diagonal([0.0, 0.0, 1e7, 2e7]);
@@ -140,8 +143,8 @@ fn diffuse_reflection_is_the_limit_of_lobes() {
         .zip(limit.iter().flatten())
         .enumerate()
     {
-        // A lobe of variance 10⁷ leaves an error of 1/(8π² 10⁷) along angles, and of its square
-        // root elsewhere.
+        // Compared with diffuse reflection, a lobe of variance 10⁷ has an error of 1/(8π² 10⁷)
+        // along angles, and an error of the square root of this number in the other entries.
         assert!((got - near).abs() < 1e-4, "{i}: {got} {near}");
     }
     assert_eq!(diffuse[2..], [[0.0; 4]; 2]);

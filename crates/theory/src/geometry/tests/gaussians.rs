@@ -62,7 +62,7 @@ fn spectrum_of_a_map_is_the_transform_of_the_mapped_field() {
         rows.sum::<Complex>() * (0.04 * 0.04)
     };
     let before = |omega| transform(&field, omega);
-    // The printed equations give a different function.
+    // The map of the printed equations gives a spectrum that differs detectably.
     let printed = Edition::Equations.incidence(0.5);
     let printed = printed.then(&AffineMap::<2>::curvature(0.8).spectrum_map());
     for omega in [[0.0, 0.0], [1.0, -0.7], [-0.5, 1.0]] {
@@ -91,7 +91,7 @@ fn covariance_of_sampled_rays() {
     let (got, expected) = (map.covariance(&covariance(&rays)), covariance(&after));
     let off = |a: &Matrix<4>, b: &Matrix<4>| apart(&AffineMap::linear(*a), &AffineMap::linear(*b));
     assert!(off(&got, &expected) < 1e-14); // rounding of sums of 200 numbers below one
-    // The spectrum's covariance moves with its content.
+    // The covariance of the power spectrum transforms by `spectral_covariance` of the map.
     let power = power_spectrum(&got).unwrap();
     let moved = power_spectrum(&covariance(&rays)).unwrap();
     let moved = map.spectral_covariance(&moved).unwrap();
@@ -102,8 +102,8 @@ fn covariance_of_sampled_rays() {
 fn windows_and_lobes() {
     let wide = gaussian_window(&FIELD, [f64::INFINITY; 4]).unwrap();
     assert!(apart(&AffineMap::linear(wide), &AffineMap::linear(FIELD)) < 1e-16); // rounding
-    // The covariance of light from a point is singular; after a window it is not. On x = D u, 1/σ²
-    // is the sum 1/σu² + D²/σx².
+    // The covariance of light from a point is singular, also after a window, but the windowed
+    // variance along x = D u is finite: 1/σ² = 1/σu² + D²/σx².
     let point = [[4.0, 2.0], [2.0, 1.0]];
     let seen = gaussian_window(&point, [0.5, 0.3]).unwrap();
     let along: f64 = 1.0 / (1.0 + 4.0 / 0.25 + 1.0 / 0.09);

@@ -5,7 +5,7 @@ use crate::numerics::quadrature::integrate;
 use etendue_field::Complex;
 use std::f64::consts::{PI, TAU};
 
-/// The accuracy that the documentation states.
+/// The accuracy of the kernel that its documentation states.
 const STATED: f64 = 1e-13;
 
 #[test]
@@ -46,7 +46,7 @@ fn symmetry_and_zero() {
         } else {
             2.0 * libm::sin(0.5 * PI * b) / b
         };
-        // The kernel is tested at zero and next to it, where its kink behaves as a ln a.
+        // The kernel is tested at zero and near zero, where its kink behaves as a ln a.
         assert!((plane_sphere_kernel(0.0, theta) - expected).abs() < STATED);
         assert!((plane_sphere_kernel(1e-15, theta) - expected).abs() < 1e-11);
     }
@@ -69,8 +69,9 @@ fn laguerre_polynomials_at_even_orders() {
     }
 }
 
-/// Evaluates the definition on a path moved up to a height where the integrand oscillates slowly.
-/// On the vertical parts at both ends, tan(±π/2 + it) = i coth t.
+/// Evaluates the kernel's integral along a path that is displaced into the complex plane, where
+/// the integrand oscillates slowly. On the vertical sections at both ends of the path, tan(±π/2 +
+/// it) = i coth t.
 fn by_definition(v: f64, theta: f64) -> f64 {
     let (a, b) = (TAU * v, TAU * theta);
     let height = 0.4;
@@ -90,7 +91,8 @@ fn the_integral_it_stands_for() {
             2.0 * super::scatter(i, 1),
         );
         let off = (plane_sphere_kernel(v, theta) - by_definition(v, theta)).abs();
-        // Terms up to e^(0.4 · 12.6) = 150 cancel on the moved path.
+        // On the displaced path, terms up to e^(0.4 · 12.6) = 150 cancel, which amplifies rounding
+        // errors.
         assert!(off < 1e-12, "({v}, {theta}): {off:e}");
     }
 }
@@ -121,7 +123,7 @@ fn spectrum_of_a_gaussian_in_slope_seen_in_angle() {
             "{theta}: {}",
             through - direct
         );
-        // Treating slopes as angles gives a different result.
+        // If slopes are treated as angles, the result differs detectably.
         let slopes = w * libm::exp(-PI * w * w * theta * theta);
         assert!((slopes - direct).abs() > 1e-3);
     }

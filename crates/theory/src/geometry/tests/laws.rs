@@ -1,4 +1,4 @@
-//! Tests of laws that hold for any parameters.
+//! Tests of optical laws that the maps must obey for all parameters.
 
 use super::*;
 
@@ -148,14 +148,15 @@ fn specular_steps_keep_etendue() {
     let flat = AffineMap::<2>::refracting_surface(0.7, 0.4, &GLASS).unwrap();
     assert!(flat.symplectic_defect(ratio) < ROUNDING);
     assert!((flat.det() - ratio).abs() < ROUNDING);
-    // A surface is not perpendicular to the light, so the map onto it has a defect. A shear by M
-    // without the cosine is not a physical map.
+    // An oblique surface is not perpendicular to the light, so the map onto the surface has a
+    // symplectic defect. A shear by M without the cosine also has a defect, because it is not a
+    // physical map.
     assert!(AffineMap::<4>::incidence(0.7).symplectic_defect(1.0) > 0.3);
     let nan = AffineMap::<2>::travel(f64::NAN);
     assert!(nan.symplectic_defect(1.0).is_nan());
 }
 
-/// Turns the frame round, (X, Y, D) to (−X, Y, −D), as for light that returns along its path.
+/// Returns the map from the frame (X, Y, D) to (−X, Y, −D), for light that returns along its path.
 fn turn_round() -> AffineMap<4> {
     AffineMap::<4>::linear([
         [-1.0, 0.0, 0.0, 0.0],
@@ -174,7 +175,7 @@ fn paths_are_reversible() {
         .then(&AffineMap::<4>::refracting_surface(theta1, SHAPE, &GLASS).unwrap())
         .then(&AffineMap::thin_lens(0.7));
     let [[m11, m12], [m21, m22]] = SHAPE;
-    // Seen from behind, concave becomes convex, and T is reversed but B is not.
+    // Seen from the other side, a concave surface is convex, T is reversed, and B is not reversed.
     let behind = [[-m11, m12], [m21, -m22]];
     let back = |behind| {
         AffineMap::<4>::thin_lens(0.7)

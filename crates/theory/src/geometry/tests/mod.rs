@@ -1,4 +1,5 @@
-//! Tests of the maps: general laws, traced rays, and the effect of the paper's misprints.
+//! Tests of affine maps against general laws and traced rays, and tests of the effect of the
+//! misprints in Durand et al. 2005.
 
 mod gaussians;
 mod kernel;
@@ -10,7 +11,7 @@ mod trace;
 
 use super::{AffineMap, Matrix, Media};
 
-/// An asymmetric saddle.
+/// The shape operator of an asymmetric saddle.
 const SHAPE: Matrix<2> = [[0.6, 0.25], [0.25, -0.3]];
 const GLASS: Media = Media {
     before: 1.0,
@@ -24,8 +25,8 @@ fn apart<const N: usize>(a: &AffineMap<N>, b: &AffineMap<N>) -> f64 {
     offsets.chain(entries).fold(0.0, f64::max)
 }
 
-/// Returns numbers spread uniformly over (−1, 1), and jointly over the coordinates: multiples of
-/// roots of primes.
+/// Returns quasi-random numbers that are uniform over (−1, 1) for each coordinate and jointly
+/// uniform over coordinates, as multiples of square roots of primes.
 fn scatter(index: usize, coordinate: usize) -> f64 {
     let prime: f64 = [2.0, 3.0, 5.0, 7.0][coordinate];
     2.0 * ((index as f64 + 1.0) * prime.sqrt()).fract() - 1.0

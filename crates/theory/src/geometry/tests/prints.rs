@@ -1,5 +1,5 @@
-//! Tests of the paper's misprints, one by one: none matches traced rays, though some cancel each
-//! other.
+//! Tests that each misprint of Durand et al. 2005 disagrees with traced rays, although some
+//! misprints cancel each other.
 
 use super::rays::{circle, error_and_order};
 use super::trace::{GraphSurface, reflected};
@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 const THETA0: f64 = 0.6;
 const K: f64 = 0.5;
 
-/// Inserts the 2π that is missing in print.
+/// Multiplies the phase by the factor 2π that the printed formulas omit.
 fn with_two_pi(mut step: SpectrumMap<2>) -> SpectrumMap<2> {
     step.phase = step.phase.map(|t| TAU * t);
     step
@@ -78,8 +78,8 @@ fn no_misprint_follows_the_rays() {
             "{what}: {error:e}, {order}"
         );
     }
-    // The two phases of a mirror cancel; a single wrong angle gives an error that does not shrink
-    // with the neighbourhood.
+    // The two phases of a mirror reflection cancel, but a single wrong phase causes an error that
+    // does not decrease with the size of the neighbourhood.
     let alone = mirror(&phase[0], Corrected, &right[1]);
     let (error, order) = error_and_order(&alone.rays(), traced);
     assert!(error > 100.0 && order < -0.9, "phase: {error:e}, {order}");

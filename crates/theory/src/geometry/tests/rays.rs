@@ -5,11 +5,11 @@ use super::trace::{GraphSurface, LightAxes, reflected, refracted};
 use super::*;
 use crate::geometry::plane_sphere::{to_angles, to_slopes};
 
-/// Half the size of the largest neighbourhood.
+/// Half the size of the largest tested neighbourhood.
 const SIZE: f64 = 1e-3;
 
-/// Returns the largest error of a map over rays in a neighbourhood of size e, relative to e; and
-/// the power of e with which this error falls.
+/// Returns the largest error of a map over rays in a neighbourhood of size e, divided by e, and
+/// the power of e with which the error falls.
 pub(super) fn error_and_order<const N: usize>(
     map: &AffineMap<N>,
     traced: impl Fn([f64; N]) -> [f64; N],
@@ -25,8 +25,8 @@ pub(super) fn error_and_order<const N: usize>(
     (narrow, libm::log2(wide / narrow))
 }
 
-/// The tolerance of an order: the next term of the error is smaller by a factor e and changes the
-/// order by about e.
+/// Tolerance of a measured order of convergence; the next term of the error is smaller by a factor
+/// e and changes the order by about e.
 const ORDER: f64 = 0.02;
 
 fn assert_order<const N: usize>(
@@ -149,7 +149,8 @@ fn foci_of_a_hollow_sphere() {
         let got = -map[axis][axis] / map[axis + 2][axis];
         assert!((got - expected).abs() < 1e-14, "{got}"); // rounding
     }
-    // Without the cosine of the sagittal plane, the second distance would be R/2 = 1.
+    // If the cosine were omitted in the sagittal plane, the second focal distance would be R/2 =
+    // 1.
     assert!((expected[1] - 1.307_459).abs() < 1e-6); // the number in print has six digits
 }
 
@@ -166,7 +167,7 @@ fn axes_turned_about_the_light() {
 
 #[test]
 fn axes_turned_about_a_normal() {
-    // (θ, φ) turn as a vector in the plane, which is correct only near the normal.
+    // The map rotates (θ, φ) like a vector in the plane, which is correct only near the normal.
     let axes = LightAxes::leaving(0.0);
     let turned = |z| to_angles(axes.turned(0.8).coordinates(axes.ray(to_slopes(z))));
     assert_order(&AffineMap::<4>::rotation(0.8), turned, 2.0);

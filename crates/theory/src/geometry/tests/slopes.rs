@@ -1,4 +1,4 @@
-//! Tests of slopes and angles.
+//! Tests of the conversion between slopes and angles.
 
 use super::*;
 use crate::geometry::plane_sphere::{

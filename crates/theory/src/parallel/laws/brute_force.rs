@@ -1,10 +1,10 @@
-//! A reference for tests: chains traced by hand, and transforms by many rays.
+//! A reference for tests: transforms of chains by sums over many quasi-random rays.
 
 use crate::{Chain, Operator};
 use etendue_field::{Complex, Light, Mask, Shape, TwoPlane, Window};
 use std::f64::consts::TAU;
 
-/// A chain traced back from its end by hand, with its distances, masks and factors G.
+/// A chain as seen from its end: distances and masks upstream, and the number of factors G.
 struct WalkedRay<'a> {
     distance: f64,
     masks: Vec<(f64, &'a Mask)>,
@@ -29,7 +29,7 @@ impl<'a> WalkedRay<'a> {
         walk
     }
 
-    /// Returns the share of the light that passes along a ray.
+    /// Returns the fraction of the light along a ray that passes all masks.
     fn passes(&self, ray: &TwoPlane) -> f64 {
         let shading = ray.secant_squared().powi(-2 * self.cosines);
         let masks = self.masks.iter().map(|(distance, mask)| {
@@ -60,7 +60,7 @@ pub(super) fn brute_force(
             radiance,
             exponent,
         } => (shape.area(), *exponent, *radiance),
-        // The distance of the point is D √(1 + u² + v²).
+        // The distance from the point light to (x, y) is D √(1 + u² + v²).
         Light::Point { intensity } => (1.0, -1.0, *intensity),
         other => panic!("no brute force for {other:?}"),
     };
@@ -82,7 +82,7 @@ pub(super) fn brute_force(
     sums.iter().map(|sum| sum * scale).collect()
 }
 
-/// Returns the point of the light for two numbers in the unit interval, uniform in area.
+/// Maps two numbers of the unit interval to a point of the light, uniformly in area.
 fn start(light: &Light, c: f64, d: f64) -> [f64; 2] {
     match light {
         Light::Area {

@@ -1,4 +1,5 @@
-//! Tests of every kind of light, mask and factor against brute force, and of planted faults.
+//! Tests of every kind of light, mask and factor against sums over quasi-random rays, and tests
+//! that deliberately wrong formulas are detected.
 
 use super::{FREQUENCIES, brute_force, hann, zero};
 use crate::parallel::disc_resolution::DiscResolution;
@@ -16,7 +17,7 @@ fn light() -> Light {
     lambertian(square([0.05, -0.02], 0.3))
 }
 
-/// Builds a chain of a light, a mask 1 m away, and a plane 0.8 m after it.
+/// Builds a chain of a light, a mask 1 m from the light, and a plane 0.8 m behind the mask.
 fn bench(light: Light, mask: Option<Mask>) -> Chain {
     chain_of(light, [(1.0, mask), (0.8, None)])
 }
@@ -26,8 +27,8 @@ fn with_cosine(mut chain: Chain) -> Chain {
     chain
 }
 
-/// Returns the largest difference from quasi-random rays, relative to the light that arrives at
-/// zero frequency without masks.
+/// Returns the largest difference between `value` and the sum over quasi-random rays, divided by
+/// the chain's spectrum at zero frequency without masks.
 fn error(chain: &Chain, value: impl Fn([f64; 4]) -> Complex) -> f64 {
     let truth = brute_force(chain, &hann(), &FREQUENCIES, RAYS);
     let pairs = FREQUENCIES.iter().zip(truth);
@@ -40,7 +41,8 @@ fn error(chain: &Chain, value: impl Fn([f64; 4]) -> Complex) -> f64 {
 
 fn assert_agrees(name: &str, chain: &Chain) {
     let error = error(chain, |k| at(chain, &hann(), k));
-    // The error of quasi-random points at edges is below 1/√200000 = 2.2e-3.
+    // For shapes with edges, the error of a sum over 200000 quasi-random points is below 1/√200000
+    // = 2.2e-3.
     assert!(error < 1e-3, "{name}: {error:e}");
 }
 
@@ -97,7 +99,7 @@ fn differential_irradiance_agrees_with_brute_force() {
     assert_agrees("cosine below a point", &with_cosine(bench(POINT, None)));
 }
 
-/// A lobe cos⁴θ equals the factor G.
+/// Tests that a spot with the lobe cos⁴θ has the same spectrum as a chain with the factor G.
 #[test]
 fn a_spot_of_exponent_four_is_a_cosine() {
     let shape = Shape::Rectangle(square([0.0, 0.1], 0.4));
@@ -108,7 +110,8 @@ fn a_spot_of_exponent_four_is_a_cosine() {
     }
 }
 
-/// Evaluates the chain with another power of 1 + u² + v² than its own.
+/// Evaluates the chain's spectrum with the given power of 1 + u² + v² instead of the chain's own
+/// power.
 fn at_power(chain: &Chain, window: &Window, power: f64, k: [f64; 4]) -> Complex {
     let path = chain.path();
     let slope = Slope::new([&window.u, &window.v], power);
@@ -117,12 +120,12 @@ fn at_power(chain: &Chain, window: &Window, power: f64, k: [f64; 4]) -> Complex 
     expansion.at(k)
 }
 
-/// Asserts that a fault of a given size is detected against the reference.
+/// Asserts that the wrong formula `fault` differs detectably from the sum over quasi-random rays.
 fn assert_seen(name: &str, chain: &Chain, fault: impl Fn([f64; 4]) -> Complex) {
     let right = error(chain, |k| at(chain, &hann(), k));
     let wrong = error(chain, fault);
-    // The integrand is smooth, so quasi-random points are more accurate here than at the edges of
-    // masks.
+    // The integrand is smooth, so the sum over quasi-random points is more accurate than for masks
+    // with edges.
     assert!(right < 5e-4, "{name}: {right:e}");
     assert!(wrong > 5e-3, "{name}: {wrong:e}"); // ten times that
 }
@@ -151,7 +154,7 @@ fn planted_faults_are_seen() {
     });
 }
 
-/// Returns a Gaussian window, truncated where it is 2e-16.
+/// Returns a Gaussian window that is truncated where its value is 2e-16.
 fn gaussian_window(a: f64, b: f64) -> Window {
     let profile = |width| Profile::Gaussian {
         width,
@@ -170,7 +173,7 @@ fn discs_and_points_agree_with_closed_forms() {
     let round = chain_of(spot(disc([0.0; 2], radius), 0.0), [(distance, None)]);
     let point = chain_of(Light::Point { intensity: 1.0 }, [(distance, None)]);
     let closed_disc = |k| disc_light(radius, distance, &gaussian, k);
-    // A closed form that is constant in slope: it lacks the factor √(1 + u² + v²).
+    // A closed form without the factor √(1 + u² + v²), so its radiance is constant in slope.
     let closed_point = |[x, y, u, v]: [f64; 4]| {
         let along = |k| point_light(distance, &gaussian, k);
         along([x, u]) * along([y, v])
@@ -184,8 +187,8 @@ fn discs_and_points_agree_with_closed_forms() {
     }
 }
 
-/// Without the factor √(1 + u² + v²), a point 2 m away is 2 % too dark under Gaussians of widths 1
-/// and ½.
+/// Tests that without the factor √(1 + u² + v²) the spectrum of a point light at 2 m is 2 % too
+/// low under Gaussian windows of widths 1 and ½.
 #[test]
 fn the_root_of_a_point_is_two_per_cent() {
     let window = gaussian_window(1.0, 0.5);

@@ -1,4 +1,5 @@
-//! Tests of half-planes and gratings: the phases of spectra and the frequencies of their content.
+//! Tests of half-planes and gratings: the phases of spectra and the frequencies at which spectra
+//! are non-zero.
 
 use super::{FREQUENCIES, hann, zero};
 use crate::testing::*;
@@ -9,7 +10,8 @@ fn open() -> Chain {
     chain(0.2, &[(2.0, vec![])])
 }
 
-/// The scene of Durand et al. 2005, Fig. 7: one half-plane, then another that blocks the rest.
+/// Tests the scene of Durand et al. 2005, Fig. 7: a half-plane, and a second half-plane that
+/// blocks all light that passes the first.
 #[test]
 fn two_half_planes_let_nothing_through_together() {
     let [a, b] = [true, false].map(|above| half_plane(0, 0.013, above));
@@ -26,8 +28,8 @@ fn two_half_planes_let_nothing_through_together() {
         assert!((sum - value(&open())).norm() < 1e-14 * zero(&open())); // rounding
         assert!(value(&both).norm() < 1e-12 * zero(&open())); // rounding of four products
     }
-    // Moduli of spectra do not add up as the spectra do; on the line of the shear their sum is far
-    // off.
+    // The spectra of the two half-planes add up, but their moduli do not: on the line of the
+    // shear, the sum of moduli differs strongly from the modulus of the sum.
     let k = [2.0, 0.0, -3.4, 0.0];
     let value = |chain: &Chain| at(chain, &hann(), k).norm();
     let blind = value(&alone[0]) + value(&alone[1]) - value(&open());
@@ -45,7 +47,8 @@ fn two_half_planes_in_one_mask_leave_a_slit() {
         shapes: vec![],
         half_planes: half_planes.to_vec(),
     };
-    // Blockers that are large enough give the same result as half-planes.
+    // Rectangular blockers that are much larger than the window give the same result as
+    // half-planes.
     let blocks = rectangles(&[-50.1, 50.15].map(|y| square([0.0, y], 100.0)));
     let behind = |mask| {
         chain_of(
@@ -77,16 +80,18 @@ fn a_grating_is_three_copies() {
         };
         let sum = copy(0.0) * 0.5 + (copy(1.0) + copy(-1.0)) * (0.25 * modulation);
         let difference = sum - at(&seen, &hann(), [x, y, u, v]);
-        // Discs are split differently for different frequencies.
+        // Discs are split into different numbers of rectangles for different frequencies, which
+        // limits the agreement.
         assert!(difference.norm() < 1e-9 * zero(&open));
     }
 }
 
-/// Content appears at (0, f Δh), outside the wedge between the lines of the two depths, where
-/// neither grating alone has any.
+/// Tests that the spectrum behind two gratings is non-zero at (0, f Δh), outside the wedge between
+/// the lines of the two depths, where the spectrum behind either grating alone is zero.
 #[test]
 fn two_gratings_leave_the_wedge() {
-    // The frequency is at a zero of the transform of the window, whose half-widths are 0.5 and 0.3.
+    // The tested frequency is at a zero of the transform of the window, whose half-widths are 0.5
+    // and 0.3.
     let (f, between) = (5.0, 1.0);
     let mask = || Some(grating(0, f, 0.0));
     let wide = || lambertian(square([0.0, 0.0], 8.0));
@@ -94,8 +99,8 @@ fn two_gratings_leave_the_wedge() {
     let k = [0.0, 0.0, f * between, 0.0];
     let value = |chain: &Chain| at(chain, &hann(), k).norm() / zero(chain);
     let both = value(&seen(mask(), mask()));
-    // The ratio is (m/4)² to (½)²: the component at the difference of the two frequencies to the
-    // component at zero. Half of the tolerance is for the edge of the window.
+    // The component at the difference of the two gratings' frequencies divided by the component at
+    // zero is (m/4)² / (½)². Half of the tolerance is for the edge of the window.
     assert!(
         (both / (0.9_f64.powi(2) / 4.0) - 1.0).abs() < 0.05,
         "{both}"
@@ -128,13 +133,13 @@ fn travels_add_up_with_gratings_and_points() {
         ];
         for k in FREQUENCIES {
             let difference = at(&whole, &hann(), k) - at(&parts, &hann(), k);
-            // The polygons are the same and the distances are exact.
+            // Both chains have the same polygons, and their distances are exact in binary.
             assert!(difference.norm() < 1e-15 * zero(&whole));
         }
     }
 }
 
-/// A grating of phase p displaced by x₀ equals one of phase p − 2π f x₀.
+/// Tests that a grating of phase p displaced by x₀ equals a grating of phase p − 2π f x₀.
 #[test]
 fn a_phase_is_a_place() {
     let behind = |phase, x: f64| {
@@ -150,7 +155,7 @@ fn a_phase_is_a_place() {
         let value = |chain: &Chain| at(chain, &hann(), k);
         let scale = zero(&chain(0.3, &[(1.0, vec![])]));
         assert!((value(&full_turn) - value(&none)).norm() < 1e-14 * scale); // rounding of the phase
-        // The two gratings add up to a neutral filter.
+        // The transmissions of two gratings of opposite phase add up to 1.
         let sum = value(&half_turn) + value(&none);
         let open = value(&chain(0.3, &[(1.0, vec![])]));
         assert!((sum - open).norm() < 1e-14 * scale); // rounding

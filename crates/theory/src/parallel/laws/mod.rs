@@ -1,4 +1,4 @@
-//! Tests of laws that every prediction obeys, and tests against brute force where there is no law.
+//! Tests of laws that every prediction obeys, and tests against sums over quasi-random rays.
 
 mod brute_force;
 mod kinds;
@@ -24,7 +24,7 @@ fn hann() -> Window {
     window(Profile::Hann(0.5), Profile::Hann(0.3))
 }
 
-/// Returns the value at zero frequency.
+/// Returns the spectrum of a chain at zero frequency.
 fn zero(chain: &Chain) -> f64 {
     at(chain, &hann(), [0.0; 4]).re
 }
@@ -42,10 +42,11 @@ fn two_layers_agree_with_brute_force() {
     ];
     for (k, truth) in FREQUENCIES.iter().zip(truth) {
         let value = |chain: &Chain| at(chain, &hann(), *k);
-        // The error of quasi-random points at edges is somewhat below 1/√400000 = 1.6e-3.
+        // For masks with edges, the error of the sum over 400000 quasi-random points is somewhat
+        // below 1/√400000 = 1.6e-3.
         assert!((value(&both) - truth).norm() < 1e-3 * zero(&open));
     }
-    // Ignoring the rays that both layers block makes a visible difference.
+    // If the rays that both layers block were counted twice, the result would differ detectably.
     let single = alone.iter().map(zero).sum::<f64>() - zero(&open);
     assert!((single - zero(&both)).abs() > 1e-2 * zero(&open)); // ten times the tolerance above
 }
@@ -81,13 +82,13 @@ fn nothing_passes_closed_blockers() {
     }
 }
 
-/// The scene of Durand et al. 2005, Fig. 7, with an overlap that both half-planes block.
+/// Tests the scene of Durand et al. 2005, Fig. 7, with two half-planes that overlap.
 #[test]
 fn two_halves_in_one_plane_block_everything() {
     let half = |side: f64| vec![square([side * 0.95, 0.0], 2.0)];
     let one = chain(0.2, &[(1.0, half(1.0)), (1.0, vec![])]);
     let both = chain(0.2, &[(1.0, half(1.0)), (0.0, half(-1.0)), (1.0, vec![])]);
-    // A single half-plane lets some light pass.
+    // A single half-plane transmits part of the light.
     assert!(zero(&one) > 0.01 * zero(&chain(0.2, &[(2.0, vec![])])));
     for k in FREQUENCIES {
         assert!(at(&both, &hann(), k).norm() < 1e-13 * zero(&one)); // rounding of four products
@@ -123,7 +124,7 @@ fn light_that_misses_the_window_is_dark() {
     assert_eq!(slices(&aside, &hann(), &grid), Slices::zeros(grid));
 }
 
-/// The test of shears can fail: light that travels backwards gives a large error.
+/// Tests that a shear with the wrong sign, for light that travels backward, causes a large error.
 #[test]
 fn a_wrong_sign_of_the_shear_shows() {
     let right = chain(0.2, &[(1.0, blockers(2, 0.2, 0.1)), (1.0, vec![])]);
@@ -133,7 +134,8 @@ fn a_wrong_sign_of_the_shear_shows() {
             *distance = -*distance;
         }
     }
-    // The frequency is on the line Ωu = −2 Ωx, onto which the shear of 2 m moves the light.
+    // The tested frequency is on the line Ωu = −2 Ωx, onto which travel over 2 m shears the
+    // light's spectrum.
     let k = [1.0, 0.0, -2.0, 0.0];
     let difference = at(&right, &hann(), k) - at(&wrong, &hann(), k);
     assert!(difference.norm() > 0.3 * zero(&right)); // a third of everything

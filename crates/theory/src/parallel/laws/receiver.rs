@@ -1,4 +1,4 @@
-//! Tests of diffuse reflection against the polygons.
+//! Tests of diffuse reflection against transforms of polygons.
 
 use crate::testing::*;
 use crate::{Chain, Operator, at};
@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 const ALBEDO: f64 = 0.6;
 
-/// Builds a chain onto a floor 1.8 m away, with its cosine.
+/// Builds a chain from a light to a floor 1.8 m from the light, with the floor's cosine operator.
 fn onto_floor(light: Light, mask: Option<Mask>) -> Chain {
     let mut chain = chain_of(light, [(1.0, mask), (0.8, None)]);
     chain.operators.push(cosine());
@@ -26,8 +26,9 @@ fn with_slopes(half: f64, profile: fn(f64) -> Profile) -> Window {
     window(Profile::Hann(0.5), profile(half))
 }
 
-/// The light that leaves the floor is albedo/π times the integral of the incident light over all
-/// slopes, mirrored in x, times the slope window. So the same numbers are computed in two ways.
+/// Tests that the radiance that leaves the floor is albedo/π times the integral of the incident
+/// light over all slopes, mirrored in x. The spectrum is computed both from this integral and by
+/// the receiver.
 #[test]
 fn exitant_radiance_is_what_arrives() {
     let light = lambertian(square([0.05, -0.02], 0.3));
@@ -49,14 +50,15 @@ fn exitant_radiance_is_what_arrives() {
             .chain(none)
         {
             let hann = |k: f64| {
-                // The transform of cos²(πt/2h), a known pair: h sinc(2hk)/(1 − (2hk)²).
+                // The Fourier transform of cos²(πt/2h) is h sinc(2hk)/(1 − (2hk)²).
                 let s = 0.6 * k;
                 0.3 * crate::numerics::sinc::sinc(s) / (1.0 - s * s)
             };
             let expected =
                 at(&arriving, &all, [-x, y, 0.0, 0.0]) * (ALBEDO / PI * hann(u) * hann(v));
             let error = (at(&leaving, &seen, [x, y, u, v]) - expected).norm() / largest;
-            // The receiver's rule is of second order and has about 400 nodes; this is its error.
+            // The tolerance is the error of the receiver's rule, which is of second order and has
+            // about 400 nodes.
             assert!(error < 1e-5, "{error:e}");
         }
     }

@@ -1,36 +1,39 @@
-//! The integrand over the slopes that arrive at a point: (1 + u² + v²)^(−p) times gratings.
+//! The integrand of irradiance over the slopes of light that arrives at a point: (1 + u² +
+//! v²)^(−p) times the gratings.
 
 use crate::barrier::Bounds;
 use crate::numerics::quadrature::gauss_legendre;
 use etendue_field::Grating;
 use std::f64::consts::TAU;
 
-/// −ln of the relative error of a rule, which is 10⁻¹².
+/// Negative logarithm −ln ε of the relative error ε = 10⁻¹² of a Gauss rule.
 const NATS: f64 = 28.0;
-/// The most nodes a rule has; longer intervals are cut into panels.
+/// Maximum number of nodes of a Gauss rule; intervals that need more nodes are divided into
+/// panels.
 const MAX_NODES: usize = 48;
-/// Nodes on an arc, in addition to those that its length requires, because the direction of the arc
-/// turns.
+/// Number of nodes on an arc in addition to the nodes that the arc's length requires, because the
+/// direction of the arc changes.
 const ARC: usize = 10;
-/// Number of levels of panels with precomputed numbers of nodes; each level halves the panel.
+/// Number of panel lengths for which numbers of nodes are precomputed; each length is half the
+/// previous one.
 const LEVELS: usize = 24;
-/// Steps to evaluate a closed form.
+/// Estimated number of computing steps to evaluate a closed form.
 const CLOSED: f64 = 100.0;
-/// The most nodes for which a rectangle is integrated numerically: in the closed form the terms of
-/// so small a rectangle cancel.
+/// Rectangles that need at most this number of nodes are integrated numerically, because the terms
+/// of the closed form nearly cancel for small rectangles.
 const FEW_NODES: usize = 16;
 
 /// The lobe (1 + u² + v²)^(−p), where u and v are slopes.
 #[derive(Clone, Copy, Debug)]
 enum SlopePower {
-    /// p = 0.
+    /// The constant lobe, p = 0.
     Flat,
     /// p = 2: the factor G of docs/theory.md (7), which is the cosine of a Lambertian receiver
     /// times dω/(du dv).
     Cosine,
-    /// p = n/2.
+    /// The lobe with p = n/2 for an integer n.
     Half(i32),
-    /// Any p.
+    /// The lobe with an arbitrary real p.
     Power(f64),
 }
 
@@ -48,7 +51,7 @@ impl SlopePower {
         }
     }
 
-    /// Returns the value at a slope with 1 + u² + v² = `secant_squared`.
+    /// Returns the lobe's value at slopes with 1 + u² + v² = `secant_squared`.
     fn value(&self, secant_squared: f64) -> f64 {
         match *self {
             Self::Flat => 1.0,
@@ -59,7 +62,7 @@ impl SlopePower {
     }
 }
 
-/// The numbers of nodes that intervals of slope need, by their length.
+/// The numbers of nodes that intervals of slope require, as a function of the interval's length.
 #[derive(Debug)]
 struct NodeCounts {
     /// Length of the longest panel; a panel of level k is 2^k times shorter.
@@ -80,7 +83,8 @@ impl NodeCounts {
         }
     }
 
-    /// Returns the number of panels, and of nodes in each, for an interval of that length.
+    /// Returns the number of panels for an interval of the given length, and the number of nodes
+    /// in each panel.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -99,10 +103,11 @@ impl NodeCounts {
 /// Returns the number of nodes that integrate (1 + u² + v²)^(−p) e^(2πifu) over an interval of u to
 /// the error e^(−[`NATS`]).
 ///
-/// The error of the rule is ρ^(−2n) times the largest value on an ellipse around the interval,
-/// where the ellipse extends by b in the imaginary direction and ln ρ = arsinh(2b/length)
-/// (Trefethen 2013, *Approximation Theory and Approximation Practice*, Theorem 19.3). b < 1 avoids
-/// the poles, and the best of several b is taken.
+/// The error of the rule with n nodes is ρ^(−2n) times the largest value of the integrand on an
+/// ellipse around the interval, where the ellipse extends by b in the imaginary direction and ln ρ
+/// = arsinh(2b/length) (Trefethen 2013, *Approximation Theory and Approximation Practice*, Theorem
+/// 19.3). The ellipse contains no pole if b < 1, and the smallest result for several values of b
+/// is used.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -119,11 +124,12 @@ fn nodes(power: f64, frequency: f64, length: f64) -> usize {
     counts.fold(f64::INFINITY, f64::min).ceil() as usize
 }
 
-/// The lobe, and rules that integrate it with the gratings in front of it.
+/// The lobe, with Gauss rules that integrate the product of the lobe and the gratings in front of
+/// the receiver.
 #[derive(Debug)]
 pub(crate) struct Integrator {
     lobe: SlopePower,
-    /// Node counts for u and for v.
+    /// Numbers of nodes for intervals of u and of v.
     counts: [NodeCounts; 2],
     /// Gauss rules on (−1, 1), by their number of nodes.
     rules: Vec<Vec<(f64, f64)>>,
@@ -141,22 +147,24 @@ impl Integrator {
     }
 }
 
-/// The lobe times the gratings as seen from one point.
+/// The lobe times the gratings, as a function of slopes at one point of the receiver.
 #[derive(Debug)]
 pub(crate) struct ReceiverDensity<'a> {
     pub(crate) integrator: &'a Integrator,
-    /// Gratings as functions of the slope: frequencies in cycles per slope, phases at this point.
+    /// Gratings as functions of the slope, with frequencies in cycles per unit slope and phases at
+    /// this point of the receiver.
     pub(crate) gratings: Vec<Grating>,
 }
 
 impl ReceiverDensity<'_> {
-    /// Returns the value at one slope.
+    /// Returns the value of the integrand at the slopes (u, v).
     pub(crate) fn value(&self, u: f64, v: f64) -> f64 {
         let gratings = self.gratings.iter().map(|g| g.transmittance(u, v));
         self.integrator.lobe.value(1.0 + u * u + v * v) * gratings.product::<f64>()
     }
 
-    /// Returns the integral over a rectangle; reversing an interval changes the sign.
+    /// Returns the integral over a rectangle of slopes; if the bounds of an interval are in
+    /// descending order, the integral changes sign.
     pub(crate) fn rectangle(&self, sides: Bounds) -> f64 {
         let [u, v] = sides;
         if self.gratings.is_empty() {
@@ -174,7 +182,7 @@ impl ReceiverDensity<'_> {
         columns.sum()
     }
 
-    /// Returns ∫ du from `from` to `to` at v.
+    /// Returns the integral over u from `from` to `to` at a fixed v.
     pub(crate) fn along_u(&self, [from, to]: [f64; 2], v: f64) -> f64 {
         if self.gratings.is_empty() {
             match self.integrator.lobe {
@@ -189,15 +197,15 @@ impl ReceiverDensity<'_> {
         along * across.map(|g| g.transmittance(0.0, v)).product::<f64>()
     }
 
-    /// Returns the number of parts, and the rule on (−1, 1) of each, for an arc of that length and
-    /// at most a quarter turn.
+    /// Returns the number of parts into which an arc of the given length and of at most a quarter
+    /// turn is divided, and the Gauss rule on (−1, 1) for each part.
     pub(crate) fn arc(&self, length: f64) -> (usize, &[(f64, f64)]) {
         let [u, v] = self.integrator.counts.each_ref().map(|c| c.of(length));
         let [panels, nodes] = [0, 1].map(|k| u[k].max(v[k]));
         (panels, &self.integrator.rules[nodes + ARC])
     }
 
-    /// Returns the number of steps of [`Self::rectangle`].
+    /// Estimates the number of computing steps of [`Self::rectangle`].
     pub(crate) fn steps(&self, sides: Bounds) -> f64 {
         let [u, v] = self.along(sides);
         let few = u * v <= FEW_NODES as f64;
@@ -208,7 +216,8 @@ impl ReceiverDensity<'_> {
         }
     }
 
-    /// Returns the number of steps of [`Self::along_u`] over a length.
+    /// Estimates the number of computing steps of [`Self::along_u`] over an interval of the given
+    /// length.
     pub(crate) fn steps_along_u(&self, length: f64) -> f64 {
         match self.integrator.lobe {
             SlopePower::Flat | SlopePower::Cosine if self.gratings.is_empty() => CLOSED,
@@ -216,7 +225,7 @@ impl ReceiverDensity<'_> {
         }
     }
 
-    /// Returns the number of steps to evaluate the lobe at a node.
+    /// Estimates the number of computing steps to evaluate the lobe at a node.
     fn step(&self) -> f64 {
         match self.integrator.lobe {
             SlopePower::Flat | SlopePower::Cosine => 3.0,
@@ -225,7 +234,7 @@ impl ReceiverDensity<'_> {
         }
     }
 
-    /// Returns the number of nodes along each side of a rectangle.
+    /// Returns the number of nodes along each side of a rectangle of slopes.
     fn along(&self, sides: Bounds) -> [f64; 2] {
         [0, 1].map(|axis| {
             let [low, high] = sides[axis];
@@ -234,7 +243,7 @@ impl ReceiverDensity<'_> {
         })
     }
 
-    /// Returns the number of nodes of a rectangle.
+    /// Returns the total number of nodes of a rectangle of slopes.
     fn size(&self, sides: Bounds) -> usize {
         let along = [0, 1].map(|axis| {
             let [low, high] = sides[axis];
@@ -243,7 +252,8 @@ impl ReceiverDensity<'_> {
         along.as_flattened().iter().product()
     }
 
-    /// Returns slopes along an axis with their weights, which include the gratings of this axis.
+    /// Returns the nodes of an interval of slopes along an axis; the nodes' weights include the
+    /// gratings along this axis.
     fn nodes(&self, axis: usize, [low, high]: [f64; 2]) -> impl Iterator<Item = (f64, f64)> {
         let [panels, nodes] = self.integrator.counts[axis].of(high - low);
         let rule = &self.integrator.rules[nodes];
@@ -291,7 +301,7 @@ mod tests {
         }
     }
 
-    /// Computes the same integral by many panels of many nodes.
+    /// Computes the integral over a rectangle by many panels of many nodes each, as a reference.
     fn brute(density: &ReceiverDensity<'_>, [u, v]: Bounds) -> f64 {
         let cut = |[low, high]: [f64; 2], i: u32| {
             let step = (high - low) / 20.0;
@@ -344,7 +354,7 @@ mod tests {
             };
             for sides in [[[-0.2, 0.25], [-0.1, 0.3]], [[0.3, 0.8], [0.2, 0.21]]] {
                 let error = density.rectangle(sides) / brute(&density, sides) - 1.0;
-                // This is the accuracy stated at NATS.
+                // The tolerance is three times the relative error that `NATS` stands for.
                 assert!(error.abs() < 3e-12, "{frequency} {sides:?} {error:e}");
             }
         }

@@ -1,4 +1,4 @@
-//! The light that leaves a receiver, as slices and projections.
+//! Slices and projections of the light that leaves a receiver.
 
 use super::Receiver;
 use super::kernel::{KernelAxis, Kernels};
@@ -8,39 +8,42 @@ use ndarray::{Array1, Array2};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// The fewest and the most nodes along an axis of the receiver.
+/// Minimum and maximum number of nodes along an axis of the receiver.
 const NODES: [f64; 2] = [96.0, 1024.0];
-/// The fewest nodes of a plain sum, which is the reference for other sums.
+/// Minimum number of nodes along an axis for a plain sum at one frequency, which is the reference
+/// for faster sums.
 const OF_PLAIN_SUMS: usize = 384;
-/// Number of nodes for each cycle across the receiver: two, and two more for the incident light.
+/// Number of nodes for each cycle across the receiver: two for the frequency of the spectrum, and
+/// two more for the frequencies of the incident light.
 const PER_CYCLE: f64 = 4.0;
 /// Number of nodes across the narrowest penumbra or period on the receiver.
 const ACROSS: f64 = 8.0;
-/// The fewest nodes across a feature that counts as resolved.
+/// Minimum number of nodes across a feature that is considered resolved.
 const MIN_NODES: f64 = 4.0;
-/// The order of the error in the spacing of the nodes: irradiance has kinks where penumbras begin
-/// and end.
+/// The order of the quadrature error in the spacing of the nodes; it is two, because irradiance
+/// has kinks where penumbras begin and end.
 const ORDER: i32 = 2;
-/// The fewest sample positions in a cell of a projection along each axis.
+/// Minimum number of sample positions in a cell of a projection along each axis.
 const PLACES: usize = 4;
 
-/// Radiance that leaves the receiver, times the area of a node. Reflection turns the frame round:
-/// x' = −x, y' = y, since D' = −D and X' = −X.
+/// A table of the radiance that leaves the receiver at its nodes, times the area of a node. The
+/// reflected light has the frame D' = −D and X' = −X, so x' = −x and y' = y.
 pub(super) struct ExitantTable {
     axes: [KernelAxis; 2],
-    /// x' and y' of the nodes: the centres of equal cells.
+    /// The coordinates x' and y' of the nodes, which are the centres of equal cells.
     coordinates: [Vec<f64>; 2],
-    /// [x', y'].
+    /// Radiance times the area of a node, as [x', y'].
     values: Array2<f64>,
 }
 
 impl Receiver<'_> {
-    /// Returns the slices of the spectrum of the reflected light, after its travel, under a window.
+    /// Returns the slices of the spectrum of the reflected light under a window, after the light
+    /// has travelled to the plane of the window.
     ///
     /// The sum over the receiver is a midpoint rule of second order, whose error
     /// [`quadrature_error`](Self::quadrature_error) returns; the integral over slopes is exact.
-    /// Rows are computed in parallel, each by one thread: the result is the same for any number of
-    /// threads. Unit: W m⁻² sr⁻¹ · m².
+    /// Rows are computed in parallel, but each row by a single thread, so the result is the same
+    /// for any number of threads. Unit: W m⁻² sr⁻¹ · m².
     pub(crate) fn slices(&self, window: &Window, grid: &SliceGrid) -> Slices {
         self.slices_with(self.nodes(window, grid.rho.max()), window, grid)
     }
@@ -64,9 +67,9 @@ impl Receiver<'_> {
         self.table(window, self.nodes(window, 0.0)).projection(grid)
     }
 
-    /// Returns the relative L2 error of slices: their change with half as many nodes along each
-    /// axis, divided by 2² − 1, because the error is of second order in the spacing. Returns
-    /// `None` if the slices are zero.
+    /// Returns the relative L2 error of slices: the difference between the slices and slices from
+    /// half as many nodes along each axis, divided by 2² − 1, because the error is of second order
+    /// in the spacing. Returns `None` if the slices are zero.
     pub(crate) fn quadrature_error(
         &self,
         window: &Window,
@@ -81,8 +84,9 @@ impl Receiver<'_> {
         error.is_finite().then_some(error)
     }
 
-    /// Returns the number of nodes along each axis: enough for the narrowest penumbra or period,
-    /// and for the highest frequency. The number is even, so that it can be halved.
+    /// Returns the number of nodes along each axis that resolves the narrowest penumbra or period
+    /// and the highest frequency. The number is even, so that the error can be estimated with half
+    /// as many nodes.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -101,13 +105,14 @@ impl Receiver<'_> {
         x.max(y)
     }
 
-    /// Checks whether the nodes resolve the pattern of light on the receiver: finer patterns would
-    /// be aliased, and the error estimate from coarser nodes would be unreliable.
+    /// Checks whether the maximum number of nodes resolves the pattern of light on the receiver.
+    /// If it does not, the pattern is aliased, and the error estimate from coarser nodes is
+    /// unreliable.
     pub(crate) fn is_resolved(&self, window: &Window) -> bool {
         let cell = self.side(window) / NODES[1];
         self.barriers.iter().all(|barrier| {
             let beyond = self.distance - barrier.distance;
-            // Magnification from a mask's plane onto the receiver, for a point of the light.
+            // Magnification of a mask's shadow on the receiver, for light from a single point.
             let grown = self.distance / beyond;
             let is_told = |length: f64| length * grown > MIN_NODES * cell;
             let penumbra = self.width() * barrier.distance / beyond;
@@ -120,7 +125,7 @@ impl Receiver<'_> {
         })
     }
 
-    /// Returns the width of the light.
+    /// Returns the smallest width of the light.
     fn width(&self) -> f64 {
         match self.light.shape {
             Some(Shape::Rectangle(r)) => r.size[0].min(r.size[1]),
@@ -129,8 +134,8 @@ impl Receiver<'_> {
         }
     }
 
-    /// Returns the shortest length over which the irradiance changes: a penumbra, or the period of
-    /// a grating.
+    /// Returns the shortest length over which the irradiance changes: the narrowest penumbra, or
+    /// the shortest period of a grating's shadow.
     fn finest(&self) -> f64 {
         let width = self.width();
         let lengths = self.barriers.iter().map(|barrier| {
@@ -143,8 +148,8 @@ impl Receiver<'_> {
         lengths.fold(self.distance, f64::min)
     }
 
-    /// Returns the radiance on `nodes` × `nodes` nodes over the part of the receiver seen through a
-    /// window.
+    /// Returns the radiance at `nodes` × `nodes` nodes over the part of the receiver that is seen
+    /// through a window.
     pub(super) fn table(&self, window: &Window, nodes: usize) -> ExitantTable {
         let axes = axes(window, self.after);
         let size = axes.map(|axis| 2.0 * axis.reach() / nodes as f64);
@@ -203,7 +208,7 @@ impl ExitantTable {
         slices
     }
 
-    /// Returns the value at one frequency (Ωx, Ωy, Ωu, Ωv), node by node.
+    /// Returns the spectrum at one frequency (Ωx, Ωy, Ωu, Ωv), as a plain sum over nodes.
     pub(super) fn at(&self, [x, y, u, v]: [f64; 4]) -> Complex {
         let kernel = |k: usize, frequency| {
             let (axis, coordinates) = (&self.axes[k], &self.coordinates[k]);
@@ -214,8 +219,8 @@ impl ExitantTable {
         values.map(|((i, j), e)| along_x[i] * along_y[j] * e).sum()
     }
 
-    /// Returns a row without travel: radiance does not depend on the slope, and the spectrum is a
-    /// product.
+    /// Returns a row of the spectrum if light does not travel after the reflection: radiance does
+    /// not depend on the slope, so the spectrum is a product.
     fn at_receiver(&self, frequencies: &[FrequencyRow; 2]) -> Vec<Complex> {
         let wave = |k: usize| -> Vec<Complex> {
             let (window, frequency) = (self.axes[k].position, frequencies[k].position);
@@ -235,7 +240,7 @@ impl ExitantTable {
             .collect()
     }
 
-    /// Returns a row after travel: Σ K(x') E(x', y') K(y').
+    /// Returns a row of the spectrum after travel, as the sum Σ K(x') E(x', y') K(y') over nodes.
     fn travelled(&self, frequencies: &[FrequencyRow; 2]) -> Vec<Complex> {
         let kernels = |k: usize| self.axes[k].along(&self.coordinates[k], &frequencies[k]);
         let [x, y]: [Kernels; 2] = [kernels(0), kernels(1)];
@@ -278,13 +283,13 @@ impl ExitantTable {
         }
     }
 
-    /// Returns the radiance integrated over y and v, for each x'.
+    /// Returns the windowed radiance integrated over y and v, for each x' of the nodes.
     fn across(&self) -> Vec<f64> {
         let axis = &self.axes[1];
         let kernel = axis.at(&self.coordinates[1], [0.0; 2]).into_iter();
         let kernel: Array1<f64> = kernel.map(|k| k.re).collect();
-        // The values of the table include the area of a node; along x they are divided by the
-        // spacing, because a value per length is needed.
+        // The values of the table include the area of a node; they are divided by the spacing
+        // along x to obtain values per length along x.
         let spacing = 2.0 * self.axes[0].reach() / self.coordinates[0].len() as f64;
         (self.values.dot(&kernel) / spacing).to_vec()
     }
@@ -299,8 +304,8 @@ fn places(nodes: f64) -> usize {
     nodes.ceil() as usize
 }
 
-/// Interpolates linearly between the two values next to a position, given in units of their spacing
-/// from the middle.
+/// Interpolates linearly between the two values next to a position; the position is relative to
+/// the middle of the values, in units of their spacing.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

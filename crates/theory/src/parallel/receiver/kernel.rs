@@ -1,5 +1,5 @@
-//! The contribution of light from one coordinate of the receiver to the spectrum of a window
-//! farther on.
+//! The kernel K(t): the contribution of light that leaves the receiver at coordinate t to the
+//! spectrum under a window beyond the receiver.
 
 use crate::numerics::quadrature::gauss_legendre;
 use crate::parallel::row::{ComplexRow, FrequencyRow, add_scaled};
@@ -15,7 +15,7 @@ pub(crate) struct KernelAxis {
     pub(crate) after: f64,
 }
 
-/// Real and imaginary parts of kernels, [frequency, node].
+/// Real and imaginary parts of kernels, as [frequency, node].
 #[derive(Debug)]
 pub(crate) struct Kernels {
     pub(crate) re: Array2<f64>,
@@ -23,7 +23,7 @@ pub(crate) struct Kernels {
 }
 
 impl KernelAxis {
-    /// Returns the farthest coordinate of the receiver that is seen through the window.
+    /// Returns the largest absolute coordinate of the receiver that is seen through the window.
     pub(crate) fn reach(&self) -> f64 {
         self.position.half_width() + self.after * self.slope.half_width()
     }
@@ -37,7 +37,7 @@ impl KernelAxis {
         coordinates.iter().map(kernel).collect()
     }
 
-    /// Returns K at some coordinates for all ν of a row.
+    /// Returns K at some coordinates for all slope frequencies ν of a row.
     pub(crate) fn along(&self, coordinates: &[f64], row: &FrequencyRow) -> Kernels {
         let rule = self.rule([row.position, row.step * row.half as f64]);
         let mut re = Array2::zeros((row.count(), coordinates.len()));
@@ -61,8 +61,8 @@ impl KernelAxis {
         sum
     }
 
-    /// Returns the spectrum of the profile in slopes, from its cosines; this is the factor of K if
-    /// there is no travel.
+    /// Returns the spectrum of the window's slope profile, from the profile's cosine terms;
+    /// without travel this spectrum is the slope factor of K.
     pub(crate) fn slope_spectrum(&self, nu: f64) -> f64 {
         let half = self.slope.half_width();
         let wave = |frequency: f64| crate::numerics::sinc::sinc(2.0 * half * frequency);
@@ -72,8 +72,8 @@ impl KernelAxis {
             .sum()
     }
 
-    /// Returns the range of slopes with which light from the coordinate t of the receiver is
-    /// inside the window; empty if there are none.
+    /// Returns the range of slopes for which light from the coordinate t of the receiver is inside
+    /// the window; the range is empty if no such light is inside.
     fn slopes(&self, t: f64) -> [f64; 2] {
         let (h, k) = (self.position.half_width(), self.slope.half_width());
         if self.after <= 0.0 {
@@ -84,7 +84,8 @@ impl KernelAxis {
         [low, high.min(k).max(low)]
     }
 
-    /// Returns rays from t through the window: weight, position and slope of each node.
+    /// Returns rays from coordinate t of the receiver through the window, one for each node of the
+    /// rule: weight, position and slope.
     fn rays(&self, t: f64, rule: &[(f64, f64)]) -> impl Iterator<Item = (f64, f64, f64)> {
         let [low, high] = self.slopes(t);
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
@@ -106,15 +107,15 @@ impl KernelAxis {
         gauss_legendre(self.nodes(frequency) as usize)
     }
 
-    /// Returns the number of nodes of the rule for a frequency: the number that the waves require,
-    /// and some more for an accuracy of 10⁻¹⁴.
+    /// Returns the number of nodes of the rule for a frequency: the number required by the
+    /// oscillations of the integrand, plus a constant for an accuracy of 10⁻¹⁴.
     pub(super) fn nodes(&self, frequency: [f64; 2]) -> f64 {
         let waves = 2.0 * self.slope.half_width() * self.fastest(frequency);
-        // Gauss rules begin to converge at one node per half radian, π/2 per wave.
+        // Gauss rules begin to converge at π/2 nodes per oscillation of the integrand.
         (16.0 + 1.7 * waves).ceil()
     }
 
-    /// Returns the highest frequency along u of the exponential and of the window.
+    /// Returns the highest frequency along u of the product of the exponential and the window.
     fn fastest(&self, [omega, nu]: [f64; 2]) -> f64 {
         let fastest = |profile: &Profile| {
             let terms = profile.cosine_terms();

@@ -1,11 +1,12 @@
 //! Diffuse reflection by quadrature: the irradiance of a Lambertian receiver, and the light that
 //! leaves it.
 //!
-//! The light, the masks and the receiver are in parallel planes across the central ray. A ray that
-//! arrives at (x, y) with slopes (u, v) was at (x − h u, y − h v) a distance h before. So from the
-//! point, every shape upstream is seen as the same shape, but smaller. The irradiance E(x, y) = ∫
-//! L(u, v) (1 + u² + v²)⁻² du dv is a signed sum of integrals over rectangles and discs: the light
-//! and the blockers as seen from the point (docs/theory.md, section 4b).
+//! The light, the masks and the receiver are in parallel planes perpendicular to the central ray.
+//! A ray that arrives at (x, y) with slopes (u, v) was at (x − h u, y − h v) at the distance h
+//! before the receiver. So as a function of slopes at (x, y), every shape upstream is a scaled
+//! copy of the shape. The irradiance E(x, y) = ∫ L(u, v) (1 + u² + v²)⁻² du dv is a signed sum of
+//! integrals over rectangles and discs: the light and the blockers as seen from the point
+//! (docs/theory.md, section 4b).
 
 mod density;
 mod exitant;
@@ -23,8 +24,8 @@ use etendue_field::{Disc, Grating, Rectangle, Shape};
 use region::ReceiverRegion;
 use std::f64::consts::{PI, TAU};
 
-/// A Lambertian receiver, the light and masks before it, and the distance that light travels after
-/// it.
+/// A Lambertian receiver, with the light and masks in front of it and the distance that reflected
+/// light travels to the plane where it is observed.
 #[derive(Debug)]
 pub(crate) struct Receiver<'a> {
     light: ParallelEmitter,
@@ -38,13 +39,13 @@ pub(crate) struct Receiver<'a> {
     albedo: f64,
 }
 
-/// The relation between slopes and positions upstream: position = origin + b · slope at a distance
-/// h before the receiver.
+/// The relation between slopes at the receiver and positions at a distance h before the receiver:
+/// position = origin + b · slope.
 #[derive(Clone, Copy, Debug)]
 enum SlopeProjection {
-    /// Rays that arrive at a point of the receiver: b = −h.
+    /// Rays that arrive at the given point of the receiver: b = −h.
     At([f64; 2]),
-    /// Rays that left a point light at this distance: b = distance − h.
+    /// Rays that left a point light at the given distance before the receiver: b = distance − h.
     From(f64),
 }
 
@@ -56,7 +57,8 @@ impl SlopeProjection {
         }
     }
 
-    /// Returns the change of position per slope.
+    /// Returns b, the change of position per unit slope, in the plane at the distance `before` the
+    /// receiver.
     fn scale(&self, before: f64) -> f64 {
         match *self {
             Self::At(_) => -before,
@@ -64,7 +66,7 @@ impl SlopeProjection {
         }
     }
 
-    /// Converts bounds in a plane to slopes.
+    /// Converts bounds of positions in the plane at the distance `before` to bounds of slopes.
     fn slopes(&self, sides: Bounds, before: f64) -> Bounds {
         let (origin, scale) = (self.origin(), self.scale(before));
         [0, 1].map(|k| {
@@ -73,7 +75,7 @@ impl SlopeProjection {
         })
     }
 
-    /// Converts bounds in slopes to positions in a plane.
+    /// Converts bounds of slopes to bounds of positions in the plane at the distance `before`.
     fn positions(&self, sides: Bounds, before: f64) -> Bounds {
         let (origin, scale) = (self.origin(), self.scale(before));
         [0, 1].map(|k| {
@@ -113,8 +115,8 @@ impl<'a> Receiver<'a> {
     /// Builds a receiver with an albedo, at `distance` from the light, with `layers` between them.
     /// The reflected light travels the distance `after`. All lengths are in metres.
     ///
-    /// Without `cosine`, radiance is integrated over slopes without (1 + u² + v²)⁻², which is
-    /// deliberately wrong.
+    /// If `cosine` is false, radiance is integrated over slopes without the factor (1 + u² +
+    /// v²)⁻², which is deliberately wrong.
     pub(crate) fn new(
         light: ParallelEmitter,
         layers: &[MaskLayer<'a>],
@@ -126,7 +128,7 @@ impl<'a> Receiver<'a> {
         let shading = if cosine { 2.0 } else { 0.0 };
         let bundle = match light.shape {
             Some(_) => SlopeProjection::At([0.0; 2]),
-            // The radiance of a point has δ(x − D u) δ(y − D v).
+            // The radiance of a point light has the factor δ(x − D u) δ(y − D v).
             None => SlopeProjection::From(distance),
         };
         let barriers: Vec<_> = layers
@@ -172,9 +174,9 @@ impl<'a> Receiver<'a> {
         through.product::<f64>() * brightness * lobe / self.distance.powi(2)
     }
 
-    /// Returns the mean irradiance over a rectangle of the receiver if the light is a point;
-    /// otherwise the irradiance at the rectangle's centre. Shadows of a point light have sharp
-    /// edges, so a value at the centre of a cell would not represent the cell.
+    /// Returns the mean irradiance over a rectangle of the receiver if the light is a point, and
+    /// the irradiance at the rectangle's centre for other lights. Shadows of a point light have
+    /// sharp edges, so a value at the centre of a cell would not represent the cell.
     fn cell(&self, center: [f64; 2], size: [f64; 2]) -> f64 {
         if self.light.shape.is_some() {
             return self.irradiance(center[0], center[1]);
@@ -187,7 +189,7 @@ impl<'a> Receiver<'a> {
         self.light.brightness * self.received(&bundle, region) / sides.area()
     }
 
-    /// Returns the integral over the slopes of a region at which no blocker stops light.
+    /// Returns the integral over those slopes of a region at which no blocker stops the light.
     fn received(&self, bundle: &SlopeProjection, region: ReceiverRegion) -> f64 {
         self.passed(
             bundle,
@@ -197,8 +199,8 @@ impl<'a> Receiver<'a> {
         )
     }
 
-    /// Returns the light of a region that passes several barriers in turn: all of it, minus the
-    /// light that each shape stops.
+    /// Returns the light of a region of slopes that passes several barriers: the light without
+    /// barriers, minus the light that each blocking shape stops.
     fn passed(
         &self,
         bundle: &SlopeProjection,
@@ -223,7 +225,7 @@ impl<'a> Receiver<'a> {
         self.passed(bundle, open, rest, density) - stopped
     }
 
-    /// Returns the integrand over slopes behind the gratings of some barriers.
+    /// Returns the integrand over slopes that includes the gratings among the given barriers.
     fn density(&self, bundle: &SlopeProjection, barriers: &[Barrier<'_>]) -> ReceiverDensity<'_> {
         let gratings = barriers
             .iter()

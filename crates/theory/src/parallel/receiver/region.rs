@@ -5,19 +5,20 @@ use crate::barrier::Bounds;
 use etendue_field::{Disc, Shape};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// Discs that differ by less than this share of their radius are treated as equal.
+/// Discs whose centres and radii differ by less than this fraction of the radius are treated as
+/// equal.
 const SAME_RADIUS: f64 = 1e-12;
 
-/// The intersection of a rectangle and discs, in slopes.
+/// The set of slopes in the intersection of a rectangle and discs.
 #[derive(Clone, Debug)]
 pub(crate) struct ReceiverRegion {
-    /// The rectangle; its sides may be infinite if there are discs.
+    /// The rectangle's bounds, which may be infinite if the intersection includes discs.
     sides: Bounds,
     discs: Vec<Disc>,
 }
 
 impl ReceiverRegion {
-    /// Returns the region of a rectangle.
+    /// Returns the region that consists of a rectangle.
     pub(crate) fn rectangle(sides: Bounds) -> Self {
         Self {
             sides,
@@ -25,7 +26,7 @@ impl ReceiverRegion {
         }
     }
 
-    /// Returns the region of a shape.
+    /// Returns the region that consists of a rectangle or a disc.
     pub(crate) fn shape(shape: &Shape) -> Self {
         match *shape {
             Shape::Rectangle(r) => Self::rectangle([r.extent(0), r.extent(1)]),
@@ -36,7 +37,8 @@ impl ReceiverRegion {
         }
     }
 
-    /// Returns the smallest rectangle known to contain the region.
+    /// Returns a rectangle that contains the region: the intersection of the rectangle and the
+    /// bounding boxes of the discs.
     pub(crate) fn bounds(&self) -> Bounds {
         let discs = self.discs.iter().map(|disc| {
             let bounds = Shape::Disc(*disc).bounds();
@@ -45,7 +47,8 @@ impl ReceiverRegion {
         discs.fold(self.sides, common)
     }
 
-    /// Returns the intersection with a rectangle; `None` if it is empty.
+    /// Returns the intersection of the region with a rectangle, or `None` if this intersection is
+    /// empty.
     pub(crate) fn within(&self, sides: Bounds) -> Option<Self> {
         let region = Self {
             sides: common(self.sides, sides),
@@ -54,7 +57,8 @@ impl ReceiverRegion {
         region.simplified()
     }
 
-    /// Returns the intersection with a shape; `None` if it is empty.
+    /// Returns the intersection of the region with a shape, or `None` if this intersection is
+    /// empty.
     pub(crate) fn cut(&self, shape: &Shape) -> Option<Self> {
         match *shape {
             Shape::Rectangle(r) => self.within([r.extent(0), r.extent(1)]),
@@ -66,8 +70,8 @@ impl ReceiverRegion {
         }
     }
 
-    /// Removes discs that contain the rectangle or another disc; returns `None` if two of the parts
-    /// do not overlap.
+    /// Removes discs that contain the rectangle or another disc. Returns `None` if two discs, or a
+    /// disc and the rectangle, do not overlap.
     fn simplified(mut self) -> Option<Self> {
         let [u, v] = self.sides;
         if u[0] >= u[1] || v[0] >= v[1] {
@@ -94,9 +98,9 @@ impl ReceiverRegion {
 
     /// Returns the integral of a density over the region.
     ///
-    /// By Green's theorem this is the integral of A(u, v) = ∫ density du along the boundary over v.
-    /// The boundary consists of arcs of the circles, on which everything is smooth, and of vertical
-    /// edges of the rectangle (docs/theory.md, formula 16).
+    /// By Green's theorem the integral over the region is ∮ A dv along its boundary, where A(u, v)
+    /// = ∫ density du. The boundary consists of arcs of circles, on which the integrand is smooth,
+    /// and of vertical edges of the rectangle (docs/theory.md, formula 16).
     pub(crate) fn integral(&self, density: &ReceiverDensity<'_>) -> f64 {
         let Some(first) = self.discs.first() else {
             return density.rectangle(self.sides);
@@ -107,7 +111,8 @@ impl ReceiverRegion {
         arcs.sum::<f64>() + right - left
     }
 
-    /// Returns the number of steps of [`Self::integral`], counting each circle as a whole.
+    /// Estimates the number of computing steps of [`Self::integral`] as if the boundary contained
+    /// each circle completely.
     pub(crate) fn steps(&self, density: &ReceiverDensity<'_>) -> f64 {
         if self.discs.is_empty() {
             return density.steps(self.sides);
@@ -122,13 +127,13 @@ impl ReceiverRegion {
         nodes * density.steps_along_u(bounds[0][1] - bounds[0][0]) + edges
     }
 
-    /// Returns ∫ A dv upwards along the line at u, over its part that lies inside the discs and
-    /// between the lower and the upper side.
+    /// Returns ∫ A dv upward along the line of constant u, over the part of this line that is
+    /// inside all discs and between the rectangle's lower and upper sides.
     fn edge(&self, u: f64, from: f64, density: &ReceiverDensity<'_>) -> f64 {
         let chords = self.discs.iter().map(|disc| {
             let across = u - disc.center[0];
             let half = (disc.radius * disc.radius - across * across).sqrt();
-            // The chord is NaN if the line misses the disc; the comparison below is then false.
+            // If the line misses the disc, `half` is NaN, and the final comparison is false.
             [disc.center[1] - half, disc.center[1] + half]
         });
         let mut part = self.sides[1];
@@ -161,8 +166,8 @@ impl ReceiverRegion {
         inside.map(|arc| along(&disc, arc, from, density)).sum()
     }
 
-    /// Returns the angles, ascending, at which circle `i` may enter or leave the rest of the
-    /// region; at least one.
+    /// Returns the angles, in ascending order, at which circle `i` may enter or leave the
+    /// intersection of the rectangle and the other discs. Returns at least one angle.
     fn crossings(&self, i: usize) -> Vec<f64> {
         let disc = &self.discs[i];
         let mut angles = vec![0.0];
@@ -181,7 +186,8 @@ impl ReceiverRegion {
             let middle = libm::atan2(dv, du);
             angles.extend([middle - half, middle + half]);
         }
-        // The angles are NaN if the circles or sides do not cross.
+        // If two circles, or a circle and a side, do not cross, their angles are NaN and are
+        // removed.
         angles.retain(|a| a.is_finite());
         angles.iter_mut().for_each(|a| *a = a.rem_euclid(TAU));
         angles.sort_by(f64::total_cmp);
@@ -189,7 +195,7 @@ impl ReceiverRegion {
     }
 }
 
-/// Returns ∫ A dv along an arc of a circle, where A is zero at u = `from`.
+/// Returns ∫ A dv along an arc of a circle, for the antiderivative A that is zero at u = `from`.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -213,7 +219,7 @@ fn along(disc: &Disc, [start, end]: [f64; 2], from: f64, density: &ReceiverDensi
         .sum()
 }
 
-/// Returns the point of a circle at an angle.
+/// Returns the point of a disc's boundary at an angle.
 fn on(disc: &Disc, angle: f64) -> [f64; 2] {
     let (sin, cos) = libm::sincos(angle);
     [
@@ -239,7 +245,7 @@ fn distances(sides: Bounds, point: [f64; 2]) -> [f64; 2] {
     [0, 1].map(|end| libm::hypot(along[0][end], along[1][end]))
 }
 
-/// Checks whether one disc contains or equals another.
+/// Checks whether the disc `large` contains or equals the disc `small`.
 fn holds(large: &Disc, small: &Disc) -> bool {
     distance(large, small) + small.radius <= large.radius * (1.0 + SAME_RADIUS)
 }

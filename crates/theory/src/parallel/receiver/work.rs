@@ -1,4 +1,5 @@
-//! Estimates of the work to predict the light that leaves a receiver, counted at some points of it.
+//! Estimates of the work to predict the light that leaves a receiver, from computing steps counted
+//! at a few points of the receiver.
 
 use super::density::ReceiverDensity;
 use super::kernel::KernelAxis;
@@ -10,16 +11,18 @@ use etendue_field::{ProjectionGrid, Rectangle, SliceGrid, Window};
 
 /// Number of points along each axis at which steps are counted.
 const SOME: usize = 4;
-/// The most steps counted at a point: with more, even a table of the fewest nodes exceeds all
-/// limits.
+/// Maximum number of computing steps that are counted at a point. If a point takes more steps,
+/// even a table with the minimum number of nodes exceeds all limits.
 const MAX_STEPS: f64 = 1e8;
-/// Steps for a shape that is tested, and for one that blocks light.
+/// Estimated number of computing steps to test a shape, and to clip a region to a shape that
+/// blocks light.
 const SHAPE: f64 = 100.0;
-/// Steps of a sum over one node at one frequency.
+/// Estimated number of computing steps to add one node to the sum at one frequency.
 const SUM: f64 = 0.6;
 
 impl Receiver<'_> {
-    /// Estimates the work of slices, their error, `derivatives` and a picture.
+    /// Estimates the work of slices, their error estimate, their derivatives and a picture;
+    /// `derivatives` is the number of derivatives.
     pub(crate) fn work(
         &self,
         window: &Window,
@@ -52,7 +55,8 @@ impl Receiver<'_> {
             .then(picture)
     }
 
-    /// Returns the steps for the irradiance at a point, averaged over some points.
+    /// Returns the mean number of computing steps for the irradiance in a cell, over [`SOME`] ×
+    /// [`SOME`] points.
     fn mean_steps(&self, axes: &[KernelAxis; 2], nodes: usize) -> f64 {
         let size = axes.map(|axis| 2.0 * axis.reach() / nodes as f64);
         let at = |k: usize, i: usize| {
@@ -64,7 +68,7 @@ impl Receiver<'_> {
         steps.sum::<f64>() / (SOME * SOME) as f64
     }
 
-    /// Returns the number of steps of [`Self::cell`].
+    /// Estimates the number of computing steps of [`Self::cell`].
     fn steps(&self, center: [f64; 2], size: [f64; 2]) -> f64 {
         let (bundle, region) = match &self.light.shape {
             Some(shape) => {
@@ -87,7 +91,7 @@ impl Receiver<'_> {
         steps
     }
 
-    /// Adds the number of steps of [`Self::passed`], up to [`MAX_STEPS`].
+    /// Adds the number of computing steps of [`Self::passed`] to `steps`, up to [`MAX_STEPS`].
     fn count(
         &self,
         bundle: &SlopeProjection,
@@ -119,7 +123,7 @@ impl Receiver<'_> {
     }
 }
 
-/// Returns the work from a table to slices.
+/// Estimates the work to compute slices from a table of radiance.
 fn sums(axes: &[KernelAxis; 2], nodes: f64, grid: &SliceGrid) -> PredictionWork {
     let [azimuths, rows, count] = grid.half_shape().map(|n| n as f64);
     let highest = [grid.rho.max(), grid.nu.max()];
@@ -129,7 +133,8 @@ fn sums(axes: &[KernelAxis; 2], nodes: f64, grid: &SliceGrid) -> PredictionWork 
     } else {
         [0.0; 2]
     };
-    // A rule of many nodes is computed again for each row, by recurrences over all of its nodes.
+    // The Gauss rule is computed again for each row, by a recurrence over n nodes for each of its
+    // n nodes.
     let kernels = rule.map(|n| nodes * n * (2.0 * count + 40.0) + 10.0 * n * n);
     let row = if travels {
         kernels[0] + kernels[1] + 2.0 * SUM * nodes * nodes * count

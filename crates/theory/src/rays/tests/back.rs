@@ -70,7 +70,7 @@ fn come_back(system: &SpecularSystem, plane: &Plane) {
     }
 }
 
-/// Tests planes behind oblique glass, a concave mirror and a lens.
+/// Tests backward rays from planes behind oblique glass, a concave mirror and a lens.
 #[test]
 fn rays_come_back_to_where_they_were_drawn() {
     let lens = Specular::ThinLens { focal_length: 0.7 };
@@ -78,7 +78,8 @@ fn rays_come_back_to_where_they_were_drawn() {
     come_back(&system, &after(&system, 0.5));
 }
 
-/// Tests planes on surfaces, for light that leaves one surface or arrives at the next.
+/// Tests planes on surfaces, for light that leaves the plane's surface and for light that arrives
+/// at it.
 #[test]
 fn rays_come_back_from_surfaces() {
     let through = bent(&[MIRROR, GLASS]);

@@ -9,18 +9,19 @@ use etendue_field::{
 };
 use std::sync::Arc;
 
-/// The error allowed for nets of two million rays, at four cycles along all coordinates of a
-/// window.
+/// Relative error allowed for nets of two million rays, for frequencies up to four cycles over a
+/// window along all coordinates.
 const OF_NETS: f64 = 5e-3;
-/// Number of points of a midpoint rule along each coordinate of a plane; these suffice because the
-/// spectrum falls to 10⁻⁴ within five cycles.
+/// Number of points of a midpoint rule along each coordinate of a plane; they suffice because the
+/// spectrum falls to 10⁻⁴ within five cycles over the window.
 const NODES: u32 = 30;
 
 const WINDOW: [Profile; 2] = [Profile::Hann(0.3), Profile::Hann(0.7)];
 /// Radius of the sphere, metres.
 const RADIUS: f64 = 0.9;
 
-/// Two lobes, one off the central ray, in axes that are turned about it.
+/// Builds an environment of two lobes in axes that are turned about the central ray; one lobe is
+/// not centred on this ray.
 fn lobes() -> Environment {
     let lobe = |from: DVec3, width, radiance| SphericalGaussian {
         from: from.normalize(),
@@ -37,7 +38,7 @@ fn lobes() -> Environment {
     }
 }
 
-/// Approximately the same light, given as a picture.
+/// Builds an environment map that has approximately the same radiance as the two lobes.
 fn map() -> Environment {
     let Environment { frame, map } = lobes();
     let picture = LatLong::from_fn(256, 128, |from| map.radiance(from));
@@ -52,7 +53,8 @@ fn under(environment: &Environment, elements: Vec<SpecularSurface>) -> SpecularS
     system(Light::Environment { environment }, elements)
 }
 
-/// A plane for arriving light on a sphere 1 m away whose normal is tilted by an angle.
+/// Builds a plane for arriving light on a sphere 1 m from the light; the angle `tilt` is between
+/// the sphere's normal and the central ray.
 fn on_sphere(tilt: f64, orientation: Orientation, quantity: Quantity) -> Plane {
     let patch = placed(&Frame::IDENTITY, 1.0, tilt, [0.0; 2], [1.0 / RADIUS; 3]);
     let incidence = Incidence::new(&Frame::IDENTITY.travelled(1.0), patch.frame.d);
@@ -77,9 +79,9 @@ fn on_sphere(tilt: f64, orientation: Orientation, quantity: Quantity) -> Plane {
     }
 }
 
-/// Light arriving on a sphere, from the definition: the normal is the position over the radius, and
-/// directions are counted from it. `sign` is −1 for the curvature of a concave sphere, and `cosine`
-/// is the power of the cosine.
+/// Computes the light that arrives on a sphere from the definition: the normal is the position
+/// divided by the radius, and directions are relative to this normal. `sign` is −1 for the
+/// curvature of a concave sphere, and `cosine` is the exponent of the cosine factor.
 fn on_sphere_by_hand(environment: &Environment, plane: &Plane, sign: f64, z: [f64; 4]) -> f64 {
     let [x, y, u, v] = z;
     let [s, t] = if plane.patch.is_some() {
@@ -135,8 +137,8 @@ fn by_rule(radiance: &dyn Fn([f64; 4]) -> f64, window: &Window, grid: &SliceGrid
 }
 
 /// Tests all quantities that a plane may record on a sphere, at normal and oblique incidence, for
-/// lobes and a picture. The curvature of a concave sphere, a missing cosine and a wrong turn each
-/// give a different result.
+/// lobes and for an environment map. Predictions with the curvature of a concave sphere, without
+/// the cosine or with a wrong rotation differ from the correct one.
 #[test]
 fn the_sky_on_a_sphere() {
     let (window, grid) = (window(WINDOW[0], WINDOW[1]), grid(3, [0.3, 0.7]));
@@ -158,7 +160,8 @@ fn the_sky_on_a_sphere() {
         };
         let right = off(&plane, 1.0);
         let stated = found.error.unwrap();
-        // The stated error is a standard error; over hundreds of frequencies it is rarely exceeded.
+        // The prediction's stated error is a standard error; the relative difference over hundreds
+        // of frequencies rarely exceeds it.
         assert!(
             stated < OF_NETS && right < 1.5 * stated,
             "{orientation:?}: {right:e}, {:?}",
@@ -192,7 +195,8 @@ fn the_sky_on_a_sphere() {
     }
 }
 
-/// Tests light that has passed a grating, on a plane in slopes and on an oblique surface.
+/// Tests an environment's light that has passed a grating, on a plane with slopes and on an
+/// oblique surface.
 #[test]
 fn the_sky_past_a_grating() {
     let (window, grid) = (window(WINDOW[0], Profile::Hann(0.5)), grid(2, [0.3, 0.5]));
@@ -288,14 +292,15 @@ fn all_ways_to_draw_the_sky_agree() {
     );
     let plain = under(&environment, vec![]);
     let local = on_sphere(0.4, Orientation::LocalNormals, Quantity::Radiance);
-    // A small sphere seen from the side; some rays also meet it from behind, within the window.
+    // A small sphere seen from the side; some rays within the window also meet the sphere from
+    // behind.
     let mut aside = on_sphere(0.9, Orientation::LocalNormals, Quantity::Radiance);
     if let Some(patch) = &mut aside.patch {
         patch.curvature = [2.5; 3];
     }
     let cases = [
         (&plain, after(&plain, 1.0)),
-        // A plane at the light itself, displaced as by rounding errors in a tilted scene.
+        // A plane at the light itself, displaced by about the rounding error of a tilted scene.
         (&plain, after(&plain, -1e-16)),
         (&plain, local),
         (&plain, aside),
@@ -326,9 +331,9 @@ fn all_ways_to_draw_the_sky_agree() {
     }
 }
 
-/// This is the line of section 6.1 of Durand et al. 2005: on a curved surface, light of an
-/// environment has its spectrum where Ωx = k Ωθ. The spectrum of light from one direction is
-/// exactly that line.
+/// Section 6.1 of Durand et al. 2005: the spectrum of an environment's light on a surface of
+/// curvature k is near the line Ωx = k Ωθ. The spectrum of light from a single direction is
+/// exactly on this line.
 #[test]
 fn curvature_shears_the_sky_onto_a_line() {
     let narrow = SphericalGaussian {
@@ -343,7 +348,8 @@ fn curvature_shears_the_sky_onto_a_line() {
     let (window, grid) = (window(WINDOW[0], WINDOW[1]), grid(1, [0.3, 0.7]));
     let plane = on_sphere(0.0, Orientation::LocalNormals, Quantity::Radiance);
     let found = exact(&under(&environment, vec![]), &plane, &window, &grid);
-    // Σ P ρ ν / Σ P ν² is k if all power is on the line; the window widens the line along ρ alone.
+    // Σ P ρ ν / Σ P ν² is k if all power P is on the line ρ = k ν; the window widens this line
+    // along ρ only.
     let full = found.slices.full();
     let (mut cross, mut own) = (0.0, 0.0);
     for (m, rho) in grid.rho.values().into_iter().enumerate() {

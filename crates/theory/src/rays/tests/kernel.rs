@@ -18,8 +18,8 @@ fn nodes(count: usize) -> Vec<RayNode> {
 
 #[test]
 fn plain_summation() {
-    // The number of rays is odd and larger than one block, and there are more powers than are
-    // computed from one exact power.
+    // The number of rays is odd and larger than one block, and the number of powers is larger than
+    // the number that is computed from one exact power.
     let nodes = nodes(777);
     let axis = |half, spacing| FrequencyAxis { half, spacing };
     let grid = SliceGrid {
@@ -36,8 +36,8 @@ fn plain_summation() {
             Complex::from_polar(node.weight, -TAU * phase)
         };
         let plain: Complex = nodes.iter().map(term).sum();
-        // The tolerance is 32 rounding errors of a factor, and the rounding error of phases up to
-        // 400.
+        // The tolerance is the sum of 32 rounding errors of a factor and the rounding error of
+        // phases up to 400.
         assert!((value - plain).norm() < 1e-12 * total, "{k} {m} {n}");
     }
 }

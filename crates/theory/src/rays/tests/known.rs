@@ -1,4 +1,4 @@
-//! Tests against known answers.
+//! Tests of predicted spectra against closed forms and Gauss rules.
 
 use super::*;
 use crate::numerics::quadrature::gauss_legendre;
@@ -6,12 +6,12 @@ use crate::testing::{chain_of, disc, lambertian, opaque, rectangles, spot, squar
 use etendue_field::{Grating, Mask, Shape};
 use std::f64::consts::{PI, TAU};
 
-/// The error allowed for a midpoint rule: ten times the error at which it stops.
+/// Relative error allowed for a midpoint rule: ten times the error at which refinement stops.
 const GOOD: f64 = 1e-6;
-/// The error allowed for nets of two million rays.
+/// Relative error allowed for nets of two million rays.
 const OF_NETS: f64 = 1.5e-3;
 
-/// Returns slices of a function of the frequency.
+/// Returns slices whose values are those of a function of the frequency.
 fn slices_of(grid: &SliceGrid, value: impl Fn([f64; 4]) -> Complex) -> Slices {
     let mut slices = Slices::zeros(*grid);
     for ((k, m, n), to) in slices.half.indexed_iter_mut() {
@@ -22,11 +22,11 @@ fn slices_of(grid: &SliceGrid, value: impl Fn([f64; 4]) -> Complex) -> Slices {
 
 /// Returns the spectrum at distance d of a projector's field, computed by a Gauss rule over
 /// slopes. On x = d u, y = d v the field is the image times √(1 + u² + v²), because off-axis
-/// positions are farther from the point (docs/theory.md, section 2). If `exact` is false, that
-/// factor is omitted.
+/// positions are farther from the projector (docs/theory.md, section 2). If `exact` is false, the
+/// factor √(1 + u² + v²) is omitted.
 fn at_distance(d: f64, width: f64, window: &Window, grid: &SliceGrid, exact: bool) -> Slices {
     let most = (window.x.half_width() / d).min(window.u.half_width());
-    // Seventy nodes are enough for up to 22 cycles.
+    // A Gauss rule with 70 nodes is accurate for integrands with up to 22 cycles.
     let nodes: Vec<_> = gauss_legendre(100)
         .into_iter()
         .map(|(t, weight)| {
@@ -71,7 +71,7 @@ fn projector_over_a_distance() {
         let expected = at_distance(d, 0.3, &window, &grid, true);
         let off = got.slices.relative_difference(&expected);
         assert!(off < GOOD && got.error.unwrap() < GOOD, "{off:e}");
-        // The test detects that the factor is left out.
+        // A prediction without the factor √(1 + u² + v²) fails this test.
         let without = at_distance(d, 0.3, &window, &grid, false);
         let told = got.slices.relative_difference(&without);
         assert!(told > 10.0 * GOOD, "{told}");
@@ -80,7 +80,7 @@ fn projector_over_a_distance() {
 
 #[test]
 fn beam_over_a_distance() {
-    // A beam does not change: its spectrum is constant in Ωu, Ωv.
+    // A beam does not change with distance, and its spectrum is constant in Ωu and Ωv.
     let (width, cut) = (0.2, 0.7);
     let system = system(beam([width, 0.3]), vec![]);
     let window = window(Profile::Gaussian { width: 0.4, cut }, Profile::Hann(0.1));
@@ -91,7 +91,8 @@ fn beam_over_a_distance() {
     let expected = slices_of(&grid, |[x, y, ..]| {
         Complex::from(a * b * libm::exp(-PI * (a * a * x * x + b * b * y * y)))
     });
-    // The cut excludes a share exp(−π (0.49/0.16 + 0.49/0.09)).
+    // The window is cut at 0.7, where the product of window and image is exp(−π (0.49/0.16 +
+    // 0.49/0.09)) of its peak.
     let off = got.slices.relative_difference(&expected);
     assert!(off < 1e-9, "{off:e}");
 }
@@ -125,7 +126,8 @@ fn area_lights_agree_with_polygons() {
         let off = got.slices.relative_difference(&expected);
         let said = got.error.unwrap();
         assert!(off < OF_NETS && off < 2.0 * said, "{off:e}, said {said:e}");
-        // A grating that is one centimetre farther away gives a different result.
+        // A prediction for a grating that is one centimetre farther from the light differs
+        // detectably.
         system.layers = vec![(0.61, Mask::Grating(grating))];
         let moved = exact(&system, &after(&system, 1.5), &window, &grid);
         let told = moved.slices.relative_difference(&expected);
@@ -188,8 +190,8 @@ fn plane_mirror_is_a_travel() {
     );
     let straight = system(light, vec![]);
     let got = exact(&folded, &after(&folded, 0.5), &window, &grid);
-    // The frame flips, so that x' = −x and y' = y: azimuths φ become π − φ, and (ρ, ν) become their
-    // negatives.
+    // The mirror reverses the x axis of the frame (x' = −x, y' = y), so azimuths φ become π − φ
+    // and (ρ, ν) become (−ρ, −ν).
     let expected = exact(&straight, &after(&straight, 1.5), &window, &grid);
     let full = expected.slices.full();
     let mut turned = Slices::zeros(grid);
@@ -209,8 +211,8 @@ fn plane_mirror_is_a_travel() {
 
 #[test]
 fn lens_images_a_slide() {
-    // A slide: a Lambertian light of 1 cm² with a grating directly on it. It is at a = 0.5 m from a
-    // lens of f = 0.3 m, so its image is at b = 0.75 m.
+    // A slide: a Lambertian light of 1 cm² with a grating directly on it. The slide is at a = 0.5
+    // m from a lens of focal length f = 0.3 m, so its image is at b = 0.75 m.
     let (a, f) = (0.5, 0.3);
     let b = 1.0 / (1.0 / f - 1.0 / a);
     let patch = placed(&Frame::IDENTITY, a, 0.0, [0.0; 2], [0.0; 3]);
@@ -233,10 +235,10 @@ fn lens_images_a_slide() {
         slices.half[[0, 1, 1]].norm() / slices.at_zero()
     };
     let sharp = contrast(b);
-    // A sharp grating has m/2 = 0.45; a window of a few of its periods preserves all but a few per
-    // cent of this.
+    // The contrast of a sharp image of the grating is m/2 = 0.45; in a window of a few periods the
+    // contrast is lower by at most a few per cent.
     assert!((sharp - 0.45).abs() < 0.02, "{sharp}");
-    // At 5 cm out of focus, slopes of ± 0.05 blur the image by ± 2.5 mm, a third of its period of
-    // 7.5 mm.
+    // At a plane 5 cm out of focus, slopes of ± 0.05 blur the image by ± 2.5 mm, a third of the
+    // image's period of 7.5 mm.
     assert!(contrast(b + 0.05) < 0.9 * sharp);
 }

@@ -9,7 +9,8 @@ use etendue_field::{
 };
 use glam::DVec3;
 
-/// Two million nodes, so errors are far below the deviations that these tests detect.
+/// A budget of two million nodes, with which errors are far below the deviations that these tests
+/// detect.
 const BUDGET: RayBudget = RayBudget {
     nodes: 2e6,
     error: 1e-5,

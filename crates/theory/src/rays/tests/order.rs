@@ -1,5 +1,5 @@
-//! Tests how fast the first-order prediction converges to the exact one as everything but the
-//! geometry shrinks.
+//! Tests how fast the first-order prediction converges to the exact prediction if the light and
+//! the windows shrink and the geometry stays the same.
 
 use super::*;
 
@@ -10,7 +10,7 @@ fn error(system: &SpecularSystem, plane: &Plane, widths: [f64; 2], e: f64, print
     let grid = grid(3, widths.map(|w| w * e));
     let system = system.shrunk(e);
     let right = exact(&system, plane, &window, &grid);
-    // Most of the error of nets is common to both predictions.
+    // Most of the error of nets is common to the first-order and the exact prediction.
     assert!(right.error < Some(3e-3), "{:?}", right.error);
     assert!(right.slices.at_zero() > 0.0);
     let map = chain(&view(&system, plane), print).unwrap().map;
@@ -32,7 +32,7 @@ fn oblique_mirrors_are_of_first_order_and_straight_ones_of_second() {
         for turns in [[0.0, 0.0], [0.6, 0.5]] {
             let oblique = mirror(projector([0.4, 0.3]), 0.7, turns, shape);
             let found = order(&oblique, &after(&oblique, 0.4), [0.6, 0.5]);
-            // The term of the next power of e is a tenth of this one.
+            // The term of the next power of e is about a tenth of the leading term.
             assert!((found - 1.0).abs() < 0.2, "{found} {shape:?}");
             let straight = mirror(projector([0.4, 0.3]), 0.0, turns, shape);
             let found = order(&straight, &after(&straight, 0.4), [0.6, 0.5]);

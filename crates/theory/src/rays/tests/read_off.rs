@@ -3,12 +3,13 @@
 use super::*;
 use crate::rays::central::Incidence;
 
-/// Returns the landing point of a ray of the light.
+/// Returns the coordinates at the plane of a ray that leaves the light.
 fn lands(system: &SpecularSystem, plane: &Plane, ray: [f64; 4]) -> Option<[f64; 4]> {
     Some(plane.coordinates(&system.follow(ray)?)?.0)
 }
 
-/// Returns ∂z'/∂z of the traced rays by central differences.
+/// Returns the derivative ∂z'/∂z of a ray's coordinates at the plane with respect to its
+/// coordinates at the light, by central differences of traced rays.
 fn traced(system: &SpecularSystem, plane: &Plane) -> [[f64; 4]; 4] {
     const STEP: f64 = 1e-5;
     let mut rows = [[0.0; 4]; 4];
@@ -26,8 +27,8 @@ fn traced(system: &SpecularSystem, plane: &Plane) -> [[f64; 4]; 4] {
     rows
 }
 
-/// Returns the largest difference between the chain's rays and the traced ones, including the
-/// offset.
+/// Returns the largest difference between the matrix and offset of the chain's map and the matrix
+/// and offset of traced rays.
 fn off(system: &SpecularSystem, plane: &Plane, print: Edition) -> f64 {
     let first = chain(&view(system, plane), print).unwrap();
     let center = lands(system, plane, [0.0; 4]).unwrap();
@@ -80,7 +81,8 @@ fn systems() -> Vec<SpecularSystem> {
                     light(),
                     vec![element("glass", patch, glass(1.0, 1.5))],
                 ));
-                // Light enters the glass from the back, with the normal along the light.
+                // Light enters the glass from its back, so the surface normal points along the
+                // light's direction.
                 let flipped = Frame::new(patch.frame.origin, -patch.frame.d, patch.frame.x);
                 let patch = Patch {
                     frame: flipped.unwrap(),
@@ -105,7 +107,7 @@ fn systems() -> Vec<SpecularSystem> {
         let event = Specular::ThinLens { focal_length: 0.4 };
         all.push(with(second.clone(), "lens", patch, event));
     }
-    // A sphere met away from its vertex.
+    // A sphere that the central ray meets away from the vertex of the sphere's patch.
     let mut aside = mirror(light(), 0.3, [0.2, 0.0], [-0.7; 3]);
     let x = aside.elements[0].patch.frame.x;
     aside.elements[0].patch.frame.origin += x * 0.2;
@@ -132,8 +134,8 @@ fn chain_is_the_derivative_of_the_rays() {
 
 #[test]
 fn printed_chains_are_not() {
-    // None of the printed versions gives the correct map onto a surface; behind a mirror,
-    // curvature reveals the difference.
+    // None of the printed editions gives the correct map onto a surface, and with a curved mirror
+    // none gives the correct map behind it.
     let system = mirror(light(), 0.7, [0.0, 0.0], [-0.5, -0.2, 0.0]);
     let plane = after(&system, 0.65);
     for print in [Edition::Equations, Edition::Table] {
@@ -141,7 +143,7 @@ fn printed_chains_are_not() {
     }
 }
 
-/// Builds a plane on a surface that light meets or leaves: frame (T, B, N) turned about N.
+/// Builds a plane on a surface that light meets or leaves; its frame is (T, B, N) turned about N.
 fn on_surface(
     frame: Frame,
     orientation: Orientation,
@@ -222,8 +224,8 @@ fn foci_of_a_hollow_sphere() {
     for (got, expected) in first.foci.iter().zip(expected) {
         assert!((got - expected).abs() < 1e-12); // rounding
     }
-    // Rays one micrometre from the central ray cross it at the foci; X is in the plane of
-    // incidence.
+    // Rays that start one micrometre from the central ray and parallel to it cross the central ray
+    // at the foci.
     for axis in 0..2 {
         let plane = after(&system, expected[axis]);
         let mut ray = [0.0; 4];
@@ -287,8 +289,7 @@ fn steps_read_like_a_figure() {
     );
 }
 
-/// The check that a run makes of its chains detects an error of a hundred-thousandth in any entry
-/// of a map.
+/// Tests that the `defect` of a chain detects a relative error of 10⁻⁵ in any entry of any map.
 #[test]
 fn a_wrong_map_leaves_a_defect() {
     let window = window(Profile::Hann(0.02), Profile::Hann(0.02));
@@ -296,8 +297,8 @@ fn a_wrong_map_leaves_a_defect() {
         let view = view(&system, &after(&system, 0.5));
         let sound = chain(&view, Edition::Corrected).unwrap().map;
         let found = |map: &SpectrumMap<4>| defect(&view, map, &window).unwrap();
-        // Differences over steps of 10⁻⁵ leave an error of 10⁻¹⁰ m, here relative to two
-        // centimetres.
+        // Finite differences over steps of 10⁻⁵ have an error of 10⁻¹⁰ m, which is divided by a
+        // window's half-width of two centimetres.
         assert!(found(&sound) < 1e-7, "{:e}", found(&sound));
         let mut wrong = sound;
         wrong.factor *= 1.0 + 1e-4;
@@ -317,8 +318,8 @@ fn a_wrong_map_leaves_a_defect() {
     }
 }
 
-/// Behind a mesh, a plane is perpendicular to the path that follows the mesh's normals, and tilted
-/// relative to the path of the mesh's patch.
+/// Behind a mesh, a plane is perpendicular to the central ray reflected by the mesh's normals, and
+/// slightly tilted relative to the central ray reflected by the mesh's patch.
 #[test]
 fn a_plane_may_lean_against_the_leg() {
     for system in systems() {

@@ -1,10 +1,11 @@
-//! Tests of other results from rays: pictures, covariances, derivatives, and rays that are lost.
+//! Tests of projection pictures, covariances and derivatives from rays, and of rays that are lost.
 
 use super::*;
 
 #[test]
 fn covariance_of_a_gaussian_beam() {
-    // exp(−π x²/w²) has the variance w²/2π; the window does not narrow it.
+    // The Gaussian exp(−π x²/w²) has the variance w²/2π, and the window is wide enough not to
+    // reduce this variance.
     let w = 0.1;
     let oblique = mirror(beam([w, w]), 0.0, [0.0; 2], [-0.01; 3]);
     let plane = after(&oblique, 0.5);
@@ -22,8 +23,8 @@ fn covariance_of_a_gaussian_beam() {
     let expected = map.covariance(&before);
     for i in 0..16 {
         let off = (got[i / 4][i % 4] - expected[i / 4][i % 4]).abs();
-        // A mirror of radius 100 m bends the light slightly: slopes of 2x/R have errors of
-        // relative order (x/R)².
+        // A mirror of radius R = 100 m turns a ray by a slope of 2x/R, with a relative error of
+        // order (x/R)².
         assert!(off < 1e-5 * variance, "{i}: {off:e}");
     }
     assert!(got[0][2].abs() > 1e-4 * variance); // slopes follow positions
@@ -90,13 +91,15 @@ fn derivatives_by_every_parameter() {
         let other = view.with(parameter, value + 1e-4).unwrap();
         let read = other.value(parameter).unwrap();
         assert!((read - value - 1e-4).abs() < 1e-12, "{name}"); // rounding
-        // The reference is a forward difference with another step, from converged predictions.
+        // The reference derivative is a forward difference, with another step, of converged
+        // predictions.
         let moved = exact(&other.system, &other.plane, &window, &grid);
         let mut forward = moved.slices.clone();
         forward.half -= &prediction.slices.half;
         forward.half /= Complex::from(1e-4);
         let off = forward.relative_difference(slope);
-        // The error is half the second derivative times 10⁻⁴; quadrature errors do not cancel.
+        // The error of the forward difference is half the second derivative times 10⁻⁴, and its
+        // quadrature errors do not cancel.
         assert!(off < 0.02, "{name}: {off}");
         assert!(
             slope

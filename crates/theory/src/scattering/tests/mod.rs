@@ -16,7 +16,8 @@ use std::sync::Arc;
 
 const DISTANCE: f64 = 1.0;
 
-/// Two million nodes, so errors are far below the deviations that these tests detect.
+/// Predicts with two million nodes, so errors are far below the deviations that these tests
+/// detect.
 fn exact(system: &ScatteringSystem, plane: &Plane, window: &Window, grid: &SliceGrid) -> Predicted {
     by(
         system,
@@ -27,7 +28,7 @@ fn exact(system: &ScatteringSystem, plane: &Plane, window: &Window, grid: &Slice
     )
 }
 
-/// Returns ‖first order − exact‖/‖exact‖.
+/// Returns ‖first order − exact‖/‖exact‖ of the two predictions of a system.
 fn linearised(
     system: &ScatteringSystem,
     plane: &Plane,
@@ -92,7 +93,8 @@ fn white(lobe: Lobe) -> Reflectance {
     Brdf::new(lobe, 0.7, Fresnel::White).into()
 }
 
-/// Builds a surface 1 m from the light, met at θ₀ in the plane of X.
+/// Builds a surface 1 m from the light that the central ray meets at the angle θ₀, in the plane of
+/// X and the ray.
 fn system(
     light: Light,
     theta0: f64,
@@ -114,7 +116,8 @@ fn system(
     }
 }
 
-/// Returns a plane across the mirrored ray, at a distance along it.
+/// Returns a plane perpendicular to the mirrored central ray, at the distance `after` from the
+/// surface.
 fn across(theta0: f64, after: f64) -> Plane {
     let n = DVec3::new(libm::sin(theta0), 0.0, -libm::cos(theta0));
     let reflected = |v: DVec3| v - 2.0 * v.dot(n) * n;
@@ -170,8 +173,8 @@ fn projector(width: f64) -> Light {
     }
 }
 
-/// Behind blockers, a flat Lambertian surface at normal incidence is the receiver of the closed
-/// forms.
+/// Tests that light of a flat Lambertian surface at normal incidence behind blockers equals the
+/// light of a closed-form receiver.
 #[test]
 fn flat_lambertian_surface_is_the_receiver() {
     let blocker = vec![Shape::Rectangle(Rectangle {
@@ -204,18 +207,20 @@ fn flat_lambertian_surface_is_the_receiver() {
     let plane = across(0.0, 0.2);
     let found = exact(&system, &plane, &window, &grid);
     let apart = found.slices.relative_difference(&known);
-    // The stated error matches the actual error; over so many frequencies the two differ little.
+    // The estimated error is close to the actual error, because both are means over many
+    // frequencies.
     let error = found.error.unwrap();
     let ratio = apart / error;
     assert!((0.6..1.6).contains(&ratio), "{apart:e} {error:e}");
     assert!(error < 6e-3, "{error:e}"); // of a million nodes
-    // Without the mask the field is different.
+    // If the mask is removed, the prediction differs detectably.
     system.layers.clear();
     let open = exact(&system, &plane, &window, &grid);
     assert!(open.slices.relative_difference(&known) > 0.05);
 }
 
-/// Maps derived by finite differences are the corrected operators of docs/theory.md, section 7.
+/// Tests that the chain's maps, which are derived by finite differences, equal the corrected
+/// operators of docs/theory.md, section 7.
 #[test]
 fn chain_is_the_product_of_operators() {
     for (theta0, k) in [
@@ -239,13 +244,13 @@ fn chain_is_the_product_of_operators() {
             let a = read.matrix.as_flattened().iter().chain(&read.offset);
             let b = put.matrix.as_flattened().iter().chain(&put.offset);
             let worst = a.zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            // A rounding error of 1e-16 divided by a step of 1e-5.
+            // The tolerance covers a rounding error of 1e-16 divided by a step of 1e-5.
             assert!(worst < 1e-8, "{theta0} {k}: {worst:e}\n{read:?}\n{put:?}");
         }
     }
 }
 
-/// Returns ‖first order − exact‖/‖exact‖ in neighbourhoods e times as wide.
+/// Returns ‖first order − exact‖/‖exact‖ for neighbourhoods of several sizes e.
 fn errors(
     theta0: f64,
     k: f64,
@@ -273,7 +278,7 @@ fn errors(
         .to_vec()
 }
 
-/// Returns a Phong lobe whose width 1/√n is proportional to the size of the neighbourhood.
+/// Returns a Phong lobe whose width 1/√n is proportional to the size e of the neighbourhood.
 fn phong(e: f64) -> Lobe {
     Lobe::Phong {
         exponent: 1.0 / (0.25 * e * e),
@@ -301,8 +306,8 @@ fn first_order_is_of_its_order() {
     }
 }
 
-/// The BRDF has two lobes with factors of both angles, and weights whose wavelength is the size of
-/// the neighbourhood.
+/// Tests a sum of two BRDFs. Both have factors of the angles of incidence and departure, and
+/// weights whose wavelength is proportional to the size of the neighbourhood.
 #[test]
 fn weighted_and_separable_brdfs_are_of_first_order() {
     let table = |values: [f64; 2]| {
@@ -337,8 +342,8 @@ fn weighted_and_separable_brdfs_are_of_first_order() {
     }
 }
 
-/// A lobe around the normal, a missing cosine and an exponent wrong by 5 % each increase the error
-/// beyond that of first order.
+/// Tests that three wrong chains have larger errors than the correct chain: with a lobe around the
+/// normal, without the cosine, and with an exponent that is wrong by 5 %.
 #[test]
 fn wrong_operators_are_seen() {
     let theta0 = 0.6;
@@ -360,8 +365,8 @@ fn wrong_operators_are_seen() {
     };
     let least = error(&system, &sound);
     let mut turned = sound.clone();
-    // The central ray is treated as if it came along the normal, so there is no cosine and no
-    // mirror direction.
+    // In this wrong chain the central ray arrives along the normal, so the cosine is 1 and the
+    // mirror direction is the normal.
     turned.onto.offset[2] = 0.0;
     assert!(error(&system, &turned) > 5.0 * least);
     let mut sheared = sound;
@@ -379,9 +384,10 @@ fn wrong_operators_are_seen() {
     assert!(exact_error(&sharper) > 0.005);
 }
 
-/// Returns ∫ L cos⁺ dω of a spherical Gaussian, at an angle γ from its centre: a product of
-/// spherical-harmonic coefficients, which is the convolution with the clamped cosine (Ramamoorthi
-/// and Hanrahan 2001; in 2D the paper's section 6.1).
+/// Returns the irradiance ∫ L cos⁺ dω of a spherical Gaussian on a surface whose normal is at the
+/// angle γ from the Gaussian's centre. The convolution with the clamped cosine is computed as a
+/// product of spherical-harmonic coefficients (Ramamoorthi and Hanrahan 2001; in 2D, section 6.1
+/// of Durand et al. 2005).
 fn harmonic_irradiance(width: f64, gamma: f64) -> f64 {
     let squared = width * width;
     let legendre = |l: i32, x: f64| {
@@ -445,13 +451,13 @@ fn diffuse_sphere_under_an_environment_is_the_known_product() {
         EnvironmentMap::LatLong(Arc::new(map))
     };
     for (map, most) in [
-        // This is the error of a net of 2¹⁸ points.
+        // The tolerance is the error of a net of 2¹⁸ points.
         (EnvironmentMap::Lobes(vec![lobe]), 1e-5),
-        // The error of the net is the same here. Kinks between pixels, 0.006 rad apart over widths
-        // of 0.25, add an error of (1/40)²/24.
+        // The tolerance is the error of the net plus the error (1/40)²/24 from kinks between
+        // pixels, which are 0.006 rad apart for a lobe of width 0.25.
         (map([1024, 512]), 1e-4),
-        // The map is interpolated bilinearly between pixel centres, 0.03 rad apart: (1/8)²/12 of
-        // the lobe's curvature.
+        // The map is interpolated bilinearly between pixel centres 0.03 rad apart, which causes an
+        // error of (1/8)²/12 of the lobe's curvature.
         (map([200, 100]), 4e-4),
     ] {
         let system = under(map);
@@ -476,16 +482,16 @@ fn diffuse_sphere_under_an_environment_is_the_known_product() {
     }
     let system = under(EnvironmentMap::Lobes(vec![lobe]));
     let plane = on_it(&system);
-    // The same environment rotated by one pixel of 256 gives a different result.
+    // If the environment is rotated by one pixel of 256, the result differs detectably.
     assert!(
         (harmonic_irradiance(width, 0.3) / harmonic_irradiance(width, 0.3 + TAU / 256.0) - 1.0)
             > 1e-3
     );
-    // First order is exact except for the sphere.
+    // The first-order chain is exact for these surfaces except the sphere.
     let window = window(Profile::Hann(0.1), Profile::Hann(0.4));
     let grid = grid([0.1, 0.4]);
     let chain = chain(&view(&system, &plane)).unwrap();
     let error = linearised(&system, &plane, &window, &grid, &chain);
-    // The neglected terms are (k s)³, here 0.08³, and the interaction of tilts about both axes.
+    // The chain neglects terms (k s)³ = 0.08³ and the interaction of tilts about both axes.
     assert!(error < 3e-3, "{error}");
 }

@@ -1,4 +1,4 @@
-//! Tests of the receiver, with the lights, masks and windows that they share.
+//! Tests of the receiver, and the lights, masks and windows that several tests use.
 
 mod points;
 mod spectra;
@@ -20,7 +20,7 @@ fn rectangle(center: [f64; 2], size: [f64; 2]) -> Shape {
     Shape::Rectangle(Rectangle { center, size })
 }
 
-/// A light, masks at distances before a receiver, and the distance of the light.
+/// A light, its distance from a receiver, and masks with their distances before the receiver.
 struct TestReceiver {
     light: Light,
     masks: Vec<(f64, Mask)>,
@@ -50,7 +50,7 @@ impl TestReceiver {
         self.after(0.0)
     }
 
-    /// Returns the receiver, observed at the distance `after` from it.
+    /// Builds the receiver, whose reflected light is observed at the distance `after`.
     fn after(&self, after: f64) -> Receiver<'_> {
         Receiver::new(
             ParallelEmitter::new(&self.light),
@@ -62,8 +62,8 @@ impl TestReceiver {
         )
     }
 
-    /// Returns the share of light that passes all masks from a point (a, b) of the light to (x, y)
-    /// of the receiver.
+    /// Returns the fraction of light that passes all masks on the way from point (a, b) of the
+    /// light to point (x, y) of the receiver.
     fn passes(&self, [a, b]: [f64; 2], [x, y]: [f64; 2]) -> f64 {
         let masks = self.masks.iter();
         masks

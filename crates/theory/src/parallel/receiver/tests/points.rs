@@ -4,7 +4,7 @@ use super::spectra::cube;
 use super::*;
 use std::f64::consts::PI;
 
-/// The stated accuracy, relative to the irradiance without blockers.
+/// The documented accuracy of irradiance, relative to the irradiance without blockers.
 const CLOSE: f64 = 1e-12;
 
 fn alone(light: Light, distance: f64) -> TestReceiver {
@@ -16,7 +16,8 @@ fn alone(light: Light, distance: f64) -> TestReceiver {
 
 #[test]
 fn square_seen_from_below_its_corner() {
-    // 1/π · 1/√2 · arctan(1/√2) = 0.1385 for a unit square one unit above (Howell 1982, section B).
+    // The form factor of a unit square at the distance of one unit is 1/π · 1/√2 · arctan(1/√2) =
+    // 0.1385 (Howell 1982, section B).
     let bench = alone(area(rectangle([0.5, 0.5], [1.0, 1.0]), 0.0), 1.0);
     let factor = bench.receiver().irradiance(0.0, 0.0) / (1.7 * PI);
     assert!((factor - 0.5_f64.sqrt() * 0.5_f64.sqrt().atan() / PI).abs() < CLOSE);
@@ -36,10 +37,11 @@ fn disc_seen_from_anywhere() {
             let (r2, h2) = ((radius / offset).powi(2), (distance / offset).powi(2));
             let z = 1.0 + h2 + r2;
             let root = (z * z - 4.0 * r2).sqrt();
-            // 1 − (z − 2R²)/√ without cancellation, (√² − (z − 2R²)²) = 4R²(z − 1 − R²) = 4R²H².
+            // The difference 1 − (z − 2R²)/√ is computed without cancellation from √² − (z − 2R²)²
+            // = 4R²(z − 1 − R²) = 4R²H².
             let expected = 2.0 * r2 * h2 / (root * (root + z - 2.0 * r2));
             let got = receiver.irradiance(0.2, -0.1 + offset) / (1.7 * PI);
-            // The square root in F loses digits next to the edge of a large disc.
+            // The square root in F has a large rounding error next to the edge of a large disc.
             assert!(
                 (got / expected - 1.0).abs() < 1e-11,
                 "{radius} {offset}: {got} {expected}"
@@ -69,8 +71,8 @@ fn what_a_receiver_of_albedo_one_gives_off_is_what_it_receives() {
     let bench = alone(area(rectangle([0.0; 2], [0.3; 2]), 0.0), 1.0);
     let mut receiver = bench.receiver();
     receiver.albedo = 1.0;
-    // ∫ L G du dv over all slopes is the irradiance under an infinite sky with the radiance that
-    // leaves the receiver.
+    // The integral ∫ L G du dv over all slopes equals the irradiance under an infinite sky of the
+    // radiance that leaves the receiver.
     let sky = Light::Area {
         shape: rectangle([0.0; 2], [2e6; 2]),
         radiance: receiver.exitance() * receiver.irradiance(0.1, 0.2),
@@ -83,7 +85,8 @@ fn what_a_receiver_of_albedo_one_gives_off_is_what_it_receives() {
 #[test]
 fn benches_against_sums_over_the_light() {
     const POINTS: u32 = 1_000_000;
-    // The points are quasi-random; in a grid, all points along a vertical edge would err at once.
+    // The points are quasi-random, because in a regular grid all points next to a vertical edge
+    // would contribute errors of the same sign.
     let spread: Vec<_> = cube(POINTS).map(|[s, t, ..]| [s, t]).collect();
     for (number, bench) in benches().iter().enumerate() {
         let receiver = bench.receiver();
@@ -100,7 +103,7 @@ fn benches_against_sums_over_the_light() {
             let got = receiver.irradiance(point[0], point[1]);
             let all = open.receiver().irradiance(point[0], point[1]);
             let error = (got - brute).abs() / all;
-            // Ten times POINTS^(−3/4).
+            // The tolerance is ten times POINTS^(−3/4).
             assert!(error < 3e-4, "{number} {point:?}: {got} {brute} {error:e}");
         }
     }
@@ -128,7 +131,8 @@ fn tiles_that_fill_the_plane_leave_nothing() {
 
 #[test]
 fn two_discs_meet_in_a_lens() {
-    // Without the cosine the integral is an area; the area of a lens is the sum of two segments.
+    // Without the cosine the integral is the area in slopes, and the area of the intersection of
+    // two discs is the sum of two circular segments.
     let light = area(disc([0.0, 0.0], 0.5), 0.0);
     let segment = |r: f64, x: f64| r * r * libm::acos(x / r) - x * (r * r - x * x).sqrt();
     for (offset, radius) in [
@@ -220,7 +224,7 @@ fn point_light() {
         let got = receiver.irradiance(x, y);
         assert!((got - share * lit(x, y)).abs() < CLOSE, "{x} {y}: {got}");
     }
-    // A cell across the edge of a shadow is half lit.
+    // A cell that is centred on the edge of a shadow is half lit.
     let mean = receiver.cell([0.2, 0.0], [1e-3; 2]);
     assert!((mean / lit(0.2, 0.0) - 0.5).abs() < 1e-4); // the light changes by that over a cell
 }

@@ -1,5 +1,5 @@
-//! Tests of slices and projections, against plain sums and against rays sampled over all variables
-//! at once.
+//! Tests of slices and projections against plain sums, and against rays that are sampled over all
+//! six variables.
 
 use super::*;
 use crate::numerics::quadrature::integrate;
@@ -42,7 +42,8 @@ fn fast_and_plain_sums_agree() {
                 let (rho, nu) = (m as f64 * grid.rho.spacing, grid.nu.value(n));
                 let plain = table.at(grid.frequency(k, rho, nu));
                 let error = (slices.half[[k, m, n]] - plain).norm() / slices.at_zero();
-                // Rounding error, and the error of Gauss rules accurate to 1e-14.
+                // The tolerance covers rounding errors and the error of Gauss rules that are
+                // accurate to 1e-14.
                 assert!(error < 1e-12, "{after} {k} {m} {n}: {error:e}");
             }
         }
@@ -69,8 +70,8 @@ fn drawn(bench: &TestReceiver, after: f64, window: &Window, rays: u32) -> Vec<Co
     for point in cube(rays) {
         let [x, y, u, v] = [0, 1, 2, 3].map(|k| halves[k] * (2.0 * point[k] - 1.0));
         let weight = window.value(&TwoPlane { x, y, u, v });
-        // D' = −D, X' = −X and Y' = D' × X' = Y. So back along the ray, x in the frame of arrival
-        // is −x'.
+        // The frame of reflected light has D' = −D, X' = −X and Y' = D' × X' = Y, so the
+        // coordinate x in the frame of arriving light is −x'.
         let floor = [-(x - after * u), y - after * v];
         let at = [0, 1].map(|k| bounds.center[k] + bounds.size[k] * (point[4 + k] - 0.5));
         let radiance = 0.6 / PI * bench.added(at, floor) * weight;
@@ -91,7 +92,8 @@ const FREQUENCIES: [[f64; 4]; 5] = [
     [-2.0, 1.5, 1.0, 0.7],
 ];
 
-/// Returns the largest deviation from sampled rays, relative to the largest value.
+/// Returns the largest deviation of the receiver's spectrum from the spectrum of sampled rays,
+/// divided by the largest value.
 fn deviation(receiver: &Receiver<'_>, drawn: &[Complex]) -> f64 {
     let table = receiver.table(&hann(), 128);
     let pairs = FREQUENCIES.iter().zip(drawn);
@@ -101,7 +103,7 @@ fn deviation(receiver: &Receiver<'_>, drawn: &[Complex]) -> f64 {
 
 /// Number of sampled rays.
 const RAYS: u32 = 2_000_000;
-/// The sampling error of these rays in six dimensions.
+/// The relative sampling error of `RAYS` rays in six dimensions.
 const DRAWN: f64 = 1e-3;
 
 #[test]
@@ -143,7 +145,8 @@ fn planted_faults_are_seen() {
     assert!(no_pi > 1.0, "{no_pi}");
     let no_travel = wrong(true, 0.0, 0.6);
     assert!(no_travel > 10.0 * DRAWN, "{no_travel}");
-    // With a frame that does not turn round, the result would be the spectrum at −Ωx, −Ωu.
+    // If the frame were not reversed by the reflection, the result would be the spectrum at (−Ωx,
+    // −Ωu).
     let receiver = bench.after(0.7);
     let [x, y, u, v] = FREQUENCIES[3];
     let turned = receiver.at(&hann(), [-x, y, -u, v]);
@@ -169,8 +172,8 @@ fn error_falls_with_the_square_of_the_spacing() {
         let fine = slices(1024);
         let errors = [32, 64, 128, 256].map(|n| slices(n).relative_difference(&fine));
         let order = libm::log2(errors[0] / errors[3]) / 3.0;
-        // The position of kinks between nodes is random; apart from this the error is of second
-        // order.
+        // Apart from the random positions of kinks between nodes, the error is of second order in
+        // the spacing.
         assert!((1.6..3.5).contains(&order), "{after}: {errors:?} {order}");
         assert!(errors[3] < 1e-4, "{errors:?}"); // the aim at the fewest nodes
     }
@@ -189,8 +192,8 @@ fn error_is_told() {
         assert!((slices.at_zero() - zero).norm() < 1e-12 * zero.norm()); // rounding of two sums
         let told = receiver.quadrature_error(&window, &grid, &slices).unwrap();
         let truth = slices.relative_difference(&receiver.table(&window, 1000).slices(&grid));
-        // The estimate is not a bound, but it is correct to a factor of a few, and below the
-        // requested error.
+        // The estimate is not a bound on the error, but it is correct to a factor of a few and is
+        // below the requested error.
         assert!(
             truth < 3.0 * told + 1e-9 && told < 1e-4,
             "{number}: {told:e} {truth:e}"
@@ -256,8 +259,8 @@ fn hard_shadows_of_a_point_light() {
     let bench = TestReceiver::new(Light::Point { intensity: 3.0 }, vec![(0.5, mask)]);
     let receiver = bench.receiver();
     let [x, y, u, v] = [2.0, -3.0, 1.0, 0.5];
-    // The frame is turned, and the integral is over a rectangle of the receiver; the shadow is 4/3
-    // as large as the mask.
+    // The frame of reflected light is reversed along x, the integral is over a rectangle of the
+    // receiver, and the shadow is 4/3 as large as the mask.
     let lit = |along_x: [f64; 2], along_y: [f64; 2]| -> Complex {
         integrate(40, along_x, |s| {
             integrate(40, along_y, |t| {
@@ -282,7 +285,7 @@ fn hard_shadows_of_a_point_light() {
         (got - expected).norm() / expected.norm()
     });
     let order = libm::log2(errors[0] / errors[2]) / 2.0;
-    // Means over cells keep the second order if edges cross them.
+    // Means over cells converge at second order even if edges cross the cells.
     assert!(errors[2] < 2e-4 && order > 1.6, "{errors:?}");
     assert_eq!(receiver.nodes(&hann(), 0.0), 1024);
 }
