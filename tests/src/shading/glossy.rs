@@ -147,14 +147,16 @@ impl GlossyBench {
         )
     }
 
-    /// # Panics If the scene is invalid.
+    /// # Panics
+    /// If the scene is invalid.
     fn scene(&self, windows: &Windows, photons: u64, seed: u64) -> Scene {
         let text = self.text(windows, photons, seed);
         let file = SceneFile::parse(&text).expect("a scene file");
         resolve("glossy", file, ".".as_ref(), u64::MAX).expect("a sound scene")
     }
 
-    /// # Panics If the plane has no criterion.
+    /// # Panics
+    /// If the plane has no criterion.
     fn criterion(&self) -> Criterion {
         let scene = self.scene(&ANY, 1000, 1);
         let plane = &scene.planes[0];

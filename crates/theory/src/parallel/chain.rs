@@ -134,7 +134,8 @@ pub(crate) struct ChainSegment<'a> {
 impl Chain {
     /// Returns the chain relative to its end.
     ///
-    /// # Panics Panics if an operator other than travel follows a diffuse reflection.
+    /// # Panics
+    /// Panics if an operator other than travel follows a diffuse reflection.
     pub(crate) fn path(&self) -> ChainSegment<'_> {
         let mut path = ChainSegment {
             light: ParallelEmitter::new(&self.source.light),

@@ -18,7 +18,8 @@ const RELATIVE_STEP: f64 = 1e-4;
 ///
 /// `prediction` must be the slices of the chain itself, on the same window and grid.
 ///
-/// # Panics Panics if the chain has no such parameter.
+/// # Panics
+/// Panics if the chain has no such parameter.
 #[must_use]
 pub fn derivative(
     chain: &Chain,

@@ -35,7 +35,8 @@ impl Model for Chain {
         all
     }
 
-    /// # Panics Panics if the chain has no such parameter.
+    /// # Panics
+    /// Panics if the chain has no such parameter.
     fn name(&self, parameter: Parameter) -> String {
         let Source { name, light } = &self.source;
         let operator = parameter.operator().and_then(|i| self.operators.get(i));
